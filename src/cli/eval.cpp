@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <charconv>
+#include <iostream>
+#include <iterator>
+
+#include "cli/command.h"
+#include "ocio/gpu.h"
+#include "ocio/lower.h"
+#include "tonewright/engine.h"
+
+namespace tonewright {
+namespace {
+
+/// Triplets of numbers, one a line; comma or space between; `#` begins a comment.
+std::vector<double> parse_triplets(std::string_view text) {
+    std::vector<double> values;
+    std::size_t line_number = 0;
+    while (!text.empty()) {
+        ++line_number;
+        const std::size_t end = text.find('\n');
+        const std::string_view whole = text.substr(0, end);
+        text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+
+        std::string_view line = whole.substr(0, whole.find('#'));
+        std::size_t count = 0;
+        bool is_bad = false;
+        const auto skip = [&](std::string_view what) {
+            line.remove_prefix(std::min(line.find_first_not_of(what), line.size()));
+        };
+        skip(" \t\r");
+        while (!line.empty() && !is_bad) {
+            double value = 0;
+            if (line.front() == '+') line.remove_prefix(1);  // from_chars takes no plus sign
+            const auto result = std::from_chars(line.data(), line.data() + line.size(), value);
+            // A number too large for double is infinite, and too small is 0: what printf-ed data
+            // means.
+            if (result.ec == std::errc::result_out_of_range) {
+                value = std::strtod(std::string(line.data(), result.ptr).c_str(), nullptr);
+            } else if (result.ec != std::errc()) {
+                is_bad = true;
+                break;
+            }
+            values.push_back(value);
+            ++count;
+            line.remove_prefix(static_cast<std::size_t>(result.ptr - line.data()));
+            const std::size_t before = line.size();
+            skip(" \t\r");
+            if (!line.empty() && line.front() == ',') {
+                line.remove_prefix(1);
+                skip(" \t\r");
+                if (line.empty()) is_bad = true;  // "1,2,"
+            } else if (!line.empty() && line.size() == before) {
+                is_bad = true;  // "1x"
+            }
+        }
+        if (is_bad || (count != 0 && count != 3)) {
+            std::string shown(whole.substr(0, 60));
+            if (!shown.empty() && shown.back() == '\r') shown.pop_back();
+            throw Error(
+                fmt::format("eval: line {} is \"{}\"; expected three numbers", line_number, shown));
+        }
+    }
+    return values;
+}
+
+void print(double r, double g, double b) { fmt::print("{:.9g} {:.9g} {:.9g}\n", r, g, b); }
+
+}  // namespace
+
+void add_eval(CLI::App& program, int&) {
+    struct Options : ViewOptions {
+        std::string engine = "reference";
+    };
+    auto options = std::make_shared<Options>();
+    CLI::App* command =
+        program.add_subcommand("eval", "RGB triplets on stdin -> RGB triplets on stdout");
+    command->add_option("operator", options->op, "operator, or operator:preset")->required();
+    add_view_options(*command, *options);
+    command->add_option("--engine", options->engine, "reference (double), simd, ocio or ocio-gpu")
+        ->capture_default_str();
+    command->footer(
+        "One colour a line: r g b or r,g,b; nan and inf are numbers; # begins a comment.\n"
+        "Output has 9 significant digits. The engines other than reference take the numbers as "
+        "floats.\n"
+        "Example:\n  printf '0.18 0.18 0.18\\n4,2,0.5\\n' | tonewright eval agx_sobotka --display "
+        "srgb");
+    command->callback([options] {
+        const std::vector<std::string> engines = {"reference", "simd", "ocio", "ocio-gpu"};
+        if (std::find(engines.begin(), engines.end(), options->engine) == engines.end()) {
+            throw Error("eval: engine is " + options->engine + "; expected " +
+                        join_choices(engines) + did_you_mean(options->engine, engines));
+        }
+        const Pipeline pipeline = build_view(options->view());
+        std::cin.sync_with_stdio(false);
+        const std::string text{std::istreambuf_iterator<char>(std::cin), {}};
+        const std::vector<double> values = parse_triplets(text);
+        const std::size_t count = values.size() / 3;
+        if (options->engine == "reference") {
+            const ReferenceEngine engine(pipeline);
+            std::array<std::vector<double>, 3> plane;
+            for (std::size_t i = 0; i < values.size(); ++i)
+                plane[i % 3].push_back(values[i]);
+            const std::array<double*, 3> p = {plane[0].data(), plane[1].data(), plane[2].data()};
+            engine.run({p[0], p[1], p[2]}, p, count);
+            for (std::size_t i = 0; i < count; ++i)
+                print(p[0][i], p[1][i], p[2][i]);
+            return;
+        }
+        const std::vector<float> in(values.begin(), values.end());
+        std::vector<float> out(in.size());
+        if (options->engine == "simd") {
+            SimdEngine(pipeline).run_rgb(in.data(), out.data(), count);
+        } else {
+            const auto processor = make_processor(lower_to_ocio(pipeline));
+            if (options->engine == "ocio") {
+                OcioCpu(processor).run_rgb(in.data(), out.data(), count);
+            } else {
+                OcioGpu(processor).run_rgb(in.data(), out.data(), count);
+            }
+        }
+        for (std::size_t i = 0; i < count; ++i) {
+            print(static_cast<double>(out[3 * i]), static_cast<double>(out[3 * i + 1]),
+                  static_cast<double>(out[3 * i + 2]));
+        }
+    });
+}
+
+}  // namespace tonewright

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+
+#include "cli/command.h"
+
+namespace {
+
+/// One line on stderr, whatever the library's message looked like.
+int report(const std::string& message, int exit_code) {
+    std::string line = message;
+    while (!line.empty() && (line.back() == '\n' || line.back() == ' '))
+        line.pop_back();
+    for (char& c : line) {
+        if (c == '\n' || c == '\r') c = ' ';
+    }
+    fmt::print(stderr, "tonewright: {}\n", line);
+    return exit_code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    using namespace tonewright;  // NOLINT(google-build-using-namespace): this is its program
+    CLI::App program("Tone mapping operators: one definition, the same picture everywhere.",
+                     "tonewright");
+    program.set_version_flag("--version", TONEWRIGHT_VERSION);
+    program.require_subcommand(1);
+    program.footer(
+        "Examples:\n"
+        "  tonewright list                                       operators, displays, spaces\n"
+        "  tonewright apply in.exr out.png --operator agx_sobotka\n"
+        "  tonewright config -o ocio_config                      the OpenColorIO config\n"
+        "  echo 0.18 0.18 0.18 | tonewright eval hable\n"
+        "Exit codes: 0 ok, 1 a check failed, 2 wrong usage, 3 a file could not be read or "
+        "written.");
+    int exit_code = kOk;
+    add_list(program, exit_code);
+    add_eval(program, exit_code);
+    add_apply(program, exit_code);
+    add_bake(program, exit_code);
+    add_config(program, exit_code);
+    add_verify(program, exit_code);
+    add_chart(program, exit_code);
+    add_sheet(program, exit_code);
+    try {
+        program.parse(argc, argv);
+        if (std::fflush(stdout) != 0) return report("write: standard output: cannot write", kFile);
+    } catch (const CLI::Success& e) {
+        return program.exit(e);  // --help, --version
+    } catch (const CLI::ParseError& e) {
+        return report(e.what(), kUsage);
+    } catch (const FileError& e) {
+        return report(e.what(), kFile);
+    } catch (const Error& e) {
+        return report(e.what(), kUsage);
+    } catch (const std::exception& e) {
+        return report(e.what(), kCheckFailed);
+    }
+    return exit_code;
+}

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tonewright/color.h"
+#include "tonewright/error.h"
+
+namespace tonewright {
+
+Matrix3 multiply(const Matrix3& a, const Matrix3& b) noexcept {
+    Matrix3 m{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t j = 0; j < 3; ++j) {
+            m[i][j] = a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j];
+        }
+    }
+    return m;
+}
+
+Vector3 multiply(const Matrix3& m, const Vector3& v) noexcept {
+    Vector3 r{};
+    for (std::size_t i = 0; i < 3; ++i)
+        r[i] = m[i][0] * v[0] + m[i][1] * v[1] + m[i][2] * v[2];
+    return r;
+}
+
+Matrix3 scale(const Matrix3& m, double factor) noexcept {
+    Matrix3 r = m;
+    for (auto& row : r) {
+        for (double& x : row)
+            x *= factor;
+    }
+    return r;
+}
+
+Matrix3 inverse(const Matrix3& m) {
+    const auto minor = [&](std::size_t i, std::size_t j) {
+        const std::size_t r0 = (i + 1) % 3;
+        const std::size_t r1 = (i + 2) % 3;
+        const std::size_t c0 = (j + 1) % 3;
+        const std::size_t c1 = (j + 2) % 3;
+        return m[r0][c0] * m[r1][c1] - m[r0][c1] * m[r1][c0];  // cyclic order carries the sign
+    };
+    const double determinant =
+        m[0][0] * minor(0, 0) + m[0][1] * minor(0, 1) + m[0][2] * minor(0, 2);
+    if (determinant == 0) throw Error("matrix: determinant is 0; expected an invertible matrix");
+    Matrix3 r{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t j = 0; j < 3; ++j)
+            r[i][j] = minor(j, i) / determinant;
+    }
+    return r;
+}
+
+Vector3 xyz_of(Chromaticity xy) noexcept { return {xy.x / xy.y, 1.0, (1 - xy.x - xy.y) / xy.y}; }
+
+Matrix3 rgb_to_xyz(const Primaries& p) {
+    const Vector3 r = xyz_of(p.red);
+    const Vector3 g = xyz_of(p.green);
+    const Vector3 b = xyz_of(p.blue);
+    const Matrix3 columns = {{{r[0], g[0], b[0]}, {r[1], g[1], b[1]}, {r[2], g[2], b[2]}}};
+    // Luminance of each primary such that (1,1,1) has the white's XYZ.
+    const Vector3 luminance = multiply(inverse(columns), xyz_of(p.whitepoint));
+    Matrix3 m = columns;
+    for (auto& row : m) {
+        for (std::size_t j = 0; j < 3; ++j)
+            row[j] *= luminance[j];
+    }
+    return m;
+}
+
+Matrix3 bradford_adaptation(Chromaticity from, Chromaticity to) {
+    if (from == to) return kIdentity3;
+    // Lam 1985, as printed in ICC.1:2010, annex E.3.
+    constexpr Matrix3 cone = {
+        {{0.8951, 0.2664, -0.1614}, {-0.7502, 1.7135, 0.0367}, {0.0389, -0.0685, 1.0296}}};
+    const Vector3 source = multiply(cone, xyz_of(from));
+    const Vector3 target = multiply(cone, xyz_of(to));
+    const Matrix3 gains = {{{target[0] / source[0], 0, 0},
+                            {0, target[1] / source[1], 0},
+                            {0, 0, target[2] / source[2]}}};
+    return multiply(inverse(cone), multiply(gains, cone));
+}
+
+Matrix3 rgb_to_rgb(const Primaries& from, const Primaries& to) {
+    if (from == to) return kIdentity3;
+    const Matrix3 adapt = bradford_adaptation(from.whitepoint, to.whitepoint);
+    return multiply(inverse(rgb_to_xyz(to)), multiply(adapt, rgb_to_xyz(from)));
+}
+
+Matrix3 rgb_to_xyz_d65(const Primaries& p) {
+    return multiply(bradford_adaptation(p.whitepoint, kD65), rgb_to_xyz(p));
+}
+
+}  // namespace tonewright

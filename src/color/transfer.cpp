@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
+#include "tonewright/color.h"
+
+namespace tonewright {
+
+Expr srgb_encode(const Expr& linear) {
+    // The power sees no negative number: the straight part is taken there.
+    return select(less_equal(linear, 0.0031308), 12.92 * linear,
+                  1.055 * pow(max(linear, 0.0031308), 1 / 2.4) - 0.055);
+}
+
+Expr srgb_decode(const Expr& code) {
+    return select(less_equal(code, 0.04045), code / 12.92,
+                  pow((max(code, 0.04045) + 0.055) / 1.055, 2.4));
+}
+
+Expr power_encode(const Expr& linear, double exponent) { return pow(max(linear, 0), 1 / exponent); }
+Expr power_decode(const Expr& code, double exponent) { return pow(max(code, 0), exponent); }
+
+Expr bt1886_encode(const Expr& linear) { return power_encode(linear, 2.4); }
+Expr bt1886_decode(const Expr& code) { return power_decode(code, 2.4); }
+
+namespace {
+// SMPTE ST 2084:2014, 5.1, as printed there.
+constexpr double kPqM1 = 2610.0 / 4096 * (1.0 / 4);
+constexpr double kPqM2 = 2523.0 / 4096 * 128;
+constexpr double kPqC1 = 3424.0 / 4096;
+constexpr double kPqC2 = 2413.0 / 4096 * 32;
+constexpr double kPqC3 = 2392.0 / 4096 * 32;
+
+// ITU-R BT.2100-2, table 5.
+constexpr double kHlgA = 0.17883277;
+constexpr double kHlgB = 1 - 4 * kHlgA;                  // 0.28466892
+const double kHlgC = 0.5 - kHlgA * std::log(4 * kHlgA);  // 0.55991073
+
+Expr mirror(const Expr& x, const Expr& of_magnitude) {
+    return select(less(x, 0), -of_magnitude, of_magnitude);
+}
+}  // namespace
+
+Expr pq_encode_nits(const Expr& nits) {
+    const Expr y = pow(abs(nits) / 10000, kPqM1);
+    return mirror(nits, pow((kPqC1 + kPqC2 * y) / (1 + kPqC3 * y), kPqM2));
+}
+
+Expr pq_decode_nits(const Expr& code) {
+    const Expr p = pow(abs(code), 1 / kPqM2);
+    return mirror(code, 10000 * pow(max(p - kPqC1, 0) / (kPqC2 - kPqC3 * p), 1 / kPqM1));
+}
+
+Expr hlg_oetf(const Expr& scene_linear) {
+    const Expr e = abs(scene_linear);
+    return mirror(scene_linear, select(less_equal(e, 1.0 / 12), sqrt(3 * e),
+                                       kHlgA * log(max(12 * e - kHlgB, 1e-10)) + kHlgC));
+}
+
+Expr hlg_inverse_oetf(const Expr& code) {
+    const Expr c = abs(code);
+    return mirror(code,
+                  select(less_equal(c, 0.5), c * c / 3, (exp((c - kHlgC) / kHlgA) + kHlgB) / 12));
+}
+
+namespace {
+// Academy S-2016-001, equations 1 and 2.
+constexpr double kCctBreakLinear = 0.0078125;
+constexpr double kCctBreakCode = 0.155251141552511;
+constexpr double kCctSlope = 10.5402377416545;
+constexpr double kCctOffset = 0.0729055341958355;
+}  // namespace
+
+Expr acescct_encode(const Expr& linear) {
+    return select(less_equal(linear, kCctBreakLinear), kCctSlope * linear + kCctOffset,
+                  (log2(max(linear, kCctBreakLinear)) + 9.72) / 17.52);
+}
+
+Expr acescct_decode(const Expr& code) {
+    return select(less_equal(code, kCctBreakCode), (code - kCctOffset) / kCctSlope,
+                  exp2(code * 17.52 - 9.72));
+}
+
+}  // namespace tonewright

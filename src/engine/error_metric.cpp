@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/error_metric.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <vector>
+
+#include "tonewright/engine.h"
+
+namespace tonewright {
+
+ErrorStats summarise(std::span<const double> errors) {
+    ErrorStats stats;
+    stats.count = errors.size();
+    if (errors.empty()) return stats;
+    std::vector<double> sorted(errors.begin(), errors.end());
+    for (double& e : sorted) {
+        if (std::isnan(e)) e = std::numeric_limits<double>::infinity();
+    }
+    stats.worst =
+        static_cast<std::size_t>(std::max_element(sorted.begin(), sorted.end()) - sorted.begin());
+    stats.max = sorted[stats.worst];
+    for (const double e : sorted)
+        stats.mean += e;
+    stats.mean /= static_cast<double>(sorted.size());
+    const auto rank = static_cast<std::ptrdiff_t>(0.999 * static_cast<double>(sorted.size() - 1));
+    std::nth_element(sorted.begin(), sorted.begin() + rank, sorted.end());
+    stats.p999 = sorted[static_cast<std::size_t>(rank)];
+    return stats;
+}
+
+double channel_error(const double* truth, const float* candidate) {
+    double worst = 0;
+    for (int c = 0; c < 3; ++c) {
+        const double e = std::fabs(truth[c] - static_cast<double>(candidate[c]));
+        if (!(e <= worst)) worst = e;  // NaN is taken
+    }
+    return worst;
+}
+
+namespace {
+
+/// Code values of a display -> ICtCp (ITU-R BT.2100-2, table 7).
+Pipeline ictcp_of(const Display& display, double peak_nits) {
+    constexpr Matrix3 to_lms = {{{1688.0 / 4096, 2146.0 / 4096, 262.0 / 4096},
+                                 {683.0 / 4096, 2951.0 / 4096, 462.0 / 4096},
+                                 {99.0 / 4096, 309.0 / 4096, 3688.0 / 4096}}};
+    constexpr Matrix3 to_ictcp = {{{0.5, 0.5, 0},
+                                   {6610.0 / 4096, -13613.0 / 4096, 7003.0 / 4096},
+                                   {17933.0 / 4096, -17390.0 / 4096, -543.0 / 4096}}};
+    const Matrix3 light = scale(rgb_to_rgb(display.primaries, kRec2020), peak_nits);
+    return {curve_stage(display.decode), MatrixStage{multiply(to_lms, light)},
+            curve_stage(pq_encode_nits(Expr::input())), MatrixStage{to_ictcp}};
+}
+
+}  // namespace
+
+std::vector<double> delta_e_itp(const Display& display, std::span<const double> code_a,
+                                std::span<const double> code_b, double peak_nits) {
+    const ReferenceEngine to_ictcp(ictcp_of(display, peak_nits));
+    const std::size_t count = code_a.size() / 3;
+    const auto planes = [&](std::span<const double> code) {
+        std::array<std::vector<double>, 3> p;
+        for (std::size_t c = 0; c < 3; ++c) {
+            p[c].resize(count);
+            for (std::size_t i = 0; i < count; ++i)
+                p[c][i] = code[3 * i + c];
+        }
+        to_ictcp.run({p[0].data(), p[1].data(), p[2].data()},
+                     {p[0].data(), p[1].data(), p[2].data()}, count);
+        return p;
+    };
+    const auto a = planes(code_a);
+    const auto b = planes(code_b);
+    std::vector<double> difference(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const double intensity = a[0][i] - b[0][i];
+        const double t = 0.5 * (a[1][i] - b[1][i]);  // BT.2124: T is half of Ct
+        const double p = a[2][i] - b[2][i];
+        difference[i] = 720 * std::sqrt(intensity * intensity + t * t + p * p);
+    }
+    return difference;
+}
+
+std::string rounded_up(double value) {
+    if (!(value > 0) || !std::isfinite(value)) return shortest(value);
+    const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1);
+    char text[32];
+    // The small subtraction keeps 1.3e-7, which is not a double, from becoming 1.4e-7.
+    std::snprintf(text, sizeof text, "%.1e", std::ceil(value / unit - 1e-9) * unit);
+    return text;
+}
+
+}  // namespace tonewright

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "tonewright/view.h"
+
+namespace tonewright {
+
+/// Errors over a set of colours; of each colour the worst channel counts.
+struct ErrorStats {
+    double max = 0;
+    double p999 = 0;  // 99.9th percentile
+    double mean = 0;
+    std::size_t count = 0;
+    std::size_t worst = 0;  // index of the colour with the largest error
+};
+
+/// Over values already computed; a NaN counts as an infinite error.
+[[nodiscard]] ErrorStats summarise(std::span<const double> errors);
+
+/// Largest channel difference per colour of interleaved RGB, `candidate` against `truth`.
+[[nodiscard]] double channel_error(const double* truth, const float* candidate);
+
+/// Colour differences of pairs of code-value triplets (interleaved RGB) shown on a display, ITU-R
+/// BT.2124-0: dE_ITP, where 1 is about the smallest difference that can be seen.
+/// @param peak_nits  luminance of code value 1 in cd/m2; 100 is the reference of SDR grading.
+[[nodiscard]] std::vector<double> delta_e_itp(const Display& display,
+                                              std::span<const double> code_a,
+                                              std::span<const double> code_b,
+                                              double peak_nits = 100);
+
+/// Two significant digits, rounded up, so that what is printed is never less than what was
+/// measured.
+[[nodiscard]] std::string rounded_up(double value);
+
+}  // namespace tonewright

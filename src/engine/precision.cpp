@@ -1,0 +1,379 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/precision.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/probe.h"
+#include "expr/scalar_ops.h"
+#include "tonewright/pipeline.h"
+
+namespace tonewright {
+namespace {
+
+/// Half a unit in the last place of 1 in float.
+constexpr double kHalfUlp = 0x1p-24;
+/// Half the smallest denormal.
+constexpr double kSmallestStep = 0x1p-150;
+
+/// Colours where roundings show: greys, colours of all saturations and signs, and the extremes.
+std::vector<Vector3> probe_colours() {
+    std::vector<Vector3> probes;
+    ProbeRandom random(7);
+    const auto add = [&](double r, double g, double b) {
+        const auto rounded = [](double x) {
+            return static_cast<double>(static_cast<float>(std::clamp(x, -kHalfMax, kHalfMax)));
+        };
+        probes.push_back({rounded(r), rounded(g), rounded(b)});
+    };
+    const auto log_uniform = [&](double lo, double hi) {
+        return std::exp2(random.uniform(lo, hi));
+    };
+
+    for (double stops = -20; stops <= 16; stops += 0.5) {
+        const double grey = std::exp2(stops);
+        add(grey, grey, grey);
+    }
+    for (int i = 0; i < 700; ++i) {  // a brightness, and channels up to 8 stops below it
+        const double peak = log_uniform(-10, 14);
+        Vector3 v = {peak * log_uniform(-8, 0), peak * log_uniform(-8, 0),
+                     peak * log_uniform(-8, 0)};
+        const auto k = static_cast<std::size_t>(i);
+        if (i % 5 == 0) v[k / 5 % 3] = 0;
+        if (i % 7 == 0) v[k / 7 % 3] = peak;
+        add(v[0], v[1], v[2]);
+    }
+    for (std::size_t i = 0; i < 700; ++i) {  // mixed signs
+        Vector3 v = {log_uniform(-12, 16), log_uniform(-12, 16), log_uniform(-12, 16)};
+        v[i % 3] *= -1;
+        if (i % 2) v[(i + 1) % 3] *= -1;
+        add(v[0], v[1], v[2]);
+    }
+    for (int i = 0; i < 60; ++i) {
+        add(log_uniform(-149, -20), log_uniform(-149, -20), log_uniform(-149, -20));
+    }
+    for (const double r : {-kHalfMax, 0.0, kHalfMax}) {
+        for (const double g : {-kHalfMax, 0.0, kHalfMax}) {
+            for (const double b : {-kHalfMax, 0.0, kHalfMax})
+                add(r, g, b);
+        }
+    }
+    return probes;
+}
+
+int operand_count(ExprOp op) {
+    switch (op) {
+        case ExprOp::constant:
+        case ExprOp::input:
+            return 0;
+        case ExprOp::negate:
+        case ExprOp::absolute:
+        case ExprOp::square_root:
+        case ExprOp::exp2:
+        case ExprOp::log2:
+        case ExprOp::sine:
+        case ExprOp::cosine:
+        case ExprOp::floor:
+        case ExprOp::lookup:
+            return 1;
+        case ExprOp::select:
+            return 3;
+        default:
+            return 2;
+    }
+}
+
+double slope(const Table& table, double x) {
+    if (table.interpolation == Table::Interpolation::step || table.samples.size() < 2) return 0;
+    const auto cells = static_cast<double>(table.samples.size() - 1);
+    if (!(x > 0 && x < 1)) return 0;
+    const auto i = static_cast<std::size_t>(std::min(std::floor(x * cells), cells - 1));
+    return (table.samples[i + 1] - table.samples[i]) * cells;
+}
+
+/// Derivatives of one instruction by its operands, at the side of a kink that is taken.
+std::array<double, 3> partials(const TapeInstruction& step, double value, double a, double b) {
+    constexpr double kLn2 = 0.69314718055994531;
+    switch (step.op) {
+        case ExprOp::add:
+            return {1, 1, 0};
+        case ExprOp::subtract:
+            return {1, -1, 0};
+        case ExprOp::multiply:
+            return {b, a, 0};
+        case ExprOp::divide:
+            return {1 / b, -value / b, 0};
+        case ExprOp::minimum:
+            return b < a ? std::array{0.0, 1.0, 0.0} : std::array{1.0, 0.0, 0.0};
+        case ExprOp::maximum:
+            return a < b ? std::array{0.0, 1.0, 0.0} : std::array{1.0, 0.0, 0.0};
+        case ExprOp::power:
+            return {b * std::pow(a, b - 1), a > 0 ? value * std::log(a) : 0, 0};
+        case ExprOp::atan2:
+            return {b / (a * a + b * b), -a / (a * a + b * b), 0};
+        case ExprOp::negate:
+            return {-1, 0, 0};
+        case ExprOp::absolute:
+            return {a < 0 ? -1.0 : 1.0, 0, 0};
+        case ExprOp::square_root:
+            return {0.5 / value, 0, 0};
+        case ExprOp::exp2:
+            return {value * kLn2, 0, 0};
+        case ExprOp::log2:
+            return {1 / (a * kLn2), 0, 0};
+        case ExprOp::sine:
+            return {std::cos(a), 0, 0};
+        case ExprOp::cosine:
+            return {-std::sin(a), 0, 0};
+        case ExprOp::select:
+            return a != 0 ? std::array{0.0, 1.0, 0.0} : std::array{0.0, 0.0, 1.0};
+        case ExprOp::lookup:
+            return {slope(*step.table, a), 0, 0};
+        default:
+            return {0, 0, 0};
+    }
+}
+
+/// The result is one of the operands, exactly, or a whole number.
+bool is_exact(ExprOp op) {
+    switch (op) {
+        case ExprOp::input:
+        case ExprOp::minimum:
+        case ExprOp::maximum:
+        case ExprOp::less:
+        case ExprOp::less_equal:
+        case ExprOp::equal:
+        case ExprOp::negate:
+        case ExprOp::absolute:
+        case ExprOp::floor:
+        case ExprOp::select:
+            return true;
+        default:
+            return false;
+    }
+}
+
+bool is_branch(ExprOp op) {
+    return op == ExprOp::minimum || op == ExprOp::maximum || op == ExprOp::absolute ||
+           op == ExprOp::select;
+}
+
+/// Bound of the kernel's float error in half units in the last place (see simd_math-inl.h).
+double half_ulps(ExprOp op) {
+    switch (op) {
+        case ExprOp::exp2:
+        case ExprOp::log2:
+            return 2;
+        case ExprOp::power:
+            return 3;
+        case ExprOp::lookup:
+            return 3;
+        default:
+            return 1;
+    }
+}
+
+/// What computing an operation in double costs over float, roughly.
+double cost_of_double(ExprOp op) {
+    switch (op) {
+        case ExprOp::exp2:
+        case ExprOp::log2:
+        case ExprOp::power:
+        case ExprOp::lookup:
+            return 4;
+        default:
+            return 1;
+    }
+}
+
+class PrecisionChooser {
+  public:
+    PrecisionChooser(const std::vector<TapeInstruction>& code,
+                     const std::array<std::uint32_t, 3>& outputs)
+        : code_(code),
+          outputs_(outputs),
+          in_double_(code.size()),
+          value_(code.size()),
+          adjoint_(code.size()) {}
+
+    std::vector<bool> choose() {
+        const std::vector<Vector3> probes = probe_colours();
+        for (std::size_t i = 0; i < code_.size(); ++i) {
+            if (is_branch(code_[i].op)) branches_.push_back({i, {}});
+        }
+        // A copy (min, select, ...) of a float is exact, one of a double is not: what was decided
+        // may have to be looked at again.
+        for (int pass = 0; pass < 4; ++pass) {
+            const std::vector<bool> before = in_double_;
+            for (const Vector3& rgb : probes) {
+                visit(rgb);
+                if (pass == 0) collect_sides(rgb);
+            }
+            for (const Branch& branch : branches_)
+                approach(branch);
+            if (in_double_ == before) break;
+        }
+        return in_double_;
+    }
+
+  private:
+    struct Share {
+        double error;
+        std::size_t index;
+    };
+    /// Where the program takes one side or the other, and probes of either.
+    struct Branch {
+        std::size_t index;
+        std::array<std::vector<Vector3>, 2> sides;
+    };
+    static constexpr std::size_t kPairs = 4;
+
+    /// The first `count` values.
+    void evaluate(const Vector3& rgb, std::size_t count) {
+        for (std::size_t i = 0; i < count; ++i) {
+            const TapeInstruction& step = code_[i];
+            if (step.op == ExprOp::constant) {
+                value_[i] = step.value;
+            } else if (step.op == ExprOp::input) {
+                value_[i] = rgb[static_cast<std::size_t>(step.input)];
+            } else {
+                value_[i] =
+                    scalar_op(step.op, value_[step.a], value_[step.b], value_[step.c], step.table);
+            }
+        }
+    }
+
+    void visit(const Vector3& rgb) {
+        evaluate(rgb, code_.size());
+        constexpr double kTooLarge = 0.5 * static_cast<double>(std::numeric_limits<float>::max());
+        for (std::size_t i = 0; i < code_.size(); ++i) {
+            if (std::isfinite(value_[i]) && std::fabs(value_[i]) > kTooLarge) in_double_[i] = true;
+        }
+        for (const std::uint32_t output : outputs_)
+            keep_within_budget(output);
+    }
+
+    [[nodiscard]] bool takes_first(std::size_t i) const {
+        const TapeInstruction& step = code_[i];
+        const double a = value_[step.a];
+        switch (step.op) {
+            case ExprOp::minimum:
+            case ExprOp::maximum:
+                return a < value_[step.b];
+            case ExprOp::select:
+                return a != 0;
+            default:
+                return a < 0;
+        }
+    }
+
+    void collect_sides(const Vector3& rgb) {
+        for (Branch& branch : branches_) {
+            auto& side = branch.sides[takes_first(branch.index) ? 0 : 1];
+            if (side.size() < kPairs) {
+                side.push_back(rgb);
+            } else if (random_.uniform(0, 1) < 0.02) {
+                side[random_.bits() % kPairs] = rgb;
+            }
+        }
+    }
+
+    /// Probes ever nearer to where the branch turns over, from both sides: a power display has no
+    /// end of slope at black, and random colours do not come near enough to show it.
+    void approach(const Branch& branch) {
+        const std::size_t pairs = std::min(branch.sides[0].size(), branch.sides[1].size());
+        for (std::size_t p = 0; p < pairs; ++p) {
+            Vector3 first = branch.sides[0][p];
+            Vector3 second = branch.sides[1][p];
+            for (int step = 0; step < 50; ++step) {
+                Vector3 middle;
+                for (std::size_t c = 0; c < 3; ++c)
+                    middle[c] = 0.5 * (first[c] + second[c]);
+                evaluate(middle, branch.index);
+                if (step % 4 == 3) visit(middle);
+                (takes_first(branch.index) ? first : second) = middle;
+            }
+        }
+    }
+
+    /// Adjoints of all values for one output, relative to its size above 1.
+    void accumulate(std::uint32_t output) {
+        std::fill(adjoint_.begin(), adjoint_.end(), 0.0);
+        adjoint_[output] = 1 / std::max(1.0, std::fabs(value_[output]));
+        for (std::size_t i = output + 1; i-- > 0;) {
+            const TapeInstruction& step = code_[i];
+            const int operands = operand_count(step.op);
+            if (adjoint_[i] == 0 || operands == 0) continue;
+            const auto partial = partials(step, value_[i], value_[step.a], value_[step.b]);
+            const std::array<std::uint32_t, 3> operand = {step.a, step.b, step.c};
+            for (std::size_t k = 0; k < static_cast<std::size_t>(operands); ++k) {
+                // Kernels take a constant exponent in double.
+                if (k == 1 && step.op == ExprOp::power && code_[step.b].op == ExprOp::constant)
+                    continue;
+                const double added = adjoint_[i] * partial[k];
+                if (std::isfinite(added)) adjoint_[operand[k]] += added;  // not at a pole
+            }
+        }
+    }
+
+    [[nodiscard]] double rounding(std::size_t i, std::uint32_t output) const {
+        const TapeInstruction& step = code_[i];
+        const double v = value_[i];
+        if (step.op == ExprOp::constant) {
+            return std::fabs(v - static_cast<double>(static_cast<float>(v)));
+        }
+        double units = half_ulps(step.op);
+        if (is_exact(step.op)) {
+            const std::array<std::uint32_t, 3> operand = {step.a, step.b, step.c};
+            units = 0;
+            for (std::size_t k = 0; k < static_cast<std::size_t>(operand_count(step.op)); ++k) {
+                if (in_double_[operand[k]]) units = 1;
+            }
+        }
+        if (i == output) units = std::max(0.0, units - 1);  // that one there is in any case
+        return units * std::max(kHalfUlp * std::fabs(v), kSmallestStep);
+    }
+
+    void keep_within_budget(std::uint32_t output) {
+        accumulate(output);
+        shares_.clear();
+        double sum = 0;
+        for (std::size_t i = 0; i <= output; ++i) {
+            if (adjoint_[i] == 0 || in_double_[i]) continue;
+            const double error = std::fabs(adjoint_[i]) * rounding(i, output);
+            if (!(error > 0)) continue;
+            sum += error;
+            shares_.push_back({error, i});
+        }
+        if (!(sum > kFloatErrorBudget)) return;
+        const auto by_merit = [&](const Share& x, const Share& y) {
+            return x.error / cost_of_double(code_[x.index].op) >
+                   y.error / cost_of_double(code_[y.index].op);
+        };
+        std::sort(shares_.begin(), shares_.end(), by_merit);
+        for (const Share& share : shares_) {
+            in_double_[share.index] = true;
+            sum -= share.error;
+            if (sum <= kFloatErrorBudget) break;
+        }
+    }
+
+    const std::vector<TapeInstruction>& code_;
+    const std::array<std::uint32_t, 3>& outputs_;
+    std::vector<bool> in_double_;
+    std::vector<double> value_;
+    std::vector<double> adjoint_;
+    std::vector<Share> shares_;
+    std::vector<Branch> branches_;
+    ProbeRandom random_{11};
+};
+
+}  // namespace
+
+std::vector<bool> values_in_double(const std::vector<TapeInstruction>& code,
+                                   const std::array<std::uint32_t, 3>& outputs) {
+    return PrecisionChooser(code, outputs).choose();
+}
+
+}  // namespace tonewright

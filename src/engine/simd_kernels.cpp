@@ -1,0 +1,496 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The one file that Highway compiles once for each instruction set; the best one is chosen when
+// it runs. A separate function for each operation over a tile, so that the choice of what to do is
+// made once in 256 pixels or so, and the values of a tile never leave the first-level cache.
+#include "engine/simd_kernels.h"
+
+#include <cstring>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "engine/simd_kernels.cpp"
+// Processors without SSE4 (before 2008) run the scalar code.
+#define HWY_DISABLED_TARGETS HWY_SSSE3
+#include "hwy/foreach_target.h"  // IWYU pragma: keep
+
+#include "engine/simd_math-inl.h"
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tonewright::simd {
+namespace HWY_NAMESPACE {
+
+using DF = hn::ScalableTag<float>;
+using DD = hn::ScalableTag<double>;
+/// As many floats as there are doubles in a vector.
+using DFOfDD = hn::Rebind<float, DD>;
+
+/// Where the values of a tile are.
+struct Frame {
+    unsigned char* registers;
+    const unsigned char* constants;
+    std::size_t count;  // padded to whole vectors of the widest kind
+};
+
+/// One operand, ready to be read: a constant is read from the same vector again and again.
+struct Source {
+    const unsigned char* data;
+    std::size_t step;  // 1, or 0 for a constant
+    bool wide;
+
+    Source(const Frame& frame, const Operand& operand)
+        : data((operand.constant ? frame.constants : frame.registers) + operand.offset),
+          step(operand.constant ? 0 : 1),
+          wide(operand.wide) {}
+
+    HWY_INLINE Vec<DF> load(DF d, std::size_t i) const {
+        return hn::Load(d, reinterpret_cast<const float*>(data) + i * step);
+    }
+    HWY_INLINE Vec<DFOfDD> load(DFOfDD d, std::size_t i, int /*half*/) const {
+        return hn::Load(d, reinterpret_cast<const float*>(data) + i * step);
+    }
+    HWY_INLINE Vec<DD> load(DD d, std::size_t i) const {
+        if (wide) return hn::Load(d, reinterpret_cast<const double*>(data) + i * step);
+        return hn::PromoteTo(d, load(DFOfDD(), i, 0));
+    }
+};
+
+/// f(d, a, b, ...) over a tile of floats.
+template <class F, class... S>
+HWY_INLINE void map_float(const Frame& frame, const Instruction& step, F f, S... source) {
+    const DF d;
+    auto* out = reinterpret_cast<float*>(frame.registers + step.out.offset);
+    for (std::size_t i = 0; i < frame.count; i += hn::Lanes(d)) {
+        hn::Store(f(d, source.load(d, i)...), d, out + i);
+    }
+}
+
+HWY_INLINE void store_wide(const Frame& frame, const Operand& out, std::size_t i, Vec<DD> value) {
+    if (out.wide) {
+        hn::Store(value, DD(), reinterpret_cast<double*>(frame.registers + out.offset) + i);
+    } else {
+        const DFOfDD d;
+        hn::Store(hn::DemoteTo(d, value), d,
+                  reinterpret_cast<float*>(frame.registers + out.offset) + i);
+    }
+}
+
+/// The same computed in double; operands and result are either.
+template <class F, class... S>
+HWY_INLINE void map_double(const Frame& frame, const Instruction& step, F f, S... source) {
+    const DD d;
+    for (std::size_t i = 0; i < frame.count; i += hn::Lanes(d)) {
+        store_wide(frame, step.out, i, f(d, source.load(d, i)...));
+    }
+}
+
+/// f over N operands, in float or double as the instruction says.
+template <class F, std::size_t... N>
+HWY_INLINE void map(const Frame& frame, const Instruction& step, F f, std::index_sequence<N...>) {
+    if (step.wide) {
+        map_double(frame, step, f, Source(frame, step.in[N])...);
+    } else {
+        map_float(frame, step, f, Source(frame, step.in[N])...);
+    }
+}
+template <int kOperands, class F>
+HWY_INLINE void map(const Frame& frame, const Instruction& step, F f) {
+    map(frame, step, f, std::make_index_sequence<kOperands>());
+}
+
+/// One for true, as the comparisons of expressions are.
+template <class D, class M>
+HWY_INLINE Vec<D> one_where(D d, M mask) {
+    return hn::IfThenElseZero(mask, hn::Set(d, static_cast<hn::TFromD<D>>(1)));
+}
+
+// Min and Max of the processor return their second operand when equal or not ordered; with the
+// operands in this order that is what expressions mean: b < a ? b : a.
+template <class V>
+HWY_INLINE V minimum(V a, V b) {
+    return hn::Min(b, a);
+}
+template <class V>
+HWY_INLINE V maximum(V a, V b) {
+    return hn::Max(b, a);
+}
+
+HWY_NOINLINE void dot3(const Frame& frame, const Instruction& step) {
+    const auto dot = [&step](auto d, auto a, auto b, auto c) HWY_ATTR {
+        using T = hn::TFromD<decltype(d)>;
+        const auto k0 = hn::Set(d, static_cast<T>(step.k[0]));
+        const auto k1 = hn::Set(d, static_cast<T>(step.k[1]));
+        const auto k2 = hn::Set(d, static_cast<T>(step.k[2]));
+        return hn::MulAdd(k2, c, hn::MulAdd(k1, b, hn::Mul(k0, a)));
+    };
+    map<3>(frame, step, dot);
+}
+
+HWY_NOINLINE void exp2(const Frame& frame, const Instruction& step) {
+    const Source a(frame, step.in[0]);
+    if (step.wide) {
+        map_double(
+            frame, step, [](DD d, Vec<DD> x) HWY_ATTR { return exp2_double(d, x); }, a);
+    } else {
+        map_float(
+            frame, step, [](DF d, Vec<DF> x) HWY_ATTR { return exp2_float(d, x); }, a);
+    }
+}
+
+HWY_NOINLINE void log2(const Frame& frame, const Instruction& step) {
+    const Source a(frame, step.in[0]);
+    if (step.wide || !HWY_NATIVE_FMA) {  // the float form needs the product rounded with the sum
+        map_double(
+            frame, step, [](DD d, Vec<DD> x) HWY_ATTR { return log2_double(d, x); }, a);
+    } else {
+        map_float(
+            frame, step, [](DF d, Vec<DF> x) HWY_ATTR { return log2_float(d, x); }, a);
+    }
+}
+
+HWY_NOINLINE void power(const Frame& frame, const Instruction& step) {
+    const Source a(frame, step.in[0]);
+    const Source b(frame, step.in[1]);
+    if (step.wide) {
+        const auto power = [](DD d, Vec<DD> x, Vec<DD> y) HWY_ATTR {
+            return power_of_any(d, x, y, power_double(d, hn::Abs(x), y));
+        };
+        map_double(frame, step, power, a, b);
+        return;
+    }
+    const DD d;
+    const DFOfDD df;
+    auto* out = reinterpret_cast<float*>(frame.registers + step.out.offset);
+    for (std::size_t i = 0; i < frame.count; i += hn::Lanes(d)) {
+        const auto x = a.load(df, i, 0);
+        const auto y = b.load(df, i, 0);
+        const auto magnitude = power_float(d, hn::Abs(x), hn::PromoteTo(d, y));
+        hn::Store(power_of_any(df, x, y, magnitude), df, out + i);
+    }
+}
+
+HWY_NOINLINE void power_constant(const Frame& frame, const Instruction& step) {
+    const Source a(frame, step.in[0]);
+    const double y = step.k[0];
+    const auto y_float = static_cast<float>(y);
+    auto* out = reinterpret_cast<float*>(frame.registers + step.out.offset);
+    if (step.wide) {
+        const auto power = [y](DD d, Vec<DD> x) HWY_ATTR {
+            return power_of_any(d, x, y, power_double(d, x, hn::Set(d, y)));
+        };
+        map_double(frame, step, power, a);
+    } else if (-kNearPower <= y && y <= kNearPower) {
+        const auto power = [y, y_float](DF d, Vec<DF> x) HWY_ATTR {
+            return power_of_any(d, x, y_float, power_near(d, x, y));
+        };
+        map_float(frame, step, power, a);
+    } else {
+        const DD d;
+        const DFOfDD df;
+        for (std::size_t i = 0; i < frame.count; i += hn::Lanes(d)) {
+            const auto x = a.load(df, i, 0);
+            const auto result = power_float(d, x, hn::Set(d, y));
+            hn::Store(power_of_any(df, x, y_float, result), df, out + i);
+        }
+    }
+}
+
+HWY_NOINLINE void lookup(const Frame& frame, const Instruction& step, const SampledTable& table) {
+    const Source a(frame, step.in[0]);
+    const std::size_t n = table.wide.size();
+    const bool linear = table.interpolation == Table::Interpolation::linear;
+    const auto in_float = [&](DF d, Vec<DF> x) HWY_ATTR {
+        return linear ? lookup_linear(d, x, table.narrow.data(), n)
+                      : lookup_step(d, x, table.narrow.data(), n);
+    };
+    const auto in_double = [&](DD d, Vec<DD> x) HWY_ATTR {
+        return linear ? lookup_linear(d, x, table.wide.data(), n)
+                      : lookup_step(d, x, table.wide.data(), n);
+    };
+    if (step.wide) {
+        map_double(frame, step, in_double, a);
+    } else {
+        map_float(frame, step, in_float, a);
+    }
+}
+
+HWY_NOINLINE void run_instruction(const Frame& frame, const Code& code, const Instruction& step) {
+    switch (step.op) {
+        case Op::copy:
+            return map<1>(frame, step, [](auto, auto a) HWY_ATTR { return a; });
+        case Op::add:
+            return map<2>(frame, step, [](auto, auto a, auto b) HWY_ATTR { return hn::Add(a, b); });
+        case Op::subtract:
+            return map<2>(frame, step, [](auto, auto a, auto b) HWY_ATTR { return hn::Sub(a, b); });
+        case Op::multiply:
+            return map<2>(frame, step, [](auto, auto a, auto b) HWY_ATTR { return hn::Mul(a, b); });
+        case Op::divide:
+            return map<2>(frame, step, [](auto, auto a, auto b) HWY_ATTR { return hn::Div(a, b); });
+        case Op::multiply_add:
+            return map<3>(frame, step, [](auto, auto a, auto b, auto c) HWY_ATTR {
+                return hn::MulAdd(a, b, c);
+            });
+        case Op::multiply_subtract:
+            return map<3>(frame, step, [](auto, auto a, auto b, auto c) HWY_ATTR {
+                return hn::MulSub(a, b, c);
+            });
+        case Op::subtract_product:
+            return map<3>(frame, step, [](auto, auto a, auto b, auto c) HWY_ATTR {
+                return hn::NegMulAdd(a, b, c);
+            });
+        case Op::dot3:
+            return dot3(frame, step);
+        case Op::minimum:
+            return map<2>(frame, step, [](auto, auto a, auto b) HWY_ATTR { return minimum(a, b); });
+        case Op::maximum:
+            return map<2>(frame, step, [](auto, auto a, auto b) HWY_ATTR { return maximum(a, b); });
+        case Op::clamp:
+            return map<3>(frame, step, [](auto, auto a, auto b, auto c) HWY_ATTR {
+                return minimum(maximum(a, b), c);
+            });
+        case Op::negate:
+            return map<1>(frame, step, [](auto, auto a) HWY_ATTR { return hn::Neg(a); });
+        case Op::absolute:
+            return map<1>(frame, step, [](auto, auto a) HWY_ATTR { return hn::Abs(a); });
+        case Op::square_root:
+            return map<1>(frame, step, [](auto, auto a) HWY_ATTR { return hn::Sqrt(a); });
+        case Op::floor:
+            return map<1>(frame, step, [](auto, auto a) HWY_ATTR { return hn::Floor(a); });
+        case Op::exp2:
+            return exp2(frame, step);
+        case Op::log2:
+            return log2(frame, step);
+        case Op::power:
+            return power(frame, step);
+        case Op::power_constant:
+            return power_constant(frame, step);
+        case Op::sine:  // always in double: see the reduction
+            return map_double(
+                frame, step, [](DD d, Vec<DD> x) HWY_ATTR { return sine_double(d, x); },
+                Source(frame, step.in[0]));
+        case Op::cosine:
+            return map_double(
+                frame, step, [](DD d, Vec<DD> x) HWY_ATTR { return cosine_double(d, x); },
+                Source(frame, step.in[0]));
+        case Op::atan2:
+            return map_double(
+                frame, step,
+                [](DD d, Vec<DD> y, Vec<DD> x) HWY_ATTR { return atan2_double(d, y, x); },
+                Source(frame, step.in[0]), Source(frame, step.in[1]));
+        case Op::less:
+            return map<2>(frame, step, [](auto d, auto a, auto b) HWY_ATTR {
+                return one_where(d, hn::Lt(a, b));
+            });
+        case Op::less_equal:
+            return map<2>(frame, step, [](auto d, auto a, auto b) HWY_ATTR {
+                return one_where(d, hn::Le(a, b));
+            });
+        case Op::equal:
+            return map<2>(frame, step, [](auto d, auto a, auto b) HWY_ATTR {
+                return one_where(d, hn::Eq(a, b));
+            });
+        case Op::select:
+            return map<3>(frame, step, [](auto d, auto a, auto b, auto c) HWY_ATTR {
+                return hn::IfThenElse(hn::Eq(a, hn::Zero(d)), c, b);
+            });
+        case Op::select_less:
+            return map<4>(frame, step, [](auto, auto a, auto b, auto c, auto e) HWY_ATTR {
+                return hn::IfThenElse(hn::Lt(a, b), c, e);
+            });
+        case Op::select_less_equal:
+            return map<4>(frame, step, [](auto, auto a, auto b, auto c, auto e) HWY_ATTR {
+                return hn::IfThenElse(hn::Le(a, b), c, e);
+            });
+        case Op::select_equal:
+            return map<4>(frame, step, [](auto, auto a, auto b, auto c, auto e) HWY_ATTR {
+                return hn::IfThenElse(hn::Eq(a, b), c, e);
+            });
+        case Op::lookup:
+            return lookup(frame, step, code.tables[step.table]);
+    }
+}
+
+// ---------------------------------------------------------------------------------------------
+// Pixels in and out
+
+/// NaN -> 0, then limited to +-65504.
+HWY_INLINE Vec<DF> sanitised(DF d, Vec<DF> x) {
+    const auto limit = hn::Set(d, 65504.0F);
+    const auto number = hn::IfThenElseZero(hn::Eq(x, x), x);
+    return hn::Min(hn::Max(number, hn::Neg(limit)), limit);
+}
+
+/// The planes are the interleaved channels of pixels `stride` floats long, in order.
+template <class T>
+HWY_INLINE bool are_interleaved(const std::array<T*, 3>& plane, std::ptrdiff_t stride) {
+    return (stride == 3 || stride == 4) && plane[1] == plane[0] + 1 && plane[2] == plane[0] + 2;
+}
+
+HWY_NOINLINE void load_tile(const Code& code, unsigned char* registers,
+                            const std::array<const float*, 3>& in, std::ptrdiff_t stride,
+                            std::size_t count, std::size_t padded) {
+    const DF d;
+    const std::size_t lanes = hn::Lanes(d);
+    // Channels that are not read get a place to be written to.
+    alignas(kVectorBytes) float unused[kMaxTile];
+    std::array<float*, 3> out;
+    for (std::size_t c = 0; c < 3; ++c) {
+        out[c] = code.reads_input[c] ? reinterpret_cast<float*>(registers + code.input_offset[c])
+                                     : unused;
+    }
+    std::size_t done = 0;
+    const auto store = [&](Vec<DF> r, Vec<DF> g, Vec<DF> b) HWY_ATTR {
+        hn::Store(sanitised(d, r), d, out[0] + done);
+        hn::Store(sanitised(d, g), d, out[1] + done);
+        hn::Store(sanitised(d, b), d, out[2] + done);
+    };
+    if (stride == 1) {
+        for (; done + lanes <= count; done += lanes) {
+            store(hn::LoadU(d, in[0] + done), hn::LoadU(d, in[1] + done),
+                  hn::LoadU(d, in[2] + done));
+        }
+    }
+#if HWY_TARGET != HWY_SCALAR
+    if (are_interleaved(in, stride)) {
+        auto r = hn::Undefined(d);
+        auto g = hn::Undefined(d);
+        auto b = hn::Undefined(d);
+        auto a = hn::Undefined(d);
+        if (stride == 3) {
+            for (; done + lanes <= count; done += lanes) {
+                hn::LoadInterleaved3(d, in[0] + done * 3, r, g, b);
+                store(r, g, b);
+            }
+        } else {
+            // What follows the last pixel's three channels is not ours to read.
+            for (; done + lanes < count; done += lanes) {
+                hn::LoadInterleaved4(d, in[0] + done * 4, r, g, b, a);
+                store(r, g, b);
+            }
+        }
+    }
+#endif
+    for (std::size_t c = 0; c < 3; ++c) {
+        const float* plane = in[c];
+        for (std::size_t i = done; i < count; ++i) {
+            out[c][i] = plane[static_cast<std::ptrdiff_t>(i) * stride];
+        }
+        for (std::size_t i = count; i < padded; ++i)
+            out[c][i] = 0.0F;
+        for (std::size_t i = done; i < padded; i += lanes) {
+            hn::Store(sanitised(d, hn::Load(d, out[c] + i)), d, out[c] + i);
+        }
+    }
+}
+
+HWY_NOINLINE void store_tile(const Code& code, const Frame& frame, const std::array<float*, 3>& out,
+                             std::ptrdiff_t stride, std::size_t count) {
+    const DF d;
+    const std::size_t lanes = hn::Lanes(d);
+    const std::array<Source, 3> value = {Source(frame, code.output[0]),
+                                         Source(frame, code.output[1]),
+                                         Source(frame, code.output[2])};
+    std::size_t done = 0;
+    if (stride == 1) {
+        for (; done + lanes <= count; done += lanes) {
+            for (std::size_t c = 0; c < 3; ++c)
+                hn::StoreU(value[c].load(d, done), d, out[c] + done);
+        }
+    }
+#if HWY_TARGET != HWY_SCALAR
+    if (are_interleaved(out, stride)) {
+        if (stride == 3) {
+            for (; done + lanes <= count; done += lanes) {
+                hn::StoreInterleaved3(value[0].load(d, done), value[1].load(d, done),
+                                      value[2].load(d, done), d, out[0] + done * 3);
+            }
+        }
+#if HWY_TARGET <= HWY_AVX2
+        // Masked stores leave the fourth channel alone.
+        if (stride == 4) {
+            alignas(kVectorBytes) float pixels[4 * kLaneMultiple];
+            const hn::Rebind<std::int32_t, DF> di;
+            const auto third = hn::And(hn::Iota(di, 0), hn::Set(di, 3));
+            const auto ours = hn::RebindMask(d, hn::Lt(third, hn::Set(di, 3)));
+            for (; done + lanes < count; done += lanes) {
+                hn::StoreInterleaved4(value[0].load(d, done), value[1].load(d, done),
+                                      value[2].load(d, done), hn::Zero(d), d, pixels);
+                for (std::size_t k = 0; k < 4; ++k) {
+                    hn::BlendedStore(hn::Load(d, pixels + k * lanes), ours, d,
+                                     out[0] + done * 4 + k * lanes);
+                }
+            }
+        }
+#endif
+    }
+#endif
+    for (std::size_t c = 0; c < 3; ++c) {
+        const auto* values = reinterpret_cast<const float*>(value[c].data);
+        for (std::size_t i = done; i < count; ++i) {
+            out[c][static_cast<std::ptrdiff_t>(i) * stride] = values[i * value[c].step];
+        }
+    }
+}
+
+void run(const Code& code, const std::array<const float*, 3>& in, std::ptrdiff_t in_stride,
+         const std::array<float*, 3>& out, std::ptrdiff_t out_stride, std::size_t count) {
+    alignas(kVectorBytes) unsigned char registers[kRegisterFileBytes];
+    const auto* constants = reinterpret_cast<const unsigned char*>(code.constants.data());
+    for (std::size_t begin = 0; begin < count; begin += code.tile) {
+        const std::size_t n = HWY_MIN(code.tile, count - begin);
+        const std::size_t padded = (n + kLaneMultiple - 1) / kLaneMultiple * kLaneMultiple;
+        const auto at = static_cast<std::ptrdiff_t>(begin);
+        const Frame frame{registers, constants, padded};
+        load_tile(code, registers,
+                  {in[0] + at * in_stride, in[1] + at * in_stride, in[2] + at * in_stride},
+                  in_stride, n, padded);
+        for (const Instruction& step : code.instructions)
+            run_instruction(frame, code, step);
+        store_tile(code, frame,
+                   {out[0] + at * out_stride, out[1] + at * out_stride, out[2] + at * out_stride},
+                   out_stride, n);
+    }
+}
+
+// NOLINTNEXTLINE(google-readability-namespace-comments)
+}  // namespace HWY_NAMESPACE
+}  // namespace tonewright::simd
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tonewright::simd {
+namespace {
+
+HWY_EXPORT(run);
+
+/// Highway's bits of the targets compiled in that the machine has, best (lowest bit) first.
+const std::vector<std::int64_t>& targets() {
+    // Before use_target() can have restricted them.
+    static const std::vector<std::int64_t> all = hwy::SupportedAndGeneratedTargets();
+    return all;
+}
+
+}  // namespace
+
+void run(const Code& code, const std::array<const float*, 3>& in, std::ptrdiff_t in_stride,
+         const std::array<float*, 3>& out, std::ptrdiff_t out_stride, std::size_t count) noexcept {
+    HWY_DYNAMIC_DISPATCH(run)(code, in, in_stride, out, out_stride, count);
+}
+
+const std::vector<std::string>& target_names() {
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> result;
+        for (const std::int64_t target : targets())
+            result.emplace_back(hwy::TargetName(target));
+        return result;
+    }();
+    return names;
+}
+
+void use_target(int index) {
+    hwy::SetSupportedTargetsForTest(index < 0 ? 0 : targets()[static_cast<std::size_t>(index)]);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
+}  // namespace tonewright::simd
+#endif  // HWY_ONCE

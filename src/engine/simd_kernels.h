@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The float program that SimdEngine runs, and the loop that runs it. Nothing here names an
+// instruction set: Highway is included by simd_kernels.cpp alone.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tonewright/expr.h"
+
+namespace tonewright::simd {
+
+/// What one instruction does with its operands a, b, c, e.
+enum class Op : std::uint8_t {
+    copy,
+    add,
+    subtract,
+    multiply,
+    divide,
+    multiply_add,       // a*b + c, rounded once where the processor can
+    multiply_subtract,  // a*b - c
+    subtract_product,   // c - a*b
+    dot3,               // k0*a + k1*b + k2*c
+    minimum,            // b < a ? b : a
+    maximum,            // a < b ? b : a
+    clamp,              // minimum(maximum(a, b), c)
+    negate,
+    absolute,
+    square_root,
+    floor,
+    exp2,
+    log2,
+    power,           // a^b
+    power_constant,  // a^k0, k0 not whole
+    sine,
+    cosine,
+    atan2,
+    less,  // a < b ? 1 : 0
+    less_equal,
+    equal,
+    select,       // a != 0 ? b : c
+    select_less,  // a < b ? c : e
+    select_less_equal,
+    select_equal,
+    lookup,
+};
+
+/// Where a value is: in the tile's register file, or among the constants, which stand there as one
+/// vector each and are read again and again.
+struct Operand {
+    std::uint32_t offset = 0;  // in bytes
+    bool constant = false;
+    bool wide = false;  // double, else float
+};
+
+struct SampledTable {
+    std::vector<float> narrow;
+    std::vector<double> wide;
+    Table::Interpolation interpolation = Table::Interpolation::linear;
+};
+
+/// An instruction computes over a whole tile. A wide one computes in double, whatever its operands
+/// and its result are kept in; another has float operands and a float result.
+struct Instruction {
+    Op op = Op::copy;
+    bool wide = false;
+    Operand out;
+    std::array<Operand, 4> in;
+    std::array<double, 3> k{};  // coefficients of dot3, exponent of power_constant
+    std::uint32_t table = 0;    // of a lookup
+};
+
+/// Largest tile, in pixels.
+inline constexpr std::size_t kMaxTile = 256;
+inline constexpr std::size_t kVectorBytes = 64;               // the widest vector there is
+inline constexpr std::size_t kLaneMultiple = 16;              // floats in it
+inline constexpr std::size_t kRegisterFileBytes = 64 * 1024;  // on the stack of the running thread
+
+struct alignas(kVectorBytes) ConstantVector {
+    std::array<unsigned char, kVectorBytes> bytes;
+};
+
+struct Code {
+    std::vector<Instruction> instructions;
+    std::vector<ConstantVector> constants;
+    std::vector<SampledTable> tables;
+    /// Float registers of the three input channels; a channel that is not read has none.
+    std::array<std::uint32_t, 3> input_offset{};
+    std::array<bool, 3> reads_input{};
+    /// Never wide.
+    std::array<Operand, 3> output;
+    /// Pixels per tile: a multiple of kLaneMultiple, such that the registers fit into the file.
+    std::size_t tile = 0;
+};
+
+/// Runs the code over `count` pixels, with the best instruction set that is not switched off.
+void run(const Code& code, const std::array<const float*, 3>& in, std::ptrdiff_t in_stride,
+         const std::array<float*, 3>& out, std::ptrdiff_t out_stride, std::size_t count) noexcept;
+
+/// Instruction sets compiled in that this machine has, best first.
+const std::vector<std::string>& target_names();
+/// @param index  into target_names(), or -1 for the best.
+void use_target(int index);
+
+}  // namespace tonewright::simd

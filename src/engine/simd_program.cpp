@@ -1,0 +1,539 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/simd_program.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <map>
+
+#include "engine/precision.h"
+#include "engine/tape.h"
+#include "tonewright/engine.h"
+#include "tonewright/error.h"
+
+namespace tonewright {
+namespace simd {
+namespace {
+
+/// Bytes of registers that a tile may take: what stays in a first-level cache of 32 KiB beside the
+/// constants and the pixels on their way in and out.
+constexpr std::size_t kCacheBytes = 24 * 1024;
+
+// ---------------------------------------------------------------------------------------------
+// Pass 1: rewrites on the tape
+
+/// A tape under construction; constants are shared.
+class FloatTape {
+  public:
+    explicit FloatTape(const Tape& tape) {
+        std::vector<std::uint32_t> moved;  // old index -> new one
+        for (TapeInstruction step : tape.code()) {
+            if (step.op != ExprOp::constant && step.op != ExprOp::input) {
+                step.a = moved[step.a];
+                step.b = moved[step.b];
+                step.c = moved[step.c];
+            }
+            moved.push_back(add(step));
+        }
+        for (std::size_t i = 0; i < 3; ++i)
+            outputs_[i] = moved[tape.outputs()[i]];
+    }
+
+    [[nodiscard]] const std::vector<TapeInstruction>& code() const { return code_; }
+    [[nodiscard]] const std::array<std::uint32_t, 3>& outputs() const { return outputs_; }
+
+  private:
+    std::uint32_t add(const TapeInstruction& step) {
+        if (step.op == ExprOp::constant) return constant(step.value);
+        if (step.op == ExprOp::divide && is_constant(step.b)) {
+            const double reciprocal = 1 / code_[step.b].value;
+            if (std::isnormal(reciprocal)) {
+                return push(ExprOp::multiply, step.a, constant(reciprocal));
+            }
+        }
+        if (step.op == ExprOp::power && is_constant(step.b)) {
+            const double y = code_[step.b].value;
+            if (y == 0.5) return push(ExprOp::square_root, step.a);
+            if (y == std::floor(y) && std::fabs(y) >= 1 && std::fabs(y) <= 8) {
+                const std::uint32_t power =
+                    whole_power(step.a, static_cast<unsigned>(std::fabs(y)));
+                return y > 0 ? power : push(ExprOp::divide, constant(1), power);
+            }
+        }
+        code_.push_back(step);
+        return last();
+    }
+
+    std::uint32_t whole_power(std::uint32_t x, unsigned n) {
+        if (n == 1) return x;
+        const std::uint32_t half = whole_power(x, n / 2);
+        const std::uint32_t even = push(ExprOp::multiply, half, half);
+        return n % 2 ? push(ExprOp::multiply, even, x) : even;
+    }
+
+    std::uint32_t constant(double value) {
+        const auto bits = std::bit_cast<std::uint64_t>(value);
+        if (auto it = constants_.find(bits); it != constants_.end()) return it->second;
+        TapeInstruction step;
+        step.value = value;
+        code_.push_back(step);
+        constants_.emplace(bits, last());
+        return last();
+    }
+
+    std::uint32_t push(ExprOp op, std::uint32_t a, std::uint32_t b = 0) {
+        TapeInstruction step;
+        step.op = op;
+        step.a = a;
+        step.b = b;
+        code_.push_back(step);
+        return last();
+    }
+
+    [[nodiscard]] bool is_constant(std::uint32_t i) const {
+        return code_[i].op == ExprOp::constant;
+    }
+    [[nodiscard]] std::uint32_t last() const {
+        return static_cast<std::uint32_t>(code_.size() - 1);
+    }
+
+    std::vector<TapeInstruction> code_;
+    std::array<std::uint32_t, 3> outputs_{};
+    std::map<std::uint64_t, std::uint32_t> constants_;
+};
+
+// ---------------------------------------------------------------------------------------------
+// Pass 3: instructions selected
+
+constexpr std::int64_t kNone = -1;
+
+/// An instruction before it has registers: operands are indices of tape values.
+struct Selected {
+    Op op = Op::copy;
+    std::uint32_t value = 0;  // the tape value that it defines
+    std::array<std::int64_t, 4> operands = {kNone, kNone, kNone, kNone};
+    std::array<double, 3> k{};
+    const Table* table = nullptr;
+    bool wide = false;
+};
+
+class Selector {
+  public:
+    Selector(const FloatTape& tape, const std::vector<bool>& in_double)
+        : code_(tape.code()), in_double_(in_double), uses_(code_.size()), is_needed_(code_.size()) {
+        for (const TapeInstruction& step : code_) {
+            for (const std::uint32_t operand : operands_of(step))
+                ++uses_[operand];
+        }
+        for (const std::uint32_t output : tape.outputs()) {
+            uses_[output] += 2;  // never absorbed
+            is_needed_[output] = true;
+        }
+    }
+
+    /// From the outputs back, each value as the largest pattern that ends in it.
+    std::vector<Selected> select() {
+        std::vector<Selected> result;
+        for (std::size_t i = code_.size(); i-- > 0;) {
+            const ExprOp op = code_[i].op;
+            if (!is_needed_[i] || op == ExprOp::constant || op == ExprOp::input) continue;
+            current_ = Selected{};
+            current_.value = static_cast<std::uint32_t>(i);
+            current_.wide = in_double_[i];
+            match(code_[i]);
+            for (const std::int64_t operand : current_.operands) {
+                if (operand == kNone) continue;
+                const auto v = static_cast<std::size_t>(operand);
+                is_needed_[v] = true;
+                current_.wide = current_.wide || in_double_[v];
+            }
+            result.push_back(current_);
+        }
+        std::reverse(result.begin(), result.end());
+        return result;
+    }
+
+    static std::vector<std::uint32_t> operands_of(const TapeInstruction& step) {
+        switch (step.op) {
+            case ExprOp::constant:
+            case ExprOp::input:
+                return {};
+            case ExprOp::negate:
+            case ExprOp::absolute:
+            case ExprOp::square_root:
+            case ExprOp::exp2:
+            case ExprOp::log2:
+            case ExprOp::sine:
+            case ExprOp::cosine:
+            case ExprOp::floor:
+            case ExprOp::lookup:
+                return {step.a};
+            case ExprOp::select:
+                return {step.a, step.b, step.c};
+            default:
+                return {step.a, step.b};
+        }
+    }
+
+  private:
+    [[nodiscard]] bool is(std::uint32_t i, ExprOp op) const { return code_[i].op == op; }
+    [[nodiscard]] bool is_constant(std::uint32_t i) const { return is(i, ExprOp::constant); }
+    /// Value i is computed by `op`, and for this one use alone: it can become a part of the user.
+    [[nodiscard]] bool absorbs(std::uint32_t i, ExprOp op) const {
+        return is(i, op) && uses_[i] == 1;
+    }
+
+    /// Makes the pattern's instruction; `absorbed` values become part of it.
+    void emit(Op op, std::initializer_list<std::uint32_t> operands,
+              std::initializer_list<std::uint32_t> absorbed = {}) {
+        current_.op = op;
+        std::size_t n = 0;
+        for (const std::uint32_t operand : operands)
+            current_.operands[n++] = operand;
+        for (const std::uint32_t value : absorbed)
+            current_.wide = current_.wide || in_double_[value];
+    }
+
+    /// Product of a constant and another value, used here alone.
+    bool is_term(std::uint32_t i, double& k, std::uint32_t& x) const {
+        if (!absorbs(i, ExprOp::multiply)) return false;
+        const TapeInstruction& step = code_[i];
+        if (is_constant(step.a) == is_constant(step.b)) return false;
+        k = code_[is_constant(step.a) ? step.a : step.b].value;
+        x = is_constant(step.a) ? step.b : step.a;
+        return true;
+    }
+
+    /// (k0 a + k1 b) + k2 c: a row of a matrix, or a luminance.
+    bool match_dot3(const TapeInstruction& sum) {
+        if (!absorbs(sum.a, ExprOp::add)) return false;
+        const TapeInstruction& first = code_[sum.a];
+        std::array<double, 3> k{};
+        std::array<std::uint32_t, 3> x{};
+        if (!is_term(first.a, k[0], x[0]) || !is_term(first.b, k[1], x[1]) ||
+            !is_term(sum.b, k[2], x[2])) {
+            return false;
+        }
+        emit(Op::dot3, {x[0], x[1], x[2]}, {sum.a, first.a, first.b, sum.b});
+        current_.k = k;
+        return true;
+    }
+
+    void match(const TapeInstruction& step) {
+        const std::uint32_t a = step.a;
+        const std::uint32_t b = step.b;
+        const auto product = [&](std::uint32_t i) -> const TapeInstruction& { return code_[i]; };
+        switch (step.op) {
+            case ExprOp::constant:
+            case ExprOp::input:
+                return;
+            case ExprOp::add:
+                if (match_dot3(step)) return;
+                if (absorbs(b, ExprOp::multiply)) {
+                    return emit(Op::multiply_add, {product(b).a, product(b).b, a}, {b});
+                }
+                if (absorbs(a, ExprOp::multiply)) {
+                    return emit(Op::multiply_add, {product(a).a, product(a).b, b}, {a});
+                }
+                return emit(Op::add, {a, b});
+            case ExprOp::subtract:
+                if (absorbs(b, ExprOp::multiply)) {
+                    return emit(Op::subtract_product, {product(b).a, product(b).b, a}, {b});
+                }
+                if (absorbs(a, ExprOp::multiply)) {
+                    return emit(Op::multiply_subtract, {product(a).a, product(a).b, b}, {a});
+                }
+                return emit(Op::subtract, {a, b});
+            case ExprOp::minimum:
+                if (absorbs(a, ExprOp::maximum)) {
+                    return emit(Op::clamp, {code_[a].a, code_[a].b, b}, {a});
+                }
+                return emit(Op::minimum, {a, b});
+            case ExprOp::power:
+                if (is_constant(b) && code_[b].value != std::floor(code_[b].value)) {
+                    current_.k[0] = code_[b].value;
+                    return emit(Op::power_constant, {a}, {b});
+                }
+                return emit(Op::power, {a, b});
+            case ExprOp::select: {
+                const TapeInstruction& c = code_[a];
+                switch (c.op) {
+                    case ExprOp::less:
+                        return emit(Op::select_less, {c.a, c.b, b, step.c});
+                    case ExprOp::less_equal:
+                        return emit(Op::select_less_equal, {c.a, c.b, b, step.c});
+                    case ExprOp::equal:
+                        return emit(Op::select_equal, {c.a, c.b, b, step.c});
+                    default:
+                        return emit(Op::select, {a, b, step.c});
+                }
+            }
+            case ExprOp::lookup:
+                current_.table = step.table;
+                return emit(Op::lookup, {a});
+            case ExprOp::multiply:
+                return emit(Op::multiply, {a, b});
+            case ExprOp::divide:
+                return emit(Op::divide, {a, b});
+            case ExprOp::maximum:
+                return emit(Op::maximum, {a, b});
+            case ExprOp::atan2:
+                return emit(Op::atan2, {a, b});
+            case ExprOp::less:
+                return emit(Op::less, {a, b});
+            case ExprOp::less_equal:
+                return emit(Op::less_equal, {a, b});
+            case ExprOp::equal:
+                return emit(Op::equal, {a, b});
+            case ExprOp::negate:
+                return emit(Op::negate, {a});
+            case ExprOp::absolute:
+                return emit(Op::absolute, {a});
+            case ExprOp::square_root:
+                return emit(Op::square_root, {a});
+            case ExprOp::exp2:
+                return emit(Op::exp2, {a});
+            case ExprOp::log2:
+                return emit(Op::log2, {a});
+            case ExprOp::sine:
+                return emit(Op::sine, {a});
+            case ExprOp::cosine:
+                return emit(Op::cosine, {a});
+            case ExprOp::floor:
+                return emit(Op::floor, {a});
+        }
+    }
+
+    const std::vector<TapeInstruction>& code_;
+    const std::vector<bool>& in_double_;
+    std::vector<int> uses_;
+    std::vector<bool> is_needed_;
+    Selected current_;
+};
+
+// ---------------------------------------------------------------------------------------------
+// Pass 4: registers, constants, tables
+
+/// Every value that an instruction defines, inputs first, with registers of two kinds.
+class Assembler {
+  public:
+    Assembler(const FloatTape& tape, const std::vector<bool>& in_double,
+              const std::vector<Selected>& selected)
+        : tape_(tape.code()) {
+        slot_of_.assign(tape_.size(), kNone);
+        for (std::uint32_t i = 0; i < tape_.size(); ++i) {
+            if (tape_[i].op == ExprOp::input) define(i, false);
+        }
+        for (const Selected& s : selected) {
+            const std::size_t slot = define(s.value, in_double[s.value]);
+            steps_[slot] = s;
+        }
+        // Outputs leave as float.
+        for (std::size_t c = 0; c < 3; ++c) {
+            const std::uint32_t value = tape.outputs()[c];
+            outputs_[c] = value;
+            if (tape_[value].op == ExprOp::constant) continue;
+            auto slot = static_cast<std::size_t>(slot_of_[value]);
+            if (is_wide_[slot]) {
+                steps_.push_back(
+                    Selected{Op::copy, value, {value, kNone, kNone, kNone}, {}, nullptr, true});
+                is_wide_.push_back(false);
+                slot = steps_.size() - 1;
+            }
+            output_slot_[c] = slot;
+        }
+    }
+
+    Code assemble() {
+        allocate();
+        Code code;
+        code.tile = tile_;
+        for (std::size_t slot = 0; slot < steps_.size(); ++slot) {
+            const Selected& s = steps_[slot];
+            const TapeInstruction& origin = tape_[s.value];
+            if (origin.op == ExprOp::input) {
+                const auto channel = static_cast<std::size_t>(origin.input);
+                code.reads_input[channel] = true;
+                code.input_offset[channel] = place(slot).offset;
+                continue;
+            }
+            Instruction step;
+            step.op = s.op;
+            step.wide = s.wide || s.op == Op::sine || s.op == Op::cosine || s.op == Op::atan2;
+            step.out = place(slot);
+            step.k = s.k;
+            if (s.table) step.table = table(*s.table);
+            for (std::size_t k = 0; k < 4; ++k) {
+                if (s.operands[k] == kNone) continue;
+                step.in[k] = operand(static_cast<std::uint32_t>(s.operands[k]), step.wide);
+            }
+            code.instructions.push_back(step);
+        }
+        for (std::size_t c = 0; c < 3; ++c) {
+            code.output[c] = tape_[outputs_[c]].op == ExprOp::constant
+                                 ? constant(tape_[outputs_[c]].value, false)
+                                 : place(output_slot_[c]);
+        }
+        code.constants = std::move(constants_);
+        code.tables = std::move(tables_);
+        return code;
+    }
+
+  private:
+    std::size_t define(std::uint32_t value, bool wide) {
+        Selected s;
+        s.value = value;
+        steps_.push_back(s);
+        is_wide_.push_back(wide);
+        slot_of_[value] = static_cast<std::int64_t>(steps_.size() - 1);
+        return steps_.size() - 1;
+    }
+
+    void allocate() {
+        std::vector<std::array<std::int64_t, 4>> operands;
+        for (const Selected& s : steps_) {
+            std::array<std::int64_t, 4> slots = {kNone, kNone, kNone, kNone};
+            for (std::size_t k = 0; k < 4; ++k) {
+                if (s.operands[k] != kNone)
+                    slots[k] = slot_of_[static_cast<std::size_t>(s.operands[k])];
+            }
+            operands.push_back(slots);
+        }
+        std::vector<std::uint32_t> pinned;
+        for (std::size_t c = 0; c < 3; ++c) {
+            if (tape_[outputs_[c]].op != ExprOp::constant) {
+                pinned.push_back(static_cast<std::uint32_t>(output_slot_[c]));
+            }
+        }
+        std::vector<bool> is_narrow = is_wide_;
+        is_narrow.flip();
+        narrow_ = allocate_registers(operands, is_narrow, pinned);
+        wide_ = allocate_registers(operands, is_wide_, pinned);
+
+        const std::size_t bytes = std::max<std::size_t>(
+            narrow_.register_count * sizeof(float) + wide_.register_count * sizeof(double), 1);
+        tile_ = std::clamp(kCacheBytes / bytes / kLaneMultiple * kLaneMultiple, kLaneMultiple,
+                           kMaxTile);
+        if (tile_ * bytes > kRegisterFileBytes) {
+            throw Error("simd engine: live values are " + std::to_string(narrow_.register_count) +
+                        " floats and " + std::to_string(wide_.register_count) +
+                        " doubles; expected at most " +
+                        std::to_string(kRegisterFileBytes / kLaneMultiple) + " bytes");
+        }
+    }
+
+    [[nodiscard]] Operand place(std::size_t slot) const {
+        Operand result;
+        result.wide = is_wide_[slot];
+        const std::size_t offset = is_wide_[slot]
+                                       ? (narrow_.register_count * sizeof(float) +
+                                          wide_.register_of[slot] * sizeof(double)) *
+                                             tile_
+                                       : narrow_.register_of[slot] * sizeof(float) * tile_;
+        result.offset = static_cast<std::uint32_t>(offset);
+        return result;
+    }
+
+    Operand operand(std::uint32_t value, bool user_is_wide) {
+        if (tape_[value].op == ExprOp::constant) return constant(tape_[value].value, user_is_wide);
+        return place(static_cast<std::size_t>(slot_of_[value]));
+    }
+
+    /// One vector full of the constant.
+    Operand constant(double value, bool wide) {
+        const auto key = std::pair(std::bit_cast<std::uint64_t>(value), wide);
+        auto [it, is_new] = constant_index_.try_emplace(key, constants_.size());
+        if (is_new) {
+            ConstantVector vector;
+            if (wide) {
+                std::array<double, kVectorBytes / sizeof(double)> lanes;
+                lanes.fill(value);
+                std::memcpy(vector.bytes.data(), lanes.data(), kVectorBytes);
+            } else {
+                std::array<float, kVectorBytes / sizeof(float)> lanes;
+                lanes.fill(static_cast<float>(value));
+                std::memcpy(vector.bytes.data(), lanes.data(), kVectorBytes);
+            }
+            constants_.push_back(vector);
+        }
+        Operand result;
+        result.constant = true;
+        result.wide = wide;
+        result.offset = static_cast<std::uint32_t>(it->second * kVectorBytes);
+        return result;
+    }
+
+    std::uint32_t table(const Table& source) {
+        auto [it, is_new] =
+            table_index_.try_emplace(&source, static_cast<std::uint32_t>(tables_.size()));
+        if (is_new) {
+            SampledTable sampled;
+            sampled.wide = source.samples;
+            sampled.narrow.assign(source.samples.begin(), source.samples.end());
+            sampled.interpolation = source.interpolation;
+            tables_.push_back(std::move(sampled));
+        }
+        return it->second;
+    }
+
+    const std::vector<TapeInstruction>& tape_;
+    std::array<std::uint32_t, 3> outputs_{};
+    std::array<std::size_t, 3> output_slot_{};
+    std::vector<Selected> steps_;        // by slot
+    std::vector<bool> is_wide_;          // by slot: kept in double
+    std::vector<std::int64_t> slot_of_;  // by tape value
+    RegisterAllocation narrow_, wide_;
+    std::size_t tile_ = 0;
+    std::vector<ConstantVector> constants_;
+    std::map<std::pair<std::uint64_t, bool>, std::size_t> constant_index_;
+    std::vector<SampledTable> tables_;
+    std::map<const Table*, std::uint32_t> table_index_;
+};
+
+}  // namespace
+
+Code compile(const Pipeline& pipeline) {
+    const Tape source(compose(simplify(pipeline)));
+    const FloatTape tape(source);
+    const std::vector<bool> in_double = values_in_double(tape.code(), tape.outputs());
+    const std::vector<Selected> selected = Selector(tape, in_double).select();
+    return Assembler(tape, in_double, selected).assemble();
+}
+
+}  // namespace simd
+
+struct SimdEngine::Program {
+    simd::Code code;
+};
+
+SimdEngine::SimdEngine(const Pipeline& pipeline)
+    : program_(std::make_unique<const Program>(Program{simd::compile(pipeline)})) {}
+SimdEngine::~SimdEngine() = default;
+SimdEngine::SimdEngine(SimdEngine&&) noexcept = default;
+SimdEngine& SimdEngine::operator=(SimdEngine&&) noexcept = default;
+
+void SimdEngine::run(const std::array<const float*, 3>& in, std::ptrdiff_t in_stride,
+                     const std::array<float*, 3>& out, std::ptrdiff_t out_stride,
+                     std::size_t count) const noexcept {
+    simd::run(program_->code, in, in_stride, out, out_stride, count);
+}
+
+void SimdEngine::run_rgb(const float* in, float* out, std::size_t pixel_count) const noexcept {
+    run({in, in + 1, in + 2}, 3, {out, out + 1, out + 2}, 3, pixel_count);
+}
+
+std::vector<std::string> SimdEngine::targets() { return simd::target_names(); }
+
+void SimdEngine::use_target(const std::string& name) {
+    if (name.empty()) return simd::use_target(-1);
+    const std::vector<std::string>& names = simd::target_names();
+    const auto it = std::find(names.begin(), names.end(), name);
+    if (it == names.end()) {
+        throw Error("simd engine: target is " + name + "; expected " + join_choices(names) +
+                    did_you_mean(name, names));
+    }
+    simd::use_target(static_cast<int>(it - names.begin()));
+}
+
+}  // namespace tonewright

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+#include "tonewright/expr.h"
+
+namespace tonewright {
+
+/// One step of a tape: its own index is the value it defines; a, b, c are earlier indices.
+struct TapeInstruction {
+    ExprOp op = ExprOp::constant;
+    std::uint32_t a = 0, b = 0, c = 0;
+    double value = 0;                // of a constant
+    int input = 0;                   // of an input
+    const Table* table = nullptr;    // of a lookup; owned by the tape
+    const ExprNode* node = nullptr;  // where it came from
+};
+
+/// Expressions as straight-line code in single-assignment form: every node once, operands first.
+/// No pass has touched it: running it in double is evaluate(), bit for bit.
+class Tape {
+  public:
+    explicit Tape(const std::array<Expr, 3>& outputs);
+
+    [[nodiscard]] const std::vector<TapeInstruction>& code() const noexcept { return code_; }
+    [[nodiscard]] const std::array<std::uint32_t, 3>& outputs() const noexcept { return outputs_; }
+
+  private:
+    std::uint32_t add(const Expr& expr, std::unordered_map<const ExprNode*, std::uint32_t>& seen);
+    std::vector<TapeInstruction> code_;
+    std::array<std::uint32_t, 3> outputs_{};
+    std::vector<Expr> keep_;  // keeps nodes (and their tables) alive
+};
+
+/// For each value its register, so that values whose last use is over share one.
+struct RegisterAllocation {
+    std::vector<std::uint32_t> register_of;  // by value index
+    std::uint32_t register_count = 0;
+};
+/// `operands(i)` of value i are live up to i; `pinned` values (the outputs) to the end.
+/// An instruction's result may take the register of an operand that dies there: kernels read each
+/// element before they write it.
+[[nodiscard]] RegisterAllocation allocate_registers(
+    const std::vector<std::array<std::int64_t, 4>>& operands,
+    const std::vector<bool>& needs_register, const std::vector<std::uint32_t>& pinned);
+
+}  // namespace tonewright

@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "expr/node.h"
+#include "expr/scalar_ops.h"
+#include "tonewright/error.h"
+#include "tonewright/expr.h"
+
+namespace tonewright {
+namespace {
+
+/// Rebuilds an expression bottom-up, each shared node once.
+template <class Leaf>
+Expr rebuild(const Expr& e, const Leaf& leaf, std::unordered_map<const ExprNode*, Expr>& done) {
+    if (auto it = done.find(e.node()); it != done.end()) return it->second;
+    Expr result = e;
+    if (e.op() == ExprOp::input) {
+        result = leaf(e);
+    } else if (!e.is_constant()) {
+        std::vector<Expr> operands;
+        for (int i = 0; i < e.operand_count(); ++i) {
+            operands.push_back(rebuild(e.operand(i), leaf, done));
+        }
+        result = make_expr(e.op(), operands, e.table());
+    }
+    done.emplace(e.node(), result);
+    return result;
+}
+
+double evaluate_node(const Expr& e, std::span<const double> inputs,
+                     std::unordered_map<const ExprNode*, double>& done) {
+    if (e.is_constant()) return e.value();
+    if (e.op() == ExprOp::input) return inputs[static_cast<std::size_t>(e.input_index())];
+    if (auto it = done.find(e.node()); it != done.end()) return it->second;
+    std::array<double, 3> v{};
+    for (int i = 0; i < e.operand_count(); ++i) {
+        v[static_cast<std::size_t>(i)] = evaluate_node(e.operand(i), inputs, done);
+    }
+    const double result = scalar_op(e.op(), v[0], v[1], v[2], e.table().get());
+    done.emplace(e.node(), result);
+    return result;
+}
+
+Expr differentiate(const Expr& e, int index, std::unordered_map<const ExprNode*, Expr>& done) {
+    if (e.is_constant()) return 0;
+    if (e.op() == ExprOp::input) return e.input_index() == index ? 1 : 0;
+    if (auto it = done.find(e.node()); it != done.end()) return it->second;
+    const auto u = [&] { return e.operand(0); };
+    const auto v = [&] { return e.operand(1); };
+    const auto d = [&](int i) { return differentiate(e.operand(i), index, done); };
+    Expr result = 0;
+    switch (e.op()) {
+        case ExprOp::add:
+            result = d(0) + d(1);
+            break;
+        case ExprOp::subtract:
+            result = d(0) - d(1);
+            break;
+        case ExprOp::multiply:
+            result = d(0) * v() + u() * d(1);
+            break;
+        case ExprOp::divide: {
+            const Expr du = d(0);
+            const Expr dv = d(1);
+            result = dv.is_constant(0) ? du / v() : (du * v() - u() * dv) / (v() * v());
+            break;
+        }
+        case ExprOp::negate:
+            result = -d(0);
+            break;
+        case ExprOp::minimum:
+            result = select(less(v(), u()), d(1), d(0));
+            break;
+        case ExprOp::maximum:
+            result = select(less(u(), v()), d(1), d(0));
+            break;
+        case ExprOp::absolute:
+            result = select(less(u(), 0), -d(0), d(0));
+            break;
+        case ExprOp::square_root:
+            result = d(0) / (2 * e);
+            break;
+        case ExprOp::exp2:
+            result = e * std::numbers::ln2 * d(0);
+            break;
+        case ExprOp::log2:
+            result = d(0) / (u() * std::numbers::ln2);
+            break;
+        case ExprOp::power: {
+            const Expr du = d(0);
+            const Expr dv = d(1);
+            result = v() * pow(u(), v() - 1) * du;
+            if (!dv.is_constant(0)) result = result + e * log(u()) * dv;
+            break;
+        }
+        case ExprOp::sine:
+            result = cos(u()) * d(0);
+            break;
+        case ExprOp::cosine:
+            result = -(sin(u()) * d(0));
+            break;
+        case ExprOp::atan2:
+            result = (v() * d(0) - u() * d(1)) / (u() * u() + v() * v());
+            break;
+        case ExprOp::select: {
+            result = select(u(), d(1), d(2));
+            break;
+        }
+        case ExprOp::lookup: {
+            const Table& table = *e.table();
+            if (table.interpolation == Table::Interpolation::linear && table.samples.size() > 1) {
+                auto slope = std::make_shared<Table>();
+                slope->interpolation = Table::Interpolation::step;
+                const std::size_t n = table.samples.size() - 1;
+                for (std::size_t i = 0; i < n; ++i) {
+                    slope->samples.push_back((table.samples[i + 1] - table.samples[i]) *
+                                             static_cast<double>(n));
+                }
+                const Expr inside = less_equal(0, u()) * less_equal(u(), 1);
+                result = select(inside, lookup(std::move(slope), u()), 0) * d(0);
+            }
+            break;
+        }
+        case ExprOp::floor:
+        case ExprOp::less:
+        case ExprOp::less_equal:
+        case ExprOp::equal:
+        case ExprOp::constant:
+        case ExprOp::input:
+            break;
+    }
+    done.emplace(e.node(), result);
+    return result;
+}
+
+void collect(const Expr& e, std::unordered_set<const ExprNode*>& seen, std::vector<Expr>& order) {
+    if (!seen.insert(e.node()).second) return;
+    for (int i = 0; i < e.operand_count(); ++i)
+        collect(e.operand(i), seen, order);
+    order.push_back(e);
+}
+
+/// The x in [lo, hi] between which f changes sign, to neighbouring doubles.
+double sign_change(const Expr& f, double lo, double hi) {
+    const bool below = evaluate(f, lo) < 0;
+    while (true) {
+        const double middle = lo + (hi - lo) / 2;
+        if (!(middle > lo && middle < hi)) return hi;
+        ((evaluate(f, middle) < 0) == below ? lo : hi) = middle;
+    }
+}
+
+}  // namespace
+
+Expr substitute(const Expr& expr, std::span<const Expr> inputs) {
+    std::unordered_map<const ExprNode*, Expr> done;
+    return rebuild(
+        expr,
+        [&](const Expr& leaf) {
+            const auto i = static_cast<std::size_t>(leaf.input_index());
+            return i < inputs.size() ? inputs[i] : leaf;
+        },
+        done);
+}
+
+double evaluate(const Expr& expr, std::span<const double> inputs) {
+    std::unordered_map<const ExprNode*, double> done;
+    return evaluate_node(expr, inputs, done);
+}
+
+double evaluate(const Expr& expr, double input) { return evaluate(expr, std::span(&input, 1)); }
+
+Expr derivative(const Expr& expr, int index) {
+    std::unordered_map<const ExprNode*, Expr> done;
+    return differentiate(expr, index, done);
+}
+
+std::size_t node_count(std::span<const Expr> exprs) {
+    std::unordered_set<const ExprNode*> seen;
+    std::vector<Expr> order;
+    for (const Expr& e : exprs)
+        collect(e, seen, order);
+    return order.size();
+}
+
+bool depends_on(const Expr& expr, int index) {
+    std::unordered_set<const ExprNode*> seen;
+    std::vector<Expr> order;
+    collect(expr, seen, order);
+    return std::any_of(order.begin(), order.end(), [&](const Expr& e) {
+        return e.op() == ExprOp::input && e.input_index() == index;
+    });
+}
+
+double inverse_at(const Expr& f, double y, double lo, double hi) {
+    const double f_lo = evaluate(f, lo);
+    const double f_hi = evaluate(f, hi);
+    const bool rising = f_hi >= f_lo;
+    if (!(std::isfinite(f_lo) && std::isfinite(f_hi)) || !(lo < hi)) {
+        throw Error("inverse: domain is [" + shortest(lo) + ", " + shortest(hi) +
+                    "]; expected an interval where the curve is finite");
+    }
+    if (!(y >= std::min(f_lo, f_hi) && y <= std::max(f_lo, f_hi))) {
+        throw Error("inverse: y is " + shortest(y) + "; expected [" +
+                    shortest(std::min(f_lo, f_hi)) + ", " + shortest(std::max(f_lo, f_hi)) + "]");
+    }
+    const Expr slope = derivative(f);
+    double x = lo + (hi - lo) / 2;
+    // 2100 halvings go from the largest double to the smallest; Newton needs a handful.
+    for (int i = 0; i < 2100; ++i) {
+        const double value = evaluate(f, x);
+        if (value == y) return x;
+        ((value < y) == rising ? lo : hi) = x;
+        const double newton = x - (value - y) / evaluate(slope, x);
+        const double middle = lo + (hi - lo) / 2;
+        // Every third step halves, so that a flat curve cannot stall the search.
+        x = (newton > lo && newton < hi && i % 3 != 2) ? newton : middle;
+        if (!(middle > lo && middle < hi)) break;
+    }
+    return std::fabs(evaluate(f, lo) - y) <= std::fabs(evaluate(f, hi) - y) ? lo : hi;
+}
+
+std::vector<double> kinks(const Expr& f, double lo, double hi) {
+    std::unordered_set<const ExprNode*> seen;
+    std::vector<Expr> order;
+    collect(f, seen, order);
+    std::vector<double> found;
+    constexpr int kSteps = 4096;
+    for (const Expr& e : order) {
+        Expr switching = 0;
+        switch (e.op()) {
+            case ExprOp::minimum:
+            case ExprOp::maximum:
+            case ExprOp::less:
+            case ExprOp::less_equal:
+                switching = e.operand(0) - e.operand(1);
+                break;
+            case ExprOp::absolute:
+                switching = e.operand(0);
+                break;
+            default:
+                continue;
+        }
+        double left = lo;
+        double at_left = evaluate(switching, left);
+        for (int i = 1; i <= kSteps; ++i) {
+            // Squared steps: more of them near lo, where tone curves have their toe.
+            const double t = static_cast<double>(i) / kSteps;
+            const double right = i == kSteps ? hi : lo + (hi - lo) * t * t;
+            const double at_right = evaluate(switching, right);
+            if ((at_left < 0) != (at_right < 0))
+                found.push_back(sign_change(switching, left, right));
+            left = right;
+            at_left = at_right;
+        }
+    }
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    std::erase_if(found, [&](double x) { return !(x > lo && x < hi); });
+    return found;
+}
+
+}  // namespace tonewright

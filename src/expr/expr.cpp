@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tonewright/expr.h"
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <mutex>
+#include <numbers>
+#include <unordered_map>
+
+#include "expr/node.h"
+#include "expr/scalar_ops.h"
+
+namespace tonewright {
+
+double Table::operator()(double x) const noexcept {
+    if (samples.empty()) return 0;
+    const std::size_t n = samples.size();
+    const double t = x > 0 ? (x < 1 ? x : 1.0) : 0.0;  // NaN -> first sample
+    if (interpolation == Interpolation::step) {
+        const auto i = static_cast<std::size_t>(t * static_cast<double>(n));
+        return samples[i < n ? i : n - 1];
+    }
+    const double position = t * static_cast<double>(n - 1);
+    const auto i = static_cast<std::size_t>(position);
+    if (i + 1 >= n) return samples[n - 1];
+    return samples[i] + (position - static_cast<double>(i)) * (samples[i + 1] - samples[i]);
+}
+
+namespace {
+
+/// Key under which a node is shared. Constants are told apart by their bits: 0 and -0 differ.
+struct NodeKey {
+    ExprOp op;
+    std::uint64_t bits;  // of the constant, or the input's index
+    std::array<const ExprNode*, 3> operands;
+    const Table* table;
+    friend bool operator==(const NodeKey&, const NodeKey&) = default;
+};
+
+struct NodeKeyHash {
+    std::size_t operator()(const NodeKey& key) const noexcept {
+        std::size_t h =
+            std::hash<std::uint64_t>{}(key.bits) ^ (static_cast<std::size_t>(key.op) << 7);
+        for (const ExprNode* p : key.operands) {
+            h = h * 1000003U ^ std::hash<const void*>{}(p);
+        }
+        return h * 1000003U ^ std::hash<const void*>{}(key.table);
+    }
+};
+
+struct SharedNodes {
+    std::mutex mutex;
+    std::unordered_map<NodeKey, std::weak_ptr<const ExprNode>, NodeKeyHash> nodes;
+};
+
+// Never destroyed: expressions in static objects may outlive any static of ours.
+SharedNodes& shared_nodes() {
+    static auto* shared = new SharedNodes;
+    return *shared;
+}
+
+std::shared_ptr<const ExprNode> share(ExprNode node) {
+    NodeKey key{node.op, 0, {}, node.table.get()};
+    key.bits = node.op == ExprOp::input ? static_cast<std::uint64_t>(node.input)
+                                        : std::bit_cast<std::uint64_t>(node.value);
+    for (std::size_t i = 0; i < node.operands.size(); ++i)
+        key.operands[i] = node.operands[i].node();
+
+    SharedNodes& shared = shared_nodes();
+    const std::lock_guard lock(shared.mutex);
+    if (auto it = shared.nodes.find(key); it != shared.nodes.end()) {
+        if (auto alive = it->second.lock()) return alive;
+    }
+    // The deleter takes the entry out before the operands (whose addresses are in the key) go.
+    auto deleter = [key](const ExprNode* p) {
+        {
+            SharedNodes& all = shared_nodes();
+            const std::lock_guard inner(all.mutex);
+            auto it = all.nodes.find(key);
+            if (it != all.nodes.end() && it->second.expired()) all.nodes.erase(it);
+        }
+        delete p;
+    };
+    std::shared_ptr<const ExprNode> made(new ExprNode(std::move(node)), deleter);
+    shared.nodes[key] = made;
+    return made;
+}
+
+/// x+0, x*1, select of a constant, ...: the operand that the operation comes to, if any.
+const Expr* neutral(ExprOp op, std::span<const Expr> in, Expr& zero) {
+    const auto is = [&](std::size_t i, double v) { return in[i].is_constant(v); };
+    switch (op) {
+        case ExprOp::add:
+            if (is(0, 0)) return &in[1];
+            if (is(1, 0)) return &in[0];
+            break;
+        case ExprOp::subtract:
+            if (is(1, 0)) return &in[0];
+            break;
+        case ExprOp::multiply:
+            if (is(0, 1)) return &in[1];
+            if (is(1, 1)) return &in[0];
+            if (is(0, 0) || is(1, 0)) return &zero;
+            break;
+        case ExprOp::divide:
+            if (is(1, 1)) return &in[0];
+            if (is(0, 0) && !in[1].is_constant(0)) return &zero;
+            break;
+        case ExprOp::power:
+            if (is(1, 1)) return &in[0];
+            break;
+        case ExprOp::minimum:
+        case ExprOp::maximum:
+            if (same(in[0], in[1])) return &in[0];
+            break;
+        case ExprOp::negate:
+            break;
+        case ExprOp::select:
+            if (in[0].is_constant()) return in[0].value() != 0 ? &in[1] : &in[2];
+            if (same(in[1], in[2])) return &in[1];
+            break;
+        default:
+            break;
+    }
+    return nullptr;
+}
+
+}  // namespace
+
+Expr::Expr(double value) {
+    ExprNode node;
+    node.op = ExprOp::constant;
+    node.value = value;
+    node_ = share(std::move(node));
+}
+
+Expr Expr::input(int index) {
+    ExprNode node;
+    node.op = ExprOp::input;
+    node.input = index;
+    return Expr(share(std::move(node)));
+}
+
+ExprOp Expr::op() const noexcept { return node_->op; }
+bool Expr::is_constant(double v) const noexcept {
+    return node_->op == ExprOp::constant && node_->value == v;
+}
+double Expr::value() const noexcept { return node_->value; }
+int Expr::input_index() const noexcept { return node_->input; }
+const std::shared_ptr<const Table>& Expr::table() const noexcept { return node_->table; }
+int Expr::operand_count() const noexcept { return static_cast<int>(node_->operands.size()); }
+Expr Expr::operand(int i) const { return node_->operands[static_cast<std::size_t>(i)]; }
+
+Expr make_expr(ExprOp op, std::span<const Expr> in, std::shared_ptr<const Table> table) {
+    bool all_constant = true;
+    for (const Expr& e : in)
+        all_constant = all_constant && e.is_constant();
+    if (all_constant) {
+        const double a = in[0].value();
+        const double b = in.size() > 1 ? in[1].value() : 0;
+        const double c = in.size() > 2 ? in[2].value() : 0;
+        return scalar_op(op, a, b, c, table.get());
+    }
+    Expr zero(0.0);
+    if (const Expr* simpler = neutral(op, in, zero)) return *simpler;
+    if (op == ExprOp::negate && in[0].op() == ExprOp::negate) return in[0].operand(0);
+
+    ExprNode node;
+    node.op = op;
+    node.operands.assign(in.begin(), in.end());
+    node.table = std::move(table);
+    return Expr(share(std::move(node)));
+}
+
+namespace {
+Expr make1(ExprOp op, const Expr& a) { return make_expr(op, std::array{a}); }
+Expr make2(ExprOp op, const Expr& a, const Expr& b) { return make_expr(op, std::array{a, b}); }
+}  // namespace
+
+Expr operator+(const Expr& a, const Expr& b) { return make2(ExprOp::add, a, b); }
+Expr operator-(const Expr& a, const Expr& b) { return make2(ExprOp::subtract, a, b); }
+Expr operator*(const Expr& a, const Expr& b) { return make2(ExprOp::multiply, a, b); }
+Expr operator/(const Expr& a, const Expr& b) { return make2(ExprOp::divide, a, b); }
+Expr operator-(const Expr& a) { return make1(ExprOp::negate, a); }
+Expr min(const Expr& a, const Expr& b) { return make2(ExprOp::minimum, a, b); }
+Expr max(const Expr& a, const Expr& b) { return make2(ExprOp::maximum, a, b); }
+Expr abs(const Expr& a) { return make1(ExprOp::absolute, a); }
+Expr sqrt(const Expr& a) { return make1(ExprOp::square_root, a); }
+Expr exp2(const Expr& a) { return make1(ExprOp::exp2, a); }
+Expr log2(const Expr& a) { return make1(ExprOp::log2, a); }
+Expr pow(const Expr& base, const Expr& exponent) { return make2(ExprOp::power, base, exponent); }
+Expr sin(const Expr& radians) { return make1(ExprOp::sine, radians); }
+Expr cos(const Expr& radians) { return make1(ExprOp::cosine, radians); }
+Expr atan2(const Expr& y, const Expr& x) { return make2(ExprOp::atan2, y, x); }
+Expr floor(const Expr& a) { return make1(ExprOp::floor, a); }
+Expr less(const Expr& a, const Expr& b) { return make2(ExprOp::less, a, b); }
+Expr less_equal(const Expr& a, const Expr& b) { return make2(ExprOp::less_equal, a, b); }
+Expr equal(const Expr& a, const Expr& b) { return make2(ExprOp::equal, a, b); }
+Expr select(const Expr& condition, const Expr& if_true, const Expr& if_false) {
+    return make_expr(ExprOp::select, std::array{condition, if_true, if_false});
+}
+Expr lookup(std::shared_ptr<const Table> table, const Expr& index) {
+    return make_expr(ExprOp::lookup, std::array{index}, std::move(table));
+}
+
+Expr exp(const Expr& a) { return exp2(a * std::numbers::log2e); }
+Expr log(const Expr& a) { return log2(a) * std::numbers::ln2; }
+Expr clamp(const Expr& a, const Expr& lo, const Expr& hi) { return min(max(a, lo), hi); }
+Expr mix(const Expr& a, const Expr& b, const Expr& t) { return a + t * (b - a); }
+Expr smoothstep(const Expr& edge0, const Expr& edge1, const Expr& x) {
+    const Expr t = clamp((x - edge0) / (edge1 - edge0), 0, 1);
+    return t * t * (3 - 2 * t);
+}
+
+}  // namespace tonewright

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "tonewright/expr.h"
+
+namespace tonewright {
+
+struct ExprNode {
+    ExprOp op = ExprOp::constant;
+    double value = 0;  // constant
+    int input = 0;     // input
+    std::vector<Expr> operands;
+    std::shared_ptr<const Table> table;  // lookup
+};
+
+}  // namespace tonewright

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+
+#include "tonewright/expr.h"
+
+namespace tonewright {
+
+/// What each operation means, in double. Folding, evaluate() and the reference engine all call it.
+inline double scalar_op(ExprOp op, double a, double b, double c, const Table* table) noexcept {
+    switch (op) {
+        case ExprOp::add:
+            return a + b;
+        case ExprOp::subtract:
+            return a - b;
+        case ExprOp::multiply:
+            return a * b;
+        case ExprOp::divide:
+            return a / b;
+        case ExprOp::minimum:
+            return b < a ? b : a;
+        case ExprOp::maximum:
+            return a < b ? b : a;
+        case ExprOp::power:
+            return std::pow(a, b);
+        case ExprOp::atan2:
+            return std::atan2(a, b);
+        case ExprOp::less:
+            return a < b ? 1.0 : 0.0;
+        case ExprOp::less_equal:
+            return a <= b ? 1.0 : 0.0;
+        case ExprOp::equal:
+            return a == b ? 1.0 : 0.0;
+        case ExprOp::negate:
+            return -a;
+        case ExprOp::absolute:
+            return std::fabs(a);
+        case ExprOp::square_root:
+            return std::sqrt(a);
+        case ExprOp::exp2:
+            return std::exp2(a);
+        case ExprOp::log2:
+            return std::log2(a);
+        case ExprOp::sine:
+            return std::sin(a);
+        case ExprOp::cosine:
+            return std::cos(a);
+        case ExprOp::floor:
+            return std::floor(a);
+        case ExprOp::select:
+            return a != 0 ? b : c;
+        case ExprOp::lookup:
+            return (*table)(a);
+        case ExprOp::constant:
+        case ExprOp::input:
+            break;
+    }
+    return a;
+}
+
+}  // namespace tonewright

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <OpenImageIO/typedesc.h>
+
+#include <cstddef>
+
+/// Access to one channel of interleaved pixels of any type. Types are converted at the edge only,
+/// so that there is one kernel inside, not one for each pair of pixel types.
+namespace tonewright {
+
+/// How the values of one pixel type are read and written. Conversions are OIIO's: integers stand
+/// for [0, 1] (or [-1, 1]), rounded and clamped when written.
+struct PixelAccess {
+    /// `stride` is the distance between pixels in bytes; `count` values are read or written.
+    void (*load_float)(const std::byte* from, std::ptrdiff_t stride, float* to,
+                       std::size_t count) noexcept;
+    void (*store_float)(const float* from, std::byte* to, std::ptrdiff_t stride,
+                        std::size_t count) noexcept;
+    void (*load_double)(const std::byte* from, std::ptrdiff_t stride, double* to,
+                        std::size_t count) noexcept;
+    void (*store_double)(const double* from, std::byte* to, std::ptrdiff_t stride,
+                         std::size_t count) noexcept;
+    /// Bits of one value moved as they are.
+    void (*copy)(const std::byte* from, std::ptrdiff_t from_stride, std::byte* to,
+                 std::ptrdiff_t to_stride, std::size_t count) noexcept;
+};
+
+/// Null for a type that OIIO has no pixels of (64-bit integers, strings, pointers).
+[[nodiscard]] const PixelAccess* pixel_access(OIIO::TypeDesc type) noexcept;
+
+}  // namespace tonewright

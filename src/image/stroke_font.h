@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+namespace tonewright {
+
+struct Stroke {
+    float x0, y0, x1, y1;
+};
+
+/// A letter as line segments, y upwards. Capitals are 7 high, small letters 5, descenders reach -2.
+struct Glyph {
+    std::vector<Stroke> strokes;
+    float advance;  // to the next letter
+};
+
+inline constexpr double kCapHeight = 7;
+inline constexpr double kStrokeWidth = 0.85;
+/// Space between the strokes of neighbouring letters.
+inline constexpr double kLetterSpacing = 1.75;
+
+/// The glyph of a character; that of `?` for what is not printable ASCII.
+[[nodiscard]] const Glyph& glyph_of(char character);
+
+}  // namespace tonewright

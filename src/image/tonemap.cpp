@@ -1,0 +1,435 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// tonemap() on OpenImageIO pictures.
+//
+// A picture is worked on in spans of at most kSpan pixels of one row: channels are gathered into
+// planar float, whatever the pixel type, run through the engine, and scattered into the
+// destination. Spans stay in the L1 cache, and no pixel type is known to the kernel.
+#include <OpenImageIO/imagebufalgo.h>
+#include <OpenImageIO/imagebufalgo_util.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <new>
+#include <optional>
+
+#include "image/color_tags.h"
+#include "image/message.h"
+#include "image/pixel_access.h"
+#include "tonewright/engine.h"
+#include "tonewright/image.h"
+#include "tonewright/view.h"
+
+namespace tonewright {
+namespace {
+
+using OIIO::ImageBuf;
+using OIIO::ImageSpec;
+using OIIO::ROI;
+
+constexpr std::size_t kSpan = 1024;  // pixels; four float planes are 16 KiB
+
+struct CopiedChannel {
+    int from;
+    int to;
+};
+
+/// Which channel of the source goes where.
+struct ChannelPlan {
+    bool grey_source = false;  // channel 0 alone is color
+    bool grey_result = false;
+    int alpha = -1;  // of the source, to divide by and multiply with; -1: color is taken as it is
+    std::vector<CopiedChannel> copies;
+};
+
+[[noreturn]] void fail(const std::string& message) { throw Error(message); }
+
+bool names_alpha(const std::string& name) {
+    return OIIO::Strutil::iequals(name, "A") || OIIO::Strutil::iequals(name, "alpha") ||
+           OIIO::Strutil::iends_with(name, ".A") || OIIO::Strutil::iends_with(name, ".alpha");
+}
+
+/// Index of the alpha channel, or -1.
+int find_alpha(const ImageSpec& spec) {
+    if (spec.alpha_channel >= 0 && spec.alpha_channel < spec.nchannels) return spec.alpha_channel;
+    if (spec.nchannels == 2 && names_alpha(spec.channel_name(1))) return 1;
+    return -1;
+}
+
+bool is_grey(const ImageSpec& spec, int alpha) {
+    if (spec.nchannels == 2 && alpha != 1) {
+        fail(
+            fmt::format("picture has 2 channels ({}, {}); expected 1, 3 or more, or grey and alpha",
+                        std::string(spec.channel_name(0)), std::string(spec.channel_name(1))));
+    }
+    const bool grey = spec.nchannels <= 2;
+    if (alpha >= 0 && alpha < (grey ? 1 : 3)) {
+        fail(
+            fmt::format("alpha channel is {}; expected none or {} and above: color comes first "
+                        "(oiiotool --ch R,G,B,A)",
+                        alpha, grey ? 1 : 3));
+    }
+    return grey;
+}
+
+/// The spec of a destination that does not exist yet.
+ImageSpec result_spec(const ImageSpec& source, bool grey_becomes_color) {
+    ImageSpec spec = source;
+    if (grey_becomes_color) {
+        const bool has_alpha = spec.nchannels == 2;
+        spec.nchannels = has_alpha ? 4 : 3;
+        spec.channelnames = {"R", "G", "B"};
+        if (has_alpha) spec.channelnames.emplace_back("A");
+        spec.alpha_channel = has_alpha ? 3 : -1;
+        spec.z_channel = -1;
+    }
+    spec.set_format(OIIO::TypeFloat);
+    spec.channelformats.clear();
+    return spec;
+}
+
+/// Where one channel's pixels of a span are.
+struct SpanSource {
+    const std::byte* pixels;  // null: outside the data window, black
+    std::ptrdiff_t stride;
+};
+
+}  // namespace
+
+struct Tonemapper::State {
+    explicit State(const TonemapOptions& options)
+        : view(make_view(resolve_operator(options.op, options.settings, options.look),
+                         options.input, options.exposure_stops, options.display)),
+          unpremult(options.unpremult),
+          engine(build_view(view)),
+          keeps_grey(keeps_greys(build_view(view))) {}
+
+    View view;
+    TonemapOptions::Unpremult unpremult;
+    SimdEngine engine;
+    bool keeps_grey;
+
+    void run(ImageBuf& dst, const ImageBuf& src, ROI roi, int nthreads) const;
+    [[nodiscard]] bool divides_by_alpha(const ImageSpec& spec) const;
+};
+
+namespace {
+
+/// Runs the rows of one thread's part of a picture.
+class RowRunner {
+  public:
+    /// @throws std::bad_alloc
+    RowRunner(const SimdEngine& engine, const ChannelPlan& plan, ImageBuf& dst, const ImageBuf& src)
+        : engine_(engine),
+          plan_(plan),
+          dst_(dst),
+          src_(src),
+          src_type_(src.spec().format),
+          src_access_(*pixel_access(src_type_)),
+          dst_access_(*pixel_access(dst.spec().format)),
+          src_size_(static_cast<std::ptrdiff_t>(src_type_.size())),
+          dst_size_(static_cast<std::ptrdiff_t>(dst.spec().format.size())),
+          planes_(kSpan * (plan.alpha >= 0 ? 4 : 3)) {
+        const bool convert = src_type_ != dst.spec().format;
+        if (convert && !plan.copies.empty()) wide_.resize(kSpan);
+        if (!src.localpixels()) {
+            fetched_.resize(kSpan * static_cast<std::size_t>(src.nchannels() * src_size_));
+        }
+    }
+
+    /// @returns  false when the source could not be read.
+    bool run(const ROI& roi) {
+        const ROI window = src_.roi();
+        for (int z = roi.zbegin; z < roi.zend; ++z) {
+            for (int y = roi.ybegin; y < roi.yend; ++y) {
+                const bool row_inside =
+                    y >= window.ybegin && y < window.yend && z >= window.zbegin && z < window.zend;
+                const int from =
+                    row_inside ? std::clamp(window.xbegin, roi.xbegin, roi.xend) : roi.xend;
+                const int to = row_inside ? std::clamp(window.xend, from, roi.xend) : roi.xend;
+                if (!run_part(roi.xbegin, from, y, z, false) || !run_part(from, to, y, z, true) ||
+                    !run_part(to, roi.xend, y, z, false)) {
+                    return false;
+                }
+            }
+        }
+        return true;
+    }
+
+  private:
+    bool run_part(int xbegin, int xend, int y, int z, bool inside) {
+        for (int x = xbegin; x < xend;) {
+            const std::size_t n = std::min<std::size_t>(kSpan, static_cast<std::size_t>(xend - x));
+            SpanSource source{nullptr, 0};
+            if (inside && !locate(x, y, z, n, source)) return false;
+            run_span(source, static_cast<std::byte*>(dst_.pixeladdr(x, y, z)), n);
+            x += static_cast<int>(n);
+        }
+        return true;
+    }
+
+    /// Pixels in memory are read where they are; those of a cached picture are fetched as they are.
+    bool locate(int x, int y, int z, std::size_t n, SpanSource& source) {
+        if (src_.localpixels()) {
+            source = {static_cast<const std::byte*>(src_.pixeladdr(x, y, z)), src_.pixel_stride()};
+            return true;
+        }
+        const ROI roi(x, x + static_cast<int>(n), y, y + 1, z, z + 1, 0, src_.nchannels());
+        source = {fetched_.data(), src_.nchannels() * src_size_};
+        return src_.get_pixels(roi, src_type_, fetched_.data());
+    }
+
+    void run_span(const SpanSource& source, std::byte* to, std::size_t n) noexcept {
+        const std::ptrdiff_t to_stride = dst_.pixel_stride();
+        if (!run_in_place_of_floats(source, to, to_stride, n)) {
+            const std::array<float*, 3> rgb = {planes_.data(), planes_.data() + kSpan,
+                                               planes_.data() + 2 * kSpan};
+            load_color(source, rgb, n);
+            const float* alpha = load_alpha(source, n);
+            if (alpha) divide(rgb, alpha, n);
+            engine_.run({rgb[0], rgb[1], rgb[2]}, 1, rgb, 1, n);
+            if (alpha) multiply(rgb, alpha, n);
+            store_color(rgb, to, to_stride, n);
+        }
+        for (const CopiedChannel& channel : plan_.copies)
+            copy(source, channel, to, to_stride, n);
+    }
+
+    /// Float to float without alpha needs no scratch: the engine reads and writes the pictures.
+    bool run_in_place_of_floats(const SpanSource& source, std::byte* to, std::ptrdiff_t to_stride,
+                                std::size_t n) noexcept {
+        constexpr std::ptrdiff_t kFloat = sizeof(float);
+        const auto aligned = [](const std::byte* p) {
+            return reinterpret_cast<std::uintptr_t>(p) % alignof(float) == 0;
+        };
+        if (!source.pixels || plan_.grey_source || plan_.grey_result || plan_.alpha >= 0 ||
+            src_type_ != OIIO::TypeFloat || dst_.spec().format != OIIO::TypeFloat ||
+            source.stride % kFloat != 0 || to_stride % kFloat != 0 || !aligned(source.pixels) ||
+            !aligned(to)) {
+            return false;
+        }
+        const auto* in = reinterpret_cast<const float*>(source.pixels);
+        auto* out = reinterpret_cast<float*>(to);
+        engine_.run({in, in + 1, in + 2}, source.stride / kFloat, {out, out + 1, out + 2},
+                    to_stride / kFloat, n);
+        return true;
+    }
+
+    void load_color(const SpanSource& source, const std::array<float*, 3>& rgb,
+                    std::size_t n) const noexcept {
+        for (std::size_t c = 0; c < 3; ++c) {
+            if (!source.pixels) {
+                std::fill_n(rgb[c], n, 0.0F);
+            } else if (plan_.grey_source && c > 0) {
+                std::copy_n(rgb[0], n, rgb[c]);
+            } else {
+                src_access_.load_float(source.pixels + static_cast<std::ptrdiff_t>(c) * src_size_,
+                                       source.stride, rgb[c], n);
+            }
+        }
+    }
+
+    /// The alpha to divide by, with 1 where there is nothing to divide by; or null.
+    const float* load_alpha(const SpanSource& source, std::size_t n) noexcept {
+        if (plan_.alpha < 0 || !source.pixels) return nullptr;
+        float* alpha = planes_.data() + 3 * kSpan;
+        src_access_.load_float(source.pixels + plan_.alpha * src_size_, source.stride, alpha, n);
+        for (std::size_t i = 0; i < n; ++i) {
+            if (alpha[i] == 0 || !std::isfinite(alpha[i])) alpha[i] = 1;
+        }
+        return alpha;
+    }
+
+    static void divide(const std::array<float*, 3>& rgb, const float* alpha,
+                       std::size_t n) noexcept {
+        for (float* plane : rgb) {
+            for (std::size_t i = 0; i < n; ++i)
+                plane[i] /= alpha[i];
+        }
+    }
+    static void multiply(const std::array<float*, 3>& rgb, const float* alpha,
+                         std::size_t n) noexcept {
+        for (float* plane : rgb) {
+            for (std::size_t i = 0; i < n; ++i)
+                plane[i] *= alpha[i];
+        }
+    }
+
+    void store_color(const std::array<float*, 3>& rgb, std::byte* to, std::ptrdiff_t to_stride,
+                     std::size_t n) const noexcept {
+        if (plan_.grey_result) {
+            // The three agree within half a code value; green is nearest to luminance.
+            dst_access_.store_float(rgb[1], to, to_stride, n);
+            return;
+        }
+        for (std::size_t c = 0; c < 3; ++c) {
+            dst_access_.store_float(rgb[c], to + static_cast<std::ptrdiff_t>(c) * dst_size_,
+                                    to_stride, n);
+        }
+    }
+
+    void copy(const SpanSource& source, const CopiedChannel& channel, std::byte* to,
+              std::ptrdiff_t to_stride, std::size_t n) noexcept {
+        std::byte* target = to + channel.to * dst_size_;
+        if (!source.pixels) {
+            static constexpr std::array<std::byte, 8> kZero{};
+            dst_access_.copy(kZero.data(), 0, target, to_stride, n);
+            return;
+        }
+        const std::byte* origin = source.pixels + channel.from * src_size_;
+        if (wide_.empty()) {
+            src_access_.copy(origin, source.stride, target, to_stride, n);
+        } else {
+            src_access_.load_double(origin, source.stride, wide_.data(), n);
+            dst_access_.store_double(wide_.data(), target, to_stride, n);
+        }
+    }
+
+    const SimdEngine& engine_;
+    const ChannelPlan& plan_;
+    ImageBuf& dst_;
+    const ImageBuf& src_;
+    OIIO::TypeDesc src_type_;
+    const PixelAccess& src_access_;
+    const PixelAccess& dst_access_;
+    std::ptrdiff_t src_size_;
+    std::ptrdiff_t dst_size_;
+    std::vector<float> planes_;       // r, g, b (, alpha)
+    std::vector<double> wide_;        // copied channels whose type changes; double holds every type
+    std::vector<std::byte> fetched_;  // pixels of a cached source
+};
+
+void check_pixel_type(const char* what, OIIO::TypeDesc type) {
+    if (pixel_access(type)) return;
+    fail(
+        fmt::format("{} pixel type is {}; expected an integer of 8, 16 or 32 bits, half, float or "
+                    "double",
+                    what, std::string(type.c_str())));
+}
+
+}  // namespace
+
+bool Tonemapper::State::divides_by_alpha(const ImageSpec& spec) const {
+    switch (unpremult) {
+        case TonemapOptions::Unpremult::yes:
+            return true;
+        case TonemapOptions::Unpremult::no:
+            return false;
+        case TonemapOptions::Unpremult::automatic:
+            break;
+    }
+    return spec.get_int_attribute("oiio:UnassociatedAlpha", 0) == 0;
+}
+
+void Tonemapper::State::run(ImageBuf& dst, const ImageBuf& src, ROI roi, int nthreads) const {
+    const ImageSpec& source = src.spec();  // reads the header of a picture that is not open yet
+    if (!src.initialized()) {
+        fail(src.has_error() ? first_line(src.geterror())
+                             : "source is not initialized; expected a picture");
+    }
+    if (src.deep() || dst.deep()) {
+        fail(fmt::format("{} is deep; expected flat pixels (oiiotool --flatten)",
+                         src.deep() ? "source" : "destination"));
+    }
+    check_pixel_type("source", source.format);
+    if (dst.initialized()) check_pixel_type("destination", dst.spec().format);
+
+    ChannelPlan plan;
+    const int alpha = find_alpha(source);
+    plan.grey_source = is_grey(source, alpha);
+    const int color_count = plan.grey_source ? 1 : 3;
+    const int chbegin = roi.defined() ? std::max(roi.chbegin, 0) : 0;
+    const int chend = roi.defined() ? std::min(roi.chend, source.nchannels) : source.nchannels;
+    if (chbegin > 0 || chend < color_count) {
+        fail(fmt::format(
+            "channel range is [{}, {}); expected it to begin at 0 and to hold all {} of "
+            "color",
+            roi.chbegin, roi.chend, color_count));
+    }
+
+    // A grey result takes one channel, unless the destination has a place for three.
+    const bool wide_destination = dst.initialized() && dst.nchannels() >= 3;
+    plan.grey_result = plan.grey_source && keeps_grey && !wide_destination;
+    if (dst.initialized() && !plan.grey_result && dst.nchannels() < 3) {
+        fail(fmt::format("destination has {}; expected 3 or more: {}",
+                         dst.nchannels() == 1 ? "1 channel" : "2 channels",
+                         plan.grey_source ? view.op.label + " shows this grey picture in color"
+                                          : std::string("the picture is in color")));
+    }
+    if (alpha >= 0 && divides_by_alpha(source)) plan.alpha = alpha;
+
+    const bool widens = plan.grey_source && !plan.grey_result;
+    ImageSpec fresh = result_spec(source, widens);
+    if (!OIIO::ImageBufAlgo::IBAprep(roi, &dst, &src, nullptr, &fresh,
+                                     OIIO::ImageBufAlgo::IBAprep_DST_FLOAT_PIXELS)) {
+        fail(first_line(dst.geterror()));
+    }
+    if (!dst.localpixels()) {
+        fail(dst.has_error() ? first_line(dst.geterror()) : "destination cannot be written");
+    }
+    for (int c = color_count; c < chend; ++c) {
+        const int to = widens ? c + 2 : c;
+        if (to < dst.nchannels()) plan.copies.push_back({c, to});
+    }
+
+    if (roi.width() > 0 && roi.height() > 0 && roi.depth() > 0) {
+        std::atomic<bool> unreadable = false;
+        std::atomic<bool> out_of_memory = false;
+        OIIO::ImageBufAlgo::parallel_image(roi, OIIO::paropt(nthreads), [&](ROI part) {
+            // No exception may leave a thread of OIIO's pool.
+            try {
+                if (!RowRunner(engine, plan, dst, src).run(part)) unreadable = true;
+            } catch (const std::bad_alloc&) {
+                out_of_memory = true;
+            }
+        });
+        if (out_of_memory) throw std::bad_alloc();
+        // A cached picture is read as it is worked on; its cache reports through the picture.
+        if (unreadable || (!src.localpixels() && src.has_error())) {
+            fail(src.has_error() ? first_line(src.geterror()) : "source cannot be read");
+        }
+    }
+    tag_as_result_of(view, dst.specmod());
+}
+
+Tonemapper::Tonemapper(const TonemapOptions& options)
+    : state_(std::make_unique<const State>(options)) {}
+Tonemapper::~Tonemapper() = default;
+Tonemapper::Tonemapper(Tonemapper&&) noexcept = default;
+Tonemapper& Tonemapper::operator=(Tonemapper&&) noexcept = default;
+
+bool Tonemapper::operator()(ImageBuf& dst, const ImageBuf& src, ROI roi,
+                            int nthreads) const noexcept {
+    try {
+        state_->run(dst, src, roi, nthreads);
+        return true;
+    } catch (const std::exception& e) {
+        dst.errorfmt("tonemap: {}", e.what());
+        return false;
+    }
+}
+
+bool tonemap(ImageBuf& dst, const ImageBuf& src, const TonemapOptions& options, ROI roi,
+             int nthreads) noexcept {
+    std::optional<Tonemapper> tonemapper;
+    try {
+        tonemapper.emplace(options);
+    } catch (const std::exception& e) {
+        dst.errorfmt("tonemap: {}", e.what());
+        return false;
+    }
+    return (*tonemapper)(dst, src, roi, nthreads);
+}
+
+ImageBuf tonemap(const ImageBuf& src, const TonemapOptions& options, ROI roi,
+                 int nthreads) noexcept {
+    ImageBuf result;
+    tonemap(result, src, options, roi, nthreads);
+    return result;
+}
+
+}  // namespace tonewright

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "tonewright/expr.h"
+
+namespace tonewright {
+
+using Vector3 = std::array<double, 3>;
+/// Row-major; acts on column vectors: y = M x.
+using Matrix3 = std::array<std::array<double, 3>, 3>;
+
+inline constexpr Matrix3 kIdentity3 = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+
+[[nodiscard]] Matrix3 multiply(const Matrix3& a, const Matrix3& b) noexcept;
+[[nodiscard]] Vector3 multiply(const Matrix3& m, const Vector3& v) noexcept;
+[[nodiscard]] Matrix3 scale(const Matrix3& m, double factor) noexcept;
+/// @throws Error  when the determinant is 0.
+[[nodiscard]] Matrix3 inverse(const Matrix3& m);
+
+/// CIE 1931 chromaticity.
+struct Chromaticity {
+    double x;
+    double y;
+    friend bool operator==(const Chromaticity&, const Chromaticity&) = default;
+};
+
+/// Chromaticities of red, green, blue and the whitepoint.
+struct Primaries {
+    std::string_view name;
+    Chromaticity red, green, blue, whitepoint;
+    friend bool operator==(const Primaries& a, const Primaries& b) {
+        return a.red == b.red && a.green == b.green && a.blue == b.blue &&
+               a.whitepoint == b.whitepoint;
+    }
+};
+
+inline constexpr Chromaticity kD65 = {0.3127, 0.3290};          // ITU-R BT.709-6, table 1
+inline constexpr Chromaticity kAcesWhite = {0.32168, 0.33767};  // SMPTE ST 2065-1, "D60"
+/// ITU-R BT.709-6; also IEC 61966-2-1 (sRGB).
+inline constexpr Primaries kRec709 = {"Rec.709", {0.64, 0.33}, {0.30, 0.60}, {0.15, 0.06}, kD65};
+/// ITU-R BT.2020-2, table 3.
+inline constexpr Primaries kRec2020 = {
+    "Rec.2020", {0.708, 0.292}, {0.170, 0.797}, {0.131, 0.046}, kD65};
+/// SMPTE EG 432-1 primaries with the D65 whitepoint (Display P3).
+inline constexpr Primaries kP3D65 = {
+    "P3-D65", {0.680, 0.320}, {0.265, 0.690}, {0.150, 0.060}, kD65};
+/// SMPTE ST 2065-1 (ACES2065-1).
+inline constexpr Primaries kAP0 = {
+    "AP0", {0.7347, 0.2653}, {0.0, 1.0}, {0.0001, -0.0770}, kAcesWhite};
+/// Academy S-2014-004 (ACEScg).
+inline constexpr Primaries kAP1 = {
+    "AP1", {0.713, 0.293}, {0.165, 0.830}, {0.128, 0.044}, kAcesWhite};
+/// FilmLight E-Gamut, white paper "T-CAM and T-Log / E-Gamut", D65.
+inline constexpr Primaries kEGamut = {
+    "FilmLight E-Gamut", {0.8, 0.3177}, {0.18, 0.9}, {0.065, -0.0805}, kD65};
+
+/// XYZ of a chromaticity with Y = 1.
+[[nodiscard]] Vector3 xyz_of(Chromaticity xy) noexcept;
+
+/// Linear RGB with white (1,1,1) -> CIE XYZ of the same white with Y = 1 (SMPTE RP 177:1993).
+[[nodiscard]] Matrix3 rgb_to_xyz(const Primaries& primaries);
+
+/// Bradford chromatic adaptation of XYZ from one white to another (Lam 1985; ICC.1:2010 annex E).
+[[nodiscard]] Matrix3 bradford_adaptation(Chromaticity from, Chromaticity to);
+
+/// Linear RGB -> linear RGB, Bradford-adapted where the whites differ; rows sum to 1.
+[[nodiscard]] Matrix3 rgb_to_rgb(const Primaries& from, const Primaries& to);
+
+/// Linear RGB -> CIE XYZ under D65 (Bradford where the white differs).
+[[nodiscard]] Matrix3 rgb_to_xyz_d65(const Primaries& primaries);
+
+/// Weights of relative luminance as nearly all code and papers print them for Rec.709 (ITU-R
+/// BT.709-6, item 3.2). Derived from the primaries they would be 0.2126390, 0.7151687, 0.0721923.
+inline constexpr Vector3 kRec709Weights = {0.2126, 0.7152, 0.0722};
+
+// ---------------------------------------------------------------------------------------------
+// Transfer functions, as expressions of `x`. Names say the direction.
+
+/// IEC 61966-2-1:1999 display light -> code value: 12.92 L up to 0.0031308, then
+/// 1.055 L^(1/2.4) - 0.055. Negatives follow the straight part. Domain (-inf, inf).
+[[nodiscard]] Expr srgb_encode(const Expr& linear);
+/// IEC 61966-2-1:1999 code value -> display light; threshold 0.04045.
+[[nodiscard]] Expr srgb_decode(const Expr& code);
+
+/// max(L, 0)^(1/exponent): display light -> code value of a pure power display.
+[[nodiscard]] Expr power_encode(const Expr& linear, double exponent);
+/// max(c, 0)^exponent.
+[[nodiscard]] Expr power_decode(const Expr& code, double exponent);
+
+/// ITU-R BT.1886 with black at 0: the 2.4 power. Display light (1 = peak) -> code value.
+[[nodiscard]] Expr bt1886_encode(const Expr& linear);
+[[nodiscard]] Expr bt1886_decode(const Expr& code);
+
+/// SMPTE ST 2084:2014 inverse EOTF: luminance in cd/m2 [0, 10000] -> code value [0, 1].
+/// Negatives mirror.
+[[nodiscard]] Expr pq_encode_nits(const Expr& nits);
+/// SMPTE ST 2084:2014 EOTF: code value -> cd/m2.
+[[nodiscard]] Expr pq_decode_nits(const Expr& code);
+
+/// ITU-R BT.2100-2 table 5, HLG OETF: scene light [0, 1] -> code value [0, 1]. Negatives mirror.
+[[nodiscard]] Expr hlg_oetf(const Expr& scene_linear);
+/// Its inverse.
+[[nodiscard]] Expr hlg_inverse_oetf(const Expr& code);
+
+/// Academy S-2016-001, ACEScct: AP1 scene-linear -> log code value. 1 is 222.86 scene-linear.
+[[nodiscard]] Expr acescct_encode(const Expr& linear);
+/// Its inverse; the clamp at 65504 of the standard is not in it.
+[[nodiscard]] Expr acescct_decode(const Expr& code);
+
+}  // namespace tonewright

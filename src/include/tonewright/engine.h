@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tonewright/pipeline.h"
+
+namespace tonewright {
+
+/// The first step of every engine: NaN -> 0, then limited to +-kHalfMax.
+[[nodiscard]] inline double sanitise(double x) noexcept {
+    return x != x ? 0.0 : (x < -kHalfMax ? -kHalfMax : (x > kHalfMax ? kHalfMax : x));
+}
+
+class Tape;
+
+/// Double-precision evaluation of a pipeline: the truth that every other form is held to.
+///
+/// It runs the expressions as they are written, without any pass that changes a value. Total:
+/// finite out for every double in, NaN and infinities included. Safe to share between threads.
+class ReferenceEngine {
+  public:
+    explicit ReferenceEngine(const Pipeline& pipeline);
+    ~ReferenceEngine();
+    ReferenceEngine(ReferenceEngine&&) noexcept;
+    ReferenceEngine& operator=(ReferenceEngine&&) noexcept;
+
+    [[nodiscard]] Vector3 operator()(const Vector3& rgb) const noexcept;
+    /// Planar; in and out may be the same planes; any count, 0 included.
+    void run(const std::array<const double*, 3>& in, const std::array<double*, 3>& out,
+             std::size_t count) const noexcept;
+    /// Interleaved RGB float in, interleaved RGB double out.
+    void run_rgb(const float* in, double* out, std::size_t pixel_count) const noexcept;
+
+  private:
+    std::unique_ptr<const Tape> tape_;
+};
+
+/// Single-precision SIMD evaluation of a pipeline, chosen at run time for the processor.
+///
+/// Passes that change the last bits (matrices multiplied together, division by a constant as
+/// multiplication, fused multiply-add) are allowed here and only here; the result stays within 1e-6
+/// of the reference in display-encoded values for every operator. Total. Safe to share.
+class SimdEngine {
+  public:
+    explicit SimdEngine(const Pipeline& pipeline);
+    ~SimdEngine();
+    SimdEngine(SimdEngine&&) noexcept;
+    SimdEngine& operator=(SimdEngine&&) noexcept;
+
+    /// Planar float. `stride` is the distance between consecutive pixels of one plane, in floats
+    /// (1 = packed, 3 or 4 = interleaved). In and out may be the same memory; otherwise they must
+    /// not overlap. Any pixel count, 0 included; nothing outside the pixels is read or written.
+    void run(const std::array<const float*, 3>& in, std::ptrdiff_t in_stride,
+             const std::array<float*, 3>& out, std::ptrdiff_t out_stride,
+             std::size_t count) const noexcept;
+    /// Interleaved RGB, packed.
+    void run_rgb(const float* in, float* out, std::size_t pixel_count) const noexcept;
+
+    /// Names of the instruction sets compiled in that this machine has, best first ("AVX3", ...).
+    [[nodiscard]] static std::vector<std::string> targets();
+    /// Restricts all engines to one of targets(), or back to the best with "". For tests.
+    /// @throws Error  when the machine has no such target.
+    static void use_target(const std::string& name);
+
+  private:
+    struct Program;
+    std::unique_ptr<const Program> program_;
+};
+
+}  // namespace tonewright

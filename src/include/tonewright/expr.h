@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace tonewright {
+
+/// What a node of an expression computes.
+enum class ExprOp : unsigned char {
+    constant,
+    input,
+    add,
+    subtract,
+    multiply,
+    divide,
+    minimum,
+    maximum,
+    power,
+    atan2,
+    less,        // 1 where a < b, else 0
+    less_equal,  // 1 where a <= b, else 0
+    equal,       // 1 where a == b, else 0
+    negate,
+    absolute,
+    square_root,
+    exp2,
+    log2,
+    sine,
+    cosine,
+    floor,
+    select,  // b where a is not 0, else c
+    lookup,  // table, index in [0, 1]
+};
+
+/// Samples of a function at equal distances over [0, 1]; outside, the first or last one holds.
+struct Table {
+    enum class Interpolation : unsigned char {
+        linear,  // straight lines between samples
+        step,    // sample i holds over [i/n, (i+1)/n): the slope of a linear table
+    };
+    std::vector<double> samples;
+    Interpolation interpolation = Interpolation::linear;
+
+    [[nodiscard]] double operator()(double x) const noexcept;
+};
+
+struct ExprNode;
+
+/// An immutable scalar expression over numbered inputs.
+///
+/// Operators are written with it and read like the paper's formula. Building one folds constants,
+/// drops neutral elements (x+0, x*1, x*0, ...; inputs are finite by contract, so 0*x is 0) and
+/// shares equal nodes: two expressions built the same way are the same node. Nothing else is
+/// rewritten, so what the reference engine computes is what the formula says, in the order in which
+/// it says it.
+///
+/// There is no conversion to bool: an `if` on a pixel value does not compile. `select` is the
+/// branch.
+class Expr {
+  public:
+    Expr(double value);  // NOLINT(google-explicit-constructor): constants read as numbers
+
+    /// The value of input `index` (of a curve: 0; of a three-channel stage: 0, 1, 2 = red, green,
+    /// blue).
+    [[nodiscard]] static Expr input(int index = 0);
+
+    [[nodiscard]] ExprOp op() const noexcept;
+    [[nodiscard]] bool is_constant() const noexcept { return op() == ExprOp::constant; }
+    [[nodiscard]] bool is_constant(double value) const noexcept;
+    /// @pre op() is constant
+    [[nodiscard]] double value() const noexcept;
+    /// @pre op() is input
+    [[nodiscard]] int input_index() const noexcept;
+    /// @pre op() is lookup
+    [[nodiscard]] const std::shared_ptr<const Table>& table() const noexcept;
+    [[nodiscard]] int operand_count() const noexcept;
+    [[nodiscard]] Expr operand(int i) const;
+    /// Identity of the shared node: equal for two expressions exactly when they were built equal.
+    [[nodiscard]] const ExprNode* node() const noexcept { return node_.get(); }
+
+  private:
+    friend Expr make_expr(ExprOp op, std::span<const Expr> operands,
+                          std::shared_ptr<const Table> table);
+    explicit Expr(std::shared_ptr<const ExprNode> node) : node_(std::move(node)) {}
+    std::shared_ptr<const ExprNode> node_;
+};
+
+/// Builds a node from its operation and operands, with the same folding as the functions below.
+Expr make_expr(ExprOp op, std::span<const Expr> operands,
+               std::shared_ptr<const Table> table = nullptr);
+
+[[nodiscard]] inline bool same(const Expr& a, const Expr& b) { return a.node() == b.node(); }
+
+Expr operator+(const Expr& a, const Expr& b);
+Expr operator-(const Expr& a, const Expr& b);
+Expr operator*(const Expr& a, const Expr& b);
+Expr operator/(const Expr& a, const Expr& b);
+Expr operator-(const Expr& a);
+Expr min(const Expr& a, const Expr& b);
+Expr max(const Expr& a, const Expr& b);
+Expr abs(const Expr& a);
+Expr sqrt(const Expr& a);
+Expr exp2(const Expr& a);
+Expr log2(const Expr& a);
+Expr pow(const Expr& base, const Expr& exponent);
+Expr sin(const Expr& radians);
+Expr cos(const Expr& radians);
+Expr atan2(const Expr& y, const Expr& x);
+Expr floor(const Expr& a);
+Expr less(const Expr& a, const Expr& b);
+Expr less_equal(const Expr& a, const Expr& b);
+Expr equal(const Expr& a, const Expr& b);
+/// `if_true` where `condition` is not 0, else `if_false`; both are evaluated, one is taken.
+Expr select(const Expr& condition, const Expr& if_true, const Expr& if_false);
+Expr lookup(std::shared_ptr<const Table> table, const Expr& index);
+
+// Words of the papers, made of the above.
+Expr exp(const Expr& a);                                    // exp2(a * log2(e))
+Expr log(const Expr& a);                                    // log2(a) * ln(2)
+Expr clamp(const Expr& a, const Expr& lo, const Expr& hi);  // min(max(a, lo), hi)
+Expr mix(const Expr& a, const Expr& b, const Expr& t);      // a + t*(b - a)
+Expr smoothstep(const Expr& edge0, const Expr& edge1, const Expr& x);
+
+/// The expression with input i replaced by `inputs[i]`. Inputs beyond the span stay.
+[[nodiscard]] Expr substitute(const Expr& expr, std::span<const Expr> inputs);
+
+/// The value, in double, by plain recursion over the shared nodes: the meaning of an expression.
+/// Slow; engines compile a Tape instead, and a test holds the two equal bit for bit.
+[[nodiscard]] double evaluate(const Expr& expr, std::span<const double> inputs);
+[[nodiscard]] double evaluate(const Expr& expr, double input);
+
+/// d expr / d input `index`. At a kink of min, max, abs or select: the slope of the side taken
+/// there. Comparisons and floor have slope 0; a linear table has a step table as slope.
+[[nodiscard]] Expr derivative(const Expr& expr, int index = 0);
+
+/// Exact text: constants are the shortest decimals that read back as the same double, brackets
+/// appear where the order of evaluation needs them.
+/// @param names  of the inputs; `x` for input 0 when there is one input, else `r`, `g`, `b`.
+[[nodiscard]] std::string to_string(const Expr& expr, std::span<const std::string> names = {});
+
+/// Number of distinct nodes reachable: what an engine has to compute.
+[[nodiscard]] std::size_t node_count(std::span<const Expr> exprs);
+
+/// True when the expression reads input `index`.
+[[nodiscard]] bool depends_on(const Expr& expr, int index);
+
+/// x in [lo, hi] with f(x) = y, for f increasing or decreasing over [lo, hi]: bracketed Newton
+/// steps on the symbolic derivative, bisection where they leave the bracket; to the last double.
+/// @throws Error  when y is outside [f(lo), f(hi)] or an end is not finite.
+[[nodiscard]] double inverse_at(const Expr& f, double y, double lo, double hi);
+
+/// Where f is not smooth in (lo, hi): every x at which a comparison, min, max, abs or clamp inside
+/// f changes sides, found to the last double. Sorted.
+[[nodiscard]] std::vector<double> kinks(const Expr& f, double lo, double hi);
+
+}  // namespace tonewright

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imageio.h>
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "tonewright/error.h"
+#include "tonewright/pipeline.h"
+
+/// Pictures: tone mapping of OpenImageIO images, their files, the test chart and contact sheets.
+///
+/// tonemap() follows the conventions of ImageBufAlgo, errors included; the other functions of this
+/// header throw, as the rest of Tonewright does.
+namespace tonewright {
+
+/// What a picture is tone mapped with. Names and texts are those of the command line.
+struct TonemapOptions {
+    /// What to do with color that may be multiplied by alpha. A curve needs the color alone.
+    enum class Unpremult : unsigned char {
+        /// As the picture says: divide, unless its `oiio:UnassociatedAlpha` is set.
+        automatic,
+        /// Divide by alpha before, multiply after.
+        yes,
+        /// Leave color as it is.
+        no,
+    };
+
+    /// Operator id, optionally `:preset`.
+    std::string op;
+    /// Operator parameters, name -> text.
+    Settings settings = {};
+    /// Look id of the operator, or empty.
+    std::string look = {};
+    /// Exposure before the operator, in stops, [-64, 64].
+    double exposure_stops = 0;
+    /// Scene-linear space of the source: id, title or alias.
+    std::string input = "lin_rec709";
+    /// Display (id, title or alias), or `linear`, or `native`.
+    std::string display = "srgb";
+    Unpremult unpremult = Unpremult::automatic;
+};
+
+/// A view made ready to run on pictures: compile once, use for every frame of a shot.
+/// Safe to use from several threads at once, on different destinations.
+class Tonemapper {
+  public:
+    /// @throws Error  unknown name or bad value among the options, with the nearest name.
+    explicit Tonemapper(const TonemapOptions& options);
+    ~Tonemapper();
+    Tonemapper(Tonemapper&&) noexcept;
+    Tonemapper& operator=(Tonemapper&&) noexcept;
+
+    /// Same contract as tonemap(dst, src, ...).
+    bool operator()(OIIO::ImageBuf& dst, const OIIO::ImageBuf& src, OIIO::ROI roi = {},
+                    int nthreads = 0) const noexcept;
+
+  private:
+    struct State;
+    std::unique_ptr<const State> state_;
+};
+
+/// Tone maps `src` into `dst`, with the calling convention of ImageBufAlgo.
+///
+/// 1. Channels go by position, not by name. The first three are color, scene-linear in
+///    `options.input`; `spec().alpha_channel` is alpha; all others are copied, bit for bit where
+///    the two pixel types are the same. (A picture that has red elsewhere: `oiiotool --ch
+///    R,G,B,A`.)
+/// 2. One channel is grey, R = G = B; so is the first of two when the second is alpha. A grey
+/// picture
+///    stays grey where the view shows greys as greys, else it becomes R, G, B (, A).
+/// 3. Associated color is divided by alpha first and multiplied by it last (`options.unpremult`).
+///    Where alpha is 0, or not finite, color is taken as it is: light without cover, such as a
+///    flame, stays.
+/// 4. NaN is 0 and every channel is limited to +-65504 before the view; the result is finite.
+/// 5. `dst` says what it holds: `oiio:ColorSpace` as OIIO names it ("sRGB", "Gamma2.4" for
+/// Rec.1886,
+///    "Linear"), else the display's title; no claim for `native`, unless the operator's output is
+///    plainly linear or a power of Rec.709. Profiles, gammas and primaries that contradict it go;
+///    `chromaticities` is set where the result is not Rec.709.
+///
+/// @param dst       uninitialised: becomes a float image of the ROI's size with the source's
+/// metadata.
+///                  Initialised: keeps its size and pixel type (integers are rounded and clamped as
+///                  OIIO does), and only the pixels and channels of the ROI are written; a grey
+///                  source fills the first three channels of a destination that has them. May be
+///                  `src`.
+/// @param src       any pixel type, tiled, cached or local. Outside its data window it is black.
+/// Deep
+///                  images are refused.
+/// @param roi       default: all. `[chbegin, chend)` counts the source's channels and must contain
+///                  its color.
+/// @param nthreads  0: OIIO's `threads` attribute. The result does not depend on it.
+/// @returns         false when something is wrong; then `dst` has the error, in one line, and its
+///                  pixels are as they were unless reading `src` failed half way. Never throws.
+bool tonemap(OIIO::ImageBuf& dst, const OIIO::ImageBuf& src, const TonemapOptions& options,
+             OIIO::ROI roi = {}, int nthreads = 0) noexcept;
+/// Returns the result as a new float image; on failure one with has_error().
+[[nodiscard]] OIIO::ImageBuf tonemap(const OIIO::ImageBuf& src, const TonemapOptions& options,
+                                     OIIO::ROI roi = {}, int nthreads = 0) noexcept;
+
+// ---------------------------------------------------------------------------------------------
+// Files
+
+/// Reads a whole picture into memory, in the pixel type of the file: first subimage, full
+/// resolution.
+///
+/// Stricter than ImageBuf::read(): whatever the reader reports is an error, so that a truncated
+/// file is never a half-black picture (ImageBuf passes over truncated TIFF and JPEG files). Nothing
+/// stays in OIIO's cache: a file that was rewritten is read anew.
+///
+/// @throws FileError  missing, truncated, unreadable, of unknown format, or deep. One line.
+[[nodiscard]] OIIO::ImageBuf read_image(const std::string& path);
+
+/// Writes a picture under a temporary name beside `path` (`.<stem>.<pid>.<n>.tmp.<extension>`),
+/// syncs it to the disk and renames it: `path` holds the old file or the new one, never a part.
+///
+/// Channels that the format cannot hold are left out: alpha, and those beyond color and alpha. The
+/// permissions of a file that is replaced stay; a symbolic link stays and its target is replaced.
+///
+/// @param type        pixel type of the file; UNKNOWN: the buffer's, or what OIIO
+///                    takes for it in this format (8 bits for a float picture as PNG or JPEG).
+/// @throws FileError  unknown extension, directory missing or not writable, disk full, ... In one
+///                    line; nothing is left behind.
+void write_image_atomically(const OIIO::ImageBuf& image, const std::string& path,
+                            OIIO::TypeDesc type = OIIO::TypeUnknown);
+
+/// `uint8`, `uint16`, `half` or `float`, as oiiotool's `-d` has them.
+/// @throws Error  for any other text, with the nearest name.
+[[nodiscard]] OIIO::TypeDesc parse_pixel_type(std::string_view text);
+
+// ---------------------------------------------------------------------------------------------
+// Pictures of our own
+
+/// The synthetic HDR test chart: scene-linear Rec.709 (wide-gamut patches have negatives), float
+/// RGB.
+///
+/// Stop ramp -12..+12 about 0.18 in steps and continuous; hue over exposure, saturated and half
+/// saturated; lit and emissive spheres; reflectances of a ColorChecker; primaries of Rec.709, P3
+/// and Rec.2020; near-black; smooth gradients that show banding and kinks. Labelled in the picture,
+/// with a font of our own: every machine draws the same chart.
+///
+/// @param width   at least 320; @param height  at least 180. The layout scales; 1536 x 864 is
+///                what it was drawn for. Labels are left out where they could not be read.
+/// @throws Error  size out of range.
+[[nodiscard]] OIIO::ImageBuf make_chart(int width = 1536, int height = 864);
+
+/// Pictures side by side in a grid, each with its label below, on dark neutral grey.
+///
+/// Each picture is scaled into its cell without distortion (its display window and pixel aspect
+/// ratio count), in linear light. Rows are as high as their tallest picture.
+///
+/// @param labelled    label (printable ASCII; other characters show as `?`; cut to the cell's
+/// width)
+///                    and picture in sRGB code values, any pixel type; grey is shown as grey; alpha
+///                    is not used: associated color is shown on black.
+/// @param columns     1 or more.
+/// @param cell_width  width of a picture in pixels, [16, 16384].
+/// @returns           uint8 RGB, sRGB.
+/// @throws Error      no pictures, or a number out of range, or a picture that cannot be read.
+[[nodiscard]] OIIO::ImageBuf make_contact_sheet(
+    const std::vector<std::pair<std::string, OIIO::ImageBuf>>& labelled, int columns,
+    int cell_width);
+
+}  // namespace tonewright

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tonewright/view.h"
+
+namespace tonewright {
+
+/// How scene-linear light is put into the [0, 1] that a lookup table is indexed with.
+struct InputEncoding {
+    std::string id;     // "acescct", "log2:-10:6.5", "linear:0:1"
+    std::string title;  // for headers: "ACEScct (Academy S-2016-001)"
+    /// Scene-linear -> table input, and back; of input 0.
+    Expr encode = Expr::input();
+    Expr decode = Expr::input();
+    /// The scene-linear light at table input 0 and 1.
+    double scene_lo = 0;
+    double scene_hi = 1;
+    bool is_linear = false;
+    /// Input space that the encoding belongs to, taken when the user names none.
+    std::string default_input = "lin_rec709";
+};
+
+/// `acescct`; `log2[:LO:HI]` = log2 of scene-linear over 0.18, LO..HI stops (default -10:6.5);
+/// `linear[:LO:HI]` = scene-linear (default 0:1).
+/// @throws Error  unknown name; ends that are no numbers or not LO < HI.
+[[nodiscard]] InputEncoding parse_input_encoding(std::string_view text);
+
+enum class LutFormat : unsigned char { cube, clf, spi1d, spi3d };
+/// @throws Error with the nearest name.
+[[nodiscard]] LutFormat parse_lut_format(std::string_view text);
+[[nodiscard]] std::vector<std::string> lut_format_names();
+
+enum class LutDimension : unsigned char { automatic, one, three };
+
+/// What to bake.
+struct LutRequest {
+    View view;
+    InputEncoding encoding;
+    LutFormat format = LutFormat::cube;
+    LutDimension dimension = LutDimension::automatic;
+    /// Entries of a 1D table (2..65536), or grid points a side of a cube (17..129).
+    std::optional<int> size;
+};
+
+/// A baked table. 1D: `size` entries of `channels` values. 3D: size^3 RGB triplets, red fastest.
+/// Half-domain: 65536 entries in the order of the half floats' bit patterns.
+struct Lut {
+    int dimension = 3;
+    int size = 33;
+    int channels = 3;
+    bool is_half_domain = false;
+    std::vector<float> values;
+};
+
+/// Distance of a table, interpolated as its readers do, from the double reference; display code
+/// values for a display, the operator's numbers for `linear` and `native`.
+struct LutError {
+    double max = 0;
+    double p999 = 0;
+    double mean = 0;
+    double delta_e_max = 0;  // dE_ITP (ITU-R BT.2124), 0 where there is no display
+    std::string interpolation;
+};
+
+/// @throws Error  a 3D table of linear input (it would clip at its end and band below); a 1D table
+///                of a view that mixes channels; a size out of range; a format without that
+///                dimension.
+[[nodiscard]] Lut sample_lut(const LutRequest& request);
+
+/// Table output for scene-linear input that the encoding holds; `rgb` is table input in [0, 1] (for
+/// a half-domain table: scene-linear). Linear in 1D; in 3D tetrahedral, or trilinear when asked.
+[[nodiscard]] Vector3 interpolate(const Lut& lut, const Vector3& rgb, bool trilinear = false);
+
+/// Measured on the standard probe set, as far as it lies inside the encoding's range, and on random
+/// table inputs.
+[[nodiscard]] LutError measure_lut(const Lut& lut, const LutRequest& request,
+                                   bool trilinear = false);
+
+/// The text of the file: what it is, what goes in, what comes out, the measured error; then numbers
+/// with 9 significant digits (enough for every float), never in exponent notation.
+[[nodiscard]] std::string write_lut(const Lut& lut, const LutRequest& request,
+                                    const LutError& error);
+
+/// One file of a generated set.
+struct GeneratedFile {
+    std::string path;  // relative to the set's folder
+    std::string contents;
+};
+
+/// The set of `bake --all`: for every operator a 33^3 ACEScct cube and, where it is per channel, a
+/// 1D table, with README.md and MANIFEST.csv. The same bytes on every run.
+[[nodiscard]] std::vector<GeneratedFile> make_shipped_luts();
+
+/// Writes to a temporary name beside the target, syncs, renames: a failed run leaves the old file.
+/// @throws FileError  naming the path and the reason.
+void write_text_atomically(const std::string& path, std::string_view contents);
+
+/// Writes a set into a folder (made if missing), the file named `last` at the end, and then removes
+/// what the folder's previous MANIFEST.csv named and the new set no longer has.
+void write_generated_files(const std::string& folder, const std::vector<GeneratedFile>& files,
+                           std::string_view last);
+
+}  // namespace tonewright

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "tonewright/color.h"
+#include "tonewright/error.h"
+#include "tonewright/expr.h"
+
+namespace tonewright {
+
+/// Largest finite half float. Every form limits scene-linear values to +-this, because OCIO's
+/// half-domain tables end there: so all forms agree about every input.
+inline constexpr double kHalfMax = 65504.0;
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// ---------------------------------------------------------------------------------------------
+// Stages: what LUT makers and OCIO need to know about the structure of an operator. Lowering asks
+// the stage what it is, never the operator for its name.
+
+/// Linear mixing of channels: y = M x.
+struct MatrixStage {
+    Matrix3 m;
+};
+
+/// One function of each channel alone.
+struct CurveStage {
+    /// Of input 0. The three are the same node when one curve serves all channels.
+    std::array<Expr, 3> f;
+    /// Analytic inverse where the source has one; of input 0.
+    std::optional<std::array<Expr, 3>> inverse;
+
+    [[nodiscard]] bool is_uniform() const { return same(f[0], f[1]) && same(f[1], f[2]); }
+};
+
+/// All three channels scaled by f(n)/n: hue and chromaticity stay, only the norm n is mapped.
+/// Where n <= 0 the result is black: the ratio is never 0/0.
+struct ToneScaleStage {
+    enum class Norm : unsigned char { luminance, max_rgb };
+    Norm norm = Norm::luminance;
+    /// Of the luminance; not read for max_rgb.
+    Vector3 weights = kRec709Weights;
+    /// Of input 0, the norm; f(0) must be 0.
+    Expr f;
+};
+
+/// min(max(x, lo), hi) per channel; either end may be infinite.
+struct ClampStage {
+    double lo = 0;
+    double hi = kInfinity;
+};
+
+/// True cross-talk: three functions of red, green, blue (inputs 0, 1, 2), which no chain of the
+/// other stages expresses. Defined for inputs >= 0 (a ClampStage stands before it).
+struct Map3Stage {
+    std::array<Expr, 3> f;
+};
+
+using Stage = std::variant<MatrixStage, CurveStage, ToneScaleStage, ClampStage, Map3Stage>;
+using Pipeline = std::vector<Stage>;
+
+[[nodiscard]] MatrixStage exposure_stage(double stops);
+/// One curve for all channels; `f` is of input 0.
+[[nodiscard]] CurveStage curve_stage(const Expr& f);
+[[nodiscard]] CurveStage curve_stage(const Expr& f, const Expr& inverse);
+
+/// What the stage is called in messages and docs: "matrix", "curve", "tone scale", "clamp", "map3".
+[[nodiscard]] std::string_view stage_kind(const Stage& stage);
+/// True when no pixel changes.
+[[nodiscard]] bool is_identity(const Stage& stage);
+/// True when an output channel depends on another input channel.
+[[nodiscard]] bool mixes_channels(const Stage& stage);
+/// True when the three channels are treated alike and apart: a 1D table holds it.
+[[nodiscard]] bool is_per_channel(const Pipeline& pipeline);
+/// The three outputs as expressions of `rgb`.
+[[nodiscard]] std::array<Expr, 3> apply_stage(const Stage& stage, const std::array<Expr, 3>& rgb);
+/// The whole chain as three expressions of inputs 0, 1, 2.
+[[nodiscard]] std::array<Expr, 3> compose(const Pipeline& pipeline);
+/// Drops identities and multiplies neighbouring matrices (in double). The picture is the same; the
+/// reference engine does not do it, every lowering does.
+[[nodiscard]] Pipeline simplify(const Pipeline& pipeline);
+/// A readable listing, one stage a line.
+[[nodiscard]] std::string to_string(const Pipeline& pipeline);
+
+// ---------------------------------------------------------------------------------------------
+// Parameters
+
+/// One named, typed, bounded parameter of an operator.
+struct ParameterSpec {
+    std::string name;
+    std::string unit;  // "scene-linear", "stops", "cd/m2", "" for pure numbers
+    double default_value = 0;
+    double min = 0;  // closed interval
+    double max = 1;
+    std::string help;
+    /// Not empty: an enumeration; then the number fields mean nothing.
+    std::vector<std::string> choices;
+    std::string default_choice;
+};
+
+[[nodiscard]] ParameterSpec number_parameter(std::string name, std::string unit, double value,
+                                             double min, double max, std::string help);
+[[nodiscard]] ParameterSpec choice_parameter(std::string name, std::vector<std::string> choices,
+                                             std::string value, std::string help);
+
+/// Text as typed by a user: name -> value.
+using Settings = std::map<std::string, std::string>;
+
+struct ResolvedOperator;
+
+/// Complete, checked values of an operator's parameters, and its look.
+class Params {
+  public:
+    /// @pre the operator declares a number parameter of this name
+    [[nodiscard]] double number(std::string_view name) const;
+    /// @pre the operator declares an enumeration of this name
+    [[nodiscard]] const std::string& choice(std::string_view name) const;
+    /// Id of the look, or empty.
+    [[nodiscard]] const std::string& look() const { return look_; }
+
+  private:
+    friend ResolvedOperator resolve_operator(std::string_view, const Settings&, std::string_view);
+    std::map<std::string, double, std::less<>> numbers_;
+    std::map<std::string, std::string, std::less<>> choices_;
+    std::string look_;
+};
+
+// ---------------------------------------------------------------------------------------------
+// Operators
+
+struct Look {
+    std::string id;
+    std::string title;
+    std::string help;
+};
+
+/// A named set of parameter values: `reinhard:luminance`.
+struct Preset {
+    std::string id;
+    std::string title;
+    Settings settings;
+};
+
+/// What the numbers that an operator puts out are.
+enum class OutputKind : unsigned char {
+    display_linear,  // display light, 1 = display peak
+    code_value,      // already encoded with a pure power: decode before any display's encoding
+};
+
+/// One tone mapping operator: everything that any form of it needs to know.
+struct Operator {
+    std::string id;         // lower_snake; a dialect has the name of what it reproduces
+    std::string title;      // "Hable (Uncharted 2)"
+    std::string view;       // its name as a view of the OCIO config; unique, at most 63 bytes
+    std::string character;  // one line: what it looks like, what it is good and bad at
+    std::string source;     // full citation, equation numbers
+    std::string licence;    // of the source
+    std::string negatives;  // what it does with values below 0
+    /// The primaries that its stages work in, of input and output.
+    Primaries working = kRec709;
+    OutputKind output = OutputKind::display_linear;
+    /// Of the output's code values; read only for OutputKind::code_value.
+    double code_power = 2.2;
+    std::vector<ParameterSpec> parameters;
+    std::vector<Preset> presets;
+    std::vector<Look> looks;
+    std::vector<std::string> warnings;
+    /// Working-space scene-linear, finite -> the operator's own output.
+    Pipeline (*build)(const Params& params) = nullptr;
+};
+
+/// Every operator, sorted by id. The table is generated from the files of src/operators/.
+[[nodiscard]] const std::vector<Operator>& all_operators();
+/// @throws Error  naming the nearest id when there is none such.
+[[nodiscard]] const Operator& find_operator(std::string_view id);
+
+/// An operator with its parameters fixed.
+struct ResolvedOperator {
+    const Operator* op;
+    Params params;
+    /// `id`, `id:preset`, or with the settings that differ from the defaults: names it in reports.
+    std::string label;
+
+    [[nodiscard]] Pipeline build() const { return op->build(params); }
+};
+
+/// Looks up `id` or `id:preset` and checks the settings against the operator's parameters.
+///
+/// @param name      operator id, optionally `:preset`.
+/// @param settings  parameter name -> text; they win over the preset's.
+/// @param look      look id, or empty.
+/// @throws Error    unknown operator, preset, parameter, look or choice (with the nearest name);
+///                  a value that is no number or outside the parameter's interval. Never a clamp.
+[[nodiscard]] ResolvedOperator resolve_operator(std::string_view name,
+                                                const Settings& settings = {},
+                                                std::string_view look = {});
+
+}  // namespace tonewright

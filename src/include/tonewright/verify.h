@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tonewright/view.h"
+
+namespace tonewright {
+
+/// What to compare with the reference.
+struct VerifyOptions {
+    /// `id`, `id:preset`; empty = every operator, preset and look.
+    std::vector<std::string> operators;
+    std::vector<std::string> displays = {"srgb"};
+    std::string input = "lin_rec709";
+    /// Folder of a config to check; empty = a fresh one, written to a temporary folder and read
+    /// back.
+    std::string config_folder;
+    /// Grid points a side of the gamut lattices.
+    int lattice_edge = 33;
+    bool with_gpu = true;
+    /// Scene-linear RGB pixels to add to the probe set, in the input space.
+    std::vector<float> picture;
+};
+
+/// One form of one view against the double reference, in display code values.
+struct ParityRow {
+    std::string op;
+    std::string display;
+    std::string form;      // "simd AVX3", "ocio cpu lossless", "ocio cpu default", "ocio gpu"
+    std::string lowering;  // of OCIO forms: "config" or "chain", and what was emitted
+    /// Colours with all channels >= 0.
+    double max = 0, p999 = 0, mean = 0;
+    /// Every colour, negatives and mixed signs of thousands included.
+    double max_all = 0;
+    /// The largest error of the colours beyond the bound, as far as it exceeds what rounding to
+    /// float32 has to cost: the change of the exact result when each channel of the input, and of
+    /// what enters each matrix with negative coefficients, moves by one float32 unit (2^-23 of its
+    /// value; 2^-21 for the GPU, whose texture filtering rounds more often). Such matrices cancel,
+    /// which no float32 form can avoid. 0 where no colour is beyond the bound.
+    double max_beyond_rounding = 0;
+    double bound = 0;
+    /// True where a matrix of the operator has negative coefficients: the bound then holds for
+    /// max_beyond_rounding alone; otherwise for max as well.
+    bool is_mixed_metric = false;
+    /// Every output finite and inside [0, 1], NaN and infinities going in.
+    bool is_total = true;
+    bool is_ok = true;
+    std::string note;  // why a form is missing, or the worst colour of a failure
+};
+
+/// @throws Error  unknown operators, displays, spaces; FileError for the config folder.
+[[nodiscard]] std::vector<ParityRow> verify(
+    const VerifyOptions& options, const std::function<void(const ParityRow&)>& on_row = {});
+
+/// Every operator, operator:preset, and operator with look, as (name, look) pairs.
+struct OperatorVariant {
+    std::string name;
+    std::string look;
+};
+[[nodiscard]] std::vector<OperatorVariant> all_variants();
+
+/// Lines of a table for the terminal: a heading, one row each.
+[[nodiscard]] std::string parity_heading();
+[[nodiscard]] std::string format_row(const ParityRow& row);
+
+}  // namespace tonewright

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lut/clf.h"
+
+#include <fmt/format.h>
+
+#include "lut/numbers.h"
+
+namespace tonewright {
+
+std::string write_clf(const ClfTable& table, const std::string& name,
+                      const std::vector<std::string>& description) {
+    // `id` must be unique to the contents; the hash of the numbers is.
+    std::string numbers;
+    const std::vector<float>& v = *table.values;
+    const auto per_line = static_cast<std::size_t>(table.dimension == 3 ? 3 : table.channels);
+    for (std::size_t i = 0; i < v.size(); ++i) {
+        if (table.decimals > 0) {
+            append_decimals(numbers, v[i], table.decimals);
+        } else {
+            append_number(numbers, v[i]);
+        }
+        numbers += (i + 1) % per_line == 0 ? '\n' : ' ';
+    }
+    std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
+    text += fmt::format("<ProcessList id=\"tonewright-{}\" name=\"{}\" compCLFversion=\"3\">\n",
+                        content_hash(numbers), xml_escape(name));
+    for (const std::string& line : description) {
+        text += "    <Description>" + xml_escape(line) + "</Description>\n";
+    }
+    if (table.dimension == 1) {
+        text += fmt::format(
+            "    <LUT1D inBitDepth=\"32f\" outBitDepth=\"32f\"{} interpolation=\"linear\">\n"
+            "        <Array dim=\"{} {}\">\n",
+            table.is_half_domain ? " halfDomain=\"true\"" : "", table.size, table.channels);
+    } else {
+        text += fmt::format(
+            "    <LUT3D inBitDepth=\"32f\" outBitDepth=\"32f\" interpolation=\"tetrahedral\">\n"
+            "        <Array dim=\"{0} {0} {0} 3\">\n",
+            table.size);
+    }
+    text += numbers;
+    text += fmt::format("        </Array>\n    </LUT{}D>\n</ProcessList>\n", table.dimension);
+    return text;
+}
+
+}  // namespace tonewright

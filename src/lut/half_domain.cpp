@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lut/half_domain.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "tonewright/engine.h"
+
+namespace tonewright {
+namespace {
+constexpr unsigned kHalfCount = 65536;
+constexpr unsigned kSignBit = 0x8000;
+constexpr unsigned kLargestFinite = 0x7BFF;
+}  // namespace
+
+double half_value(unsigned bits) noexcept {
+    const unsigned exponent = bits >> 10 & 31;
+    const unsigned mantissa = bits & 1023;
+    double magnitude = 0;
+    if (exponent == 31) {
+        magnitude = mantissa ? std::numeric_limits<double>::quiet_NaN() : kInfinity;
+    } else if (exponent == 0) {
+        magnitude = std::ldexp(mantissa, -24);
+    } else {
+        magnitude = std::ldexp(mantissa + 1024, static_cast<int>(exponent) - 25);
+    }
+    return bits & kSignBit ? -magnitude : magnitude;
+}
+
+std::vector<float> sample_half_domain(const Expr& f, double lo, double hi) {
+    lo = std::max(lo, -kHalfMax);
+    hi = std::min(hi, kHalfMax);
+    const ReferenceEngine engine({curve_stage(f)});
+    // A bound between two half floats is reached by interpolating from the entry beyond it: that
+    // entry keeps the curve's own value, or the kink of holding it would show inside the interval.
+    const auto neighbour_is_inside = [&](unsigned bits) {
+        const unsigned sign = bits & kSignBit;
+        const unsigned magnitude = bits & ~kSignBit;
+        const auto inside = [&](unsigned m) {
+            const double h = half_value(sign | m);
+            return h > lo && h < hi;
+        };
+        return (magnitude > 0 && inside(magnitude - 1)) ||
+               (magnitude < kLargestFinite && inside(magnitude + 1));
+    };
+    std::vector<double> x(kHalfCount);
+    for (unsigned bits = 0; bits < kHalfCount; ++bits) {
+        const double h = sanitise(half_value(bits));
+        const bool keep = h >= lo && h <= hi;
+        x[bits] = keep || (neighbour_is_inside(bits) && std::isfinite(evaluate(f, h)))
+                      ? h
+                      : std::clamp(h, lo, hi);
+    }
+    std::vector<double> y(kHalfCount);
+    engine.run({x.data(), x.data(), x.data()}, {y.data(), y.data(), y.data()}, kHalfCount);
+    std::vector<float> table(y.begin(), y.end());
+    table[kSignBit] = table[0];
+    return table;
+}
+
+}  // namespace tonewright

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lut/numbers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <iterator>
+
+namespace tonewright {
+
+void append_decimals(std::string& text, float value, int decimals) {
+    const std::size_t begin = text.size();
+    fmt::format_to(std::back_inserter(text), "{:.{}f}", value, decimals);
+    if (text.find('.', begin) != std::string::npos) {
+        while (text.back() == '0')
+            text.pop_back();
+        if (text.back() == '.') text.pop_back();
+    }
+    if (text.compare(begin, std::string::npos, "-0") == 0) text.erase(begin, 1);
+}
+
+void append_number(std::string& text, float value) {
+    const float magnitude = std::fabs(value);
+    const int leading = magnitude > 0 ? static_cast<int>(std::floor(std::log10(magnitude))) : 0;
+    append_decimals(text, value, std::max(0, 8 - leading));
+}
+
+std::string content_hash(const std::string& contents) {
+    std::uint32_t hash = 2166136261U;
+    for (const char c : contents) {
+        hash ^= static_cast<unsigned char>(c);
+        hash *= 16777619U;
+    }
+    return fmt::format("{:08x}", hash);
+}
+
+std::string xml_escape(const std::string& text) {
+    std::string out;
+    for (const char c : text) {
+        if (c == '&') {
+            out += "&amp;";
+        } else if (c == '<') {
+            out += "&lt;";
+        } else if (c == '>') {
+            out += "&gt;";
+        } else if (c == '"') {
+            out += "&quot;";
+        } else {
+            out += c;
+        }
+    }
+    return out;
+}
+
+}  // namespace tonewright

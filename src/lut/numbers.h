@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+namespace tonewright {
+
+/// Appends a float with 9 significant digits (enough to read back the same float), in fixed
+/// notation: several hosts do not read exponents. Trailing zeros are left out.
+void append_number(std::string& text, float value);
+/// The same with a fixed number of decimals.
+void append_decimals(std::string& text, float value, int decimals);
+
+/// FNV-1a, 32 bits, as 8 hexadecimal digits: names LUT files by their contents, because OCIO caches
+/// files by name.
+[[nodiscard]] std::string content_hash(const std::string& contents);
+
+/// Text as XML character data and attribute value.
+[[nodiscard]] std::string xml_escape(const std::string& text);
+
+}  // namespace tonewright

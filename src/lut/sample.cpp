@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+
+#include "lut/half_domain.h"
+#include "tonewright/engine.h"
+#include "tonewright/lut.h"
+
+namespace tonewright {
+namespace {
+
+constexpr int kHalfCount = 65536;
+constexpr int kDefaultCubeSize = 33;
+constexpr int kDefaultCurveSize = 4096;
+
+/// Table input -> what the view shows.
+Pipeline table_pipeline(const LutRequest& request) {
+    Pipeline stages = {curve_stage(request.encoding.decode)};
+    const Pipeline view = build_view(request.view);
+    stages.insert(stages.end(), view.begin(), view.end());
+    return stages;
+}
+
+int checked_size(const LutRequest& request, int fallback, int lo, int hi) {
+    const int size = request.size.value_or(fallback);
+    if (size < lo || size > hi) {
+        throw Error("bake: size is " + std::to_string(size) + "; expected [" + std::to_string(lo) +
+                    ", " + std::to_string(hi) + "]");
+    }
+    return size;
+}
+
+std::string at_most_one_dimension(const LutRequest& request) {
+    return "bake: " + request.view.op.label + " mixes channels (or " + request.view.input +
+           " is not its own space)";
+}
+
+/// One table per channel: the three curves may differ (a look's slope).
+Lut sample_half_curve(const LutRequest& request) {
+    Lut lut;
+    lut.dimension = 1;
+    lut.size = kHalfCount;
+    lut.channels = 1;
+    lut.is_half_domain = true;
+    // A view limits its own input; that limit is where the table holds its end values.
+    lut.values = sample_half_domain(compose(build_view(request.view))[0], -kHalfMax, kHalfMax);
+    return lut;
+}
+
+}  // namespace
+
+Lut sample_lut(const LutRequest& request) {
+    const bool per_channel = is_per_channel(build_view(request.view));
+    bool one = request.dimension == LutDimension::one ||
+               (request.dimension == LutDimension::automatic && per_channel);
+    if (request.format == LutFormat::spi1d) one = true;
+    if (request.format == LutFormat::spi3d) one = false;
+    if (request.format == LutFormat::spi1d && request.dimension == LutDimension::three) {
+        throw Error("bake: format is spi1d; expected a 3D format (cube, clf, spi3d) with --3d");
+    }
+    if (request.format == LutFormat::spi3d && request.dimension == LutDimension::one) {
+        throw Error("bake: format is spi3d; expected a 1D format (cube, clf, spi1d) with --1d");
+    }
+    if (one && !per_channel) {
+        throw Error(at_most_one_dimension(request) + "; expected a 3D table");
+    }
+    if (!one && request.encoding.is_linear) {
+        throw Error("bake: input encoding is " + request.encoding.id +
+                    "; expected acescct or log2 for a 3D table" +
+                    " (a cube of linear light clips at its end and bands in the shadows)");
+    }
+    if (one && request.format == LutFormat::clf && request.encoding.is_linear) {
+        if (request.size)
+            throw Error("bake: size is " + std::to_string(*request.size) +
+                        "; expected none, a half-domain CLF has 65536 entries");
+        return sample_half_curve(request);
+    }
+
+    Lut lut;
+    lut.dimension = one ? 1 : 3;
+    lut.channels = one ? 1 : 3;
+    lut.size = one ? checked_size(request, kDefaultCurveSize, 2, kHalfCount)
+                   : checked_size(request, kDefaultCubeSize, 17, 129);
+    const auto n = static_cast<std::size_t>(lut.size);
+    std::vector<double> axis(n);
+    for (std::size_t i = 0; i < n; ++i)
+        axis[i] = static_cast<double>(i) / static_cast<double>(n - 1);
+
+    const ReferenceEngine engine(table_pipeline(request));
+    const std::size_t count = one ? n : n * n * n;
+    std::array<std::vector<double>, 3> plane;
+    for (auto& p : plane)
+        p.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        plane[0][i] = axis[one ? i : i % n];
+        plane[1][i] = axis[one ? i : i / n % n];
+        plane[2][i] = axis[one ? i : i / (n * n)];
+    }
+    const std::array<double*, 3> out = {plane[0].data(), plane[1].data(), plane[2].data()};
+    engine.run({out[0], out[1], out[2]}, out, count);
+    lut.values.reserve(count * static_cast<std::size_t>(lut.channels));
+    for (std::size_t i = 0; i < count; ++i) {
+        for (std::size_t c = 0; c < static_cast<std::size_t>(lut.channels); ++c) {
+            lut.values.push_back(static_cast<float>(plane[c][i]));
+        }
+    }
+    return lut;
+}
+
+}  // namespace tonewright

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <OpenColorIO/OpenColorIO.h>
+
+#include <cstddef>
+#include <memory>
+#include <string>
+
+namespace tonewright {
+
+namespace OCIO = OCIO_NAMESPACE;
+
+/// Runs OCIO's GPU path, without a window: the GLSL 4.0 and the textures that OCIO gives to an
+/// application, drawn by OpenGL (reached through EGL) from float texels into float texels.
+///
+/// A software rasteriser will do, and is the more exact one: texture units of real GPUs filter 1D
+/// LUTs with 8-bit weights, Mesa's llvmpipe with float weights.
+///
+/// All objects of a process share one OpenGL context; any thread may use any of them, one at a
+/// time. What the calling thread has current in EGL is the same after each call as before.
+class OcioGpu {
+  public:
+    /// Compiles the shader and uploads the LUTs.
+    ///
+    /// @throws Error  "gpu: <what>" when there is no context (see unavailable_reason()), OCIO has
+    ///                no shader, the shader does not compile (with the first line of its log), or
+    ///                the processor has dynamic properties.
+    explicit OcioGpu(const OCIO::ConstProcessorRcPtr& processor,
+                     OCIO::OptimizationFlags flags = OCIO::OPTIMIZATION_DEFAULT);
+    OcioGpu(OcioGpu&&) noexcept;
+    OcioGpu& operator=(OcioGpu&&) noexcept;
+    ~OcioGpu();
+
+    /// Interleaved RGB float, any count; alpha is 1. `out` may be `in`. GLSL leaves open what NaN
+    /// becomes and whether subnormal numbers count as 0; infinities are handed on.
+    /// @throws Error  when the driver fails, with `out` written in part.
+    void run_rgb(const float* in, float* out, std::size_t pixel_count) const;
+
+    /// Empty when a context can be made (on a GPU or a software rasteriser); else why not. The
+    /// first call tries, later ones remember.
+    [[nodiscard]] static std::string unavailable_reason();
+
+    /// What draws: the driver's GL_RENDERER, as "llvmpipe (LLVM 15.0.6, 256 bits)"; empty when
+    /// nothing does.
+    [[nodiscard]] static std::string renderer();
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace tonewright

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <OpenColorIO/OpenColorIO.h>
+
+#include <string>
+
+#include "tonewright/pipeline.h"
+
+namespace tonewright {
+
+namespace OCIO = OCIO_NAMESPACE;
+
+/// A pipeline as OpenColorIO transforms.
+struct Lowered {
+    OCIO::GroupTransformRcPtr transform;
+    /// False when a part had to be sampled into a 3D cube; otherwise only float32 rounding and the
+    /// linear interpolation between neighbouring half floats separate it from the reference.
+    bool is_exact = true;
+    /// What was emitted, for reports: "matrix, range, half LUT, range".
+    std::string summary;
+};
+
+struct LowerOptions {
+    int cube_edge = 65;
+};
+
+/// Lowers stage by stage, asking each stage what it is (DESIGN of the project, "Lowering to OCIO"):
+///
+/// matrix -> MatrixTransform; clamp -> RangeTransform, never baked into a table; every run of
+/// neighbouring curves -> one half-domain 1D LUT of 65536 entries, stored unclamped; a tone scale
+/// -> a matrix to (R/2, L, B), xyY (or HSV for the largest channel), a half LUT on the norm, and
+/// back; true cross-talk -> a shaper with a linear toe, a tetrahedral cube of unclipped smooth
+/// output, and the decoding. Native log, power and sRGB operations are not used: OCIO builds with
+/// SSE evaluate them with 15 bits, and OCIO's sRGB is 1e-5 off IEC 61966-2-1.
+///
+/// @throws Error  when a stage has no lowering.
+[[nodiscard]] Lowered lower_to_ocio(const Pipeline& pipeline, const LowerOptions& options = {});
+
+/// Runs OCIO's CPU path.
+class OcioCpu {
+  public:
+    OcioCpu(const OCIO::ConstProcessorRcPtr& processor,
+            OCIO::OptimizationFlags flags = OCIO::OPTIMIZATION_DEFAULT);
+    /// Interleaved RGB float.
+    void run_rgb(const float* in, float* out, std::size_t pixel_count) const;
+
+  private:
+    OCIO::ConstCPUProcessorRcPtr cpu_;
+};
+
+/// A processor for a lowered pipeline, from a config without caches: OCIO's processor cache tells
+/// in-memory LUTs apart by size alone.
+[[nodiscard]] OCIO::ConstProcessorRcPtr make_processor(const Lowered& lowered);
+
+}  // namespace tonewright

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Gran Turismo, Hajime Uchimura 2017: three joined parts, toe, straight line, shoulder.
+//
+// Source    H. Uchimura, "HDR Theory and Practice", CEDEC 2017, slides 130-150.
+// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, inf), negatives: clamped
+// at 0
+//           (the toe's power has no value there).
+// Out       display-linear RGB, 1.0 = paper white; range [b, P].
+// Kind      per channel; monotone on the neutral axis: yes.
+// Keeps     f(0) = b; straight line of slope a through (m, m).
+// Differs   nowhere: the unused helpers L0, L1 of most ports are left out, and the shoulder is
+//           evaluated from its own start on, which it has weight 0 before.
+// Check     mid grey 0.18 -> 0.178994806 (python_check/operators.py).
+#include "operators/family.h"
+
+namespace tonewright {
+
+std::vector<Operator> define_uchimura() {
+    Operator op;
+    op.id = "uchimura";
+    op.title = "Gran Turismo (Uchimura 2017)";
+    op.view = "Gran Turismo";
+    op.character = "mid tones untouched, short toe and exponential shoulder; clean and bright";
+    op.source = "H. Uchimura, HDR Theory and Practice, CEDEC 2017";
+    op.licence = "published formula";
+    op.negatives = kNegativesClampAtZero;
+    // Slope 0 and the ends of m and l make the formula divide by 0: the intervals stop short of
+    // them.
+    op.parameters = {
+        number_parameter("max_brightness", "display-linear", 1, 1, 100,
+                         "P: display peak over paper white"),
+        number_parameter("contrast", "", 1, 0.01, 5, "a: slope of the straight part"),
+        number_parameter("linear_start", "scene-linear", 0.22, 0.01, 0.99,
+                         "m: where the straight part starts"),
+        number_parameter("linear_length", "", 0.4, 0.01, 0.99, "l: length of the straight part"),
+        number_parameter("black_tightness", "", 1.33, 1, 3, "c: power of the toe"),
+        number_parameter("pedestal", "display-linear", 0, 0, 1, "b: light at black"),
+    };
+    op.warnings = {"with max_brightness above 1 an SDR display clips at paper white"};
+    op.build = [](const Params& params) -> Pipeline {
+        const double P = params.number("max_brightness");
+        const double a = params.number("contrast");
+        const double m = params.number("linear_start");
+        const double l = params.number("linear_length");
+        const double c = params.number("black_tightness");
+        const double b = params.number("pedestal");
+
+        const double l0 = (P - m) * l / a;
+        const double S0 = m + l0;
+        const double S1 = m + a * l0;
+        const double C2 = a * P / (P - S1);
+
+        const Expr x = Expr::input();
+        const Expr w0 = 1 - smoothstep(0, m, x);
+        const Expr w2 = less_equal(S0, x);  // step(S0, x)
+        const Expr w1 = 1 - w0 - w2;
+        const Expr toe = m * pow(x / m, c) + b;
+        const Expr line = m + a * (x - m);
+        const Expr shoulder = P - (P - S1) * exp(-(C2 * (max(x, S0) - S0) / P));
+        return {limit_to_positive(), curve_stage(toe * w0 + line * w1 + shoulder * w2)};
+    };
+    return {op};
+}
+
+}  // namespace tonewright

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "tonewright/view.h"
+
+namespace tonewright {
+namespace {
+
+bool equal_ignoring_case(std::string_view a, std::string_view b) {
+    const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; };
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [&](char x, char y) { return lower(x) == lower(y); });
+}
+
+template <class Item>
+const Item& find_named(const std::vector<Item>& items, std::string_view name, const char* what,
+                       const std::vector<std::string>& extra) {
+    std::vector<std::string> all;
+    std::vector<std::string> ids;
+    for (const Item& item : items) {
+        ids.push_back(item.id);
+        all.push_back(item.id);
+        all.push_back(item.title);
+        all.insert(all.end(), item.aliases.begin(), item.aliases.end());
+        if (equal_ignoring_case(item.id, name) || equal_ignoring_case(item.title, name))
+            return item;
+        for (const std::string& alias : item.aliases) {
+            if (equal_ignoring_case(alias, name)) return item;
+        }
+    }
+    ids.insert(ids.end(), extra.begin(), extra.end());
+    throw Error(std::string(what) + " is " + std::string(name) + "; expected " + join_choices(ids) +
+                did_you_mean(name, all));
+}
+
+Display make_display(std::string id, std::string title, std::vector<std::string> aliases,
+                     const Primaries& primaries, Expr encode, Expr decode, std::string source) {
+    return {std::move(id), std::move(title), std::move(aliases), primaries,
+            encode,        decode,           std::move(source)};
+}
+
+}  // namespace
+
+const std::vector<InputSpace>& all_input_spaces() {
+    // Aliases: what Blender 3 and 4, OIIO, the ACES configs and the interop forum call the same
+    // space.
+    static const std::vector<InputSpace> spaces = {
+        {"lin_rec709",
+         "Linear Rec.709 (sRGB)",
+         {"Linear Rec.709", "Linear", "lin_rec709_srgb", "lin_srgb", "lin_rec709_scene",
+          "Utility - Linear - sRGB"},
+         kRec709},
+        {"lin_ap1", "ACEScg", {"lin_ap1_scene", "ACES - ACEScg"}, kAP1},
+        {"lin_ap0",
+         "ACES2065-1",
+         {"aces2065_1", "lin_ap0_scene", "ACES - ACES2065-1", "Linear ACES"},
+         kAP0},
+        {"lin_rec2020",
+         "Linear Rec.2020",
+         {"lin_rec2020_scene", "Utility - Linear - Rec.2020"},
+         kRec2020},
+        {"lin_p3d65",
+         "Linear P3-D65",
+         {"lin_p3d65_scene", "lin_displayp3", "Utility - Linear - P3-D65"},
+         kP3D65},
+        {"lin_egamut", "Linear FilmLight E-Gamut", {"Linear E-Gamut"}, kEGamut},
+    };
+    return spaces;
+}
+
+const std::vector<Display>& all_displays() {
+    static const Expr x = Expr::input(0);
+    static const std::vector<Display> displays = {
+        make_display("srgb", "sRGB", {"srgb_display", "srgb_rec709_display"}, kRec709,
+                     srgb_encode(x), srgb_decode(x), "IEC 61966-2-1:1999"),
+        make_display("display_p3", "Display P3", {"displayp3_display", "srgb_p3d65_display"},
+                     kP3D65, srgb_encode(x), srgb_decode(x),
+                     "SMPTE EG 432-1 primaries, D65, IEC 61966-2-1:1999 curve"),
+        make_display("rec1886", "Rec.1886", {"rec1886_rec709_display", "g24_rec709_display"},
+                     kRec709, bt1886_encode(x), bt1886_decode(x),
+                     "ITU-R BT.1886 (black 0), BT.709-6"),
+        make_display("rec2020", "Rec.2020", {"rec1886_rec2020_display", "g24_rec2020_display"},
+                     kRec2020, bt1886_encode(x), bt1886_decode(x),
+                     "ITU-R BT.1886 (black 0), BT.2020-2"),
+        make_display("g22", "Gamma 2.2", {"g22_rec709_display"}, kRec709, power_encode(x, 2.2),
+                     power_decode(x, 2.2), "2.2 power, BT.709-6 primaries"),
+    };
+    return displays;
+}
+
+const InputSpace& find_input_space(std::string_view name) {
+    return find_named(all_input_spaces(), name, "input space", {});
+}
+
+const Display& find_display(std::string_view name) {
+    return find_named(all_displays(), name, "display",
+                      {std::string(kLinearOutput), std::string(kNativeOutput)});
+}
+
+}  // namespace tonewright

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
+#include "tonewright/pipeline.h"
+
+namespace tonewright {
+namespace {
+
+template <class... F>
+struct Overloaded : F... {
+    using F::operator()...;
+};
+template <class... F>
+Overloaded(F...) -> Overloaded<F...>;
+
+const Expr& input0() {
+    static const Expr x = Expr::input(0);
+    return x;
+}
+
+std::string to_text(const Matrix3& m) {
+    std::string s;
+    for (const auto& row : m) {
+        s += (s.empty() ? "[" : " | ") + shortest(row[0]) + " " + shortest(row[1]) + " " +
+             shortest(row[2]);
+    }
+    return s + "]";
+}
+
+}  // namespace
+
+MatrixStage exposure_stage(double stops) { return {scale(kIdentity3, std::exp2(stops))}; }
+CurveStage curve_stage(const Expr& f) { return {{f, f, f}, std::nullopt}; }
+CurveStage curve_stage(const Expr& f, const Expr& inverse) {
+    return {{f, f, f}, std::array{inverse, inverse, inverse}};
+}
+
+std::string_view stage_kind(const Stage& stage) {
+    return std::visit(Overloaded{[](const MatrixStage&) { return "matrix"; },
+                                 [](const CurveStage&) { return "curve"; },
+                                 [](const ToneScaleStage&) { return "tone scale"; },
+                                 [](const ClampStage&) { return "clamp"; },
+                                 [](const Map3Stage&) { return "map3"; }},
+                      stage);
+}
+
+bool is_identity(const Stage& stage) {
+    return std::visit(
+        Overloaded{[](const MatrixStage& s) { return s.m == kIdentity3; },
+                   [](const CurveStage& s) { return s.is_uniform() && same(s.f[0], input0()); },
+                   [](const ToneScaleStage& s) { return same(s.f, input0()); },
+                   [](const ClampStage& s) { return s.lo == -kInfinity && s.hi == kInfinity; },
+                   [](const Map3Stage& s) {
+                       return same(s.f[0], Expr::input(0)) && same(s.f[1], Expr::input(1)) &&
+                              same(s.f[2], Expr::input(2));
+                   }},
+        stage);
+}
+
+bool mixes_channels(const Stage& stage) {
+    if (is_identity(stage)) return false;
+    return std::visit(
+        Overloaded{[](const MatrixStage& s) {
+                       for (std::size_t i = 0; i < 3; ++i) {
+                           for (std::size_t j = 0; j < 3; ++j) {
+                               if (i != j && s.m[i][j] != 0) return true;
+                           }
+                       }
+                       return false;
+                   },
+                   [](const CurveStage&) { return false; },
+                   [](const ToneScaleStage&) { return true; },
+                   [](const ClampStage&) { return false; }, [](const Map3Stage&) { return true; }},
+        stage);
+}
+
+bool is_per_channel(const Pipeline& pipeline) {
+    const std::array<Expr, 3> rgb = compose(simplify(pipeline));
+    const Expr x = Expr::input(0);
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) {
+            if (i != j && depends_on(rgb[static_cast<std::size_t>(i)], j)) return false;
+        }
+    }
+    const std::array<Expr, 3> all_first = {x, x, x};
+    return same(substitute(rgb[1], all_first), rgb[0]) &&
+           same(substitute(rgb[2], all_first), rgb[0]);
+}
+
+std::array<Expr, 3> apply_stage(const Stage& stage, const std::array<Expr, 3>& rgb) {
+    return std::visit(
+        Overloaded{[&](const MatrixStage& s) {
+                       std::array<Expr, 3> out = rgb;
+                       for (std::size_t i = 0; i < 3; ++i) {
+                           out[i] = s.m[i][0] * rgb[0] + s.m[i][1] * rgb[1] + s.m[i][2] * rgb[2];
+                       }
+                       return out;
+                   },
+                   [&](const CurveStage& s) {
+                       std::array<Expr, 3> out = rgb;
+                       for (std::size_t i = 0; i < 3; ++i)
+                           out[i] = substitute(s.f[i], std::span(&rgb[i], 1));
+                       return out;
+                   },
+                   [&](const ToneScaleStage& s) {
+                       const Expr n = s.norm == ToneScaleStage::Norm::max_rgb
+                                          ? max(max(rgb[0], rgb[1]), rgb[2])
+                                          : s.weights[0] * rgb[0] + s.weights[1] * rgb[1] +
+                                                s.weights[2] * rgb[2];
+                       // At n = 0 the ratio has a limit, but every channel that it would scale is
+                       // 0.
+                       const Expr ratio =
+                           select(less(0, n), substitute(s.f, std::span(&n, 1)) / n, 0);
+                       return std::array<Expr, 3>{rgb[0] * ratio, rgb[1] * ratio, rgb[2] * ratio};
+                   },
+                   [&](const ClampStage& s) {
+                       std::array<Expr, 3> out = rgb;
+                       for (Expr& x : out) {
+                           if (s.lo != -kInfinity) x = max(x, s.lo);
+                           if (s.hi != kInfinity) x = min(x, s.hi);
+                       }
+                       return out;
+                   },
+                   [&](const Map3Stage& s) {
+                       return std::array<Expr, 3>{substitute(s.f[0], rgb), substitute(s.f[1], rgb),
+                                                  substitute(s.f[2], rgb)};
+                   }},
+        stage);
+}
+
+std::array<Expr, 3> compose(const Pipeline& pipeline) {
+    std::array<Expr, 3> rgb = {Expr::input(0), Expr::input(1), Expr::input(2)};
+    for (const Stage& stage : pipeline)
+        rgb = apply_stage(stage, rgb);
+    return rgb;
+}
+
+Pipeline simplify(const Pipeline& pipeline) {
+    Pipeline out;
+    for (const Stage& stage : pipeline) {
+        if (is_identity(stage)) continue;
+        const auto* matrix = std::get_if<MatrixStage>(&stage);
+        auto* before = out.empty() ? nullptr : std::get_if<MatrixStage>(&out.back());
+        if (matrix && before) {
+            before->m = multiply(matrix->m, before->m);
+            if (is_identity(out.back())) out.pop_back();
+            continue;
+        }
+        out.push_back(stage);
+    }
+    return out;
+}
+
+std::string to_string(const Pipeline& pipeline) {
+    std::string s;
+    for (const Stage& stage : pipeline) {
+        s += std::string(stage_kind(stage)) + ": ";
+        s += std::visit(Overloaded{[](const MatrixStage& m) { return to_text(m.m); },
+                                   [](const CurveStage& c) {
+                                       if (c.is_uniform()) return to_string(c.f[0]);
+                                       return to_string(c.f[0]) + " | " + to_string(c.f[1]) +
+                                              " | " + to_string(c.f[2]);
+                                   },
+                                   [](const ToneScaleStage& t) {
+                                       return std::string(t.norm == ToneScaleStage::Norm::max_rgb
+                                                              ? "of max(r, g, b): "
+                                                              : "of luminance: ") +
+                                              to_string(t.f);
+                                   },
+                                   [](const ClampStage& c) {
+                                       return "[" + shortest(c.lo) + ", " + shortest(c.hi) + "]";
+                                   },
+                                   [](const Map3Stage& m) {
+                                       return to_string(m.f[0]) + " | " + to_string(m.f[1]) +
+                                              " | " + to_string(m.f[2]);
+                                   }},
+                        stage);
+        s += "\n";
+    }
+    return s;
+}
+
+}  // namespace tonewright

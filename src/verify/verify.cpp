@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tonewright/verify.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <optional>
+
+#include "engine/error_metric.h"
+#include "engine/probe.h"
+#include "ocio/gpu.h"
+#include "ocio/lower.h"
+#include "tonewright/engine.h"
+#include "tonewright/ocio.h"
+
+namespace tonewright {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A config in a folder of its own, gone with the object.
+class TemporaryConfig {
+  public:
+    TemporaryConfig() {
+        std::string pattern = (fs::temp_directory_path() / "tonewright-XXXXXX").string();
+        if (!::mkdtemp(pattern.data()))
+            throw FileError("write: " + pattern + ": cannot make a folder");
+        folder_ = pattern;
+        write_generated_files(folder_, make_config(), "config.ocio");
+    }
+    ~TemporaryConfig() {
+        std::error_code ignored;
+        fs::remove_all(folder_, ignored);
+    }
+    TemporaryConfig(const TemporaryConfig&) = delete;
+    TemporaryConfig& operator=(const TemporaryConfig&) = delete;
+    [[nodiscard]] const std::string& folder() const { return folder_; }
+
+  private:
+    std::string folder_;
+};
+
+OCIO::ConstConfigRcPtr read_config(const std::string& folder) {
+    const std::string path = folder + "/config.ocio";
+    try {
+        OCIO::ConfigRcPtr config = OCIO::Config::CreateFromFile(path.c_str())->createEditableCopy();
+        config->setProcessorCacheFlags(OCIO::PROCESSOR_CACHE_OFF);
+        return config;
+    } catch (const OCIO::Exception& e) {
+        throw FileError("read: " + path + ": " + e.what());
+    }
+}
+
+bool has_negative_coefficient(const Matrix3& m) {
+    for (const auto& row : m) {
+        for (const double x : row) {
+            if (x < 0) return true;
+        }
+    }
+    return false;
+}
+
+/// What the structure of a chain allows (DESIGN of the project, section 4), for display code
+/// values.
+struct Bounds {
+    double cpu = 3e-7;
+    double gpu = 1e-6;
+    bool is_mixed_metric = false;
+};
+
+Bounds bounds_of(const Pipeline& pipeline) {
+    Bounds b;
+    for (const Stage& stage : simplify(pipeline)) {
+        if (const auto* m = std::get_if<MatrixStage>(&stage); m && has_negative_coefficient(m->m)) {
+            b.is_mixed_metric = true;
+        }
+        if (const auto* t = std::get_if<ToneScaleStage>(&stage)) {
+            // xyY and HSV subtract numbers as large as the brightest channel, so float32 leaves an
+            // error in proportion to what the curve grows to before the display's clamp.
+            const double largest = std::max(1.0, evaluate(t->f, 4096.0));
+            b.cpu = std::max(b.cpu, 2e-5 * largest);
+            b.gpu = std::max(b.gpu, 5e-5 * largest);
+        }
+        if (std::holds_alternative<Map3Stage>(stage)) {
+            b.cpu = std::max(b.cpu, 1.0 / 1023);  // 65^3 cube: one code of 10 bits
+            b.gpu = std::max(b.gpu, 1.0 / 1023);
+        }
+    }
+    return b;
+}
+
+class Comparison {
+  public:
+    Comparison(const View& view, const ProbeSet& probes)
+        : probes_(probes), truth_(probes.rgb.size()) {
+        const Pipeline whole = build_view(view);
+        ReferenceEngine(whole).run_rgb(probes.rgb.data(), truth_.data(), probes.size());
+        for (std::size_t i = 0; i < whole.size(); ++i) {
+            const auto* m = std::get_if<MatrixStage>(&whole[i]);
+            if (i > 0 && !(m && has_negative_coefficient(m->m))) continue;
+            const auto at = whole.begin() + static_cast<std::ptrdiff_t>(i);
+            rounding_points_.push_back(
+                {ReferenceEngine({whole.begin(), at}), ReferenceEngine({at, whole.end()})});
+        }
+    }
+
+    /// @param unit  relative rounding of the form, see ParityRow::max_beyond_rounding
+    void measure(const std::vector<float>& shown, double unit, ParityRow& row) const {
+        std::vector<double> errors;
+        errors.reserve(probes_.size());
+        std::size_t worst = 0;
+        for (std::size_t i = 0; i < probes_.size(); ++i) {
+            const float* v = &shown[3 * i];
+            for (std::size_t c = 0; c < 3; ++c) {
+                // A clamp in float32 can be off by a rounding of the encoding's constants.
+                row.is_total = row.is_total && v[c] >= -1e-6F && v[c] <= 1 + 1e-6F;
+            }
+            if (probes_.kind[i] == ProbeKind::special) continue;
+            const double error = channel_error(&truth_[3 * i], v);
+            if (probes_.is_non_negative(i)) errors.push_back(error);
+            if (!(error <= row.max_all)) {
+                row.max_all = error;
+                worst = i;
+            }
+            if (error <= row.bound) continue;
+            const double beyond = beyond_rounding(i, v, unit);
+            if (!(beyond <= row.max_beyond_rounding)) row.max_beyond_rounding = beyond;
+        }
+        const ErrorStats stats = summarise(errors);
+        row.max = stats.max;
+        row.p999 = stats.p999;
+        row.mean = stats.mean;
+        row.is_ok = row.is_total && row.max_beyond_rounding <= row.bound &&
+                    (row.is_mixed_metric || row.max <= row.bound);
+        if (!row.is_ok) {
+            row.note = fmt::format("worst at {:.9g} {:.9g} {:.9g}", probes_.rgb[3 * worst],
+                                   probes_.rgb[3 * worst + 1], probes_.rgb[3 * worst + 2]);
+        }
+    }
+
+  private:
+    [[nodiscard]] double beyond_rounding(std::size_t i, const float* shown, double unit) const {
+        const Vector3 in = {static_cast<double>(probes_.rgb[3 * i]),
+                            static_cast<double>(probes_.rgb[3 * i + 1]),
+                            static_cast<double>(probes_.rgb[3 * i + 2])};
+        Vector3 allowance{};
+        for (const auto& [before, after] : rounding_points_) {
+            const Vector3 entering = before(in);
+            for (std::size_t j = 0; j < 3; ++j) {
+                Vector3 moved{};
+                for (const double sign : {-1.0, 1.0}) {
+                    Vector3 v = entering;
+                    v[j] *= 1 + sign * unit;
+                    const Vector3 out = after(v);
+                    for (std::size_t c = 0; c < 3; ++c) {
+                        moved[c] = std::max(moved[c], std::fabs(out[c] - truth_[3 * i + c]));
+                    }
+                }
+                for (std::size_t c = 0; c < 3; ++c)
+                    allowance[c] += moved[c];
+            }
+        }
+        double worst = 0;
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double error = std::fabs(static_cast<double>(shown[c]) - truth_[3 * i + c]);
+            const double beyond = error - allowance[c];
+            if (!(beyond <= worst)) worst = beyond;  // NaN is taken
+        }
+        return worst;
+    }
+
+    /// The chain cut in two where a float32 form rounds and a cancelling matrix follows.
+    struct RoundingPoint {
+        ReferenceEngine before;
+        ReferenceEngine after;
+    };
+    const ProbeSet& probes_;
+    std::vector<double> truth_;
+    std::vector<RoundingPoint> rounding_points_;
+};
+
+bool is_in_config(const ResolvedOperator& op) { return op.label == op.op->id; }
+
+}  // namespace
+
+std::vector<OperatorVariant> all_variants() {
+    std::vector<OperatorVariant> all;
+    for (const Operator& op : all_operators()) {
+        all.push_back({op.id, ""});
+        for (const Preset& preset : op.presets)
+            all.push_back({op.id + ":" + preset.id, ""});
+        for (const Look& look : op.looks)
+            all.push_back({op.id, look.id});
+    }
+    return all;
+}
+
+std::vector<ParityRow> verify(const VerifyOptions& options,
+                              const std::function<void(const ParityRow&)>& on_row) {
+    std::vector<OperatorVariant> variants;
+    if (options.operators.empty()) variants = all_variants();
+    for (const std::string& name : options.operators)
+        variants.push_back({name, ""});
+    const InputSpace& input = find_input_space(options.input);
+    std::vector<View> views;
+    for (const OperatorVariant& v : variants) {
+        for (const std::string& display : options.displays) {
+            views.push_back(make_view(resolve_operator(v.name, {}, v.look), input.id, 0,
+                                      find_display(display).id));
+        }
+    }
+
+    ProbeSet probes = make_probes(input, {options.lattice_edge, 100000});
+    for (std::size_t i = 0; i + 2 < options.picture.size(); i += 3) {
+        probes.add(static_cast<double>(options.picture[i]),
+                   static_cast<double>(options.picture[i + 1]),
+                   static_cast<double>(options.picture[i + 2]), ProbeKind::picture);
+    }
+    std::optional<TemporaryConfig> fresh;
+    if (options.config_folder.empty()) fresh.emplace();
+    const OCIO::ConstConfigRcPtr config =
+        read_config(fresh ? fresh->folder() : options.config_folder);
+
+    std::vector<ParityRow> rows;
+    std::vector<float> shown(probes.rgb.size());
+    for (const View& view : views) {
+        const Pipeline pipeline = build_view(view);
+        const Comparison comparison(view, probes);
+        const Bounds bounds = bounds_of(pipeline);
+        const auto add = [&](const std::string& form, double bound, bool mixed,
+                             const std::string& lowering, const auto& run) {
+            ParityRow row;
+            row.op = view.op.label;
+            row.display = view.display;
+            row.form = form;
+            row.lowering = lowering;
+            row.bound = bound;
+            row.is_mixed_metric = mixed;
+            run();
+            comparison.measure(shown, form == "ocio gpu" ? 0x1p-21 : 0x1p-23, row);
+            rows.push_back(row);
+            if (on_row) on_row(rows.back());
+        };
+
+        const SimdEngine simd(pipeline);
+        for (const std::string& target : SimdEngine::targets()) {
+            SimdEngine::use_target(target);
+            add("simd " + target, 1e-6, false, "",
+                [&] { simd.run_rgb(probes.rgb.data(), shown.data(), probes.size()); });
+        }
+        SimdEngine::use_target("");
+
+        OCIO::ConstProcessorRcPtr processor;
+        const Lowered lowered = lower_to_ocio(pipeline);
+        std::string lowering = lowered.summary;
+        try {
+            if (is_in_config(view.op)) {
+                processor = config->getProcessor(
+                    config_space_name(view.input).c_str(), find_display(view.display).title.c_str(),
+                    view.op.op->view.c_str(), OCIO::TRANSFORM_DIR_FORWARD);
+                lowering = "config: " + lowering;
+            } else {
+                processor = make_processor(lowered);
+                lowering = "chain: " + lowering;
+            }
+        } catch (const OCIO::Exception& e) {
+            throw Error("verify: " + view.op.label + ": " + e.what());
+        }
+        const auto cpu = [&](OCIO::OptimizationFlags flags) {
+            OcioCpu(processor, flags).run_rgb(probes.rgb.data(), shown.data(), probes.size());
+        };
+        add("ocio cpu lossless", bounds.cpu, bounds.is_mixed_metric, lowering,
+            [&] { cpu(OCIO::OPTIMIZATION_LOSSLESS); });
+        add("ocio cpu default", bounds.cpu, bounds.is_mixed_metric, lowering,
+            [&] { cpu(OCIO::OPTIMIZATION_DEFAULT); });
+        if (!options.with_gpu) continue;
+        if (const std::string reason = OcioGpu::unavailable_reason(); !reason.empty()) {
+            ParityRow row;
+            row.op = view.op.label;
+            row.display = view.display;
+            row.form = "ocio gpu";
+            row.note = "skipped: " + reason;
+            rows.push_back(row);
+            if (on_row) on_row(rows.back());
+            continue;
+        }
+        const OcioGpu gpu(processor);
+        add("ocio gpu", bounds.gpu, bounds.is_mixed_metric, lowering,
+            [&] { gpu.run_rgb(probes.rgb.data(), shown.data(), probes.size()); });
+    }
+    return rows;
+}
+
+std::string parity_heading() {
+    return fmt::format("{:<28} {:<10} {:<18} {:>8} {:>8} {:>8} {:>8} {:>10} {:>8}\n", "operator",
+                       "display", "form", "max", "99.9 %", "mean", "max all", "beyond f32",
+                       "bound");
+}
+
+std::string format_row(const ParityRow& row) {
+    if (row.bound == 0) {
+        return fmt::format("{:<28} {:<10} {:<18} {}\n", row.op, row.display, row.form, row.note);
+    }
+    return fmt::format(
+        "{:<28} {:<10} {:<18} {:>8.1e} {:>8.1e} {:>8.1e} {:>8.1e} {:>10} {:>8.1e}  {}{}\n", row.op,
+        row.display, row.form, row.max, row.p999, row.mean, row.max_all,
+        row.max_all <= row.bound ? "-" : fmt::format("{:.1e}", row.max_beyond_rounding), row.bound,
+        row.is_ok ? "ok" : "FAILED", row.note.empty() ? "" : ", " + row.note);
+}
+
+}  // namespace tonewright

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tonewright/color.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tonewright/error.h"
+
+namespace tonewright {
+namespace {
+
+void expect_matrix(const Matrix3& actual, const Matrix3& expected, double tolerance) {
+    for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t j = 0; j < 3; ++j) {
+            EXPECT_NEAR(actual[i][j], expected[i][j], tolerance) << "row " << i << ", column " << j;
+        }
+    }
+}
+
+// Golden values computed independently in double from the chromaticities of the standards (15
+// decimals printed): half a unit of the last place is 5e-16, 1e-12 leaves room for the order of
+// sums.
+constexpr double kGolden = 1e-12;
+
+TEST(Color, MatricesFromChromaticities) {
+    expect_matrix(rgb_to_rgb(kRec709, kRec2020),
+                  {{{0.627403895934699, 0.329283038377884, 0.043313065687417},
+                    {0.069097289358232, 0.919540395075459, 0.011362315566309},
+                    {0.016391438875150, 0.088013307877226, 0.895595253247625}}},
+                  kGolden);
+    expect_matrix(rgb_to_rgb(kRec2020, kRec709),
+                  {{{1.660491002108434, -0.587641138788549, -0.072849863319885},
+                    {-0.124550474521591, 1.132899897125959, -0.008349422604369},
+                    {-0.018150763354905, -0.100578898008007, 1.118729661362911}}},
+                  kGolden);
+    expect_matrix(rgb_to_rgb(kRec709, kAP1),
+                  {{{0.613097402401187, 0.339523146184106, 0.047379451414707},
+                    {0.070193722469582, 0.916353879057345, 0.013452398473074},
+                    {0.020615592882227, 0.109569772938136, 0.869814634179638}}},
+                  kGolden);
+    expect_matrix(rgb_to_rgb(kAP1, kRec709),
+                  {{{1.705050992657984, -0.621792120657006, -0.083258872000978},
+                    {-0.130256417507043, 1.140804736575401, -0.010548319068358},
+                    {-0.024003356804618, -0.128968976064971, 1.152972332869588}}},
+                  kGolden);
+    expect_matrix(rgb_to_rgb(kRec709, kAP0),
+                  {{{0.439632981919491, 0.382988698151554, 0.177378319928955},
+                    {0.089776442958842, 0.813439428748981, 0.096784128292177},
+                    {0.017541170383173, 0.111546553302387, 0.870912276314441}}},
+                  kGolden);
+    expect_matrix(rgb_to_rgb(kAP0, kAP1),
+                  {{{1.451439316145666, -0.236510746893740, -0.214928569251925},
+                    {-0.076553773396021, 1.176229699833573, -0.099675926437552},
+                    {0.008316148425698, -0.006032449791021, 0.997716301365324}}},
+                  kGolden);
+    const Matrix3 ap1 = rgb_to_xyz(kAP1);
+    EXPECT_NEAR(ap1[1][0], 0.272228716780914, kGolden);
+    EXPECT_NEAR(ap1[1][1], 0.674081765811148, kGolden);
+    EXPECT_NEAR(ap1[1][2], 0.053689517407937, kGolden);
+}
+
+TEST(Color, EGamutAsFilmLightPrintsIt) {
+    // The white paper's own ten significant digits.
+    expect_matrix(rgb_to_xyz(kEGamut),
+                  {{{0.7053968501, 0.1640413283, 0.08101774865},
+                    {0.2801307241, 0.8202066415, -0.1003373656},
+                    {-0.1037815116, -0.07290725703, 1.265746519}}},
+                  1e-9);
+}
+
+TEST(Color, Rec709LuminanceRow) {
+    const Matrix3 m = rgb_to_xyz(kRec709);
+    EXPECT_NEAR(m[1][0], 0.2126390059, 5e-11);
+    EXPECT_NEAR(m[1][1], 0.7151686788, 5e-11);
+    EXPECT_NEAR(m[1][2], 0.0721923154, 5e-11);
+}
+
+TEST(Color, InverseTimesForwardIsIdentity) {
+    for (const Primaries& p : {kRec709, kRec2020, kP3D65, kAP0, kAP1, kEGamut}) {
+        const Matrix3 m = rgb_to_xyz(p);
+        expect_matrix(multiply(inverse(m), m), kIdentity3, 1e-14);
+        const Vector3 white = multiply(rgb_to_rgb(p, kRec709), Vector3{1, 1, 1});
+        for (const double x : white)
+            EXPECT_NEAR(x, 1, 1e-14) << p.name << ": white stays white";
+    }
+    EXPECT_THROW((void)inverse(Matrix3{}), Error);
+}
+
+double at(const Expr& f, double x) { return evaluate(f, x); }
+const Expr kX = Expr::input();
+
+TEST(Transfer, SrgbIsIec61966) {
+    const Expr e = srgb_encode(kX);
+    EXPECT_EQ(at(e, 0), 0);
+    EXPECT_NEAR(at(e, 0.001), 0.01292, 1e-15);
+    EXPECT_NEAR(at(e, 0.0031308), 0.040449936, 1e-12);
+    EXPECT_NEAR(at(e, 0.0031309), 0.0404511777786, 1e-12);
+    EXPECT_NEAR(at(e, 0.18), 0.4613561295, 1e-10);
+    EXPECT_NEAR(at(e, 0.5), 0.735356983052, 1e-12);
+    EXPECT_NEAR(at(e, 1), 1, 1e-15);
+    EXPECT_NEAR(at(e, -0.01), -0.1292, 1e-15) << "negatives follow the straight part";
+    for (const double x : {-0.2, 0.0, 0.002, 0.02, 0.5, 1.0, 4.0}) {
+        EXPECT_NEAR(at(srgb_decode(e), x), x, 1e-14 * std::max(1.0, x)) << x;
+    }
+}
+
+TEST(Transfer, PqIsSt2084) {
+    const Expr e = pq_encode_nits(kX);
+    EXPECT_NEAR(at(e, 0), 7.30955902578e-07, 1e-17);
+    EXPECT_NEAR(at(e, 0.005), 0.0150763990424, 1e-12);
+    EXPECT_NEAR(at(e, 1), 0.1499457321, 1e-10);
+    EXPECT_NEAR(at(e, 100), 0.508078421517, 1e-12);
+    EXPECT_NEAR(at(e, 203), 0.580688881042, 1e-12);
+    EXPECT_NEAR(at(e, 1000), 0.751827096247, 1e-12);
+    EXPECT_NEAR(at(e, 10000), 1, 1e-12);
+    EXPECT_NEAR(at(e, -100), -0.508078421517, 1e-12);
+    for (const double nits : {0.01, 1.0, 203.0, 9999.0}) {
+        EXPECT_NEAR(at(pq_decode_nits(e), nits), nits, 1e-9 * nits);
+    }
+}
+
+TEST(Transfer, HlgIsBt2100) {
+    const Expr e = hlg_oetf(kX);
+    EXPECT_EQ(at(e, 0), 0);
+    EXPECT_NEAR(at(e, 0.01), 0.173205080757, 1e-12);
+    EXPECT_NEAR(at(e, 1.0 / 12), 0.5, 1e-12);
+    EXPECT_NEAR(at(e, 0.18), 0.672358132128, 1e-12);
+    EXPECT_NEAR(at(e, 0.265), 0.750027752031, 1e-12);
+    EXPECT_NEAR(at(e, 1), 0.999999995066, 1e-12);
+    for (const double x : {-0.3, 0.0, 0.01, 0.08, 0.09, 0.5, 1.0}) {
+        EXPECT_NEAR(at(hlg_inverse_oetf(e), x), x, 1e-14);
+    }
+}
+
+TEST(Transfer, PurePowersClampNegatives) {
+    EXPECT_DOUBLE_EQ(at(bt1886_encode(kX), 0.5), std::pow(0.5, 1 / 2.4));
+    EXPECT_DOUBLE_EQ(at(bt1886_decode(kX), 0.5), std::pow(0.5, 2.4));
+    EXPECT_EQ(at(power_encode(kX, 2.2), -1), 0);
+}
+
+TEST(Transfer, AcescctIsS2016001) {
+    const Expr e = acescct_encode(kX);
+    EXPECT_NEAR(at(e, 0), 0.0729055341958355, 1e-16) << "equation 1, first case";
+    EXPECT_NEAR(at(e, 0.0078125), 0.155251141552511, 1e-14) << "the standard's break";
+    EXPECT_NEAR(at(e, 0.18), 0.413588402492442, 1e-14) << "(log2(0.18) + 9.72) / 17.52";
+    EXPECT_NEAR(at(acescct_decode(kX), 1), 222.86094420380761, 1e-10) << "2^7.8";
+    for (const double x : {-0.005, 0.0, 0.001, 0.0078125, 0.01, 0.18, 100.0}) {
+        EXPECT_NEAR(at(acescct_decode(e), x), x, 1e-13 * std::max(1.0, x));
+    }
+}
+
+}  // namespace
+}  // namespace tonewright

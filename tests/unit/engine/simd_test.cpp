@@ -1,0 +1,520 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// SimdEngine against ReferenceEngine and the C library, for every instruction set that this machine
+// has. Bounds: 2 units in the last place for the elementary functions, 1e-6 of the code value (its
+// contract) for whole views.
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <thread>
+#include <vector>
+
+#include "engine/probe.h"
+#include "tonewright/engine.h"
+#include "tonewright/view.h"
+
+namespace tonewright {
+namespace {
+
+constexpr double kBound = 1e-6;
+
+/// Restores the choice of instruction set.
+class Simd : public ::testing::Test {
+  protected:
+    void TearDown() override { SimdEngine::use_target(""); }
+};
+
+/// "SCALAR" runs some 30 times slower than the others: fewer colours for it.
+std::size_t scaled_count(const std::string& target, std::size_t count) {
+    return target == "SCALAR" ? count / 20 : count;
+}
+
+std::vector<float> run(const SimdEngine& engine, const std::vector<float>& rgb) {
+    std::vector<float> out(rgb.size());
+    engine.run_rgb(rgb.data(), out.data(), rgb.size() / 3);
+    return out;
+}
+
+std::vector<double> run(const ReferenceEngine& engine, const std::vector<float>& rgb) {
+    std::vector<double> out(rgb.size());
+    engine.run_rgb(rgb.data(), out.data(), rgb.size() / 3);
+    return out;
+}
+
+std::vector<float> grey(const std::vector<float>& values) {
+    std::vector<float> rgb;
+    for (const float v : values)
+        rgb.insert(rgb.end(), 3, v);
+    return rgb;
+}
+
+Pipeline view_of(const std::string& op, const std::string& display = "srgb") {
+    return build_view(make_view(resolve_operator(op), "lin_rec709", 0, display));
+}
+
+/// Every operator with its defaults, and with each of its presets.
+std::vector<std::string> all_operator_names() {
+    std::vector<std::string> names;
+    for (const Operator& op : all_operators()) {
+        names.push_back(op.id);
+        for (const Preset& preset : op.presets)
+            names.push_back(op.id + ":" + preset.id);
+    }
+    return names;
+}
+
+// ---------------------------------------------------------------------------------------------
+// Elementary functions
+
+/// Distance in units of the last place of the float nearest to `truth`.
+double ulps(float value, double truth) {
+    if (std::isinf(
+            truth)) {  // Highway's scalar code turns infinity in double into the largest float
+        const bool same =
+            std::fabs(value) >= std::numeric_limits<float>::max() && (value < 0) == (truth < 0);
+        return same ? 0 : kInfinity;
+    }
+    const float nearest = std::fabs(static_cast<float>(truth));
+    const float next = std::nextafter(nearest, std::numeric_limits<float>::infinity());
+    const double ulp = static_cast<double>(next) - static_cast<double>(nearest);
+    return std::fabs(static_cast<double>(value) - truth) / ulp;
+}
+
+struct Function {
+    std::string name;
+    std::function<Expr(const Expr&)> build;
+    std::function<double(double)> truth;
+    double lo,
+        hi;  // the sweep; limited in the expression, too, so that no overflow asks for double
+    double bound = 2;
+};
+
+const std::vector<Function>& functions() {
+    const auto power = [](double y, double lo, double hi, double bound = 2) {
+        return Function{"pow " + shortest(y),
+                        [y](const Expr& x) { return pow(x, y); },
+                        [y](double x) { return std::pow(x, y); },
+                        lo,
+                        hi,
+                        bound};
+    };
+    static const std::vector<Function> all = {
+        {"exp2", [](const Expr& x) { return exp2(x); }, [](double x) { return std::exp2(x); }, -160,
+         126},
+        {"log2", [](const Expr& x) { return log2(x); }, [](double x) { return std::log2(x); }, 0,
+         65504},
+        {"log2 near 1", [](const Expr& x) { return log2(x); },
+         [](double x) { return std::log2(x); }, 0.7, 1.5},
+        {"sqrt", [](const Expr& x) { return sqrt(x); }, [](double x) { return std::sqrt(x); }, 0,
+         65504, 0.5},
+        {"sin", [](const Expr& x) { return sin(x); }, [](double x) { return std::sin(x); }, -1e4,
+         1e4},
+        {"cos", [](const Expr& x) { return cos(x); }, [](double x) { return std::cos(x); }, -1e4,
+         1e4},
+        {"atan2(x, 1)", [](const Expr& x) { return atan2(x, 1); },
+         [](double x) { return std::atan2(x, 1); }, -65504, 65504},
+        {"atan2(1, x)", [](const Expr& x) { return atan2(1, x); },
+         [](double x) { return std::atan2(1, x); }, -65504, 65504},
+        {"atan2(-0.3, x)", [](const Expr& x) { return atan2(-0.3F, x); },
+         [](double x) { return std::atan2(-0.3F, x); }, -2, 2},
+        {"floor", [](const Expr& x) { return floor(x); }, [](double x) { return std::floor(x); },
+         -65504, 65504, 0},
+        power(1 / 2.4, 0, 65504),
+        power(1 / 2.2, 0, 65504),
+        power(0.1593017578125, 0, 65504),
+        power(2.2, 0, 65504),
+        power(2.4, 0, 65504),
+        power(2.6, 0, 65504),
+        power(3.25, 0, 65504),
+        power(-0.7, 1e-30, 65504),
+        power(3.9, 0, 65504),
+        power(78.84375, 0, 2.9),
+        power(2, -65504, 65504),
+        power(3, -65504, 65504),
+        power(5, -1000, 1000, 4),  // three products
+        power(-2, 1e-12, 65504),
+        power(0.5, 0, 65504),
+        power(11, -300, 300),
+        {"1.7^x", [](const Expr& x) { return pow(1.7F, x); },
+         [](double x) { return std::pow(static_cast<double>(1.7F), x); }, -160, 160},
+        {"x^x", [](const Expr& x) { return pow(x, x); }, [](double x) { return std::pow(x, x); }, 0,
+         25},
+        {"x^floor(x/2)", [](const Expr& x) { return pow(x, floor(x * 0.5)); },
+         [](double x) { return std::pow(x, std::floor(x * 0.5)); }, -20, 20},
+    };
+    return all;
+}
+
+/// Steps of equal size, steps of equal ratio down to the denormals, and the ends.
+std::vector<float> sweep(double lo, double hi, std::size_t count) {
+    std::vector<float> x;
+    const auto n = static_cast<double>(count);
+    for (double i = 0; i <= n; ++i)
+        x.push_back(static_cast<float>(lo + (hi - lo) * i / n));
+    for (double i = 0; i <= n; ++i) {
+        const double magnitude = std::exp2(-149 + 165 * i / n);
+        for (const double v : {magnitude, -magnitude}) {
+            if (v >= lo && v <= hi) x.push_back(static_cast<float>(v));
+        }
+    }
+    return x;
+}
+
+TEST_F(Simd, ElementaryFunctionsAreWithinTwoUlp) {
+    for (const std::string& target : SimdEngine::targets()) {
+        SimdEngine::use_target(target);
+        for (const Function& f : functions()) {
+            const std::vector<float> x = sweep(f.lo, f.hi, scaled_count(target, 300000));
+            const Expr argument =
+                clamp(Expr::input(), static_cast<float>(f.lo), static_cast<float>(f.hi));
+            const SimdEngine engine({curve_stage(f.build(argument))});
+            const std::vector<float> out = run(engine, grey(x));
+            double worst = 0;
+            float at = 0;
+            for (std::size_t i = 0; i < x.size(); ++i) {
+                const double error = ulps(out[3 * i], f.truth(static_cast<double>(x[i])));
+                if (!(error <= worst)) {
+                    worst = error;
+                    at = x[i];
+                }
+            }
+            EXPECT_LE(worst, f.bound)
+                << f.name << " on " << target << " at " << shortest(static_cast<double>(at));
+            RecordProperty(target + " " + f.name, shortest(worst));
+        }
+    }
+}
+
+TEST_F(Simd, ElementaryFunctionsInDouble) {
+    // What is left of f(x) 2^30 after its whole part: float shows the digits of f from 2^-30 on,
+    // and the engine has to compute f in double for it.
+    constexpr double kGain = 0x1p30;
+    for (const std::string& target : SimdEngine::targets()) {
+        SimdEngine::use_target(target);
+        for (const Function& f : functions()) {
+            if (f.name == "floor") continue;
+            // Where f is about 1, so that the digits shown are its last ones.
+            const double lo = std::max(f.lo, f.name == "1.7^x" || f.name == "exp2" ? -1.0 : 0.3);
+            const double hi = std::min(f.hi, f.name.starts_with("pow 78") ? 1.0 : 1.9);
+            std::vector<float> x;
+            for (int i = 0; i < 2000; ++i)
+                x.push_back(static_cast<float>(lo + (hi - lo) * i / 2000));
+            const Expr argument =
+                clamp(Expr::input(), static_cast<float>(lo), static_cast<float>(hi));
+            const Expr y = f.build(argument) * kGain;
+            const SimdEngine engine({curve_stage(y - floor(y))});
+            const std::vector<float> out = run(engine, grey(x));
+            double worst = 0;
+            for (std::size_t i = 0; i < x.size(); ++i) {
+                const double truth = f.truth(static_cast<double>(x[i]));
+                const double t = truth * kGain;
+                double error = std::fabs(static_cast<double>(out[3 * i]) - (t - std::floor(t)));
+                error = std::min(error, 1 - error);  // next to a whole number
+                worst = std::max(worst, error / kGain / std::max(1.0, std::fabs(truth)));
+            }
+            // 16 units in the last place of double; float shows the rest to 2^-25.
+            EXPECT_LE(worst, 16 * 0x1p-53 + 0x1p-25 / kGain) << f.name << " on " << target;
+        }
+    }
+}
+
+TEST_F(Simd, OperationsMeanWhatExpressionsMean) {
+    const Expr a = Expr::input(0);
+    const Expr b = Expr::input(1);
+    const auto table =
+        std::make_shared<const Table>(Table{{0.5, -1, 3, 3.25, 7}, Table::Interpolation::linear});
+    const auto steps =
+        std::make_shared<const Table>(Table{{0.5, -1, 3, 3.25, 7}, Table::Interpolation::step});
+    const auto single = std::make_shared<const Table>(Table{{0.25}, Table::Interpolation::linear});
+    const std::vector<Expr> expressions = {
+        a + b,
+        a - b,
+        a * b,
+        a / (abs(b) + 0.5F),
+        min(a, b),
+        max(a, b),
+        -a,
+        abs(a),
+        floor(a * 0.1F),
+        less(a, b),
+        less_equal(a, b),
+        equal(a, b),
+        select(a, b, 3),
+        select(less(a, b), a, b * 0.5F),
+        select(less_equal(a, 0.25F), b, 7),
+        select(equal(a, b), 1, 2),
+        clamp(a, -1, 2),
+        a * 0.5F + b,
+        a * b + 1,
+        a * b - 1,
+        1 - a * b,
+        b - a * 0.25F,
+        (a + 1) * (a + 1),
+        a / 4,
+        a / 3,
+        less(a, b) * 2 + less_equal(b, a),
+        lookup(table, a),
+        lookup(steps, b),
+        lookup(single, a),
+        atan2(a, b),
+        pow(a, 2),
+        pow(a, 3),
+        pow(a, 4) + pow(b, 2),
+        Expr(0.25F),
+        a,
+    };
+    ProbeRandom random(3);
+    std::vector<float> rgb;
+    for (int i = 0; i < 2000; ++i) {
+        const bool whole = i % 3 == 0;  // equal values, zeros of both signs, table nodes
+        const auto draw = [&] {
+            return whole ? static_cast<float>(std::floor(random.uniform(-4, 5))) * 0.25F
+                         : static_cast<float>(random.uniform(-3, 3));
+        };
+        rgb.insert(rgb.end(), {draw(), i % 7 == 0 ? -0.0F : draw(), 0});
+    }
+    for (const std::string& target : SimdEngine::targets()) {
+        SimdEngine::use_target(target);
+        for (const Expr& e : expressions) {
+            const Pipeline pipeline = {Map3Stage{{e, a, b}}};
+            const std::vector<float> out = run(SimdEngine(pipeline), rgb);
+            const std::vector<double> truth = run(ReferenceEngine(pipeline), rgb);
+            for (std::size_t i = 0; i < out.size(); ++i) {
+                const double error = std::fabs(static_cast<double>(out[i]) - truth[i]);
+                ASSERT_LE(error, kBound * std::max(1.0, std::fabs(truth[i])))
+                    << to_string(e) << " on " << target << " of (" << rgb[i / 3 * 3] << ", "
+                    << rgb[i / 3 * 3 + 1] << "): " << out[i] << ", expected " << truth[i];
+            }
+        }
+    }
+}
+
+// ---------------------------------------------------------------------------------------------
+// Operators
+
+class SimdOperator : public ::testing::TestWithParam<std::string> {
+  protected:
+    void TearDown() override { SimdEngine::use_target(""); }
+};
+
+/// The standard probes, and colours of huge mixed signs: what is left of them after a matrix is the
+/// difference of large numbers.
+std::vector<float> test_colours() {
+    ProbeSet set = make_probes(find_input_space("lin_rec709"), {9, 100000});
+    ProbeRandom random(99);
+    set.add(-280, 3000, 0.1, ProbeKind::negative);
+    for (int i = 0; i < 200000; ++i) {
+        Vector3 v;
+        for (double& x : v)
+            x = std::exp2(random.uniform(-18, 16.5)) * (random.bits() % 3 == 0 ? -1 : 1);
+        set.add(v[0], v[1], v[2], ProbeKind::negative);
+    }
+    return set.rgb;
+}
+
+TEST_P(SimdOperator, IsWithinBoundOfReference) {
+    const std::vector<float> rgb = test_colours();
+    for (const std::string display : {"srgb", "rec1886", "display_p3"}) {
+        const Pipeline view = view_of(GetParam(), display);
+        const SimdEngine engine(view);
+        const std::vector<double> truth = run(ReferenceEngine(view), rgb);
+        for (const std::string& target : SimdEngine::targets()) {
+            SimdEngine::use_target(target);
+            const std::vector<float> out = run(engine, rgb);
+            double worst = 0;
+            std::size_t at = 0;
+            for (std::size_t i = 0; i < out.size(); ++i) {
+                const double error = std::fabs(static_cast<double>(out[i]) - truth[i]);
+                if (!(error <= worst)) {
+                    worst = error;
+                    at = i;
+                }
+            }
+            const float* in = rgb.data() + at / 3 * 3;
+            EXPECT_LE(worst, kBound) << display << " on " << target << " of (" << in[0] << ", "
+                                     << in[1] << ", " << in[2] << "): " << out[at] << ", expected "
+                                     << truth[at] << "; " << worst / kBound << " times the bound";
+            RecordProperty(display + " " + target, shortest(worst));
+        }
+    }
+}
+
+TEST_P(SimdOperator, IsTotal) {
+    const SimdEngine engine(view_of(GetParam()));
+    const SimdEngine linear(view_of(GetParam(), "linear"));
+    for (const std::string& target : SimdEngine::targets()) {
+        SimdEngine::use_target(target);
+        ProbeRandom random(17);
+        std::vector<float> rgb(3 * scaled_count(target, 1000000));
+        for (float& x : rgb)
+            x = std::bit_cast<float>(static_cast<std::uint32_t>(random.bits() >> 32));
+        for (const SimdEngine* e : {&engine, &linear}) {
+            const std::vector<float> out = run(*e, rgb);
+            for (std::size_t i = 0; i < out.size(); ++i) {
+                ASSERT_TRUE(std::isfinite(out[i]))
+                    << out[i] << " on " << target << " of (" << rgb[i / 3 * 3] << ", "
+                    << rgb[i / 3 * 3 + 1] << ", " << rgb[i / 3 * 3 + 2] << ")";
+            }
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Operators, SimdOperator, ::testing::ValuesIn(all_operator_names()),
+                         [](const auto& test) {
+                             std::string name = test.param;
+                             for (char& c : name) {
+                                 if (c == ':') c = '_';
+                             }
+                             return name;
+                         });
+
+TEST_F(Simd, MatrixOfMixedSignsBeforeAPowerDisplay) {
+    // The slope of a power display has no bound at black: whatever the float rounding of the
+    // difference is, some colour makes it visible. Such a matrix has to run in double. (With
+    // colours of thousands the reference's own rounding shows.)
+    const Matrix3 m = {{{1.6, -0.53, -0.07}, {-0.1, 1.1, 0.0}, {-0.003, -0.07, 1.073}}};
+    const Pipeline view = {MatrixStage{m}, ClampStage{0, 1},
+                           curve_stage(pow(Expr::input(), 1 / 2.4))};
+    ProbeRandom random(5);
+    std::vector<float> rgb;
+    for (int i = 0; i < 20000; ++i) {
+        const double r = random.uniform(0, 1);
+        const double g = random.uniform(0, 1);
+        const double b = (1.6 * r - 0.53 * g) / 0.07;  // red comes out as the rounding of b
+        rgb.insert(rgb.end(),
+                   {static_cast<float>(r), static_cast<float>(g), static_cast<float>(b)});
+    }
+    const std::vector<double> truth = run(ReferenceEngine(view), rgb);
+    for (const std::string& target : SimdEngine::targets()) {
+        SimdEngine::use_target(target);
+        const std::vector<float> out = run(SimdEngine(view), rgb);
+        for (std::size_t i = 0; i < out.size(); ++i) {
+            ASSERT_NEAR(static_cast<double>(out[i]), truth[i], kBound)
+                << target << " pixel " << i / 3;
+        }
+    }
+}
+
+// ---------------------------------------------------------------------------------------------
+// Memory
+
+TEST_F(Simd, AnyStrideAndCountAndNothingOutsideThePixels) {
+    const SimdEngine engine(view_of("aces_hill"));
+    constexpr float kGuard = -123.5F;
+    constexpr std::size_t kEdge = 8;  // guard floats around
+    ProbeRandom random(23);
+    for (const std::string& target : SimdEngine::targets()) {
+        SimdEngine::use_target(target);
+        for (const std::size_t count :
+             {0, 1, 2, 3, 15, 16, 17, 31, 255, 256, 257, 511, 513, 1000}) {
+            // Each pixel alone: what the whole has to equal, bit for bit.
+            std::vector<float> pixels(3 * count);
+            for (float& x : pixels)
+                x = static_cast<float>(random.uniform(-0.5, 4));
+            std::vector<float> expected(3 * count);
+            for (std::size_t i = 0; i < count; ++i) {
+                engine.run_rgb(&pixels[3 * i], &expected[3 * i], 1);
+            }
+            // Layouts as {stride, distance of the planes}; 0: one plane after the other.
+            struct Layout {
+                std::size_t stride;
+                std::size_t plane;
+            };
+            const auto place = [&](const Layout& l, std::size_t i, std::size_t c) {
+                return kEdge + i * l.stride + c * (l.plane ? l.plane : count * l.stride + 1);
+            };
+            const std::vector<Layout> layouts = {{1, 0}, {3, 1}, {4, 1}, {5, 1}, {2, 0}, {7, 2}};
+            for (const Layout& from : layouts) {
+                for (const Layout& to : layouts) {
+                    const bool in_place = from.stride == to.stride && from.plane == to.plane;
+                    const std::size_t size = 2 * kEdge + 3 * (7 * count + 8);
+                    std::vector<float> source(size, kGuard);
+                    for (std::size_t i = 0; i < count; ++i) {
+                        for (std::size_t c = 0; c < 3; ++c)
+                            source[place(from, i, c)] = pixels[3 * i + c];
+                    }
+                    std::vector<float> other(size, kGuard);
+                    std::vector<float>& result = in_place ? source : other;
+                    const auto at = [&](std::vector<float>& v, const Layout& l, std::size_t c) {
+                        return v.data() + place(l, 0, c);
+                    };
+                    engine.run({at(source, from, 0), at(source, from, 1), at(source, from, 2)},
+                               static_cast<std::ptrdiff_t>(from.stride),
+                               {at(result, to, 0), at(result, to, 1), at(result, to, 2)},
+                               static_cast<std::ptrdiff_t>(to.stride), count);
+                    std::vector<float> wanted(size, kGuard);
+                    for (std::size_t i = 0; i < count; ++i) {
+                        for (std::size_t c = 0; c < 3; ++c)
+                            wanted[place(to, i, c)] = expected[3 * i + c];
+                    }
+                    ASSERT_EQ(result, wanted) << target << ", " << count << " pixels, stride "
+                                              << from.stride << " to " << to.stride;
+                }
+            }
+        }
+    }
+}
+
+TEST_F(Simd, PixelsMayEndWithTheBuffer) {
+    // Exactly as many floats as there are; an address sanitizer sees any access beyond.
+    const SimdEngine engine(view_of("hable"));
+    for (const std::string& target : SimdEngine::targets()) {
+        SimdEngine::use_target(target);
+        for (const std::size_t count : {1, 16, 64, 257}) {
+            for (const std::size_t stride : {3, 4}) {
+                std::vector<float> in((count - 1) * stride + 3, 0.18F);
+                std::vector<float> out(in.size());
+                const auto s = static_cast<std::ptrdiff_t>(stride);
+                engine.run({in.data(), in.data() + 1, in.data() + 2}, s,
+                           {out.data(), out.data() + 1, out.data() + 2}, s, count);
+                EXPECT_EQ(out.back(), out[2]);
+            }
+        }
+    }
+}
+
+TEST_F(Simd, ThreadsShareAnEngine) {
+    const SimdEngine engine(view_of("agx_sobotka"));
+    const std::vector<float> rgb = test_colours();
+    const std::vector<float> expected = run(engine, rgb);
+    std::vector<std::vector<float>> results(4);
+    std::vector<std::thread> threads;
+    for (std::vector<float>& result : results) {
+        threads.emplace_back([&] {
+            for (int i = 0; i < 3; ++i)
+                result = run(engine, rgb);
+        });
+    }
+    for (std::thread& t : threads)
+        t.join();
+    for (const std::vector<float>& result : results)
+        EXPECT_EQ(result, expected);
+}
+
+TEST_F(Simd, EmptyPipelineOnlySanitises) {
+    const SimdEngine engine(Pipeline{});
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const float inf = std::numeric_limits<float>::infinity();
+    const std::vector<float> in = {nan, inf, -inf, 1e30F, -1e30F, 65505, 1e-45F, -0.0F, 0.25F};
+    EXPECT_EQ(run(engine, in),
+              (std::vector<float>{0, 65504, -65504, 65504, -65504, 65504, 1e-45F, 0, 0.25F}));
+}
+
+TEST_F(Simd, TargetsAreNamed) {
+    const std::vector<std::string> targets = SimdEngine::targets();
+    ASSERT_FALSE(targets.empty());
+    try {
+        SimdEngine::use_target("AVX");
+        FAIL();
+    } catch (const Error& e) {
+        EXPECT_EQ(std::string(e.what()).rfind("simd engine: target is AVX; expected ", 0), 0U)
+            << e.what();
+    }
+}
+
+}  // namespace
+}  // namespace tonewright

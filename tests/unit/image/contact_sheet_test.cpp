@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <OpenImageIO/imagebufalgo.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "image/canvas.h"
+#include "tonewright/image.h"
+
+namespace tonewright {
+namespace {
+
+using OIIO::ImageBuf;
+using OIIO::ImageSpec;
+using OIIO::TypeDesc;
+using Labelled = std::vector<std::pair<std::string, ImageBuf>>;
+
+ImageBuf flat(int width, int height, const std::vector<float>& color,
+              TypeDesc type = TypeDesc::UINT8) {
+    ImageBuf picture(ImageSpec(width, height, static_cast<int>(color.size()), type));
+    OIIO::ImageBufAlgo::fill(picture, color);
+    return picture;
+}
+
+/// Columns and rows that hold the given color, within a code value.
+OIIO::ROI extent_of(const ImageBuf& sheet, const std::vector<float>& color) {
+    OIIO::ROI extent(sheet.xend(), 0, sheet.yend(), 0);
+    for (int y = 0; y < sheet.yend(); ++y) {
+        for (int x = 0; x < sheet.xend(); ++x) {
+            bool same = true;
+            for (int c = 0; c < 3; ++c) {
+                same = same && std::fabs(sheet.getchannel(x, y, 0, c) -
+                                         color[static_cast<std::size_t>(c)]) < 1.5F / 255;
+            }
+            if (!same) continue;
+            extent.xbegin = std::min(extent.xbegin, x);
+            extent.xend = std::max(extent.xend, x + 1);
+            extent.ybegin = std::min(extent.ybegin, y);
+            extent.yend = std::max(extent.yend, y + 1);
+        }
+    }
+    return extent;
+}
+
+TEST(ContactSheet, PicturesKeepTheirShapeAndColors) {
+    const std::vector<float> red = {0.8F, 0.2F, 0.1F};
+    const std::vector<float> blue = {0.1F, 0.2F, 0.8F};
+    const ImageBuf sheet =
+        make_contact_sheet({{"wide", flat(200, 100, red)}, {"tall", flat(60, 90, blue)}}, 2, 120);
+    EXPECT_EQ(sheet.spec().format, TypeDesc::UINT8);
+    EXPECT_EQ(sheet.nchannels(), 3);
+    EXPECT_EQ(sheet.spec().get_string_attribute("oiio:ColorSpace"), "sRGB");
+    const OIIO::ROI wide = extent_of(sheet, red);
+    EXPECT_EQ(wide.width(), 120);
+    EXPECT_EQ(wide.height(), 60);
+    const OIIO::ROI tall = extent_of(sheet, blue);
+    EXPECT_EQ(tall.width(), 120);
+    EXPECT_EQ(tall.height(), 180);
+    // Margins: equal at the left, between, at the right and at the top.
+    EXPECT_EQ(wide.xbegin, tall.ybegin);
+    EXPECT_EQ(tall.xbegin - wide.xend, wide.xbegin);
+    EXPECT_EQ(sheet.xend() - tall.xend, wide.xbegin);
+    // The smaller picture stands in the middle of the row.
+    EXPECT_EQ(wide.ybegin - tall.ybegin, tall.yend - wide.yend);
+}
+
+TEST(ContactSheet, LabelsStandBelow) {
+    const std::vector<float> red = {0.8F, 0.2F, 0.1F};
+    const auto lit_below = [&](const std::string& label) {
+        const ImageBuf sheet = make_contact_sheet({{label, flat(100, 100, red)}}, 1, 200);
+        const OIIO::ROI picture = extent_of(sheet, red);
+        int lit = 0;
+        for (int y = picture.yend; y < sheet.yend(); ++y) {
+            for (int x = 0; x < sheet.xend(); ++x)
+                lit += sheet.getchannel(x, y, 0, 1) > 0.5F ? 1 : 0;
+        }
+        return lit;
+    };
+    EXPECT_EQ(lit_below(""), 0);
+    EXPECT_GT(lit_below("AgX"), 20);
+    EXPECT_GT(lit_below("Hable (Uncharted 2)"), lit_below("AgX"));
+    EXPECT_GT(lit_below("\xC3\xA4\xE6\x97\xA5"), 0);  // two question marks
+}
+
+TEST(ContactSheet, Rows) {
+    Labelled pictures;
+    for (int i = 0; i < 5; ++i)
+        pictures.emplace_back("p", flat(100, 50, {0.5F, 0.6F, 0.7F}));
+    const ImageBuf two = make_contact_sheet(pictures, 2, 100);
+    const ImageBuf five = make_contact_sheet(pictures, 5, 100);
+    const ImageBuf many = make_contact_sheet(pictures, 9, 100);
+    EXPECT_LT(two.spec().width, five.spec().width);
+    EXPECT_GT(two.spec().height, 2 * five.spec().height);
+    EXPECT_EQ(five.spec().width, many.spec().width);  // no empty columns
+}
+
+TEST(ContactSheet, ShrinksLightNotCodeValues) {
+    ImageBuf checker(ImageSpec(200, 200, 3, TypeDesc::UINT8));
+    OIIO::ImageBufAlgo::checker(checker, 1, 1, 1, {0.0F, 0.0F, 0.0F}, {1.0F, 1.0F, 1.0F});
+    const ImageBuf sheet = make_contact_sheet({{"", checker}}, 1, 50);
+    // Half of the light is the sRGB code value 187.5.
+    EXPECT_NEAR(255 * sheet.getchannel(sheet.xend() / 2, 20, 0, 1), 187.5, 1.5);
+}
+
+TEST(ContactSheet, OtherPictures) {
+    // Grey; float; with alpha; data window smaller than the display window; pixels not square.
+    EXPECT_EQ(extent_of(make_contact_sheet({{"", flat(10, 10, {0.6F})}}, 1, 40), {0.6F, 0.6F, 0.6F})
+                  .width(),
+              40);
+    EXPECT_EQ(extent_of(make_contact_sheet(
+                            {{"", flat(10, 10, {0.6F, 0.3F, 0.9F, 0.5F}, TypeDesc::FLOAT)}}, 1, 40),
+                        {0.6F, 0.3F, 0.9F})
+                  .height(),
+              40);
+    ImageBuf window = flat(20, 20, {0.6F, 0.3F, 0.9F});
+    window.set_full(0, 40, 0, 20, 0, 1);
+    EXPECT_EQ(extent_of(make_contact_sheet({{"", window}}, 1, 40), {0.6F, 0.3F, 0.9F}).width(), 20);
+    ImageBuf anamorphic = flat(20, 20, {0.6F, 0.3F, 0.9F});
+    anamorphic.specmod().attribute("PixelAspectRatio", 2.0F);
+    EXPECT_EQ(extent_of(make_contact_sheet({{"", anamorphic}}, 1, 40), {0.6F, 0.3F, 0.9F}).height(),
+              20);
+}
+
+TEST(ContactSheet, BadArguments) {
+    const Labelled one = {{"a", flat(4, 4, {0.5F, 0.5F, 0.5F})}};
+    EXPECT_THROW((void)make_contact_sheet({}, 1, 100), Error);
+    EXPECT_THROW((void)make_contact_sheet(one, 0, 100), Error);
+    EXPECT_THROW((void)make_contact_sheet(one, 1, 15), Error);
+    EXPECT_THROW((void)make_contact_sheet({{"a", ImageBuf()}}, 1, 100), Error);
+    EXPECT_THROW((void)make_contact_sheet({{"a", ImageBuf("/nonexistent.png")}}, 1, 100), Error);
+    // A million pixels high: no sheet that anything could show.
+    EXPECT_THROW((void)make_contact_sheet({{"a", flat(1, 1000, {0.5F})}}, 1, 1000), Error);
+}
+
+TEST(Canvas, TextIsMeasuredAndCut) {
+    EXPECT_EQ(text_width("", 10), 0);
+    EXPECT_GT(text_width("WW", 10), text_width("ii", 10));
+    EXPECT_NEAR(text_width("AgX", 20), 2 * text_width("AgX", 10), 1e-9);
+    EXPECT_EQ(fit_text("AgX", 10, 1000), "AgX");
+    const std::string cut = fit_text("Reinhard Extended on the largest channel", 10, 100);
+    EXPECT_TRUE(cut.ends_with("...")) << cut;
+    EXPECT_TRUE(cut.starts_with("Reinh")) << cut;
+    EXPECT_LE(text_width(cut, 10), 100);
+    EXPECT_EQ(fit_text("abc", 10, 0), "...");
+}
+
+TEST(Canvas, EveryPrintableCharacterIsDrawn) {
+    for (char c = '!'; c <= '~'; ++c) {
+        Canvas canvas(40, 40, grey_of(0));
+        canvas.text(std::string(1, c), 10, 28, 16, grey_of(1));
+        double sum = 0;
+        for (int y = 0; y < 40; ++y) {
+            for (int x = 0; x < 40; ++x)
+                sum += static_cast<double>(canvas.at(x, y)[0]);
+        }
+        EXPECT_GT(sum, 1.5) << c;
+        EXPECT_LT(sum, 200) << c;
+    }
+}
+
+TEST(Canvas, NothingIsDrawnOutside) {
+    Canvas canvas(10, 10, grey_of(0));
+    canvas.text("Tonewright", -50, 5, 12, grey_of(1));
+    canvas.text("Tonewright", 8, 500, 12, grey_of(1));
+    canvas.fill(-5, -5, 3, 3, grey_of(1));
+    canvas.fill(8, 8, 100, 100, grey_of(1));
+    EXPECT_EQ(canvas.at(0, 0)[0], 1);
+    EXPECT_EQ(canvas.at(9, 9)[0], 1);
+}
+
+}  // namespace
+}  // namespace tonewright

@@ -1,0 +1,703 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <OpenImageIO/deepdata.h>
+#include <OpenImageIO/imagebufalgo.h>
+#include <OpenImageIO/imagecache.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include "tonewright/engine.h"
+#include "tonewright/image.h"
+#include "tonewright/view.h"
+
+namespace tonewright {
+namespace {
+
+using OIIO::ImageBuf;
+using OIIO::ImageSpec;
+using OIIO::ROI;
+using OIIO::TypeDesc;
+using Unpremult = TonemapOptions::Unpremult;
+
+// The SIMD engine's bound against the reference in encoded values is 1e-6 (engine.h); one more for
+// float operands on the way (division by alpha).
+constexpr double kTolerance = 2e-6;
+
+TonemapOptions hable() { return {.op = "hable"}; }
+
+ReferenceEngine reference(const TonemapOptions& o) {
+    return ReferenceEngine(build_view(make_view(resolve_operator(o.op, o.settings, o.look), o.input,
+                                                o.exposure_stops, o.display)));
+}
+
+/// 0..1, different everywhere, the same on every machine.
+float noise(std::uint32_t i) {
+    i = (i ^ 61U ^ (i >> 16U)) * 9U;
+    i = (i ^ (i >> 4U)) * 0x27d4eb2dU;
+    return static_cast<float>((i ^ (i >> 15U)) & 0xffffU) / 65535.0F;
+}
+
+ImageSpec make_spec(int width, int height, std::vector<std::string> channels, TypeDesc type) {
+    ImageSpec spec(width, height, static_cast<int>(channels.size()), type);
+    spec.alpha_channel = -1;
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+        if (channels[c] == "A") spec.alpha_channel = static_cast<int>(c);
+        if (channels[c] == "Z") spec.z_channel = static_cast<int>(c);
+    }
+    spec.channelnames = std::move(channels);
+    return spec;
+}
+
+/// Noise up to `peak` in every channel, stored as OIIO converts it.
+ImageBuf make_picture(const ImageSpec& spec, float peak = 1) {
+    ImageBuf picture(spec);
+    std::vector<float> values(static_cast<std::size_t>(spec.image_pixels()) *
+                              static_cast<std::size_t>(spec.nchannels));
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        values[i] = peak * noise(static_cast<std::uint32_t>(i));
+    }
+    EXPECT_TRUE(picture.set_pixels(picture.roi(), TypeDesc::FLOAT, values.data()));
+    return picture;
+}
+
+ImageBuf make_rgb(int width, int height, TypeDesc type = TypeDesc::FLOAT, float peak = 1) {
+    return make_picture(make_spec(width, height, {"R", "G", "B"}, type), peak);
+}
+
+std::vector<float> pixel(const ImageBuf& picture, int x, int y) {
+    std::vector<float> values(static_cast<std::size_t>(picture.nchannels()));
+    picture.getpixel(x, y, values.data(), picture.nchannels());
+    return values;
+}
+
+void set(ImageBuf& picture, int x, int y, const std::vector<float>& values) {
+    picture.setpixel(x, y, values.data(), static_cast<int>(values.size()));
+}
+
+bool same_bits(const ImageBuf& a, const ImageBuf& b) {
+    return a.spec().format == b.spec().format && a.roi() == b.roi() &&
+           std::memcmp(a.localpixels(), b.localpixels(), a.spec().image_bytes()) == 0;
+}
+
+/// A folder of its own for a test's files.
+class TemporaryFolder {
+  public:
+    TemporaryFolder()
+        : path_(std::filesystem::temp_directory_path() /
+                ("tonewright_tonemap_test_" + std::to_string(::getpid()))) {
+        std::filesystem::create_directories(path_);
+    }
+    ~TemporaryFolder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+    [[nodiscard]] std::string file(const std::string& name) const {
+        return (path_ / name).string();
+    }
+
+  private:
+    std::filesystem::path path_;
+};
+
+void expect_error(ImageBuf& dst, bool ok, const std::string& part) {
+    EXPECT_FALSE(ok);
+    ASSERT_TRUE(dst.has_error());
+    const std::string message = dst.geterror();
+    EXPECT_NE(message.find(part), std::string::npos) << message;
+    EXPECT_TRUE(message.starts_with("tonemap: ")) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+}
+
+// ---------------------------------------------------------------------------------------------
+// Values
+
+TEST(Tonemap, EqualsTheReferenceEngine) {
+    const float inf = std::numeric_limits<float>::infinity();
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    ImageBuf src = make_rgb(40, 30, TypeDesc::FLOAT, 20);
+    set(src, 0, 0, {nan, 1, 0});
+    set(src, 1, 0, {inf, -inf, 0.5F});
+    set(src, 2, 0, {-0.1F, 0.18F, -7});
+    set(src, 3, 0, {1e30F, 1e-30F, 0});
+    const TonemapOptions options = {.op = "hable", .exposure_stops = 1.5, .input = "lin_ap1"};
+    const ReferenceEngine expected = reference(options);
+    const ImageBuf result = tonemap(src, options);
+    ASSERT_FALSE(result.has_error()) << result.geterror();
+    EXPECT_EQ(result.spec().format, TypeDesc::FLOAT);
+    for (int y = 0; y < 30; ++y) {
+        for (int x = 0; x < 40; ++x) {
+            const std::vector<float> in = pixel(src, x, y);
+            const std::vector<float> out = pixel(result, x, y);
+            const Vector3 want = expected(Vector3{in[0], in[1], in[2]});
+            for (std::size_t c = 0; c < 3; ++c) {
+                ASSERT_NEAR(out[c], want[c], kTolerance) << x << ", " << y << " channel " << c;
+            }
+        }
+    }
+}
+
+TEST(Tonemap, AnySourceType) {
+    const ReferenceEngine expected = reference(hable());
+    for (const auto type :
+         {TypeDesc::UINT8, TypeDesc::INT8, TypeDesc::UINT16, TypeDesc::INT16, TypeDesc::UINT32,
+          TypeDesc::INT32, TypeDesc::HALF, TypeDesc::FLOAT, TypeDesc::DOUBLE}) {
+        const ImageBuf src = make_rgb(9, 5, type);
+        const ImageBuf result = tonemap(src, hable());
+        ASSERT_FALSE(result.has_error()) << result.geterror();
+        EXPECT_EQ(result.spec().format, TypeDesc::FLOAT);
+        for (int y = 0; y < 5; ++y) {
+            for (int x = 0; x < 9; ++x) {
+                const std::vector<float> in = pixel(src, x, y);  // converted by OIIO itself
+                const Vector3 want = expected(Vector3{in[0], in[1], in[2]});
+                for (std::size_t c = 0; c < 3; ++c) {
+                    ASSERT_NEAR(pixel(result, x, y)[c], want[c], kTolerance)
+                        << TypeDesc(type).c_str();
+                }
+            }
+        }
+    }
+}
+
+TEST(Tonemap, AnyDestinationTypeIsKeptAndRounded) {
+    struct Case {
+        TypeDesc::BASETYPE type;
+        double half_step;  // of values in [0, 1]
+    };
+    // Half: 11 significant bits below 1.
+    constexpr std::array<Case, 9> kCases = {{{TypeDesc::UINT8, 0.5 / 255},
+                                             {TypeDesc::INT8, 0.5 / 127},
+                                             {TypeDesc::UINT16, 0.5 / 65535},
+                                             {TypeDesc::INT16, 0.5 / 32767},
+                                             {TypeDesc::UINT32, 1e-9},
+                                             {TypeDesc::INT32, 1e-9},
+                                             {TypeDesc::HALF, std::exp2(-12)},
+                                             {TypeDesc::FLOAT, 0},
+                                             {TypeDesc::DOUBLE, 0}}};
+    const ImageBuf src = make_rgb(20, 20, TypeDesc::FLOAT, 8);
+    const ReferenceEngine expected = reference(hable());
+    for (const Case& c : kCases) {
+        ImageBuf dst(make_spec(20, 20, {"R", "G", "B"}, c.type));
+        ASSERT_TRUE(tonemap(dst, src, hable())) << dst.geterror();
+        EXPECT_EQ(dst.spec().format, c.type);
+        for (int i = 0; i < 20; ++i) {
+            const std::vector<float> in = pixel(src, i, i);
+            const Vector3 want = expected(Vector3{in[0], in[1], in[2]});
+            for (std::size_t k = 0; k < 3; ++k) {
+                ASSERT_NEAR(pixel(dst, i, i)[k], want[k], c.half_step + kTolerance)
+                    << TypeDesc(c.type).c_str();
+            }
+        }
+    }
+}
+
+TEST(Tonemap, IntegersAreClampedWhereTheResultExceedsThem) {
+    // Display-linear, unclamped: hable goes up to 1.287.
+    const TonemapOptions options = {.op = "hable", .display = "linear"};
+    ImageBuf src(make_spec(1, 1, {"R", "G", "B"}, TypeDesc::FLOAT));
+    set(src, 0, 0, {5000, 0, 5000});
+    ImageBuf dst(make_spec(1, 1, {"R", "G", "B"}, TypeDesc::UINT8));
+    ASSERT_TRUE(tonemap(dst, src, options));
+    EXPECT_EQ(pixel(dst, 0, 0), (std::vector<float>{1, 0, 1}));
+    EXPECT_GT(pixel(tonemap(src, options), 0, 0)[0], 1.2F);
+}
+
+TEST(Tonemap, RowsOfAnyLength) {
+    // The engine works on spans of 1024 pixels.
+    for (const int width : {1, 7, 1023, 1024, 1025, 2500}) {
+        const ImageBuf src = make_rgb(width, 2, TypeDesc::HALF, 4);
+        const ImageBuf result = tonemap(src, hable());
+        for (const int x : {0, width / 2, width - 1}) {
+            const std::vector<float> in = pixel(src, x, 1);
+            const Vector3 want = reference(hable())(Vector3{in[0], in[1], in[2]});
+            EXPECT_NEAR(pixel(result, x, 1)[2], want[2], kTolerance) << width << ": " << x;
+        }
+    }
+}
+
+TEST(Tonemap, ResultDoesNotDependOnThreads) {
+    const ImageBuf src =
+        make_picture(make_spec(331, 257, {"R", "G", "B", "A"}, TypeDesc::FLOAT), 9);
+    const ImageBuf one = tonemap(src, hable(), {}, 1);
+    const ImageBuf four = tonemap(src, hable(), {}, 4);
+    EXPECT_TRUE(same_bits(one, four));
+    EXPECT_TRUE(same_bits(one, tonemap(src, hable())));
+}
+
+TEST(Tonemap, OneTonemapperServesManyPictures) {
+    const Tonemapper tonemapper(hable());
+    for (const int size : {3, 70}) {
+        const ImageBuf src = make_rgb(size, size);
+        ImageBuf dst;
+        ASSERT_TRUE(tonemapper(dst, src));
+        EXPECT_TRUE(same_bits(dst, tonemap(src, hable())));
+    }
+    EXPECT_THROW(Tonemapper({.op = "habel"}), Error);
+}
+
+// ---------------------------------------------------------------------------------------------
+// Destination and region
+
+TEST(Tonemap, InPlaceEqualsOutOfPlace) {
+    for (const auto type : {TypeDesc::UINT8, TypeDesc::UINT16, TypeDesc::HALF, TypeDesc::FLOAT}) {
+        const ImageBuf src = make_picture(make_spec(50, 40, {"R", "G", "B", "A", "Z"}, type));
+        ImageBuf out(src.spec());
+        ASSERT_TRUE(tonemap(out, src, hable()));
+        ImageBuf in_place = src;
+        ASSERT_TRUE(tonemap(in_place, in_place, hable()));
+        EXPECT_TRUE(same_bits(out, in_place)) << TypeDesc(type).c_str();
+        EXPECT_FALSE(same_bits(out, src));
+    }
+}
+
+TEST(Tonemap, RegionOfAnExistingDestination) {
+    const ImageBuf src = make_rgb(16, 12);
+    for (const auto type : {TypeDesc::UINT16, TypeDesc::FLOAT}) {
+        ImageBuf dst(make_spec(16, 12, {"R", "G", "B"}, type));
+        OIIO::ImageBufAlgo::fill(dst, {0.25F, 0.5F, 0.75F});
+        const ImageBuf before = dst;
+        const ROI roi(3, 10, 2, 7);
+        ASSERT_TRUE(tonemap(dst, src, hable(), roi));
+        const ImageBuf all = [&] {
+            ImageBuf image(dst.spec());
+            EXPECT_TRUE(tonemap(image, src, hable()));
+            return image;
+        }();
+        for (int y = 0; y < 12; ++y) {
+            for (int x = 0; x < 16; ++x) {
+                const ImageBuf& expected = roi.contains(x, y) ? all : before;
+                ASSERT_EQ(pixel(dst, x, y), pixel(expected, x, y)) << x << ", " << y;
+            }
+        }
+    }
+}
+
+TEST(Tonemap, NewDestinationHasTheSizeOfTheRegion) {
+    const ImageBuf src = make_rgb(16, 12);
+    const ImageBuf part = tonemap(src, hable(), ROI(3, 10, 2, 7));
+    ASSERT_FALSE(part.has_error()) << part.geterror();
+    EXPECT_EQ(part.roi(), ROI(3, 10, 2, 7, 0, 1, 0, 3));
+    EXPECT_EQ(pixel(part, 5, 5), pixel(tonemap(src, hable()), 5, 5));
+}
+
+TEST(Tonemap, RegionBesideTheDestinationWritesNothing) {
+    const ImageBuf src = make_rgb(8, 8);
+    ImageBuf dst = make_rgb(8, 8);
+    const ImageBuf before = dst;
+    EXPECT_TRUE(tonemap(dst, src, hable(), ROI(100, 110, 0, 8)));
+    EXPECT_TRUE(same_bits(dst, before));
+}
+
+TEST(Tonemap, OutsideItsDataWindowTheSourceIsBlack) {
+    for (const bool cached : {false, true}) {
+        ImageSpec spec = make_spec(4, 4, {"R", "G", "B", "Z"}, TypeDesc::HALF);
+        spec.x = 2;
+        spec.y = 3;
+        ImageBuf src = make_picture(spec);
+        const TemporaryFolder folder;
+        if (cached) {
+            ASSERT_TRUE(src.write(folder.file("window.exr")));
+            src.reset(folder.file("window.exr"));
+            src.init_spec(src.name(), 0, 0);
+            ASSERT_TRUE(src.cachedpixels());
+        }
+        ImageBuf dst(make_spec(10, 10, {"R", "G", "B", "Z"}, TypeDesc::FLOAT));
+        OIIO::ImageBufAlgo::fill(dst, {0.5F, 0.5F, 0.5F, 0.5F});
+        ASSERT_TRUE(tonemap(dst, src, hable())) << dst.geterror();
+        EXPECT_EQ(pixel(dst, 1, 4), (std::vector<float>{0, 0, 0, 0}));
+        EXPECT_EQ(pixel(dst, 6, 4), (std::vector<float>{0, 0, 0, 0}));
+        EXPECT_EQ(pixel(dst, 3, 9), (std::vector<float>{0, 0, 0, 0}));
+        EXPECT_EQ(pixel(dst, 3, 4), pixel(tonemap(src, hable()), 3, 4));
+    }
+}
+
+TEST(Tonemap, Volumes) {
+    ImageSpec spec = make_spec(5, 4, {"R", "G", "B"}, TypeDesc::FLOAT);
+    spec.depth = spec.full_depth = 3;
+    const ImageBuf src = make_picture(spec);
+    const ImageBuf result = tonemap(src, hable());
+    ASSERT_FALSE(result.has_error()) << result.geterror();
+    const Vector3 want = reference(hable())(Vector3{
+        src.getchannel(1, 2, 2, 0), src.getchannel(1, 2, 2, 1), src.getchannel(1, 2, 2, 2)});
+    EXPECT_NEAR(result.getchannel(1, 2, 2, 1), want[1], kTolerance);
+}
+
+TEST(Tonemap, MemoryOfTheCaller) {
+    // Rows with a gap, pixels that are not aligned to their type.
+    constexpr int kWidth = 6;
+    constexpr std::size_t kPixel = 3 * sizeof(float) + 1;
+    std::vector<char> memory(3 + 4 * (kWidth * kPixel + 5));
+    const ImageSpec spec = make_spec(kWidth, 4, {"R", "G", "B"}, TypeDesc::FLOAT);
+    ImageBuf wrapped(spec, memory.data() + 3, kPixel, kWidth * kPixel + 5);
+    const ImageBuf src = make_rgb(kWidth, 4);
+    ASSERT_TRUE(tonemap(wrapped, src, hable())) << wrapped.geterror();
+    const ImageBuf expected = tonemap(src, hable());
+    for (int y = 0; y < 4; ++y) {
+        for (int x = 0; x < kWidth; ++x)
+            EXPECT_EQ(pixel(wrapped, x, y), pixel(expected, x, y));
+    }
+}
+
+// ---------------------------------------------------------------------------------------------
+// Channels
+
+TEST(Tonemap, ChannelRange) {
+    const ImageBuf src = make_picture(make_spec(4, 4, {"R", "G", "B", "A", "Z"}, TypeDesc::FLOAT));
+    ImageBuf dst(src.spec());
+    OIIO::ImageBufAlgo::fill(dst, {9.0F, 9.0F, 9.0F, 9.0F, 9.0F});
+    ASSERT_TRUE(tonemap(dst, src, hable(), ROI(0, 4, 0, 4, 0, 1, 0, 4)));
+    const ImageBuf all = tonemap(src, hable());
+    // Alpha is in the range, Z is not.
+    std::vector<float> expected = pixel(all, 1, 1);
+    expected[4] = 9;
+    EXPECT_EQ(pixel(dst, 1, 1), expected);
+    // Alpha not in the range: divided by, not written.
+    OIIO::ImageBufAlgo::fill(dst, {9.0F, 9.0F, 9.0F, 9.0F, 9.0F});
+    ASSERT_TRUE(tonemap(dst, src, hable(), ROI(0, 4, 0, 4, 0, 1, 0, 3)));
+    expected[3] = 9;
+    EXPECT_EQ(pixel(dst, 1, 1), expected);
+
+    expect_error(dst, tonemap(dst, src, hable(), ROI(0, 4, 0, 4, 0, 1, 1, 4)),
+                 "channel range is [1, 4)");
+    expect_error(dst, tonemap(dst, src, hable(), ROI(0, 4, 0, 4, 0, 1, 0, 2)),
+                 "channel range is [0, 2)");
+}
+
+TEST(Tonemap, OtherChannelsAreCopied) {
+    ImageBuf src(make_spec(2, 1, {"R", "G", "B", "A", "Z", "id"}, TypeDesc::FLOAT));
+    set(src, 0, 0, {0.18F, 0.18F, 0.18F, 1, 7, 1e9F});
+    set(src, 1, 0, {0.18F, 0.18F, 0.18F, 0.5F, -3, std::numeric_limits<float>::quiet_NaN()});
+    const ImageBuf result = tonemap(src, hable());
+    // OIIO's own color functions make 70.5 of a Z of 7.
+    EXPECT_EQ(pixel(result, 0, 0)[4], 7);
+    EXPECT_EQ(pixel(result, 0, 0)[5], 1e9F);
+    EXPECT_EQ(pixel(result, 1, 0)[3], 0.5F);
+    EXPECT_TRUE(std::isnan(pixel(result, 1, 0)[5]));
+    EXPECT_EQ(result.spec().channelnames, src.spec().channelnames);
+    EXPECT_EQ(result.spec().alpha_channel, 3);
+    EXPECT_EQ(result.spec().z_channel, 4);
+}
+
+template <class Pixel>
+void expect_extra_channel_bits(TypeDesc type, const std::vector<Pixel>& values) {
+    const int width = static_cast<int>(values.size());
+    ImageBuf src(make_spec(width, 1, {"R", "G", "B", "extra"}, type));
+    for (int x = 0; x < width; ++x) {
+        std::memcpy(src.pixeladdr(x, 0, 0, 3), &values[static_cast<std::size_t>(x)], sizeof(Pixel));
+    }
+    ImageBuf other(src.spec());
+    ASSERT_TRUE(tonemap(other, src, hable()));
+    ASSERT_TRUE(tonemap(src, src, hable()));
+    for (int x = 0; x < width; ++x) {
+        const Pixel expected = values[static_cast<std::size_t>(x)];
+        EXPECT_EQ(std::memcmp(other.pixeladdr(x, 0, 0, 3), &expected, sizeof(Pixel)), 0)
+            << type.c_str();
+        EXPECT_EQ(std::memcmp(src.pixeladdr(x, 0, 0, 3), &expected, sizeof(Pixel)), 0)
+            << type.c_str();
+    }
+}
+
+TEST(Tonemap, OtherChannelsAreCopiedBitForBit) {
+    // Half bits: a denormal, a NaN with a payload, infinity, -0.
+    expect_extra_channel_bits<std::uint16_t>(TypeDesc::HALF,
+                                             {0x0001, 0x7e55, 0x7c00, 0x8000, 0x3c01});
+    expect_extra_channel_bits<std::uint16_t>(TypeDesc::UINT16, {0, 1, 40001, 65535});
+    expect_extra_channel_bits<std::uint32_t>(TypeDesc::UINT32, {1, 0xfffffffe, 123456789});
+    expect_extra_channel_bits<std::int32_t>(TypeDesc::INT32, {-1, 2147483647, -123456789});
+    expect_extra_channel_bits<double>(TypeDesc::DOUBLE, {0.1, 1e300, -1e-300});
+    expect_extra_channel_bits<std::uint8_t>(TypeDesc::UINT8, {0, 1, 77, 255});
+}
+
+TEST(Tonemap, OtherChannelsAreConvertedWhereTypesDiffer) {
+    ImageBuf src(make_spec(1, 1, {"R", "G", "B", "id"}, TypeDesc::UINT32));
+    const std::uint32_t id = 0xfffffffe;
+    std::memcpy(src.pixeladdr(0, 0, 0, 3), &id, sizeof id);
+    ImageBuf dst(make_spec(1, 1, {"R", "G", "B", "id"}, TypeDesc::DOUBLE));
+    ASSERT_TRUE(tonemap(dst, src, hable()));
+    double value = 0;
+    std::memcpy(&value, dst.pixeladdr(0, 0, 0, 3), sizeof value);
+    EXPECT_DOUBLE_EQ(value, 4294967294.0 / 4294967295.0);
+}
+
+// ---------------------------------------------------------------------------------------------
+// Alpha
+
+TEST(Tonemap, AssociatedColorIsDividedByAlpha) {
+    ImageBuf src(make_spec(1, 1, {"R", "G", "B", "A"}, TypeDesc::FLOAT));
+    set(src, 0, 0, {0.09F, 0.5F, 2, 0.5F});
+    const ReferenceEngine engine = reference(hable());
+    const Vector3 divided = engine(Vector3{0.18, 1, 4});
+    const Vector3 as_is = engine(Vector3{0.09F, 0.5, 2});
+    const auto expect = [&](Unpremult unpremult, const Vector3& want, double factor) {
+        TonemapOptions options = hable();
+        options.unpremult = unpremult;
+        const std::vector<float> out = pixel(tonemap(src, options), 0, 0);
+        for (std::size_t c = 0; c < 3; ++c)
+            EXPECT_NEAR(out[c], factor * want[c], kTolerance);
+        EXPECT_EQ(out[3], 0.5F);
+    };
+    expect(Unpremult::automatic, divided, 0.5);
+    expect(Unpremult::yes, divided, 0.5);
+    expect(Unpremult::no, as_is, 1);
+    src.specmod().attribute("oiio:UnassociatedAlpha", 1);
+    expect(Unpremult::automatic, as_is, 1);
+    expect(Unpremult::yes, divided, 0.5);
+}
+
+TEST(Tonemap, ColorWithoutUsableAlphaIsTakenAsItIs) {
+    const float inf = std::numeric_limits<float>::infinity();
+    ImageBuf src(make_spec(4, 1, {"R", "G", "B", "A"}, TypeDesc::FLOAT));
+    set(src, 0, 0, {3, 1, 0.2F, 0});  // a flame: light that covers nothing
+    set(src, 1, 0, {3, 1, 0.2F, inf});
+    set(src, 2, 0, {3, 1, 0.2F, std::numeric_limits<float>::quiet_NaN()});
+    set(src, 3, 0, {3, 1, 0.2F, 1e-40F});  // divided: beyond float
+    const Vector3 want = reference(hable())(Vector3{3, 1, 0.2F});
+    const ImageBuf result = tonemap(src, hable());
+    for (int x = 0; x < 4; ++x) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            const float out = pixel(result, x, 0)[c];
+            EXPECT_TRUE(std::isfinite(out));
+            if (x < 3) {
+                EXPECT_NEAR(out, want[c], kTolerance) << x;
+            }
+        }
+    }
+    EXPECT_EQ(pixel(result, 0, 0)[3], 0);
+}
+
+TEST(Tonemap, AlphaMayBeAnyLaterChannel) {
+    ImageBuf src(make_spec(1, 1, {"R", "G", "B", "Z", "A"}, TypeDesc::HALF));
+    set(src, 0, 0, {0.09F, 0.09F, 0.09F, 7, 0.5F});
+    const std::vector<float> out = pixel(tonemap(src, hable()), 0, 0);
+    const double want =
+        reference(hable())(Vector3{static_cast<double>(pixel(src, 0, 0)[0]) * 2, 0, 0})[0];
+    EXPECT_NEAR(out[0], 0.5 * want, kTolerance);
+    EXPECT_EQ(out[3], 7);
+    EXPECT_EQ(out[4], 0.5F);
+
+    ImageBuf first = make_picture(make_spec(1, 1, {"A", "R", "G", "B"}, TypeDesc::FLOAT));
+    ImageBuf dst;
+    expect_error(dst, tonemap(dst, first, hable()),
+                 "alpha channel is 0; expected none or 3 and above");
+}
+
+TEST(Tonemap, PositionDecidesNotTheName) {
+    const ImageBuf named = make_picture(make_spec(3, 3, {"B", "G", "R"}, TypeDesc::FLOAT));
+    const ImageBuf plain = make_rgb(3, 3);
+    EXPECT_EQ(pixel(tonemap(named, hable()), 1, 1), pixel(tonemap(plain, hable()), 1, 1));
+}
+
+// ---------------------------------------------------------------------------------------------
+// Grey
+
+// Its look raises red above blue: greys do not stay grey.
+TonemapOptions golden() { return {.op = "agx_sobotka", .look = "golden"}; }
+
+TEST(Tonemap, GreyStaysGrey) {
+    const ImageBuf src = make_picture(make_spec(5, 5, {"Y"}, TypeDesc::HALF), 4);
+    const ImageBuf result = tonemap(src, hable());
+    ASSERT_FALSE(result.has_error()) << result.geterror();
+    ASSERT_EQ(result.nchannels(), 1);
+    const double in = pixel(src, 2, 3)[0];
+    EXPECT_NEAR(pixel(result, 2, 3)[0], reference(hable())(Vector3{in, in, in})[0], kTolerance);
+    // A region as callers pass it: that of the source.
+    EXPECT_TRUE(same_bits(tonemap(src, hable(), src.roi()), result));
+}
+
+TEST(Tonemap, GreyBecomesColorWhereTheViewTintsIt) {
+    const ImageBuf src = make_picture(make_spec(5, 5, {"Y"}, TypeDesc::FLOAT));
+    ASSERT_FALSE(keeps_greys(build_view(
+        make_view(resolve_operator("agx_sobotka", {}, "golden"), "lin_rec709", 0, "srgb"))));
+    for (const ROI& roi : {ROI(), src.roi()}) {
+        const ImageBuf result = tonemap(src, golden(), roi);
+        ASSERT_FALSE(result.has_error()) << result.geterror();
+        ASSERT_EQ(result.spec().channelnames, (std::vector<std::string>{"R", "G", "B"}));
+        const double in = pixel(src, 2, 3)[0];
+        const Vector3 want = reference(golden())(Vector3{in, in, in});
+        for (std::size_t c = 0; c < 3; ++c)
+            EXPECT_NEAR(pixel(result, 2, 3)[c], want[c], kTolerance);
+    }
+    ImageBuf in_place = src;
+    expect_error(in_place, tonemap(in_place, in_place, golden()),
+                 "destination has 1 channel; expected 3 or more");
+}
+
+TEST(Tonemap, GreyAndAlpha) {
+    ImageBuf src(make_spec(1, 1, {"Y", "A"}, TypeDesc::FLOAT));
+    set(src, 0, 0, {0.09F, 0.5F});
+    const Vector3 grey = reference(hable())(Vector3{0.18, 0.18, 0.18});
+    const ImageBuf result = tonemap(src, hable());
+    ASSERT_EQ(result.nchannels(), 2);
+    EXPECT_NEAR(pixel(result, 0, 0)[0], 0.5 * grey[0], kTolerance);
+    EXPECT_EQ(pixel(result, 0, 0)[1], 0.5F);
+
+    const ImageBuf tinted = tonemap(src, golden());
+    ASSERT_EQ(tinted.spec().channelnames, (std::vector<std::string>{"R", "G", "B", "A"}));
+    EXPECT_EQ(tinted.spec().alpha_channel, 3);
+    const Vector3 want = reference(golden())(Vector3{0.18, 0.18, 0.18});
+    for (std::size_t c = 0; c < 3; ++c)
+        EXPECT_NEAR(pixel(tinted, 0, 0)[c], 0.5 * want[c], kTolerance);
+    EXPECT_EQ(pixel(tinted, 0, 0)[3], 0.5F);
+
+    // The name alone says it, too.
+    src.specmod().alpha_channel = -1;
+    EXPECT_EQ(pixel(tonemap(src, hable()), 0, 0), pixel(result, 0, 0));
+}
+
+TEST(Tonemap, GreyFillsADestinationOfThreeChannels) {
+    ImageBuf src(make_spec(1, 1, {"Y", "A"}, TypeDesc::FLOAT));
+    set(src, 0, 0, {0.18F, 1});
+    ImageBuf dst(make_spec(1, 1, {"R", "G", "B", "A"}, TypeDesc::UINT8));
+    ASSERT_TRUE(tonemap(dst, src, hable())) << dst.geterror();
+    const std::vector<float> out = pixel(dst, 0, 0);
+    EXPECT_EQ(out[0], out[1]);
+    EXPECT_EQ(out[1], out[2]);
+    EXPECT_GT(out[0], 0.3F);
+    EXPECT_EQ(out[3], 1);
+}
+
+TEST(Tonemap, TwoChannelsWithoutAlphaAreRefused) {
+    const ImageBuf src = make_picture(make_spec(2, 2, {"R", "G"}, TypeDesc::FLOAT));
+    ImageBuf dst;
+    expect_error(dst, tonemap(dst, src, hable()),
+                 "picture has 2 channels (R, G); expected 1, 3 or more");
+}
+
+// ---------------------------------------------------------------------------------------------
+// Errors
+
+TEST(Tonemap, ErrorsAreOnTheDestination) {
+    const ImageBuf src = make_rgb(2, 2);
+    ImageBuf dst;
+    expect_error(dst, tonemap(dst, src, {.op = "habel"}), "did you mean hable?");
+    expect_error(dst, tonemap(dst, src, {.op = "hable", .settings = {{"white", "-2"}}}),
+                 "white is -2");
+    expect_error(dst, tonemap(dst, src, {.op = "hable", .look = "punchy"}), "look is punchy");
+    expect_error(dst, tonemap(dst, src, {.op = "hable", .exposure_stops = 99}), "exposure is 99");
+    expect_error(dst, tonemap(dst, src, {.op = "hable", .input = "lin_rec708"}),
+                 "input space is lin_rec708");
+    expect_error(dst, tonemap(dst, src, {.op = "hable", .display = "srbg"}), "display is srbg");
+    expect_error(dst, tonemap(dst, ImageBuf(), hable()), "source is not initialized");
+    expect_error(dst, tonemap(dst, ImageBuf("/nonexistent/a.exr"), hable()), "/nonexistent/a.exr");
+    const ImageBuf value = tonemap(src, {.op = "habel"});
+    EXPECT_TRUE(value.has_error());
+
+    ImageBuf grey(make_spec(2, 2, {"Y"}, TypeDesc::FLOAT));
+    expect_error(grey, tonemap(grey, src, hable()),
+                 "destination has 1 channel; expected 3 or more");
+}
+
+TEST(Tonemap, DeepPicturesAreRefused) {
+    ImageSpec spec = make_spec(2, 2, {"R", "G", "B", "A", "Z"}, TypeDesc::FLOAT);
+    spec.deep = true;
+    const ImageBuf src(spec);
+    ImageBuf dst;
+    expect_error(dst, tonemap(dst, src, hable()), "source is deep; expected flat pixels");
+    ImageBuf deep(spec);
+    expect_error(deep, tonemap(deep, make_rgb(2, 2), hable()), "destination is deep");
+}
+
+TEST(Tonemap, CachedAndTiledSources) {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("tiled.exr");
+    ImageBuf local = make_picture(make_spec(150, 90, {"R", "G", "B", "A", "Z"}, TypeDesc::HALF), 5);
+    local.set_write_tiles(32, 32);
+    ASSERT_TRUE(local.write(path)) << local.geterror();
+    const ImageBuf cached(path);
+    const ImageBuf result = tonemap(cached, hable(), {}, 4);
+    ASSERT_FALSE(result.has_error()) << result.geterror();
+    EXPECT_TRUE(cached.cachedpixels());
+    EXPECT_EQ(result.spec().tile_width, 0);
+    EXPECT_TRUE(same_bits(result, tonemap(local, hable(), {}, 1)));
+    // In place, a cached picture becomes a local one.
+    ImageBuf in_place(path);
+    ASSERT_TRUE(tonemap(in_place, in_place, hable())) << in_place.geterror();
+    EXPECT_EQ(pixel(in_place, 149, 89)[4], pixel(local, 149, 89)[4]);
+}
+
+TEST(Tonemap, TruncatedCachedSourceIsAnError) {
+    const TemporaryFolder folder;
+    const std::string path = folder.file("cut.exr");
+    ImageBuf local = make_rgb(200, 200, TypeDesc::HALF);
+    local.set_write_tiles(32, 32);
+    ASSERT_TRUE(local.write(path));
+    std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
+    const ImageBuf cut(path);
+    ImageBuf dst;
+    expect_error(dst, tonemap(dst, cut, hable()), "cut.exr");
+}
+
+// ---------------------------------------------------------------------------------------------
+// Metadata
+
+TEST(Tonemap, ColorSpaceOfTheResult) {
+    struct Case {
+        const char* op;
+        const char* display;
+        const char* color_space;  // empty: no claim
+        float gamma;              // 0: not said
+    };
+    constexpr std::array<Case, 9> kCases = {{{"hable", "srgb", "sRGB", 0},
+                                             {"hable", "rec1886", "Gamma2.4", 2.4F},
+                                             {"hable", "g22", "Gamma2.2", 2.2F},
+                                             {"hable", "display_p3", "Display P3", 0},
+                                             {"hable", "rec2020", "Rec.2020", 0},
+                                             {"hable", "linear", "Linear", 0},
+                                             {"agx_sobotka", "linear", "Linear", 0},
+                                             {"hable", "native", "Linear", 0},
+                                             {"agx_sobotka", "native", "Gamma2.2", 2.2F}}};
+    for (const Case& c : kCases) {
+        const ImageBuf result = tonemap(make_rgb(1, 1), {.op = c.op, .display = c.display});
+        ASSERT_FALSE(result.has_error()) << result.geterror();
+        EXPECT_EQ(result.spec().get_string_attribute("oiio:ColorSpace"), c.color_space)
+            << c.display;
+        EXPECT_EQ(result.spec().get_float_attribute("oiio:Gamma"), c.gamma) << c.display;
+    }
+}
+
+TEST(Tonemap, ContradictingMetadataGoes) {
+    ImageBuf src = make_rgb(2, 2);
+    ImageSpec& spec = src.specmod();
+    const std::array<unsigned char, 4> profile = {1, 2, 3, 4};
+    spec.attribute("ICCProfile", TypeDesc(TypeDesc::UINT8, 4), profile.data());
+    spec.attribute("ICCProfile:device_class", "Display device profile");
+    spec.attribute("Exif:Gamma", 2.2F);
+    spec.attribute("Exif:ColorSpace", 1);
+    spec.attribute("oiio:Gamma", 1.8F);
+    spec.attribute("oiio:ColorSpace", "Linear");
+    spec.attribute("colorInteropID", "lin_ap1_scene");
+    spec.attribute("dpx:Transfer", "Printing density");
+    const std::array<float, 8> xyz = {1, 0, 0, 1, 0, 0, 1 / 3.0F, 1 / 3.0F};
+    spec.attribute("chromaticities", TypeDesc(TypeDesc::FLOAT, 8), xyz.data());
+    spec.attribute("Copyright", "somebody");
+
+    for (const bool existing : {false, true}) {
+        ImageBuf dst;
+        if (existing) dst = src;
+        ASSERT_TRUE(tonemap(dst, src, hable()));
+        const ImageSpec& out = dst.spec();
+        for (const char* gone :
+             {"ICCProfile", "ICCProfile:device_class", "Exif:Gamma", "Exif:ColorSpace",
+              "oiio:Gamma", "colorInteropID", "dpx:Transfer", "chromaticities"}) {
+            EXPECT_EQ(out.find_attribute(gone), nullptr) << gone;
+        }
+        EXPECT_EQ(out.get_string_attribute("oiio:ColorSpace"), "sRGB");
+        EXPECT_EQ(out.get_string_attribute("Copyright"), "somebody");
+    }
+    EXPECT_NE(src.spec().find_attribute("ICCProfile"), nullptr);
+
+    const ImageBuf p3 = tonemap(src, {.op = "hable", .display = "display_p3"});
+    const auto* attribute = p3.spec().find_attribute("chromaticities");
+    ASSERT_NE(attribute, nullptr);
+    EXPECT_FLOAT_EQ(attribute->get_float_indexed(0), 0.680F);
+    EXPECT_FLOAT_EQ(attribute->get_float_indexed(7), 0.3290F);
+}
+
+}  // namespace
+}  // namespace tonewright

@@ -3,6 +3,7 @@
 // Picture files: whole or not at all, in both directions.
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imagebufalgo.h>
+#include <OpenImageIO/imagecache.h>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -60,7 +61,8 @@ class TemporaryFile {
 
     /// Writes the file's bytes. @returns  0 or an errno.
     [[nodiscard]] int fill(const std::vector<unsigned char>& bytes) const {
-        const int file = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        const int file =
+            ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
         if (file < 0) return errno;
         int error = 0;
         for (std::size_t done = 0; done < bytes.size() && !error;) {
@@ -135,6 +137,27 @@ std::vector<int> channels_to_write(const ImageSpec& spec, const OIIO::ImageOutpu
     return channels;
 }
 
+/// The part of a picture that a format can hold.
+ImageBuf fit_to_format(const ImageBuf& image, const OIIO::ImageOutput& out,
+                       const std::string& path) {
+    ImageBuf fitted = image;
+    const std::vector<int> channels = channels_to_write(image.spec(), out);
+    if (static_cast<int>(channels.size()) < image.nchannels()) {
+        fitted = OIIO::ImageBufAlgo::channels(image, static_cast<int>(channels.size()), channels);
+    }
+    // What a viewer shows of the picture is its display window. Formats that have none hold just
+    // that.
+    const OIIO::ROI window = fitted.roi_full();
+    const OIIO::ROI data = fitted.roi();
+    const bool same = window.xbegin == data.xbegin && window.xend == data.xend &&
+                      window.ybegin == data.ybegin && window.yend == data.yend;
+    if (!same && !out.supports("displaywindow")) {
+        fitted = OIIO::ImageBufAlgo::cut(fitted, window);
+    }
+    if (fitted.has_error()) cannot("write", path, first_line(fitted.geterror()));
+    return fitted;
+}
+
 void write_pixels(const ImageBuf& image, OIIO::ImageOutput& out, const fs::path& name,
                   OIIO::TypeDesc type, const std::string& path) {
     ImageSpec spec = image.spec();
@@ -205,26 +228,18 @@ void write_image_atomically(const ImageBuf& image, const std::string& path, OIIO
                                       : "the name has no extension that selects a format");
     }
 
-    const ImageBuf* source = &image;
-    ImageBuf subset;
-    const std::vector<int> channels = channels_to_write(image.spec(), *out);
-    if (static_cast<int>(channels.size()) < image.nchannels()) {
-        subset = OIIO::ImageBufAlgo::channels(image, static_cast<int>(channels.size()), channels);
-        if (subset.has_error()) cannot("write", path, first_line(subset.geterror()));
-        source = &subset;
-    }
-
+    const ImageBuf fitted = fit_to_format(image, *out, path);
     TemporaryFile temporary(target);
     if (out->supports("ioproxy")) {
         // OIIO's writers do not look whether their last bytes reached the disk (PNG at none), and
         // libjpeg ends the process when one did not. So they encode into memory, and we write.
         OIIO::Filesystem::IOVecOutput memory;
         out->set_ioproxy(&memory);
-        write_pixels(*source, *out, target.filename(), type, path);
+        write_pixels(fitted, *out, target.filename(), type, path);
         if (const int error = temporary.fill(memory.buffer()))
             cannot("write", path, reason_of(error));
     } else {
-        write_pixels(*source, *out, temporary.path(), type, path);
+        write_pixels(fitted, *out, temporary.path(), type, path);
         try {
             (void)read_image(temporary.path().string());  // the only proof that it is complete
         } catch (const FileError&) {
@@ -232,6 +247,10 @@ void write_image_atomically(const ImageBuf& image, const std::string& path, OIIO
         }
     }
     if (const int error = temporary.keep()) cannot("write", path, reason_of(error));
+    // Who reads the file through OIIO's shared cache gets the new one.
+    OIIO::ImageCache* cache = OIIO::ImageCache::create(true);
+    cache->invalidate(OIIO::ustring(path));
+    OIIO::ImageCache::destroy(cache);
 }
 
 OIIO::TypeDesc parse_pixel_type(std::string_view text) {

@@ -54,15 +54,19 @@ std::string readme(const std::vector<Row>& rows) {
         "* **`*_acescct_to_srgb_33.cube`** takes *ACEScct* (AP1 primaries) and gives sRGB code "
         "values: set the\n"
         "  timeline or the node before it to ACEScct. Use tetrahedral interpolation.\n"
-        "* **`*_log2_to_srgb.cube`** is one-dimensional: log2 of scene-linear Rec.709 over 0.18, "
-        "from -10\n"
-        "  to +6.5 stops, to sRGB code values. Per-channel operators only, and exact to about a "
-        "16-bit code.\n\n"
+        "* **`*_log2_to_srgb.cube`** takes log2 of scene-linear *Rec.709* over 0.18, from -10 to "
+        "+6.5 stops, and\n"
+        "  gives sRGB code values: 1D for operators that work on each channel alone, else a cube "
+        "of 33 points.\n\n"
         "Never feed a cube linear light: it clips at 1. Errors are in sRGB code values (1 code of "
         "8 bits is\n"
         "0.0039), against the double-precision operator, over everything that the input encoding "
-        "can hold;\n"
-        "colours of real pictures are mostly far inside the 99.9 % figure.\n\n"
+        "can hold. The\n"
+        "maxima of the ACEScct cubes are the most saturated colours of AP1, which Rec.709 "
+        "operators clip: the\n"
+        "kink falls between grid points. Pictures live near the mean. Where you can choose, take "
+        "the log2 file,\n"
+        "or the OpenColorIO config, which has a cube for one view only.\n\n"
         "| operator | file | input | output | max error | 99.9 % | mean "
         "|\n|---|---|---|---|---|---|---|\n";
     for (const Row& row : rows) {
@@ -100,10 +104,7 @@ std::vector<GeneratedFile> make_shipped_luts() {
     };
     for (const Operator& op : all_operators()) {
         add(op, "acescct", LutDimension::three, 33, op.id + "_acescct_to_srgb_33.cube");
-        if (is_per_channel(
-                build_view(make_view(resolve_operator(op.id), "lin_rec709", 0, "srgb")))) {
-            add(op, "log2", LutDimension::one, 4096, op.id + "_log2_to_srgb.cube");
-        }
+        add(op, "log2", LutDimension::automatic, std::nullopt, op.id + "_log2_to_srgb.cube");
     }
     files.push_back({"README.md", readme(rows)});
     files.push_back({"MANIFEST.csv", manifest(rows)});

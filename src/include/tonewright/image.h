@@ -120,8 +120,9 @@ bool tonemap(OIIO::ImageBuf& dst, const OIIO::ImageBuf& src, const TonemapOption
 /// Writes a picture under a temporary name beside `path` (`.<stem>.<pid>.<n>.tmp.<extension>`),
 /// syncs it to the disk and renames it: `path` holds the old file or the new one, never a part.
 ///
-/// Channels that the format cannot hold are left out: alpha, and those beyond color and alpha. The
-/// permissions of a file that is replaced stay; a symbolic link stays and its target is replaced.
+/// What the format cannot hold is left out: alpha, channels beyond color and alpha, and pixels
+/// outside the display window (which is filled up with black). The permissions of a file that is
+/// replaced stay; a symbolic link stays and its target is replaced.
 ///
 /// @param type        pixel type of the file; UNKNOWN: the buffer's, or what OIIO
 ///                    takes for it in this format (8 bits for a float picture as PNG or JPEG).

@@ -145,6 +145,28 @@ TEST_F(ImageFile, ChannelsThatAFormatCannotHoldAreLeftOut) {
     EXPECT_EQ(read_image(file("a.exr")).nchannels(), 5);
 }
 
+TEST_F(ImageFile, FormatsWithoutDisplayWindowHoldTheDisplayWindow) {
+    ImageSpec spec(10, 8, 3, TypeDesc::FLOAT);
+    spec.x = -2;
+    spec.y = 3;
+    spec.full_x = 1;
+    spec.full_y = 1;
+    spec.full_width = 20;
+    spec.full_height = 12;
+    ImageBuf picture(spec);
+    OIIO::ImageBufAlgo::fill(picture, {1.0F, 1.0F, 1.0F});
+    write_image_atomically(picture, file("a.png"));
+    const ImageBuf png = read_image(file("a.png"));
+    EXPECT_EQ(png.roi(), OIIO::ROI(0, 20, 0, 12, 0, 1, 0, 3));
+    EXPECT_EQ(png.getchannel(0, 1, 0, 0), 0);
+    EXPECT_EQ(png.getchannel(0, 2, 0, 0), 1);
+    EXPECT_EQ(png.getchannel(6, 2, 0, 0), 1);
+    EXPECT_EQ(png.getchannel(7, 2, 0, 0), 0);
+    write_image_atomically(picture, file("a.exr"));
+    EXPECT_EQ(read_image(file("a.exr")).roi(), picture.roi());
+    EXPECT_EQ(read_image(file("a.exr")).roi_full(), picture.roi_full());
+}
+
 TEST_F(ImageFile, FailedWriteLeavesTheOldFile) {
     const ImageBuf picture = make_picture();
     std::signal(SIGXFSZ, SIG_IGN);
@@ -279,6 +301,8 @@ TEST_F(ImageFile, ARewrittenFileIsReadAnew) {
         const ImageBuf read = read_image(file("a.exr"));
         EXPECT_EQ(read.getchannel(1, 1, 0, 0), value);
         EXPECT_FALSE(read.cachedpixels());
+        // Nor does the shared cache serve the old one.
+        EXPECT_EQ(ImageBuf(file("a.exr")).getchannel(1, 1, 0, 0), value);
     }
 }
 

@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Shared by the test scripts: pictures as NumPy arrays, the programs, and the report.
+
+Pixels travel through uncompressed float EXR, which is a header, a table and rows of numbers: oiiotool turns any
+picture into one, ffmpeg and tonewright read and write it, and every float survives, NaN and negatives included.
+"""
+
+import os
+import shutil
+import struct
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+
+SKIPPED = 77  # exit status that ctest counts as skipped
+PROJECT = Path(__file__).resolve().parents[3]
+
+# --------------------------------------------------------------------------------------------------
+# Report
+
+
+class Report:
+    """Prints one line per check and counts them. Errors are compared with a bound; NaN fails."""
+
+    def __init__(self):
+        self.passed = self.failed = 0
+
+    def check(self, what, ok, detail=""):
+        self.passed += bool(ok)
+        self.failed += not ok
+        print(f"{'ok  ' if ok else 'FAIL'} {what}" + (f"\n     {detail}" if detail and not ok else ""), flush=True)
+        return bool(ok)
+
+    def bound(self, what, error, bound, detail=""):
+        ok = bool(error <= bound)
+        return self.check(f"{what:72s} max {error:8.2g}  bound {bound:8.2g}  {error / bound:6.2f} x", ok, detail)
+
+    def compare(self, what, actual, expected, bound):
+        """Arrays of colours; a failure prints the worst one."""
+        if actual.shape != expected.shape:
+            return self.check(what, False, f"shape is {actual.shape}, expected {expected.shape}")
+        difference = np.abs(actual.astype(float) - expected)
+        error = difference.max(initial=0)
+        if error <= bound:
+            return self.bound(what, error, bound)
+        at = np.unravel_index(np.argmax(np.where(np.isnan(difference), np.inf, difference)), difference.shape)[:-1]
+        return self.bound(what, error, bound, f"at {tuple(map(int, at))}: is {actual[at]}, expected {expected[at]}")
+
+    def finish(self):
+        """The last line; returns the exit status."""
+        print(f"{self.passed} passed, {self.failed} failed")
+        return 1 if self.failed else 0
+
+
+def skip(reason):
+    """Ends the whole script as skipped."""
+    print(f"skipped: {reason}")
+    sys.exit(SKIPPED)
+
+
+def need_program(name, package):
+    if not shutil.which(name):
+        skip(f"{name} is not installed (Debian: {package})")
+
+
+# --------------------------------------------------------------------------------------------------
+# Programs
+
+
+def run(*arguments, folder=None, stdin=None):
+    """Output of a program that must succeed; raises RuntimeError with what it said."""
+    arguments = [str(a) for a in arguments]
+    done = subprocess.run(arguments, cwd=folder, input=stdin, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise RuntimeError(f"exit {done.returncode}: {' '.join(arguments)}: {(done.stderr or done.stdout).strip()}")
+    return done.stdout
+
+
+def evaluate(command, rgb, *arguments):
+    """Colours (n, 3) through `tonewright eval`."""
+    text = "".join(f"{r!r} {g!r} {b!r}\n" for r, g, b in np.asarray(rgb, float).tolist())
+    out = run(command, "eval", *arguments, stdin=text)
+    return np.array(out.split(), float).reshape(-1, 3)
+
+
+def views(command):
+    """(operator, its view in the config) of every operator."""
+    return [tuple(line.split("\t")) for line in run(command, "list", "--views").splitlines()]
+
+
+def shared_picture(name):
+    """A picture of the project's collection of real HDR pictures, or None: it is not part of the sources.
+
+    The folder is $TONEWRIGHT_SHARED, or ../shared beside the project.
+    """
+    folder = Path(os.environ.get("TONEWRIGHT_SHARED") or PROJECT.parent / "shared")
+    path = folder / "data" / "hdr" / name
+    if path.is_file():
+        return path
+    print(f"skipped: {name} (TONEWRIGHT_SHARED names no folder that holds data/hdr/{name})")
+    return None
+
+
+# --------------------------------------------------------------------------------------------------
+# Pictures
+
+EXR_MAGIC = struct.pack("<ii", 20000630, 2)  # version 2, one part, scanlines
+EXR_FLOAT = 2
+
+
+def write_exr(path, planes):
+    """An uncompressed float EXR of named planes: {"R": (height, width) array, ...}."""
+    names = sorted(planes)  # the order that the format demands
+    height, width = planes[names[0]].shape
+    channels = b"".join(n.encode() + b"\0" + struct.pack("<iiii", EXR_FLOAT, 0, 1, 1) for n in names) + b"\0"
+    window = struct.pack("<iiii", 0, 0, width - 1, height - 1)
+    header = b""
+    for name, kind, value in [("channels", "chlist", channels), ("compression", "compression", b"\0"),
+                              ("dataWindow", "box2i", window), ("displayWindow", "box2i", window),
+                              ("lineOrder", "lineOrder", b"\0"), ("pixelAspectRatio", "float", struct.pack("<f", 1)),
+                              ("screenWindowCenter", "v2f", struct.pack("<ff", 0, 0)),
+                              ("screenWindowWidth", "float", struct.pack("<f", 1))]:
+        header += name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(value)) + value
+    rows = np.zeros(height, exr_row(len(names), width))
+    rows["y"] = np.arange(height)
+    rows["size"] = rows.dtype.itemsize - 8
+    for i, name in enumerate(names):
+        rows["pixels"][:, i] = planes[name]
+    start = len(EXR_MAGIC) + len(header) + 1 + 8 * height
+    offsets = start + np.arange(height, dtype="<u8") * rows.dtype.itemsize
+    Path(path).write_bytes(EXR_MAGIC + header + b"\0" + offsets.tobytes() + rows.tobytes())
+
+
+def exr_row(channels, width):
+    return np.dtype([("y", "<i4"), ("size", "<i4"), ("pixels", "<f4", (channels, width))])
+
+
+def read_exr(path):
+    """Planes of an uncompressed float scanline EXR, as write_exr takes them."""
+    data = Path(path).read_bytes()
+    if data[:8] != EXR_MAGIC:
+        raise ValueError(f"{path}: no EXR of one part and scanlines")
+    at, header = 8, {}
+
+    def text(at):
+        end = data.index(b"\0", at)
+        return data[at:end].decode(), end + 1
+
+    while data[at]:
+        name, at = text(at)
+        _, at = text(at)
+        size, = struct.unpack_from("<i", data, at)
+        header[name] = at + 4
+        at += 4 + size
+    names, entry = [], header["channels"]
+    while data[entry]:
+        name, entry = text(entry)
+        if struct.unpack_from("<iiii", data, entry)[::2] != (EXR_FLOAT, 1):
+            raise ValueError(f"{path}: channel {name} is no float of full resolution")
+        names.append(name)
+        entry += 16
+    if data[header["compression"]]:
+        raise ValueError(f"{path}: compressed")
+    x0, y0, x1, y1 = struct.unpack_from("<iiii", data, header["dataWindow"])
+    width, height = x1 - x0 + 1, y1 - y0 + 1
+    rows = np.frombuffer(data, exr_row(len(names), width), height, at + 1 + 8 * height)
+    if not (rows["y"] == np.arange(y0, y1 + 1)).all():
+        raise ValueError(f"{path}: rows are not in order")
+    return {name: rows["pixels"][:, i] for i, name in enumerate(names)}
+
+
+def read_planes(path, scratch):
+    """Planes of any picture that OpenImageIO reads; integers become 0..1. No colour conversion takes place."""
+    plain = Path(scratch) / (Path(path).name + ".plain.exr")
+    run("oiiotool", path, "-d", "float", "--compression", "none", "-o", plain)
+    planes = read_exr(plain)
+    plain.unlink()
+    return planes
+
+
+def stack(planes, names="RGB"):
+    """(height, width, 3) of planes R, G, B."""
+    return np.stack([planes[n] for n in names], axis=-1)
+
+
+def read_rgb(path, scratch):
+    return stack(read_planes(path, scratch))
+
+
+def unstack(rgb, names="RGB"):
+    return {name: rgb[..., i] for i, name in enumerate(names)}

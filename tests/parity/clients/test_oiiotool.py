@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: Apache-2.0
+"""oiiotool with the OpenColorIO config against `tonewright apply`: the same picture from both, for every operator.
+
+    python3 tests/parity/clients/test_oiiotool.py build/release/bin/tonewright
+
+Real pictures join the test chart where they are found, see pictures.shared_picture; a config that is committed as
+ocio_config/ in the working directory is tried as well. The last line is `N passed, M failed`.
+"""
+
+import argparse
+import os
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+
+from pictures import (Report, need_program, read_exr, read_planes, read_rgb, run, shared_picture, skip,
+                      stack, unstack, views, write_exr)
+
+# `apply` runs the SIMD engine, which may be 1e-6 from the double reference, and a chain of matrices, ranges and
+# half-domain curves in OpenColorIO may be 3e-7 from it: code values, on the other side of the reference at worst.
+EXACT = 3e-7 + 1e-6
+# Where it has to sample an operator into a 65^3 cube, it is held to one code of 10 bits.
+CUBE = 1 / 1023 + 1e-6
+
+
+def bound_of(config, operator):
+    return CUBE if list(config.parent.glob(f"luts/{operator}_cube*")) else EXACT
+
+
+def through_oiiotool(config, picture, display, view, out):
+    """The command that users type. No `from=`: the picture's own space is found by the name that OIIO gives it.
+
+    --ch R,G,B first: oiiotool converts colour that is multiplied by alpha as if it were not, and OIIO changes channels
+    behind alpha (0.5 + 10 v).
+    """
+    run("oiiotool", picture, "--ch", "R,G,B", "--colorconfig", config, "--ociodisplay", display, view,
+        "-d", "float", "--compression", "none", "-o", out)
+    return stack(read_exr(out))
+
+
+def through_apply(command, picture, operator, out, *options):
+    run(command, "apply", picture, out, "--operator", operator, "-d", "float", *options)
+    return read_rgb(out, Path(out).parent)
+
+
+def compare_views(report, command, config, picture, scratch, jobs, what=""):
+    """Each of jobs, (operator, view, display option, display name); as many at a time as there are cores."""
+
+    def both(job):
+        operator, view, option, display = job
+        out = scratch / f"{picture.stem}.{operator}.{option}"
+        shown = through_oiiotool(config, picture, display, view, f"{out}.oiiotool.exr")
+        # --no-unpremult: what oiiotool does, see above.
+        return shown, through_apply(command, picture, operator, f"{out}.apply.exr", "--no-unpremult",
+                                    "--display", option)
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        for (operator, _, option, _), (shown, applied) in zip(jobs, pool.map(both, jobs)):
+            report.compare(f"{what or picture.name} {option} {operator}", shown, applied, bound_of(config, operator))
+
+
+def check_alpha(report, command, config, picture, scratch):
+    """Premultiplied colour: `--ociodisplay:unpremult=1` divides by alpha, and `apply` does it on its own."""
+    out = scratch / "alpha.exr"
+    run("oiiotool", picture, "--colorconfig", config, "--ociodisplay:unpremult=1", "sRGB", "Hable",
+        "-d", "float", "--compression", "none", "-o", out)
+    shown = read_exr(out)
+    run(command, "apply", picture, out, "--operator", "hable", "-d", "float")
+    applied = read_planes(out, scratch)
+    report.compare(f"{picture.name} with alpha", stack(shown, "RGBA"), stack(applied, "RGBA"), EXACT)
+
+
+def check_negatives(report, command, config, scratch):
+    """Colours outside the display's gamut, NaN and infinities: both forms give the same finite picture."""
+    rng = np.random.default_rng(7)
+    rgb = (0.18 * 2.0 ** rng.uniform(-8, 8, (64, 64, 3)) * rng.choice([-1, 1], (64, 64, 3), p=[0.2, 0.8]))
+    rgb = rgb.astype(np.float32)
+    rgb[0, 0], rgb[0, 1], rgb[0, 2] = (np.nan, 0.18, 1), (np.inf, 0.18, -np.inf), (0.18, np.nan, np.inf)
+    write_exr(scratch / "special.exr", unstack(rgb))
+    for operator, view in (("hable", "Hable"), ("agx_sobotka", "AgX Sobotka")):
+        shown = through_oiiotool(config, scratch / "special.exr", "sRGB", view, scratch / "s.exr")
+        applied = through_apply(command, scratch / "special.exr", operator, scratch / "a.exr")
+        report.compare(f"negatives, NaN, infinities {operator}", shown, applied, EXACT)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("command", type=Path)
+    command = parser.parse_args().command.resolve()
+    need_program("oiiotool", "openimageio-tools")
+    if "OpenColorIO" not in run("oiiotool", "--help"):
+        skip("oiiotool was built without OpenColorIO")
+    report = Report()
+    with tempfile.TemporaryDirectory(prefix="tonewright-") as folder:
+        scratch = Path(folder)
+        run(command, "config", "-o", scratch / "config")
+        config = scratch / "config" / "config.ocio"
+        chart = scratch / "chart.exr"
+        run(command, "chart", "-o", chart, "--width", 768, "--height", 432)
+        jobs = [(operator, view, "srgb", "sRGB") for operator, view in views(command)]
+        extra = [("agx_sobotka", "AgX Sobotka", "display_p3", "Display P3")]
+        compare_views(report, command, config, chart, scratch, jobs + extra)
+        for name in ("memorial.hdr", "Desk.exr"):
+            picture = shared_picture(name)
+            if picture:
+                compare_views(report, command, config, picture, scratch, jobs)
+        check_negatives(report, command, config, scratch)
+
+        alpha = np.linspace(0, 1, 256, dtype=np.float32).reshape(16, 16)
+        ramp = alpha[..., None] * np.array([0.18, 1, 6], np.float32)
+        write_exr(scratch / "ramp.exr", {**unstack(ramp), "A": alpha})
+        check_alpha(report, command, config, scratch / "ramp.exr", scratch)
+        glow = shared_picture("CandleGlass.exr")  # light where alpha is 0: a flame
+        if glow:
+            check_alpha(report, command, config, glow, scratch)
+
+        committed = Path("ocio_config/config.ocio")
+        if committed.is_file():
+            compare_views(report, command, committed.resolve(), chart, scratch, jobs, "committed config, chart")
+        else:
+            print(f"skipped: {committed} (not here)")
+    return report.finish()
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The OpenColorIO config of `tonewright config`: what applications demand of it, and its numbers.
+
+    python3 tests/parity/test_config.py build/release/bin/tonewright SOURCE_DIR
+
+The views' own numbers are `tonewright verify`; here they go through check_config.py, the script for users. The last
+line is `N passed, M failed`.
+"""
+
+import argparse
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parent / "clients"))
+from pictures import Report, need_program, run, skip, views  # noqa: E402
+
+try:
+    import PyOpenColorIO as ocio
+except ImportError:
+    skip("PyOpenColorIO is not installed (Debian: python3-pyopencolorio)")
+
+# Roles that applications look up: OCIO itself and the two interchange spaces, Blender, Nuke and Natron, RV.
+ROLES = ["aces_interchange", "cie_xyz_d65_interchange", "default", "reference", "scene_linear", "rendering", "data",
+         "color_picking", "color_timing", "compositing_log", "matte_paint", "texture_paint", "default_byte",
+         "default_float", "default_sequencer"]
+# Names that scripts and files use, and the space that each must find: what OpenImageIO calls every EXR and every HDR,
+# the names of Blender 3 and of the ACES configs, the ids of the colour interop forum.
+ALIASES = {"Linear": "Linear Rec.709 (sRGB)", "linear": "Linear Rec.709 (sRGB)", "lin_srgb": "Linear Rec.709 (sRGB)",
+           "Linear Rec.709": "Linear Rec.709 (sRGB)", "lin_rec709_scene": "Linear Rec.709 (sRGB)",
+           "Utility - Linear - sRGB": "Linear Rec.709 (sRGB)", "lin_ap1": "ACEScg", "ACES - ACEScg": "ACEScg",
+           "lin_ap0": "ACES2065-1", "lin_rec2020": "Linear Rec.2020", "lin_p3d65": "Linear P3-D65",
+           "srgb_tx": "sRGB - Texture", "Raw": "Non-Color", "Utility - Raw": "Non-Color", "sRGB": "sRGB - Display",
+           "Rec.1886": "Rec.1886 - Display"}
+# space of the config -> primaries in python_check/operators.py
+LINEAR = {"Linear Rec.709 (sRGB)": "rec709", "ACEScg": "ap1", "ACES2065-1": "ap0", "Linear Rec.2020": "rec2020",
+          "Linear P3-D65": "p3d65", "Linear FilmLight E-Gamut": "egamut"}
+# FilmLight E-Gamut, 2018: the one space that no operator there needs.
+EGAMUT = ((0.8, 0.3177), (0.18, 0.9), (0.065, -0.0805), (0.3127, 0.3290))
+NAME_BYTES = 63  # Blender's limit
+# Float32: one product of matrices with entries up to 2.
+MATRIX = 1e-6
+# Two half-domain tables and two matrices in float32.
+ROUND_TRIP = 1e-6
+
+
+def check_ociocheck(report, path):
+    need_program("ociocheck", "opencolorio-tools")
+    done = subprocess.run(["ociocheck", "--iconfig", path], capture_output=True, text=True, check=False)
+    lines = (done.stdout + done.stderr).splitlines()
+    bad = [line for line in lines if re.search("warn|error|fail", line, re.I)]
+    report.check("ociocheck passes", done.returncode == 0 and "passed" in lines, lines[-3:])
+    report.check("ociocheck has no warning", not bad, bad[:3])
+
+
+def check_names(report, config):
+    spaces = list(config.getColorSpaces(ocio.SEARCH_REFERENCE_SPACE_ALL, ocio.COLORSPACE_ALL))
+    view_names = [view for display in config.getDisplays() for view in config.getViews(display)]
+    names = [n for s in spaces for n in [s.getName(), *s.getAliases()]]
+    all_names = [*names, *view_names, *config.getDisplays(), *config.getRoleNames(), *config.getViewTransformNames()]
+    long = [n for n in all_names if len(n.encode()) > NAME_BYTES]
+    report.check(f"names have at most {NAME_BYTES} bytes", not long, long[:3])
+    twice = {n for n in names if [m.lower() for m in names].count(n.lower()) > 1}
+    report.check("no name of a space is there twice", not twice, sorted(twice)[:3])
+    roles = {r.lower() for r in config.getRoleNames()}
+    shadowed = [n for n in names if n.lower() in roles]
+    report.check("no name of a space is a role", not shadowed, shadowed)
+    missing = [r for r in ROLES if not config.hasRole(r)]
+    report.check(f"{len(ROLES)} roles of applications", not missing, missing)
+    wrong = [n for n in ALIASES if config.getCanonicalName(n) != ALIASES[n]]
+    report.check(f"{len(ALIASES)} names of others are found", not wrong,
+                 [f"{n} is {config.getCanonicalName(n) or 'unknown'}, expected {ALIASES[n]}" for n in wrong])
+    no_text = [s.getName() for s in spaces if not s.getDescription() or not s.getEncoding() or not s.getFamily()]
+    report.check("spaces have description, encoding and family", not no_text, no_text)
+
+
+def check_views(report, config, expected):
+    """Every operator on every display, shown through a view transform, and every processor can be built."""
+    displays = list(config.getDisplays())
+    report.check("the first display is sRGB", displays[0] == "sRGB" == config.getDefaultDisplay(), displays)
+    missing, direct, broken, count = [], [], [], 0
+    for display in displays:
+        names = list(config.getViews(display))
+        missing += [f"{display}: {view}" for view in expected if view not in names]
+        for view in names:
+            count += 1
+            if not config.getDisplayViewTransformName(display, view) and view != "Raw":
+                direct.append(f"{display}: {view}")
+            try:
+                processor = config.getProcessor("Linear Rec.709 (sRGB)", display, view, ocio.TRANSFORM_DIR_FORWARD)
+                shown = processor.getDefaultCPUProcessor().applyRGB([0.18, 0.18, 0.18])
+                if not all(0 <= v <= 1 for v in shown):
+                    broken.append(f"{display}: {view}: grey is {shown}")
+            except ocio.Exception as error:
+                broken.append(f"{display}: {view}: {error}")
+    report.check("every operator is a view of every display", not missing, missing[:3])
+    report.check("every view but Raw has a view transform", not direct, direct[:3])
+    report.check(f"{count} processors, all display-referred grey", not broken, broken[:3])
+
+
+def check_files(report, folder):
+    names = sorted(p.name for p in (folder / "luts").iterdir())
+    odd = [n for n in names if not re.fullmatch(r"[a-z0-9_]+_[0-9a-f]{8}\.clf", n)]
+    report.check(f"{len(names)} LUT files have plain ASCII names that end in a hash", names and not odd, odd)
+    text = (folder / "config.ocio").read_text()
+    used = set(re.findall(r"src: ([^,}]+)", text))
+    report.check("the config names these files and no others", used == set(names), used ^ set(names))
+    report.check("every interpolation is linear or tetrahedral",
+                 set(re.findall(r"interpolation: (\w+)", text)) <= {"linear", "tetrahedral"})
+    cubes = {m for m in re.findall(r"src: (\w*_cube\w*\.clf), interpolation: (\w+)", text) if m[1] != "tetrahedral"}
+    report.check("cubes are tetrahedral", not cubes, cubes)
+    listed = [line.split(",")[0] for line in (folder / "MANIFEST.csv").read_text().splitlines()[1:]]
+    report.check("MANIFEST.csv lists them", sorted(listed) == sorted("luts/" + n for n in names))
+
+
+def apply(config, source, target, rgb):
+    image = np.ascontiguousarray(rgb, np.float32)
+    config.getProcessor(source, target).getOptimizedCPUProcessor(ocio.OPTIMIZATION_LOSSLESS).applyRGB(image)
+    return image
+
+
+def check_spaces(report, config, operators):
+    operators.PRIMARIES["egamut"] = EGAMUT
+    linear = {s.getName() for s in config.getColorSpaces() if s.getEncoding() == "scene-linear"}
+    report.check("linear spaces", linear == set(LINEAR), linear ^ set(LINEAR))
+    unit = np.eye(3)
+    for space, primaries in LINEAR.items():
+        matrix = apply(config, space, "aces_interchange", unit).T
+        report.bound(f"{space} to ACES2065-1", np.abs(matrix - operators.rgb_to_rgb(primaries, "ap0")).max(), MATRIX)
+    rng = np.random.default_rng(11)
+    greys = np.repeat(np.arange(256)[:, None] / 255, 3, axis=1)
+    colours = rng.random((4096, 3))
+    spaces = [(display, "cie_xyz_d65_interchange") for display in config.getDisplays()]
+    for space, reference in [*spaces, ("sRGB - Texture", "aces_interchange")]:
+        back = apply(config, reference, space, apply(config, space, reference, greys))
+        report.compare(f"{space}: grey codes to the reference and back", back, greys, ROUND_TRIP)
+        # A dark channel of a bright colour is what the matrix leaves of numbers near 1, and its code, where the
+        # display's curve is steep, shows that: such colours come back as the same light.
+        light = apply(config, space, reference, colours)
+        again = apply(config, space, reference, apply(config, reference, space, light))
+        report.compare(f"{space}: light of colours to codes and back", again, light, ROUND_TRIP)
+    # Without an operator sRGB is what IEC 61966-2-1 says, not OCIO's own curve, which is 1e-5 off.
+    light = operators.sanitise(rng.random((4096, 3)))
+    encoded = apply(config, "Linear Rec.709 (sRGB)", "sRGB - Texture", light)
+    report.compare("sRGB - Texture of linear light", encoded, operators.srgb_encode(light.astype(np.float32)),
+                   ROUND_TRIP)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("command", type=Path)
+    parser.add_argument("source_dir", type=Path)
+    arguments = parser.parse_args()
+    sys.path.insert(0, str(arguments.source_dir / "python_check"))
+    import check_config
+    import operators
+
+    report = Report()
+    with tempfile.TemporaryDirectory(prefix="tonewright-") as scratch:
+        folder = Path(scratch) / "config"
+        run(arguments.command.resolve(), "config", "-o", folder)
+        path = folder / "config.ocio"
+        check_ociocheck(report, path)
+        config = ocio.Config.CreateFromFile(str(path))
+        report.check("profile 2.1", (config.getMajorVersion(), config.getMinorVersion()) == (2, 1))
+        check_names(report, config)
+        check_views(report, config, [view for _, view in views(arguments.command.resolve())])
+        check_files(report, folder)
+        check_spaces(report, config, operators)
+        report.check("check_config.py", check_config.main([str(path)]) == 0)
+        report.check("check_config.py without a config", check_config.main([str(folder / "none.ocio")]) == 2)
+    return report.finish()
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -180,9 +180,13 @@ OCIO::ColorSpaceRcPtr make_space(const ConfigModel::Space& space, LutFiles& luts
             break;
         case Kind::display: {
             const Matrix3 to_xyz = rgb_to_xyz_d65(*space.primaries);
-            set({curve_stage(space.display->decode), MatrixStage{to_xyz}},
-                {MatrixStage{inverse(to_xyz)}, curve_stage(space.display->encode)},
-                space.display->id);
+            Pipeline from = {MatrixStage{inverse(to_xyz)}};
+            // A pure power has no value below 0, and its table is finest where light is limited: twice
+            // the display's white leaves room for what an application does with its result.
+            const bool has_negatives = evaluate(space.display->encode, -1.0) != 0;
+            if (!has_negatives) from.push_back(ClampStage{0, 2});
+            from.push_back(curve_stage(space.display->encode));
+            set({curve_stage(space.display->decode), MatrixStage{to_xyz}}, from, space.display->id);
             break;
         }
         case Kind::data:

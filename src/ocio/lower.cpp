@@ -207,15 +207,34 @@ class Lowering {
 
     void flush_curves() {
         if (!pending_) return;
-        const std::array<Expr, 3> f = *pending_;
+        std::array<Expr, 3> f = *pending_;
         pending_.reset();
+        Domain domain = domain_;
+        // Where the slope at black is infinite (the power of a display), the first cells of a table
+        // over half floats are too coarse. Their exponents go much further below 1 than above what
+        // this curve is given, so the curve moves up: a power of two loses nothing.
+        const double gain = std::exp2(std::floor(std::log2(kHalfMax / domain.hi)));
+        if (domain.lo >= 0 && gain > 1 && is_steep_at_black(f)) {
+            emit(make_matrix(scale(kIdentity3, gain)), "scale");
+            const Expr scaled = Expr::input() / gain;
+            for (Expr& channel : f) channel = substitute(channel, std::span(&scaled, 1));
+            domain = {domain.lo * gain, domain.hi * gain};
+        }
         std::array<std::vector<float>, 3> tables;
         for (std::size_t c = 0; c < 3; ++c) {
             const bool known = c > 0 && same(f[c], f[0]);
-            tables[c] = known ? tables[0] : sample_half_domain(f[c], domain_.lo, domain_.hi);
+            tables[c] = known ? tables[0] : sample_half_domain(f[c], domain.lo, domain.hi);
         }
         emit(make_half_lut(tables), "half LUT");
         domain_ = {};
+    }
+
+    static bool is_steep_at_black(const std::array<Expr, 3>& f) {
+        constexpr double kSmallestHalf = 0x1p-24;
+        constexpr double kSteep = 64;  // sRGB has 12.92, a 2.2 power 5000
+        return std::any_of(f.begin(), f.end(), [&](const Expr& channel) {
+            return evaluate(derivative(channel), kSmallestHalf) > kSteep;
+        });
     }
 
     LowerOptions options_;

@@ -177,7 +177,7 @@ ConfigModel make_config_model() {
                                 display.title + kDisplaySuffix,
                                 aliases,
                                 "Display",
-                                display.source + ". Not limited: the views are.",
+                                display.source + ". Light above white is not limited here (pure powers: up to 2); views are.",
                                 "sdr-video",
                                 {"file-io"},
                                 &display.primaries,

@@ -72,7 +72,7 @@ struct Bounds {
     bool is_mixed_metric = false;
 };
 
-Bounds bounds_of(const Pipeline& pipeline) {
+Bounds bounds_of(const Pipeline& pipeline, const Display& display) {
     Bounds b;
     for (const Stage& stage : simplify(pipeline)) {
         if (const auto* m = std::get_if<MatrixStage>(&stage); m && has_negative_coefficient(m->m)) {
@@ -89,6 +89,12 @@ Bounds bounds_of(const Pipeline& pipeline) {
             b.cpu = std::max(b.cpu, 1.0 / 1023);  // 65^3 cube: one code of 10 bits
             b.gpu = std::max(b.gpu, 1.0 / 1023);
         }
+    }
+    // The bounds are for sRGB, whose slope at black is 12.92: there they are bounds on light. The same
+    // light is a larger code value on a display whose power has an infinite slope at black.
+    for (double* bound : {&b.cpu, &b.gpu}) {
+        const double near_black = evaluate(display.encode, *bound / 12.92) - evaluate(display.encode, 0.0);
+        *bound = std::max(*bound, near_black);
     }
     return b;
 }
@@ -230,7 +236,7 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
     for (const View& view : views) {
         const Pipeline pipeline = build_view(view);
         const Comparison comparison(view, probes);
-        const Bounds bounds = bounds_of(pipeline);
+        const Bounds bounds = bounds_of(pipeline, find_display(view.display));
         const auto add = [&](const std::string& form, double bound, bool mixed,
                              const std::string& lowering, const auto& run) {
             ParityRow row;

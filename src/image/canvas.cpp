@@ -66,7 +66,7 @@ void Canvas::text(std::string_view text, double x, double baseline, double cap_h
     }
 }
 
-OIIO::ImageBuf Canvas::to_image(OIIO::TypeDesc type) const {
+OIIO::ImageBuf Canvas::to_image(const OIIO::TypeDesc& type) const {
     OIIO::ImageBuf image(OIIO::ImageSpec(width_, height_, 3, type), OIIO::InitializePixels::No);
     image.set_pixels(image.roi(), OIIO::TypeFloat, pixels_.data());
     return image;

@@ -54,7 +54,7 @@ class Canvas {
               Align align = Align::left);
 
     /// The picture in the given pixel type, R, G, B.
-    [[nodiscard]] OIIO::ImageBuf to_image(OIIO::TypeDesc type) const;
+    [[nodiscard]] OIIO::ImageBuf to_image(const OIIO::TypeDesc& type) const;
 
   private:
     int width_;

@@ -155,8 +155,9 @@ void draw_color_checker(Sheet& sheet, double left, double top, double bottom) {
         Vector3 linear{};
         for (std::size_t c = 0; c < 3; ++c)
             linear[c] = evaluate(decode, kColorChecker[i][c] / 255.0);
+        const std::size_t row = i / 6;
         const double x = left + static_cast<double>(i % 6) * step_x;
-        const double y = top + static_cast<double>(i / 6) * step_y;
+        const double y = top + static_cast<double>(row) * step_y;
         sheet.fill(x + 3, y + 3, x + step_x - 3, y + step_y - 3, rgb_of(linear));
     }
 }

@@ -5,8 +5,8 @@
 #include "image/chart_scene.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <numbers>
 
 namespace tonewright {
 namespace {
@@ -57,6 +57,7 @@ const std::array<Sphere, 9> kSpheres = {{
 }};
 
 const Vec kToKey = normalize({-0.55, 0.95, -0.75});
+/// What a white matt surface sends on, facing the key light; and under the open sky.
 const Vec kKey = {2.3, 2.15, 1.9};
 const Vec kSky = {0.05, 0.065, 0.09};
 
@@ -198,7 +199,8 @@ void draw_spheres(Canvas& canvas, int x0, int y0, int x1, int y1) {
         Vec sum{};
         for (int i = 0; i < kSamples * kSamples; ++i) {
             const double du = ((i % kSamples + 0.5) / kSamples - 0.5) / width;
-            const double dv = ((i / kSamples + 0.5) / kSamples - 0.5) / height;
+            const int row = i / kSamples;
+            const double dv = ((row + 0.5) / kSamples - 0.5) / height;
             const double sx = (2 * (u + du) - 1) * zoom * aspect;
             const double sy = (1 - 2 * (v + dv)) * zoom;
             sum = sum + trace(eye, normalize(forward + sx * right + sy * up), 2);

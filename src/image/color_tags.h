@@ -7,8 +7,8 @@
 
 namespace tonewright {
 
-/// Makes the metadata say what a picture holds after `view`: sets `oiio:ColorSpace` (with
-/// `oiio:Gamma` and `chromaticities` where they belong to it), and removes whatever described the
+/// Makes the metadata say what a picture holds after `view`: sets `oiio:ColorSpace`, and
+/// `chromaticities` where they are not those of Rec.709, and removes whatever described the
 /// source's colors.
 void tag_as_result_of(const View& view, OIIO::ImageSpec& spec);
 

@@ -66,7 +66,8 @@ ImageBuf shrink(const ImageBuf& picture, const Size& size) {
     };
     const int channels = picture.nchannels();
     OIIO::ImageBufAlgo::parallel_image(light.roi(), [&](ROI part) {
-        std::vector<float> row(static_cast<std::size_t>(window.width() * channels));
+        std::vector<float> row(static_cast<std::size_t>(window.width()) *
+                               static_cast<std::size_t>(channels));
         for (int y = part.ybegin; y < part.yend; ++y) {
             ROI line = window;
             line.ybegin = window.ybegin + y;
@@ -75,7 +76,7 @@ ImageBuf shrink(const ImageBuf& picture, const Size& size) {
             picture.get_pixels(line, OIIO::TypeFloat, row.data());
             auto* to = static_cast<float*>(light.pixeladdr(0, y));
             for (int i = 0; i < window.width(); ++i) {
-                const float* from = &row[static_cast<std::size_t>(i * channels)];
+                const float* from = row.data() + static_cast<std::ptrdiff_t>(i) * channels;
                 for (int c = 0; c < 3; ++c)
                     to[3 * i + c] = from[channels < 3 ? 0 : c];
             }
@@ -128,8 +129,9 @@ ImageBuf make_contact_sheet(const std::vector<std::pair<std::string, ImageBuf>>&
     int height = margin;
     for (int r = 0; r < rows; ++r) {
         int tallest = 1;
-        for (int c = 0; c < columns && r * columns + c < static_cast<int>(sizes.size()); ++c) {
-            tallest = std::max(tallest, sizes[static_cast<std::size_t>(r * columns + c)].height);
+        const int end = std::min((r + 1) * columns, static_cast<int>(sizes.size()));
+        for (int i = r * columns; i < end; ++i) {
+            tallest = std::max(tallest, sizes[static_cast<std::size_t>(i)].height);
         }
         row_top.push_back(height);
         row_height.push_back(tallest);

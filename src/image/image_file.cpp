@@ -17,7 +17,9 @@
 #include <filesystem>
 #include <memory>
 #include <numeric>
+#include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "image/message.h"
 #include "tonewright/image.h"
@@ -137,36 +139,45 @@ std::vector<int> channels_to_write(const ImageSpec& spec, const OIIO::ImageOutpu
     return channels;
 }
 
-/// The part of a picture that a format can hold.
-ImageBuf fit_to_format(const ImageBuf& image, const OIIO::ImageOutput& out,
-                       const std::string& path) {
-    ImageBuf fitted = image;
+/// A picture as a format can hold it: `image`, or a changed copy that is put into `storage`.
+const ImageBuf& fit_to_format(const ImageBuf& image, const OIIO::ImageOutput& out,
+                              ImageBuf& storage, const std::string& path) {
+    const ImageBuf* fitted = &image;
+    const auto change = [&](ImageBuf&& changed) {
+        if (changed.has_error()) cannot("write", path, first_line(changed.geterror()));
+        storage = std::move(changed);
+        fitted = &storage;
+    };
     const std::vector<int> channels = channels_to_write(image.spec(), out);
-    if (static_cast<int>(channels.size()) < image.nchannels()) {
-        fitted = OIIO::ImageBufAlgo::channels(image, static_cast<int>(channels.size()), channels);
-    }
-    // What a viewer shows of the picture is its display window. Formats that have none hold just
+    const int count = static_cast<int>(channels.size());
+    if (count < image.nchannels()) change(OIIO::ImageBufAlgo::channels(image, count, channels));
+
+    // What a viewer shows of a picture is its display window. Formats that have none hold just
     // that.
-    const OIIO::ROI window = fitted.roi_full();
-    const OIIO::ROI data = fitted.roi();
+    const OIIO::ROI window = fitted->roi_full();
+    const OIIO::ROI data = fitted->roi();
     const bool same = window.xbegin == data.xbegin && window.xend == data.xend &&
                       window.ybegin == data.ybegin && window.yend == data.yend;
     if (!same && !out.supports("displaywindow")) {
-        fitted = OIIO::ImageBufAlgo::cut(fitted, window);
+        change(OIIO::ImageBufAlgo::cut(*fitted, window));
     }
-    if (fitted.has_error()) cannot("write", path, first_line(fitted.geterror()));
-    return fitted;
+
+    // PNG wants color that is not multiplied by alpha. OIIO's writer divides integers, rounding
+    // down, and for "Gamma2.2" and its like it divides by a power of alpha: 0.25 of 0.5 becomes 1.
+    const ImageSpec& spec = fitted->spec();
+    if (std::string_view(out.format_name()) == "png" && spec.alpha_channel >= 0 &&
+        spec.get_int_attribute("oiio:UnassociatedAlpha", 0) == 0) {
+        ImageBuf divided = fitted->copy(OIIO::TypeFloat);
+        OIIO::ImageBufAlgo::unpremult(divided, divided);
+        divided.specmod().attribute("oiio:UnassociatedAlpha", 1);
+        change(std::move(divided));
+    }
+    return *fitted;
 }
 
-void write_pixels(const ImageBuf& image, OIIO::ImageOutput& out, const fs::path& name,
-                  OIIO::TypeDesc type, const std::string& path) {
-    ImageSpec spec = image.spec();
-    spec.tile_width = spec.tile_height = spec.tile_depth = 0;  // those of the file it came from
-    spec.channelformats.clear();
-    if (type != OIIO::TypeUnknown) {
-        spec.set_format(type);
-        spec.erase_attribute("oiio:BitsPerSample");  // would overrule the type
-    }
+/// @param name  for the writer, which opens it where it has no memory to write to.
+void write_pixels(const ImageBuf& image, const ImageSpec& spec, OIIO::ImageOutput& out,
+                  const fs::path& name, const std::string& path) {
     if (!out.open(name.string(), spec)) cannot("write", path, first_line(out.geterror()));
     const bool written = image.write(&out);
     const bool closed = out.close();
@@ -214,7 +225,8 @@ ImageBuf read_image(const std::string& path) {
     return image;
 }
 
-void write_image_atomically(const ImageBuf& image, const std::string& path, OIIO::TypeDesc type) {
+void write_image_atomically(const ImageBuf& image, const std::string& path,
+                            const OIIO::TypeDesc& type) {
     if (image.deep()) cannot("write", path, "the picture is deep; expected flat pixels");
     if (!image.initialized()) {
         cannot("write", path,
@@ -228,18 +240,29 @@ void write_image_atomically(const ImageBuf& image, const std::string& path, OIIO
                                       : "the name has no extension that selects a format");
     }
 
-    const ImageBuf fitted = fit_to_format(image, *out, path);
+    ImageBuf storage;
+    const ImageBuf& fitted = fit_to_format(image, *out, storage, path);
+    ImageSpec spec = fitted.spec();
+    spec.tile_width = spec.tile_height = spec.tile_depth = 0;  // those of the file it came from
+    spec.channelformats.clear();
+    spec.set_format(type == OIIO::TypeUnknown ? image.spec().format : type);
+    if (type != OIIO::TypeUnknown)
+        spec.erase_attribute("oiio:BitsPerSample");  // overrules the type
+
     TemporaryFile temporary(target);
-    if (out->supports("ioproxy")) {
+    // libtiff reads its own directories back when there is an EXIF one (a picture marked sRGB has),
+    // and OIIO's memory writer cannot be read: the file would lack its first directory.
+    const bool reads_back = std::string_view(out->format_name()) == "tiff";
+    if (out->supports("ioproxy") && !reads_back) {
         // OIIO's writers do not look whether their last bytes reached the disk (PNG at none), and
         // libjpeg ends the process when one did not. So they encode into memory, and we write.
         OIIO::Filesystem::IOVecOutput memory;
         out->set_ioproxy(&memory);
-        write_pixels(fitted, *out, target.filename(), type, path);
+        write_pixels(fitted, spec, *out, target.filename(), path);
         if (const int error = temporary.fill(memory.buffer()))
             cannot("write", path, reason_of(error));
     } else {
-        write_pixels(fitted, *out, temporary.path(), type, path);
+        write_pixels(fitted, spec, *out, temporary.path(), path);
         try {
             (void)read_image(temporary.path().string());  // the only proof that it is complete
         } catch (const FileError&) {

@@ -47,7 +47,7 @@ const PixelAccess* access_as() noexcept {
 
 }  // namespace
 
-const PixelAccess* pixel_access(OIIO::TypeDesc type) noexcept {
+const PixelAccess* pixel_access(const OIIO::TypeDesc& type) noexcept {
     switch (type.basetype) {
         case OIIO::TypeDesc::UINT8:
             return access_as<std::uint8_t>();

@@ -27,6 +27,6 @@ struct PixelAccess {
 };
 
 /// Null for a type that OIIO has no pixels of (64-bit integers, strings, pointers).
-[[nodiscard]] const PixelAccess* pixel_access(OIIO::TypeDesc type) noexcept;
+[[nodiscard]] const PixelAccess* pixel_access(const OIIO::TypeDesc& type) noexcept;
 
 }  // namespace tonewright

@@ -303,7 +303,7 @@ class RowRunner {
     std::vector<std::byte> fetched_;  // pixels of a cached source
 };
 
-void check_pixel_type(const char* what, OIIO::TypeDesc type) {
+void check_pixel_type(const char* what, const OIIO::TypeDesc& type) {
     if (pixel_access(type)) return;
     fail(
         fmt::format("{} pixel type is {}; expected an integer of 8, 16 or 32 bits, half, float or "

@@ -1,2 +1,621 @@
 // SPDX-License-Identifier: Apache-2.0
+//
+// What holds for every operator, preset and look of the registry, whoever wrote it: an operator is
+// under these tests before anyone writes a test for it.
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <set>
+#include <thread>
+
+#include "engine/error_metric.h"
+#include "engine/probe.h"
+#include "tonewright/engine.h"
+#include "tonewright/verify.h"
+
+namespace tonewright {
+
+/// For GoogleTest: what failure messages and ctest call a variant.
+void PrintTo(const OperatorVariant& v, std::ostream* out);
+void PrintTo(const OperatorVariant& v, std::ostream* out) {
+    *out << v.name << (v.look.empty() ? "" : " look=" + v.look);
+}
+
+namespace {
+
+#ifdef NDEBUG
+constexpr std::size_t kPatternCount = 100'000'000;
+#else
+// Debug and sanitizer builds are some fifty times slower.
+constexpr std::size_t kPatternCount = 1'000'000;
+#endif
+
+/// The contract of SimdEngine, in display code values.
+constexpr double kSimdBound = 1e-6;
+
+using Planes = std::array<std::vector<double>, 3>;
+
+ResolvedOperator resolve(const OperatorVariant& v) { return resolve_operator(v.name, {}, v.look); }
+
+class Law : public ::testing::TestWithParam<OperatorVariant> {
+  protected:
+    void TearDown() override { SimdEngine::use_target(""); }
+
+    [[nodiscard]] static const Operator& op() { return *resolve(GetParam()).op; }
+    [[nodiscard]] static Pipeline view(std::string_view display, double stops = 0,
+                                       std::string_view input = "lin_rec709") {
+        return build_view(make_view(resolve(GetParam()), input, stops, display));
+    }
+};
+
+Planes run(const Pipeline& pipeline, Planes planes) {
+    const std::array<double*, 3> p = {planes[0].data(), planes[1].data(), planes[2].data()};
+    ReferenceEngine(pipeline).run({p[0], p[1], p[2]}, p, planes[0].size());
+    return planes;
+}
+
+Planes grey(const std::vector<double>& values) { return {values, values, values}; }
+
+/// -16..+16 stops about mid grey, in steps of 1/64.
+std::vector<double> grey_ramp() {
+    std::vector<double> values;
+    for (int i = -16 * 64; i <= 16 * 64; ++i)
+        values.push_back(0.18 * std::exp2(i / 64.0));
+    return values;
+}
+
+/// Log-uniform, every channel for itself: saturated ones are the rule. With `signs`, a third of the
+/// channels is negative.
+Planes random_colours(std::size_t count, double lowest, double highest, bool signs = false) {
+    ProbeRandom random(41);
+    Planes planes;
+    for (std::size_t i = 0; i < count; ++i) {
+        for (auto& plane : planes) {
+            const double x = std::exp2(random.uniform(lowest, highest));
+            plane.push_back(signs && random.bits() % 3 == 0 ? -x : x);
+        }
+    }
+    return planes;
+}
+
+std::string colour_text(const Planes& p, std::size_t i) {
+    return "(" + shortest(p[0][i]) + ", " + shortest(p[1][i]) + ", " + shortest(p[2][i]) + ")";
+}
+
+// ---------------------------------------------------------------------------------------------
+// Totality
+
+bool is_finite_bits(float x) {
+    return (std::bit_cast<std::uint32_t>(x) & 0x7F800000U) != 0x7F800000U;
+}
+
+/// Every float that there is, in random order and with repetitions: subnormals, infinities and NaNs
+/// come with their share of the bit patterns.
+void fill_with_patterns(ProbeRandom& random, std::vector<float>& rgb) {
+    for (std::size_t i = 0; i + 1 < rgb.size(); i += 2) {
+        const unsigned long long bits = random.bits();
+        rgb[i] = std::bit_cast<float>(static_cast<std::uint32_t>(bits));
+        rgb[i + 1] = std::bit_cast<float>(static_cast<std::uint32_t>(bits >> 32));
+    }
+}
+
+/// The first colour whose output is no picture, or empty.
+std::string check_patterns(const SimdEngine& display, const SimdEngine& native,
+                           unsigned long long seed, std::size_t float_count) {
+    constexpr std::size_t kBlock = 3 * 4096;
+    ProbeRandom random(seed);
+    std::vector<float> in(kBlock);
+    std::vector<float> shown(kBlock);
+    std::vector<float> own(kBlock);
+    for (std::size_t done = 0; done < float_count; done += kBlock) {
+        fill_with_patterns(random, in);
+        display.run_rgb(in.data(), shown.data(), kBlock / 3);
+        native.run_rgb(in.data(), own.data(), kBlock / 3);
+        bool ok = true;
+        for (std::size_t i = 0; i < kBlock; ++i) {
+            // The clamp is before the encoding, whose constants may round 1 up in float.
+            ok &= (shown[i] >= 0.0F) & (shown[i] <= 1.0F + 1e-6F) & is_finite_bits(own[i]);
+        }
+        if (ok) continue;
+        for (std::size_t i = 0; i < kBlock; ++i) {
+            if (shown[i] >= 0.0F && shown[i] <= 1.0F + 1e-6F && is_finite_bits(own[i])) continue;
+            const float* v = &in[i / 3 * 3];
+            return "(" + shortest(static_cast<double>(v[0])) + ", " +
+                   shortest(static_cast<double>(v[1])) + ", " +
+                   shortest(static_cast<double>(v[2])) + "), channel " + std::to_string(i % 3) +
+                   ": sRGB " + shortest(static_cast<double>(shown[i])) + ", native " +
+                   shortest(static_cast<double>(own[i]));
+        }
+    }
+    return "";
+}
+
+/// 10^8 random bit patterns an operator, shared between its presets and looks.
+TEST_P(Law, SimdIsTotal) {
+    std::size_t sharers = 0;
+    for (const OperatorVariant& v : all_variants())
+        sharers += resolve(v).op->id == op().id ? 1 : 0;
+    const std::size_t float_count = kPatternCount / sharers;
+    const SimdEngine display(view("srgb"));
+    const SimdEngine native(view("native"));
+    constexpr std::size_t kThreads = 2;
+    std::array<std::string, kThreads> failure;
+    std::vector<std::thread> threads;
+    for (std::size_t t = 0; t < kThreads; ++t) {
+        threads.emplace_back([&, t] {
+            failure[t] = check_patterns(display, native, 1000 + t, float_count / kThreads);
+        });
+    }
+    for (std::thread& t : threads)
+        t.join();
+    for (const std::string& text : failure)
+        EXPECT_EQ(text, "");
+    RecordProperty("patterns", std::to_string(float_count));
+}
+
+TEST_P(Law, ReferenceIsTotal) {
+    // A million patterns, as floats and as doubles, through the reference.
+    constexpr std::size_t kCount = 1'000'000 / 6;
+    ProbeRandom random(42);
+    Planes in;
+    for (auto& plane : in) {
+        for (std::size_t i = 0; i < kCount; ++i)
+            plane.push_back(std::bit_cast<double>(static_cast<std::uint64_t>(random.bits())));
+        for (std::size_t i = 0; i < kCount; ++i) {
+            plane.push_back(static_cast<double>(
+                std::bit_cast<float>(static_cast<std::uint32_t>(random.bits() >> 32))));
+        }
+    }
+    for (const char* input : {"lin_rec709", "lin_ap0"}) {
+        const Planes native = run(view("native", 0, input), in);
+        const Planes shown = run(view("srgb", 0, input), in);
+        for (std::size_t i = 0; i < in[0].size(); ++i) {
+            for (std::size_t c = 0; c < 3; ++c) {
+                ASSERT_TRUE(std::isfinite(native[c][i]))
+                    << colour_text(in, i) << ": native " << native[c][i];
+                ASSERT_TRUE(shown[c][i] >= 0 && shown[c][i] <= 1)
+                    << colour_text(in, i) << ": sRGB " << shown[c][i];
+            }
+        }
+    }
+}
+
+TEST_P(Law, EveryDisplayGetsCodeValues) {
+    const Planes in = random_colours(20000, -20, 16, true);
+    for (const Display& display : all_displays()) {
+        const Planes out = run(view(display.id, 0, "lin_rec2020"), in);
+        for (std::size_t i = 0; i < in[0].size(); ++i) {
+            for (std::size_t c = 0; c < 3; ++c) {
+                ASSERT_TRUE(out[c][i] >= 0 && out[c][i] <= 1)
+                    << display.id << " of " << colour_text(in, i) << ": " << out[c][i];
+            }
+        }
+    }
+}
+
+TEST_P(Law, ExtremeExposuresAreTotal) {
+    const Planes in = random_colours(2000, -24, 16, true);
+    for (const double stops : {-64.0, -20.0, 20.0, 64.0}) {
+        const Pipeline pipeline = view("srgb", stops);
+        const Planes out = run(pipeline, in);
+        const SimdEngine simd(pipeline);
+        std::vector<float> rgb;
+        for (std::size_t i = 0; i < in[0].size(); ++i) {
+            for (std::size_t c = 0; c < 3; ++c) {
+                ASSERT_TRUE(out[c][i] >= 0 && out[c][i] <= 1) << colour_text(in, i);
+                rgb.push_back(static_cast<float>(in[c][i]));
+            }
+        }
+        simd.run_rgb(rgb.data(), rgb.data(), rgb.size() / 3);
+        for (const float x : rgb)
+            ASSERT_TRUE(x >= 0 && x <= 1 + 1e-6F) << stops << " stops: " << x;
+    }
+}
+
+// ---------------------------------------------------------------------------------------------
+// Tone
+
+/// A warning may excuse what it names: "order 7 ... is not monotone" excuses order=7 of an operator
+/// with a parameter `order`, and no other setting of it.
+bool is_excused(const ResolvedOperator& resolved, std::string_view word) {
+    for (const std::string& warning : resolved.op->warnings) {
+        if (warning.find(word) == std::string::npos) continue;
+        bool names_other_setting = false;
+        for (const ParameterSpec& p : resolved.op->parameters) {
+            if (p.choices.empty() || warning.find(p.name + " ") == std::string::npos) continue;
+            const std::string own = p.name + " " + resolved.params.choice(p.name);
+            names_other_setting = names_other_setting || warning.find(own) == std::string::npos;
+        }
+        if (!names_other_setting) return true;
+    }
+    return false;
+}
+
+TEST(Laws, AWarningExcusesTheSettingThatItNames) {
+    for (const Operator& op : all_operators()) {
+        for (const ParameterSpec& p : op.parameters) {
+            if (p.choices.size() < 2) continue;
+            Operator copy = op;
+            const auto excused = [&](std::size_t choice) {
+                ResolvedOperator r = resolve_operator(op.id, {{p.name, p.choices[choice]}});
+                r.op = &copy;
+                return is_excused(r, "monotone");
+            };
+            copy.warnings = {p.name + " " + p.choices[0] + " is not monotone"};
+            EXPECT_TRUE(excused(0));
+            EXPECT_FALSE(excused(1));
+            copy.warnings = {"is not monotone"};
+            EXPECT_TRUE(excused(0) && excused(1));
+            copy.warnings = {p.name + " " + p.choices[0] + " is dark"};
+            EXPECT_FALSE(excused(0) || excused(1));
+        }
+    }
+}
+
+/// The largest fall from one grey to the next brighter one.
+double largest_fall(const Planes& out) {
+    double worst = 0;
+    for (const auto& plane : out) {
+        for (std::size_t i = 0; i + 1 < plane.size(); ++i)
+            worst = std::max(worst, plane[i] - plane[i + 1]);
+    }
+    return worst;
+}
+
+TEST_P(Law, GreysAreMonotone) {
+    const double fall = largest_fall(run(view("native"), grey(grey_ramp())));
+    // A thousandth of a code of 10 bits. AgX needs it: the rows of its inset matrix, as printed,
+    // sum to 1.00014, 0.99996 and 0.99995, so grey's channels meet the shaper's end 1.6e-5 of its
+    // length apart, and a matrix behind the curve takes 0.1 to 0.3 of the slope there from the
+    // others.
+    constexpr double kNoise = 1e-6;
+    if (is_excused(resolve(GetParam()), "monotone")) {
+        EXPECT_GT(fall, kNoise) << "the warning that excuses it is not true";
+    } else {
+        EXPECT_LE(fall, kNoise);
+    }
+}
+
+TEST_P(Law, BrighterScenesAreShownBrighter) {
+    // Not constant, either: between -6 and +3 stops every operator has to rise.
+    std::vector<double> ramp;
+    for (int stops = -6; stops <= 3; ++stops)
+        ramp.push_back(0.18 * std::exp2(stops));
+    const Planes out = run(view("srgb"), grey(ramp));
+    for (const auto& plane : out) {
+        for (std::size_t i = 0; i + 1 < plane.size(); ++i) {
+            // A clamped operator has arrived at white.
+            EXPECT_TRUE(plane[i] == 1 || plane[i] < plane[i + 1])
+                << "from grey " << ramp[i] << ": " << plane[i] << ", then " << plane[i + 1];
+        }
+    }
+}
+
+TEST_P(Law, BlackIsBlack) {
+    const Vector3 shown = ReferenceEngine(view("srgb"))({0, 0, 0});
+    const Vector3 native = ReferenceEngine(view("native"))({0, 0, 0});
+    for (std::size_t c = 0; c < 3; ++c) {
+        EXPECT_LT(shown[c], 0.5 / 255) << "code 0 of 8 bits";
+        // The largest that a source has: the constant of AgX's polynomial of order 7, 0.002857,
+        // which the outset matrix leaves within a hundredth.
+        EXPECT_LE(std::fabs(native[c]), 0.0029);
+    }
+    // Whatever an operator does with negatives, below black there is nothing brighter.
+    const Vector3 below = ReferenceEngine(view("srgb"))({-1, -1, -1});
+    for (std::size_t c = 0; c < 3; ++c)
+        EXPECT_LE(below[c], shown[c]);
+}
+
+TEST_P(Law, GreysStayGreyWhereTheViewSaysSo) {
+    const std::vector<double> ramp = grey_ramp();
+    for (const char* display : {"srgb", "display_p3"}) {
+        const Pipeline pipeline = view(display);
+        const Planes out = run(pipeline, grey(ramp));
+        double spread = 0;
+        for (std::size_t i = 0; i < ramp.size(); ++i) {
+            const auto [lo, hi] = std::minmax({out[0][i], out[1][i], out[2][i]});
+            spread = std::max(spread, hi - lo);
+        }
+        EXPECT_EQ(keeps_greys(pipeline), spread <= 0.5 / 1023)
+            << display << ": " << spread * 1023 << " codes of 10 bits";
+    }
+}
+
+// ---------------------------------------------------------------------------------------------
+// Structure
+
+TEST_P(Law, ExposureIsAFactorOnTheScene) {
+    for (const char* input : {"lin_rec709", "lin_ap1"}) {
+        for (const double stops : {-3.0, -0.7, 2.0, 4.3}) {
+            // Up to 2^10 in, 2^14.3 with the exposure: away from the limit at 65504.
+            const Planes in = random_colours(3000, -14, 10);
+            Planes scaled = in;
+            for (auto& plane : scaled) {
+                for (double& x : plane)
+                    x *= std::exp2(stops);
+            }
+            const Planes a = run(view("srgb", stops, input), in);
+            const Planes b = run(view("srgb", 0, input), scaled);
+            for (std::size_t i = 0; i < in[0].size(); ++i) {
+                // The products come in two orders: some 2^-53 of the largest channel, that the
+                // matrix may leave standing (2.4 is its largest sum of coefficients) where the
+                // others cancel, times the steepest slope of the sRGB curve, 12.92.
+                const double largest = std::max({scaled[0][i], scaled[1][i], scaled[2][i]});
+                const double tolerance = 1e-13 + 6 * 0x1p-53 * 2.4 * 12.92 * largest;
+                for (std::size_t c = 0; c < 3; ++c) {
+                    ASSERT_NEAR(a[c][i], b[c][i], tolerance)
+                        << input << ", " << stops << " stops, " << colour_text(in, i);
+                }
+            }
+        }
+    }
+}
+
+class ToneScaleLaw : public Law {};
+
+TEST_P(ToneScaleLaw, RatiosOfTheChannelsAreKept) {
+    const Planes in = random_colours(20000, -14, 14);
+    const Planes out = run(view("native"), in);
+    for (std::size_t i = 0; i < in[0].size(); ++i) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            const std::size_t d = (c + 1) % 3;
+            // out_c/out_d = in_c/in_d: a product and a division, rounded.
+            const double left = out[c][i] * in[d][i];
+            const double right = out[d][i] * in[c][i];
+            ASSERT_NEAR(left, right, 1e-15 * std::max(left, right)) << colour_text(in, i);
+            ASSERT_GT(out[c][i], 0) << colour_text(in, i);
+        }
+    }
+    const Vector3 red = ReferenceEngine(view("native"))({3, 0, 0});
+    EXPECT_GT(red[0], 0);
+    EXPECT_EQ(red[1], 0);
+    EXPECT_EQ(red[2], 0);
+}
+
+TEST_P(Law, AnalyticInversesInvert) {
+    for (const Display& display : all_displays()) {
+        const Pipeline stages = view(display.id);
+        for (std::size_t s = 1; s < stages.size(); ++s) {
+            const auto* curve = std::get_if<CurveStage>(&stages[s]);
+            const auto* domain = std::get_if<ClampStage>(&stages[s - 1]);
+            if (!curve || !curve->inverse) continue;
+            ASSERT_TRUE(domain) << "an inverse needs to know where it holds";
+            const double lo = std::max(domain->lo, -kHalfMax);
+            const double hi = std::min(domain->hi, kHalfMax);
+            for (std::size_t c = 0; c < 3; ++c) {
+                for (int i = 0; i <= 2000; ++i) {
+                    // Even steps, and stops down from the upper end. None falls into the 7e-9 above
+                    // 0.0031308 where the two rounded constants of IEC 61966-2-1 leave a gap.
+                    const double even = lo + (hi - lo) * i / 2000;
+                    const double dark = hi * std::exp2(-i / 100.0);
+                    for (const double x : {even, dark}) {
+                        const double back =
+                            evaluate((*curve->inverse)[c], evaluate(curve->f[c], x));
+                        // x/(1-x) at 65504 magnifies the rounding of its argument 65505 times.
+                        ASSERT_NEAR(back, x, 1e-9 * std::max(std::fabs(x), 1e-3))
+                            << display.id << ", stage " << s;
+                    }
+                }
+            }
+        }
+    }
+}
+
+class CurveLaw : public Law {};
+
+TEST_P(CurveLaw, IsInvertedNumerically) {
+    const Expr f = compose(view("native"))[0];
+    const Expr slope = derivative(f);
+    int inverted = 0;
+    for (const double x : grey_ramp()) {
+        if (x > kHalfMax) continue;
+        const double y = evaluate(f, x);
+        // What the rounding of y may move x by, relative: some 2^-53 of the formula's terms, which
+        // are of the size of 1 (Hable's cancel in the dark), over the slope.
+        const double uncertainty = 1e-15 * std::max(1.0, std::fabs(y)) / (evaluate(slope, x) * x);
+        // Where the curve is flat (a clamp, a shoulder near its end) any x will do.
+        if (!(uncertainty >= 0 && uncertainty < 1e-6)) continue;
+        EXPECT_NEAR(inverse_at(f, y, 0, kHalfMax) / x, 1, uncertainty + 1e-15) << "at " << x;
+        ++inverted;
+    }
+    EXPECT_GT(inverted, 500) << "eight stops of the ramp at least";
+}
+
+// ---------------------------------------------------------------------------------------------
+// SIMD
+
+TEST_P(Law, SimdIsWithinItsBoundOnEveryTarget) {
+    const ProbeSet probes = make_probes(find_input_space("lin_rec709"), {17, 20000});
+    const Pipeline pipeline = view("srgb");
+    std::vector<double> truth(probes.rgb.size());
+    ReferenceEngine(pipeline).run_rgb(probes.rgb.data(), truth.data(), probes.size());
+    const SimdEngine engine(pipeline);
+    std::vector<float> out(probes.rgb.size());
+    for (const std::string& target : SimdEngine::targets()) {
+        SimdEngine::use_target(target);
+        engine.run_rgb(probes.rgb.data(), out.data(), probes.size());
+        double worst = 0;
+        std::size_t at = 0;
+        for (std::size_t i = 0; i < out.size(); ++i) {
+            const double error = std::fabs(static_cast<double>(out[i]) - truth[i]);
+            if (error <= worst) continue;
+            worst = std::isnan(error) ? kInfinity : error;
+            at = i;
+        }
+        const float* rgb = &probes.rgb[at / 3 * 3];
+        EXPECT_LE(worst, kSimdBound)
+            << target << " of (" << rgb[0] << ", " << rgb[1] << ", " << rgb[2] << "): " << out[at]
+            << ", expected " << shortest(truth[at]) << "; " << worst / kSimdBound
+            << " times the bound";
+        RecordProperty(target, rounded_up(worst));
+    }
+}
+
+TEST_P(Law, ThreadsMayCompileAndRunTogether) {
+    const Planes colours = random_colours(5000, -16, 12, true);
+    std::vector<float> in;
+    for (std::size_t i = 0; i < colours[0].size(); ++i) {
+        for (const auto& plane : colours)
+            in.push_back(static_cast<float>(plane[i]));
+    }
+    const SimdEngine shared(view("srgb"));
+    std::vector<float> expected(in.size());
+    shared.run_rgb(in.data(), expected.data(), in.size() / 3);
+    constexpr std::size_t kThreads = 4;
+    std::array<std::vector<float>, 2 * kThreads> results;
+    std::vector<std::thread> threads;
+    for (std::size_t t = 0; t < kThreads; ++t) {
+        threads.emplace_back([&, t] {
+            // One engine for all, and one of its own that is compiled meanwhile.
+            const SimdEngine own(
+                build_view(make_view(resolve(GetParam()), "lin_rec709", 0, "srgb")));
+            for (const auto& [engine, slot] : {std::pair{&shared, t}, {&own, kThreads + t}}) {
+                results[slot].resize(in.size());
+                engine->run_rgb(in.data(), results[slot].data(), in.size() / 3);
+            }
+        });
+    }
+    for (std::thread& t : threads)
+        t.join();
+    for (const std::vector<float>& result : results)
+        EXPECT_EQ(result, expected);
+}
+
+// ---------------------------------------------------------------------------------------------
+// Parameters
+
+/// Settings from the whole of every interval: log-uniform where it spans more than two decades.
+Settings random_settings(const Operator& op, ProbeRandom& random) {
+    Settings settings;
+    for (const ParameterSpec& p : op.parameters) {
+        if (!p.choices.empty()) {
+            settings[p.name] = p.choices[random.bits() % p.choices.size()];
+            continue;
+        }
+        double value = random.bits() % 2 ? p.min : p.max;
+        if (random.bits() % 4 != 0) {
+            value = p.min > 0 && p.max / p.min > 100
+                        ? std::exp2(random.uniform(std::log2(p.min), std::log2(p.max)))
+                        : random.uniform(p.min, p.max);
+        }
+        settings[p.name] = shortest(std::clamp(value, p.min, p.max));
+    }
+    return settings;
+}
+
+std::string text_of(const Settings& settings) {
+    std::string text;
+    for (const auto& [name, value] : settings)
+        text += " " + name + "=" + value;
+    return text;
+}
+
+class ParameterLaw : public ::testing::TestWithParam<std::string> {};
+
+/// "A bad parameter is an error, never a silent clamp": then what is no error has to work.
+TEST_P(ParameterLaw, WhatIsAcceptedIsTotal) {
+    const Operator& op = find_operator(GetParam());
+    ProbeRandom random(43);
+    std::vector<float> in;
+    for (int i = 0; i < 3 * 600; ++i) {
+        const unsigned long long bits = random.bits();
+        in.push_back(i % 2 ? std::bit_cast<float>(static_cast<std::uint32_t>(bits))
+                           : static_cast<float>(std::exp2(random.uniform(-20, 16))));
+    }
+    for (const double s : {0.0, 0.18, 1.0, 65504.0})
+        in.insert(in.end(), 3, static_cast<float>(s));
+    std::vector<double> reference(in.size());
+    std::vector<float> simd(in.size());
+    std::set<Settings> tried;
+    std::size_t accepted = 0;
+    for (int round = 0; round < 100; ++round) {
+        const Settings settings = random_settings(op, random);
+        if (!tried.insert(settings).second) continue;
+        std::optional<ResolvedOperator> resolved;
+        try {
+            resolved = resolve_operator(op.id, settings);
+        } catch (const Error&) {
+            continue;  // parameters that contradict each other
+        }
+        ++accepted;
+        for (const char* display : {"native", "srgb"}) {
+            const Pipeline pipeline = build_view(make_view(*resolved, "lin_rec709", 0, display));
+            ReferenceEngine(pipeline).run_rgb(in.data(), reference.data(), in.size() / 3);
+            SimdEngine(pipeline).run_rgb(in.data(), simd.data(), in.size() / 3);
+            for (std::size_t i = 0; i < in.size(); ++i) {
+                ASSERT_TRUE(std::isfinite(reference[i]))
+                    << text_of(settings) << ": " << display << " of " << in[i] << " is "
+                    << reference[i];
+                ASSERT_TRUE(std::isfinite(simd[i])) << text_of(settings) << ": SIMD, " << display
+                                                    << " of " << in[i] << " is " << simd[i];
+                if (std::string_view(display) == "native") continue;
+                ASSERT_NEAR(static_cast<double>(simd[i]), reference[i], kSimdBound)
+                    << text_of(settings) << ": SIMD of " << in[i];
+            }
+        }
+    }
+    EXPECT_GT(accepted, tried.size() / 10);
+}
+
+// ---------------------------------------------------------------------------------------------
+// Who is under which law
+
+bool is_tone_scale(const Pipeline& stages) {
+    const auto is_one = [](const Stage& s) { return std::holds_alternative<ToneScaleStage>(s); };
+    const auto is_clamp = [](const Stage& s) { return std::holds_alternative<ClampStage>(s); };
+    return std::any_of(stages.begin(), stages.end(), is_one) &&
+           std::all_of(stages.begin(), stages.end(),
+                       [&](const Stage& s) { return is_one(s) || is_clamp(s); });
+}
+
+template <class Predicate>
+std::vector<OperatorVariant> variants_where(const Predicate& applies) {
+    std::vector<OperatorVariant> chosen;
+    for (const OperatorVariant& v : all_variants()) {
+        if (applies(simplify(resolve(v).build()))) chosen.push_back(v);
+    }
+    return chosen;
+}
+
+std::vector<std::string> operators_with_parameters() {
+    std::vector<std::string> ids;
+    for (const Operator& op : all_operators()) {
+        if (!op.parameters.empty()) ids.push_back(op.id);
+    }
+    return ids;
+}
+
+std::string test_name(const ::testing::TestParamInfo<OperatorVariant>& test) {
+    std::string name = test.param.name;
+    if (!test.param.look.empty()) name += "_" + test.param.look;
+    for (char& c : name) {
+        const bool is_alnum =
+            (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+        if (!is_alnum) c = '_';
+    }
+    return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Operators, Law, ::testing::ValuesIn(all_variants()), test_name);
+INSTANTIATE_TEST_SUITE_P(Operators, ToneScaleLaw,
+                         ::testing::ValuesIn(variants_where(is_tone_scale)), test_name);
+INSTANTIATE_TEST_SUITE_P(Operators, CurveLaw, ::testing::ValuesIn(variants_where(is_per_channel)),
+                         test_name);
+INSTANTIATE_TEST_SUITE_P(Operators, ParameterLaw, ::testing::ValuesIn(operators_with_parameters()),
+                         [](const auto& test) { return test.param; });
+
+TEST(Laws, CoverEveryPresetAndLook) {
+    std::size_t expected = 0;
+    for (const Operator& op : all_operators())
+        expected += 1 + op.presets.size() + op.looks.size();
+    EXPECT_EQ(all_variants().size(), expected);
+}
+
+}  // namespace
+
+}  // namespace tonewright

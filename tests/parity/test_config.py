@@ -118,7 +118,7 @@ def check_files(report, folder):
 
 
 def apply(config, source, target, rgb):
-    image = np.ascontiguousarray(rgb, np.float32)
+    image = np.array(rgb, np.float32, order="C")  # a copy: OCIO works in place
     config.getProcessor(source, target).getOptimizedCPUProcessor(ocio.OPTIMIZATION_LOSSLESS).applyRGB(image)
     return image
 

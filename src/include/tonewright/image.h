@@ -129,7 +129,7 @@ bool tonemap(OIIO::ImageBuf& dst, const OIIO::ImageBuf& src, const TonemapOption
 /// @throws FileError  unknown extension, directory missing or not writable, disk full, ... In one
 ///                    line; nothing is left behind.
 void write_image_atomically(const OIIO::ImageBuf& image, const std::string& path,
-                            OIIO::TypeDesc type = OIIO::TypeUnknown);
+                            const OIIO::TypeDesc& type = OIIO::TypeUnknown);
 
 /// `uint8`, `uint16`, `half` or `float`, as oiiotool's `-d` has them.
 /// @throws Error  for any other text, with the nearest name.

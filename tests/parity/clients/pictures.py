@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Shared by the test scripts: pictures as NumPy arrays, the programs, and the report.
+"""Shared by the test scripts: pictures as NumPy arrays, the programs, the report, the codes of LUTs.
 
 Pixels travel through uncompressed float EXR, which is a header, a table and rows of numbers: oiiotool turns any
 picture into one, ffmpeg and tonewright read and write it, and every float survives, NaN and negatives included.
@@ -10,6 +10,7 @@ import shutil
 import struct
 import subprocess
 import sys
+import threading
 from pathlib import Path
 
 import numpy as np
@@ -22,15 +23,17 @@ PROJECT = Path(__file__).resolve().parents[3]
 
 
 class Report:
-    """Prints one line per check and counts them. Errors are compared with a bound; NaN fails."""
+    """Prints one line per check and counts them; from any thread. Errors are compared with a bound; NaN fails."""
 
     def __init__(self):
         self.passed = self.failed = 0
+        self.lock = threading.Lock()
 
     def check(self, what, ok, detail=""):
-        self.passed += bool(ok)
-        self.failed += not ok
-        print(f"{'ok  ' if ok else 'FAIL'} {what}" + (f"\n     {detail}" if detail and not ok else ""), flush=True)
+        with self.lock:
+            self.passed += bool(ok)
+            self.failed += not ok
+            print(f"{'ok  ' if ok else 'FAIL'} {what}" + (f"\n     {detail}" if detail and not ok else ""), flush=True)
         return bool(ok)
 
     def bound(self, what, error, bound, detail=""):
@@ -191,3 +194,30 @@ def read_rgb(path, scratch):
 
 def unstack(rgb, names="RGB"):
     return {name: rgb[..., i] for i, name in enumerate(names)}
+
+
+# --------------------------------------------------------------------------------------------------
+# Codes that lookup tables take
+
+# ACEScct, Academy S-2016-001: log2 with a linear toe; 0.0078125 = 2^-7 is where they meet.
+CCT_SLOPE, CCT_OFFSET, CCT_CUT = 10.5402377416545, 0.0729055341958355, 0.0078125
+
+
+def acescct_encode(light):
+    curve = (np.log2(np.maximum(light, CCT_CUT)) + 9.72) / 17.52
+    return np.where(light <= CCT_CUT, CCT_SLOPE * light + CCT_OFFSET, curve)
+
+
+def acescct_decode(code):
+    cut = CCT_SLOPE * CCT_CUT + CCT_OFFSET
+    return np.where(code <= cut, (code - CCT_OFFSET) / CCT_SLOPE, 2.0 ** (code * 17.52 - 9.72))
+
+
+def log2_encode(light, low=-10, high=6.5):
+    """Stops from 0.18, as `--input-encoding log2` counts them."""
+    stops = np.log2(np.maximum(light, 0.18 * 2.0**low) / 0.18)
+    return (stops - low) / (high - low)
+
+
+def log2_decode(code, low=-10, high=6.5):
+    return 0.18 * 2.0 ** (code * (high - low) + low)

@@ -16,8 +16,8 @@ from pathlib import Path
 
 import numpy as np
 
-from pictures import (PROJECT, Report, evaluate, need_program, read_exr, read_rgb, run, shared_picture, skip, stack,
-                      unstack, write_exr)
+from pictures import (PROJECT, Report, acescct_decode, acescct_encode, evaluate, log2_decode, log2_encode, need_program,
+                      read_exr, read_rgb, run, shared_picture, skip, stack, unstack, write_exr)
 
 sys.path.insert(0, str(PROJECT / "python_check"))
 import operators  # noqa: E402  (matrices from the chromaticities, a second opinion on the program's)
@@ -26,30 +26,6 @@ import operators  # noqa: E402  (matrices from the chromaticities, a second opin
 FLOAT32 = 1e-6
 # Colours compared with the operator; `eval` reads text, a million lines would take longer than they tell.
 SAMPLES = 20000
-
-# ACEScct, Academy S-2016-001: log2 with a linear toe; 0.0078125 = 2^-7 is where they meet.
-CCT_SLOPE, CCT_OFFSET, CCT_CUT = 10.5402377416545, 0.0729055341958355, 0.0078125
-
-
-def acescct_encode(light):
-    curve = (np.log2(np.maximum(light, CCT_CUT)) + 9.72) / 17.52
-    return np.where(light <= CCT_CUT, CCT_SLOPE * light + CCT_OFFSET, curve)
-
-
-def acescct_decode(code):
-    cut = CCT_SLOPE * CCT_CUT + CCT_OFFSET
-    return np.where(code <= cut, (code - CCT_OFFSET) / CCT_SLOPE, 2.0 ** (code * 17.52 - 9.72))
-
-
-def log2_encode(light, low=-10, high=6.5):
-    """Stops from 0.18, as `--input-encoding log2` counts them."""
-    stops = np.log2(np.maximum(light, 0.18 * 2.0**low) / 0.18)
-    return (stops - low) / (high - low)
-
-
-def log2_decode(code, low=-10, high=6.5):
-    return 0.18 * 2.0 ** (code * (high - low) + low)
-
 
 # --------------------------------------------------------------------------------------------------
 # The .cube file, read and interpolated in float64

@@ -169,7 +169,8 @@ TEST(OperatorsCsvFile, RowsSayWhereTheirNumbersComeFrom) {
         EXPECT_TRUE(row.tolerance > 0 && std::isfinite(row.tolerance)) << "line " << row.line;
         for (std::size_t c = 0; c < 3; ++c)
             EXPECT_TRUE(std::isfinite(row.in[c]) && std::isfinite(row.expected[c])) << row.line;
-        EXPECT_TRUE(seen.insert(label(row)).second) << "line " << row.line << ": twice";
+        EXPECT_TRUE(seen.insert(label(row) + row.origin).second)
+            << "line " << row.line << ": twice from the same source";
     }
 }
 

@@ -5,8 +5,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
+#include <cmath>
 #include <csignal>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -126,6 +127,22 @@ TEST_F(ImageFile, FormatsWithoutProxies) {
     EXPECT_EQ(files(), 1U);
 }
 
+TEST_F(ImageFile, PicturesWithMetadata) {
+    // As tonemap() leaves them, and as cameras do: writers make more blocks of a file then.
+    ImageBuf picture(ImageSpec(16, 12, 3, TypeDesc::FLOAT));
+    OIIO::ImageBufAlgo::fill(picture, {0.2F, 0.4F, 0.6F});
+    picture.specmod().attribute("oiio:ColorSpace", "sRGB");
+    picture.specmod().attribute("Exif:FNumber", 2.8F);
+    picture.specmod().attribute("ImageDescription", "a picture");
+    for (const char* name : {"a.exr", "a.png", "a.jpg", "a.tif", "a.hdr", "a.dpx", "a.tga", "a.bmp",
+                             "a.ppm", "a.webp", "a.sgi"}) {
+        write_image_atomically(picture, file(name));
+        const ImageBuf back = read_image(file(name));
+        // 8 bits, and lossy for JPEG and WebP.
+        EXPECT_LE(OIIO::ImageBufAlgo::compare(picture, back, 1, 1).maxerror, 3.0 / 255) << name;
+    }
+}
+
 TEST_F(ImageFile, ChannelsThatAFormatCannotHoldAreLeftOut) {
     ImageSpec spec(8, 8, 5, TypeDesc::FLOAT);
     spec.channelnames = {"R", "G", "B", "Z", "A"};
@@ -165,6 +182,35 @@ TEST_F(ImageFile, FormatsWithoutDisplayWindowHoldTheDisplayWindow) {
     write_image_atomically(picture, file("a.exr"));
     EXPECT_EQ(read_image(file("a.exr")).roi(), picture.roi());
     EXPECT_EQ(read_image(file("a.exr")).roi_full(), picture.roi_full());
+}
+
+TEST_F(ImageFile, PngHasColorThatIsNotMultiplied) {
+    ImageSpec spec(2, 1, 4, TypeDesc::FLOAT);
+    spec.attribute("oiio:ColorSpace", "Gamma2.2");
+    ImageBuf picture(spec);
+    const std::array<float, 4> half_covered = {0.25F, 0.125F, 0.4F, 0.5F};
+    const std::array<float, 4> uncovered = {0.25F, 0.125F, 0.4F, 0.0F};
+    picture.setpixel(0, 0, half_covered.data());
+    picture.setpixel(1, 0, uncovered.data());
+    write_image_atomically(picture, file("a.png"), TypeDesc::UINT16);
+    ImageSpec as_stored;
+    as_stored.attribute("oiio:UnassociatedAlpha", 1);
+    const ImageBuf stored(file("a.png"), 0, 0, nullptr, &as_stored);
+    EXPECT_EQ(stored.spec().get_string_attribute("oiio:ColorSpace"), "Gamma2.2");
+    constexpr float kStep = 1.0F / 65535;
+    EXPECT_NEAR(stored.getchannel(0, 0, 0, 0), 0.5F, kStep);
+    EXPECT_NEAR(stored.getchannel(0, 0, 0, 2), 0.8F, kStep);
+    EXPECT_NEAR(stored.getchannel(0, 0, 0, 3), 0.5F, kStep);
+    EXPECT_NEAR(stored.getchannel(1, 0, 0, 2), 0.4F, kStep);
+    EXPECT_EQ(stored.getchannel(1, 0, 0, 3), 0);
+    EXPECT_EQ(picture.spec().find_attribute("oiio:UnassociatedAlpha"), nullptr);
+    // Read plainly, color is multiplied again.
+    picture.specmod().attribute("oiio:ColorSpace", "sRGB");
+    write_image_atomically(picture, file("a.png"), TypeDesc::UINT16);
+    EXPECT_NEAR(read_image(file("a.png")).getchannel(0, 0, 0, 0), 0.25F, 2 * kStep);
+    // The type of the buffer is the type of the file, still.
+    write_image_atomically(picture.copy(TypeDesc::UINT16), file("a.png"));
+    EXPECT_EQ(read_image(file("a.png")).spec().format, TypeDesc::UINT16);
 }
 
 TEST_F(ImageFile, FailedWriteLeavesTheOldFile) {

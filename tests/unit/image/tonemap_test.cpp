@@ -640,24 +640,23 @@ TEST(Tonemap, ColorSpaceOfTheResult) {
     struct Case {
         const char* op;
         const char* display;
-        const char* color_space;  // empty: no claim
-        float gamma;              // 0: not said
+        const char* color_space;
     };
-    constexpr std::array<Case, 9> kCases = {{{"hable", "srgb", "sRGB", 0},
-                                             {"hable", "rec1886", "Gamma2.4", 2.4F},
-                                             {"hable", "g22", "Gamma2.2", 2.2F},
-                                             {"hable", "display_p3", "Display P3", 0},
-                                             {"hable", "rec2020", "Rec.2020", 0},
-                                             {"hable", "linear", "Linear", 0},
-                                             {"agx_sobotka", "linear", "Linear", 0},
-                                             {"hable", "native", "Linear", 0},
-                                             {"agx_sobotka", "native", "Gamma2.2", 2.2F}}};
+    constexpr std::array<Case, 9> kCases = {{{"hable", "srgb", "sRGB"},
+                                             {"hable", "rec1886", "Gamma2.4"},
+                                             {"hable", "g22", "Gamma2.2"},
+                                             {"hable", "display_p3", "Display P3"},
+                                             {"hable", "rec2020", "Rec.2020"},
+                                             {"hable", "linear", "Linear"},
+                                             {"agx_sobotka", "linear", "Linear"},
+                                             {"hable", "native", "Linear"},
+                                             {"agx_sobotka", "native", "Gamma2.2"}}};
     for (const Case& c : kCases) {
         const ImageBuf result = tonemap(make_rgb(1, 1), {.op = c.op, .display = c.display});
         ASSERT_FALSE(result.has_error()) << result.geterror();
         EXPECT_EQ(result.spec().get_string_attribute("oiio:ColorSpace"), c.color_space)
             << c.display;
-        EXPECT_EQ(result.spec().get_float_attribute("oiio:Gamma"), c.gamma) << c.display;
+        EXPECT_EQ(result.spec().find_attribute("oiio:Gamma"), nullptr);
     }
 }
 

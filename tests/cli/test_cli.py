@@ -1,0 +1,578 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The tonewright command, end to end: what every subcommand does, and what it says to bad input.
+
+    python3 tests/cli/test_cli.py build/release/bin/tonewright
+
+Bad input gives one line on standard error that begins with `tonewright: `, the right exit code, and no file. The last
+line is `N passed, M failed`.
+"""
+
+import argparse
+import json
+import os
+import resource
+import shutil
+import subprocess
+import sys
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
+from pictures import (Report, acescct_decode, evaluate, log2_decode, need_program, read_exr, read_planes,  # noqa: E402
+                      read_rgb, run, stack, unstack, views, write_exr)
+
+try:
+    import PyOpenColorIO as ocio
+except ImportError:
+    ocio = None
+
+SUBCOMMANDS = ["list", "eval", "apply", "bake", "config", "verify", "chart", "sheet"]
+OK, CHECK_FAILED, USAGE, FILE = 0, 1, 2, 3  # exit codes
+
+# Half of what OpenColorIO's chain for a tone scale may differ on the CPU; on the GPU it may differ by 5e-5.
+ENGINE_BOUND = {"simd": 1e-5, "ocio": 1e-5, "ocio-gpu": 5e-5}
+CUBE_BOUND = 1 / 1023  # one code of 10 bits
+FLOAT32 = 1e-6  # the SIMD engine, and a file of floats
+
+
+def call(command, arguments, stdin="", **options):
+    # Not text=True: a byte that is no UTF-8 would hide behind the decoding.
+    done = subprocess.run([str(command), *map(str, arguments)], input=stdin.encode(), capture_output=True, check=False,
+                          **options)
+    return done.returncode, done.stdout.decode(errors="replace"), done.stderr.decode(errors="replace")
+
+
+# --------------------------------------------------------------------------------------------------
+# What works
+
+
+def check_help(report, command):
+    for arguments in ([], *([name] for name in SUBCOMMANDS)):
+        code, out, err = call(command, [*arguments, "--help"])
+        report.check(f"{' '.join(arguments)} --help", code == OK and not err and "Example" in out,
+                     f"exit {code}: {out}{err}")
+        if not arguments:
+            missing = [name for name in SUBCOMMANDS if f"\n  {name} " not in out]
+            report.check("--help names every subcommand", not missing, missing)
+    code, out, _ = call(command, ["--version"])
+    report.check("--version", code == OK and out[:1].isdigit(), out)
+
+
+def check_list(report, command):
+    overview = run(command, "list")
+    everything = json.loads(run(command, "list", "--json"))
+    ids = [op["id"] for op in everything["operators"]]
+    report.check(f"list names {len(ids)} operators, the displays and the spaces",
+                 all(name in overview for name in ids + ["srgb", "rec1886", "linear", "native", "lin_ap1"]))
+    report.check("list --views", [op for op, _ in views(command)] == ids
+                 and [v for _, v in views(command)] == [op["view"] for op in everything["operators"]])
+    markdown = run(command, "list", "--markdown")
+    report.check("list --markdown has a heading for each", all(f"(`{name}`)" in markdown for name in ids))
+    keys = {"id", "title", "view", "source", "output", "parameters", "presets", "looks", "warnings"}
+    parameter_keys = {"name", "unit", "default", "choices", "help"}
+    bad = [name for name in ("hable", "reinhard", "agx_sobotka")
+           if json.loads(run(command, "list", name, "--json")) not in everything["operators"]]
+    report.check("list OPERATOR --json is what list --json has", not bad, bad)
+    for op in everything["operators"]:
+        if not keys <= set(op) or not all(op[k] for k in ("id", "title", "view", "source", "output")):
+            bad.append(op["id"])
+        for p in op["parameters"]:
+            is_number = not p["choices"]
+            if not parameter_keys <= set(p) or (is_number and not p["min"] <= p["default"] <= p["max"]) \
+                    or (not is_number and p["default"] not in p["choices"]):
+                bad.append(f"{op['id']} {p['name']}")
+    report.check("list --json has every field", not bad, bad)
+    text = run(command, "list", "hable")
+    report.check("list OPERATOR", "Uncharted" in text and "--set white=11.2" in text, text)
+    report.check("list OPERATOR --markdown", run(command, "list", "hable", "--markdown") in markdown)
+
+
+def check_eval_text(report, command):
+    """Layouts of numbers, and figures of the publications to nine digits."""
+    expected = "0.128338449 0.128338449 0.128338449\n"  # Hable, GDC 2010: h(2 x 0.18) / h(11.2)
+    layouts = {
+        "spaces": "0.18 0.18 0.18\n", "commas": "0.18,0.18,0.18\n", "commas and spaces": " 0.18, 0.18 ,0.18 \n",
+        "tabs": "\t0.18\t0.18\t0.18\t\n", "comment behind": "0.18 0.18 0.18 # mid grey\n",
+        "comments and blank lines": "# a\n\n   \n#\n0.18 0.18 0.18\n", "CRLF": "\r\n# b\r\n0.18 0.18 0.18\r\n",
+        "exponents": "1.8e-1 18E-2 +0.018e+1\n", "no newline at the end": "0.18 0.18 0.18",
+    }
+    out = run(command, "eval", "hable", "--display", "native", stdin="".join(layouts.values())).splitlines(True)
+    for name, line in zip(layouts, out):
+        report.check(f"eval: {name}", line == expected, f"is {line.strip()}, expected {expected.strip()}")
+    report.check("eval: as many colours as lines that hold one", len(out) == len(layouts), len(out))
+    for name, text in {"nothing": "", "only comments": "# a\n\n# b"}.items():
+        report.check(f"eval: {name}", call(command, ["eval", "hable"], text) == (OK, "", ""))
+
+    for operator, pairs in {
+        # 9/59. NaN is 0, and infinities are the largest half float: 65504 / 65505.
+        "reinhard": {"0.18 1 4": "0.152542373 0.5 0.8", "nan inf -inf": "0 0.999984734 0",
+                     "NaN Infinity -1e999": "0 0.999984734 0", "1e-400 1e400 1e-5": "0 0.999984734 9.9999e-06"},
+        "reinhard_extended": {"0.18 4 16": "0.154258475 1 1.88235294"},  # white 4: 32/17
+        "hable": {"0.18 1 5.6": "0.128338449 0.492918546 1"},
+        "aces_narkowicz": {"0.18 1 16": "0.26689892 0.803797468 1"},
+        "clamp": {"-0.1 0.18 4": "0 0.18 1"},
+    }.items():
+        out = run(command, "eval", operator, "--display", "native", stdin="\n".join(pairs)).splitlines()
+        for (text, expected), line in zip(pairs.items(), out):
+            report.check(f"eval {operator}: {text}", line == expected, f"is {line}, expected {expected}")
+    # IEC 61966-2-1 of 0.5; and one stop more is the same as twice the light.
+    _, out, _ = call(command, ["eval", "clamp"], "0.5 0.25 1")
+    report.check("eval clamp, srgb by default", out == "0.735356983 0.53709873 1\n", out)
+    report.check("eval --exposure -1", run(command, "eval", "clamp", "--exposure", "-1", stdin="1 0.5 2") == out)
+    report.check("eval operator:preset", run(command, "eval", "reinhard:luminance", stdin="1 0.2 0.1")
+                 == run(command, "eval", "reinhard", "--set", "apply=luminance", stdin="1 0.2 0.1")
+                 != run(command, "eval", "reinhard", stdin="1 0.2 0.1"))
+    # Hable is 1 where bias x light is the white.
+    report.check("eval --set, two of them",
+                 run(command, "eval", "hable", "--set", "white=4", "--set", "exposure_bias=1", stdin="4 4 4") == "1 1 1\n")
+    report.check("eval --look", run(command, "eval", "agx_sobotka", "--look", "punchy", stdin="1 .5 .2")
+                 != run(command, "eval", "agx_sobotka", stdin="1 .5 .2"))
+    report.check("eval: display by title, input by alias",
+                 run(command, "eval", "hable", "--display", "Display P3", "--input", "acescg", stdin="1 .5 .2")
+                 == run(command, "eval", "hable", "--display", "display_p3", "--input", "lin_ap1", stdin="1 .5 .2"))
+    many = "".join(f"{i / 1000} {i % 7} {i % 11}\n" for i in range(5000))
+    report.check("eval: 5000 lines", len(run(command, "eval", "hable", stdin=many).splitlines()) == 5000)
+
+
+def check_engines(report, command):
+    """One operator of each structure: curves, matrices and curves, a tone scale, a cube. `verify` has them all."""
+    rng = np.random.default_rng(5)
+    greys = np.repeat(0.18 * 2.0 ** np.arange(-10, 11)[:, None], 3, axis=1)
+    rgb = np.concatenate([greys, 2.0 ** rng.uniform(-10, 8, (300, 3)), [[0, 0, 0], [-0.1, 0.2, 0.5], [1e9, 1, 0]]])
+    rgb = rgb.astype(np.float32)  # what the other engines take
+    for operator in ("hable", "agx_sobotka", "reinhard:luminance", "reinhard_jodie"):
+        truth = evaluate(command, rgb, operator)
+        for engine in ("simd", "ocio", "ocio-gpu"):
+            what = f"eval {operator} --engine {engine}"
+            try:
+                shown = evaluate(command, rgb, operator, "--engine", engine)
+            except RuntimeError as error:
+                if engine != "ocio-gpu" or "gpu" not in str(error):
+                    raise
+                print(f"skipped: {what} ({error})")
+                continue
+            is_cube = operator == "reinhard_jodie" and engine != "simd"
+            report.compare(what, shown, truth, CUBE_BOUND if is_cube else ENGINE_BOUND[engine])
+
+
+def check_apply(report, command, scratch):
+    """Pictures of every channel layout, and pixel types."""
+    rng = np.random.default_rng(2)
+    rgb = (2.0 ** rng.uniform(-8, 4, (24, 32, 3))).astype(np.float32)
+    truth = evaluate(command, rgb.reshape(-1, 3), "hable").reshape(rgb.shape)
+    source, out = scratch / "source.exr", scratch / "out.exr"
+    write_exr(source, unstack(rgb))
+
+    def applied(*options, to=out):
+        run(command, "apply", source, to, "--operator", "hable", *options)
+        return read_planes(to, scratch)
+
+    report.compare("apply -d float", stack(applied("-d", "float")), truth, FLOAT32)
+    report.check("apply --threads 1, the same bits", np.array_equal(
+        stack(applied("-d", "float", "--threads", "1")), stack(applied("-d", "float", "--threads", "7"))))
+    # Half an ulp of a half float below 1, and half a code.
+    report.compare("apply -d half", stack(applied("-d", "half")), truth, 2.0**-12 + FLOAT32)
+    for kind, top in (("uint8", 255), ("uint16", 65535)):
+        shown = stack(applied("-d", kind, to=scratch / "out.png"))
+        report.compare(f"apply -d {kind} to PNG", shown, truth, 0.5 / top + FLOAT32)
+    for kind, options, bound in (("tif", ["-d", "float"], FLOAT32), ("tif", [], 0.5 / 255 + FLOAT32),
+                                 ("tga", [], 0.5 / 255 + FLOAT32), ("bmp", [], 0.5 / 255 + FLOAT32),
+                                 ("dpx", ["-d", "uint16"], 0.5 / 65535 + FLOAT32), ("hdr", [], 2.0**-8)):
+        what = f"apply to .{kind} {' '.join(options)}"
+        try:
+            report.compare(what, stack(applied(*options, to=scratch / f"out.{kind}")), truth, bound)
+        except RuntimeError as error:
+            report.check(what, False, error)
+    report.compare("apply --exposure --set --display --input",
+                   stack(applied("-d", "float", "--exposure", "1.5", "--set", "white=6", "--display", "rec2020",
+                                 "--input", "lin_ap1")),
+                   evaluate(command, rgb.reshape(-1, 3), "hable", "--exposure", "1.5", "--set", "white=6", "--display",
+                            "rec2020", "--input", "lin_ap1").reshape(rgb.shape), FLOAT32)
+
+    write_exr(source, {**unstack(rgb), "Z": rgb[..., 0] * 100})
+    planes = applied("-d", "float")
+    report.check("apply: a fourth channel is copied", np.array_equal(planes["Z"], rgb[..., 0] * 100))
+    report.compare("apply: beside a fourth channel", stack(planes), truth, FLOAT32)
+
+    alpha = rng.random(rgb.shape[:2]).astype(np.float32)
+    write_exr(source, {**unstack(rgb * alpha[..., None]), "A": alpha})
+    planes = applied("-d", "float")
+    report.check("apply: alpha is copied", np.array_equal(planes["A"], alpha))
+    report.compare("apply: divides by alpha and multiplies", stack(planes), truth * alpha[..., None], FLOAT32)
+    report.check("apply --unpremult is the same",
+                 np.array_equal(stack(applied("-d", "float", "--unpremult")), stack(planes)))
+    straight = evaluate(command, (rgb * alpha[..., None]).reshape(-1, 3), "hable").reshape(rgb.shape)
+    report.compare("apply --no-unpremult", stack(applied("-d", "float", "--no-unpremult")), straight, FLOAT32)
+
+    grey = rgb[..., 0]
+    grey_truth = evaluate(command, np.repeat(grey.reshape(-1, 1), 3, axis=1), "hable")[:, 0].reshape(grey.shape)
+    write_exr(source, {"Y": grey})
+    planes = applied("-d", "float")
+    report.check("apply: one channel stays one", list(planes) == ["Y"], list(planes))
+    report.compare("apply: one channel is grey", planes["Y"][..., None], grey_truth[..., None], FLOAT32)
+    write_exr(source, {"Y": grey * alpha, "A": alpha})
+    planes = applied("-d", "float")
+    report.check("apply: grey and alpha stay two", sorted(planes) == ["A", "Y"], list(planes))
+    report.compare("apply: grey with alpha", planes["Y"][..., None], (grey_truth * alpha)[..., None], FLOAT32)
+
+    write_exr(source, unstack(rgb))
+    run(command, "apply", source, source, "--operator", "hable", "-d", "float")
+    report.compare("apply onto itself", read_rgb(source, scratch), truth, FLOAT32)
+
+
+def read_lut(path, codes):
+    """Codes through a LUT file as OpenColorIO reads it."""
+    image = np.array(codes, np.float32, order="C")
+    transform = ocio.FileTransform(src=str(path), interpolation=ocio.INTERP_TETRAHEDRAL)
+    processor = ocio.Config.CreateRaw().getProcessor(transform)
+    processor.getOptimizedCPUProcessor(ocio.OPTIMIZATION_LOSSLESS).applyRGB(image)
+    return image
+
+
+def check_bake(report, command, scratch):
+    """Every format, as OpenColorIO reads it: the nodes are the operator, between them the error is what bake says."""
+    if ocio is None:
+        print("skipped: bake, read back (PyOpenColorIO is not installed; Debian: python3-pyopencolorio)")
+        return
+    rng = np.random.default_rng(9)
+    ap1, log2, curve = ("acescct", "lin_ap1", acescct_decode), ("log2", "lin_rec709", log2_decode), ["--1d"]
+    linear = ("linear:0:8", "lin_rec709", lambda code: code)
+    for operator, file, (encoding, space, decode), size, options in [
+        ("agx_sobotka", "agx33.cube", ap1, 33, []),
+        ("agx_sobotka", "agx17.clf", ap1, 17, ["--format", "clf", "--size", 17]),
+        ("agx_sobotka", "agx20.spi3d", ap1, 20, ["--format", "spi3d", "--size", 20]),
+        ("hable", "hable3d.cube", log2, 33, ["--3d"]),
+        ("hable", "hable.cube", log2, 4096, curve),
+        ("hable", "hable.clf", log2, 1024, ["--format", "clf", "--size", 1024]),
+        ("hable", "hable.spi1d", log2, 4096, ["--format", "spi1d"]),
+        ("hable", "half.clf", linear, None, ["--format", "clf"]),
+        ("uchimura", "linear.spi1d", linear, 65536, ["--format", "spi1d", "--size", 65536]),
+    ]:
+        path = scratch / file
+        code, out, err = call(command, ["bake", operator, "-o", path, "--input-encoding", encoding, *options])
+        if not report.check(f"bake {file}", code == OK and not out and err.count("\n") == 1 and path.is_file(), err):
+            continue
+        top = 8 if encoding.startswith("linear") else 1
+        if size:
+            nodes = top * rng.integers(0, size, (2000, 3)) / (size - 1)
+        else:
+            nodes = (top * rng.random((2000, 3))).astype(np.float16)
+        if operator != "agx_sobotka" and "3d" not in file:
+            nodes[:, 1:] = nodes[:, :1]
+        arguments = (operator, "--input", space)
+        nodes = nodes.astype(np.float32)
+        # A code is a float, too: where the LUT is steep its rounding shows.
+        report.compare(f"bake {file}: nodes", read_lut(path, nodes), evaluate(command, decode(nodes.astype(float)),
+                       *arguments), 2e-6)
+        stated = float(err.split("error max ")[1].split(",")[0])
+        codes = (top * rng.random((4000, 3))).astype(np.float32)
+        truth = evaluate(command, decode(codes.astype(float)), *arguments)
+        report.compare(f"bake {file}: between them", read_lut(path, codes), truth, stated + FLOAT32)
+    first = (scratch / "agx33.cube").read_bytes()
+    run(command, "bake", "agx_sobotka", "-o", scratch / "agx33.cube")
+    report.check("bake again: the same bytes, with the default options", (scratch / "agx33.cube").read_bytes() == first)
+    report.check("bake: the file says input, output and error",
+                 all(word in first[:1000].decode() for word in ("# Input: ACEScct", "# Output: sRGB", "# Error")))
+
+
+def files_of(folder):
+    return {str(p.relative_to(folder)): p.read_bytes() for p in sorted(folder.rglob("*")) if p.is_file()}
+
+
+def check_chart(report, command, scratch, picture):
+    chart = scratch / "chart.exr"
+    run(command, "chart", "-o", chart)
+    rgb = read_rgb(chart, scratch)
+    report.check("chart: 1536 x 864, finite, with negatives and bright light",
+                 rgb.shape == (864, 1536, 3) and np.isfinite(rgb).all() and rgb.min() < -0.1 and rgb.max() > 500)
+    rgb = read_rgb(picture, scratch)
+    report.check("chart --width --height -d half", rgb.shape == (360, 640, 3), rgb.shape)
+    run(command, "chart", "-o", chart, "--width", 640, "--height", 360, "-d", "half")
+    report.check("chart again: the same pixels", np.array_equal(read_rgb(chart, scratch), rgb))
+
+
+def check_sheet(report, command, scratch, picture):
+    shown = scratch / "shown.png"
+    run(command, "apply", picture, shown, "--operator", "hable")
+    run(command, "sheet", f"a={shown}", f"b={shown}", shown, "-o", scratch / "sheet.png", "--columns", 2,
+        "--cell-width", 100)
+    height, width, _ = read_rgb(scratch / "sheet.png", scratch).shape
+    report.check("sheet: 2 columns, 2 rows", 200 <= width <= 300 and 112 < height < 300, f"{width} x {height}")
+
+
+def check_config(report, command, scratch, folder):
+    """A second run into the folder of the first."""
+    folder = Path(shutil.copytree(folder, scratch / "config"))
+    first = files_of(folder)
+    report.check("config writes its files and nothing else",
+                 {"config.ocio", "probe.csv", "README.md", "MANIFEST.csv"} <= set(first)
+                 and all(n.startswith("luts/") and n.endswith(".clf") for n in first if "/" in n), list(first))
+    (folder / "luts" / "old_curve_00000000.clf").write_text("stale")
+    (folder / "luts" / "mine.clf").write_text("of the user")
+    with open(folder / "MANIFEST.csv", "a") as manifest:
+        manifest.write("luts/old_curve_00000000.clf,00000000\n../outside.txt,00000000\n")
+    (scratch / "outside.txt").write_text("not ours")
+    run(command, "config", "-o", folder)
+    again = files_of(folder)
+    report.check("config again: the same bytes, what it wrote before is gone, what it did not write stays",
+                 again.pop("luts/mine.clf", None) == b"of the user" and again == first
+                 and (scratch / "outside.txt").is_file(), sorted(set(again) ^ set(first)))
+
+
+def check_verify(report, command, scratch, folder, picture):
+    """Exit 1 when a form is beyond its bound: here a config whose table was made wrong."""
+    folder = Path(shutil.copytree(folder, scratch / "config"))
+    arguments = ["verify", "hable", "--quick", "--no-gpu", "--config", folder]
+    code, out, err = call(command, arguments)
+    report.check("verify --config", code == OK and not err and out.splitlines()[-1].endswith(", 0 beyond their bound"),
+                 out + err)
+    rows = json.loads(run(command, *arguments, "--json"))
+    report.check("verify --json", rows and all(row["ok"] and 0 <= row["max"] <= row["bound"] for row in rows))
+    table = next(folder.glob("luts/hable_curve*"))
+    text = table.read_text()
+    # 0.18 is no half float: this is the table's entry just below it.
+    lines = text.splitlines()
+    entry = lines.index(next(line for line in lines if line[:1].isdigit())) + 0x31c2
+    lines[entry] = f"{float(lines[entry]) + 1e-3:.9f}"
+    table.write_text("\n".join(lines))
+    code, out, err = call(command, arguments)
+    report.check("verify: a wrong entry of a table is found, exit 1", code == CHECK_FAILED and "FAILED" in out,
+                 f"exit {code}: {out}{err}")
+    table.write_text(text)
+    code, out, err = call(command, [*arguments, "--picture", picture])
+    report.check("verify --picture", code == OK, out + err)
+
+
+# --------------------------------------------------------------------------------------------------
+# What does not work
+
+
+def make_bad_pictures(scratch, picture):
+    """Files that `apply` must refuse, as {name: path}."""
+    bad = {name: scratch / f"bad.{name}" for name in ("missing.exr", "empty.exr", "text.exr", "deep.exr", "two.exr")}
+    bad["empty.exr"].write_bytes(b"")
+    bad["text.exr"].write_text("this is no picture\n" * 100)
+    run("oiiotool", "--create", "16x16", 5, "--chnames", "R,G,B,A,Z", "-d", "float", "--deepen", "-o", bad["deep.exr"])
+    rgb = read_rgb(picture, scratch)
+    write_exr(bad["two.exr"], {"X": rgb[..., 0], "Y": rgb[..., 1]})
+    for kind in ("exr", "hdr", "png", "tif", "jpg"):
+        path = bad[f"half.{kind}"] = scratch / f"half.{kind}"
+        run("oiiotool", picture, "--clamp:min=0:max=1", "-o", path)
+        whole = path.read_bytes()
+        path.write_bytes(whole[:len(whole) // 2])
+    return bad
+
+
+def usage_errors(bad, picture):
+    """(arguments, words of the message[, stdin]) of calls that exit with 2."""
+    cases = [
+        ([], "subcommand"), (["frobnicate"], "frobnicate"), (["--frobnicate"], "--frobnicate"),
+        (["eval", "hable", "--frobnicate"], "--frobnicate"),
+        (["list", "--json", "--markdown"], "--json"),
+        (["list", "habel"], "operator is habel; did you mean hable?"), (["eval"], "operator"),
+        (["eval", "habel"], "did you mean hable?"), (["eval", "agx"], "did you mean agx_"),
+        (["eval", ""], "operator"), (["eval", "ha\nble"], "did you mean hable?"),
+        (["apply", picture, "out.png", "--operator", "habel"], "did you mean hable?"),
+        (["bake", "habel", "-o", "out.cube"], "did you mean hable?"), (["verify", "habel"], "did you mean hable?"),
+        (["eval", "hable", "--set", "wite=4"], "parameter is wite; did you mean white?"),
+        (["eval", "clamp", "--set", "white=4"], "white; no parameters"),
+        (["eval", "hable", "--set", "white"], "white; name=value"), (["eval", "hable", "--set", "=4"], "=4; name=value"),
+        (["eval", "hable", "--set"], "--set"),
+        (["eval", "reinhard", "--set", "apply=lumnance"], "apply is lumnance; did you mean luminance?"),
+        (["eval", "reinhard:lum"], "preset is lum; did you mean luminance?"), (["eval", "hable:x"], "x; no presets"),
+        (["eval", "agx_sobotka", "--look", "pnchy"], "look is pnchy; did you mean punchy?"),
+        (["eval", "hable", "--look", "punchy"], "punchy; no looks"),
+        (["eval", "hable", "--display", "srbg"], "display is srbg; did you mean srgb?"),
+        (["eval", "hable", "--input", "lin_rec79"], "lin_rec79; did you mean lin_rec709?"),
+        (["eval", "hable", "--engine", "smid"], "engine is smid; did you mean simd?"),
+        (["eval", "hable", "--exposure", "bright"], "--exposure; bright"),
+        (["eval", "hable", "--exposure", "65"], "exposure is 65; [-64, 64]"),
+        (["apply", picture, "out.png"], "--operator"), (["apply", picture], "out"),
+        (["apply", picture, "out.png", "--operator", "hable", "-d", "unit8"], "unit8; did you mean uint8?"),
+        (["apply", picture, "out.png", "--operator", "hable", "--threads", "-1"], "--threads; -1"),
+        (["apply", picture, "out.png", "--operator", "hable", "--unpremult", "--no-unpremult"], "--no-unpremult"),
+        (["apply", bad["two.exr"], "out.png", "--operator", "hable"], "2 channels"),
+        (["bake", "hable"], "-o"), (["bake", "-o", "out.cube"], "operator"),
+        (["bake", "hable", "--all", "luts"], "hable; --all"),
+        (["bake", "hable", "-o", "out", "--format", "cub"], "format is cub; did you mean cube?"),
+        (["bake", "hable", "-o", "out", "--input-encoding", "acesct"], "acesct; did you mean acescct?"),
+        (["bake", "hable", "-o", "out", "--input-encoding", "log2:1"], "log2:1; LO:HI"),
+        (["bake", "hable", "-o", "out", "--input-encoding", "log2:5:1"], "log2:5:1; LO < HI"),
+        (["bake", "hable", "-o", "out", "--input-encoding", "log2:-100:100"], "[-64, 64]"),
+        (["bake", "agx_sobotka", "-o", "out", "--input-encoding", "linear"], "linear; acescct or log2"),
+        (["bake", "agx_sobotka", "-o", "out", "--size", "16"], "size is 16; [17, 129]"),
+        (["bake", "agx_sobotka", "-o", "out", "--size", "130"], "size is 130; [17, 129]"),
+        (["bake", "agx_sobotka", "-o", "out", "--size", "big"], "--size; big"),
+        (["bake", "hable", "-o", "out", "--input-encoding", "log2", "--size", "65537"], "size is 65537; [2, 65536]"),
+        (["bake", "agx_sobotka", "-o", "out", "--1d"], "agx_sobotka; 3D"),
+        (["bake", "hable", "-o", "out", "--1d", "--3d"], "--1d"),
+        (["bake", "agx_sobotka", "-o", "out", "--format", "spi1d"], "agx_sobotka; 3D"),
+        (["bake", "hable", "-o", "out", "--format", "spi1d", "--3d"], "spi1d"),
+        (["bake", "hable", "-o", "out", "--format", "spi3d", "--1d", "--input-encoding", "log2"], "spi3d"),
+        (["bake", "hable", "-o", "out", "--format", "clf", "--input-encoding", "linear", "--size", "9"], "size is 9"),
+        (["chart"], "-o"), (["chart", "-o", "out.exr", "--width", "10"], "10; 320"),
+        (["chart", "-o", "out.exr", "--width", "2000000000", "--height", "2000000000"], "2000000000"),
+        (["chart", "-o", "out.exr", "-d", "uint8"], "uint8; half or float"),
+        (["config"], "-o"), (["sheet", "-o", "out.png"], "pictures"), (["sheet", picture], "-o"),
+        (["sheet", picture, "-o", "out.png", "--columns", "0"], "--columns; 0"),
+        (["sheet", picture, "-o", "out.png", "--cell-width", "1"], "--cell-width; 1"),
+        (["verify", "hable", "--display", "srbg"], "did you mean srgb?"),
+        (["verify", "hable", "--input", "lin_rec79"], "did you mean lin_rec709?"),
+    ]
+    for line in ("1 2", "1 2 3 4", "1,2,", ",1,2,3", "1;2;3", "1 2 3x", "+-5 1 1", "0x10 1 1", "1 2 \xff"):
+        cases.append((["eval", "hable"], "line 4; three numbers", f"# a comment\n\n1 1 1\n{line}\n2 2 2\n"))
+    for value in ("0", "65505", "4x", "", "nan", "1e999"):
+        cases.append((["eval", "hable", "--set", f"white={value}"], f"hable: white is {value}"))
+    cases.append((["eval", "reinhard_extended", "--set", "white=0"], "reinhard_extended: white is 0"))
+    return [(*case, "")[:3] for case in cases]
+
+
+def file_errors(bad, picture, scratch):
+    """(arguments, words of the message) of calls that exit with 3. `there` is a folder where they run, `file` a file."""
+    apply = ["apply", picture, "--operator", "hable"]
+    cases = [(["apply", bad[name], "out.png", "--operator", "hable"], f"cannot read; {bad[name]}") for name in bad
+             if name != "two.exr"]
+    cases += [
+        (["apply", scratch, "out.png", "--operator", "hable"], "directory"),
+        (["apply", "", "out.png", "--operator", "hable"], "cannot read"),
+        ([*apply, "out.xyz"], "out.xyz"), ([*apply, "out"], "out; extension"), ([*apply, "out."], "out."),
+        ([*apply, "there"], "there"), ([*apply, "there.png/out.png"], "there.png"), ([*apply, "file/out.png"], "file"),
+        ([*apply, "/proc/out.png"], "/proc/out.png"), ([*apply, "/dev/null"], "/dev/null"),
+        (["bake", "hable", "-o", "there"], "there"), (["bake", "hable", "-o", "file/out.cube"], "file"),
+        (["bake", "hable", "-o", "none/out.cube"], "none"), (["bake", "hable", "-o", "/proc/out.cube"], "/proc"),
+        (["bake", "--all", "file/luts"], "file"),
+        (["config", "-o", "file"], "file"), (["config", "-o", "file/config"], "file"), (["config", "-o", "/proc/x"], "/proc"),
+        (["chart", "-o", "there"], "there"), (["chart", "-o", "none/out.exr"], "none"), (["chart", "-o", "out.xyz"], "xyz"),
+        (["sheet", "a=none.png", "-o", "out.png"], "none.png"), (["sheet", bad["half.png"], "-o", "out.png"], "half.png"),
+        (["sheet", picture, "-o", "file/out.png"], "file"),
+        (["verify", "hable", "--config", "none"], "none/config.ocio"),
+        (["verify", "hable", "--picture", "none.exr"], "none.exr"),
+    ]
+    return [(arguments, words, "") for arguments, words in cases]
+
+
+def check_error(report, command, scratch, number, expected_code, arguments, words, stdin):
+    """One call, in a folder of its own, which must look the same afterwards."""
+    folder = scratch / f"error.{number}"
+    (folder / "there").mkdir(parents=True)
+    (folder / "file").write_text("old")
+    code, out, err = call(command, arguments, stdin, cwd=folder)
+    changed = sorted(os.listdir(folder)) != ["file", "there"] or os.listdir(folder / "there") \
+        or (folder / "file").read_text() != "old"
+    lines = err.count("\n")
+    problems = [f"does not say {word}" for word in map(str, words.split("; ")) if word not in err]
+    for problem, is_so in [(f"exit {code}, expected {expected_code}", code != expected_code),
+                           (f"{lines} lines of errors, expected 1", lines != 1 or not err.endswith("\n")),
+                           ("does not begin with `tonewright: `", not err.startswith("tonewright: ")),
+                           ("printed a result", out), (f"left {os.listdir(folder)}", changed)]:
+        if is_so:
+            problems.append(problem)
+    shown = " ".join(Path(a).name if str(a).startswith(str(scratch)) else repr(str(a))[1:-1] or "''" for a in arguments)
+    if stdin:
+        shown += f" < {stdin.splitlines()[-2]!r}"
+    report.check(f"exit {expected_code}: {shown}", not problems, f"{', '.join(problems)}; it said: {err.strip()[:300]}")
+
+
+def limit_file_size():
+    resource.setrlimit(resource.RLIMIT_FSIZE, (10_000, 10_000))
+
+
+def check_old_file(report, command, scratch, number, what, expected_code, arguments, options):
+    """A run that fails before it writes, or while it does, leaves the file of its output's name, and no other."""
+    folder = scratch / f"old.{number}"
+    folder.mkdir()
+    target = folder / next(a for a in map(str, arguments) if a.startswith("old."))
+    target.write_bytes(b"the old file")
+    code, _, err = call(command, arguments, cwd=folder, **options)
+    report.check(f"old file survives: {what}", code == expected_code and err.count("\n") == 1
+                 and os.listdir(folder) == [target.name] and target.read_bytes() == b"the old file",
+                 f"exit {code}, files {os.listdir(folder)}: {err.strip()}")
+
+
+# A full disk: no file may be larger than 10 kB. Python ignores the signal that comes with it, and so will the program.
+DISK_FULL = {"preexec_fn": limit_file_size, "restore_signals": False}
+
+
+def old_files(bad, picture):
+    """Arguments of check_old_file."""
+    apply = ["--operator", "hable", "-d", "float"]
+    return [
+        ("apply, truncated picture", FILE, ["apply", bad["half.exr"], "old.png", *apply], {}),
+        ("apply, disk full", FILE, ["apply", picture, "old.exr", *apply], DISK_FULL),
+        ("apply, disk full, PNG", FILE, ["apply", picture, "old.png", "--operator", "hable"], DISK_FULL),
+        ("apply, disk full, TIFF", FILE, ["apply", picture, "old.tif", *apply], DISK_FULL),
+        ("apply, disk full, DPX", FILE, ["apply", picture, "old.dpx", *apply], DISK_FULL),
+        ("bake, disk full", FILE, ["bake", "agx_sobotka", "-o", "old.cube"], DISK_FULL),
+        ("bake, bad size", USAGE, ["bake", "agx_sobotka", "-o", "old.cube", "--size", "7"], {}),
+        ("chart, disk full", FILE, ["chart", "-o", "old.exr"], DISK_FULL),
+        ("sheet, missing picture", FILE, ["sheet", "none.png", "-o", "old.png"], {}),
+    ]
+
+
+def check_full_disks(report, command, scratch):
+    (scratch / "config.ocio").write_text("the old file")
+    code, _, err = call(command, ["config", "-o", scratch], **DISK_FULL)
+    report.check("old file survives: config, disk full", code == FILE and err.count("\n") == 1
+                 and (scratch / "config.ocio").read_text() == "the old file" and not list(scratch.rglob("*.tmp*")), err)
+    with open("/dev/full", "w") as no_space:
+        done = subprocess.run([command, "list"], stdout=no_space, stderr=subprocess.PIPE, check=False)
+    report.check("list > /dev/full", done.returncode == FILE and done.stderr.startswith(b"tonewright: ")
+                 and done.stderr.count(b"\n") == 1, f"exit {done.returncode}: {done.stderr.decode()}")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("command", type=Path)
+    command = parser.parse_args().command.resolve()
+    need_program("oiiotool", "openimageio-tools")
+    os.environ.pop("OCIO", None)
+    report = Report()
+    with tempfile.TemporaryDirectory(prefix="tonewright-") as folder, ThreadPoolExecutor(os.cpu_count()) as pool:
+        scratch = Path(folder)
+        picture, config = scratch / "small.exr", scratch / "config"
+        run(command, "chart", "-o", picture, "--width", 640, "--height", 360, "-d", "half")
+        run(command, "config", "-o", config)
+        bad = make_bad_pictures(scratch, picture)
+
+        jobs = []
+
+        def add(check, *arguments, in_folder=True):
+            """A check, to run beside the others; those that write get a folder of their own."""
+            if in_folder:
+                own = scratch / check.__name__
+                own.mkdir()
+                arguments = (own, *arguments)
+            jobs.append((check, (report, command, *arguments)))
+
+        add(check_apply)
+        add(check_bake)
+        add(check_verify, config, picture)
+        add(check_config, config)
+        add(check_chart, picture)
+        add(check_sheet, picture)
+        add(check_full_disks)
+        for check in (check_help, check_list, check_eval_text, check_engines):
+            add(check, in_folder=False)
+        errors = [(USAGE, *case) for case in usage_errors(bad, picture)]
+        errors += [(FILE, *case) for case in file_errors(bad, picture, scratch)]
+        for number, case in enumerate(errors):
+            add(check_error, scratch, number, *case, in_folder=False)
+        for number, case in enumerate(old_files(bad, picture)):
+            add(check_old_file, scratch, number, *case, in_folder=False)
+
+        def run_job(job):
+            check, arguments = job
+            try:
+                check(*arguments)
+            except RuntimeError as error:  # a program that had to succeed
+                report.check(check.__name__, False, error)
+
+        list(pool.map(run_job, jobs))
+    return report.finish()
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

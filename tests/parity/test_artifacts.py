@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The committed luts/ and ocio_config/ against fresh ones: the same files, texts and numbers.
+
+    python3 tests/parity/test_artifacts.py build/release/bin/tonewright SOURCE_DIR
+
+`./run artifacts` writes them anew. Bytes may differ between compilers, C libraries and versions of OpenColorIO, in
+last digits and so in content hashes; numbers may not. The last line is `N passed, M failed`.
+"""
+
+import argparse
+import csv
+import re
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parent / "clients"))
+from pictures import Report, run, skip  # noqa: E402
+
+try:
+    import PyOpenColorIO as ocio
+except ImportError:
+    ocio = None
+
+# Tables hold floats of double results: one libm's last digit can move a float by a unit (6e-8 of it), and where the
+# operator subtracts (Hable's toe), by some more. Relative above 1: decoding curves go on to 65504 and its powers.
+TABLE = 2e-6
+# The config's cubes are written with five decimals; a last digit of libm can decide how the fifth is rounded.
+CUBE_FIVE_DECIMALS = 1.1e-5
+# Nine digits of double results, of code values.
+PROBE = 1e-9
+# Figures in texts are measured errors, two digits, rounded up; those of exact forms are float rounding.
+FIGURE_RELATIVE, FIGURE_ABSOLUTE = 0.1, 1e-6
+# Coefficients and limits of the config, 15 digits: other compilers multiply matrices with other last digits.
+TRANSFORM = 1e-9
+
+NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w^])")
+
+
+def without_hash(text):
+    """What no two compilers need to agree about: content hashes, OpenColorIO's version."""
+    text = re.sub(r"_[0-9a-f]{8}\.clf", "_HASH.clf", text)
+    text = re.sub(r"id=\"tonewright-[0-9a-f]{8}\"", "id=\"tonewright-HASH\"", text)
+    return re.sub(r"OpenColorIO \d+\.\d+\.\d+", "OpenColorIO VERSION", text)
+
+
+def first_difference(is_, expected):
+    """The words about the first character that differs."""
+    at = next((i for i, (x, y) in enumerate(zip(is_, expected)) if x != y), min(len(is_), len(expected)))
+    shown = [text[max(0, at - 30):at + 50].replace("\n", " ") for text in (is_, expected)]
+    return f"...{shown[0]}..., expected ...{shown[1]}..."
+
+
+def figures_differ(is_, expected, relative=FIGURE_RELATIVE, absolute=FIGURE_ABSOLUTE):
+    """None, or what differs between two texts: words exactly, numbers within a tolerance."""
+    is_, expected = without_hash(is_), without_hash(expected)
+    if NUMBER.sub("#", is_) != NUMBER.sub("#", expected):
+        return first_difference(NUMBER.sub("#", is_), NUMBER.sub("#", expected))
+    for x, y in zip(NUMBER.findall(is_), NUMBER.findall(expected)):
+        if abs(float(x) - float(y)) > relative * abs(float(y)) + absolute:
+            return f"{x}, expected {y}"
+    return None
+
+
+def split_table(text):
+    """(the lines of numbers as an array, the rest): .cube, .clf."""
+    lines = text.splitlines()
+    is_row = [bool(re.fullmatch(r"[-+0-9.e ]+", line)) for line in lines]
+    rows = " ".join(line for line, row in zip(lines, is_row) if row).split()
+    return np.array(rows, float), "\n".join(line for line, row in zip(lines, is_row) if not row)
+
+
+def compare_table(report, what, committed, fresh, tolerance):
+    (old, old_text), (new, new_text) = split_table(committed), split_table(fresh)
+    difference = figures_differ(old_text, new_text)
+    if difference or old.shape != new.shape:
+        report.check(what, False, difference or f"has {old.size} numbers, expected {new.size}")
+        return
+    error = np.abs(old - new) / np.maximum(np.abs(new), 1)
+    report.bound(f"{what} ({new.size})", error.max(initial=0), tolerance)
+
+
+def compare_csv(report, what, committed, fresh, tolerance):
+    """Row by row; the column of hashes does not count."""
+    old, new = (list(csv.DictReader(text.splitlines())) for text in (committed, fresh))
+    if len(old) != len(new):
+        report.check(what, False, f"has {len(old)} rows, expected {len(new)}")
+        return
+    for number, (row, expected) in enumerate(zip(old, new), 2):
+        for name in expected:
+            if name == "content_hash":
+                continue
+            difference = figures_differ(row.get(name) or "", expected[name], *tolerance)
+            if difference:
+                report.check(what, False, f"line {number}, {name}: {difference}")
+                return
+    report.check(f"{what} ({len(new)} rows)", list(old[0]) == list(new[0]))
+
+
+def describe_config(path):
+    """Everything that a config says, as {what: text}."""
+    config = ocio.Config.CreateFromFile(str(path))
+    said = {"profile": f"{config.getMajorVersion()}.{config.getMinorVersion()}",
+            "name": config.getName(), "description": config.getDescription(),
+            "search path": " ".join(config.getSearchPaths()),
+            "roles": " ".join(f"{role}={config.getColorSpace(role).getName()}" for role in config.getRoleNames()),
+            "active": f"{config.getActiveDisplays()} / {config.getActiveViews()}",
+            "default view transform": config.getDefaultViewTransformName()}
+    for space in config.getColorSpaces(ocio.SEARCH_REFERENCE_SPACE_ALL, ocio.COLORSPACE_ALL):
+        said[f"space {space.getName()}"] = " | ".join([
+            ", ".join(space.getAliases()), space.getFamily(), space.getEncoding(), space.getDescription(),
+            ", ".join(space.getCategories()), str(space.getReferenceSpaceType()), str(space.isData()),
+            str(space.getTransform(ocio.COLORSPACE_DIR_TO_REFERENCE)),
+            str(space.getTransform(ocio.COLORSPACE_DIR_FROM_REFERENCE))])
+    for name in config.getViewTransformNames():
+        transform = config.getViewTransform(name)
+        said[f"view transform {name}"] = " | ".join([
+            transform.getDescription(), str(transform.getTransform(ocio.VIEWTRANSFORM_DIR_FROM_REFERENCE))])
+    for display in config.getDisplays():
+        for view in config.getViews(display):
+            said[f"view {display}: {view}"] = " | ".join([
+                config.getDisplayViewTransformName(display, view),
+                config.getDisplayViewColorSpaceName(display, view), config.getDisplayViewLooks(display, view),
+                config.getDisplayViewDescription(display, view)])
+    rules = config.getFileRules()
+    for i in range(rules.getNumEntries()):
+        said[f"file rule {i}"] = " | ".join([rules.getName(i), rules.getPattern(i), rules.getExtension(i),
+                                             rules.getColorSpace(i)])
+    return said
+
+
+def compare_config(report, what, committed, fresh):
+    if ocio is None:
+        print(f"skipped: {what} (PyOpenColorIO is not installed; Debian: python3-pyopencolorio)")
+        return
+    old, new = describe_config(committed), describe_config(fresh)
+    different = [f"{key} is there, expected none" for key in old if key not in new]
+    for key, said in new.items():
+        if key not in old:
+            different.append(f"{key} is missing")
+            continue
+        description, _, transform = said.partition("<")
+        old_description, _, old_transform = old[key].partition("<")
+        difference = (figures_differ(old_description, description)
+                      or figures_differ(old_transform, transform, TRANSFORM, TRANSFORM))
+        if difference:
+            different.append(f"{key}: {difference}")
+    if list(old) != list(new) and not different:
+        different.append("the order is another")
+    report.check(f"{what} ({len(new)} entries)", not different, "; ".join(different[:3]))
+
+
+def compare_folder(report, committed, fresh):
+    """Every file of two folders, found by its name without the hash."""
+    old, new = ({without_hash(str(p.relative_to(folder))): p for p in sorted(folder.rglob("*")) if p.is_file()}
+                for folder in (committed, fresh))
+    report.check(f"{committed.name}: the same {len(new)} files", set(old) == set(new),
+                 f"missing {sorted(set(new) - set(old))[:3]}, too many {sorted(set(old) - set(new))[:3]}")
+    for name in sorted(set(old) & set(new)):
+        what = f"{committed.name}/{name}"
+        if name == "config.ocio":
+            compare_config(report, what, old[name], new[name])
+            continue
+        texts = old[name].read_text(), new[name].read_text()
+        if name.endswith((".cube", ".clf")):
+            compare_table(report, what, *texts, CUBE_FIVE_DECIMALS if "_cube" in name else TABLE)
+        elif name == "probe.csv":
+            compare_csv(report, what, *texts, (PROBE, PROBE))
+        elif name.endswith(".csv"):
+            compare_csv(report, what, *texts, (FIGURE_RELATIVE, FIGURE_ABSOLUTE))
+        else:
+            difference = figures_differ(*texts)
+            report.check(what, difference is None, difference)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("command", type=Path)
+    parser.add_argument("source_dir", type=Path)
+    arguments = parser.parse_args()
+    command, source = arguments.command.resolve(), arguments.source_dir.resolve()
+    missing = [name for name in ("luts", "ocio_config") if not (source / name).is_dir()]
+    if missing:
+        skip(f"{' and '.join(missing)} not in the source folder; `./run artifacts` writes them")
+    report = Report()
+    with tempfile.TemporaryDirectory(prefix="tonewright-") as folder:
+        scratch = Path(folder)
+        run(command, "bake", "--all", scratch / "luts")
+        run(command, "config", "-o", scratch / "ocio_config")
+        compare_folder(report, source / "luts", scratch / "luts")
+        compare_folder(report, source / "ocio_config", scratch / "ocio_config")
+    return report.finish()
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

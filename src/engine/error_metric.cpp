@@ -36,7 +36,8 @@ double channel_error(const double* truth, const float* candidate) {
     double worst = 0;
     for (int c = 0; c < 3; ++c) {
         const double e = std::fabs(truth[c] - static_cast<double>(candidate[c]));
-        if (!(e <= worst)) worst = e;  // NaN is taken
+        if (std::isnan(e)) return kInfinity;
+        worst = std::max(worst, e);
     }
     return worst;
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -57,8 +58,9 @@ void write_generated_files(const std::string& folder, const std::vector<Generate
     if (std::ifstream manifest(root / "MANIFEST.csv"); manifest) {
         std::string line;
         std::getline(manifest, line);  // column names; the first column is the path
-        while (std::getline(manifest, line))
-            stale.insert(line.substr(0, line.find(',')));
+        while (std::getline(manifest, line)) {
+            stale.insert(fs::path(line.substr(0, line.find(','))).lexically_normal().string());
+        }
     }
     const auto write = [&](const GeneratedFile& file) {
         const fs::path path = root / file.path;
@@ -67,7 +69,7 @@ void write_generated_files(const std::string& folder, const std::vector<Generate
         if (error)
             throw FileError("write: " + path.parent_path().string() + ": " + error.message());
         write_text_atomically(path.string(), file.contents);
-        stale.erase(file.path);
+        stale.erase(fs::path(file.path).lexically_normal().string());
     };
     for (const GeneratedFile& file : files) {
         if (file.path != last) write(file);
@@ -75,12 +77,17 @@ void write_generated_files(const std::string& folder, const std::vector<Generate
     for (const GeneratedFile& file : files) {
         if (file.path == last) write(file);
     }
+    // A manifest is a text file that anyone can edit: nothing outside the folder is touched, not
+    // even through a link in it.
+    std::error_code error;
+    const fs::path inside = fs::canonical(root, error);
     for (const std::string& path : stale) {
-        // A manifest is a text file that anyone can edit: nothing outside the folder is touched.
-        const fs::path relative = fs::path(path).lexically_normal();
-        if (path.empty() || relative.is_absolute() || *relative.begin() == "..") continue;
-        std::error_code ignored;
-        fs::remove(root / relative, ignored);
+        const fs::path parent = fs::canonical((root / path).parent_path(), error);
+        if (error) continue;  // its folder is gone already
+        const auto differ =
+            std::mismatch(inside.begin(), inside.end(), parent.begin(), parent.end());
+        if (differ.first != inside.end()) continue;
+        if (fs::is_regular_file(root / path, error)) fs::remove(root / path, error);
     }
 }
 

@@ -132,7 +132,11 @@ class Lowering {
         const auto f = sample_half_domain(stage.f, std::max(domain_.lo, 0.0), domain_.hi);
         const auto lut = make_half_lut({identity, identity, f});
         if (stage.norm == ToneScaleStage::Norm::max_rgb) {
-            if (!(domain_.lo >= 0)) emit(make_range(0, kInfinity), "range");
+            // HSV of a negative channel loses it.
+            if (!(domain_.lo >= 0)) {
+                throw Error(
+                    "ocio: tone scale on the largest channel without a clamp at 0 before it");
+            }
             emit(make_fixed(OCIO::FIXED_FUNCTION_RGB_TO_HSV, OCIO::TRANSFORM_DIR_FORWARD), "HSV");
             emit(lut, "half LUT on V");
             emit(make_fixed(OCIO::FIXED_FUNCTION_RGB_TO_HSV, OCIO::TRANSFORM_DIR_INVERSE),
@@ -190,7 +194,7 @@ class Lowering {
         }
         emit(cube, std::to_string(edge) + "^3 cube to " + shortest(top));
         result_.is_exact = false;
-        domain_ = {-1, 2};  // codes of a display operator; what follows decodes them
+        domain_ = {};
         curve({srgb_decode(x), srgb_decode(x), srgb_decode(x)});
     }
 
@@ -217,7 +221,8 @@ class Lowering {
         if (domain.lo >= 0 && gain > 1 && is_steep_at_black(f)) {
             emit(make_matrix(scale(kIdentity3, gain)), "scale");
             const Expr scaled = Expr::input() / gain;
-            for (Expr& channel : f) channel = substitute(channel, std::span(&scaled, 1));
+            for (Expr& channel : f)
+                channel = substitute(channel, std::span(&scaled, 1));
             domain = {domain.lo * gain, domain.hi * gain};
         }
         std::array<std::vector<float>, 3> tables;

@@ -29,6 +29,7 @@ const Item& find_named(const std::vector<Item>& items, std::string_view name, co
         }
     }
     ids.insert(ids.end(), extra.begin(), extra.end());
+    all.insert(all.end(), extra.begin(), extra.end());
     throw Error(std::string(what) + " is " + std::string(name) + "; expected " + join_choices(ids) +
                 did_you_mean(name, all));
 }

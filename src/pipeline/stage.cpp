@@ -48,7 +48,8 @@ bool is_identity(const Stage& stage) {
     return std::visit(
         Overloaded{[](const MatrixStage& s) { return s.m == kIdentity3; },
                    [](const CurveStage& s) { return s.is_uniform() && same(s.f[0], input0()); },
-                   [](const ToneScaleStage& s) { return same(s.f, input0()); },
+                   // Even with f(n) = n, colours of norm 0 or below become black.
+                   [](const ToneScaleStage&) { return false; },
                    [](const ClampStage& s) { return s.lo == -kInfinity && s.hi == kInfinity; },
                    [](const Map3Stage& s) {
                        return same(s.f[0], Expr::input(0)) && same(s.f[1], Expr::input(1)) &&
@@ -155,26 +156,28 @@ std::string to_string(const Pipeline& pipeline) {
     std::string s;
     for (const Stage& stage : pipeline) {
         s += std::string(stage_kind(stage)) + ": ";
-        s += std::visit(Overloaded{[](const MatrixStage& m) { return to_text(m.m); },
-                                   [](const CurveStage& c) {
-                                       if (c.is_uniform()) return to_string(c.f[0]);
-                                       return to_string(c.f[0]) + " | " + to_string(c.f[1]) +
-                                              " | " + to_string(c.f[2]);
-                                   },
-                                   [](const ToneScaleStage& t) {
-                                       return std::string(t.norm == ToneScaleStage::Norm::max_rgb
-                                                              ? "of max(r, g, b): "
-                                                              : "of luminance: ") +
-                                              to_string(t.f);
-                                   },
-                                   [](const ClampStage& c) {
-                                       return "[" + shortest(c.lo) + ", " + shortest(c.hi) + "]";
-                                   },
-                                   [](const Map3Stage& m) {
-                                       return to_string(m.f[0]) + " | " + to_string(m.f[1]) +
-                                              " | " + to_string(m.f[2]);
-                                   }},
-                        stage);
+        s += std::visit(
+            Overloaded{[](const MatrixStage& m) { return to_text(m.m); },
+                       [](const CurveStage& c) {
+                           if (c.is_uniform()) return to_string(c.f[0]);
+                           return to_string(c.f[0]) + " | " + to_string(c.f[1]) + " | " +
+                                  to_string(c.f[2]);
+                       },
+                       [](const ToneScaleStage& t) {
+                           return std::string(t.norm == ToneScaleStage::Norm::max_rgb
+                                                  ? "of max(r, g, b): "
+                                                  : "of luminance: ") +
+                                  to_string(t.f);
+                       },
+                       [](const ClampStage& c) {
+                           return "[" + shortest(c.lo) + ", " + shortest(c.hi) + "]";
+                       },
+                       [](const Map3Stage& m) {
+                           static const std::array<std::string, 3> rgb = {"r", "g", "b"};
+                           return to_string(m.f[0], rgb) + " | " + to_string(m.f[1], rgb) + " | " +
+                                  to_string(m.f[2], rgb);
+                       }},
+            stage);
         s += "\n";
     }
     return s;

@@ -90,10 +90,11 @@ Bounds bounds_of(const Pipeline& pipeline, const Display& display) {
             b.gpu = std::max(b.gpu, 1.0 / 1023);
         }
     }
-    // The bounds are for sRGB, whose slope at black is 12.92: there they are bounds on light. The same
-    // light is a larger code value on a display whose power has an infinite slope at black.
+    // The bounds are for sRGB, whose slope at black is 12.92: there they are bounds on light. The
+    // same light is a larger code value on a display whose power has an infinite slope at black.
     for (double* bound : {&b.cpu, &b.gpu}) {
-        const double near_black = evaluate(display.encode, *bound / 12.92) - evaluate(display.encode, 0.0);
+        const double near_black =
+            evaluate(display.encode, *bound / 12.92) - evaluate(display.encode, 0.0);
         *bound = std::max(*bound, near_black);
     }
     return b;
@@ -174,7 +175,8 @@ class Comparison {
         for (std::size_t c = 0; c < 3; ++c) {
             const double error = std::fabs(static_cast<double>(shown[c]) - truth_[3 * i + c]);
             const double beyond = error - allowance[c];
-            if (!(beyond <= worst)) worst = beyond;  // NaN is taken
+            if (std::isnan(beyond)) return kInfinity;
+            worst = std::max(worst, beyond);
         }
         return worst;
     }

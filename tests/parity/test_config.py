@@ -9,6 +9,7 @@ line is `N passed, M failed`.
 
 import argparse
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -17,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent / "clients"))
-from pictures import Report, need_program, run, skip, views  # noqa: E402
+from pictures import Report, run, skip, views  # noqa: E402
 
 try:
     import PyOpenColorIO as ocio
@@ -49,7 +50,9 @@ ROUND_TRIP = 1e-6
 
 
 def check_ociocheck(report, path):
-    need_program("ociocheck", "opencolorio-tools")
+    if not shutil.which("ociocheck"):
+        print("skipped: ociocheck is not installed (Debian: opencolorio-tools)")
+        return
     done = subprocess.run(["ociocheck", "--iconfig", path], capture_output=True, text=True, check=False)
     lines = (done.stdout + done.stderr).splitlines()
     bad = [line for line in lines if re.search("warn|error|fail", line, re.I)]

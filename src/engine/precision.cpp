@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "engine/probe.h"
-#include "engine/tape_operands.h"
 #include "expr/scalar_ops.h"
 #include "tonewright/pipeline.h"
 
@@ -61,6 +60,28 @@ std::vector<Vector3> probe_colours() {
         }
     }
     return probes;
+}
+
+int operand_count(ExprOp op) {
+    switch (op) {
+        case ExprOp::constant:
+        case ExprOp::input:
+            return 0;
+        case ExprOp::negate:
+        case ExprOp::absolute:
+        case ExprOp::square_root:
+        case ExprOp::exp2:
+        case ExprOp::log2:
+        case ExprOp::sine:
+        case ExprOp::cosine:
+        case ExprOp::floor:
+        case ExprOp::lookup:
+            return 1;
+        case ExprOp::select:
+            return 3;
+        default:
+            return 2;
+    }
 }
 
 double slope(const Table& table, double x) {
@@ -169,18 +190,14 @@ double cost_of_double(ExprOp op) {
 class PrecisionChooser {
   public:
     PrecisionChooser(const std::vector<TapeInstruction>& code,
-                     const std::array<std::uint32_t, 3>& outputs,
-                     const std::vector<std::uint32_t>& roots)
+                     const std::array<std::uint32_t, 3>& outputs)
         : code_(code),
           outputs_(outputs),
-          roots_(roots),
-          result_{std::vector<bool>(code.size()),
-                  std::vector<std::array<float, Precision::kExponents>>(code.size()),
-                  std::vector<double>(code.size())},
+          in_double_(code.size()),
           value_(code.size()),
           adjoint_(code.size()) {}
 
-    Precision choose() {
+    std::vector<bool> choose() {
         const std::vector<Vector3> probes = probe_colours();
         for (std::size_t i = 0; i < code_.size(); ++i) {
             if (is_branch(code_[i].op)) branches_.push_back({i, {}});
@@ -197,7 +214,7 @@ class PrecisionChooser {
                 approach(branch);
             if (in_double_ == before) break;
         }
-        return std::move(result_);
+        return in_double_;
     }
 
   private:
@@ -231,10 +248,7 @@ class PrecisionChooser {
         evaluate(rgb, code_.size());
         constexpr double kTooLarge = 0.5 * static_cast<double>(std::numeric_limits<float>::max());
         for (std::size_t i = 0; i < code_.size(); ++i) {
-            const double size = std::fabs(value_[i]);
-            if (!std::isfinite(size)) continue;
-            if (size > kTooLarge) in_double_[i] = true;
-            result_.largest[i] = std::max(result_.largest[i], size);
+            if (std::isfinite(value_[i]) && std::fabs(value_[i]) > kTooLarge) in_double_[i] = true;
         }
         for (const std::uint32_t output : outputs_)
             keep_within_budget(output);
@@ -289,28 +303,17 @@ class PrecisionChooser {
         adjoint_[output] = 1 / std::max(1.0, std::fabs(value_[output]));
         for (std::size_t i = output + 1; i-- > 0;) {
             const TapeInstruction& step = code_[i];
-            const std::size_t operands = operand_count(step.op);
+            const int operands = operand_count(step.op);
             if (adjoint_[i] == 0 || operands == 0) continue;
             const auto partial = partials(step, value_[i], value_[step.a], value_[step.b]);
             const std::array<std::uint32_t, 3> operand = {step.a, step.b, step.c};
-            for (std::size_t k = 0; k < operands; ++k) {
+            for (std::size_t k = 0; k < static_cast<std::size_t>(operands); ++k) {
                 // Kernels take a constant exponent in double.
                 if (k == 1 && step.op == ExprOp::power && code_[step.b].op == ExprOp::constant)
                     continue;
                 const double added = adjoint_[i] * partial[k];
                 if (std::isfinite(added)) adjoint_[operand[k]] += added;  // not at a pole
             }
-        }
-    }
-
-    void note_sensitivity(std::uint32_t output) {
-        for (std::size_t i = 0; i <= output; ++i) {
-            const double x = value_[roots_[i]];
-            if (adjoint_[i] == 0 || roots_[i] == i || !(x > 0)) continue;
-            const int last = static_cast<int>(Precision::kExponents) - 1;
-            const int e = std::clamp(std::ilogb(x) - Precision::kLowestExponent, 0, last);
-            float& largest = result_.sensitivity[i][static_cast<std::size_t>(e)];
-            largest = std::max(largest, static_cast<float>(std::fabs(adjoint_[i])));
         }
     }
 
@@ -322,9 +325,10 @@ class PrecisionChooser {
         }
         double units = half_ulps(step.op);
         if (is_exact(step.op)) {
+            const std::array<std::uint32_t, 3> operand = {step.a, step.b, step.c};
             units = 0;
-            for (const std::uint32_t operand : operands_of(step)) {
-                if (in_double_[operand]) units = 1;
+            for (std::size_t k = 0; k < static_cast<std::size_t>(operand_count(step.op)); ++k) {
+                if (in_double_[operand[k]]) units = 1;
             }
         }
         if (i == output) units = std::max(0.0, units - 1);  // that one there is in any case
@@ -333,7 +337,6 @@ class PrecisionChooser {
 
     void keep_within_budget(std::uint32_t output) {
         accumulate(output);
-        note_sensitivity(output);
         shares_.clear();
         double sum = 0;
         for (std::size_t i = 0; i <= output; ++i) {
@@ -358,9 +361,7 @@ class PrecisionChooser {
 
     const std::vector<TapeInstruction>& code_;
     const std::array<std::uint32_t, 3>& outputs_;
-    const std::vector<std::uint32_t>& roots_;
-    Precision result_;
-    std::vector<bool>& in_double_ = result_.in_double;
+    std::vector<bool> in_double_;
     std::vector<double> value_;
     std::vector<double> adjoint_;
     std::vector<Share> shares_;
@@ -370,10 +371,9 @@ class PrecisionChooser {
 
 }  // namespace
 
-Precision choose_precision(const std::vector<TapeInstruction>& code,
-                           const std::array<std::uint32_t, 3>& outputs,
-                           const std::vector<std::uint32_t>& roots) {
-    return PrecisionChooser(code, outputs, roots).choose();
+std::vector<bool> values_in_double(const std::vector<TapeInstruction>& code,
+                                   const std::array<std::uint32_t, 3>& outputs) {
+    return PrecisionChooser(code, outputs).choose();
 }
 
 }  // namespace tonewright

@@ -15,7 +15,7 @@ namespace tonewright {
 inline constexpr double kFloatErrorBudget = 9e-7;
 
 /// Which values of a program are to be kept in double, so that the outputs keep to the budget when
-/// all others are float; and how much each of them matters.
+/// all others are float.
 ///
 /// A matrix with negative coefficients takes the difference of nearly equal numbers and the sRGB
 /// curve multiplies what is left by 12.92, so a rounding of 6e-8 may become 3e-6 of the picture;
@@ -23,21 +23,7 @@ inline constexpr double kFloatErrorBudget = 9e-7;
 /// follows. So it is computed: over a set of probe colours, the derivative of each output by each
 /// value (reverse accumulation) times the value's rounding error is what that rounding adds to the
 /// output. While the sum is above the budget, the value that adds most for its cost becomes double.
-struct Precision {
-    std::vector<bool> in_double;
-
-    static constexpr int kLowestExponent = -40;
-    static constexpr std::size_t kExponents = 64;
-    /// For each value that is a function of one other, its root: the largest derivative of an
-    /// output by it, met where the root is positive and has this exponent (less kLowestExponent).
-    std::vector<std::array<float, kExponents>> sensitivity;
-    /// Largest size of each value met.
-    std::vector<double> largest;
-};
-
-/// @param roots  for each value the one that it is a function of; itself when there is none such.
-[[nodiscard]] Precision choose_precision(const std::vector<TapeInstruction>& code,
-                                         const std::array<std::uint32_t, 3>& outputs,
-                                         const std::vector<std::uint32_t>& roots);
+[[nodiscard]] std::vector<bool> values_in_double(const std::vector<TapeInstruction>& code,
+                                                 const std::array<std::uint32_t, 3>& outputs);
 
 }  // namespace tonewright

@@ -7,12 +7,6 @@
 
 #include <cstring>
 
-#if defined(__GNUC__) && !defined(__clang__)
-// GCC's AVX-512 header hands an undefined vector to instructions that do not read it.
-#pragma GCC diagnostic ignored "-Wuninitialized"
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-#endif
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "engine/simd_kernels.cpp"
 // Processors without SSE4 (before 2008) run the scalar code.
@@ -220,68 +214,6 @@ HWY_NOINLINE void lookup(const Frame& frame, const Instruction& step, const Samp
     }
 }
 
-#if HWY_TARGET <= HWY_AVX3
-
-/// One table of 32 entries.
-struct CurveTable {
-    __m512 low, high;
-    explicit CurveTable(const void* entries)
-        : low(_mm512_loadu_ps(entries)),
-          high(_mm512_loadu_ps(static_cast<const float*>(entries) + 16)) {}
-    HWY_INLINE __m512 operator[](__m512i index) const {
-        return _mm512_permutex2var_ps(low, index, high);
-    }
-};
-
-/// CompiledCurve::operator(), 16 values at a time.
-HWY_NOINLINE void curve(const Frame& frame, const Instruction& step, const CompiledCurve& c) {
-    const Source source(frame, step.in[0]);
-    auto* out = reinterpret_cast<float*>(frame.registers + step.out.offset);
-    const CurveTable boundary(c.boundary.data());
-    const CurveTable segment(c.segment.data());
-    const CurveTable c0(c.coefficient[0].data());
-    const CurveTable c1(c.coefficient[1].data());
-    const CurveTable c2(c.coefficient[2].data());
-    const CurveTable c3(c.coefficient[3].data());
-    const CurveTable c4(c.coefficient[4].data());
-    const CurveTable c5(c.coefficient[5].data());
-    const CurveTable c6(c.coefficient[6].data());
-    const CurveTable c7(c.coefficient[7].data());
-    const __m512i lowest = _mm512_set1_epi32((c.lowest_exponent + 127) << 23);
-    for (std::size_t i = 0; i < frame.count; i += 16) {
-        const __m512 value = source.load(DF(), i).raw;
-        const __m512 x = _mm512_min_ps(value, _mm512_set1_ps(c.highest));
-        // 2^e, and from its bits 2^-e and the index.
-        __m512i power = _mm512_and_si512(_mm512_castps_si512(x), _mm512_set1_epi32(0x7F800000));
-        power = _mm512_max_epi32(power, lowest);
-        const __m512i inverse = _mm512_sub_epi32(_mm512_set1_epi32(0x7F000000), power);
-        const __m512 u = _mm512_fmadd_ps(x, _mm512_castsi512_ps(inverse), _mm512_set1_ps(-1.5F));
-        const __m512i octave = _mm512_srli_epi32(power, 23);
-        const __mmask16 second = _mm512_cmp_ps_mask(x, boundary[octave], _CMP_GE_OQ);
-        const __m512i first = _mm512_castps_si512(segment[octave]);
-        const __m512i s = _mm512_mask_add_epi32(first, second, first, _mm512_set1_epi32(1));
-        __m512 y = _mm512_fmadd_ps(c7[s], u, c6[s]);
-        y = _mm512_fmadd_ps(y, u, c5[s]);
-        y = _mm512_fmadd_ps(y, u, c4[s]);
-        y = _mm512_fmadd_ps(y, u, c3[s]);
-        y = _mm512_fmadd_ps(y, u, c2[s]);
-        y = _mm512_fmadd_ps(y, u, c1[s]);
-        y = _mm512_fmadd_ps(y, u, c0[s]);
-        const __mmask16 is_positive = _mm512_cmp_ps_mask(value, _mm512_setzero_ps(), _CMP_GT_OQ);
-        _mm512_store_ps(out + i, _mm512_mask_blend_ps(is_positive, _mm512_set1_ps(c.at_zero), y));
-    }
-}
-
-const Code& choose_code(const Program& program) { return program.with_curves; }
-
-#else
-
-HWY_INLINE void curve(const Frame& /*frame*/, const Instruction& /*step*/,
-                      const CompiledCurve& /*c*/) {}
-const Code& choose_code(const Program& program) { return program.plain; }
-
-#endif
-
 HWY_NOINLINE void run_instruction(const Frame& frame, const Code& code, const Instruction& step) {
     switch (step.op) {
         case Op::copy:
@@ -375,8 +307,6 @@ HWY_NOINLINE void run_instruction(const Frame& frame, const Code& code, const In
             });
         case Op::lookup:
             return lookup(frame, step, code.tables[step.table]);
-        case Op::curve:
-            return curve(frame, step, code.curves[step.table]);
     }
 }
 
@@ -502,9 +432,8 @@ HWY_NOINLINE void store_tile(const Code& code, const Frame& frame, const std::ar
     }
 }
 
-void run(const Program& program, const std::array<const float*, 3>& in, std::ptrdiff_t in_stride,
+void run(const Code& code, const std::array<const float*, 3>& in, std::ptrdiff_t in_stride,
          const std::array<float*, 3>& out, std::ptrdiff_t out_stride, std::size_t count) {
-    const Code& code = choose_code(program);
     alignas(kVectorBytes) unsigned char registers[kRegisterFileBytes];
     const auto* constants = reinterpret_cast<const unsigned char*>(code.constants.data());
     for (std::size_t begin = 0; begin < count; begin += code.tile) {
@@ -543,9 +472,9 @@ const std::vector<std::int64_t>& targets() {
 
 }  // namespace
 
-void run(const Program& program, const std::array<const float*, 3>& in, std::ptrdiff_t in_stride,
+void run(const Code& code, const std::array<const float*, 3>& in, std::ptrdiff_t in_stride,
          const std::array<float*, 3>& out, std::ptrdiff_t out_stride, std::size_t count) noexcept {
-    HWY_DYNAMIC_DISPATCH(run)(program, in, in_stride, out, out_stride, count);
+    HWY_DYNAMIC_DISPATCH(run)(code, in, in_stride, out, out_stride, count);
 }
 
 const std::vector<std::string>& target_names() {

@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "engine/compiled_curve.h"
 #include "tonewright/expr.h"
 
 namespace tonewright::simd {
@@ -48,7 +47,6 @@ enum class Op : std::uint8_t {
     select_less_equal,
     select_equal,
     lookup,
-    curve,  // AVX-512 alone
 };
 
 /// Where a value is: in the tile's register file, or among the constants, which stand there as one
@@ -73,7 +71,7 @@ struct Instruction {
     Operand out;
     std::array<Operand, 4> in;
     std::array<double, 3> k{};  // coefficients of dot3, exponent of power_constant
-    std::uint32_t table = 0;    // of a lookup or a curve
+    std::uint32_t table = 0;    // of a lookup
 };
 
 /// Largest tile, in pixels.
@@ -90,7 +88,6 @@ struct Code {
     std::vector<Instruction> instructions;
     std::vector<ConstantVector> constants;
     std::vector<SampledTable> tables;
-    std::vector<CompiledCurve> curves;
     /// Float registers of the three input channels; a channel that is not read has none.
     std::array<std::uint32_t, 3> input_offset{};
     std::array<bool, 3> reads_input{};
@@ -100,15 +97,8 @@ struct Code {
     std::size_t tile = 0;
 };
 
-/// The same program twice: its functions of one value computed step by step, and by polynomials
-/// from tables where those are exact enough. Only AVX-512 looks tables up faster than it computes.
-struct Program {
-    Code plain;
-    Code with_curves;
-};
-
-/// Runs the program over `count` pixels, with the best instruction set that is not switched off.
-void run(const Program& program, const std::array<const float*, 3>& in, std::ptrdiff_t in_stride,
+/// Runs the code over `count` pixels, with the best instruction set that is not switched off.
+void run(const Code& code, const std::array<const float*, 3>& in, std::ptrdiff_t in_stride,
          const std::array<float*, 3>& out, std::ptrdiff_t out_stride, std::size_t count) noexcept;
 
 /// Instruction sets compiled in that this machine has, best first.

@@ -7,10 +7,8 @@
 #include <cstring>
 #include <map>
 
-#include "engine/curve_pass.h"
 #include "engine/precision.h"
 #include "engine/tape.h"
-#include "engine/tape_operands.h"
 #include "tonewright/engine.h"
 #include "tonewright/error.h"
 
@@ -117,18 +115,13 @@ struct Selected {
     std::array<std::int64_t, 4> operands = {kNone, kNone, kNone, kNone};
     std::array<double, 3> k{};
     const Table* table = nullptr;
-    std::uint32_t curve = 0;
     bool wide = false;
 };
 
 class Selector {
   public:
-    Selector(const FloatTape& tape, const std::vector<bool>& in_double, const Curves& curves)
-        : code_(tape.code()),
-          in_double_(in_double),
-          curves_(curves),
-          uses_(code_.size()),
-          is_needed_(code_.size()) {
+    Selector(const FloatTape& tape, const std::vector<bool>& in_double)
+        : code_(tape.code()), in_double_(in_double), uses_(code_.size()), is_needed_(code_.size()) {
         for (const TapeInstruction& step : code_) {
             for (const std::uint32_t operand : operands_of(step))
                 ++uses_[operand];
@@ -148,12 +141,7 @@ class Selector {
             current_ = Selected{};
             current_.value = static_cast<std::uint32_t>(i);
             current_.wide = in_double_[i];
-            if (const auto it = curves_.uses.find(current_.value); it != curves_.uses.end()) {
-                emit(Op::curve, {it->second.root});
-                current_.curve = it->second.curve;
-            } else {
-                match(code_[i]);
-            }
+            match(code_[i]);
             for (const std::int64_t operand : current_.operands) {
                 if (operand == kNone) continue;
                 const auto v = static_cast<std::size_t>(operand);
@@ -164,6 +152,28 @@ class Selector {
         }
         std::reverse(result.begin(), result.end());
         return result;
+    }
+
+    static std::vector<std::uint32_t> operands_of(const TapeInstruction& step) {
+        switch (step.op) {
+            case ExprOp::constant:
+            case ExprOp::input:
+                return {};
+            case ExprOp::negate:
+            case ExprOp::absolute:
+            case ExprOp::square_root:
+            case ExprOp::exp2:
+            case ExprOp::log2:
+            case ExprOp::sine:
+            case ExprOp::cosine:
+            case ExprOp::floor:
+            case ExprOp::lookup:
+                return {step.a};
+            case ExprOp::select:
+                return {step.a, step.b, step.c};
+            default:
+                return {step.a, step.b};
+        }
     }
 
   private:
@@ -297,7 +307,6 @@ class Selector {
 
     const std::vector<TapeInstruction>& code_;
     const std::vector<bool>& in_double_;
-    const Curves& curves_;
     std::vector<int> uses_;
     std::vector<bool> is_needed_;
     Selected current_;
@@ -327,11 +336,8 @@ class Assembler {
             if (tape_[value].op == ExprOp::constant) continue;
             auto slot = static_cast<std::size_t>(slot_of_[value]);
             if (is_wide_[slot]) {
-                Selected to_float;
-                to_float.value = value;
-                to_float.operands[0] = value;
-                to_float.wide = true;
-                steps_.push_back(to_float);
+                steps_.push_back(
+                    Selected{Op::copy, value, {value, kNone, kNone, kNone}, {}, nullptr, true});
                 is_wide_.push_back(false);
                 slot = steps_.size() - 1;
             }
@@ -357,7 +363,6 @@ class Assembler {
             step.wide = s.wide || s.op == Op::sine || s.op == Op::cosine || s.op == Op::atan2;
             step.out = place(slot);
             step.k = s.k;
-            if (s.op == Op::curve) step.table = s.curve;
             if (s.table) step.table = table(*s.table);
             for (std::size_t k = 0; k < 4; ++k) {
                 if (s.operands[k] == kNone) continue;
@@ -488,24 +493,18 @@ class Assembler {
 
 }  // namespace
 
-Program compile(const Pipeline& pipeline) {
+Code compile(const Pipeline& pipeline) {
     const Tape source(compose(simplify(pipeline)));
     const FloatTape tape(source);
-    const std::vector<std::uint32_t> roots = find_roots(tape.code());
-    const Precision precision = choose_precision(tape.code(), tape.outputs(), roots);
-    const auto assemble = [&](const Curves& curves) {
-        const std::vector<Selected> selected = Selector(tape, precision.in_double, curves).select();
-        Code code = Assembler(tape, precision.in_double, selected).assemble();
-        code.curves = curves.curves;
-        return code;
-    };
-    return {assemble({}), assemble(find_curves(tape.code(), tape.outputs(), roots, precision))};
+    const std::vector<bool> in_double = values_in_double(tape.code(), tape.outputs());
+    const std::vector<Selected> selected = Selector(tape, in_double).select();
+    return Assembler(tape, in_double, selected).assemble();
 }
 
 }  // namespace simd
 
 struct SimdEngine::Program {
-    simd::Program program;
+    simd::Code code;
 };
 
 SimdEngine::SimdEngine(const Pipeline& pipeline)
@@ -517,7 +516,7 @@ SimdEngine& SimdEngine::operator=(SimdEngine&&) noexcept = default;
 void SimdEngine::run(const std::array<const float*, 3>& in, std::ptrdiff_t in_stride,
                      const std::array<float*, 3>& out, std::ptrdiff_t out_stride,
                      std::size_t count) const noexcept {
-    simd::run(program_->program, in, in_stride, out, out_stride, count);
+    simd::run(program_->code, in, in_stride, out, out_stride, count);
 }
 
 void SimdEngine::run_rgb(const float* in, float* out, std::size_t pixel_count) const noexcept {

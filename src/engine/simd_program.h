@@ -11,11 +11,9 @@ namespace tonewright::simd {
 /// 1. neighbouring matrices multiplied; division by a constant as multiplication by its reciprocal;
 ///    small whole powers as products;
 /// 2. the values that float is too coarse for are kept in double (precision.h);
-/// 3. functions of one value, such as a whole tone curve with its encoding, compiled to polynomials
-///    where the processor looks those up faster than it computes (curve_pass.h);
-/// 4. products and sums contracted to fused multiply-adds and dot products, comparisons joined to
+/// 3. products and sums contracted to fused multiply-adds and dot products, comparisons joined to
 ///    their selects;
-/// 5. registers allocated, and the tile made as large as the first-level cache allows.
-[[nodiscard]] Program compile(const Pipeline& pipeline);
+/// 4. registers allocated, and the tile made as large as the first-level cache allows.
+[[nodiscard]] Code compile(const Pipeline& pipeline);
 
 }  // namespace tonewright::simd

@@ -13,9 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "engine/compiled_curve.h"
 #include "engine/probe.h"
-#include "engine/simd_program.h"
 #include "tonewright/engine.h"
 #include "tonewright/view.h"
 
@@ -293,59 +291,6 @@ TEST_F(Simd, OperationsMeanWhatExpressionsMean) {
             }
         }
     }
-}
-
-// ---------------------------------------------------------------------------------------------
-// Compiled curves
-
-/// Reinhard and the sRGB encoding, with the sides of its three branches.
-CurveValue reinhard_encoded(double x) {
-    const double light = std::min(x > 0 ? x / (1 + x) : 0, 0.9);
-    const double code =
-        light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
-    const std::uint64_t sides =
-        (x > 0 ? 1U : 0U) + (light < 0.9 ? 2U : 0U) + (light <= 0.0031308 ? 4U : 0U);
-    return {code, sides};
-}
-
-TEST(CompiledCurve, HoldsAToneCurveWithItsKinks) {
-    constexpr double kTolerance = 3e-7;
-    const auto curve = compile_curve(reinhard_encoded, kHalfMax, [](int) { return kTolerance; });
-    ASSERT_TRUE(curve);
-    EXPECT_EQ((*curve)(0.0F), 0.0F);
-    EXPECT_EQ((*curve)(-5.0F), 0.0F);
-    EXPECT_EQ((*curve)(std::numeric_limits<float>::quiet_NaN()), 0.0F);
-    ProbeRandom random(29);
-    for (int i = 0; i < 200000; ++i) {
-        const double near_kink = i % 3 == 0 ? 9 : 0.0031308 / (1 - 0.0031308);
-        const auto x = static_cast<float>(i % 2 ? std::exp2(random.uniform(-149, 16))
-                                                : near_kink * random.uniform(0.99, 1.01));
-        const double truth = reinhard_encoded(static_cast<double>(x)).y;
-        // Samples tell the tolerance; between them there may be a little more.
-        ASSERT_NEAR(static_cast<double>((*curve)(x)), truth, 1.2 * kTolerance) << x;
-    }
-}
-
-TEST(CompiledCurve, SaysWhenItCannot) {
-    const auto tolerance = [](int) { return 3e-7; };
-    // No end of slope at black.
-    const auto power = [](double x) { return CurveValue{std::pow(x, 1 / 2.4), 0}; };
-    EXPECT_FALSE(compile_curve(power, 1, tolerance));
-    // A step that no branch tells of.
-    const auto step = [](double x) { return CurveValue{x > 0.3 ? 1.0 : 0.5, 0}; };
-    EXPECT_FALSE(compile_curve(step, 1, tolerance));
-    // More octaves than entries.
-    const auto log = [](double x) { return CurveValue{std::log2(std::max(x, 0x1p-23)), 0}; };
-    EXPECT_FALSE(compile_curve(log, 0x1p15, tolerance));
-}
-
-TEST(CompiledCurve, IsAllThereIsOfAnOperatorOfOneChannel) {
-    const simd::Program program = simd::compile(view_of("hable"));
-    ASSERT_EQ(program.with_curves.instructions.size(), 3U);
-    for (const simd::Instruction& step : program.with_curves.instructions) {
-        EXPECT_EQ(step.op, simd::Op::curve);
-    }
-    EXPECT_EQ(program.with_curves.curves.size(), 1U) << "the channels share it";
 }
 
 // ---------------------------------------------------------------------------------------------

@@ -26,22 +26,23 @@ import sys
 EXACT = 1e-6
 # The 65^3 cubes are made to hold one code of 10 bits on the sRGB curve.
 CUBE = 1.0 / 1023
-# Displays whose curve is a straight line at black. The others are powers, infinitely steep there, and get more near
-# black: their tables are a straight line from 0 to the smallest half float, 2^-24 of light or code 1e-3, up to 3.1e-4
-# below the curve; and cubes, whose nodes are sRGB codes, err up to twice as much below code 0.1.
+# Displays whose curve is a straight line at black. The others are powers, infinitely steep there: below code 0.1 what
+# is left of float32 and of half floats near 0 shows as up to 1.3e-5, and cubes, whose nodes are sRGB codes, err up to
+# twice as much as on the sRGB curve.
 LINEAR_AT_BLACK = ("sRGB", "Display P3")
-NEAR_BLACK_EXACT = (1e-3, 3.1e-4)  # below this code, this bound
-NEAR_BLACK_CUBE = (0.1, 2.0 / 1023)
+NEAR_BLACK = 0.1
+EXACT_NEAR_BLACK = 2e-5
+CUBE_NEAR_BLACK = 2 * CUBE
 # With a negative channel, matrices subtract numbers of the size of the brightest channel, in float32: errors are
 # counted relative to that, where it exceeds 1.
 
 
 def tolerance(expected, rgb, display, has_cube):
     """Bound for one channel of one colour."""
-    bound = CUBE if has_cube else EXACT
-    near_black = NEAR_BLACK_CUBE if has_cube else NEAR_BLACK_EXACT
-    if display not in LINEAR_AT_BLACK and expected < near_black[0]:
-        bound = near_black[1]
+    if display not in LINEAR_AT_BLACK and expected < NEAR_BLACK:
+        bound = CUBE_NEAR_BLACK if has_cube else EXACT_NEAR_BLACK
+    else:
+        bound = CUBE if has_cube else EXACT
     if min(rgb) < 0:
         bound *= max(1.0, max(abs(v) for v in rgb))
     return bound

@@ -46,7 +46,7 @@ void add_apply(CLI::App& program, int&) {
         const Tonemapper tonemapper(tonemap);  // a wrong name is told before a large file is read
         const OIIO::TypeDesc type = options->type.empty() ? OIIO::TypeDesc(OIIO::TypeUnknown)
                                                           : parse_pixel_type(options->type);
-        const OIIO::ImageBuf source = read_image(options->in);
+        const OIIO::ImageBuf source = read_picture(options->in);
         OIIO::ImageBuf result;
         if (!tonemapper(result, source, {}, options->threads)) {
             throw Error("apply: " + options->in + ": " + result.geterror());

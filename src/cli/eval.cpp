@@ -32,7 +32,9 @@ std::vector<double> parse_triplets(std::string_view text) {
         skip(" \t\r");
         while (!line.empty() && !is_bad) {
             double value = 0;
-            if (line.front() == '+') line.remove_prefix(1);  // from_chars takes no plus sign
+            if (line.front() == '+' && line.size() > 1 && line[1] != '-') {
+                line.remove_prefix(1);  // from_chars takes no plus sign
+            }
             const auto result = std::from_chars(line.data(), line.data() + line.size(), value);
             // A number too large for double is infinite, and too small is 0: what printf-ed data
             // means.

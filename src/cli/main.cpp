@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 
@@ -46,6 +47,18 @@ int main(int argc, char** argv) {
     add_chart(program, exit_code);
     add_sheet(program, exit_code);
     try {
+        // CLI11 would only say that a subcommand is required.
+        if (argc > 1 && argv[1][0] != '-') {
+            std::vector<std::string> names;
+            for (const CLI::App* command :
+                 program.get_subcommands([](CLI::App*) { return true; })) {
+                names.push_back(command->get_name());
+            }
+            if (std::find(names.begin(), names.end(), argv[1]) == names.end()) {
+                throw Error(std::string("command is ") + argv[1] + "; expected " +
+                            join_choices(names) + did_you_mean(argv[1], names));
+            }
+        }
         program.parse(argc, argv);
         if (std::fflush(stdout) != 0) return report("write: standard output: cannot write", kFile);
     } catch (const CLI::Success& e) {

@@ -29,7 +29,7 @@ void add_sheet(CLI::App& program, int&) {
             const std::size_t equals = text.find('=');
             const std::string path = equals == std::string::npos ? text : text.substr(equals + 1);
             labelled.emplace_back(equals == std::string::npos ? text : text.substr(0, equals),
-                                  read_image(path));
+                                  read_picture(path));
         }
         write_image_atomically(make_contact_sheet(labelled, options->columns, options->cell_width),
                                options->file, OIIO::TypeUInt8);

@@ -13,7 +13,7 @@ namespace {
 
 /// Every pixel up to a million, then every n-th.
 std::vector<float> picture_pixels(const std::string& path) {
-    const OIIO::ImageBuf image = read_image(path);
+    const OIIO::ImageBuf image = read_picture(path);
     const int channels = image.nchannels();
     if (channels < 3)
         throw Error("verify: picture " + path + " has " + std::to_string(channels) +
@@ -71,9 +71,11 @@ void add_verify(CLI::App& program, int& exit_code) {
         verify_options.with_gpu = !options->no_gpu;
         if (options->quick) verify_options.lattice_edge = 9;
         if (!options->picture.empty()) verify_options.picture = picture_pixels(options->picture);
-        if (!options->json) fmt::print("{}", parity_heading());
+        bool has_heading = false;  // not before the names have proved good
         const auto print = [&](const ParityRow& row) {
             if (options->json) return;
+            if (!has_heading) fmt::print("{}", parity_heading());
+            has_heading = true;
             fmt::print("{}", format_row(row));
             std::fflush(stdout);
         };

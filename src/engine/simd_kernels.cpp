@@ -7,6 +7,12 @@
 
 #include <cstring>
 
+#if defined(__GNUC__) && !defined(__clang__)
+// GCC's AVX-512 header hands an undefined vector to instructions that do not read it.
+#pragma GCC diagnostic ignored "-Wuninitialized"
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "engine/simd_kernels.cpp"
 // Processors without SSE4 (before 2008) run the scalar code.

@@ -167,21 +167,23 @@ ConfigModel make_config_model() {
                             "Display",
                             "The display reference: CIE XYZ, D65, Y = 1 is display white.",
                             "display-linear",
-                            {},
+                            {"file-io"},
                             nullptr,
                             nullptr});
     for (const Display& display : all_displays()) {
         std::vector<std::string> aliases = {display.title};
         aliases.insert(aliases.end(), display.aliases.begin(), display.aliases.end());
-        model.spaces.push_back({SpaceKind::display,
-                                display.title + kDisplaySuffix,
-                                aliases,
-                                "Display",
-                                display.source + ". Light above white is not limited here (pure powers: up to 2); views are.",
-                                "sdr-video",
-                                {"file-io"},
-                                &display.primaries,
-                                &display});
+        model.spaces.push_back(
+            {SpaceKind::display,
+             display.title + kDisplaySuffix,
+             aliases,
+             "Display",
+             display.source +
+                 ". Light above white is not limited here (pure powers: up to 2); views are.",
+             "sdr-video",
+             {"file-io"},
+             &display.primaries,
+             &display});
         model.displays.push_back(&display);
     }
 

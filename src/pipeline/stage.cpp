@@ -147,6 +147,14 @@ Pipeline simplify(const Pipeline& pipeline) {
             if (is_identity(out.back())) out.pop_back();
             continue;
         }
+        const auto* clamp = std::get_if<ClampStage>(&stage);
+        auto* clamp_before = out.empty() ? nullptr : std::get_if<ClampStage>(&out.back());
+        if (clamp && clamp_before && clamp->lo <= clamp_before->hi &&
+            clamp_before->lo <= clamp->hi) {
+            *clamp_before = {std::max(clamp->lo, clamp_before->lo),
+                             std::min(clamp->hi, clamp_before->hi)};
+            continue;
+        }
         out.push_back(stage);
     }
     return out;

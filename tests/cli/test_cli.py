@@ -373,7 +373,7 @@ def make_bad_pictures(scratch, picture):
 
 
 def usage_errors(bad, picture):
-    """(arguments, words of the message[, stdin]) of calls that exit with 2."""
+    """(arguments, words of the message, stdin) of calls that exit with 2."""
     cases = [
         ([], "subcommand"), (["frobnicate"], "frobnicate"), (["--frobnicate"], "--frobnicate"),
         (["eval", "hable", "--frobnicate"], "--frobnicate"),
@@ -385,7 +385,8 @@ def usage_errors(bad, picture):
         (["bake", "habel", "-o", "out.cube"], "did you mean hable?"), (["verify", "habel"], "did you mean hable?"),
         (["eval", "hable", "--set", "wite=4"], "parameter is wite; did you mean white?"),
         (["eval", "clamp", "--set", "white=4"], "white; no parameters"),
-        (["eval", "hable", "--set", "white"], "white; name=value"), (["eval", "hable", "--set", "=4"], "=4; name=value"),
+        (["eval", "hable", "--set", "white"], "white; name=value"),
+        (["eval", "hable", "--set", "=4"], "=4; name=value"),
         (["eval", "hable", "--set"], "--set"),
         (["eval", "reinhard", "--set", "apply=lumnance"], "apply is lumnance; did you mean luminance?"),
         (["eval", "reinhard:lum"], "preset is lum; did you mean luminance?"), (["eval", "hable:x"], "x; no presets"),
@@ -437,7 +438,7 @@ def usage_errors(bad, picture):
 
 
 def file_errors(bad, picture, scratch):
-    """(arguments, words of the message) of calls that exit with 3; where they run, `there` is a folder, `file` a file."""
+    """(arguments, words of the message, stdin) of calls that exit with 3. They find a folder `there`, a file `file`."""
     apply = ["apply", picture, "--operator", "hable"]
     cases = [(["apply", bad[name], "out.png", "--operator", "hable"], f"cannot read; {bad[name]}") for name in bad
              if name != "two.exr"]

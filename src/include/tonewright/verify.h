@@ -35,15 +35,16 @@ struct ParityRow {
     double max = 0, p999 = 0, mean = 0;
     /// Every colour, negatives and mixed signs of thousands included.
     double max_all = 0;
-    /// The largest error of the colours beyond the bound, as far as it exceeds what rounding to
-    /// float32 has to cost: the change of the exact result when each channel of the input, and of
-    /// what enters each matrix with negative coefficients, moves by one float32 unit (2^-23 of its
+    /// The largest error of the colours beyond the bound; 0 where there are none. Near black of a
+    /// display with a pure power it is an error of light (times 12.92, sRGB's slope there), because
+    /// the code value's own slope is infinite. With the mixed metric only what exceeds float32
+    /// rounding counts: the change of the exact result when each channel of the input, and of what
+    /// enters each matrix with negative coefficients, moves by one float32 unit (2^-23 of its
     /// value; 2^-21 for the GPU, whose texture filtering rounds more often). Such matrices cancel,
-    /// which no float32 form can avoid. 0 where no colour is beyond the bound.
+    /// which no float32 form can avoid.
     double max_beyond_rounding = 0;
     double bound = 0;
-    /// True where a matrix of the operator has negative coefficients: the bound then holds for
-    /// max_beyond_rounding alone; otherwise for max as well.
+    /// True where a matrix of the chain has negative coefficients.
     bool is_mixed_metric = false;
     /// Every output finite and inside [0, 1], NaN and infinities going in.
     bool is_total = true;

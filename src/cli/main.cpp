@@ -48,16 +48,16 @@ int main(int argc, char** argv) {
     add_sheet(program, exit_code);
     try {
         // CLI11 would only say that a subcommand is required.
-        if (argc > 1 && argv[1][0] != '-') {
-            std::vector<std::string> names;
-            for (const CLI::App* command :
-                 program.get_subcommands([](CLI::App*) { return true; })) {
-                names.push_back(command->get_name());
-            }
-            if (std::find(names.begin(), names.end(), argv[1]) == names.end()) {
-                throw Error(std::string("command is ") + argv[1] + "; expected " +
-                            join_choices(names) + did_you_mean(argv[1], names));
-            }
+        const std::vector<std::string> flags = {"-h", "--help", "--version"};
+        const std::string first = argc > 1 ? argv[1] : flags[0];
+        std::vector<std::string> names;
+        for (const CLI::App* command : program.get_subcommands([](CLI::App*) { return true; })) {
+            names.push_back(command->get_name());
+        }
+        if (std::find(names.begin(), names.end(), first) == names.end() &&
+            std::find(flags.begin(), flags.end(), first) == flags.end()) {
+            throw Error("command is " + first + "; expected " + join_choices(names) +
+                        did_you_mean(first, names));
         }
         program.parse(argc, argv);
         if (std::fflush(stdout) != 0) return report("write: standard output: cannot write", kFile);

@@ -199,6 +199,11 @@ class PrecisionChooser {
 
     std::vector<bool> choose() {
         const std::vector<Vector3> probes = probe_colours();
+        // Where the rows of a matrix cancel, the loss has no bound, and no set of probes comes near
+        // enough to every zero of every row: these are double from the start.
+        for (std::size_t i = 0; i < code_.size(); ++i) {
+            if (is_cancelling_row(i)) in_double_[i] = true;
+        }
         for (std::size_t i = 0; i < code_.size(); ++i) {
             if (is_branch(code_[i].op)) branches_.push_back({i, {}});
         }
@@ -228,6 +233,27 @@ class PrecisionChooser {
         std::array<std::vector<Vector3>, 2> sides;
     };
     static constexpr std::size_t kPairs = 4;
+
+    /// A sum of constant multiples of values, with a negative constant among them.
+    [[nodiscard]] bool is_cancelling_row(std::size_t i) const {
+        if (code_[i].op != ExprOp::add) return false;
+        bool has_negative = false;
+        std::vector<std::uint32_t> terms = {code_[i].a, code_[i].b};
+        while (!terms.empty()) {
+            const TapeInstruction& term = code_[terms.back()];
+            terms.pop_back();
+            if (term.op == ExprOp::add) {
+                terms.push_back(term.a);
+                terms.push_back(term.b);
+                continue;
+            }
+            const bool left = term.op == ExprOp::multiply && code_[term.a].op == ExprOp::constant;
+            const bool right = term.op == ExprOp::multiply && code_[term.b].op == ExprOp::constant;
+            if (!left && !right) return false;
+            has_negative = has_negative || code_[left ? term.a : term.b].value < 0;
+        }
+        return has_negative;
+    }
 
     /// The first `count` values.
     void evaluate(const Vector3& rgb, std::size_t count) {

@@ -263,6 +263,29 @@ TEST(LowerCurve, TwoCurvesInOneProcessStayTwo) {
     }
 }
 
+TEST(LowerCurve, TableIsFiniteWhereTheCurveIsNotDefined) {
+    // The clamp before a curve ends its domain: what stands in the table beyond must not be NaN,
+    // which an interpolation next to the end would take in.
+    for (const Pipeline& pipeline :
+         {Pipeline{ClampStage{0.1, 0.9}, curve_stage(log2(kX - 0.01) + sqrt(1 - kX))},
+          Pipeline{ClampStage{0.5, kInfinity}, curve_stage(sqrt(kX - 0.4))},
+          Pipeline{ClampStage{-kInfinity, -0.5}, curve_stage(sqrt(-kX))}}) {
+        const Lowered lowered = lower_to_ocio(pipeline);
+        const auto lut =
+            OCIO_DYNAMIC_POINTER_CAST<OCIO::Lut1DTransform>(lowered.transform->getTransform(1));
+        ASSERT_TRUE(lut);
+        for (unsigned long i = 0; i < lut->getLength(); ++i) {
+            float r = 0;
+            float g = 0;
+            float b = 0;
+            lut->getValue(i, r, g, b);
+            ASSERT_TRUE(std::isfinite(r) && std::isfinite(g) && std::isfinite(b))
+                << i << "\n"
+                << to_string(pipeline);
+        }
+    }
+}
+
 TEST(LowerCurve, LogarithmBehindAClampIsSmoothAtItsEnds) {
     // AgX's log2 with its clamp in scene light, then straight to a code value.
     const double lo = -12.47393;

@@ -120,7 +120,10 @@ ResolvedOperator resolve_operator(std::string_view name, const Settings& setting
             }
             resolved.params.choices_[key] = text;
         }
-        if (settings.contains(key)) resolved.label += " " + key + "=" + text;
+        const bool is_default = spec->choices.empty()
+                                    ? resolved.params.numbers_[key] == spec->default_value
+                                    : text == spec->default_choice;
+        if (settings.contains(key) && !is_default) resolved.label += " " + key + "=" + text;
     }
     for (const ParameterSpec& spec : op.parameters) {
         if (spec.choices.empty()) {

@@ -71,7 +71,16 @@ bool mixes_channels(const Stage& stage) {
                    },
                    [](const CurveStage&) { return false; },
                    [](const ToneScaleStage&) { return true; },
-                   [](const ClampStage&) { return false; }, [](const Map3Stage&) { return true; }},
+                   [](const ClampStage&) { return false; },
+                   [](const Map3Stage& s) {
+                       for (int i = 0; i < 3; ++i) {
+                           for (int j = 0; j < 3; ++j) {
+                               if (i != j && depends_on(s.f[static_cast<std::size_t>(i)], j))
+                                   return true;
+                           }
+                       }
+                       return false;
+                   }},
         stage);
 }
 

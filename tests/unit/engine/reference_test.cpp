@@ -171,7 +171,7 @@ TEST(Reference, TakesAnyCount) {
     const ReferenceEngine engine(
         build_view(make_view(resolve_operator("agx_sobotka"), "lin_ap1", 0, "srgb")));
     // Around the tile of 256 that it works in.
-    for (const std::size_t count : {0, 1, 2, 255, 256, 257, 511, 512, 513, 1000}) {
+    for (const std::size_t count : {0U, 1U, 2U, 255U, 256U, 257U, 511U, 512U, 513U, 1000U}) {
         const Planes in = random_colours(count, 3 + count);
         Planes out;
         constexpr double kGuard = -77;
@@ -206,7 +206,7 @@ TEST(Reference, RunRgbIsInterleaved) {
     const ReferenceEngine engine(
         build_view(make_view(resolve_operator("aces_hill"), "lin_rec709", 0, "srgb")));
     // Around its chunk of 4096.
-    for (const std::size_t count : {0, 1, 4095, 4096, 4097, 9000}) {
+    for (const std::size_t count : {0U, 1U, 4095U, 4096U, 4097U, 9000U}) {
         const Planes colours = random_colours(count, 5);
         std::vector<float> in;
         Planes rounded;

@@ -22,7 +22,8 @@ struct ErrorStats {
 /// Over values already computed; a NaN counts as an infinite error.
 [[nodiscard]] ErrorStats summarise(std::span<const double> errors);
 
-/// Largest channel difference of one colour, `candidate` against `truth`; infinite where one is NaN.
+/// Largest channel difference of one colour, `candidate` against `truth`; infinite where one is
+/// NaN.
 [[nodiscard]] double channel_error(const double* truth, const float* candidate);
 
 /// Colour differences of pairs of code-value triplets (interleaved RGB) shown on a display, ITU-R

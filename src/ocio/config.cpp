@@ -181,8 +181,8 @@ OCIO::ColorSpaceRcPtr make_space(const ConfigModel::Space& space, LutFiles& luts
         case Kind::display: {
             const Matrix3 to_xyz = rgb_to_xyz_d65(*space.primaries);
             Pipeline from = {MatrixStage{inverse(to_xyz)}};
-            // A pure power has no value below 0, and its table is finest where light is limited: twice
-            // the display's white leaves room for what an application does with its result.
+            // A pure power has no value below 0, and its table is finest where light is limited:
+            // twice the display's white leaves room for what an application does with its result.
             const bool has_negatives = evaluate(space.display->encode, -1.0) != 0;
             if (!has_negatives) from.push_back(ClampStage{0, 2});
             from.push_back(curve_stage(space.display->encode));

@@ -20,7 +20,8 @@ int main() {
     OIIO::ImageBuf picture(OIIO::ImageSpec(2, 2, 3, OIIO::TypeDesc::FLOAT));
     const float grey[3] = {0.18F, 0.18F, 0.18F};
     for (int y = 0; y < 2; ++y) {
-        for (int x = 0; x < 2; ++x) picture.setpixel(x, y, grey);
+        for (int x = 0; x < 2; ++x)
+            picture.setpixel(x, y, grey);
     }
     tonewright::TonemapOptions options;
     options.op = "hable";

@@ -83,8 +83,8 @@ using Pipeline = std::vector<Stage>;
 [[nodiscard]] std::array<Expr, 3> apply_stage(const Stage& stage, const std::array<Expr, 3>& rgb);
 /// The whole chain as three expressions of inputs 0, 1, 2.
 [[nodiscard]] std::array<Expr, 3> compose(const Pipeline& pipeline);
-/// Drops identities, multiplies neighbouring matrices (in double), joins neighbouring clamps. The picture is the same; the
-/// reference engine does not do it, every lowering does.
+/// Drops identities, multiplies neighbouring matrices (in double), joins neighbouring clamps. The
+/// picture is the same; the reference engine does not do it, every lowering does.
 [[nodiscard]] Pipeline simplify(const Pipeline& pipeline);
 /// A readable listing, one stage a line.
 [[nodiscard]] std::string to_string(const Pipeline& pipeline);

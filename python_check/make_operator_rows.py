@@ -1,51 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the rows of tests/data/operators.csv that belong to the operators of operators.py.
+"""Writes the rows of tests/data/operators.csv that belong to the operators of the package operators.
 
     TONEWRIGHT_SHARED=<folder> python3 make_operator_rows.py
 
-Most expected values come from reference/check_values.json in that folder: figures computed from the authors'
-own code, or from independent transcriptions of it. operators.py adds what they lack. Rows of other operators
+Published figures come from reference/check_values.json in that folder, through check_values.py. The operators add
+what they lack: other settings, negatives, near-black, colours beyond the half-float range. Rows of other operators
 are kept as they are.
 """
 
 import csv
-import json
 import os
-from pathlib import Path
 
+import check_values
 import operators
+from check_values import CSV_FOLDER, EXACT, SHARED, parse_settings
 
-CSV = Path(__file__).parent.parent / "tests" / "data" / "operators.csv"
-COLUMNS = "operator settings look output in_r in_g in_b out_r out_g out_b tolerance origin".split()
-
-EXACT = 1e-9  # the figures have 12 digits; the rest is double arithmetic in another order
-# The figures read Sobotka's LUT: 4096 entries of seven decimals, interpolated linearly, up to 1.4e-7 of the value
-# off the curve behind the looks. With such a table operators.py gives the figures to 12 digits (test_operators.py).
-SOBOTKA_LUT = 2e-7
-
-GODOT = ("shoulder_strength=0.88;linear_strength=0.6;linear_angle=0.1;toe_strength=0.2;toe_numerator=0.01;"
-         "toe_denominator=0.3;white=1;exposure_bias=1")
-# Name in check_values.json -> operator, settings, look, output, tolerance.
-PUBLISHED = {
-    "linear_clamp": ("clamp", "", "", "native", EXACT),
-    "reinhard_rgb": ("reinhard", "", "", "native", EXACT),
-    "reinhard_luminance": ("reinhard", "apply=luminance", "", "native", EXACT),
-    "reinhard_extended_rgb": ("reinhard_extended", "white=4", "", "native", EXACT),
-    "reinhard_extended_luminance": ("reinhard_extended", "white=4;apply=luminance", "", "native", EXACT),
-    "reinhard_jodie": ("reinhard_jodie", "", "", "native", EXACT),
-    "hable_uncharted2": ("hable", "", "", "native", EXACT),
-    "hable_godot_filmic": ("hable", GODOT, "", "native", EXACT),
-    "uchimura_gt": ("uchimura", "", "", "native", EXACT),
-    "uchimura_gt_hdr": ("uchimura", "max_brightness=10", "", "native", EXACT),
-    "aces_narkowicz": ("aces_narkowicz", "", "", "native", EXACT),
-    "aces_narkowicz_0.6": ("aces_narkowicz", "prescale=0.6", "", "native", EXACT),
-    "aces_hill": ("aces_hill", "", "", "native", EXACT),
-    "agx_sobotka_lut": ("agx_sobotka", "", "", "native", SOBOTKA_LUT),
-    "agx_sobotka_punchy": ("agx_sobotka", "", "punchy", "native", SOBOTKA_LUT),
-    "agx_sobotka_golden": ("agx_sobotka", "", "golden", "native", SOBOTKA_LUT),
-    "agx_minimal_encoded": ("agx_minimal", "", "", "native", EXACT),
-    "agx_minimal_linear": ("agx_minimal", "", "", "linear", EXACT),
-}
+CSV = CSV_FOLDER / "operators.csv"
+COLUMNS = "operator settings look output input in_r in_g in_b out_r out_g out_b tolerance origin".split()
+# Names of check_values.json whose source says nothing outside of it.
+SOURCES = {"aces_narkowicz": "formula of Narkowicz 2016", "exposure_ev": "rgb * 2^EV"}
 
 GREY, SATURATED, BRIGHT = (0.18, 0.18, 0.18), (0.8, 0.1, 0.05), (4, 2, 0.5)
 BLACK, NEAR_BLACK = (0, 0, 0), (0.0003, 0.0002, 0.0001)
@@ -54,79 +27,158 @@ MIXED, NEGATIVE = (-0.1, 0.2, 0.5), (-3, -2, -1)
 LARGE, BEYOND = (60000, 20000, 500), (1e6, 65504, 70000)
 EVERYWHERE = (NEAR_BLACK, MIXED, NEGATIVE, LARGE, BEYOND)
 COLOURS = (BLACK, GREY, SATURATED, BRIGHT, *EVERYWHERE)
+FEW = (GREY, SATURATED, BRIGHT, MIXED, BEYOND)
+BLUE, RED, DARK_RED = (0.05, 0.1, 2), (6, 0.4, 0.3), (0.06, 0.004, 0.003)  # where glow and red modifier act
+HUES = (*COLOURS, BLUE, RED, DARK_RED)
+STOPS = tuple((0.18 * 2.0**s,) * 3
+              for s in (-8, -6.52, -5.48, -3, -2.5, -1.46, -0.4, 0.5, 1.53, 2.49, 4, 5.51, 6.55, 9))
 
+CORRECTIONS = [f"apply=luminance;color_correction={correction};saturation={saturation}" + source
+               for correction in ("nonlinear", "luminance_preserving")
+               for saturation, source in ((0.6, ""), (1.2, ""), (0.9, ";saturation_from=contrast"))]
 GDC = "shoulder_strength=0.22;linear_strength=0.3;toe_numerator=0.01"
 UCHIMURA = "max_brightness=4;contrast=1.2;linear_start=0.3;linear_length=0.5;black_tightness=2;pedestal=0.02"
-# Operator, settings, look, output, colours.
-DERIVED = [
-    ("clamp", "", "", "native", EVERYWHERE),
-    ("reinhard", "", "", "native", EVERYWHERE),
-    ("reinhard", "apply=luminance", "", "native", EVERYWHERE),
-    ("reinhard", "apply=max", "", "native", COLOURS),
-    ("reinhard_extended", "", "", "native", EVERYWHERE),
-    ("reinhard_extended", "white=2.5;apply=luminance", "", "native", COLOURS),
-    ("reinhard_extended", "white=4;apply=max", "", "native", COLOURS),
-    ("reinhard_jodie", "", "", "native", EVERYWHERE),
-    ("hable", "", "", "native", EVERYWHERE),
-    ("hable", GDC, "", "native", COLOURS),
-    ("uchimura", "", "", "native", EVERYWHERE),
-    ("uchimura", UCHIMURA, "", "native", COLOURS),
-    ("aces_narkowicz", "", "", "native", EVERYWHERE),
-    ("aces_hill", "", "", "native", EVERYWHERE),
-    ("agx_sobotka", "", "", "native", COLOURS),
-    ("agx_sobotka", "", "punchy", "native", COLOURS),
-    ("agx_sobotka", "", "golden", "native", COLOURS),
-    ("agx_sobotka", "", "", "linear", COLOURS),
-    ("agx_minimal", "", "", "native", EVERYWHERE),
-    ("agx_minimal", "", "", "linear", EVERYWHERE),
-    ("agx_minimal", "order=7", "", "native", COLOURS),
-    ("agx_minimal", "order=7", "", "linear", COLOURS),
-]
+BLACKS = "source_black=0.01;target_black=0.05"
+# Curves with `apply`: settings beside the defaults. Each also gets the other three ways to apply it.
+CURVES = {
+    "linear": ["divisor=0.5"],
+    "exponential": ["average=0.18"],
+    "logarithmic": ["p=30;maximum=4"],
+    "log_tonemap": ["limit=4", "contrast=0.5", "contrast=1;apply=channels"],
+    "exponentiation": ["p=0.3;maximum=16"],
+    "reinhard": [],
+    "reinhard_extended": ["white=2.5", "white=0.5;apply=max", *CORRECTIONS],
+    "nebula": ["middle_grey=0.18;maximum=4;average=1.5"],
+    "hable": [GDC, "white=4;exposure_bias=1"],
+    "hable_gdc": ["white=4;exposure_bias=2"],
+    "hable_piecewise": ["toe_strength=0.5;shoulder_strength=2;shoulder_angle=1", "toe_length=0",
+                        "toe_strength=0.2;toe_length=0.3;shoulder_strength=4;shoulder_length=0.7;shoulder_angle=0.4;"
+                        "gamma=0.8", "toe_strength=0.6;shoulder_length=1;shoulder_strength=1;apply=luminance"],
+    "hejl_burgess_dawson": CORRECTIONS,
+    "hejl_2015": ["white=4"],
+    "aldridge": ["cutoff=0.2"],
+    "lottes": ["contrast=1.2;shoulder=0.9;hdr_max=16;mid_out=0.18"],
+    "filament_generic": ["contrast=1.2;mid_in=0.2;mid_out=0.18;hdr_max=100"],
+    "ue3": [],
+    "day": ["white=8;black=0.01;toe=0.5;shoulder=0.6;crossover=1;average=0.5"],
+    "schlick": ["p=300;maximum=20"],
+    "toe": ["form=ramp;width=0.25;strength=0.5", "width=0.2;strength=0.5;brightness=0.05;contrast=1.2",
+            "form=ramp;width=0.3;strength=0.4;white=10;apply=luminance"],
+    "uchimura": [UCHIMURA, "max_brightness=10;apply=luminance"],
+    "drago": ["bias=0.7;display_max=300;log_average=0.3;maximum=20", *CORRECTIONS[2:6:3]],
+    "ward": ["display_max=200;log_average=3"],
+    "tumblin_rushmeier": ["display_max=200;contrast_max=100;log_average=3"],
+    "aces_narkowicz": ["prescale=0.6", CORRECTIONS[2]],
+    "bt2390": [BLACKS, BLACKS + ";knee_offset=1;black_lift=libplacebo", "source_peak=4000;knee_offset=2",
+               "source_peak=100;target_peak=400", "source_peak=10000;reference_white=203", CORRECTIONS[2]],
+    "bt2446a": [BLACKS, "source_peak=4000;target_peak=250;reference_white=203", "source_peak=400;target_peak=400"],
+    "spline": [BLACKS, "contrast=0.2;average=50", "source_peak=4000;target_peak=250;contrast=1.5;reference_white=203"],
+}
+LUMINANCE_FIRST = ("exponential logarithmic log_tonemap exponentiation nebula schlick drago ward "
+                   "tumblin_rushmeier").split()  # default apply=luminance
+# The others: settings beside the defaults.
+OTHERS = {
+    "clamp": [],
+    "reinhard_jodie": [],
+    "reinhard_constant_luminance": [],
+    "reinhard_devlin": ["intensity=-1;contrast=0.5;chromatic_adaptation=0.3;light_adaptation=0.7;mean_red=0.6;"
+                        "mean_green=0.5;mean_blue=0.4", "intensity=2;light_adaptation=0;mean_luminance=0"],
+    "ferwerda": ["display_max=200;photopic_adaptation=0.05;scotopic_adaptation=0.01",
+                 "rod_weight_from=fixed;rod_weight=0.8"],
+    "durand_dorsey_rods": ["display_max=200;photopic_adaptation=0.05;scotopic_adaptation=0.01",
+                           "rod_weight_from=fixed;rod_weight=0.8;blue_shift_red=0.9;blue_shift_green=1;"
+                           "blue_shift_blue=1.4"],
+    "aces_hill": ["gain=1.8", "prescale=0.6;white=4;clamp=no", "prescale=1.8;white=2;gain=0.5"],
+    "aces_filament": ["brightness=1.6666666666666667"],
+    "unreal": ["glow_and_red=off", "slope=0.98;toe=0.3;shoulder=0.22;white_clip=0.025",
+               "toe=0.85;shoulder=0.4;black_clip=0.02"],
+    "agx_sobotka": [],
+    "agx_minimal": ["order=7"],
+    "agx_threejs": [],
+    "agx_filament": [],
+    "agx_godot44": [],
+    "agx_godot": ["contrast=1;white=8", "contrast=1.5;white=50;output_max=5"],
+    "khronos_neutral": ["start_compression=0.5;desaturation=0.6"],
+    "khronos_neutral_filament": ["start_compression=0.5;desaturation=0.6"],
+    "gt7": ["output=hdr", "output=hdr;peak=4000"],
+    "frostbite": ["linear_end=0.6"],
+    "somewhat_boring": [],
+    "camera_response": ["iso=0.5", "file=two_column_response.rf;iso=1", "file=two_column_response.rf;iso=2",
+                        "file=synthetic_response.rf", "file=synthetic_response.rf;curve=green;iso=2",
+                        "file=synthetic_response_uneven.csv;iso=2", "file=synthetic_dorf.txt;curve=Synthetic-1;iso=2",
+                        "file=synthetic_dorf.txt;curve=Synthetic-1Blue;iso=2",
+                        "file=synthetic_dorf.txt;curve=SyntheticMono;iso=2"],
+    "false_color": [],
+}
+LOOKS = {"agx_sobotka": ("golden", "punchy"), "agx_filament": ("golden", "punchy")}
 
 
 def read_rows():
-    """The committed table, as a list of dicts of texts; empty when there is none."""
+    """The committed table, as a list of dicts of texts; empty when there is none.
+
+    Rows that read a file of $TONEWRIGHT_SHARED are left out while that is unset.
+    """
     if not CSV.exists():
         return []
     with CSV.open(newline="") as f:
-        return list(csv.DictReader(f))
+        rows = list(csv.DictReader(f))
+    return [row for row in rows if SHARED not in row["settings"] or os.environ.get(SHARED[1:])]
 
 
-def parse_settings(text):
-    """'white=4;apply=max' -> keyword arguments of an operator.
-
-    >>> parse_settings("white=4;apply=max")
-    {'white': 4.0, 'apply': 'max'}
-    """
-    pairs = (item.split("=") for item in text.split(";") if item)
-    return {name: value if value.isalpha() else float(value) for name, value in pairs}
-
-
-def row_of(operator, settings, look, output, rgb, expected, tolerance, origin):
+def row_of(operator, settings, look, output, space, rgb, expected, tolerance, origin):
     """One row of the table, as texts.
 
-    >>> row_of("clamp", "", "", "native", (2, 0, -1), (1, 0, -0.0), 1e-9, "me")["out_b"]
+    >>> row_of("clamp", "", "", "native", "lin_rec709", (2, 0, -1), (1, 0, -0.0), 1e-9, "me")["out_b"]
     '0'
     """
     numbers = [f"{v + 0.0:.15g}" for v in (*rgb, *expected)]  # + 0.0: no "-0"
-    return dict(zip(COLUMNS, [operator, settings, look, output, *numbers, f"{tolerance:g}", origin]))
+    return dict(zip(COLUMNS, [operator, settings, look, output, space, *numbers, f"{tolerance:.3g}", origin]))
 
 
 def published_rows(shared):
     """Rows whose expected values stand in reference/check_values.json of the folder `shared`."""
-    for value in json.loads((Path(shared) / "reference" / "check_values.json").read_text()):
-        if value["operator"] in PUBLISHED:
-            *form, tolerance = PUBLISHED[value["operator"]]
-            source = value["source"].replace("concept note", "formula of Narkowicz 2016").replace(",", ";")
-            yield row_of(*form, value["input"], value["output"], tolerance, f"{value['operator']}: {source}")
+    for entry in check_values.read_entries(shared):
+        mapping = check_values.classify(entry)
+        if isinstance(mapping, str):
+            continue
+        name = entry["operator"]
+        source = SOURCES.get(name, entry["source"]).replace(",", ";")
+        yield row_of(mapping.operator, mapping.settings, mapping.look, mapping.output, mapping.input,
+                     mapping.scene(entry), mapping.expected(entry), mapping.row_tolerance(entry), f"{name}: {source}")
+
+
+def derived_cases():
+    """(operator, settings, look, output, input, colours) of every row that the operators compute."""
+    for operator in (*CURVES, *OTHERS):
+        working = "lin_" + operators.WORKING[operator]
+        forms = []
+        if operator in CURVES:
+            first = "luminance" if operator in LUMINANCE_FIRST else "channels"
+            forms = [f"apply={a}" for a in ("channels", "luminance", "max", "hue_preserving") if a != first]
+        code = operator in operators.CODE_POWER
+        hues = HUES if operator in ("aces_filament", "unreal", "gt7", "frostbite", "agx_threejs") else COLOURS
+        hues = (*COLOURS, *STOPS) if operator == "false_color" else hues
+        yield operator, "", "", "native", working, hues
+        for settings in (*CURVES.get(operator, ()), *OTHERS.get(operator, ())):
+            yield operator, settings, "", "native", working, COLOURS
+        for settings in forms:
+            yield operator, settings, "", "native", working, FEW
+            if code and settings == "apply=luminance":
+                yield operator, settings, "", "linear", working, FEW
+        for look in LOOKS.get(operator, ()):
+            yield operator, "", look, "native", working, COLOURS
+        if code or working != "lin_rec709":
+            yield operator, "", "", "linear", "lin_rec709", COLOURS
+    for space in operators.INPUTS:
+        yield "reinhard", "", "", "native", space, FEW
 
 
 def derived_rows():
-    """Rows that operators.py computes."""
-    for operator, settings, look, output, colours in DERIVED:
+    """Rows that the operators compute."""
+    for operator, settings, look, output, space, colours in derived_cases():
         for rgb in colours:
-            out = operators.view(operator, rgb, parse_settings(settings), look, display=output)
-            yield row_of(operator, settings, look, output, rgb, out, EXACT, "python_check/operators.py")
+            out = operators.view(operator, rgb, parse_settings(settings), look, input=space, display=output)
+            yield row_of(operator, settings, look, output, space, rgb, out, EXACT, "python_check/operators")
 
 
 def main():
@@ -136,6 +188,7 @@ def main():
                          "reference/check_values.json")
     kept = [row for row in read_rows() if row["operator"] not in operators.OPERATORS]
     rows = [*kept, *published_rows(shared), *derived_rows()]
+    rows = list({tuple(row[c] for c in COLUMNS[:8]) + (row["origin"],): row for row in rows}.values())  # each once
     rows.sort(key=lambda row: row["operator"])  # stable: published rows stay first
     if any("," in field or '"' in field for row in rows for field in row.values()):
         raise SystemExit("operators.csv: a field holds a comma or quote; expected none, so that splitting reads it")

@@ -1,21 +1,28 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tests operators.py: its doctests, every published row of tests/data/operators.csv, and inner parts.
+"""Tests the package operators: its doctests, every published row of tests/data/operators.csv, and inner parts.
 
     [TONEWRIGHT_SHARED=<folder>] python3 test_operators.py
 
 With the folder, reference/check_values.json in it is compared too. The last line is `N passed, M failed`.
 """
 
+import colorsys
 import doctest
+import importlib
 import json
 import os
+import pkgutil
 import sys
+import warnings
 from pathlib import Path
 
 import numpy as np
 
+import check_operators
+import check_values
 import make_operator_rows
 import operators
+from operators import hable, reinhard
 
 FLOOR = 1e-3  # errors are relative to max(|expected|, FLOOR), as in operators.csv
 counts = {True: 0, False: 0}
@@ -36,7 +43,8 @@ def relative_error(actual, expected):
 
 
 def check_doctests():
-    for module in (operators, make_operator_rows):
+    families = [importlib.import_module(f"operators.{m.name}") for m in pkgutil.iter_modules(operators.__path__)]
+    for module in (operators, *families, check_values, make_operator_rows):
         result = doctest.testmod(module)
         report(f"{module.__name__}: {result.attempted} examples, failures", result.failed, 0.5)
 
@@ -46,12 +54,13 @@ def check_rows():
     groups = {}
     for row in make_operator_rows.read_rows():
         if row["operator"] in operators.OPERATORS:
-            key = [row[c] for c in ("operator", "settings", "look", "output", "origin", "tolerance")]
+            key = [row.get(c, "") for c in ("operator", "settings", "look", "output", "input", "origin", "tolerance")]
             groups.setdefault(tuple(key), []).append(row)
-    for (operator, settings, look, output, origin, tolerance), rows in groups.items():
+    for (operator, settings, look, output, space, origin, tolerance), rows in groups.items():
         rgb = [[float(row[c]) for c in ("in_r", "in_g", "in_b")] for row in rows]
         expected = [[float(row[c]) for c in ("out_r", "out_g", "out_b")] for row in rows]
-        actual = operators.view(operator, rgb, make_operator_rows.parse_settings(settings), look, display=output)
+        actual = operators.view(operator, rgb, make_operator_rows.parse_settings(settings), look,
+                                input=space or "lin_rec709", display=output)
         shown = settings if len(settings) < 40 else settings[:36] + "..."
         name = " ".join(filter(None, (operator, shown, look, output, f"({len(rows)})", origin.split(":")[0])))
         report(name, relative_error(actual, expected), float(tolerance), f"is {actual.tolist()}, expected {expected}")
@@ -78,6 +87,104 @@ def check_parts():
            np.abs(operators.rgb_to_rgb("rec709", "rec2020") - bt2087).max(), 5.1e-5)
 
 
+def check_extremes():
+    """Every run of check_operators.py without a warning of NumPy, an infinity or a NaN; the refused are refused."""
+    rgb = check_operators.probes()
+    views = [{k: v for k, v in view.items() if k != "preset"} for view in check_operators.runs()]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        bad = [view for view in views if not np.isfinite(operators.view(rgb=rgb, **view)).all()]
+    report(f"views not finite ({len(views)})", len(bad), 0.5, bad[:1])
+    accepted = []
+    for operator, settings in check_operators.REFUSED:
+        try:
+            operators.view(operator, rgb, settings)
+            accepted.append((operator, settings))
+        except ValueError:
+            pass
+    report(f"refused settings accepted ({len(check_operators.REFUSED)})", len(accepted), 0.5, accepted[:1])
+
+
+def lights(operator, rgb, settings):
+    """An operator's output as light."""
+    out = operators.OPERATORS[operator](rgb, **settings)
+    return np.maximum(out, 0) ** operators.CODE_POWER[operator] if operator in operators.CODE_POWER else out
+
+
+def hue(rgb):
+    return np.array([colorsys.rgb_to_hsv(*colour)[0] for colour in rgb])
+
+
+def check_apply():
+    """What each way to apply a curve promises, for every operator that has it, and for curves of known contrast."""
+    rng = np.random.default_rng(7)
+    rgb = 0.18 * 2.0 ** rng.uniform(-6, 6, (200, 3))
+    scaled, hues = {}, {}
+    for operator in check_operators.CURVES:
+        for apply in ("luminance", "max"):
+            light = lights(operator, rgb, {"apply": apply})
+            inside = (np.abs(light) < 1).all(-1)  # some of the sources limit to 1
+            cross = light * np.roll(rgb, 1, -1) - rgb * np.roll(light, 1, -1)
+            scaled[operator, apply] = np.abs(cross[inside] / rgb[inside].max(-1, keepdims=True) ** 2).max(initial=0)
+        out = operators.OPERATORS[operator](rgb, apply="hue_preserving")
+        inside = ((out > 0) & (out < 1)).all(-1)
+        turn = np.abs(hue(out[inside]) - hue(rgb[inside]))
+        hues[operator] = np.minimum(turn, 1 - turn).max(initial=0)
+    worst = max(scaled, key=scaled.get)
+    report(f"apply=luminance, max: ratios of the channels kept ({len(scaled)})", scaled[worst], 1e-12, worst)
+    worst = max(hues, key=hues.get)
+    report(f"apply=hue_preserving: HSV hue kept ({len(hues)})", hues[worst], 1e-12, worst)
+
+    def curve(x):
+        return operators.apply_curve(lambda v: v / (1 + v), rgb, **x)
+
+    luminance = {"apply": "luminance"}
+    wanted = operators.luminance(rgb) / (1 + operators.luminance(rgb))
+    report("apply=luminance: luminance is the curve's", relative_error(operators.luminance(curve(luminance)), wanted),
+           1e-12)
+    largest = rgb.max(-1, keepdims=True)
+    report("apply=max: the largest channel is the curve's",
+           relative_error(curve({"apply": "max"}).max(-1, keepdims=True), largest / (1 + largest)), 1e-12)
+    channels = np.abs(hue(curve({})) - hue(rgb))
+    report("apply=channels: HSV hue turned by more than 1e-3", 1e-3 / np.minimum(channels, 1 - channels).max(), 1)
+    for correction in ("nonlinear", "luminance_preserving"):
+        how = {**luminance, "color_correction": correction}
+        report(f"{correction}, saturation 1: as ratio", relative_error(curve(how), curve(luminance)), 1e-12)
+        grey = np.broadcast_to(wanted, rgb.shape)
+        report(f"{correction}, saturation 0: grey", relative_error(curve({**how, "saturation": 0}), grey), 1e-12)
+    for saturation in (0.4, 1.7):
+        for source in ("fixed", "contrast"):
+            out = curve({**luminance, "color_correction": "luminance_preserving", "saturation": saturation,
+                         "saturation_from": source})
+            report(f"luminance_preserving, saturation {saturation}, {source}: luminance kept",
+                   relative_error(operators.luminance(out), wanted), 1e-12)
+
+    # A power has the same contrast everywhere, the identity 1, where the formula leaves the saturation alone.
+    for exponent in (0.3, 1, 1.8):
+        for correction in ("nonlinear", "luminance_preserving"):
+            k1, k2 = operators.MANTIUK[correction]
+            saturation = 0.9 * (1 + k1) * exponent**k2 / (1 + k1 * exponent**k2)
+            how = {**luminance, "color_correction": correction}
+            by_contrast = operators.apply_curve(lambda x, e=exponent: x**e, rgb, **how, saturation=0.9,
+                                                saturation_from="contrast")
+            fixed = operators.apply_curve(lambda x, e=exponent: x**e, rgb, **how, saturation=saturation)
+            report(f"{correction}: saturation from the contrast {exponent}", relative_error(by_contrast, fixed), 1e-12)
+    x = 2.0 ** rng.uniform(-20, 15, 1000)
+    contrasts = {"x/(1+x)": (lambda v: v / (1 + v), 1 / (1 + x)),
+                 "1-exp(-x)": (lambda v: -np.expm1(-v), x * np.exp(-x) / -np.expm1(-x)),
+                 "ln(1+x)": (operators.log1p, x / (1 + x) / np.log1p(x))}
+    for name, (f, wanted) in contrasts.items():
+        report(f"contrast of {name}", relative_error(operators.curve_contrast(f, x), wanted), 1e-12)
+
+    # Code values: the norm forms scale light, f^p.
+    for apply in ("luminance", "max"):
+        code = operators.apply_curve(np.tanh, rgb, apply, code_power=2.2)
+        light = operators.apply_curve(lambda x: np.tanh(x) ** 2.2, rgb, apply)
+        report(f"code values, apply={apply}: light scaled", relative_error(code**2.2, light), 1e-12)
+        below = operators.apply_curve(lambda x: x - 0.1, np.full((1, 3), 0.05), apply)
+        report(f"apply={apply}: a curve below 0 gives black", np.abs(below).max(), 1e-300)
+
+
 def sobotka_table(n):
     """The sigmoid as AgX_Default_Contrast.spi1d stores it: 4096 entries, seven decimals, linear between them."""
     nodes = np.arange(4096) / 4095
@@ -101,7 +208,7 @@ def check_shared(shared):
     """Figures of check_values.json: the committed rows are theirs, and the parts that have no row."""
     published = list(make_operator_rows.published_rows(shared))
     committed = [row for row in make_operator_rows.read_rows()
-                 if row["operator"] in operators.OPERATORS and row["origin"] != "python_check/operators.py"]
+                 if row["operator"] in operators.OPERATORS and not row["origin"].startswith("python_check/operators")]
     missing = [row for row in published if row not in committed]
     report("rows of check_values.json that operators.csv lacks", len(missing), 0.5, missing[:1])
     stray = [row for row in committed if row not in published]
@@ -109,7 +216,20 @@ def check_shared(shared):
 
     values = json.loads((Path(shared) / "reference" / "check_values.json").read_text())
     sigmoid = {"pivot": (10 / 16.5, 0.18 ** (1 / 2.4)), "slope": 2.4, "powers": (1.5, 1.5)}
+    lindbloom = np.array([[0.4124564, 0.3575761, 0.1804375], [0.2126729, 0.7151522, 0.0721750],
+                          [0.0193339, 0.1191920, 0.9503041]])
+    printed = np.array([[3.2404542, -1.5371385, -0.4985314], [-0.9692660, 1.8760108, 0.0415560],
+                        [0.0556434, -0.2040259, 1.0572252]])
+
+    def by_xyy(rgb, white, gain):  # the route of BruOp's article, with its 7-digit matrices and their printed inverse
+        xyz = rgb @ lindbloom.T
+        y = xyz[1] * gain
+        return xyz * np.divide(reinhard.extended(y, white), xyz[1], where=xyz[1] > 0, out=np.zeros(1)) @ printed.T
+
     parts = {
+        "hable_uncharted2_partial": (1e-9, hable.hable_curve),
+        "reinhard_extended_xyY_lindbloom": (1e-9, lambda x: by_xyy(x, 3.0, 1 / (9.6 * 0.1 + 0.0001))),
+        "nebula_as_printed": (1e-9, lambda x: operators.OPERATORS["nebula"](x) * operators.luminance(x)),
         "aces_hill_unclamped": (1e-9, lambda x: operators.hill_curve(x @ operators.HILL_IN.T) @ operators.HILL_OUT.T),
         "agx_sobotka_curve": (1e-9, sobotka_table),
         "agx_sigmoid_SB2383": (1e-9, lambda n: operators.agx_sigmoid(n, **sigmoid)),
@@ -123,6 +243,8 @@ def main():
     check_doctests()
     check_rows()
     check_parts()
+    check_apply()
+    check_extremes()
     check_sobotka_table()
     shared = os.environ.get("TONEWRIGHT_SHARED", "")
     if shared and (Path(shared) / "reference" / "check_values.json").is_file():

@@ -3,12 +3,24 @@
 #include "tonewright/image.h"
 
 namespace tonewright {
+namespace {
+
+TonemapOptions::Statistics parse_statistics(const std::string& text) {
+    if (text == "picture") return TonemapOptions::Statistics::from_picture;
+    if (text == "defaults") return TonemapOptions::Statistics::defaults;
+    const std::vector<std::string> names = {"picture", "defaults"};
+    throw Error("apply: statistics is " + text + "; expected " + join_choices(names) +
+                did_you_mean(text, names));
+}
+
+}  // namespace
 
 void add_apply(CLI::App& program, int&) {
     struct Options : ViewOptions {
         std::string in;
         std::string out;
         std::string type;
+        std::string statistics = "picture";
         int threads = 0;
         bool unpremult = false;
         bool no_unpremult = false;
@@ -23,6 +35,11 @@ void add_apply(CLI::App& program, int&) {
     add_view_options(*command, *options);
     command->add_option("-d", options->type,
                         "pixel type of the output: uint8, uint16, half or float");
+    command
+        ->add_option("--statistics", options->statistics,
+                     "parameters that a picture has (its largest luminance, ...) and --set does "
+                     "not name: `picture` or `defaults`")
+        ->capture_default_str();
     command->add_option("--threads", options->threads, "0 = all cores")
         ->capture_default_str()
         ->check(CLI::Range(0, 1024));
@@ -43,6 +60,7 @@ void add_apply(CLI::App& program, int&) {
         tonemap.display = options->display;
         if (options->unpremult) tonemap.unpremult = TonemapOptions::Unpremult::yes;
         if (options->no_unpremult) tonemap.unpremult = TonemapOptions::Unpremult::no;
+        tonemap.statistics = parse_statistics(options->statistics);
         const Tonemapper tonemapper(tonemap);  // a wrong name is told before a large file is read
         const OIIO::TypeDesc type = options->type.empty() ? OIIO::TypeDesc(OIIO::TypeUnknown)
                                                           : parse_pixel_type(options->type);

@@ -67,13 +67,16 @@ std::vector<double> parse_triplets(std::string_view text) {
     return values;
 }
 
-void print(double r, double g, double b) { fmt::print("{:.9g} {:.9g} {:.9g}\n", r, g, b); }
+void print(double r, double g, double b, int digits) {
+    fmt::print("{:.{}g} {:.{}g} {:.{}g}\n", r, digits, g, digits, b, digits);
+}
 
 }  // namespace
 
 void add_eval(CLI::App& program, int&) {
     struct Options : ViewOptions {
         std::string engine = "reference";
+        int digits = 9;
     };
     auto options = std::make_shared<Options>();
     CLI::App* command =
@@ -82,10 +85,13 @@ void add_eval(CLI::App& program, int&) {
     add_view_options(*command, *options);
     command->add_option("--engine", options->engine, "reference (double), simd, ocio or ocio-gpu")
         ->capture_default_str();
+    command->add_option("--digits", options->digits, "significant digits of the output")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 17));
     command->footer(
         "One colour a line: r g b or r,g,b; nan and inf are numbers; # begins a comment.\n"
-        "Output has 9 significant digits. The engines other than reference take the numbers as "
-        "floats.\n"
+        "The engines other than reference take the numbers as floats. There is no picture: "
+        "parameters\nthat `apply` takes from it have their defaults.\n"
         "Example:\n  printf '0.18 0.18 0.18\\n4,2,0.5\\n' | tonewright eval agx_sobotka --display "
         "srgb");
     command->callback([options] {
@@ -107,7 +113,7 @@ void add_eval(CLI::App& program, int&) {
             const std::array<double*, 3> p = {plane[0].data(), plane[1].data(), plane[2].data()};
             engine.run({p[0], p[1], p[2]}, p, count);
             for (std::size_t i = 0; i < count; ++i)
-                print(p[0][i], p[1][i], p[2][i]);
+                print(p[0][i], p[1][i], p[2][i], options->digits);
             return;
         }
         const std::vector<float> in(values.begin(), values.end());
@@ -124,7 +130,7 @@ void add_eval(CLI::App& program, int&) {
         }
         for (std::size_t i = 0; i < count; ++i) {
             print(static_cast<double>(out[3 * i]), static_cast<double>(out[3 * i + 1]),
-                  static_cast<double>(out[3 * i + 2]));
+                  static_cast<double>(out[3 * i + 2]), options->digits);
         }
     });
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "cli/command.h"
@@ -15,20 +17,72 @@ std::string output_of(const Operator& op) {
     return fmt::format("code values, power {}", op.code_power);
 }
 
+using Kind = ParameterSpec::Kind;
+
+std::string_view kind_name(Kind kind) {
+    switch (kind) {
+        case Kind::number:
+            return "number";
+        case Kind::choice:
+            return "choice";
+        case Kind::text:
+            break;
+    }
+    return "text";
+}
+
+std::string_view kind_name(Deviation::Kind kind) {
+    switch (kind) {
+        case Deviation::Kind::black:
+            return "black";
+        case Deviation::Kind::crushes_black:
+            return "crushes_black";
+        case Deviation::Kind::never_reaches_white:
+            return "never_reaches_white";
+        case Deviation::Kind::exceeds_white:
+            return "exceeds_white";
+        case Deviation::Kind::not_monotone:
+            break;
+    }
+    return "not_monotone";
+}
+
+/// The operator's own warnings and what follows from its deviations.
+std::vector<std::string> all_warnings(const Operator& op) {
+    std::vector<std::string> all = op.warnings;
+    for (const Deviation& d : op.deviations)
+        all.push_back(to_string(d));
+    return all;
+}
+
+/// JSON has no infinity.
+Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json to_json(const ParameterSpec& p) {
+    Json j = {{"name", p.name}, {"kind", kind_name(p.kind)}, {"unit", p.unit}};
+    if (p.kind == Kind::number) {
+        j["default"] = p.default_value;
+        j["min"] = number_or_null(p.min);
+        j["max"] = number_or_null(p.max);
+    } else {
+        j["default"] = p.default_choice;
+    }
+    j["choices"] = p.choices;
+    j["help"] = p.help;
+    if (p.from_picture) j["statistic"] = p.statistic;
+    return j;
+}
+
 Json to_json(const Operator& op) {
     Json parameters = Json::array();
-    for (const ParameterSpec& p : op.parameters) {
-        Json j = {{"name", p.name}, {"unit", p.unit}};
-        if (p.choices.empty()) {
-            j["default"] = p.default_value;
-            j["min"] = p.min;
-            j["max"] = p.max;
-        } else {
-            j["default"] = p.default_choice;
-        }
-        j["choices"] = p.choices;
-        j["help"] = p.help;
-        parameters.push_back(j);
+    for (const ParameterSpec& p : op.parameters)
+        parameters.push_back(to_json(p));
+    Json deviations = Json::array();
+    for (const Deviation& d : op.deviations) {
+        deviations.push_back({{"kind", kind_name(d.kind)},
+                              {"value", number_or_null(d.value)},
+                              {"when", d.when},
+                              {"text", to_string(d)}});
     }
     Json presets = Json::array();
     for (const Preset& p : op.presets)
@@ -48,7 +102,10 @@ Json to_json(const Operator& op) {
             {"parameters", parameters},
             {"presets", presets},
             {"looks", looks},
-            {"warnings", op.warnings}};
+            {"warnings", all_warnings(op)},
+            {"deviations", deviations},
+            {"dialects", op.dialects},
+            {"is_diagnostic", op.is_diagnostic}};
 }
 
 Json spaces_to_json() {
@@ -66,14 +123,31 @@ Json spaces_to_json() {
 }
 
 std::string range_of(const ParameterSpec& p) {
-    if (!p.choices.empty()) return join_choices(p.choices);
+    if (p.kind == Kind::choice) return join_choices(p.choices);
+    if (p.kind == Kind::text) return "text";
     return "[" + shortest(p.min) + ", " + shortest(p.max) + "]" +
            (p.unit.empty() ? "" : " " + p.unit);
 }
 
 std::string default_of(const ParameterSpec& p) {
-    return p.choices.empty() ? shortest(p.default_value) : p.default_choice;
+    return p.kind == Kind::number ? shortest(p.default_value) : p.default_choice;
 }
+
+std::string help_of(const ParameterSpec& p) {
+    return p.from_picture ? p.help + "; `tonewright apply` takes it from the picture: " + p.statistic : p.help;
+}
+
+/// "AgX; others: agx_minimal, agx_sobotka".
+std::string dialects_of(const Operator& op) {
+    std::string ids;
+    for (const Operator& other : all_operators()) {
+        if (other.dialects == op.dialects && other.id != op.id)
+            ids += (ids.empty() ? "" : ", ") + other.id;
+    }
+    return op.dialects + (ids.empty() ? "" : "; others: " + ids);
+}
+
+constexpr const char* kDiagnostic = "shows what is in a picture, not a picture";
 
 void print_operator(const Operator& op) {
     fmt::print("{}: {}\n  {}\n", op.id, op.title, op.character);
@@ -81,14 +155,16 @@ void print_operator(const Operator& op) {
     fmt::print("  view        {} (in the OpenColorIO config)\n", op.view);
     fmt::print("  works in    {}; negatives: {}\n", op.working.name, op.negatives);
     fmt::print("  output      {}\n", output_of(op));
+    if (!op.dialects.empty()) fmt::print("  dialect of  {}\n", dialects_of(op));
+    if (op.is_diagnostic) fmt::print("  diagnostic  {}\n", kDiagnostic);
     for (const ParameterSpec& p : op.parameters) {
-        fmt::print("  --set {}={}  {}\n      {}\n", p.name, default_of(p), range_of(p), p.help);
+        fmt::print("  --set {}={}  {}\n      {}\n", p.name, default_of(p), range_of(p), help_of(p));
     }
     for (const Preset& p : op.presets)
         fmt::print("  preset      {}:{}  {}\n", op.id, p.id, p.title);
     for (const Look& l : op.looks)
         fmt::print("  --look {}  {}\n", l.id, l.help);
-    for (const std::string& w : op.warnings)
+    for (const std::string& w : all_warnings(op))
         fmt::print("  note        {}\n", w);
 }
 
@@ -96,12 +172,14 @@ void print_markdown(const Operator& op) {
     fmt::print("## {} (`{}`)\n\n{}.\n\n", op.title, op.id, op.character);
     fmt::print("* Source: {} ({})\n* Output: {}\n* Negatives: {}\n* View of the config: `{}`\n",
                op.source, op.licence, output_of(op), op.negatives, op.view);
-    for (const std::string& w : op.warnings)
+    if (!op.dialects.empty()) fmt::print("* Dialect of {}\n", dialects_of(op));
+    if (op.is_diagnostic) fmt::print("* Diagnostic: {}\n", kDiagnostic);
+    for (const std::string& w : all_warnings(op))
         fmt::print("* Note: {}\n", w);
     if (!op.parameters.empty()) {
         fmt::print("\n| parameter | default | range | |\n|---|---|---|---|\n");
         for (const ParameterSpec& p : op.parameters) {
-            fmt::print("| `{}` | {} | {} | {} |\n", p.name, default_of(p), range_of(p), p.help);
+            fmt::print("| `{}` | {} | {} | {} |\n", p.name, default_of(p), range_of(p), help_of(p));
         }
     }
     if (!op.presets.empty() || !op.looks.empty()) fmt::print("\n");
@@ -112,25 +190,43 @@ void print_markdown(const Operator& op) {
     fmt::print("\n");
 }
 
+/// A name, and words behind it that go on below each other where the line is full.
+void print_entry(const std::string& name, std::size_t name_width,
+                 const std::vector<std::string>& words) {
+    constexpr std::size_t kLine = 100;
+    const std::string indent(name_width + 3, ' ');
+    std::string line = fmt::format("  {:<{}}", name, name_width);
+    for (const std::string& word : words) {
+        if (line.size() + 1 + word.size() > kLine && line.size() > indent.size()) {
+            fmt::print("{}\n", line);
+            line = indent + " ";
+        }
+        line += " " + word;
+    }
+    fmt::print("{}\n", line);
+}
+
 void print_overview() {
+    std::size_t width = 18;
+    for (const Operator& op : all_operators())
+        width = std::max(width, op.id.size());
     fmt::print("operators (tonewright list OPERATOR tells more)\n");
     for (const Operator& op : all_operators()) {
-        std::string more;
+        std::vector<std::string> words = {op.title};
         for (const Preset& p : op.presets)
-            more += " :" + p.id;
+            words.push_back(":" + p.id);
         for (const Look& l : op.looks)
-            more += " --look " + l.id;
-        fmt::print("  {:<18} {}{}\n", op.id, op.title,
-                   more.empty() ? "" : "  (" + more.substr(1) + ")");
+            words.push_back("--look " + l.id);
+        print_entry(op.id, width, words);
     }
     fmt::print("\ndisplays (--display)\n");
     for (const Display& d : all_displays())
-        fmt::print("  {:<18} {}: {}\n", d.id, d.title, d.source);
-    fmt::print("  {:<18} {}\n  {:<18} {}\n", kLinearOutput, "display-linear Rec.709, unclamped",
-               kNativeOutput, "the operator's own output, untouched");
+        print_entry(d.id, width, {d.title + ":", d.source});
+    print_entry(std::string(kLinearOutput), width, {"display-linear Rec.709, unclamped"});
+    print_entry(std::string(kNativeOutput), width, {"the operator's own output, untouched"});
     fmt::print("\nscene-linear input spaces (--input)\n");
     for (const InputSpace& s : all_input_spaces())
-        fmt::print("  {:<18} {}\n", s.id, s.title);
+        print_entry(s.id, width, {s.title});
 }
 
 }  // namespace

@@ -84,12 +84,41 @@ int operand_count(ExprOp op) {
     }
 }
 
+/// Where cell i of a table with two samples or more begins.
+double cell_begin(const Table& table, std::size_t i) {
+    return table.positions.empty()
+               ? static_cast<double>(i) / static_cast<double>(table.samples.size() - 1)
+               : table.positions[i];
+}
+
+double cell_slope(const Table& table, std::size_t i) {
+    return (table.samples[i + 1] - table.samples[i]) /
+           (cell_begin(table, i + 1) - cell_begin(table, i));
+}
+
 double slope(const Table& table, double x) {
     if (table.interpolation == Table::Interpolation::step || table.samples.size() < 2) return 0;
-    const auto cells = static_cast<double>(table.samples.size() - 1);
-    if (!(x > 0 && x < 1)) return 0;
-    const auto i = static_cast<std::size_t>(std::min(std::floor(x * cells), cells - 1));
-    return (table.samples[i + 1] - table.samples[i]) * cells;
+    const std::size_t cells = table.samples.size() - 1;
+    if (!(x > cell_begin(table, 0) && x < cell_begin(table, cells))) return 0;
+    if (table.positions.empty()) {
+        return cell_slope(
+            table, std::min(static_cast<std::size_t>(x * static_cast<double>(cells)), cells - 1));
+    }
+    const auto next = std::upper_bound(table.positions.begin(), table.positions.end(), x);
+    return cell_slope(table, static_cast<std::size_t>(next - table.positions.begin()) - 1);
+}
+
+/// A cell of it is so steep that a float's half unit in the last place of the index is a good part
+/// of the budget.
+bool is_steep(const Table& table) {
+    if (table.interpolation == Table::Interpolation::step) return false;
+    for (std::size_t i = 0; i + 1 < table.samples.size(); ++i) {
+        const double reach =
+            std::max(std::fabs(cell_begin(table, i)), std::fabs(cell_begin(table, i + 1)));
+        if (!(std::fabs(cell_slope(table, i)) * reach * kHalfUlp < kFloatErrorBudget / 4))
+            return true;
+    }
+    return false;
 }
 
 /// Derivatives of one instruction by its operands, at the side of a kink that is taken.
@@ -203,6 +232,18 @@ class PrecisionChooser {
         // enough to every zero of every row: these are double from the start.
         for (std::size_t i = 0; i < code_.size(); ++i) {
             if (is_cancelling_row(i)) in_double_[i] = true;
+            // In float the rounding of y log2(x) grows with it, and kernels have no better for an
+            // exponent that is not constant.
+            if (code_[i].op == ExprOp::power && code_[code_[i].b].op != ExprOp::constant)
+                in_double_[i] = true;
+        }
+        // Nor need a probe lie in a narrow and steep cell of a table: what such a table is indexed
+        // with is double from the start, and all that it is computed from.
+        for (std::size_t i = 0; i < code_.size(); ++i) {
+            if (code_[i].op == ExprOp::lookup && is_steep(*code_[i].table)) {
+                in_double_[i] = true;
+                keep_index_in_double(code_[i].a);
+            }
         }
         for (std::size_t i = 0; i < code_.size(); ++i) {
             if (is_branch(code_[i].op)) branches_.push_back({i, {}});
@@ -253,6 +294,22 @@ class PrecisionChooser {
             has_negative = has_negative || code_[left ? term.a : term.b].value < 0;
         }
         return has_negative;
+    }
+
+    void keep_index_in_double(std::uint32_t index) {
+        std::vector<bool> seen(code_.size());
+        std::vector<std::uint32_t> rest = {index};
+        while (!rest.empty()) {
+            const std::uint32_t i = rest.back();
+            rest.pop_back();
+            const TapeInstruction& step = code_[i];
+            const int operands = operand_count(step.op);
+            if (operands == 0 || seen[i]) continue;
+            seen[i] = true;
+            in_double_[i] = true;
+            const std::array<std::uint32_t, 3> operand = {step.a, step.b, step.c};
+            rest.insert(rest.end(), operand.begin(), operand.begin() + operands);
+        }
     }
 
     /// The first `count` values.
@@ -357,8 +414,17 @@ class PrecisionChooser {
                 if (in_double_[operand[k]]) units = 1;
             }
         }
+        double of_position = 0;
+        if (step.op == ExprOp::lookup) {
+            if (step.table->positions.empty()) {
+                const double x = value_[step.a];
+                of_position = std::fabs(slope(*step.table, x) * x) * kHalfUlp;
+            } else {
+                units = 1;  // computed in double
+            }
+        }
         if (i == output) units = std::max(0.0, units - 1);  // that one there is in any case
-        return units * std::max(kHalfUlp * std::fabs(v), kSmallestStep);
+        return units * std::max(kHalfUlp * std::fabs(v), kSmallestStep) + of_position;
     }
 
     void keep_within_budget(std::uint32_t output) {

@@ -23,7 +23,8 @@ inline constexpr double kFloatErrorBudget = 9e-7;
 /// follows. So it is computed: over a set of probe colours, the derivative of each output by each
 /// value (reverse accumulation) times the value's rounding error is what that rounding adds to the
 /// output. While the sum is above the budget, the value that adds most for its cost becomes double.
-/// The rows of matrices with negative coefficients are double in any case.
+/// The rows of matrices with negative coefficients are double in any case, and so is what steep
+/// tables are indexed with.
 [[nodiscard]] std::vector<bool> values_in_double(const std::vector<TapeInstruction>& code,
                                                  const std::array<std::uint32_t, 3>& outputs);
 

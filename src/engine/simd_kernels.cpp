@@ -205,6 +205,12 @@ HWY_NOINLINE void lookup(const Frame& frame, const Instruction& step, const Samp
     const Source a(frame, step.in[0]);
     const std::size_t n = table.wide.size();
     const bool linear = table.interpolation == Table::Interpolation::linear;
+    if (!table.positions.empty()) {
+        const auto at_positions = [&](DD d, Vec<DD> x) HWY_ATTR {
+            return lookup_at(d, x, table.positions.data(), table.wide.data(), n, linear);
+        };
+        return map_double(frame, step, at_positions, a);
+    }
     const auto in_float = [&](DF d, Vec<DF> x) HWY_ATTR {
         return linear ? lookup_linear(d, x, table.narrow.data(), n)
                       : lookup_step(d, x, table.narrow.data(), n);

@@ -60,6 +60,9 @@ struct Operand {
 struct SampledTable {
     std::vector<float> narrow;
     std::vector<double> wide;
+    /// Empty: equal distances. Else of each sample, filled up with infinity to a power of two and
+    /// one more; `wide` is filled up with its last sample, and the lookup is always in double.
+    std::vector<double> positions;
     Table::Interpolation interpolation = Table::Interpolation::linear;
 };
 

@@ -360,7 +360,8 @@ class Assembler {
             }
             Instruction step;
             step.op = s.op;
-            step.wide = s.wide || s.op == Op::sine || s.op == Op::cosine || s.op == Op::atan2;
+            step.wide = s.wide || s.op == Op::sine || s.op == Op::cosine || s.op == Op::atan2 ||
+                        (s.table && !s.table->positions.empty());
             step.out = place(slot);
             step.k = s.k;
             if (s.table) step.table = table(*s.table);
@@ -472,6 +473,13 @@ class Assembler {
             sampled.wide = source.samples;
             sampled.narrow.assign(source.samples.begin(), source.samples.end());
             sampled.interpolation = source.interpolation;
+            if (!source.positions.empty()) {
+                const std::size_t size = std::bit_ceil(source.positions.size()) + 1;
+                sampled.positions = source.positions;
+                sampled.positions.resize(size, kInfinity);
+                sampled.wide.resize(size, source.samples.back());
+                sampled.narrow.clear();
+            }
             tables_.push_back(std::move(sampled));
         }
         return it->second;

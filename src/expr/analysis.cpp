@@ -116,12 +116,17 @@ Expr differentiate(const Expr& e, int index, std::unordered_map<const ExprNode*,
             if (table.interpolation == Table::Interpolation::linear && table.samples.size() > 1) {
                 auto slope = std::make_shared<Table>();
                 slope->interpolation = Table::Interpolation::step;
+                const std::vector<double>& at = table.positions;
                 const std::size_t n = table.samples.size() - 1;
                 for (std::size_t i = 0; i < n; ++i) {
-                    slope->samples.push_back((table.samples[i + 1] - table.samples[i]) *
-                                             static_cast<double>(n));
+                    const double rise = table.samples[i + 1] - table.samples[i];
+                    slope->samples.push_back(at.empty() ? rise * static_cast<double>(n)
+                                                        : rise / (at[i + 1] - at[i]));
+                    if (!at.empty()) slope->positions.push_back(at[i]);
                 }
-                const Expr inside = less_equal(0, u()) * less_equal(u(), 1);
+                const double first = at.empty() ? 0 : at.front();
+                const double last = at.empty() ? 1 : at.back();
+                const Expr inside = less_equal(first, u()) * less_equal(u(), last);
                 result = select(inside, lookup(std::move(slope), u()), 0) * d(0);
             }
             break;

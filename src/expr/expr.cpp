@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tonewright/expr.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -11,11 +12,28 @@
 
 #include "expr/node.h"
 #include "expr/scalar_ops.h"
+#include "tonewright/error.h"
 
 namespace tonewright {
+namespace {
+
+double at_positions(const Table& table, double x) noexcept {
+    const std::vector<double>& at = table.positions;
+    const std::vector<double>& samples = table.samples;
+    if (!(x > at.front())) return samples.front();  // NaN too
+    if (x >= at.back()) return samples.back();
+    const auto next =
+        static_cast<std::size_t>(std::upper_bound(at.begin(), at.end(), x) - at.begin());
+    const std::size_t i = next - 1;
+    if (table.interpolation == Table::Interpolation::step) return samples[i];
+    return samples[i] + (x - at[i]) / (at[next] - at[i]) * (samples[next] - samples[i]);
+}
+
+}  // namespace
 
 double Table::operator()(double x) const noexcept {
     if (samples.empty()) return 0;
+    if (!positions.empty()) return at_positions(*this, x);
     const std::size_t n = samples.size();
     const double t = x > 0 ? (x < 1 ? x : 1.0) : 0.0;  // NaN -> first sample
     if (interpolation == Interpolation::step) {
@@ -202,6 +220,17 @@ Expr select(const Expr& condition, const Expr& if_true, const Expr& if_false) {
     return make_expr(ExprOp::select, std::array{condition, if_true, if_false});
 }
 Expr lookup(std::shared_ptr<const Table> table, const Expr& index) {
+    const std::vector<double>& at = table->positions;
+    if (!at.empty() && at.size() != table->samples.size()) {
+        throw Error("table: it has " + std::to_string(table->samples.size()) + " samples at " +
+                    std::to_string(at.size()) + " positions; expected as many");
+    }
+    for (std::size_t i = 0; i < at.size(); ++i) {
+        if (!std::isfinite(at[i]) || (i > 0 && !(at[i] > at[i - 1]))) {
+            throw Error("table: position " + std::to_string(i) + " is " + shortest(at[i]) +
+                        "; expected finite positions, each larger than the one before");
+        }
+    }
     return make_expr(ExprOp::lookup, std::array{index}, std::move(table));
 }
 

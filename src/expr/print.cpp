@@ -84,9 +84,9 @@ Text print(const Expr& e, std::span<const std::string> names) {
         case ExprOp::select:
             return call("select");
         case ExprOp::lookup:
-            return {
-                "lookup[" + std::to_string(e.table()->samples.size()) + "](" + part(0).text + ")",
-                kAtom};
+            return {"lookup[" + std::to_string(e.table()->samples.size()) +
+                        (e.table()->positions.empty() ? "](" : " uneven](") + part(0).text + ")",
+                    kAtom};
     }
     return {"", kAtom};
 }

@@ -4,7 +4,10 @@
 //
 // A picture is worked on in spans of at most kSpan pixels of one row: channels are gathered into
 // planar float, whatever the pixel type, run through the engine, and scattered into the
-// destination. Spans stay in the L1 cache, and no pixel type is known to the kernel.
+// destination. No pixel type is known to the kernel.
+//
+// Operators with parameters that a picture has are prepared anew for each picture, from its
+// statistics; all others once.
 #include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imagebufalgo_util.h>
 #include <fmt/format.h>
@@ -19,7 +22,7 @@
 
 #include "image/color_tags.h"
 #include "image/message.h"
-#include "image/pixel_access.h"
+#include "image/source_picture.h"
 #include "tonewright/engine.h"
 #include "tonewright/image.h"
 #include "tonewright/view.h"
@@ -30,8 +33,6 @@ namespace {
 using OIIO::ImageBuf;
 using OIIO::ImageSpec;
 using OIIO::ROI;
-
-constexpr std::size_t kSpan = 1024;  // pixels; four float planes are 16 KiB
 
 struct CopiedChannel {
     int from;
@@ -47,34 +48,6 @@ struct ChannelPlan {
 };
 
 [[noreturn]] void fail(const std::string& message) { throw Error(message); }
-
-bool names_alpha(const std::string& name) {
-    return OIIO::Strutil::iequals(name, "A") || OIIO::Strutil::iequals(name, "alpha") ||
-           OIIO::Strutil::iends_with(name, ".A") || OIIO::Strutil::iends_with(name, ".alpha");
-}
-
-/// Index of the alpha channel, or -1.
-int find_alpha(const ImageSpec& spec) {
-    if (spec.alpha_channel >= 0 && spec.alpha_channel < spec.nchannels) return spec.alpha_channel;
-    if (spec.nchannels == 2 && names_alpha(spec.channel_name(1))) return 1;
-    return -1;
-}
-
-bool is_grey(const ImageSpec& spec, int alpha) {
-    if (spec.nchannels == 2 && alpha != 1) {
-        fail(
-            fmt::format("picture has 2 channels ({}, {}); expected 1, 3 or more, or grey and alpha",
-                        std::string(spec.channel_name(0)), std::string(spec.channel_name(1))));
-    }
-    const bool grey = spec.nchannels <= 2;
-    if (alpha >= 0 && alpha < (grey ? 1 : 3)) {
-        fail(
-            fmt::format("alpha channel is {}; expected none or {} and above: color comes first "
-                        "(oiiotool --ch R,G,B,A)",
-                        alpha, grey ? 1 : 3));
-    }
-    return grey;
-}
 
 /// The spec of a destination that does not exist yet.
 ImageSpec result_spec(const ImageSpec& source, bool grey_becomes_color) {
@@ -92,29 +65,41 @@ ImageSpec result_spec(const ImageSpec& source, bool grey_becomes_color) {
     return spec;
 }
 
-/// Where one channel's pixels of a span are.
-struct SpanSource {
-    const std::byte* pixels;  // null: outside the data window, black
-    std::ptrdiff_t stride;
+View view_of(const TonemapOptions& options, const Settings& settings) {
+    return make_view(resolve_operator(options.op, settings, options.look), options.input,
+                     options.exposure_stops, options.display);
+}
+
+/// True when a picture decides on some of the operator's parameters.
+bool depends_on_picture(const TonemapOptions& options) {
+    return options.statistics == TonemapOptions::Statistics::from_picture &&
+           settings_for_picture(options.op, options.settings, {}).size() > options.settings.size();
+}
+
+/// What a picture is run through.
+struct Prepared {
+    explicit Prepared(View v)
+        : view(std::move(v)), engine(build_view(view)), keeps_grey(keeps_greys(build_view(view))) {}
+
+    View view;
+    SimdEngine engine;
+    bool keeps_grey;
 };
 
 }  // namespace
 
 struct Tonemapper::State {
-    explicit State(const TonemapOptions& options)
-        : view(make_view(resolve_operator(options.op, options.settings, options.look),
-                         options.input, options.exposure_stops, options.display)),
-          unpremult(options.unpremult),
-          engine(build_view(view)),
-          keeps_grey(keeps_greys(build_view(view))) {}
+    explicit State(const TonemapOptions& o) : options(o) {
+        View view = view_of(options, options.settings);
+        if (!depends_on_picture(options)) prepared.emplace(std::move(view));
+    }
 
-    View view;
-    TonemapOptions::Unpremult unpremult;
-    SimdEngine engine;
-    bool keeps_grey;
+    TonemapOptions options;
+    /// Empty: made of each picture's statistics.
+    std::optional<Prepared> prepared;
 
     void run(ImageBuf& dst, const ImageBuf& src, ROI roi, int nthreads) const;
-    [[nodiscard]] bool divides_by_alpha(const ImageSpec& spec) const;
+    void run(const Prepared& with, ImageBuf& dst, const ImageBuf& src, ROI roi, int nthreads) const;
 };
 
 namespace {
@@ -128,6 +113,7 @@ class RowRunner {
           plan_(plan),
           dst_(dst),
           src_(src),
+          reader_(src),
           src_type_(src.spec().format),
           src_access_(*pixel_access(src_type_)),
           dst_access_(*pixel_access(dst.spec().format)),
@@ -136,9 +122,6 @@ class RowRunner {
           planes_(kSpan * (plan.alpha >= 0 ? 4 : 3)) {
         const bool convert = src_type_ != dst.spec().format;
         if (convert && !plan.copies.empty()) wide_.resize(kSpan);
-        if (!src.localpixels()) {
-            fetched_.resize(kSpan * static_cast<std::size_t>(src.nchannels() * src_size_));
-        }
     }
 
     /// @returns  false when the source could not be read.
@@ -165,22 +148,11 @@ class RowRunner {
         for (int x = xbegin; x < xend;) {
             const std::size_t n = std::min<std::size_t>(kSpan, static_cast<std::size_t>(xend - x));
             SpanSource source{nullptr, 0};
-            if (inside && !locate(x, y, z, n, source)) return false;
+            if (inside && !reader_.locate(x, y, z, n, source)) return false;
             run_span(source, static_cast<std::byte*>(dst_.pixeladdr(x, y, z)), n);
             x += static_cast<int>(n);
         }
         return true;
-    }
-
-    /// Pixels in memory are read where they are; those of a cached picture are fetched as they are.
-    bool locate(int x, int y, int z, std::size_t n, SpanSource& source) {
-        if (src_.localpixels()) {
-            source = {static_cast<const std::byte*>(src_.pixeladdr(x, y, z)), src_.pixel_stride()};
-            return true;
-        }
-        const ROI roi(x, x + static_cast<int>(n), y, y + 1, z, z + 1, 0, src_.nchannels());
-        source = {fetched_.data(), src_.nchannels() * src_size_};
-        return src_.get_pixels(roi, src_type_, fetched_.data());
     }
 
     void run_span(const SpanSource& source, std::byte* to, std::size_t n) noexcept {
@@ -293,54 +265,40 @@ class RowRunner {
     const ChannelPlan& plan_;
     ImageBuf& dst_;
     const ImageBuf& src_;
+    SpanReader reader_;
     OIIO::TypeDesc src_type_;
     const PixelAccess& src_access_;
     const PixelAccess& dst_access_;
     std::ptrdiff_t src_size_;
     std::ptrdiff_t dst_size_;
-    std::vector<float> planes_;       // r, g, b (, alpha)
-    std::vector<double> wide_;        // copied channels whose type changes; double holds every type
-    std::vector<std::byte> fetched_;  // pixels of a cached source
+    std::vector<float> planes_;  // r, g, b (, alpha)
+    std::vector<double> wide_;   // copied channels whose type changes; double holds every type
 };
-
-void check_pixel_type(const char* what, const OIIO::TypeDesc& type) {
-    if (pixel_access(type)) return;
-    fail(
-        fmt::format("{} pixel type is {}; expected an integer of 8, 16 or 32 bits, half, float or "
-                    "double",
-                    what, std::string(type.c_str())));
-}
 
 }  // namespace
 
-bool Tonemapper::State::divides_by_alpha(const ImageSpec& spec) const {
-    switch (unpremult) {
-        case TonemapOptions::Unpremult::yes:
-            return true;
-        case TonemapOptions::Unpremult::no:
-            return false;
-        case TonemapOptions::Unpremult::automatic:
-            break;
+void Tonemapper::State::run(ImageBuf& dst, const ImageBuf& src, ROI roi, int nthreads) const {
+    check_source(src);
+    if (prepared) {
+        run(*prepared, dst, src, roi, nthreads);
+        return;
     }
-    return spec.get_int_attribute("oiio:UnassociatedAlpha", 0) == 0;
+    // Of the whole picture, whatever the region: its parts must fit together.
+    const SceneStatistics statistics =
+        measure_scene(src, options.input, options.unpremult, {}, nthreads);
+    const Settings settings = settings_for_picture(options.op, options.settings, statistics);
+    run(Prepared(view_of(options, settings)), dst, src, roi, nthreads);
 }
 
-void Tonemapper::State::run(ImageBuf& dst, const ImageBuf& src, ROI roi, int nthreads) const {
-    const ImageSpec& source = src.spec();  // reads the header of a picture that is not open yet
-    if (!src.initialized()) {
-        fail(src.has_error() ? first_line(src.geterror())
-                             : "source is not initialized; expected a picture");
-    }
-    if (src.deep() || dst.deep()) {
-        fail(fmt::format("{} is deep; expected flat pixels (oiiotool --flatten)",
-                         src.deep() ? "source" : "destination"));
-    }
-    check_pixel_type("source", source.format);
+void Tonemapper::State::run(const Prepared& with, ImageBuf& dst, const ImageBuf& src, ROI roi,
+                            int nthreads) const {
+    const ImageSpec& source = src.spec();
+    if (dst.deep()) fail("destination is deep; expected flat pixels (oiiotool --flatten)");
     if (dst.initialized()) check_pixel_type("destination", dst.spec().format);
 
     ChannelPlan plan;
-    const int alpha = find_alpha(source);
-    plan.grey_source = is_grey(source, alpha);
+    const ChannelLayout layout = channel_layout(source);
+    plan.grey_source = layout.is_grey;
     const int color_count = plan.grey_source ? 1 : 3;
     const int chbegin = roi.defined() ? std::max(roi.chbegin, 0) : 0;
     const int chend = roi.defined() ? std::min(roi.chend, source.nchannels) : source.nchannels;
@@ -353,14 +311,14 @@ void Tonemapper::State::run(ImageBuf& dst, const ImageBuf& src, ROI roi, int nth
 
     // A grey result takes one channel, unless the destination has a place for three.
     const bool wide_destination = dst.initialized() && dst.nchannels() >= 3;
-    plan.grey_result = plan.grey_source && keeps_grey && !wide_destination;
+    plan.grey_result = plan.grey_source && with.keeps_grey && !wide_destination;
     if (dst.initialized() && !plan.grey_result && dst.nchannels() < 3) {
         fail(fmt::format("destination has {}; expected 3 or more: {}",
                          dst.nchannels() == 1 ? "1 channel" : "2 channels",
-                         plan.grey_source ? view.op.label + " shows this grey picture in color"
+                         plan.grey_source ? with.view.op.label + " shows this grey picture in color"
                                           : std::string("the picture is in color")));
     }
-    if (alpha >= 0 && divides_by_alpha(source)) plan.alpha = alpha;
+    if (layout.alpha >= 0 && divides_by_alpha(source, options.unpremult)) plan.alpha = layout.alpha;
 
     const bool widens = plan.grey_source && !plan.grey_result;
     ImageSpec fresh = result_spec(source, widens);
@@ -382,18 +340,15 @@ void Tonemapper::State::run(ImageBuf& dst, const ImageBuf& src, ROI roi, int nth
         OIIO::ImageBufAlgo::parallel_image(roi, OIIO::paropt(nthreads), [&](ROI part) {
             // No exception may leave a thread of OIIO's pool.
             try {
-                if (!RowRunner(engine, plan, dst, src).run(part)) unreadable = true;
+                if (!RowRunner(with.engine, plan, dst, src).run(part)) unreadable = true;
             } catch (const std::bad_alloc&) {
                 out_of_memory = true;
             }
         });
         if (out_of_memory) throw std::bad_alloc();
-        // A cached picture is read as it is worked on; its cache reports through the picture.
-        if (unreadable || (!src.localpixels() && src.has_error())) {
-            fail(src.has_error() ? first_line(src.geterror()) : "source cannot be read");
-        }
+        check_was_read(src, !unreadable);
     }
-    tag_as_result_of(view, dst.specmod());
+    tag_as_result_of(with.view, dst.specmod());
 }
 
 Tonemapper::Tonemapper(const TonemapOptions& options)

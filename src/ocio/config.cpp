@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <map>
+#include <set>
 #include <sstream>
 
 #include "engine/error_metric.h"
@@ -202,14 +203,32 @@ OCIO::ColorSpaceRcPtr make_space(const ConfigModel::Space& space, LutFiles& luts
 /// space of the same primaries OCIO multiplies the two matrices to the identity, and the clamp is
 /// the first thing that a pixel meets, NaN and infinities included. A Range before the matrix would
 /// keep the matrices apart and cost 1e-6 by float32 cancellation.
-Pipeline view_stages(const ResolvedOperator& resolved) {
+Pipeline view_stages(const ResolvedOperator& resolved, const Primaries& limit) {
     const Operator& op = *resolved.op;
     Pipeline stages = {MatrixStage{from_reference(op.working)}};
-    for (const Pipeline& part : {resolved.build(), display_light_stages(op)}) {
+    for (const Pipeline& part : {resolved.build(), display_light_stages(op, limit)}) {
         stages.insert(stages.end(), part.begin(), part.end());
     }
-    stages.push_back(MatrixStage{rgb_to_xyz_d65(op.working)});
+    stages.push_back(MatrixStage{rgb_to_xyz_d65(limit)});
     return stages;
+}
+
+/// The view transform that a view takes on a display. A gamut inside every display's is limited as
+/// its own, once for all; a wider one where the display's gamut ends, so one for each gamut.
+struct DisplayedView {
+    std::string transform;
+    Primaries limit;
+};
+
+DisplayedView displayed_on(const ConfigModel::View& view, const ConfigModel& model,
+                           const Display& display) {
+    const Primaries& working = view.op.op->working;
+    for (const Display* d : model.displays) {
+        if (!is_inside(working, d->primaries))
+            return {view.name + " (" + std::string(display.primaries.name) + ")",
+                    display.primaries};
+    }
+    return {view.name, working};
 }
 
 struct ViewError {
@@ -365,16 +384,22 @@ std::vector<GeneratedFile> make_config() {
         error.is_exact = whole.is_exact;
         errors[view.name] = error;
 
-        OCIO::ViewTransformRcPtr vt = OCIO::ViewTransform::Create(OCIO::REFERENCE_SPACE_SCENE);
-        vt->setName(view.name.c_str());
-        vt->setDescription(fmt::format("{} Error against the double reference, sRGB code values, "
-                                       "OCIO CPU: max {}, 99.9 % {}.",
-                                       view.description, rounded_up(error.in_gamut.max),
-                                       rounded_up(error.in_gamut.p999))
-                               .c_str());
-        vt->setTransform(lower_part(luts, view_stages(view.op), view.op.op->id, view.op.op->title),
-                         OCIO::VIEWTRANSFORM_DIR_FROM_REFERENCE);
-        config->addViewTransform(vt);
+        std::set<std::string> made;
+        for (const Display* display : model.displays) {
+            const DisplayedView shown = displayed_on(view, model, *display);
+            if (!made.insert(shown.transform).second) continue;
+            OCIO::ViewTransformRcPtr vt = OCIO::ViewTransform::Create(OCIO::REFERENCE_SPACE_SCENE);
+            vt->setName(shown.transform.c_str());
+            vt->setDescription(fmt::format("{} Error against the double reference, sRGB code "
+                                           "values, OCIO CPU: max {}, 99.9 % {}.",
+                                           view.description, rounded_up(error.in_gamut.max),
+                                           rounded_up(error.in_gamut.p999))
+                                   .c_str());
+            vt->setTransform(lower_part(luts, view_stages(view.op, shown.limit), view.op.op->id,
+                                        view.op.op->title),
+                             OCIO::VIEWTRANSFORM_DIR_FROM_REFERENCE);
+            config->addViewTransform(vt);
+        }
     }
 
     std::string active_displays;
@@ -392,7 +417,18 @@ std::vector<GeneratedFile> make_config() {
         }
     };
     for (const auto& view : model.views) {
-        add_view(view.name, view.name, OCIO::OCIO_VIEW_USE_DISPLAY_NAME, view.description);
+        const std::string first = displayed_on(view, model, *model.displays.front()).transform;
+        if (first == view.name) {
+            add_view(view.name, view.name, OCIO::OCIO_VIEW_USE_DISPLAY_NAME, view.description);
+            continue;
+        }
+        active_views += (active_views.empty() ? "" : ", ") + view.name;
+        for (const Display* display : model.displays) {
+            config->addDisplayView(display->title.c_str(), view.name.c_str(),
+                                   displayed_on(view, model, *display).transform.c_str(),
+                                   (display->title + kDisplaySuffix).c_str(), "", "",
+                                   view.description.c_str());
+        }
     }
     add_view(kUntonemappedView, kUntonemappedView, OCIO::OCIO_VIEW_USE_DISPLAY_NAME,
              "Scene light shown as it is.");

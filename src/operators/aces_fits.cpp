@@ -1,21 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Curve fits to the ACES 1 look: Narkowicz 2015 and Hill (BakingLab) 2016.
+// Curve fits to the look of ACES 1: Narkowicz 2015, Hill (BakingLab) 2016, Filament.
 //
 // Source    K. Narkowicz, "ACES Filmic Tone Mapping Curve", knarkowicz.wordpress.com, 2016-01-06.
-//           S. Hill, in M. Pettineo and B. Karis' BakingLab, ACES.hlsl, 2016.
-// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, inf), negatives: clamped
-// at 0
-//           (Narkowicz' rational has a zero at -0.012 and rises again below it).
-// Out       display-linear RGB, 1.0 = display peak; both sources end with a clamp to [0, 1].
-// Kind      aces_narkowicz per channel; aces_hill matrix, curve, matrix. Monotone on the neutral
-//           axis: yes (Hill: 0 up to scene-linear 0.0032).
-// Keeps     0 -> 0.
-// Differs   nowhere. Hill's matrices hold the conversions from and to Rec.709 and the RRT's and
-// ODT's
-//           desaturation: the input is Rec.709, not ACEScg. Neither contains the display encoding.
-// Check     mid grey 0.18 -> 0.266898920 (Narkowicz; 0.140119567 with prescale 0.6), 0.105591247
-//           (Hill, red) (python_check/operators.py).
+//           S. Hill, in M. Pettineo and B. Karis' BakingLab, ACES.hlsl, 2016; the gains as Godot
+//           (tonemap.glsl) and three.js (tonemapping_pars_fragment) have them. Google Filament,
+//           ToneMapper.cpp, ACES and ACESLegacy, whose rational is a fit of the colour-science
+//           project (colour-unity).
+// In        scene-linear RGB; working primaries Rec.709 (aces_filament Rec.2020), D65; domain
+//           [0, inf), negatives: clamped at 0 (Narkowicz' rational has a zero at -0.012 and rises
+//           again below it).
+// Out       display-linear RGB, 1.0 = display peak. Narkowicz and Hill end with a clamp to [0, 1],
+//           which Godot leaves out; Filament is not clamped and stays below 1.
+// Kind      aces_narkowicz per channel; aces_hill matrix, curve, matrix; aces_filament 3D (glow and
+//           red modifier), then matrix, curve, scale by luminance (dim surround), matrix. Monotone
+//           on the neutral axis: yes (Hill: 0 up to scene-linear 0.0032).
+// Keeps     0 -> 0, except Godot's unclamped -0.0005. At 65504 all are at their asymptotes.
+// Differs   aces_filament: for the dim surround Filament floors X+Y+Z at 1e-5, which only keeps
+//           black from 0/0; here black stays black. Hill's matrices hold the conversions from and
+//           to Rec.709 and the RRT's and ODT's desaturation: the input is Rec.709, not ACEScg.
+//           Filament's conversions between Rec.2020 and AP1 are not adapted from D65 to the ACES
+//           white, so greys are tinted: that is in the source. No form holds a display encoding.
+// Check     mid grey 0.18 -> 0.266898920 (Narkowicz; 0.140119567 with prescale 0.6), red
+//           0.105591247 (Hill), 0.106938283 (Filament, Rec.2020) (check_values.json).
+#include "operators/color_modifiers.h"
 #include "operators/family.h"
 
 namespace tonewright {
@@ -30,16 +38,18 @@ Operator narkowicz() {
         "five constants, contrasty; without the 0.6 prescale about a stop brighter than ACES";
     op.source = "K. Narkowicz, ACES Filmic Tone Mapping Curve, 2016";
     op.licence = "public domain (CC0), MIT";
+    op.dialects = "ACES";
     op.negatives = kNegativesClampAtZero;
-    op.parameters = {
-        number_parameter("prescale", "", 1, 0.01, 100,
-                         "factor on the scene value; 0.6 is the author's match to ACES exposure")};
+    op.parameters = with_apply(
+        "channels", {number_parameter(
+                        "prescale", "", 1, 0.01, 100,
+                        "factor on the scene value; 0.6 is the author's match to ACES exposure")});
     op.presets = {
         {"matched", "with the 0.6 prescale that matches ACES exposure", {{"prescale", "0.6"}}}};
     op.build = [](const Params& p) -> Pipeline {
         const Expr x = p.number("prescale") * Expr::input();
         const Expr f = x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14);
-        return {limit_to_positive(), curve_stage(f), ClampStage{0, 1}};
+        return tone_curve_pipeline({.f = f}, p) + Pipeline{ClampStage{0, 1}};
     };
     return op;
 }
@@ -53,27 +63,107 @@ constexpr Matrix3 kHillOutput = {{{ 1.60475, -0.53108, -0.07367},
                                   {-0.00327, -0.07276,  1.07602}}};
 // clang-format on
 
+Expr hill_curve(const Expr& v) {
+    const Expr a = v * (v + 0.0245786) - 0.000090537;
+    const Expr b = v * (0.983729 * v + 0.4329510) + 0.238081;
+    return a / b;
+}
+
 Operator hill() {
     Operator op;
     op.id = "aces_hill";
     op.title = "ACES fit (Hill)";
     op.view = "ACES Hill";
     op.character = "close to ACES 1 SDR with its desaturating lights; darker than Narkowicz";
-    op.source = "S. Hill, ACES.hlsl of BakingLab, 2016";
+    op.source = "S. Hill, ACES.hlsl of BakingLab, 2016; gains of Godot and three.js";
     op.licence = "MIT";
+    op.dialects = "ACES";
     op.negatives = kNegativesClampAtZero;
-    op.build = [](const Params&) -> Pipeline {
-        const Expr v = Expr::input();
-        const Expr a = v * (v + 0.0245786) - 0.000090537;
-        const Expr b = v * (0.983729 * v + 0.4329510) + 0.238081;
-        return {limit_to_positive(), MatrixStage{kHillInput}, curve_stage(a / b),
-                MatrixStage{kHillOutput}, ClampStage{0, 1}};
+    op.parameters = {
+        number_parameter("prescale", "", 1, 0.01, 100, "factor on the scene value"),
+        number_parameter("gain", "", 1, 0.01, 100, "factor on the result, behind its clamp"),
+        number_parameter("white", "scene-linear", 0, 0, 65504,
+                         "scene value, before the prescale, whose curve value divides the result; "
+                         "0: nothing does"),
+        choice_parameter("clamp", {"yes", "no"}, "yes", "limit the result to [0, 1] before gain"),
+    };
+    op.presets = {
+        {"bakinglab", "as BakingLab shows it: the clamped result times 1.8", {{"gain", "1.8"}}},
+        {"godot",
+         "as in Godot: prescale 1.8, divided by the curve at white, not clamped",
+         {{"prescale", "1.8"}, {"white", "1"}, {"clamp", "no"}}},
+        {"threejs", "as in three.js: prescale 1/0.6", {{"prescale", "1.6666666666666667"}}},
+    };
+    op.deviations = {{Deviation::Kind::crushes_black, 0.0032, ""},
+                     {Deviation::Kind::crushes_black, 0.0018, "godot"},
+                     {Deviation::Kind::crushes_black, 0.0019, "threejs"},
+                     {Deviation::Kind::black, -0.00049, "godot"},
+                     {Deviation::Kind::exceeds_white, 1.8, "bakinglab"},
+                     {Deviation::Kind::exceeds_white, 1.3, "godot"}};
+    op.build = [](const Params& p) -> Pipeline {
+        const double prescale = p.number("prescale");
+        const double white = p.number("white");
+        Expr f = hill_curve(Expr::input());
+        if (white > 0) {
+            const double at_white = hill_curve(prescale * white).value();
+            if (!(at_white > 0)) {
+                throw Error("white is " + shortest(white) + "; expected 0 or above " +
+                            shortest(0.0033 / prescale) +
+                            " with this prescale: the curve is not above 0 there");
+            }
+            f = f / at_white;
+        }
+        Pipeline stages = {limit_to_positive(), MatrixStage{scale(kIdentity3, prescale)},
+                           MatrixStage{kHillInput}, curve_stage(f), MatrixStage{kHillOutput}};
+        if (p.choice("clamp") == "yes") stages.push_back(ClampStage{0, 1});
+        stages.push_back(MatrixStage{scale(kIdentity3, p.number("gain"))});
+        return stages;
+    };
+    return op;
+}
+
+/// From Rec.2020 by way of XYZ without adaptation: D65 stays D65 and is no neutral of AP1.
+Matrix3 rec2020_to_ap1_unadapted() {
+    return multiply(inverse(rgb_to_xyz(kAP1)), rgb_to_xyz(kRec2020));
+}
+
+Operator filament() {
+    Operator op;
+    op.id = "aces_filament";
+    op.title = "ACES fit (Filament)";
+    op.view = "ACES Filament";
+    op.character =
+        "the RRT's own glow and red modifier before a fitted curve; whites turn reddish, as its "
+        "conversions are not adapted";
+    op.source = "Google Filament, ToneMapper.cpp: ACES, ACESLegacy";
+    op.licence = "Apache-2.0; formula and constants, no code of it is used";
+    op.dialects = "ACES";
+    op.negatives = kNegativesClampAtZero;
+    op.working = kRec2020;
+    op.parameters = {number_parameter("brightness", "", 1, 0.01, 100,
+                                      "factor before the curve: 1 in ACES, 1/0.6 in ACESLegacy")};
+    op.presets = {{"legacy", "as Filament's ACESLegacy", {{"brightness", "1.6666666666666667"}}}};
+    op.deviations = {{Deviation::Kind::never_reaches_white, 0.869, ""}};
+    op.build = [](const Params& p) -> Pipeline {
+        const Matrix3 to_ap1 = rec2020_to_ap1_unadapted();
+        const Vector3 w = ap1_weights();
+        const Expr x = Expr::input();
+        return {limit_to_positive(), MatrixStage{to_ap1},
+                ClampStage{0, kInfinity},  // finds nothing: Rec.2020 lies inside AP1
+                ap1_glow_and_red_modifier(1e-5), ClampStage{0, kHalfMax},
+                MatrixStage{saturation_matrix(0.96, w)},
+                MatrixStage{scale(kIdentity3, p.number("brightness"))},
+                curve_stage((x * (2.785085 * x + 0.107772)) /
+                            (x * (2.936045 * x + 0.887122) + 0.806889)),
+                // To the dim surround: Y^0.9811 with the chromaticity kept.
+                ToneScaleStage{ToneScaleStage::Norm::luminance, w, pow(x, 0.9811)},
+                MatrixStage{saturation_matrix(0.93, w)}, MatrixStage{inverse(to_ap1)}};
     };
     return op;
 }
 
 }  // namespace
 
-std::vector<Operator> define_aces_fits() { return {narkowicz(), hill()}; }
+std::vector<Operator> define_aces_fits() { return {narkowicz(), hill(), filament()}; }
 
 }  // namespace tonewright

@@ -1,23 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// AgX, two of its dialects: Troy Sobotka's configuration and Benjamin Wrensch's minimal form.
+// AgX, six of its dialects: Troy Sobotka's configuration, Benjamin Wrensch's minimal form, and what
+// three.js, Filament and Godot (4.4, and since 4.6) made of them.
 //
 // Source    T. Sobotka, AgX OpenColorIO configuration (github.com/sobotka/AgX), 2022, and the
 //           SB2383 sigmoid that its lookup table samples. B. Wrensch, "Minimal AgX Implementation",
-//           iolite-engine.com, 2023-09-06; order 7 as in Filament's ToneMapper.cpp.
-// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, inf), negatives: clamped
-// at 0. Out       CODE VALUES of a 2.2 power; [0, 1], except agx_minimal's polynomial ends of
-// -0.0023 and
-//           0.9986 (order 6), 0.0029 and 0.982 (order 7), and looks that saturate past 1.
-// Kind      clamp, matrix, log and sigmoid, (matrix); monotone on the neutral axis: yes, but order
-// 7
-//           dips within the lowest 2.5 % of its range.
-// Keeps     mid grey 0.18 -> code value 0.5 (agx_sobotka).
+//           iolite-engine.com, 2023-09-06. three.js, tonemapping_pars_fragment, AgXToneMapping.
+//           Google Filament, ToneMapper.cpp, AgxToneMapper. Godot Engine, tonemap.glsl of 4.4 and
+//           of 4.6 (curve by allenwp). Insets and outsets of three.js, Filament and Godot are those
+//           of Blender: E. Chow, AgX_LUT_Gen.
+// In        scene-linear RGB; working primaries Rec.709 (agx_filament Rec.2020), D65; domain
+//           [0, inf), negatives: clamped at 0, but agx_threejs lets them into its matrices and
+//           limits what comes out: domain (-inf, inf). All but agx_godot end at 16.29, 6.5 stops
+//           above mid grey, and begin 10 stops below it: what is outside is as its ends.
+// Out       agx_sobotka, agx_minimal: CODE VALUES of a 2.2 power, [0, 1], except agx_minimal's
+//           polynomial ends of -0.0023 and 0.9986 (order 6), 0.0029 and 0.982 (order 7), and looks
+//           that saturate past 1. The others: display-linear RGB, 1.0 = display peak; agx_threejs
+//           before the source's last clamp, agx_godot44 and agx_godot as the source has them: the
+//           matrices at the end put saturated colours below 0 or above 1.
+// Kind      clamp, matrix, log and sigmoid, (matrix); the looks of agx_filament are 3D, as their
+//           luma is of the value before the power. Monotone on the neutral axis: yes, but order 7
+//           (agx_minimal:order7, agx_filament) dips within the lowest 2.5 % of its range.
+// Keeps     mid grey 0.18 -> code value 0.5 (agx_sobotka), 0.18 of the light (agx_godot, and
+//           agx_godot44 within 0.5 %).
 // Differs   agx_sobotka uses the sigmoid in closed form where the configuration has its 4096-entry
-//           table: 5e-8 apart, the table's own rounding.
-// Check     mid grey 0.18 -> (0.500023782, 0.499993460, 0.499991575) (python_check/operators.py).
+//           table: 5e-8 apart, the table's own rounding. The floors of 1e-10 before log2 are not
+//           there where the shaper's lower end, 1.76e-4, is one already; Godot's of 2e-10 on the
+//           input is. agx_filament's looks have the luma weights of Rec.709 although its primaries
+//           are Rec.2020: that is in the source.
+// Check     mid grey 0.18 -> (0.500023782, 0.499993460, 0.499991575) (agx_sobotka), red 0.214548629
+//           (agx_threejs), 0.214848193 (agx_filament, Rec.2020), red 0.179190952 (agx_godot44),
+//           0.18 (agx_godot) (check_values.json).
 #include <cmath>
 
+#include "operators/color_modifiers.h"
 #include "operators/family.h"
 
 namespace tonewright {
@@ -67,20 +83,30 @@ struct Sigmoid {
     }
 };
 
+/// Wrensch's fits of the sigmoid; order 7 is Filament's.
+Expr polynomial6(const Expr& n) {
+    const Expr n2 = n * n;
+    const Expr n4 = n2 * n2;
+    return 15.5 * n4 * n2 - 40.14 * n4 * n + 31.96 * n4 - 6.868 * n2 * n + 0.4298 * n2 +
+           0.1191 * n - 0.00232;
+}
+Expr polynomial7(const Expr& n) {
+    const Expr n2 = n * n;
+    const Expr n4 = n2 * n2;
+    const Expr n6 = n4 * n2;
+    return -17.86 * n6 * n + 78.01 * n6 - 126.7 * n4 * n + 92.06 * n4 - 28.72 * n2 * n +
+           4.361 * n2 - 0.1718 * n + 0.002857;
+}
+
 /// ASC CDL without clamps, as OCIO 2 configs apply it, on code values.
 Pipeline cdl(const Vector3& slope, double power, double saturation) {
     const Expr x = Expr::input();
     CurveStage curve = curve_stage(x);
     for (std::size_t i = 0; i < 3; ++i)
         curve.f[i] = pow(slope[i] * x, power);
-    Matrix3 m{};
-    for (std::size_t i = 0; i < 3; ++i) {
-        for (std::size_t j = 0; j < 3; ++j) {
-            m[i][j] = (1 - saturation) * kRec709Weights[j] + (i == j ? saturation : 0);
-        }
-    }
     // The clamp keeps the power's infinite slope at 0 out of the sigmoid's table.
-    return {ClampStage{0, kInfinity}, curve, MatrixStage{m}};
+    return {ClampStage{0, kInfinity}, curve,
+            MatrixStage{saturation_matrix(saturation, kRec709Weights)}};
 }
 
 Operator sobotka() {
@@ -92,6 +118,7 @@ Operator sobotka() {
         "low contrast, colours fade to white with light; holds blues and neon where others clip";
     op.source = "T. Sobotka, AgX configuration for OpenColorIO (SB2383), 2022";
     op.licence = "formula and constants; no file of it is used";
+    op.dialects = "AgX";
     op.negatives = kNegativesClampAtZero;
     op.output = OutputKind::code_value;
     op.code_power = 2.2;
@@ -99,6 +126,8 @@ Operator sobotka() {
                 {"punchy", "Punchy", "darker and stronger: ASC CDL power 1.35, saturation 1.4"}};
     op.warnings = {
         "this is not the AgX of Blender: mid grey is shown at code value 0.5, Blender's at 0.46"};
+    op.deviations = {{Deviation::Kind::never_reaches_white, 0.193, "golden"},
+                     {Deviation::Kind::exceeds_white, 1.06, "golden"}};
     op.build = [](const Params& p) -> Pipeline {
         constexpr Sigmoid sigmoid = {10 / 16.5, 0.5, 2.0, 3.0, 3.25};
         Pipeline stages = {limit_to_positive(), MatrixStage{kInset}, limit_to_shaper(),
@@ -122,30 +151,220 @@ Operator minimal() {
         "Sobotka's";
     op.source = "B. Wrensch, Minimal AgX Implementation, 2023; order 7: Filament ToneMapper.cpp";
     op.licence = "MIT";
+    op.dialects = "AgX";
     op.negatives = kNegativesClampAtZero;
     op.output = OutputKind::code_value;
     op.code_power = 2.2;
     op.parameters = {choice_parameter("order", {"6", "7"}, "6", "order of the polynomial")};
     op.presets = {{"order7", "with Filament's polynomial", {{"order", "7"}}}};
-    op.warnings = {"order 7 lifts black, never reaches white and is not monotone near black"};
+    op.deviations = {{Deviation::Kind::black, -0.0023, ""},
+                     {Deviation::Kind::black, 0.0029, "order7"},
+                     {Deviation::Kind::never_reaches_white, 0.997, ""},
+                     {Deviation::Kind::never_reaches_white, 0.961, "order7"},
+                     {Deviation::Kind::not_monotone, 0.00024, "order7"}};
     op.build = [](const Params& p) -> Pipeline {
         const Expr n = normalised_log(Expr::input());
-        const Expr n2 = n * n;
-        const Expr n4 = n2 * n2;
-        const Expr n6 = n4 * n2;
-        const Expr f = p.choice("order") == "6"
-                           ? 15.5 * n4 * n2 - 40.14 * n4 * n + 31.96 * n4 - 6.868 * n2 * n +
-                                 0.4298 * n2 + 0.1191 * n - 0.00232
-                           : -17.86 * n6 * n + 78.01 * n6 - 126.7 * n4 * n + 92.06 * n4 -
-                                 28.72 * n2 * n + 4.361 * n2 - 0.1718 * n + 0.002857;
+        const Expr f = p.choice("order") == "6" ? polynomial6(n) : polynomial7(n);
         return {limit_to_positive(), MatrixStage{kInset}, limit_to_shaper(), curve_stage(f),
                 MatrixStage{kOutset}};
     };
     return op;
 }
 
+// clang-format off
+/// Blender's inset and outset, for Rec.2020. The outset is the inverse of another inset than this.
+constexpr Matrix3 kInsetRec2020 = {{
+    {0.856627153315983, 0.0951212405381588, 0.0482516061458583},
+    {0.137318972929847, 0.761241990602591,  0.101439036467562},
+    {0.11189821299995,  0.0767994186031903, 0.811302368396859}}};
+constexpr Matrix3 kOutsetRec2020 = {{
+    { 1.1271005818144368, -0.1106066430966033, -0.0164939387178346},
+    {-0.1413297634984383,  1.1578237022162718, -0.0164939387178343},
+    {-0.1413297634984383, -0.1106066430966029,  1.2519364065950402}}};
+// clang-format on
+
+/// Outset, and code values to light: what is below 0 has no power.
+Pipeline outset_to_light(double power) {
+    return {MatrixStage{kOutsetRec2020}, ClampStage{0, kInfinity},
+            curve_stage(pow(Expr::input(), power))};
+}
+
+Operator threejs() {
+    Operator op;
+    op.id = "agx_threejs";
+    op.title = "AgX (three.js)";
+    op.view = "AgX three.js";
+    op.character =
+        "Blender's matrices with Sobotka's curve: soft and pale; mid grey at 0.21 of the light, "
+        "brighter than Blender's AgX";
+    op.source = "three.js, tonemapping_pars_fragment: AgXToneMapping; after Filament";
+    op.licence = "MIT";
+    op.dialects = "AgX";
+    op.negatives =
+        "pass through the matrices to Rec.2020 and of the inset; what is below the shaper's range "
+        "there is its lower end";
+    op.warnings = {"where the shaper ends, at scene-linear 16.3, greys fall by 5e-6 of the light"};
+    op.deviations = {{Deviation::Kind::never_reaches_white, 0.997, ""},
+                     {Deviation::Kind::not_monotone, 16, ""}};
+    op.build = [](const Params&) -> Pipeline {
+        // clang-format off
+        // Rec.709 to Rec.2020 and back, as the source prints them: 0.0113 is not the rounded value.
+        constexpr Matrix3 to_rec2020 = {{{0.6274, 0.3293, 0.0433},
+                                         {0.0691, 0.9195, 0.0113},
+                                         {0.0164, 0.0880, 0.8956}}};
+        constexpr Matrix3 to_rec709 = {{{ 1.6605, -0.5876, -0.0728},
+                                        {-0.1246,  1.1329, -0.0083},
+                                        {-0.0182, -0.1006,  1.1187}}};
+        // clang-format on
+        const Pipeline stages = {MatrixStage{to_rec2020}, MatrixStage{kInsetRec2020},
+                                 limit_to_shaper(),
+                                 curve_stage(polynomial6(normalised_log(Expr::input())))};
+        return stages + outset_to_light(2.2) + Pipeline{MatrixStage{to_rec709}};
+    };
+    return op;
+}
+
+/// Filament's look on code values: a CDL whose saturation is about the luma from before slope and
+/// power, so that no chain of curves and matrices makes it.
+Map3Stage filament_look(const Vector3& slope, double power, double saturation) {
+    const std::array<Expr, 3> v = {Expr::input(0), Expr::input(1), Expr::input(2)};
+    const Expr luma =
+        kRec709Weights[0] * v[0] + kRec709Weights[1] * v[1] + kRec709Weights[2] * v[2];
+    Map3Stage look{v};
+    for (std::size_t i = 0; i < 3; ++i)
+        look.f[i] = luma + saturation * (pow(slope[i] * v[i], power) - luma);
+    return look;
+}
+
+Operator filament() {
+    Operator op;
+    op.id = "agx_filament";
+    op.title = "AgX (Filament)";
+    op.view = "AgX Filament";
+    op.character =
+        "as three.js, in Rec.2020 and with the polynomial of order 7: milky blacks, white at 0.96";
+    op.source = "Google Filament, ToneMapper.cpp: AgxToneMapper";
+    op.licence = "Apache-2.0; formula and constants, no code of it is used";
+    op.dialects = "AgX";
+    op.negatives = kNegativesClampAtZero;
+    op.working = kRec2020;
+    op.looks = {{"golden", "Golden", "warm: slope 1 0.9 0.5, power 0.8, saturation 1.3"},
+                {"punchy", "Punchy", "darker and stronger: power 1.35, saturation 1.4"}};
+    // Punchy takes black below 0 before it is light: there the lifted black is gone.
+    op.deviations = {{Deviation::Kind::black, 2.5e-6, ""},
+                     {Deviation::Kind::black, 5.2e-5, "golden"},
+                     {Deviation::Kind::black, 0, "punchy"},
+                     {Deviation::Kind::crushes_black, 0.0020, "punchy"},
+                     {Deviation::Kind::never_reaches_white, 0.961, ""},
+                     {Deviation::Kind::never_reaches_white, -0.0052, "golden"},
+                     {Deviation::Kind::never_reaches_white, 0.942, "punchy"},
+                     {Deviation::Kind::exceeds_white, 1.24, "golden"},
+                     {Deviation::Kind::not_monotone, 0.00021, "golden"}};
+    op.build = [](const Params& p) -> Pipeline {
+        Pipeline stages = {limit_to_positive(), MatrixStage{kInsetRec2020}, limit_to_shaper(),
+                           curve_stage(polynomial7(normalised_log(Expr::input())))};
+        if (!p.look().empty()) {
+            stages.push_back(ClampStage{0, 1});  // finds nothing: the polynomial stays inside
+            stages.push_back(p.look() == "golden" ? filament_look({1, 0.9, 0.5}, 0.8, 1.3)
+                                                  : filament_look({1, 1, 1}, 1.35, 1.4));
+        }
+        return stages + outset_to_light(2.2);
+    };
+    return op;
+}
+
+Operator godot44() {
+    Operator op;
+    op.id = "agx_godot44";
+    op.title = "AgX (Godot 4.4)";
+    op.view = "AgX Godot 4.4";
+    op.character =
+        "a polynomial for Blender's sigmoid, decoded with 2.4: mid grey kept, soft lights";
+    op.source = "Godot Engine 4.4, tonemap.glsl: tonemap_agx";
+    op.licence = "MIT";
+    op.dialects = "AgX";
+    op.negatives = "2e-10, before the first matrix";
+    op.warnings = {"where the shaper ends, at scene-linear 16.3, greys fall by 4e-6 of the light"};
+    op.deviations = {{Deviation::Kind::exceeds_white, 1.0003, ""},
+                     {Deviation::Kind::not_monotone, 16, ""}};
+    op.build = [](const Params&) -> Pipeline {
+        // clang-format off
+        // Rec.709 to Rec.2020 and Blender's inset in one; its outset and the way back in one.
+        constexpr Matrix3 in = {{{0.544908138163631, 0.373779459598123, 0.081384976686408},
+                                 {0.140440058840013, 0.754109598640138, 0.105433585368578},
+                                 {0.088827411851915, 0.178877124650438, 0.732249999569484}}};
+        constexpr Matrix3 out = {{{ 1.964550960273326, -0.855858451178075, -0.108867108268316},
+                                  {-0.299322433909111,  1.326451074150236, -0.027084020983875},
+                                  {-0.164368338060804, -0.238224640688606,  1.402665347143272}}};
+        // clang-format on
+        // The shaper's ends with all digits, not those that the other dialects print.
+        const double lowest = std::log2(0.18) - 10;
+        const double highest = std::log2(0.18) + 6.5;
+        const Expr n = (log2(Expr::input()) - lowest) / (highest - lowest);
+        const Expr n2 = n * n;
+        const Expr n4 = n2 * n2;
+        const Expr code = 0.021 * n + 4.0111 * n2 - 25.682 * n2 * n + 70.359 * n4 -
+                          74.778 * n4 * n + 27.069 * n4 * n2;
+        // n, and the code with it, may be rounded to below 0 at the lower end.
+        return {ClampStage{2e-10, kHalfMax}, MatrixStage{in},
+                ClampStage{std::exp2(lowest), std::exp2(highest)},
+                curve_stage(pow(max(code, 0), 2.4)), MatrixStage{out}};
+    };
+    return op;
+}
+
+Operator godot() {
+    Operator op;
+    op.id = "agx_godot";
+    op.title = "AgX (Godot 4.6)";
+    op.view = "AgX Godot";
+    op.character =
+        "AgX without logarithm: contrast, white and peak to choose, mid grey kept; fit for HDR";
+    op.source = "Godot Engine 4.6, tonemap.glsl: tonemap_agx; curve by allenwp";
+    op.licence = "MIT";
+    op.dialects = "AgX";
+    op.negatives = kNegativesClampAtZero;
+    op.parameters = {
+        number_parameter("contrast", "", 1.25, 0.1, 4, "power of the toe"),
+        number_parameter("white", "scene-linear", 16.29, 2, 65504,
+                         "smallest scene value that is shown at output_max"),
+        number_parameter("output_max", "display-linear", 1, 0.2, 100,
+                         "display peak over paper white"),
+    };
+    op.build = [](const Params& p) -> Pipeline {
+        // clang-format off
+        constexpr Matrix3 in = {{{0.544814746488245,  0.373787398372697, 0.0813978551390581},
+                                 {0.140416948464053,  0.754137554567394, 0.105445496968552},
+                                 {0.0888104196149096, 0.178871756420858, 0.732317823964232}}};
+        constexpr Matrix3 out = {{{ 1.96488741169489,  -0.855988495690215, -0.108898916004672},
+                                  {-0.299313364904742,  1.3263979646198,   -0.0270845997150571},
+                                  {-0.164352742528393, -0.238183969428088,  1.40253671195648}}};
+        // clang-format on
+        constexpr double cross = 0.18;  // where toe and shoulder meet: in and out
+        const double contrast = p.number("contrast");
+        const double output_max = p.number("output_max");
+        const double a = (1 / cross - 1) * std::pow(cross, contrast);
+        const double toe_end = std::pow(cross, contrast) + a;
+        const double slope = contrast * std::pow(cross, contrast - 1) * a / (toe_end * toe_end);
+        const double height = output_max - cross;
+        const double length = p.number("white") - cross;
+        const double w = length * length / height * slope;
+
+        const Expr x = Expr::input();
+        const Expr t = pow(x, contrast);
+        const Expr s = max(x - cross, 0);  // below the crossing the shoulder has a pole
+        const Expr shoulder = slope * s * (1 + s / w) / (1 + slope * s / height) + cross;
+        return {limit_to_positive(), MatrixStage{in},
+                curve_stage(select(less(x, cross), t / (t + a), shoulder)),
+                ClampStage{0, output_max}, MatrixStage{out}};
+    };
+    return op;
+}
+
 }  // namespace
 
-std::vector<Operator> define_agx() { return {sobotka(), minimal()}; }
+std::vector<Operator> define_agx() {
+    return {sobotka(), minimal(), threejs(), filament(), godot44(), godot()};
+}
 
 }  // namespace tonewright

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "pipeline/tone_curve.h"
 #include "tonewright/pipeline.h"
 
 /// Words that several operator files share. An operator file `<family>.cpp` defines
@@ -14,20 +15,18 @@ inline Stage limit_to_positive() { return ClampStage{0, kHalfMax}; }
 inline constexpr const char* kNegativesClampAtZero =
     "clamped at 0 in the working primaries, before the first non-linear step";
 
-/// The ways in which a pure tone curve meets colour (operators.md 2.2 and its sources).
-inline ParameterSpec apply_parameter(std::string default_choice) {
-    return choice_parameter("apply", {"channels", "luminance", "max"}, std::move(default_choice),
-                            "how the curve meets colour: on each channel; or scaling all three by "
-                            "f(n)/n, where n is the "
-                            "relative luminance (0.2126, 0.7152, 0.0722) or the largest channel");
+/// Weights of relative luminance of ITU-R BT.2020-2, table 4.
+inline constexpr Vector3 kRec2020Weights = {0.2627, 0.6780, 0.0593};
+
+/// One chain behind another.
+inline Pipeline operator+(Pipeline a, const Pipeline& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
 }
 
-/// The curve (of input 0, f(0) = 0) applied as the parameter says.
-inline Stage apply_curve(const Expr& f, const std::string& apply) {
-    if (apply == "luminance")
-        return ToneScaleStage{ToneScaleStage::Norm::luminance, kRec709Weights, f};
-    if (apply == "max") return ToneScaleStage{ToneScaleStage::Norm::max_rgb, {}, f};
-    return curve_stage(f);
+/// limit_to_positive(), then the curve as the parameters of with_apply() say.
+inline Pipeline tone_curve_pipeline(const ToneCurve& curve, const Params& params) {
+    return Pipeline{limit_to_positive()} + apply_tone_curve(curve, params);
 }
 
 }  // namespace tonewright

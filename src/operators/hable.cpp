@@ -1,62 +1,245 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Hable, John Hable 2010: the curve of Uncharted 2.
+// John Hable's curves: the rational one of Uncharted 2 with two sets of constants, and the piecewise
+// one of 2017.
 //
 // Source    J. Hable, "Filmic Tonemapping Operators", filmicworlds.com, 2010-05-05, with the
-// constants
-//           of that page (A .15 ... W 11.2, exposure bias 2).
-// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, inf), negatives: clamped
-// at 0. Out       display-linear RGB, 1.0 = display peak; range [0, 1.287) with the defaults. Kind
-// per channel; monotone on the neutral axis: yes. Keeps     f(0) = 0; f(W / exposure_bias) = 1.
-// Differs   nowhere. As on the page, the white W is not scaled by the bias: with the bias of 2,
-// white
-//           is reached at scene-linear 5.6. (Godot scales it; some ports put the bias on the
-//           output.)
-// Check     mid grey 0.18 -> 0.128338449 (python_check/operators.py).
+//           constants of that page (A .15 ... W 11.2, exposure bias 2): hable. J. Hable, "Uncharted
+//           2: HDR Lighting", GDC 2010 (A .22 B .30 E .01): hable_gdc; also in Godot's
+//           tonemap.glsl. J. Hable, "Filmic Tonemapping with Piecewise Power Curves",
+//           filmicworlds.com, 2017-03-26, and github.com/johnhable/fw-public (CC0):
+//           hable_piecewise.
+// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, 65504], negatives: clamped
+//           at 0.
+// Out       display-linear RGB, 1.0 = display peak; hable [0, 1.287) with the defaults,
+//           hable_piecewise up to (1 + overshoot)/(value at white).
+// Kind      per channel; monotone on the neutral axis: yes.
+// Keeps     f(0) = 0. hable: f(white/exposure_bias) = 1; hable_piecewise: 1 at the white that
+//           shoulder_strength says, and with the defaults the identity up to it.
+// Differs   hable: nowhere. As on the page, the white W is not scaled by the bias: with the bias of
+//           2, white is reached at scene-linear 5.6. (Godot scales both, so its preset has white 2
+//           for a scene white of 1; some ports put the bias on the output.)
+//           hable_piecewise: a toe that ends below 2^-100 is no toe (the source takes the logarithm
+//           of 0), and the slopes where the segments meet are limited to [2^-24, 2^24], where the
+//           source has 0 and infinity: a joint at black with a gamma that is not 1. Its floors of
+//           1e-5 on the light of a joint, and its slope of 1 where the straight part has no length,
+//           are kept.
+// Check     mid grey 0.18 -> 0.128338449 (hable), 0.305855436 (hable:godot), 0.0664512855
+//           (hable_piecewise:film) (python_check/operators/hable.py).
+#include <algorithm>
+#include <cmath>
+
 #include "operators/family.h"
 
 namespace tonewright {
+namespace {
 
-std::vector<Operator> define_hable() {
+struct Hable {
+    double A, B, C, D, E, F;
+
+    [[nodiscard]] Expr operator()(const Expr& x) const {
+        return (x * (A * x + C * B) + D * E) / (x * (A * x + B) + D * F) - E / F;
+    }
+};
+
+Pipeline hable_pipeline(const Hable& h, const Params& p) {
+    const double at_white = h(p.number("white")).value();
+    if (!(at_white > 0)) {
+        throw Error("curve at white is " + shortest(at_white) +
+                    "; expected above 0 (toe_numerator below toe_denominator, larger white)");
+    }
+    return tone_curve_pipeline({.f = h(p.number("exposure_bias") * Expr::input()) / at_white}, p);
+}
+
+ParameterSpec white() {
+    return number_parameter("white", "scene-linear, after the bias", 11.2, 0.1, kHalfMax,
+                            "W of the formula: biased scene value that is shown as display white");
+}
+ParameterSpec exposure_bias(double value) {
+    return number_parameter("exposure_bias", "", value, 0.01, 100, "factor on the scene value");
+}
+
+Operator uncharted() {
     Operator op;
     op.id = "hable";
     op.title = "Hable (Uncharted 2)";
     op.view = "Hable";
     op.character = "strong toe, long soft shoulder: contrasty and dark, the game look of 2010";
-    op.source = "J. Hable, Filmic Tonemapping Operators, filmicworlds.com, 2010";
+    op.source = "J. Hable, Filmic Tonemapping Operators, filmicworlds.com, 2010-05-05";
     op.licence = "published formula (page: public domain code)";
     op.negatives = kNegativesClampAtZero;
+    op.dialects = "Hable";
     // D and F bounded away from 0: their product is the curve's denominator at black.
-    op.parameters = {
-        number_parameter("shoulder_strength", "", 0.15, 0.01, 1, "A of the formula"),
-        number_parameter("linear_strength", "", 0.50, 0.01, 1, "B of the formula"),
-        number_parameter("linear_angle", "", 0.10, 0, 1, "C of the formula"),
-        number_parameter("toe_strength", "", 0.20, 0.01, 1, "D of the formula"),
-        number_parameter("toe_numerator", "", 0.02, 0, 0.9, "E of the formula; below F"),
-        number_parameter("toe_denominator", "", 0.30, 0.01, 1, "F of the formula"),
-        number_parameter("white", "scene-linear, after the bias", 11.2, 0.1, 65504,
-                         "W of the formula: biased scene value that is shown as display white"),
-        number_parameter("exposure_bias", "", 2.0, 0.01, 100, "factor on the scene value"),
-    };
+    op.parameters = with_apply(
+        "channels",
+        {number_parameter("shoulder_strength", "", 0.15, 0.01, 1, "A of the formula"),
+         number_parameter("linear_strength", "", 0.50, 0.01, 1, "B of the formula"),
+         number_parameter("linear_angle", "", 0.10, 0, 1, "C of the formula"),
+         number_parameter("toe_strength", "", 0.20, 0.01, 1, "D of the formula"),
+         number_parameter("toe_numerator", "", 0.02, 0, 0.9, "E of the formula; below F"),
+         number_parameter("toe_denominator", "", 0.30, 0.01, 1, "F of the formula"), white(),
+         exposure_bias(2)});
+    op.presets = {{"gdc",
+                   "the constants of the GDC 2010 slides, without a bias",
+                   {{"shoulder_strength", "0.22"},
+                    {"linear_strength", "0.3"},
+                    {"toe_numerator", "0.01"},
+                    {"exposure_bias", "1"}}},
+                  {"godot",
+                   "as Godot's Filmic with its white at 1",
+                   {{"shoulder_strength", "0.22"},
+                    {"linear_strength", "0.3"},
+                    {"toe_numerator", "0.01"},
+                    {"white", "2"}}}};
+    op.deviations = {{Deviation::Kind::exceeds_white, 1.3, ""},
+                     {Deviation::Kind::exceeds_white, 1.1, "gdc"},
+                     {Deviation::Kind::exceeds_white, 1.7, "godot"}};
     op.build = [](const Params& p) -> Pipeline {
-        const double A = p.number("shoulder_strength");
-        const double B = p.number("linear_strength");
-        const double C = p.number("linear_angle");
-        const double D = p.number("toe_strength");
-        const double E = p.number("toe_numerator");
-        const double F = p.number("toe_denominator");
-        const auto h = [&](const Expr& x) {
-            return (x * (A * x + C * B) + D * E) / (x * (A * x + B) + D * F) - E / F;
-        };
-        const double at_white = h(p.number("white")).value();
-        if (!(at_white > 0)) {
-            throw Error("hable: curve at white is " + shortest(at_white) +
-                        "; expected above 0 (toe_numerator below toe_denominator, larger white)");
-        }
-        return {limit_to_positive(),
-                curve_stage(h(p.number("exposure_bias") * Expr::input()) / at_white)};
+        return hable_pipeline({.A = p.number("shoulder_strength"),
+                               .B = p.number("linear_strength"),
+                               .C = p.number("linear_angle"),
+                               .D = p.number("toe_strength"),
+                               .E = p.number("toe_numerator"),
+                               .F = p.number("toe_denominator")},
+                              p);
     };
-    return {op};
+    return op;
 }
+
+Operator gdc() {
+    Operator op;
+    op.id = "hable_gdc";
+    op.title = "Hable (GDC 2010)";
+    op.view = "Hable GDC";
+    op.character = "Hable with the constants of the slides: darker, with more contrast in the toe";
+    op.source = "J. Hable, Uncharted 2: HDR Lighting, GDC 2010";
+    op.licence = "published formula";
+    op.negatives = kNegativesClampAtZero;
+    op.dialects = "Hable";
+    op.parameters = with_apply("channels", {white(), exposure_bias(1)});
+    op.deviations = {{Deviation::Kind::exceeds_white, 1.1, ""}};
+    op.build = [](const Params& p) -> Pipeline {
+        return hable_pipeline({.A = 0.22, .B = 0.30, .C = 0.10, .D = 0.20, .E = 0.01, .F = 0.30},
+                              p);
+    };
+    return op;
+}
+
+/// base^exponent, 0 for a base up to 2^-100: at 0 the slope of a power below 1 has no end.
+Expr power(const Expr& base, double exponent) {
+    return select(less(0x1p-100, base), pow(base, exponent), 0);
+}
+
+/// (1 - t)^exponent for an exponent of 1 or more, 0 below e^-69 = 1e-30. What 1 - t rounds away, and
+/// a large exponent would show, is missing in both parts of the quotient.
+Expr power_of_1_minus(const Expr& t, double exponent) {
+    const Expr u = 1 - t;
+    const Expr log_u = select(equal(u, 1), -t, t * (log(u) / (1 - u)));
+    return select(less(-69, exponent * log_u), exp(exponent * log_u), 0);
+}
+
+/// Three powers of the scene value x: a toe through black up to x0, then the straight part to the
+/// power of gamma, from x1 on a shoulder. Letters are those of the source.
+Expr piecewise_curve(const Params& p) {
+    const double shoulder_strength = p.number("shoulder_strength");
+    const double angle = p.number("shoulder_angle");
+    const double gamma = p.number("gamma");
+
+    // The user's parameters as points of the curve, before gamma. The straight part has slope 1.
+    const double x0 = std::pow(p.number("toe_length"), 2.2) / 2;
+    const double y0 = (1 - p.number("toe_strength")) * x0;
+    const double remaining = 1 - y0;
+    const double straight = (1 - p.number("shoulder_length")) * remaining;
+    const double x1 = x0 + straight;
+    const double y1 = y0 + straight;
+    const double white = x0 + remaining + std::exp2(shoulder_strength) - 1;
+    const double overshoot_x = 2 * angle * shoulder_strength;  // in units of white
+    const double overshoot_y = std::pow(1 + 0.5 * angle * shoulder_strength, gamma) - 1;
+
+    // Of normalised x/white: slope m of the straight part, and of the curve at its two ends.
+    const double m = straight == 0 ? 1 : white;
+    const auto slope = [&](double y) {
+        return std::clamp(gamma * m * std::pow(y, gamma - 1), 0x1p-24, 0x1p24);
+    };
+    const double toe_y = std::max(1e-5, std::pow(y0, gamma));
+    const double shoulder_y = std::max(1e-5, std::pow(y1, gamma));
+
+    const double X = (white - x1) / white + overshoot_x;  // from the shoulder's start to its end
+    const double Y = 1 + overshoot_y - shoulder_y;
+    const double shoulder_exponent = slope(y1) * X / Y;
+    const auto shoulder = [&](const Expr& x) {
+        const Expr falling = shoulder_exponent < 1
+                                 ? power((1 + overshoot_x - x / white) / X, shoulder_exponent)
+                                 : power_of_1_minus((x - x1) / (X * white), shoulder_exponent);
+        return 1 + overshoot_y - Y * falling;
+    };
+    const double at_white = shoulder(white).value();
+    if (!(1 + overshoot_y < 1e6 * at_white)) {
+        throw Error("shoulder_angle is " + shortest(angle) +
+                    "; expected less with this gamma, shoulder_strength and shoulder_length: the "
+                    "shoulder would aim at " + shortest((1 + overshoot_y) / at_white) +
+                    " times the light of white");
+    }
+
+    const Expr x = Expr::input();
+    Expr f = shoulder(max(x, x1));
+    if (straight > 0) f = select(less(x, x1), power(min(x, x1) - (x0 - y0), gamma), f);
+    if (x0 > 0x1p-100) {
+        const double toe_exponent = slope(y0) * (x0 / white) / toe_y;
+        f = select(less(x, x0), toe_y * power(min(x, x0) / x0, toe_exponent), f);
+    }
+    return select(less(0x1p-100, x), f / at_white, 0);
+}
+
+Operator piecewise() {
+    Operator op;
+    op.id = "hable_piecewise";
+    op.title = "Hable piecewise power curve";
+    op.view = "Hable Piecewise";
+    op.character =
+        "toe, straight part and shoulder by the artist's numbers; as it comes, a clip at 1";
+    op.source =
+        "J. Hable, Filmic Tonemapping with Piecewise Power Curves, filmicworlds.com, 2017-03-26; "
+        "github.com/johnhable/fw-public";
+    op.licence = "CC0-1.0";
+    op.negatives = kNegativesClampAtZero;
+    op.dialects = "Hable";
+    op.parameters = with_apply(
+        "channels",
+        {number_parameter("toe_strength", "", 0, 0, 1, "0: no toe; 1: black to the toe's end"),
+         number_parameter("toe_length", "", 0.5, 0, 1,
+                          "of the toe; its 2.2 power is twice the scene value where the toe ends"),
+         number_parameter("shoulder_strength", "stops", 0, 0, 16,
+                          "by how much the white of the scene is moved up"),
+         number_parameter("shoulder_length", "", 0.5, 1e-5, 1,
+                          "share of what is above the toe that the shoulder takes"),
+         number_parameter("shoulder_angle", "", 0, 0, 1,
+                          "how far the shoulder aims above white, which it then passes"),
+         number_parameter("gamma", "", 1, 0.1, 10, "power of the light that the curve puts out")});
+    op.presets = {{"film",
+                   "a toe, two stops of highlights and a shoulder that goes on",
+                   {{"toe_strength", "0.5"},
+                    {"toe_length", "0.5"},
+                    {"shoulder_strength", "2"},
+                    {"shoulder_length", "0.5"},
+                    {"shoulder_angle", "1"}}},
+                  {"soft",
+                   "a short toe, four stops of highlights",
+                   {{"toe_strength", "0.2"},
+                    {"toe_length", "0.3"},
+                    {"shoulder_strength", "4"},
+                    {"shoulder_length", "0.7"},
+                    {"shoulder_angle", "0.4"}}}};
+    op.deviations = {{Deviation::Kind::exceeds_white, 1.1, "film"},
+                     {Deviation::Kind::exceeds_white, 1.0, "soft"}};
+    op.build = [](const Params& p) -> Pipeline {
+        return tone_curve_pipeline({.f = piecewise_curve(p)}, p);
+    };
+    return op;
+}
+
+}  // namespace
+
+std::vector<Operator> define_hable() { return {uncharted(), gdc(), piecewise()}; }
 
 }  // namespace tonewright

@@ -1,27 +1,48 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Reinhard's global operator, its form with a white point, and Jodie's blend.
+// Reinhard's global operator and its relatives: with a white point, with a key and an average,
+// blended, with constant luminance; and Reinhard and Devlin's photoreceptor.
 //
 // Source    E. Reinhard, M. Stark, P. Shirley, J. Ferwerda, "Photographic Tone Reproduction for
 //           Digital Images", ACM Transactions on Graphics 21(3), SIGGRAPH 2002: equation 3
-//           (reinhard) and equation 4 (reinhard_extended). "Reinhard-Jodie": Jodie, shadertoy
-//           4dBcD1, 2017.
-// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, inf), negatives: clamped
-// at
-//           0 (f has a pole at -1).
-// Out       display-linear RGB, 1.0 = display peak; reinhard [0, 1), reinhard_extended unbounded
-//           above `white`, reinhard_jodie up to 1.002 for very saturated colours.
-// Kind      per channel, luminance or max (parameter `apply`); jodie 3D. Monotone on the neutral
-//           axis: yes; analytic inverse of the curves: yes.
-// Keeps     f(0) = 0, f'(0) = 1; reinhard_extended: f(white) = 1.
-// Differs   the paper scales by key/log-average first: here that is the exposure. Luminance forms
-// are
-//           0/0 at black in every source: here black stays black, the limit.
-// Check     mid grey 0.18 -> 0.152542373 (0.154258475 with white 4) (python_check/operators.py).
+//           (reinhard), equation 4 (reinhard_extended), equations 2 and 4 (nebula, with the
+//           constants of the Nebula engine's post on HDR). "Reinhard-Jodie": Jodie, shadertoy
+//           4dBcD1, 2017. reinhard_constant_luminance: 64, code/tonemapping of 64.github.io.
+//           E. Reinhard, K. Devlin, "Dynamic Range Reduction Inspired by Photoreceptor Physiology",
+//           IEEE Transactions on Visualization and Computer Graphics 11(1), 2005.
+// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, 65504], negatives: clamped
+//           at 0 (f has a pole at -1).
+// Out       display-linear RGB, 1.0 = display peak; reinhard and reinhard_devlin [0, 1),
+//           reinhard_extended and nebula unbounded above their white, reinhard_jodie up to 1.002
+//           for very saturated colours, reinhard_constant_luminance up to 13.9 for pure blue.
+// Kind      per channel, luminance or max (parameter `apply`); jodie, constant_luminance and devlin
+//           3D. Monotone on the neutral axis: yes; analytic inverse of reinhard: yes.
+// Keeps     f(0) = 0; reinhard f'(0) = 1; reinhard_extended f(white) = 1; nebula
+//           f(average maximum/middle_grey) = 1.
+// Differs   the paper scales by key/log-average first: here that is the exposure (nebula has both
+//           as parameters). Luminance forms are 0/0 at black in every source: here black stays
+//           black, the limit.
+//           nebula: the post's code forgets to divide by the luminance, so its picture is quadratic
+//           near black and has no end, and copies of it have that too; it limits the average to
+//           [0.3, 1]. Neither here.
+//           reinhard_devlin: the adaptation is at least 2^-100; where it is 0 the paper has 0/0.
+// Check     mid grey 0.18 -> 0.152542373 (reinhard), 0.154258475 (reinhard_extended), 0.177763373
+//           (nebula), 0.334941443 (reinhard_devlin) (python_check/operators/reinhard.py).
+#include <algorithm>
+#include <cmath>
+
 #include "operators/family.h"
 
 namespace tonewright {
 namespace {
+
+using Channels = std::array<Expr, 3>;
+
+Channels inputs() { return {Expr::input(0), Expr::input(1), Expr::input(2)}; }
+
+Expr luminance_of(const Channels& c) {
+    return kRec709Weights[0] * c[0] + kRec709Weights[1] * c[1] + kRec709Weights[2] * c[2];
+}
 
 Operator simple() {
     Operator op;
@@ -34,7 +55,8 @@ Operator simple() {
         "SIGGRAPH 2002, eq. 3";
     op.licence = "published formula";
     op.negatives = kNegativesClampAtZero;
-    op.parameters = {apply_parameter("channels")};
+    op.dialects = "Reinhard";
+    op.parameters = with_apply("channels");
     op.presets = {{"luminance", "Reinhard on luminance", {{"apply", "luminance"}}},
                   {"max", "Reinhard on the largest channel", {{"apply", "max"}}}};
     op.warnings = {
@@ -43,9 +65,7 @@ Operator simple() {
         const Expr x = Expr::input();
         const Expr f = x / (1 + x);
         const Expr inverse = x / (1 - x);
-        const std::string& apply = p.choice("apply");
-        if (apply == "channels") return {limit_to_positive(), curve_stage(f, inverse)};
-        return {limit_to_positive(), apply_curve(f, apply)};
+        return tone_curve_pipeline({.f = f, .inverse = inverse}, p);
     };
     return op;
 }
@@ -61,17 +81,53 @@ Operator extended() {
         "SIGGRAPH 2002, eq. 4";
     op.licence = "published formula";
     op.negatives = kNegativesClampAtZero;
-    op.parameters = {number_parameter("white", "scene-linear", 4, 0.01, 65504,
-                                      "smallest scene value that is shown as display white"),
-                     apply_parameter("channels")};
+    op.dialects = "Reinhard";
+    op.parameters = with_apply(
+        "channels", {number_parameter("white", "scene-linear", 4, 0.01, kHalfMax,
+                                      "smallest scene value that is shown as display white")});
     op.presets = {{"luminance", "Reinhard Extended on luminance", {{"apply", "luminance"}}},
                   {"max", "Reinhard Extended on the largest channel", {{"apply", "max"}}}};
-    op.warnings = {"above white the curve goes on past 1 with slope 1/white^2: displays clip it"};
+    op.deviations = {{Deviation::Kind::exceeds_white, kInfinity, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const Expr x = Expr::input();
         const double white = p.number("white");
         const Expr f = x * (1 + x / (white * white)) / (1 + x);
-        return {limit_to_positive(), apply_curve(f, p.choice("apply"))};
+        return tone_curve_pipeline({.f = f}, p);
+    };
+    return op;
+}
+
+Operator nebula() {
+    Operator op;
+    op.id = "nebula";
+    op.title = "Reinhard with key (Nebula)";
+    op.view = "Nebula";
+    op.character =
+        "Reinhard Extended behind an automatic exposure: the picture's mean is shown at "
+        "middle_grey/(1 + middle_grey)";
+    op.source =
+        "post on HDR of the Nebula engine, after Reinhard, Stark, Shirley, Ferwerda, Photographic "
+        "Tone Reproduction for Digital Images, SIGGRAPH 2002, eq. 2 and 4";
+    op.licence = "published formula";
+    op.negatives = kNegativesClampAtZero;
+    op.dialects = "Reinhard";
+    op.parameters = with_apply(
+        "luminance",
+        {number_parameter("middle_grey", "", 0.6, 0.01, 1, "key that the average is scaled to"),
+         number_parameter("maximum", "scene-linear, after the key", 16, 0.01, kHalfMax,
+                          "smallest scaled value that is shown as display white"),
+         statistic_parameter(
+             number_parameter("average", "scene-linear", 0.5, 0.001, kHalfMax,
+                              "mean of the scene"),
+             "mean luminance", [](const SceneStatistics& s) { return s.mean_luminance; })});
+    op.warnings = {"programs with the code as it was printed show another picture, quadratic near "
+                   "black: they do not divide by the luminance"};
+    op.deviations = {{Deviation::Kind::exceeds_white, kInfinity, ""}};
+    op.build = [](const Params& p) -> Pipeline {
+        const double white = p.number("maximum");
+        const Expr scaled = Expr::input() * (p.number("middle_grey") / p.number("average"));
+        const Expr f = scaled * (1 + scaled / (white * white)) / (1 + scaled);
+        return tone_curve_pipeline({.f = f}, p);
     };
     return op;
 }
@@ -87,10 +143,10 @@ Operator jodie() {
     op.source = "Jodie, shadertoy 4dBcD1, 2017: blend of eq. 3 on luminance and on channels";
     op.licence = "published formula";
     op.negatives = kNegativesClampAtZero;
+    op.dialects = "Reinhard";
     op.build = [](const Params&) -> Pipeline {
-        const std::array<Expr, 3> c = {Expr::input(0), Expr::input(1), Expr::input(2)};
-        const Expr luminance =
-            kRec709Weights[0] * c[0] + kRec709Weights[1] * c[1] + kRec709Weights[2] * c[2];
+        const Channels c = inputs();
+        const Expr luminance = luminance_of(c);
         const auto channel = [&](const Expr& v) {
             const Expr t = v / (1 + v);
             return mix(v / (1 + luminance), t, t);
@@ -100,8 +156,110 @@ Operator jodie() {
     return op;
 }
 
+Operator constant_luminance() {
+    Operator op;
+    op.id = "reinhard_constant_luminance";
+    op.title = "Reinhard (constant luminance)";
+    op.view = "Reinhard Constant Luminance";
+    op.character =
+        "luminance Reinhard whose too bright channels hand their excess to the other two: bright "
+        "colours pale instead of darkening";
+    op.source = "64, code/tonemapping of github.com/64/64.github.io (not in the article)";
+    op.licence = "MIT";
+    op.negatives = kNegativesClampAtZero;
+    op.dialects = "Reinhard";
+    op.warnings = {"two channels above 1 lose what they hand to each other, and its luminance"};
+    op.build = [](const Params&) -> Pipeline {
+        const Channels c = inputs();
+        const Expr luminance = luminance_of(c);
+        Channels scaled = c;
+        Channels handed_on = c;  // by channel i to each of the others: of the same luminance
+        for (std::size_t i = 0; i < 3; ++i) {
+            const double w = kRec709Weights[i];
+            scaled[i] = c[i] / (1 + luminance);
+            handed_on[i] = max(scaled[i] - 1, 0) * (w / (1 - w));
+        }
+        return {limit_to_positive(), Map3Stage{{scaled[0] + handed_on[1] + handed_on[2],
+                                                scaled[1] + handed_on[2] + handed_on[0],
+                                                scaled[2] + handed_on[0] + handed_on[1]}}};
+    };
+    return op;
+}
+
+/// The paper's m from the key k of the picture: 0.3 + 0.7 k^1.4. A picture of one luminance has no
+/// key; it gets the parameter's default.
+double devlin_contrast(const SceneStatistics& s) {
+    if (!(s.minimum_luminance > 0 && s.maximum_luminance > s.minimum_luminance)) return 0.6;
+    const double k = (std::log(s.maximum_luminance) - std::log(s.log_average)) /
+                     (std::log(s.maximum_luminance) - std::log(s.minimum_luminance));
+    return 0.3 + 0.7 * std::pow(std::clamp(k, 0.0, 1.0), 1.4);
+}
+
+Operator devlin() {
+    Operator op;
+    op.id = "reinhard_devlin";
+    op.title = "Reinhard-Devlin";
+    op.view = "Reinhard Devlin";
+    op.character =
+        "the eye's receptors: very flat and bright, black lifted steeply; colours hold, or fade "
+        "with chromatic_adaptation";
+    op.source =
+        "E. Reinhard, K. Devlin, Dynamic Range Reduction Inspired by Photoreceptor Physiology, "
+        "IEEE Transactions on Visualization and Computer Graphics 11(1), 2005";
+    op.licence = "published formula";
+    op.negatives = kNegativesClampAtZero;
+    op.dialects = "Reinhard";
+    const auto mean = [](std::string name, std::string statistic, std::string help,
+                         double (*from_picture)(const SceneStatistics&)) {
+        return statistic_parameter(
+            number_parameter(std::move(name), "scene-linear", 0.5, 0, kHalfMax, std::move(help)),
+            std::move(statistic), from_picture);
+    };
+    op.parameters = {
+        number_parameter("intensity", "", 0, -8, 8, "f: brightness; the adaptation by exp(-f)"),
+        statistic_parameter(number_parameter("contrast", "", 0.6, 0.3, 1,
+                                             "m: power of the adaptation, larger is more contrast"),
+                            "0.3 + 0.7 k^1.4 of the key k", devlin_contrast),
+        number_parameter("chromatic_adaptation", "", 0, 0, 1,
+                         "c: 0 adapts all channels to the luminance, 1 each to itself"),
+        number_parameter("light_adaptation", "", 1, 0, 1,
+                         "a: 0 adapts to the picture's means, 1 to the pixel"),
+        mean("mean_red", "mean red", "of the picture; read with light_adaptation below 1",
+             [](const SceneStatistics& s) { return s.mean_rgb[0]; }),
+        mean("mean_green", "mean green", "of the picture; read with light_adaptation below 1",
+             [](const SceneStatistics& s) { return s.mean_rgb[1]; }),
+        mean("mean_blue", "mean blue", "of the picture; read with light_adaptation below 1",
+             [](const SceneStatistics& s) { return s.mean_rgb[2]; }),
+        mean("mean_luminance", "mean luminance",
+             "of the picture; read with light_adaptation below 1",
+             [](const SceneStatistics& s) { return s.mean_luminance; })};
+    op.warnings = {"contrast=1 with light_adaptation=1 gives every grey but black the same light"};
+    op.deviations = {{Deviation::Kind::never_reaches_white, 0.99, ""}};
+    op.build = [](const Params& p) -> Pipeline {
+        const Channels in = inputs();
+        const Expr L = luminance_of(in);
+        const Vector3 means = {p.number("mean_red"), p.number("mean_green"), p.number("mean_blue")};
+        const double mean_luminance = p.number("mean_luminance");
+        const double m = p.number("contrast");
+        const double c = p.number("chromatic_adaptation");
+        const double a = p.number("light_adaptation");
+        const double f = std::exp(-p.number("intensity"));
+        Channels out = in;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Expr local = c * in[i] + (1 - c) * L;
+            const double global = c * means[i] + (1 - c) * mean_luminance;
+            const Expr adaptation = a * local + (1 - a) * global;
+            out[i] = in[i] / (in[i] + pow(max(f * adaptation, 0x1p-100), m));
+        }
+        return {limit_to_positive(), Map3Stage{out}};
+    };
+    return op;
+}
+
 }  // namespace
 
-std::vector<Operator> define_reinhard() { return {simple(), extended(), jodie()}; }
+std::vector<Operator> define_reinhard() {
+    return {simple(), extended(), nebula(), jodie(), constant_luminance(), devlin()};
+}
 
 }  // namespace tonewright

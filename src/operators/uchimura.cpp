@@ -3,15 +3,14 @@
 // Gran Turismo, Hajime Uchimura 2017: three joined parts, toe, straight line, shoulder.
 //
 // Source    H. Uchimura, "HDR Theory and Practice", CEDEC 2017, slides 130-150.
-// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, inf), negatives: clamped
-// at 0
-//           (the toe's power has no value there).
+// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, 65504], negatives: clamped
+//           at 0 (the toe's power has no value there).
 // Out       display-linear RGB, 1.0 = paper white; range [b, P].
 // Kind      per channel; monotone on the neutral axis: yes.
 // Keeps     f(0) = b; straight line of slope a through (m, m).
 // Differs   nowhere: the unused helpers L0, L1 of most ports are left out, and the shoulder is
 //           evaluated from its own start on, which it has weight 0 before.
-// Check     mid grey 0.18 -> 0.178994806 (python_check/operators.py).
+// Check     mid grey 0.18 -> 0.178994806 (python_check/operators/uchimura.py).
 #include "operators/family.h"
 
 namespace tonewright {
@@ -25,19 +24,24 @@ std::vector<Operator> define_uchimura() {
     op.source = "H. Uchimura, HDR Theory and Practice, CEDEC 2017";
     op.licence = "published formula";
     op.negatives = kNegativesClampAtZero;
+    op.dialects = "Gran Turismo";
     // Slope 0 and the ends of m and l make the formula divide by 0: the intervals stop short of
     // them.
-    op.parameters = {
-        number_parameter("max_brightness", "display-linear", 1, 1, 100,
-                         "P: display peak over paper white"),
-        number_parameter("contrast", "", 1, 0.01, 5, "a: slope of the straight part"),
-        number_parameter("linear_start", "scene-linear", 0.22, 0.01, 0.99,
-                         "m: where the straight part starts"),
-        number_parameter("linear_length", "", 0.4, 0.01, 0.99, "l: length of the straight part"),
-        number_parameter("black_tightness", "", 1.33, 1, 3, "c: power of the toe"),
-        number_parameter("pedestal", "display-linear", 0, 0, 1, "b: light at black"),
-    };
+    op.parameters = with_apply(
+        "channels",
+        {number_parameter("max_brightness", "display-linear", 1, 1, 100,
+                          "P: display peak over paper white"),
+         number_parameter("contrast", "", 1, 0.01, 5, "a: slope of the straight part"),
+         number_parameter("linear_start", "scene-linear", 0.22, 0.01, 0.99,
+                          "m: where the straight part starts"),
+         number_parameter("linear_length", "", 0.4, 0.01, 0.99, "l: length of the straight part"),
+         number_parameter("black_tightness", "", 1.33, 1, 3, "c: power of the toe"),
+         number_parameter("pedestal", "display-linear", 0, 0, 1, "b: light at black")});
+    op.presets = {{"hdr",
+                   "for a display with ten times the light of paper white",
+                   {{"max_brightness", "10"}}}};
     op.warnings = {"with max_brightness above 1 an SDR display clips at paper white"};
+    op.deviations = {{Deviation::Kind::exceeds_white, 10, "hdr"}};
     op.build = [](const Params& params) -> Pipeline {
         const double P = params.number("max_brightness");
         const double a = params.number("contrast");
@@ -58,7 +62,7 @@ std::vector<Operator> define_uchimura() {
         const Expr toe = m * pow(x / m, c) + b;
         const Expr line = m + a * (x - m);
         const Expr shoulder = P - (P - S1) * exp(-(C2 * (max(x, S0) - S0) / P));
-        return {limit_to_positive(), curve_stage(toe * w0 + line * w1 + shoulder * w2)};
+        return tone_curve_pipeline({.f = toe * w0 + line * w1 + shoulder * w2}, params);
     };
     return {op};
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -41,9 +42,25 @@ ParameterSpec number_parameter(std::string name, std::string unit, double value,
     return spec;
 }
 
+ParameterSpec text_parameter(std::string name, std::string help) {
+    ParameterSpec spec;
+    spec.kind = ParameterSpec::Kind::text;
+    spec.name = std::move(name);
+    spec.help = std::move(help);
+    return spec;
+}
+
+ParameterSpec statistic_parameter(ParameterSpec number, std::string statistic,
+                                  double (*from_picture)(const SceneStatistics&)) {
+    number.statistic = std::move(statistic);
+    number.from_picture = from_picture;
+    return number;
+}
+
 ParameterSpec choice_parameter(std::string name, std::vector<std::string> choices,
                                std::string value, std::string help) {
     ParameterSpec spec;
+    spec.kind = ParameterSpec::Kind::choice;
     spec.name = std::move(name);
     spec.choices = std::move(choices);
     spec.default_choice = std::move(value);
@@ -63,6 +80,12 @@ const std::string& Params::choice(std::string_view name) const {
     return it->second;
 }
 
+const std::string& Params::text(std::string_view name) const {
+    const auto it = texts_.find(name);
+    if (it == texts_.end()) throw Error("operator has no text parameter " + std::string(name));
+    return it->second;
+}
+
 const Operator& find_operator(std::string_view id) {
     for (const Operator& op : all_operators()) {
         if (op.id == id) return op;
@@ -72,27 +95,48 @@ const Operator& find_operator(std::string_view id) {
     throw Error("operator is " + std::string(id) + "; expected one of `tonewright list`" + nearest);
 }
 
-ResolvedOperator resolve_operator(std::string_view name, const Settings& settings,
-                                  std::string_view look) {
+namespace {
+
+/// `id` or `id:preset`; the second is null where there is no colon.
+std::pair<const Operator*, const Preset*> find_preset(std::string_view name) {
     const std::size_t colon = name.find(':');
     const Operator& op = find_operator(name.substr(0, colon));
+    if (colon == std::string_view::npos) return {&op, nullptr};
+    const std::string_view wanted = name.substr(colon + 1);
+    for (const Preset& preset : op.presets) {
+        if (preset.id == wanted) return {&op, &preset};
+    }
+    const auto ids = names_of(op.presets, [](const Preset& p) { return p.id; });
+    throw Error(op.id + ": preset is " + std::string(wanted) + "; expected " +
+                (ids.empty() ? "none, it has no presets" : join_choices(ids)) +
+                did_you_mean(wanted, ids));
+}
+
+}  // namespace
+
+Settings settings_for_picture(std::string_view name, const Settings& settings,
+                              const SceneStatistics& statistics) {
+    const auto [op, preset] = find_preset(name);
+    Settings all = settings;
+    for (const ParameterSpec& spec : op->parameters) {
+        if (!spec.from_picture || (preset && preset->settings.contains(spec.name))) continue;
+        const double value = spec.from_picture(statistics);
+        all.try_emplace(spec.name, shortest(std::clamp(value, spec.min, spec.max)));
+    }
+    return all;
+}
+
+ResolvedOperator resolve_operator(std::string_view name, const Settings& settings,
+                                  std::string_view look) {
+    using Kind = ParameterSpec::Kind;
+    const auto [found_op, preset] = find_preset(name);
+    const Operator& op = *found_op;
     ResolvedOperator resolved{&op, {}, op.id};
 
     Settings merged;
-    if (colon != std::string_view::npos) {
-        const std::string_view wanted = name.substr(colon + 1);
-        const Preset* found = nullptr;
-        for (const Preset& preset : op.presets) {
-            if (preset.id == wanted) found = &preset;
-        }
-        if (!found) {
-            const auto ids = names_of(op.presets, [](const Preset& p) { return p.id; });
-            throw Error(op.id + ": preset is " + std::string(wanted) + "; expected " +
-                        (ids.empty() ? "none, it has no presets" : join_choices(ids)) +
-                        did_you_mean(wanted, ids));
-        }
-        merged = found->settings;
-        resolved.label += ":" + found->id;
+    if (preset) {
+        merged = preset->settings;
+        resolved.label += ":" + preset->id;
     }
     for (const auto& [key, text] : settings)
         merged[key] = text;
@@ -108,8 +152,13 @@ ResolvedOperator resolve_operator(std::string_view name, const Settings& setting
                         (ids.empty() ? "none, it has no parameters" : join_choices(ids)) +
                         did_you_mean(key, ids));
         }
-        if (spec->choices.empty()) {
-            resolved.params.numbers_[key] = parse_number(op, *spec, text);
+        bool is_default = text == spec->default_choice;
+        if (spec->kind == Kind::number) {
+            const double value = parse_number(op, *spec, text);
+            resolved.params.numbers_[key] = value;
+            is_default = value == spec->default_value;
+        } else if (spec->kind == Kind::text) {
+            resolved.params.texts_[key] = text;
         } else {
             bool known = false;
             for (const std::string& choice : spec->choices)
@@ -120,16 +169,19 @@ ResolvedOperator resolve_operator(std::string_view name, const Settings& setting
             }
             resolved.params.choices_[key] = text;
         }
-        const bool is_default = spec->choices.empty()
-                                    ? resolved.params.numbers_[key] == spec->default_value
-                                    : text == spec->default_choice;
         if (settings.contains(key) && !is_default) resolved.label += " " + key + "=" + text;
     }
     for (const ParameterSpec& spec : op.parameters) {
-        if (spec.choices.empty()) {
-            resolved.params.numbers_.try_emplace(spec.name, spec.default_value);
-        } else {
-            resolved.params.choices_.try_emplace(spec.name, spec.default_choice);
+        switch (spec.kind) {
+            case Kind::number:
+                resolved.params.numbers_.try_emplace(spec.name, spec.default_value);
+                break;
+            case Kind::choice:
+                resolved.params.choices_.try_emplace(spec.name, spec.default_choice);
+                break;
+            case Kind::text:
+                resolved.params.texts_.try_emplace(spec.name, spec.default_choice);
+                break;
         }
     }
 
@@ -148,7 +200,13 @@ ResolvedOperator resolve_operator(std::string_view name, const Settings& setting
     }
     // Parameters that are each in range can still contradict each other: the operator says so here,
     // not in the middle of a picture.
-    (void)op.build(resolved.params);
+    try {
+        (void)op.build(resolved.params);
+    } catch (const FileError&) {
+        throw;
+    } catch (const Error& e) {
+        throw Error(op.id + ": " + e.what());
+    }
     return resolved;
 }
 

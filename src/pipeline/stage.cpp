@@ -39,6 +39,8 @@ std::string_view stage_kind(const Stage& stage) {
     return std::visit(Overloaded{[](const MatrixStage&) { return "matrix"; },
                                  [](const CurveStage&) { return "curve"; },
                                  [](const ToneScaleStage&) { return "tone scale"; },
+                                 [](const HuePreservingStage&) { return "hue-preserving curve"; },
+                                 [](const HexconeStage&) { return "hexcone"; },
                                  [](const ClampStage&) { return "clamp"; },
                                  [](const Map3Stage&) { return "map3"; }},
                       stage);
@@ -50,6 +52,8 @@ bool is_identity(const Stage& stage) {
                    [](const CurveStage& s) { return s.is_uniform() && same(s.f[0], input0()); },
                    // Even with f(n) = n, colours of norm 0 or below become black.
                    [](const ToneScaleStage&) { return false; },
+                   [](const HuePreservingStage& s) { return same(s.f, input0()); },
+                   [](const HexconeStage&) { return false; },
                    [](const ClampStage& s) { return s.lo == -kInfinity && s.hi == kInfinity; },
                    [](const Map3Stage& s) {
                        return same(s.f[0], Expr::input(0)) && same(s.f[1], Expr::input(1)) &&
@@ -61,26 +65,26 @@ bool is_identity(const Stage& stage) {
 bool mixes_channels(const Stage& stage) {
     if (is_identity(stage)) return false;
     return std::visit(
-        Overloaded{[](const MatrixStage& s) {
-                       for (std::size_t i = 0; i < 3; ++i) {
-                           for (std::size_t j = 0; j < 3; ++j) {
-                               if (i != j && s.m[i][j] != 0) return true;
-                           }
-                       }
-                       return false;
-                   },
-                   [](const CurveStage&) { return false; },
-                   [](const ToneScaleStage&) { return true; },
-                   [](const ClampStage&) { return false; },
-                   [](const Map3Stage& s) {
-                       for (int i = 0; i < 3; ++i) {
-                           for (int j = 0; j < 3; ++j) {
-                               if (i != j && depends_on(s.f[static_cast<std::size_t>(i)], j))
-                                   return true;
-                           }
-                       }
-                       return false;
-                   }},
+        Overloaded{
+            [](const MatrixStage& s) {
+                for (std::size_t i = 0; i < 3; ++i) {
+                    for (std::size_t j = 0; j < 3; ++j) {
+                        if (i != j && s.m[i][j] != 0) return true;
+                    }
+                }
+                return false;
+            },
+            [](const CurveStage&) { return false; }, [](const ToneScaleStage&) { return true; },
+            [](const HuePreservingStage&) { return true; },
+            [](const HexconeStage&) { return true; }, [](const ClampStage&) { return false; },
+            [](const Map3Stage& s) {
+                for (int i = 0; i < 3; ++i) {
+                    for (int j = 0; j < 3; ++j) {
+                        if (i != j && depends_on(s.f[static_cast<std::size_t>(i)], j)) return true;
+                    }
+                }
+                return false;
+            }},
         stage);
 }
 
@@ -122,6 +126,28 @@ std::array<Expr, 3> apply_stage(const Stage& stage, const std::array<Expr, 3>& r
                        const Expr ratio =
                            select(less(0, n), substitute(s.f, std::span(&n, 1)) / n, 0);
                        return std::array<Expr, 3>{rgb[0] * ratio, rgb[1] * ratio, rgb[2] * ratio};
+                   },
+                   [&](const HuePreservingStage& s) {
+                       const Expr hi = max(max(rgb[0], rgb[1]), rgb[2]);
+                       const Expr lo = min(min(rgb[0], rgb[1]), rgb[2]);
+                       const Expr f_lo = substitute(s.f, std::span(&lo, 1));
+                       const Expr range = substitute(s.f, std::span(&hi, 1)) - f_lo;
+                       std::array<Expr, 3> out = rgb;
+                       // Greys: 0/0, but the range that it would scale is 0.
+                       for (Expr& c : out)
+                           c = f_lo + range * select(less(lo, hi), (c - lo) / (hi - lo), 0);
+                       return out;
+                   },
+                   [&](const HexconeStage& s) {
+                       const Expr hi = max(max(rgb[0], rgb[1]), rgb[2]);
+                       const Expr lo = min(min(rgb[0], rgb[1]), rgb[2]);
+                       const Expr p = hi - substitute(s.offset, std::span(&lo, 1));
+                       const Expr value = substitute(s.value, std::span(&p, 1));
+                       const Expr chroma = substitute(s.chroma, std::span(&p, 1));
+                       std::array<Expr, 3> out = rgb;
+                       for (Expr& c : out)
+                           c = value - chroma * (hi - c);
+                       return out;
                    },
                    [&](const ClampStage& s) {
                        std::array<Expr, 3> out = rgb;
@@ -185,6 +211,11 @@ std::string to_string(const Pipeline& pipeline) {
                                                   ? "of max(r, g, b): "
                                                   : "of luminance: ") +
                                   to_string(t.f);
+                       },
+                       [](const HuePreservingStage& h) { return to_string(h.f); },
+                       [](const HexconeStage& h) {
+                           return "offset " + to_string(h.offset) + ", value " +
+                                  to_string(h.value) + ", chroma " + to_string(h.chroma);
                        },
                        [](const ClampStage& c) {
                            return "[" + shortest(c.lo) + ", " + shortest(c.hi) + "]";

@@ -31,9 +31,26 @@ View make_view(ResolvedOperator op, std::string_view input, double exposure_stop
     return view;
 }
 
-Pipeline display_light_stages(const Operator& op) {
+bool is_inside(const Primaries& gamut, const Primaries& display) {
+    // Rec.709 and P3 share their blue: a coefficient that is 0 but for rounding.
+    constexpr double kRounding = -1e-9;
+    for (const auto& row : rgb_to_rgb(gamut, display)) {
+        for (const double x : row) {
+            if (x < kRounding) return false;
+        }
+    }
+    return true;
+}
+
+Pipeline display_light_stages(const Operator& op, const Primaries& display) {
     Pipeline stages = decode_stages(op);
-    stages.push_back(ClampStage{0, 1});
+    // A gamut inside the display's is limited as its own: then every such display shows the same
+    // colours. A wider one is limited where the display ends.
+    if (is_inside(op.working, display)) stages.push_back(ClampStage{0, 1});
+    if (!(display == op.working)) {
+        stages.push_back(MatrixStage{rgb_to_rgb(op.working, display)});
+        stages.push_back(ClampStage{0, 1});
+    }
     return stages;
 }
 
@@ -50,11 +67,7 @@ Pipeline build_view(const View& view) {
         return stages;
     }
     const Display& display = find_display(view.display);
-    append(stages, display_light_stages(op));
-    if (!(display.primaries == op.working)) {
-        stages.push_back(MatrixStage{rgb_to_rgb(op.working, display.primaries)});
-        stages.push_back(ClampStage{0, 1});
-    }
+    append(stages, display_light_stages(op, display.primaries));
     stages.push_back(curve_stage(display.encode, display.decode));
     return stages;
 }

@@ -66,7 +66,8 @@ def check_help(report, command):
 
 def check_list(report, command):
     overview = run(command, "list")
-    everything = json.loads(run(command, "list", "--json"))
+    text = run(command, "list", "--json")
+    everything = json.loads(text, parse_constant=lambda name: report.check("list --json is JSON", False, name))
     ids = [op["id"] for op in everything["operators"]]
     report.check(f"list names {len(ids)} operators, the displays and the spaces",
                  all(name in overview for name in ids + ["srgb", "rec1886", "linear", "native", "lin_ap1"]))
@@ -74,8 +75,13 @@ def check_list(report, command):
                  and [v for _, v in views(command)] == [op["view"] for op in everything["operators"]])
     markdown = run(command, "list", "--markdown")
     report.check("list --markdown has a heading for each", all(f"(`{name}`)" in markdown for name in ids))
-    keys = {"id", "title", "view", "source", "output", "parameters", "presets", "looks", "warnings"}
-    parameter_keys = {"name", "unit", "default", "choices", "help"}
+    report.check("list: lines of at most 100 columns", max(map(len, overview.splitlines())) <= 100)
+    named = [f"{mark}{entry['id']}" for op in everything["operators"]
+             for mark, kind in ((":", "presets"), ("--look ", "looks")) for entry in op[kind]]
+    report.check("list names presets and looks", all(name in overview for name in named))
+    keys = {"id", "title", "view", "source", "output", "parameters", "presets", "looks", "warnings", "deviations",
+            "dialects", "is_diagnostic"}
+    parameter_keys = {"name", "kind", "unit", "default", "choices", "help"}
     bad = [name for name in ("hable", "reinhard", "agx_sobotka")
            if json.loads(run(command, "list", name, "--json")) not in everything["operators"]]
     report.check("list OPERATOR --json is what list --json has", not bad, bad)
@@ -83,11 +89,30 @@ def check_list(report, command):
         if not keys <= set(op) or not all(op[k] for k in ("id", "title", "view", "source", "output")):
             bad.append(op["id"])
         for p in op["parameters"]:
-            is_number = not p["choices"]
-            if not parameter_keys <= set(p) or (is_number and not p["min"] <= p["default"] <= p["max"]) \
-                    or (not is_number and p["default"] not in p["choices"]):
+            is_good = {"number": lambda p: p["min"] <= p["default"] <= p["max"] and not p["choices"],
+                       "choice": lambda p: p["default"] in p["choices"] and "statistic" not in p,
+                       "text": lambda p: p["default"] == "" and not p["choices"] and "statistic" not in p}
+            if not parameter_keys <= set(p) or not is_good[p["kind"]](p) or p.get("statistic") == "":
                 bad.append(f"{op['id']} {p['name']}")
+        for d in op["deviations"]:
+            if set(d) != {"kind", "value", "when", "text"} or d["text"] not in op["warnings"] \
+                    or d["when"] not in ["", *(entry["id"] for entry in op["presets"] + op["looks"])]:
+                bad.append(f"{op['id']} {d}")
     report.check("list --json has every field", not bad, bad)
+    ops = {op["id"]: op for op in everything["operators"]}
+    report.check("list --json: a statistic",
+                 [p.get("statistic") for p in ops["exponential"]["parameters"]][:2] == ["mean luminance", None])
+    report.check("list --json: a deviation without end has no number", ops["reinhard_extended"]["deviations"] == [
+        {"kind": "exceeds_white", "value": None, "when": "", "text": "exceeds white without end: displays clip it"}])
+    report.check("list --json: dialects and diagnostics",
+                 ops["agx_sobotka"]["dialects"] == ops["agx_minimal"]["dialects"] == "AgX"
+                 and [name for name, op in ops.items() if op["is_diagnostic"]] == ["false_color"])
+    for form in ([], ["--markdown"]):
+        report.check(f"list OPERATOR {' '.join(form)}: statistics, deviations, dialects, diagnostics",
+                     "takes it from the picture: mean luminance" in run(command, "list", "exponential", *form)
+                     and "exceeds white without end" in run(command, "list", "reinhard_extended", *form)
+                     and "agx_minimal" in run(command, "list", "agx_sobotka", *form)
+                     and "not a picture" in run(command, "list", "false_color", *form))
     text = run(command, "list", "hable")
     report.check("list OPERATOR", "Uncharted" in text and "--set white=11.2" in text, text)
     report.check("list OPERATOR --markdown", run(command, "list", "hable", "--markdown") in markdown)
@@ -137,6 +162,14 @@ def check_eval_text(report, command):
     report.check("eval: display by title, input by alias",
                  run(command, "eval", "hable", "--display", "Display P3", "--input", "acescg", stdin="1 .5 .2")
                  == run(command, "eval", "hable", "--display", "display_p3", "--input", "lin_ap1", stdin="1 .5 .2"))
+    # 9/59, the double nearest to which has 17 digits.
+    for digits, text in ((1, "0.2"), (4, "0.1525"), (9, "0.152542373"), (17, repr(9 / 59))):
+        out = run(command, "eval", "reinhard", "--display", "native", "--digits", digits, stdin="0.18 0.18 0.18")
+        report.check(f"eval --digits {digits}", out == f"{text} {text} {text}\n" or
+                     digits == 17 and np.allclose([float(x) for x in out.split()], 9 / 59, rtol=4e-16, atol=0), out)
+    report.check("eval: parameters that a picture has are the defaults",
+                 run(command, "eval", "exponential", stdin="1 .5 .2")
+                 == run(command, "eval", "exponential", "--set", "average=1", stdin="1 .5 .2"))
     many = "".join(f"{i / 1000} {i % 7} {i % 11}\n" for i in range(5000))
     report.check("eval: 5000 lines", len(run(command, "eval", "hable", stdin=many).splitlines()) == 5000)
 
@@ -227,6 +260,50 @@ def check_apply(report, command, scratch):
     write_exr(source, unstack(rgb))
     run(command, "apply", source, source, "--operator", "hable", "-d", "float")
     report.compare("apply onto itself", read_rgb(source, scratch), truth, FLOAT32)
+
+
+def check_statistics(report, command, scratch):
+    """Parameters that a picture has: measured here with NumPy, in double."""
+    rng = np.random.default_rng(8)
+    rgb = (2.0 ** rng.uniform(-9, 5, (40, 50, 3))).astype(np.float32)
+    rgb[:3] = 0  # black counts in the mean, not in the mean of logarithms
+    source, out = scratch / "source.exr", scratch / "out.exr"
+    write_exr(source, unstack(rgb))
+    light = rgb.reshape(-1, 3).astype(float)
+    luminance = light @ [0.2126, 0.7152, 0.0722]
+    mean, maximum = luminance.mean(), luminance.max()
+    log_average = np.exp(np.log(luminance[luminance > 0]).mean())
+
+    def applied(*options):
+        code, printed, errors = call(command, ["apply", source, out, "-d", "float", *options])
+        report.check(f"apply {' '.join(map(str, options))}: prints nothing", code == OK and not printed + errors,
+                     printed + errors)
+        return stack(read_planes(out, scratch))
+
+    def evaluated(operator, *options):
+        return evaluate(command, light, operator, *options).reshape(rgb.shape)
+
+    for operator, settings in (("exponential", {"average": mean}), ("linear", {"divisor": maximum}),
+                               ("drago", {"log_average": log_average, "maximum": maximum})):
+        texts = [text for name, value in settings.items() for text in ("--set", f"{name}={float(value)!r}")]
+        truth = evaluated(operator, *texts)
+        shown = applied("--operator", operator)
+        report.compare(f"apply {operator}: parameters from the picture", shown, truth, FLOAT32)
+        report.check(f"apply {operator}: not the defaults", np.abs(shown - evaluated(operator)).max() > 0.01)
+        report.check(f"apply {operator} --statistics picture is the default",
+                     np.array_equal(applied("--operator", operator, "--statistics", "picture"), shown))
+        report.compare(f"apply {operator} --statistics defaults",
+                       applied("--operator", operator, "--statistics", "defaults"), evaluated(operator), FLOAT32)
+    report.compare("apply --set wins over the picture", applied("--operator", "exponential", "--set", "average=3"),
+                   evaluated("exponential", "--set", "average=3"), FLOAT32)
+    report.compare("apply --set of one, the other from the picture",
+                   applied("--operator", "drago", "--set", "maximum=50"),
+                   evaluated("drago", "--set", "maximum=50", "--set", f"log_average={float(log_average)!r}"), FLOAT32)
+    report.compare("apply --exposure comes on top of the statistics",
+                   applied("--operator", "exponential", "--exposure", "1"),
+                   evaluated("exponential", "--exposure", "1", "--set", f"average={float(mean)!r}"), FLOAT32)
+    report.check("apply with statistics: --threads 1, the same bits", np.array_equal(
+        applied("--operator", "drago", "--threads", "1"), applied("--operator", "drago", "--threads", "7")))
 
 
 def read_lut(path, codes):
@@ -389,7 +466,10 @@ def usage_errors(bad, picture):
         (["eval", "hable", "--set", "=4"], "=4; name=value"),
         (["eval", "hable", "--set"], "--set"),
         (["eval", "reinhard", "--set", "apply=lumnance"], "apply is lumnance; did you mean luminance?"),
-        (["eval", "reinhard:lum"], "preset is lum; did you mean luminance?"), (["eval", "hable:x"], "x; no presets"),
+        (["eval", "reinhard:lum"], "preset is lum; did you mean luminance?"), (["eval", "clamp:x"], "x; no presets"),
+        (["eval", "reinhard", "--set", "color_correction=nonlinear"],
+         "reinhard: color_correction is nonlinear; expected ratio with apply=channels"),
+        (["eval", "hable", "--digits", "0"], "--digits; 0"), (["eval", "hable", "--digits", "18"], "--digits; 18"),
         (["eval", "agx_sobotka", "--look", "pnchy"], "look is pnchy; did you mean punchy?"),
         (["eval", "hable", "--look", "punchy"], "punchy; no looks"),
         (["eval", "hable", "--display", "srbg"], "display is srbg; did you mean srgb?"),
@@ -400,6 +480,12 @@ def usage_errors(bad, picture):
         (["apply", picture, "out.png"], "--operator"), (["apply", picture], "out"),
         (["apply", picture, "out.png", "--operator", "hable", "-d", "unit8"], "unit8; did you mean uint8?"),
         (["apply", picture, "out.png", "--operator", "hable", "--threads", "-1"], "--threads; -1"),
+        (["apply", picture, "out.png", "--operator", "drago", "--statistics", "pictur"],
+         "statistics is pictur; picture or defaults; did you mean picture?"),
+        # Told before the picture is read, although it decides on parameters.
+        (["apply", bad["missing.exr"], "out.png", "--operator", "drago", "--set", "maximun=9"],
+         "parameter is maximun; did you mean maximum?"),
+        (["apply", bad["missing.exr"], "out.png", "--operator", "drago", "--set", "maximum=0"], "drago: maximum is 0"),
         (["apply", picture, "out.png", "--operator", "hable", "--unpremult", "--no-unpremult"], "--no-unpremult"),
         (["apply", bad["two.exr"], "out.png", "--operator", "hable"], "2 channels"),
         (["bake", "hable"], "-o"), (["bake", "-o", "out.cube"], "operator"),
@@ -549,6 +635,7 @@ def main():
             jobs.append((check, (report, command, *arguments)))
 
         add(check_apply)
+        add(check_statistics)
         add(check_bake)
         add(check_verify, config, picture)
         add(check_config, config)

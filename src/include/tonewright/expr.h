@@ -34,18 +34,23 @@ enum class ExprOp : unsigned char {
     cosine,
     floor,
     select,  // b where a is not 0, else c
-    lookup,  // table, index in [0, 1]
+    lookup,  // table, index
 };
 
-/// Samples of a function at equal distances over [0, 1]; outside, the first or last one holds.
+/// Samples of a function, at equal distances over [0, 1] or where `positions` says; outside, the
+/// first or last one holds.
 struct Table {
     enum class Interpolation : unsigned char {
         linear,  // straight lines between samples
-        step,    // sample i holds over [i/n, (i+1)/n): the slope of a linear table
+        step,    // sample i holds over [i/n, (i+1)/n), or from its position up to the next: the
+                 // slope of a linear table
     };
     std::vector<double> samples;
     Interpolation interpolation = Interpolation::linear;
+    /// Empty: equal distances. Else of each sample: finite, each larger than the one before.
+    std::vector<double> positions = {};
 
+    /// NaN gives the first sample.
     [[nodiscard]] double operator()(double x) const noexcept;
 };
 
@@ -117,6 +122,7 @@ Expr less_equal(const Expr& a, const Expr& b);
 Expr equal(const Expr& a, const Expr& b);
 /// `if_true` where `condition` is not 0, else `if_false`; both are evaluated, one is taken.
 Expr select(const Expr& condition, const Expr& if_true, const Expr& if_false);
+/// @throws Error  when the table's positions are not as Table wants them.
 Expr lookup(std::shared_ptr<const Table> table, const Expr& index);
 
 // Words of the papers, made of the above.

@@ -30,6 +30,15 @@ struct TonemapOptions {
         /// Leave color as it is.
         no,
     };
+    /// What operators with parameters that a picture has (its largest luminance, ...) take for
+    /// those that neither `settings` nor the preset set.
+    enum class Statistics : unsigned char {
+        /// The picture's own, of measure_scene(): one more pass over it. Other operators pay
+        /// nothing.
+        from_picture,
+        /// The defaults, the same for every picture.
+        defaults,
+    };
 
     /// Operator id, optionally `:preset`.
     std::string op;
@@ -44,10 +53,34 @@ struct TonemapOptions {
     /// Display (id, title or alias), or `linear`, or `native`.
     std::string display = "srgb";
     Unpremult unpremult = Unpremult::automatic;
+    Statistics statistics = Statistics::from_picture;
 };
+
+/// Measures the light of a picture, for the operators whose parameters a picture has.
+///
+/// Relative luminance (0.2126, 0.7152, 0.0722) and channels of Rec.709 light, each pixel as
+/// tonemap() sees it: NaN is 0, limited to +-65504, converted from `input`, negatives 0. Exposure
+/// plays no part: it stays the user's correction on top of what the statistics choose.
+///
+/// Where alpha counts (`unpremult` is not `no`), color is that of tonemap(), and pixels without
+/// cover (alpha 0 or not finite) are left out; a picture without any cover is measured as it is.
+///
+/// @param src       any pixel type, tiled, cached or local.
+/// @param input     scene-linear space of the picture.
+/// @param roi       default: the data window. Channels of it are not read.
+/// @param nthreads  0: OIIO's `threads` attribute. The result does not depend on it, in any bit.
+/// @returns         zeros for a picture without light.
+/// @throws Error    unknown space; a picture that cannot be read, is deep, or has no color.
+[[nodiscard]] SceneStatistics measure_scene(
+    const OIIO::ImageBuf& src, std::string_view input = "lin_rec709",
+    TonemapOptions::Unpremult unpremult = TonemapOptions::Unpremult::automatic, OIIO::ROI roi = {},
+    int nthreads = 0);
 
 /// A view made ready to run on pictures: compile once, use for every frame of a shot.
 /// Safe to use from several threads at once, on different destinations.
+///
+/// An operator that takes statistics is prepared again for each picture, with its own. A shot would
+/// flicker: give it those of one frame, settings_for_picture(op, settings, measure_scene(frame)).
 class Tonemapper {
   public:
     /// @throws Error  unknown name or bad value among the options, with the nearest name.
@@ -78,7 +111,9 @@ class Tonemapper {
 ///    Where alpha is 0, or not finite, color is taken as it is: light without cover, such as a
 ///    flame, stays.
 /// 4. NaN is 0 and every channel is limited to +-65504 before the view; the result is finite.
-/// 5. `dst` says what it holds: `oiio:ColorSpace` as OIIO names it ("sRGB", "Gamma2.4" for
+/// 5. Statistics are those of the whole source, whatever the region: parts that are rendered one by
+///    one fit together. (Not in place: there the source changes under them. Measure first.)
+/// 6. `dst` says what it holds: `oiio:ColorSpace` as OIIO names it ("sRGB", "Gamma2.4" for
 /// Rec.1886,
 ///    "Linear"), else the display's title; no claim for `native`, unless the operator's output is
 ///    plainly linear or a power of Rec.709. Profiles, gammas and primaries that contradict it go;

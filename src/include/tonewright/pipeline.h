@@ -51,6 +51,21 @@ struct ToneScaleStage {
     Expr f;
 };
 
+/// The largest and the smallest channel mapped by one curve; the middle one keeps its place between
+/// them: c' = f(min) + (f(max) - f(min)) (c - min)/(max - min). Keeps the hue of HSV.
+struct HuePreservingStage {
+    Expr f;  // of input 0
+};
+
+/// Works on the hexcone of HSV and keeps its hue. With p = max - offset(min):
+/// c' = value(p) - chroma(p) (max - c). So the largest channel becomes value(p), and every distance
+/// from it is multiplied by chroma(p). Defined for inputs >= 0.
+struct HexconeStage {
+    Expr offset;  // of input 0, the smallest channel; 0 <= offset(x) <= x
+    Expr value;   // of input 0, p
+    Expr chroma;  // of input 0, p
+};
+
 /// min(max(x, lo), hi) per channel; either end may be infinite.
 struct ClampStage {
     double lo = 0;
@@ -63,7 +78,8 @@ struct Map3Stage {
     std::array<Expr, 3> f;
 };
 
-using Stage = std::variant<MatrixStage, CurveStage, ToneScaleStage, ClampStage, Map3Stage>;
+using Stage = std::variant<MatrixStage, CurveStage, ToneScaleStage, HuePreservingStage,
+                           HexconeStage, ClampStage, Map3Stage>;
 using Pipeline = std::vector<Stage>;
 
 [[nodiscard]] MatrixStage exposure_stage(double stops);
@@ -71,7 +87,8 @@ using Pipeline = std::vector<Stage>;
 [[nodiscard]] CurveStage curve_stage(const Expr& f);
 [[nodiscard]] CurveStage curve_stage(const Expr& f, const Expr& inverse);
 
-/// What the stage is called in messages and docs: "matrix", "curve", "tone scale", "clamp", "map3".
+/// What the stage is called in messages and docs: "matrix", "curve", "tone scale", "hue-preserving
+/// curve", "hexcone", "clamp", "map3".
 [[nodiscard]] std::string_view stage_kind(const Stage& stage);
 /// True when no pixel changes.
 [[nodiscard]] bool is_identity(const Stage& stage);
@@ -92,23 +109,49 @@ using Pipeline = std::vector<Stage>;
 // ---------------------------------------------------------------------------------------------
 // Parameters
 
+/// What operators ask of a whole picture: relative luminance (0.2126, 0.7152, 0.0722) and channels
+/// of Rec.709 light, negatives and NaN counted as 0.
+struct SceneStatistics {
+    /// exp(mean ln L) over the pixels with L > 0.
+    double log_average = 0;
+    double mean_luminance = 0;
+    /// Of the pixels with L > 0.
+    double minimum_luminance = 0;
+    double maximum_luminance = 0;
+    Vector3 mean_rgb{};
+    Vector3 maximum_rgb{};
+};
+
 /// One named, typed, bounded parameter of an operator.
 struct ParameterSpec {
+    enum class Kind : unsigned char { number, choice, text };
+    Kind kind = Kind::number;
     std::string name;
     std::string unit;  // "scene-linear", "stops", "cd/m2", "" for pure numbers
     double default_value = 0;
     double min = 0;  // closed interval
     double max = 1;
     std::string help;
-    /// Not empty: an enumeration; then the number fields mean nothing.
+    /// Of an enumeration.
     std::vector<std::string> choices;
+    /// Of an enumeration or text.
     std::string default_choice;
+    /// Not null: a number that a picture has. Where a whole picture is at hand and the user has not
+    /// set it, this is its value (limited to the interval), else the default.
+    double (*from_picture)(const SceneStatistics&) = nullptr;
+    /// What from_picture takes: "maximum luminance of the picture".
+    std::string statistic;
 };
 
 [[nodiscard]] ParameterSpec number_parameter(std::string name, std::string unit, double value,
                                              double min, double max, std::string help);
 [[nodiscard]] ParameterSpec choice_parameter(std::string name, std::vector<std::string> choices,
                                              std::string value, std::string help);
+/// Free text: a file, a name in it. Empty by default.
+[[nodiscard]] ParameterSpec text_parameter(std::string name, std::string help);
+/// A number with a default, and a value of its own for every picture.
+[[nodiscard]] ParameterSpec statistic_parameter(ParameterSpec number, std::string statistic,
+                                                double (*from_picture)(const SceneStatistics&));
 
 /// Text as typed by a user: name -> value.
 using Settings = std::map<std::string, std::string>;
@@ -122,6 +165,8 @@ class Params {
     [[nodiscard]] double number(std::string_view name) const;
     /// @pre the operator declares an enumeration of this name
     [[nodiscard]] const std::string& choice(std::string_view name) const;
+    /// @pre the operator declares a text parameter of this name
+    [[nodiscard]] const std::string& text(std::string_view name) const;
     /// Id of the look, or empty.
     [[nodiscard]] const std::string& look() const { return look_; }
 
@@ -129,6 +174,7 @@ class Params {
     friend ResolvedOperator resolve_operator(std::string_view, const Settings&, std::string_view);
     std::map<std::string, double, std::less<>> numbers_;
     std::map<std::string, std::string, std::less<>> choices_;
+    std::map<std::string, std::string, std::less<>> texts_;
     std::string look_;
 };
 
@@ -146,6 +192,33 @@ struct Preset {
     std::string id;
     std::string title;
     Settings settings;
+};
+
+/// Where an operator departs from what every tone curve is expected to do. Declared in its file and
+/// held to be true by the law tests; lists and docs warn with it.
+struct Deviation {
+    enum class Kind : unsigned char {
+        black,                // native value of black, not 0: value
+        crushes_black,        // greys up to value are shown as black
+        never_reaches_white,  // the largest grey is shown at value < 1, display-linear
+        exceeds_white,        // native light goes up to value > 1 (kInfinity: without end)
+        not_monotone,         // brighter greys may be shown darker, up to scene-linear value
+    };
+    Kind kind;
+    double value;
+    /// Id of the preset or look that it is true of; empty: of the operator and all of them.
+    std::string when;
+};
+
+/// "lifts black to 0.0029".
+[[nodiscard]] std::string to_string(const Deviation& deviation);
+
+/// Error bounds that an operator's nature makes wider than its structure's, in display code values.
+struct DeclaredBounds {
+    double simd = 1e-6;
+    double ocio_cpu = 0;  // 0: as its structure has it
+    double ocio_gpu = 0;
+    std::string reason;
 };
 
 /// What the numbers that an operator puts out are.
@@ -171,7 +244,14 @@ struct Operator {
     std::vector<ParameterSpec> parameters;
     std::vector<Preset> presets;
     std::vector<Look> looks;
+    /// What else a user should know; sentences without a full stop.
     std::vector<std::string> warnings;
+    std::vector<Deviation> deviations;
+    DeclaredBounds bounds;
+    /// Operators of one name and different pictures: "AgX". Docs compare them. Empty: none.
+    std::string dialects;
+    /// Shows what is in a picture, not a picture: false colours.
+    bool is_diagnostic = false;
     /// Working-space scene-linear, finite -> the operator's own output.
     Pipeline (*build)(const Params& params) = nullptr;
 };
@@ -201,5 +281,10 @@ struct ResolvedOperator {
 [[nodiscard]] ResolvedOperator resolve_operator(std::string_view name,
                                                 const Settings& settings = {},
                                                 std::string_view look = {});
+
+/// `settings` and, of the parameters that neither they nor the preset of `name` set, those that a
+/// picture has, from its statistics.
+[[nodiscard]] Settings settings_for_picture(std::string_view name, const Settings& settings,
+                                            const SceneStatistics& statistics);
 
 }  // namespace tonewright

@@ -57,9 +57,12 @@ struct View {
 [[nodiscard]] View make_view(ResolvedOperator op, std::string_view input, double exposure_stops,
                              std::string_view display);
 
-/// Operator output -> display-linear in its working primaries, limited to [0, 1] (SDR):
-/// code values are decoded with the operator's own power, so that nothing is encoded twice.
-[[nodiscard]] Pipeline display_light_stages(const Operator& op);
+/// True when light of `gamut` needs no negative light of `display`: no color of it is lost there.
+[[nodiscard]] bool is_inside(const Primaries& gamut, const Primaries& display);
+
+/// Operator output -> display-linear in the display's primaries, limited to [0, 1] (SDR): code
+/// values are decoded with the operator's own power, so that nothing is encoded twice.
+[[nodiscard]] Pipeline display_light_stages(const Operator& op, const Primaries& display);
 
 /// The whole view as stages. Its input is sanitised scene-linear in the view's input space.
 /// @see sanitise in engine.h: NaN -> 0, then each channel to +-kHalfMax

@@ -109,6 +109,8 @@ TEST(Reference, RunsEveryOperation) {
     const auto line = std::make_shared<const Table>(Table{{0, 0.5, 3}});
     const auto steps =
         std::make_shared<const Table>(Table{{0, 0.5, 3}, Table::Interpolation::step});
+    const auto uneven = std::make_shared<const Table>(
+        Table{{0, 0.5, 3, 4}, Table::Interpolation::linear, {-2, 0.125, 0.3, 70000}});
     const std::vector<Expr> all = {a + b,
                                    a - b,
                                    a * b,
@@ -131,6 +133,7 @@ TEST(Reference, RunsEveryOperation) {
                                    select(less(a, b), b, c),
                                    lookup(line, a),
                                    lookup(steps, b),
+                                   lookup(uneven, a),
                                    Expr(0.1),
                                    c};
     std::set<ExprOp> covered;

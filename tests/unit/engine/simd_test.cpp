@@ -230,6 +230,13 @@ TEST_F(Simd, OperationsMeanWhatExpressionsMean) {
     const auto steps =
         std::make_shared<const Table>(Table{{0.5, -1, 3, 3.25, 7}, Table::Interpolation::step});
     const auto single = std::make_shared<const Table>(Table{{0.25}, Table::Interpolation::linear});
+    const std::vector<double> positions = {-1.5, -0.25, 0.5, 0.53125, 2};
+    const auto uneven = std::make_shared<const Table>(
+        Table{{0.5, -1, 3, 3.25, 7}, Table::Interpolation::linear, positions});
+    const auto uneven_steps = std::make_shared<const Table>(
+        Table{{0.5, -1, 3, 3.25, 7}, Table::Interpolation::step, positions});
+    const auto single_placed =
+        std::make_shared<const Table>(Table{{0.25}, Table::Interpolation::linear, {0.5}});
     const std::vector<Expr> expressions = {
         a + b,
         a - b,
@@ -260,6 +267,10 @@ TEST_F(Simd, OperationsMeanWhatExpressionsMean) {
         lookup(table, a),
         lookup(steps, b),
         lookup(single, a),
+        lookup(uneven, a),
+        lookup(uneven_steps, b),
+        lookup(uneven, a * 0.7) + lookup(uneven_steps, a),
+        lookup(single_placed, a),
         atan2(a, b),
         pow(a, 2),
         pow(a, 3),
@@ -290,6 +301,68 @@ TEST_F(Simd, OperationsMeanWhatExpressionsMean) {
                     << rgb[i / 3 * 3 + 1] << "): " << out[i] << ", expected " << truth[i];
             }
         }
+    }
+}
+
+/// Positions at all distances, many of them nearer to each other than two floats are, and as many
+/// samples as powers of two need filling up or not.
+TEST_F(Simd, UnevenTablesAreExact) {
+    ProbeRandom random(5);
+    for (const std::size_t count : {1U, 2U, 3U, 4U, 5U, 8U, 9U, 31U, 1024U, 1025U}) {
+        auto table = std::make_shared<Table>();
+        std::vector<float> inputs;
+        double position = 0;
+        double sample = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            position += std::exp2(random.uniform(-20, -1)) / static_cast<double>(count);
+            sample += random.uniform(0, 2) / static_cast<double>(count);
+            table->positions.push_back(position);
+            table->samples.push_back(sample);
+            const auto near = static_cast<float>(position);
+            inputs.insert(inputs.end(), {near, std::nextafterf(near, 0), std::nextafterf(near, 1)});
+        }
+        for (int i = 0; i < 500; ++i)
+            inputs.push_back(static_cast<float>(random.uniform(-0.1, 1.1)));
+        const std::vector<float> rgb = grey(inputs);
+        for (const bool linear : {true, false}) {
+            auto copy = std::make_shared<Table>(*table);
+            if (!linear) copy->interpolation = Table::Interpolation::step;
+            // The index as it is, and one that float would round out of its cell.
+            for (const Expr& index : {Expr::input(), Expr::input() * 0.7 + 0.1}) {
+                if (!linear && index.op() != ExprOp::input) continue;
+                const Pipeline pipeline = {curve_stage(lookup(copy, index))};
+                const SimdEngine engine(pipeline);
+                const std::vector<double> truth = run(ReferenceEngine(pipeline), rgb);
+                for (const std::string& target : SimdEngine::targets()) {
+                    SimdEngine::use_target(target);
+                    const std::vector<float> out = run(engine, rgb);
+                    for (std::size_t i = 0; i < out.size(); ++i) {
+                        ASSERT_NEAR(static_cast<double>(out[i]), truth[i], 3e-7)
+                            << count << " samples, " << target << ", " << rgb[i];
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A jump of an even table, in a cell that no probe comes near to.
+TEST_F(Simd, SteepTablesAreIndexedInDouble) {
+    auto table = std::make_shared<Table>();
+    for (int i = 0; i <= 4096; ++i)
+        table->samples.push_back(i < 3001 ? 0.0 : 1.0);
+    const Pipeline pipeline = {curve_stage(lookup(table, Expr::input() / 6))};
+    std::vector<float> inputs;
+    for (float x = 3000.0F / 4096 * 6; x < 3001.0F / 4096 * 6; x = std::nextafterf(x, 7))
+        inputs.push_back(x);
+    const std::vector<float> rgb = grey(inputs);
+    const std::vector<double> truth = run(ReferenceEngine(pipeline), rgb);
+    const SimdEngine engine(pipeline);
+    for (const std::string& target : SimdEngine::targets()) {
+        SimdEngine::use_target(target);
+        const std::vector<float> out = run(engine, rgb);
+        for (std::size_t i = 0; i < out.size(); ++i)
+            ASSERT_NEAR(static_cast<double>(out[i]), truth[i], 1e-7) << target << ", " << rgb[i];
     }
 }
 
@@ -366,11 +439,31 @@ TEST_P(SimdOperator, IsTotal) {
 INSTANTIATE_TEST_SUITE_P(Operators, SimdOperator, ::testing::ValuesIn(all_operator_names()),
                          [](const auto& test) {
                              std::string name = test.param;
-                             for (char& c : name) {
-                                 if (c == ':') c = '_';
-                             }
+                             // Two, because hable:gdc and hable_gdc are two.
+                             if (const std::size_t colon = name.find(':'); colon < name.size())
+                                 name.replace(colon, 1, "__");
                              return name;
                          });
+
+TEST_F(Simd, CurvesOfFilesAreWithinBound) {
+    const std::string data = TONEWRIGHT_TEST_DATA "/";
+    const std::vector<float> rgb = test_colours();
+    for (const Settings& settings : std::vector<Settings>{
+             {{"file", data + "synthetic_response.rf"}, {"iso", "0.5"}},
+             {{"file", data + "synthetic_response_uneven.csv"}},
+             {{"file", data + "synthetic_dorf.txt"}, {"curve", "Synthetic-1"}, {"iso", "1000"}}}) {
+        const ResolvedOperator op = resolve_operator("camera_response", settings);
+        for (const std::string display : {"srgb", "rec1886", "display_p3"}) {
+            const Pipeline view = build_view(make_view(op, "lin_ap1", 0.3, display));
+            const std::vector<float> out = run(SimdEngine(view), rgb);
+            const std::vector<double> truth = run(ReferenceEngine(view), rgb);
+            for (std::size_t i = 0; i < out.size(); ++i) {
+                ASSERT_NEAR(static_cast<double>(out[i]), truth[i], kBound)
+                    << op.label << ", " << display << ", pixel " << i / 3;
+            }
+        }
+    }
+}
 
 TEST_F(Simd, MatrixOfMixedSignsBeforeAPowerDisplay) {
     // The slope of a power display has no bound at black: whatever the float rounding of the

@@ -126,6 +126,8 @@ double slope_at(const Expr& f, double x) {
 TEST(Expr, DerivativesMatchDifferenceQuotients) {
     auto table = std::make_shared<Table>();
     table->samples = {0, 0.2, 0.9, 1.5};
+    auto uneven = std::make_shared<Table>(*table);
+    uneven->positions = {0.05, 0.3, 0.42, 0.9};
     const std::vector<Expr> curves = {kX * kX * 3 - 2 / kX,
                                       pow(kX, 2.4),
                                       pow(2, kX),
@@ -140,6 +142,7 @@ TEST(Expr, DerivativesMatchDifferenceQuotients) {
                                       select(less(kX, 0.3), kX, kX * kX),
                                       srgb_encode(kX),
                                       lookup(table, kX),
+                                      lookup(uneven, kX),
                                       pow(kX, kX)};
     for (const Expr& f : curves) {
         const Expr d = derivative(f);
@@ -165,6 +168,72 @@ TEST(Expr, TableHoldsItsEnds) {
     EXPECT_EQ(table(0.3), 1);
     EXPECT_EQ(table(0.34), 2);
     EXPECT_EQ(table(1), 4);
+}
+
+TEST(Expr, TableHasItsSamplesWhereItsPositionsSay) {
+    Table table{{1, 2, 4, 8}, Table::Interpolation::linear, {-1, 0.5, 0.75, 3}};
+    EXPECT_EQ(table(-5), 1);
+    EXPECT_EQ(table(-1), 1);
+    EXPECT_EQ(table(-0.25), 1.5);
+    EXPECT_EQ(table(0.5), 2);
+    EXPECT_EQ(table(0.625), 3);
+    EXPECT_EQ(table(0.75), 4);
+    EXPECT_EQ(table(1.875), 6);
+    EXPECT_EQ(table(3), 8);
+    EXPECT_EQ(table(1e300), 8);
+    EXPECT_EQ(table(std::numeric_limits<double>::infinity()), 8);
+    EXPECT_EQ(table(std::numeric_limits<double>::quiet_NaN()), 1);
+    table.interpolation = Table::Interpolation::step;
+    EXPECT_EQ(table(-5), 1);
+    EXPECT_EQ(table(std::nextafter(0.5, 0)), 1);
+    EXPECT_EQ(table(0.5), 2);
+    EXPECT_EQ(table(2.9), 4);
+    EXPECT_EQ(table(3), 8);
+    EXPECT_EQ((Table{{7}, Table::Interpolation::linear, {0.5}}(0.9)), 7);
+    // Narrow cells do not lose their ends.
+    const double next = std::nextafter(0.5, 1);
+    const Table narrow{{0, 1}, Table::Interpolation::linear, {0.5, next}};
+    EXPECT_EQ(narrow(0.5), 0);
+    EXPECT_EQ(narrow(next), 1);
+}
+
+TEST(Expr, EvenPositionsAreEqualDistances) {
+    Table even;
+    for (int i = 0; i <= 64; ++i)
+        even.samples.push_back(std::sqrt(i));
+    Table placed = even;
+    for (int i = 0; i <= 64; ++i)
+        placed.positions.push_back(i / 64.0);
+    for (double x = -0.5; x < 1.5; x += 1.0 / 1024)
+        EXPECT_EQ(placed(x), even(x)) << x;
+}
+
+TEST(Expr, SlopeOfUnevenTableIsZeroOutside) {
+    const auto table = std::make_shared<const Table>(
+        Table{{1, 2, 4}, Table::Interpolation::linear, {0.25, 0.5, 0.625}});
+    const Expr d = derivative(lookup(table, kX));
+    EXPECT_EQ(evaluate(d, 0.1), 0);
+    EXPECT_EQ(evaluate(d, 0.25), 4);
+    EXPECT_EQ(evaluate(d, 0.49), 4);
+    EXPECT_EQ(evaluate(d, 0.5), 16) << "at a kink: the side behind it";
+    EXPECT_EQ(evaluate(d, 0.625), 16);
+    EXPECT_EQ(evaluate(d, 0.7), 0);
+    EXPECT_NEAR(inverse_at(lookup(table, kX), 3, 0.25, 0.625), 0.5625, 1e-15);
+}
+
+TEST(Expr, LookupRefusesPositionsThatAreNone) {
+    const auto of = [](std::vector<double> positions) {
+        return std::make_shared<const Table>(
+            Table{{1, 2, 3}, Table::Interpolation::linear, std::move(positions)});
+    };
+    EXPECT_NO_THROW((void)lookup(of({0, 0.5, 1}), kX));
+    EXPECT_THROW((void)lookup(of({0, 1}), kX), Error);
+    EXPECT_THROW((void)lookup(of({0, 0.5, 0.5}), kX), Error);
+    EXPECT_THROW((void)lookup(of({0, 1, 0.5}), kX), Error);
+    EXPECT_THROW((void)lookup(of({0, 0.5, std::numeric_limits<double>::infinity()}), kX), Error);
+    EXPECT_THROW((void)lookup(of({std::numeric_limits<double>::quiet_NaN(), 0.5, 1}), kX), Error);
+    EXPECT_EQ(to_string(lookup(of({}), kX)), "lookup[3](x)");
+    EXPECT_EQ(to_string(lookup(of({0, 0.25, 1}), kX)), "lookup[3 uneven](x)");
 }
 
 TEST(Expr, InverseFindsTheArgument) {

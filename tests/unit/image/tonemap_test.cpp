@@ -3,19 +3,18 @@
 #include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imagecache.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 
 #include "tonewright/engine.h"
 #include "tonewright/image.h"
 #include "tonewright/view.h"
+#include "unit/image/pictures.h"
 
 namespace tonewright {
 namespace {
@@ -36,75 +35,6 @@ ReferenceEngine reference(const TonemapOptions& o) {
     return ReferenceEngine(build_view(make_view(resolve_operator(o.op, o.settings, o.look), o.input,
                                                 o.exposure_stops, o.display)));
 }
-
-/// 0..1, different everywhere, the same on every machine.
-float noise(std::uint32_t i) {
-    i = (i ^ 61U ^ (i >> 16U)) * 9U;
-    i = (i ^ (i >> 4U)) * 0x27d4eb2dU;
-    return static_cast<float>((i ^ (i >> 15U)) & 0xffffU) / 65535.0F;
-}
-
-ImageSpec make_spec(int width, int height, std::vector<std::string> channels, TypeDesc type) {
-    ImageSpec spec(width, height, static_cast<int>(channels.size()), type);
-    spec.alpha_channel = -1;
-    for (std::size_t c = 0; c < channels.size(); ++c) {
-        if (channels[c] == "A") spec.alpha_channel = static_cast<int>(c);
-        if (channels[c] == "Z") spec.z_channel = static_cast<int>(c);
-    }
-    spec.channelnames = std::move(channels);
-    return spec;
-}
-
-/// Noise up to `peak` in every channel, stored as OIIO converts it.
-ImageBuf make_picture(const ImageSpec& spec, float peak = 1) {
-    ImageBuf picture(spec);
-    std::vector<float> values(static_cast<std::size_t>(spec.image_pixels()) *
-                              static_cast<std::size_t>(spec.nchannels));
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        values[i] = peak * noise(static_cast<std::uint32_t>(i));
-    }
-    EXPECT_TRUE(picture.set_pixels(picture.roi(), TypeDesc::FLOAT, values.data()));
-    return picture;
-}
-
-ImageBuf make_rgb(int width, int height, TypeDesc type = TypeDesc::FLOAT, float peak = 1) {
-    return make_picture(make_spec(width, height, {"R", "G", "B"}, type), peak);
-}
-
-std::vector<float> pixel(const ImageBuf& picture, int x, int y) {
-    std::vector<float> values(static_cast<std::size_t>(picture.nchannels()));
-    picture.getpixel(x, y, values.data(), picture.nchannels());
-    return values;
-}
-
-void set(ImageBuf& picture, int x, int y, const std::vector<float>& values) {
-    picture.setpixel(x, y, values.data(), static_cast<int>(values.size()));
-}
-
-bool same_bits(const ImageBuf& a, const ImageBuf& b) {
-    return a.spec().format == b.spec().format && a.roi() == b.roi() &&
-           std::memcmp(a.localpixels(), b.localpixels(), a.spec().image_bytes()) == 0;
-}
-
-/// A folder of its own for a test's files.
-class TemporaryFolder {
-  public:
-    TemporaryFolder()
-        : path_(std::filesystem::temp_directory_path() /
-                ("tonewright_tonemap_test_" + std::to_string(::getpid()))) {
-        std::filesystem::create_directories(path_);
-    }
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    [[nodiscard]] std::string file(const std::string& name) const {
-        return (path_ / name).string();
-    }
-
-  private:
-    std::filesystem::path path_;
-};
 
 void expect_error(ImageBuf& dst, bool ok, const std::string& part) {
     EXPECT_FALSE(ok);
@@ -239,6 +169,124 @@ TEST(Tonemap, OneTonemapperServesManyPictures) {
         EXPECT_TRUE(same_bits(dst, tonemap(src, hable())));
     }
     EXPECT_THROW(Tonemapper({.op = "habel"}), Error);
+}
+
+// ---------------------------------------------------------------------------------------------
+// Statistics
+
+using Statistics = TonemapOptions::Statistics;
+
+/// What tonemap() has to be, with the settings given by hand.
+void expect_same_picture(const ImageBuf& picture, const TonemapOptions& options,
+                         const ImageBuf& src, const Settings& settings) {
+    TonemapOptions fixed = options;
+    fixed.settings = settings;
+    fixed.statistics = Statistics::defaults;
+    const ImageBuf expected = tonemap(src, fixed);
+    ASSERT_FALSE(picture.has_error()) << picture.geterror();
+    ASSERT_FALSE(expected.has_error()) << expected.geterror();
+    EXPECT_TRUE(same_bits(picture, expected));
+}
+
+TEST(Tonemap, TakesStatisticsFromThePicture) {
+    // One color and its luminance: exponential is 1 - exp(-L/mean), 1 - 1/e of a uniform picture.
+    ImageBuf uniform(make_spec(5, 4, {"R", "G", "B"}, TypeDesc::FLOAT));
+    OIIO::ImageBufAlgo::fill(uniform, {7.0F, 7.0F, 7.0F});
+    const TonemapOptions linear = {.op = "exponential", .display = "linear"};
+    EXPECT_NEAR(pixel(tonemap(uniform, linear), 2, 2)[1], 1 - std::exp(-1), kTolerance);
+    TonemapOptions with_defaults = linear;
+    with_defaults.statistics = Statistics::defaults;
+    EXPECT_NEAR(pixel(tonemap(uniform, with_defaults), 2, 2)[1], 1 - std::exp(-7), kTolerance);
+
+    const ImageBuf src = make_rgb(40, 30, TypeDesc::HALF, 20);
+    for (const char* op : {"exponential", "linear", "drago", "reinhard_devlin"}) {
+        for (const char* input : {"lin_rec709", "lin_ap1"}) {
+            const TonemapOptions options = {.op = op, .input = input};
+            const Settings settings = settings_for_picture(op, {}, measure_scene(src, input));
+            EXPECT_FALSE(settings.empty());
+            expect_same_picture(tonemap(src, options), options, src, settings);
+        }
+    }
+}
+
+TEST(Tonemap, WhatTheUserSetsWinsOverStatistics) {
+    const ImageBuf src = make_rgb(40, 30, TypeDesc::FLOAT, 20);
+    // One of two.
+    const TonemapOptions options = {.op = "drago", .settings = {{"maximum", "50"}}};
+    const std::string average = shortest(measure_scene(src).log_average);
+    expect_same_picture(tonemap(src, options), options, src,
+                        {{"maximum", "50"}, {"log_average", average}});
+    // All.
+    const TonemapOptions all = {.op = "exponential", .settings = {{"average", "2"}}};
+    expect_same_picture(tonemap(src, all), all, src, all.settings);
+}
+
+TEST(Tonemap, ExposureComesOnTopOfStatistics) {
+    // The mean is that of the picture before exposure: a stop more light is a brighter picture.
+    ImageBuf src(make_spec(4, 4, {"R", "G", "B"}, TypeDesc::FLOAT));
+    OIIO::ImageBufAlgo::fill(src, {3.0F, 3.0F, 3.0F});
+    const TonemapOptions options = {.op = "exponential", .exposure_stops = 1, .display = "linear"};
+    EXPECT_NEAR(pixel(tonemap(src, options), 0, 0)[0], 1 - std::exp(-2), kTolerance);
+}
+
+TEST(Tonemap, StatisticsAreOfTheWholePictureWhateverTheRegion) {
+    const ImageBuf src = make_rgb(64, 48, TypeDesc::FLOAT, 20);
+    const TonemapOptions options = {.op = "drago"};
+    const ImageBuf whole = tonemap(src, options);
+    ImageBuf tiled(whole.spec());
+    for (int y = 0; y < 48; y += 16) {
+        for (int x = 0; x < 64; x += 16)
+            ASSERT_TRUE(tonemap(tiled, src, options, ROI(x, x + 16, y, y + 16)));
+    }
+    EXPECT_TRUE(same_bits(tiled, whole));
+    // In place, too, when all is done at once.
+    ImageBuf in_place = src;
+    ASSERT_TRUE(tonemap(in_place, in_place, options));
+    EXPECT_TRUE(same_bits(in_place, whole));
+}
+
+TEST(Tonemap, OneTonemapperMeasuresEachPicture) {
+    const TonemapOptions options = {.op = "exponential"};
+    const Tonemapper tonemapper(options);
+    for (const float peak : {0.5F, 40.0F}) {
+        const ImageBuf src = make_rgb(20, 20, TypeDesc::FLOAT, peak);
+        ImageBuf dst;
+        ASSERT_TRUE(tonemapper(dst, src)) << dst.geterror();
+        EXPECT_TRUE(same_bits(dst, tonemap(src, options)));
+        expect_same_picture(dst, options, src,
+                            settings_for_picture(options.op, {}, measure_scene(src)));
+    }
+}
+
+TEST(Tonemap, StatisticsAreOfTheColorThatIsToneMapped) {
+    ImageBuf src(make_spec(2, 1, {"R", "G", "B", "A"}, TypeDesc::FLOAT));
+    set(src, 0, 0, {0.5F, 0.5F, 0.5F, 0.25F});  // 2 where it covers
+    set(src, 1, 0, {90, 90, 90, 0});
+    TonemapOptions options = {.op = "exponential", .display = "linear"};
+    EXPECT_NEAR(pixel(tonemap(src, options), 0, 0)[0], 0.25 * (1 - std::exp(-1)), kTolerance);
+    options.unpremult = Unpremult::no;
+    EXPECT_NEAR(pixel(tonemap(src, options), 0, 0)[0], 1 - std::exp(-0.5 / 45.25), kTolerance);
+}
+
+TEST(Tonemap, PicturesWithoutLightAreNoError) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    for (const Operator& op : all_operators()) {
+        for (const float value : {0.0F, nan, 0.18F, 65504.0F}) {
+            ImageBuf src(make_spec(2, 2, {"R", "G", "B"}, TypeDesc::FLOAT));
+            OIIO::ImageBufAlgo::fill(src, {value, value, value});
+            const ImageBuf result = tonemap(src, {.op = op.id});
+            ASSERT_FALSE(result.has_error()) << op.id << ": " << result.geterror();
+            EXPECT_TRUE(std::isfinite(pixel(result, 1, 1)[2])) << op.id;
+        }
+    }
+}
+
+TEST(Tonemap, WrongNamesAreToldBeforeThePictureIsMeasured) {
+    EXPECT_THROW(Tonemapper({.op = "drago", .settings = {{"maximun", "9"}}}), Error);
+    EXPECT_THROW(Tonemapper({.op = "drago", .input = "lin_rec708"}), Error);
+    EXPECT_THROW(Tonemapper({.op = "drago", .display = "srbg"}), Error);
+    EXPECT_THROW(Tonemapper({.op = "drago", .look = "golden"}), Error);
+    EXPECT_THROW(Tonemapper({.op = "drago", .exposure_stops = 65}), Error);
 }
 
 // ---------------------------------------------------------------------------------------------

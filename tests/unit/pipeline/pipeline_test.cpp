@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <set>
 
+#include "pipeline/tone_curve.h"
 #include "tonewright/view.h"
 
 namespace tonewright {
@@ -58,14 +60,16 @@ constexpr double kRounding = 1e-14;
 
 /// One stage of each kind that changes nothing, in the order of the variant.
 Pipeline identities() {
-    return {MatrixStage{kIdentity3}, curve_stage(kX), ClampStage{-kInfinity, kInfinity},
-            Map3Stage{{kR, kG, kB}}};
+    return {MatrixStage{kIdentity3}, curve_stage(kX), HuePreservingStage{kX},
+            ClampStage{-kInfinity, kInfinity}, Map3Stage{{kR, kG, kB}}};
 }
 
 TEST(Stage, KindsHaveNames) {
     EXPECT_EQ(stage_kind(MatrixStage{kIdentity3}), "matrix");
     EXPECT_EQ(stage_kind(curve_stage(kX)), "curve");
     EXPECT_EQ(stage_kind(ToneScaleStage{Norm::luminance, kRec709Weights, kX}), "tone scale");
+    EXPECT_EQ(stage_kind(HuePreservingStage{kX}), "hue-preserving curve");
+    EXPECT_EQ(stage_kind(HexconeStage{kX, kX, kX}), "hexcone");
     EXPECT_EQ(stage_kind(ClampStage{}), "clamp");
     EXPECT_EQ(stage_kind(Map3Stage{{kR, kG, kB}}), "map3");
 }
@@ -82,6 +86,7 @@ TEST(Stage, KnowsThatItIsAnIdentity) {
     EXPECT_FALSE(is_identity(ClampStage{-kInfinity, 65504}));
     EXPECT_FALSE(is_identity(ClampStage{0, kInfinity}));
     EXPECT_FALSE(is_identity(Map3Stage{{kR, kB, kG}})) << "swapped channels";
+    EXPECT_FALSE(is_identity(HuePreservingStage{kX * 2}));
 }
 
 TEST(Stage, AnIdentityChangesNoPixel) {
@@ -93,8 +98,9 @@ TEST(Stage, AnIdentityChangesNoPixel) {
     for (const Stage& stage : stages) {
         if (!is_identity(stage)) continue;
         for (const Vector3& rgb : colours) {
-            // The tone scale multiplies by f(n)/n: one division, one product.
-            expect_rgb(shown(stage, rgb), rgb, 65504 * 0x1p-52, std::string(stage_kind(stage)));
+            // The tone scale multiplies by f(n)/n: one division, one product. The hue-preserving
+            // curve divides by a range of twice the peak, and multiplies.
+            expect_rgb(shown(stage, rgb), rgb, 65504 * 0x1p-50, std::string(stage_kind(stage)));
         }
     }
 }
@@ -113,6 +119,8 @@ TEST(Stage, KnowsWhetherItMixesChannels) {
     EXPECT_FALSE(mixes_channels(CurveStage{{kX, kX * 2, kX * kX}, std::nullopt}));
     EXPECT_FALSE(mixes_channels(ClampStage{0, 1}));
     EXPECT_TRUE(mixes_channels(ToneScaleStage{Norm::max_rgb, {}, kX / (1 + kX)}));
+    EXPECT_TRUE(mixes_channels(HuePreservingStage{kX / (1 + kX)}));
+    EXPECT_TRUE(mixes_channels(HexconeStage{0, kX, 1}));
     EXPECT_TRUE(mixes_channels(Map3Stage{{kR, kG, kR + kB}}));
 }
 
@@ -125,6 +133,7 @@ TEST(Stage, PerChannelMeansAlikeAndApart) {
     EXPECT_FALSE(is_per_channel({MatrixStage{{{{1, 0, 0}, {0, 1, 0}, {0, 0, 2}}}}}));
     EXPECT_FALSE(is_per_channel({Map3Stage{{kG, kB, kR}}})) << "alike, not apart";
     EXPECT_FALSE(is_per_channel({ToneScaleStage{Norm::max_rgb, {}, kX / (1 + kX)}}));
+    EXPECT_FALSE(is_per_channel({HuePreservingStage{kX / (1 + kX)}}));
     EXPECT_TRUE(is_per_channel({Map3Stage{{kR * 2, kG * 2, kB * 2}}}))
         << "what it does counts, not how it is written";
     // There and back: a permutation's inverse is exact.
@@ -184,6 +193,46 @@ TEST(Stage, ToneScaleIsBlackWhereTheNormIsNotPositive) {
     }
     const ToneScaleStage s{Norm::luminance, kRec709Weights, kX / (1 + kX)};
     EXPECT_EQ(shown(s, {1, -1, 1}), black) << "0.2126 - 0.7152 + 0.0722 is negative";
+}
+
+/// Where the middle channel lies between the smallest and the largest, and which ones those are.
+void expect_same_hue(const Vector3& a, const Vector3& b) {
+    const auto place = [](const Vector3& c) {
+        const auto [lo, hi] = std::minmax_element(c.begin(), c.end());
+        Vector3 relative{};
+        for (std::size_t i = 0; i < 3; ++i)
+            relative[i] = (c[i] - *lo) / (*hi - *lo);
+        return relative;
+    };
+    expect_rgb(place(a), place(b), kRounding);
+}
+
+TEST(Stage, HuePreservingMapsTheEndsAndKeepsTheMiddlesPlace) {
+    const HuePreservingStage s{kX / (1 + kX)};
+    // f(4) = 0.8, f(1) = 0.5, and 2 is a third of the way: 0.6
+    expect_rgb(shown(s, {4, 1, 2}), {0.8, 0.5, 0.6}, kRounding);
+    expect_rgb(shown(s, {1, 2, 4}), {0.5, 0.6, 0.8}, kRounding);
+    expect_rgb(shown(s, {2, 4, 1}), {0.6, 0.8, 0.5}, kRounding);
+    expect_rgb(shown(s, {1, 4, 4}), {0.5, 0.8, 0.8}, kRounding);
+    expect_rgb(shown(s, {4, 1, 1}), {0.8, 0.5, 0.5}, kRounding);
+    expect_rgb(shown(s, {3, 3, 3}), {0.75, 0.75, 0.75}, kRounding);
+    EXPECT_EQ(shown(s, {0, 0, 0}), (Vector3{0, 0, 0}));
+    const HuePreservingStage shifted{kX / (1 + kX) - 0.5};
+    expect_rgb(shown(shifted, {4, 1, 2}), {0.3, 0, 0.1}, kRounding);
+    for (const Vector3& rgb : {Vector3{9, 0.01, 3}, {0.2, 0.7, 0}, {30, 60, 50}, {5, 5, 1}})
+        expect_same_hue(shown(s, rgb), rgb);
+}
+
+TEST(Stage, HexconeScalesTheDistancesFromTheLargest) {
+    // min 1, so p = 4 - 1/2 = 7/2, value 7/9 and chroma 2/9.
+    const HexconeStage s{kX / 2, kX / (1 + kX), 1 / (1 + kX)};
+    expect_rgb(shown(s, {4, 1, 2}), {7.0 / 9, 1.0 / 9, 3.0 / 9}, kRounding);
+    expect_rgb(shown(s, {2, 4, 1}), {3.0 / 9, 7.0 / 9, 1.0 / 9}, kRounding);
+    expect_rgb(shown(s, {1, 2, 4}), {1.0 / 9, 3.0 / 9, 7.0 / 9}, kRounding);
+    expect_rgb(shown(s, {4, 4, 4}), {2.0 / 3, 2.0 / 3, 2.0 / 3}, kRounding);  // p = 2
+    EXPECT_EQ(shown(s, {0, 0, 0}), (Vector3{0, 0, 0}));
+    for (const Vector3& rgb : {Vector3{9, 0.01, 3}, {0.2, 0.7, 0}, {30, 60, 50}, {5, 5, 1}})
+        expect_same_hue(shown(s, rgb), rgb);
 }
 
 TEST(Stage, ExposureIsAPowerOfTwo) {
@@ -253,6 +302,8 @@ TEST(Pipeline, PrintsOneStageALine) {
                         CurveStage{{kX, kX * 2, kX * 3}, std::nullopt},
                         ToneScaleStage{Norm::luminance, kRec709Weights, kX * kX},
                         ToneScaleStage{Norm::max_rgb, {}, kX * kX},
+                        HuePreservingStage{kX * kX},
+                        HexconeStage{kX * 0.5, kX / (1 + kX), 1 / (1 + kX)},
                         Map3Stage{{kG, kB, kR}}};
     EXPECT_EQ(to_string(p),
               "matrix: [2 0 0 | 0 2 0 | 0 0 2]\n"
@@ -261,6 +312,8 @@ TEST(Pipeline, PrintsOneStageALine) {
               "curve: x | x*2 | x*3\n"
               "tone scale: of luminance: x*x\n"
               "tone scale: of max(r, g, b): x*x\n"
+              "hue-preserving curve: x*x\n"
+              "hexcone: offset x*0.5, value x/(1 + x), chroma 1/(1 + x)\n"
               "map3: g | b | r\n");
 }
 
@@ -316,23 +369,24 @@ TEST(Resolve, UnknownNamesGetTheNearest) {
     EXPECT_EQ(resolve_error("photoshop"),
               "operator is photoshop; expected one of `tonewright list`");
     EXPECT_EQ(resolve_error("reinhard_extended", {{"whit", "2"}}),
-              "reinhard_extended: parameter is whit; expected white or apply; did you mean white?");
+              "reinhard_extended: parameter is whit; expected white, apply, "
+              "color_correction, saturation or saturation_from; did you mean white?");
     EXPECT_EQ(resolve_error("clamp", {{"white", "2"}}),
               "clamp: parameter is white; expected none, it has no parameters");
     EXPECT_EQ(resolve_error("reinhard:lumnance"),
               "reinhard: preset is lumnance; expected luminance or max; did you mean luminance?");
     EXPECT_EQ(resolve_error("reinhard:"), "reinhard: preset is ; expected luminance or max");
-    EXPECT_EQ(resolve_error("hable:filmic"),
-              "hable: preset is filmic; expected none, it has no presets");
+    EXPECT_EQ(resolve_error("clamp:filmic"),
+              "clamp: preset is filmic; expected none, it has no presets");
     EXPECT_EQ(resolve_error("agx_sobotka", {}, "goldn"),
               "agx_sobotka: look is goldn; expected golden or punchy; did you mean golden?");
     EXPECT_EQ(resolve_error("hable", {}, "golden"),
               "hable: look is golden; expected none, it has no looks");
     EXPECT_EQ(resolve_error("reinhard", {{"apply", "chanels"}}),
-              "reinhard: apply is chanels; expected channels, luminance or max; did you mean "
-              "channels?");
+              "reinhard: apply is chanels; expected channels, luminance, max or "
+              "hue_preserving; did you mean channels?");
     EXPECT_EQ(resolve_error("reinhard", {{"apply", ""}}),
-              "reinhard: apply is ; expected channels, luminance or max");
+              "reinhard: apply is ; expected channels, luminance, max or hue_preserving");
 }
 
 TEST(Resolve, RefusesWhatIsNoNumberOrOutOfRange) {
@@ -359,6 +413,317 @@ TEST(Resolve, RefusesSettingsThatContradictEachOther) {
     // E = F: h(x) = (x(Ax + CB) + DF)/(x(Ax + B) + DF) - 1 < 0, for C below 1.
     EXPECT_NE(resolve_error("hable", {{"toe_numerator", "0.3"}}), "no error");
     EXPECT_EQ(resolve_error("hable", {{"toe_numerator", "0.05"}}), "no error");
+}
+
+const std::string kResponseFile = TONEWRIGHT_TEST_DATA "/synthetic_response.rf";
+
+TEST(Resolve, TextsAreTakenAsTheyAre) {
+    const ResolvedOperator none = resolve_operator("camera_response");
+    EXPECT_EQ(none.params.text("file"), "");
+    EXPECT_EQ(none.params.text("curve"), "");
+    EXPECT_EQ(none.params.number("iso"), 6);
+    EXPECT_THROW((void)none.params.text("iso"), Error) << "a number is no text";
+    EXPECT_THROW((void)none.params.number("file"), Error);
+    EXPECT_THROW((void)none.params.choice("file"), Error);
+    EXPECT_THROW((void)resolve_operator("reinhard").params.text("apply"), Error);
+
+    const ResolvedOperator file = resolve_operator("camera_response", {{"file", kResponseFile}});
+    EXPECT_EQ(file.params.text("file"), kResponseFile);
+    EXPECT_EQ(file.label, "camera_response file=" + kResponseFile);
+    EXPECT_EQ(resolve_operator("camera_response", {{"file", ""}}).label, "camera_response");
+    const Vector3 grey = {0.5, 0.5, 0.5};
+    EXPECT_NE(shown(file.build(), grey), shown(none.build(), grey));
+    const ResolvedOperator blue =
+        resolve_operator("camera_response", {{"file", kResponseFile}, {"curve", "blue"}});
+    EXPECT_EQ(shown(blue.build(), grey)[0], shown(file.build(), grey)[2]);
+}
+
+TEST(Resolve, TextsThatNameNothingAreErrors) {
+    EXPECT_EQ(resolve_error("camera_response", {{"curve", "gold"}}),
+              "camera_response: curve is gold; expected a file that has it");
+    // A file that is missing is no wrong usage: the command exits with another code.
+    EXPECT_THROW((void)resolve_operator("camera_response", {{"file", "/nonexistent.rf"}}),
+                 FileError);
+    const std::string missing = resolve_error("camera_response", {{"file", "/nonexistent.rf"}});
+    EXPECT_EQ(missing.rfind("camera_response: /nonexistent.rf", 0), 0U) << missing;
+    const std::string curve =
+        resolve_error("camera_response", {{"file", kResponseFile}, {"curve", "gold"}});
+    EXPECT_EQ(curve.rfind("camera_response: ", 0), 0U) << curve;
+    EXPECT_NE(curve.find("gold"), std::string::npos) << curve;
+}
+
+TEST(Parameter, KindsAreMadeByTheirFunctions) {
+    using Kind = ParameterSpec::Kind;
+    const ParameterSpec number = number_parameter("a", "stops", 1, 0, 2, "help");
+    EXPECT_EQ(number.kind, Kind::number);
+    EXPECT_EQ(number.from_picture, nullptr);
+    const ParameterSpec choice = choice_parameter("b", {"x", "y"}, "y", "help");
+    EXPECT_EQ(choice.kind, Kind::choice);
+    EXPECT_EQ(choice.default_choice, "y");
+    const ParameterSpec text = text_parameter("c", "help");
+    EXPECT_EQ(text.kind, Kind::text);
+    EXPECT_EQ(text.default_choice, "");
+    EXPECT_TRUE(text.choices.empty());
+    const ParameterSpec statistic = statistic_parameter(
+        number, "mean", [](const SceneStatistics& s) { return s.mean_luminance; });
+    EXPECT_EQ(statistic.kind, Kind::number);
+    EXPECT_EQ(statistic.name, "a");
+    EXPECT_EQ(statistic.default_value, 1);
+    EXPECT_EQ(statistic.statistic, "mean");
+    SceneStatistics s;
+    s.mean_luminance = 0.25;
+    EXPECT_EQ(statistic.from_picture(s), 0.25);
+}
+
+// ---------------------------------------------------------------------------------------------
+// Statistics
+
+SceneStatistics some_scene() {
+    SceneStatistics s;
+    s.log_average = 0.11;
+    s.mean_luminance = 0.37;
+    s.minimum_luminance = 0.0003;
+    s.maximum_luminance = 41.7;
+    s.mean_rgb = {0.5, 0.3, 0.2};
+    s.maximum_rgb = {50, 40, 30};
+    return s;
+}
+
+TEST(Statistics, FillWhatNobodySets) {
+    EXPECT_EQ(settings_for_picture("exponential", {}, some_scene()),
+              (Settings{{"average", "0.37"}}));
+    EXPECT_EQ(settings_for_picture("drago", {}, some_scene()),
+              (Settings{{"log_average", "0.11"}, {"maximum", "41.7"}}));
+    EXPECT_EQ(resolve_operator("exponential").params.number("average"), 1)
+        << "without a picture the default";
+    // An operator that asks nothing of a picture gets nothing.
+    EXPECT_EQ(settings_for_picture("hable", {}, some_scene()), Settings{});
+    EXPECT_EQ(settings_for_picture("hable", {{"white", "4"}}, some_scene()),
+              (Settings{{"white", "4"}}));
+}
+
+TEST(Statistics, TheUserWins) {
+    EXPECT_EQ(settings_for_picture("exponential", {{"average", "3"}}, some_scene()),
+              (Settings{{"average", "3"}}));
+    EXPECT_EQ(settings_for_picture("drago", {{"maximum", "9"}, {"bias", "0.7"}}, some_scene()),
+              (Settings{{"bias", "0.7"}, {"log_average", "0.11"}, {"maximum", "9"}}));
+    // What the user got wrong stays wrong, to be told of.
+    EXPECT_EQ(settings_for_picture("exponential", {{"averge", "3"}}, some_scene()),
+              (Settings{{"average", "0.37"}, {"averge", "3"}}));
+}
+
+/// A preset that lives as long as this does: no operator has one that sets a statistic.
+class PresetForTest {
+  public:
+    // The registry's vector is const, its elements are not.
+    PresetForTest(std::string_view id, Preset preset)
+        : op_(const_cast<Operator&>(find_operator(id))) {
+        op_.presets.push_back(std::move(preset));
+    }
+    ~PresetForTest() { op_.presets.pop_back(); }
+    PresetForTest(const PresetForTest&) = delete;
+    PresetForTest& operator=(const PresetForTest&) = delete;
+
+  private:
+    Operator& op_;
+};
+
+TEST(Statistics, ThenThePreset) {
+    const PresetForTest preset("drago", {"bright", "Bright", {{"maximum", "20"}}});
+    const Settings of_picture = settings_for_picture("drago:bright", {}, some_scene());
+    EXPECT_EQ(of_picture, (Settings{{"log_average", "0.11"}}));
+    const Params params = resolve_operator("drago:bright", of_picture).params;
+    EXPECT_EQ(params.number("maximum"), 20);
+    EXPECT_EQ(params.number("log_average"), 0.11);
+    const Settings of_user = settings_for_picture("drago:bright", {{"maximum", "7"}}, some_scene());
+    EXPECT_EQ(resolve_operator("drago:bright", of_user).params.number("maximum"), 7);
+}
+
+TEST(Statistics, AreLimitedToTheInterval) {
+    SceneStatistics s = some_scene();
+    s.mean_luminance = 1e9;
+    EXPECT_EQ(settings_for_picture("exponential", {}, s), (Settings{{"average", "65504"}}));
+    EXPECT_EQ(settings_for_picture("exponential", {}, {}), (Settings{{"average", "1e-06"}}));
+}
+
+TEST(Statistics, KeepEveryDigit) {
+    SceneStatistics s;
+    s.mean_luminance = 0.1 + 0.2;  // 0.30000000000000004
+    EXPECT_EQ(resolve_operator("exponential", settings_for_picture("exponential", {}, s))
+                  .params.number("average"),
+              0.1 + 0.2);
+}
+
+TEST(Statistics, OfEveryPictureAreAccepted) {
+    // Black; one grey; a pixel of light in the dark; the brightest there is.
+    SceneStatistics uniform = {0.18, 0.18, 0.18, 0.18, {0.18, 0.18, 0.18}, {0.18, 0.18, 0.18}};
+    SceneStatistics spark = {65504, 0.01, 65504, 65504, {0.01, 0.01, 0.01}, {65504, 65504, 65504}};
+    SceneStatistics dim = {5e-324, 5e-324, 5e-324, 5e-324, {0, 0, 7e-323}, {0, 0, 7e-323}};
+    SceneStatistics wide = {1, 100, 1e-45, 65504, {100, 100, 100}, {65504, 65504, 65504}};
+    for (const SceneStatistics& s : {SceneStatistics{}, uniform, spark, dim, wide, some_scene()}) {
+        for (const Operator& op : all_operators()) {
+            EXPECT_EQ(resolve_error(op.id, settings_for_picture(op.id, {}, s)), "no error");
+            for (const Preset& preset : op.presets) {
+                const std::string name = op.id + ":" + preset.id;
+                EXPECT_EQ(resolve_error(name, settings_for_picture(name, {}, s)), "no error");
+            }
+        }
+    }
+}
+
+TEST(Statistics, WrongNamesAreErrors) {
+    const auto error = [](std::string_view name) {
+        return error_of([&] { (void)settings_for_picture(name, {}, {}); });
+    };
+    EXPECT_EQ(error("drgo"), resolve_error("drgo"));
+    EXPECT_EQ(error("reinhard:lum"), resolve_error("reinhard:lum"));
+    EXPECT_NE(error("reinhard:lum"), "no error");
+}
+
+// ---------------------------------------------------------------------------------------------
+// How a curve meets color
+
+const Vector3 kColor = {2, 0.5, 0.1};
+const double kL = 0.2126 * 2 + 0.7152 * 0.5 + 0.0722 * 0.1;
+
+Pipeline reinhard(const Settings& settings) {
+    return resolve_operator("reinhard", settings).build();
+}
+
+TEST(Apply, NormsAndChannels) {
+    expect_rgb(shown(reinhard({}), kColor), {2.0 / 3, 0.5 / 1.5, 0.1 / 1.1}, kRounding);
+    // f(n)/n = 1/(1 + n)
+    expect_rgb(shown(reinhard({{"apply", "luminance"}}), kColor),
+               {2 / (1 + kL), 0.5 / (1 + kL), 0.1 / (1 + kL)}, kRounding);
+    expect_rgb(shown(reinhard({{"apply", "max"}}), kColor), {2.0 / 3, 0.5 / 3, 0.1 / 3}, kRounding);
+    const double lo = 0.1 / 1.1;
+    expect_rgb(shown(reinhard({{"apply", "hue_preserving"}}), kColor),
+               {2.0 / 3, lo + (2.0 / 3 - lo) * 0.4 / 1.9, lo}, kRounding);
+}
+
+/// Mantiuk et al. 2009 written out, for f = L/(1 + L), whose contrast d ln f/d ln L is 1/(1 + L).
+Vector3 corrected(bool is_nonlinear, bool is_from_contrast, double s) {
+    if (is_from_contrast) {
+        const double k1 = is_nonlinear ? 1.6774 : 2.3892;
+        const double power = std::pow(1 / (1 + kL), is_nonlinear ? 0.9925 : 0.8552);
+        s *= (1 + k1) * power / (1 + k1 * power);
+    }
+    Vector3 out{};
+    for (std::size_t c = 0; c < 3; ++c) {
+        const double ratio = kColor[c] / kL;
+        out[c] = (is_nonlinear ? std::pow(ratio, s) : (ratio - 1) * s + 1) * kL / (1 + kL);
+    }
+    return out;
+}
+
+TEST(Apply, ColorCorrections) {
+    for (const bool is_nonlinear : {false, true}) {
+        for (const bool is_from_contrast : {false, true}) {
+            for (const char* s : {"0", "0.6", "1", "1.7"}) {
+                const Settings settings = {
+                    {"apply", "luminance"},
+                    {"color_correction", is_nonlinear ? "nonlinear" : "luminance_preserving"},
+                    {"saturation", s},
+                    {"saturation_from", is_from_contrast ? "contrast" : "fixed"}};
+                const Pipeline p = reinhard(settings);
+                expect_rgb(shown(p, kColor),
+                           corrected(is_nonlinear, is_from_contrast, std::stod(s)), kRounding,
+                           to_string(p));
+                EXPECT_EQ(shown(p, {0, 0, 0}), (Vector3{0, 0, 0})) << "black is black";
+                EXPECT_EQ(shown(p, {-1, -1, -1}), (Vector3{0, 0, 0}));
+            }
+        }
+    }
+}
+
+TEST(Apply, LuminancePreservingKeepsTheLuminanceOfTheCurve) {
+    const Vector3 out = shown(reinhard({{"apply", "luminance"},
+                                        {"color_correction", "luminance_preserving"},
+                                        {"saturation", "0.4"}}),
+                              kColor);
+    EXPECT_NEAR(0.2126 * out[0] + 0.7152 * out[1] + 0.0722 * out[2], kL / (1 + kL), kRounding);
+}
+
+TEST(Apply, SettingsThatContradictEachOtherNameTheOperator) {
+    for (const char* apply : {"channels", "max", "hue_preserving"}) {
+        EXPECT_EQ(resolve_error("reinhard", {{"apply", apply}, {"color_correction", "nonlinear"}}),
+                  std::string("reinhard: color_correction is nonlinear; expected ratio with "
+                              "apply=") +
+                      apply);
+    }
+    EXPECT_EQ(resolve_error("reinhard_extended:luminance", {{"saturation", "0.5"}}),
+              "reinhard_extended: saturation is 0.5; expected 1 with color_correction=ratio");
+    EXPECT_EQ(resolve_error("exponential", {{"saturation_from", "contrast"}}),
+              "exponential: saturation_from is contrast; expected fixed with "
+              "color_correction=ratio");
+    EXPECT_EQ(resolve_error("reinhard", {{"saturation", "2.5"}}),
+              "reinhard: saturation is 2.5; expected [0, 2]");
+}
+
+Params apply_params(const std::string& apply) {
+    return resolve_operator("reinhard", {{"apply", apply}}).params;
+}
+
+TEST(Apply, NormsNeedACurveThatStartsAtBlack) {
+    const ToneCurve lifted{.f = kX / (1 + kX) + 0.125};
+    for (const char* apply : {"luminance", "max"}) {
+        EXPECT_EQ(error_of([&] { (void)apply_tone_curve(lifted, apply_params(apply)); }),
+                  std::string("apply is ") + apply +
+                      "; expected channels or hue_preserving: the curve is 0.125 at black, and no "
+                      "ratio of the colors makes that of 0");
+    }
+    for (const char* apply : {"channels", "hue_preserving"}) {
+        expect_rgb(shown(apply_tone_curve(lifted, apply_params(apply)), {0, 0, 0}),
+                   {0.125, 0.125, 0.125}, kRounding);
+    }
+    // One that starts below 0 starts at 0: f(1) = 0.25, f(0.25) < 0.
+    const ToneCurve crushed{.f = kX - 0.75};
+    const Pipeline p = apply_tone_curve(crushed, apply_params("max"));
+    expect_rgb(shown(p, {1, 0.5, 0}), {0.25, 0.125, 0}, kRounding);
+    EXPECT_EQ(shown(p, {0.25, 0.5, 0}), (Vector3{0, 0, 0}));
+}
+
+TEST(Apply, OfCodeValuesNormsScaleTheLight) {
+    // Code x/(1 + x) of power 2; n = 4: code 0.8, light 0.64, so all are scaled by 0.16.
+    const ToneCurve code{.f = kX / (1 + kX), .code_power = 2};
+    expect_rgb(shown(apply_tone_curve(code, apply_params("max")), {4, 1, 0}),
+               {0.8, std::sqrt(0.16), 0}, kRounding);
+    expect_rgb(shown(apply_tone_curve(code, apply_params("channels")), {4, 1, 0}), {0.8, 0.5, 0},
+               kRounding);
+    expect_rgb(shown(apply_tone_curve(code, apply_params("hue_preserving")), {4, 1, 0}),
+               {0.8, 0.2, 0}, kRounding);
+}
+
+TEST(Apply, ParametersStandBehindTheOperatorsOwn) {
+    const std::vector<ParameterSpec> all =
+        with_apply("max", {number_parameter("white", "", 4, 1, 9, "help")});
+    std::vector<std::string> names;
+    for (const ParameterSpec& p : all)
+        names.push_back(p.name);
+    EXPECT_EQ(names, (std::vector<std::string>{"white", "apply", "color_correction", "saturation",
+                                               "saturation_from"}));
+    EXPECT_EQ(all[1].default_choice, "max");
+}
+
+// ---------------------------------------------------------------------------------------------
+// Deviations
+
+TEST(Deviations, SayWhatTheUserSees) {
+    using Kind = Deviation::Kind;
+    const auto text = [](Kind kind, double value, const char* when = "") {
+        return to_string(Deviation{kind, value, when});
+    };
+    EXPECT_EQ(text(Kind::black, 0.00287), "lifts black to 0.0029");
+    EXPECT_EQ(text(Kind::black, -0.0023), "takes black to -0.0023, which displays clip");
+    EXPECT_EQ(text(Kind::crushes_black, 0.004), "shows greys up to 0.004 as black");
+    EXPECT_EQ(text(Kind::never_reaches_white, 0.9826),
+              "never reaches white: at most 0.983 of the display's light");
+    EXPECT_EQ(text(Kind::exceeds_white, 1.287), "exceeds white, up to 1.3: displays clip it");
+    EXPECT_EQ(text(Kind::exceeds_white, kInfinity), "exceeds white without end: displays clip it");
+    EXPECT_EQ(text(Kind::not_monotone, 0.0044), "non-monotone below 0.0044");
+    EXPECT_EQ(text(Kind::not_monotone, kInfinity), "non-monotone");
+    EXPECT_EQ(text(Kind::exceeds_white, 10, "hdr"),
+              "hdr: exceeds white, up to 10: displays clip it");
 }
 
 // ---------------------------------------------------------------------------------------------
@@ -404,7 +769,10 @@ TEST(Registry, OperatorsSayWhatTheyAre) {
             EXPECT_TRUE(is_line(*text)) << "one line of plain text: " << *text;
         }
         for (const std::string& warning : op.warnings)
-            EXPECT_TRUE(is_line(warning)) << warning;
+            EXPECT_TRUE(is_line(warning) && warning.back() != '.') << warning;
+        const bool is_bound_as_usual =
+            op.bounds.simd == 1e-6 && op.bounds.ocio_cpu == 0 && op.bounds.ocio_gpu == 0;
+        EXPECT_TRUE(is_bound_as_usual || is_line(op.bounds.reason)) << "a bound needs its reason";
         ASSERT_NE(op.build, nullptr);
         EXPECT_TRUE(op.output == OutputKind::display_linear || op.code_power > 1);
     }
@@ -418,15 +786,25 @@ TEST(Registry, ParametersAreWellFormed) {
             EXPECT_TRUE(is_lower_snake(p.name));
             EXPECT_TRUE(names.insert(p.name).second) << "twice";
             EXPECT_TRUE(is_line(p.help));
-            if (p.choices.empty()) {
-                EXPECT_LT(p.min, p.max);
-                EXPECT_LE(p.min, p.default_value);
-                EXPECT_GE(p.max, p.default_value);
-                EXPECT_TRUE(std::isfinite(p.min) && std::isfinite(p.max));
-            } else {
-                EXPECT_EQ(std::count(p.choices.begin(), p.choices.end(), p.default_choice), 1);
-                EXPECT_EQ(std::set<std::string>(p.choices.begin(), p.choices.end()).size(),
-                          p.choices.size());
+            EXPECT_EQ(p.from_picture != nullptr, !p.statistic.empty());
+            switch (p.kind) {
+                case ParameterSpec::Kind::number:
+                    EXPECT_LT(p.min, p.max);
+                    EXPECT_LE(p.min, p.default_value);
+                    EXPECT_GE(p.max, p.default_value);
+                    EXPECT_TRUE(std::isfinite(p.min) && std::isfinite(p.max));
+                    EXPECT_TRUE(p.choices.empty());
+                    break;
+                case ParameterSpec::Kind::choice:
+                    EXPECT_EQ(std::count(p.choices.begin(), p.choices.end(), p.default_choice), 1);
+                    EXPECT_EQ(std::set<std::string>(p.choices.begin(), p.choices.end()).size(),
+                              p.choices.size());
+                    EXPECT_EQ(p.from_picture, nullptr);
+                    break;
+                case ParameterSpec::Kind::text:
+                    EXPECT_TRUE(p.choices.empty());
+                    EXPECT_EQ(p.from_picture, nullptr);
+                    break;
             }
         }
     }
@@ -467,25 +845,62 @@ std::vector<double> picture(const ResolvedOperator& op) {
     return numbers;
 }
 
+/// Half of the parameters moved, by little or much: some are read with certain others only.
+Settings random_settings(const Operator& op, std::mt19937& random) {
+    const auto uniform = [&] { return static_cast<double>(random()) * 0x1p-32; };
+    Settings settings;
+    for (const ParameterSpec& p : op.parameters) {
+        if (p.kind == ParameterSpec::Kind::text || uniform() < 0.5) continue;
+        if (p.kind == ParameterSpec::Kind::choice) {
+            settings[p.name] = p.choices[random() % p.choices.size()];
+        } else {
+            const double end = uniform() < 0.5 ? p.min : p.max;
+            const double way = std::pow(10, -5 * uniform());
+            settings[p.name] = shortest(p.default_value + way * (end - p.default_value));
+        }
+    }
+    return settings;
+}
+
+/// True when some settings show another picture, or are refused, without what they have of `p`.
+bool does_something(const Operator& op, const ParameterSpec& p) {
+    std::mt19937 random(7);
+    for (int i = 0; i < 2000; ++i) {
+        const Settings with = random_settings(op, random);
+        Settings without = with;
+        if (without.erase(p.name) == 0 || resolve_error(op.id, with) != "no error") continue;
+        if (resolve_error(op.id, without) != "no error") return true;
+        if (picture(resolve_operator(op.id, with)) != picture(resolve_operator(op.id, without)))
+            return true;
+    }
+    return false;
+}
+
 TEST(Registry, EveryParameterPresetAndLookDoesSomething) {
     for (const Operator& op : all_operators()) {
         const std::vector<double> normal = picture(resolve_operator(op.id));
         for (const ParameterSpec& p : op.parameters) {
-            std::vector<std::string> values = p.choices;
-            if (values.empty()) values = {shortest(p.min), shortest(p.max)};
-            bool changed = false;
-            for (const std::string& value : values) {
-                // An end of one interval may contradict the other parameters.
-                if (resolve_error(op.id, {{p.name, value}}) != "no error") continue;
-                changed = changed || picture(resolve_operator(op.id, {{p.name, value}})) != normal;
-            }
-            EXPECT_TRUE(changed) << op.id << ": " << p.name << " is never read";
+            if (p.kind == ParameterSpec::Kind::text) continue;  // names a file, or what is in it
+            EXPECT_TRUE(does_something(op, p)) << op.id << ": " << p.name << " is never read";
         }
-        for (const Preset& preset : op.presets)
-            EXPECT_NE(picture(resolve_operator(op.id + ":" + preset.id)), normal) << preset.id;
+        for (const Preset& preset : op.presets) {
+            EXPECT_NE(picture(resolve_operator(op.id + ":" + preset.id)), normal)
+                << op.id << ":" << preset.id;
+        }
         for (const Look& look : op.looks)
             EXPECT_NE(picture(resolve_operator(op.id, {}, look.id)), normal) << look.id;
     }
+}
+
+TEST(Registry, DialectsAreAtLeastTwo) {
+    std::map<std::string, int> count;
+    for (const Operator& op : all_operators()) {
+        EXPECT_TRUE(op.dialects.empty() || is_line(op.dialects)) << op.id;
+        ++count[op.dialects];
+    }
+    count.erase("");
+    for (const auto& [name, n] : count)
+        EXPECT_GE(n, 2) << name;
 }
 
 // ---------------------------------------------------------------------------------------------
@@ -557,11 +972,52 @@ TEST(View, LinearAndNativeAreNotLimited) {
 
 TEST(View, DisplayLightIsDecodedAndLimited) {
     Operator linear;
-    EXPECT_EQ(shown(display_light_stages(linear), {-1, 0.5, 3}), (Vector3{0, 0.5, 1}));
+    EXPECT_EQ(shown(display_light_stages(linear, kRec709), {-1, 0.5, 3}), (Vector3{0, 0.5, 1}));
     Operator code;
     code.output = OutputKind::code_value;
     code.code_power = 2;
-    EXPECT_EQ(shown(display_light_stages(code), {-1, 0.5, 3}), (Vector3{0, 0.25, 1}));
+    EXPECT_EQ(shown(display_light_stages(code, kRec709), {-1, 0.5, 3}), (Vector3{0, 0.25, 1}));
+}
+
+TEST(View, KnowsWhichGamutIsInsideWhich) {
+    for (const Display& display : all_displays()) {
+        EXPECT_TRUE(is_inside(kRec709, display.primaries)) << display.id;
+        EXPECT_TRUE(is_inside(display.primaries, display.primaries)) << display.id;
+        EXPECT_FALSE(is_inside(kAP0, display.primaries)) << display.id;
+    }
+    EXPECT_FALSE(is_inside(kP3D65, kRec709));
+    EXPECT_FALSE(is_inside(kRec2020, kRec709));
+    EXPECT_FALSE(is_inside(kRec2020, kP3D65));
+}
+
+TEST(View, AGamutInsideTheDisplaysIsLimitedAsItsOwn) {
+    Operator op;  // works in Rec.709
+    EXPECT_EQ(kinds(display_light_stages(op, kRec709)), (Kinds{"clamp"}));
+    EXPECT_EQ(kinds(display_light_stages(op, kP3D65)), (Kinds{"clamp", "matrix", "clamp"}));
+    // (3, 0, 0) is the red of Rec.709, not a brighter one.
+    expect_rgb(shown(display_light_stages(op, kP3D65), {3, 0, 0}),
+               shown(display_light_stages(op, kP3D65), {1, 0, 0}), kRounding);
+}
+
+TEST(View, AWiderGamutIsLimitedWhereTheDisplayEnds) {
+    Operator op;
+    op.working = kRec2020;
+    EXPECT_EQ(kinds(display_light_stages(op, kRec709)), (Kinds{"matrix", "clamp"}));
+    EXPECT_EQ(kinds(display_light_stages(op, kRec2020)), (Kinds{"clamp"}));
+    op.output = OutputKind::code_value;
+    EXPECT_EQ(kinds(display_light_stages(op, kRec709)),
+              (Kinds{"clamp", "curve", "matrix", "clamp"}));
+    op.output = OutputKind::display_linear;
+    // ITU-R BT.2087-0, annex 2, in its four decimals, half a unit of the last three times. A limit
+    // of green's 1.1 before the matrix would show (0.2208, 1.0682, 0.2258).
+    expect_rgb(shown(display_light_stages(op, kRec709), {0.5, 1.1, 0.3}),
+               {1.6605 * 0.5 - 0.5876 * 1.1 - 0.0728 * 0.3, 1,
+                -0.0182 * 0.5 - 0.1006 * 1.1 + 1.1187 * 0.3},
+               1e-4);
+    // The green of Rec.2020 has red and blue below 0.
+    expect_rgb(shown(display_light_stages(op, kRec709), {0, 0.5, 0}), {0, 1.1329 * 0.5, 0}, 5e-5);
+    // White stays white.
+    expect_rgb(shown(display_light_stages(op, kRec709), {1, 1, 1}), {1, 1, 1}, kRounding);
 }
 
 TEST(View, ExposureIsAFactorOfTwoAStop) {

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What operators ask of a whole picture.
+//
+// Every row is summed by itself, from left to right, and the rows from top to bottom: whichever
+// threads they were on, the sums are the same to the last bit. Sums are compensated, so that a row
+// of a million pixels loses nothing.
+#include <OpenImageIO/imagebufalgo_util.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <memory>
+#include <new>
+#include <vector>
+
+#include "image/source_picture.h"
+#include "tonewright/engine.h"
+#include "tonewright/image.h"
+#include "tonewright/view.h"
+
+namespace tonewright {
+namespace {
+
+using OIIO::ImageBuf;
+using OIIO::ROI;
+
+/// A. Neumaier, "Rundungsfehleranalyse einiger Verfahren zur Summation endlicher Summen", ZAMM 54
+/// (1974): the rounding errors are summed beside the sum.
+class Sum {
+  public:
+    void add(double x) noexcept {
+        const double sum = sum_ + x;
+        lost_ += std::fabs(sum_) >= std::fabs(x) ? (sum_ - sum) + x : (x - sum) + sum_;
+        sum_ = sum;
+    }
+    void add(const Sum& other) noexcept {
+        add(other.sum_);
+        add(other.lost_);
+    }
+    [[nodiscard]] double value() const noexcept { return sum_ + lost_; }
+
+  private:
+    double sum_ = 0;
+    double lost_ = 0;
+};
+
+/// Of a row, or of all.
+struct Measured {
+    std::size_t count = 0;
+    std::size_t lit_count = 0;  // L > 0
+    Sum log_luminance;
+    Sum luminance;
+    std::array<Sum, 3> rgb;
+    double minimum_lit = kInfinity;
+    double maximum = 0;
+    Vector3 maximum_rgb{};
+
+    /// @param color  Rec.709, not negative
+    void add(const Vector3& color) noexcept {
+        ++count;
+        double L = 0;
+        for (std::size_t c = 0; c < 3; ++c) {
+            L += kRec709Weights[c] * color[c];
+            rgb[c].add(color[c]);
+            maximum_rgb[c] = std::max(maximum_rgb[c], color[c]);
+        }
+        luminance.add(L);
+        maximum = std::max(maximum, L);
+        if (L > 0) {
+            ++lit_count;
+            log_luminance.add(std::log(L));
+            minimum_lit = std::min(minimum_lit, L);
+        }
+    }
+
+    void add(const Measured& other) noexcept {
+        count += other.count;
+        lit_count += other.lit_count;
+        log_luminance.add(other.log_luminance);
+        luminance.add(other.luminance);
+        for (std::size_t c = 0; c < 3; ++c) {
+            rgb[c].add(other.rgb[c]);
+            maximum_rgb[c] = std::max(maximum_rgb[c], other.maximum_rgb[c]);
+        }
+        minimum_lit = std::min(minimum_lit, other.minimum_lit);
+        maximum = std::max(maximum, other.maximum);
+    }
+
+    [[nodiscard]] SceneStatistics statistics() const {
+        SceneStatistics s;
+        if (lit_count == 0) return s;
+        const auto n = static_cast<double>(count);
+        s.log_average = std::exp(log_luminance.value() / static_cast<double>(lit_count));
+        s.mean_luminance = luminance.value() / n;
+        s.minimum_luminance = minimum_lit;
+        s.maximum_luminance = maximum;
+        s.mean_rgb = {rgb[0].value() / n, rgb[1].value() / n, rgb[2].value() / n};
+        s.maximum_rgb = maximum_rgb;
+        return s;
+    }
+};
+
+/// How the color of a picture is read.
+struct ColorSource {
+    ChannelLayout layout;  // its alpha: -1 where alpha plays no part
+    bool divides;
+    Matrix3 to_rec709;
+};
+
+/// Measures the rows of one thread's part of a picture.
+class RowMeter {
+  public:
+    /// @throws std::bad_alloc
+    RowMeter(const ImageBuf& picture, const ColorSource& color)
+        : color_(color),
+          reader_(picture),
+          access_(*pixel_access(picture.spec().format)),
+          size_(static_cast<std::ptrdiff_t>(picture.spec().format.size())),
+          converts_(color.to_rec709 != kIdentity3) {}
+
+    /// @returns  false when the picture could not be read.
+    bool measure(int xbegin, int xend, int y, int z, Measured& row) {
+        for (int x = xbegin; x < xend;) {
+            const std::size_t n = std::min<std::size_t>(kSpan, static_cast<std::size_t>(xend - x));
+            SpanSource source{nullptr, 0};
+            if (!reader_.locate(x, y, z, n, source)) return false;
+            measure_span(source, n, row);
+            x += static_cast<int>(n);
+        }
+        return true;
+    }
+
+  private:
+    void measure_span(const SpanSource& source, std::size_t n, Measured& row) noexcept {
+        const int color_count = color_.layout.is_grey ? 1 : 3;
+        for (int c = 0; c < color_count; ++c)
+            load(source, c, planes_[static_cast<std::size_t>(c)], n);
+        if (color_.layout.alpha >= 0) load(source, color_.layout.alpha, planes_[3], n);
+        for (std::size_t i = 0; i < n; ++i) {
+            double alpha = 1;
+            if (color_.layout.alpha >= 0) {
+                alpha = planes_[3][i];
+                if (alpha == 0 || !std::isfinite(alpha)) continue;
+                if (!color_.divides) alpha = 1;
+            }
+            Vector3 rgb{};
+            for (std::size_t c = 0; c < 3; ++c)
+                rgb[c] = sanitise(planes_[color_.layout.is_grey ? 0 : c][i] / alpha);
+            if (converts_) rgb = multiply(color_.to_rec709, rgb);
+            for (double& x : rgb)
+                x = std::clamp(x, 0.0, kHalfMax);
+            row.add(rgb);
+        }
+    }
+
+    void load(const SpanSource& source, int channel, std::array<double, kSpan>& to,
+              std::size_t n) const noexcept {
+        access_.load_double(source.pixels + channel * size_, source.stride, to.data(), n);
+    }
+
+    const ColorSource& color_;
+    SpanReader reader_;
+    const PixelAccess& access_;
+    std::ptrdiff_t size_;
+    bool converts_;
+    std::array<std::array<double, kSpan>, 4> planes_{};  // r, g, b, alpha
+};
+
+Measured measure(const ImageBuf& picture, const ColorSource& color, const ROI& roi, int nthreads) {
+    std::vector<Measured> rows(static_cast<std::size_t>(roi.height()) *
+                               static_cast<std::size_t>(roi.depth()));
+    std::atomic<bool> unreadable = false;
+    std::atomic<bool> out_of_memory = false;
+    // Split between rows, never within one.
+    const OIIO::paropt threads(nthreads, OIIO::paropt::SplitDir::Y);
+    OIIO::ImageBufAlgo::parallel_image(roi, threads, [&](ROI part) {
+        // No exception may leave a thread of OIIO's pool.
+        try {
+            const auto meter = std::make_unique<RowMeter>(picture, color);
+            for (int z = part.zbegin; z < part.zend; ++z) {
+                for (int y = part.ybegin; y < part.yend; ++y) {
+                    const auto row = static_cast<std::size_t>(z - roi.zbegin) *
+                                         static_cast<std::size_t>(roi.height()) +
+                                     static_cast<std::size_t>(y - roi.ybegin);
+                    if (!meter->measure(part.xbegin, part.xend, y, z, rows[row])) unreadable = true;
+                }
+            }
+        } catch (const std::bad_alloc&) {
+            out_of_memory = true;
+        }
+    });
+    if (out_of_memory) throw std::bad_alloc();
+    check_was_read(picture, !unreadable);
+    Measured all;
+    for (const Measured& row : rows)
+        all.add(row);
+    return all;
+}
+
+}  // namespace
+
+SceneStatistics measure_scene(const ImageBuf& src, std::string_view input,
+                              TonemapOptions::Unpremult unpremult, ROI roi, int nthreads) {
+    const Primaries primaries = find_input_space(input).primaries;
+    check_source(src);
+    const OIIO::ImageSpec& spec = src.spec();
+    ColorSource color{channel_layout(spec), divides_by_alpha(spec, unpremult),
+                      rgb_to_rgb(primaries, kRec709)};
+    if (unpremult == TonemapOptions::Unpremult::no) color.layout.alpha = -1;
+
+    const ROI window = roi.defined() ? OIIO::roi_intersection(roi, src.roi()) : src.roi();
+    if (window.width() <= 0 || window.height() <= 0 || window.depth() <= 0) return {};
+    Measured all = measure(src, color, window, nthreads);
+    if (all.count == 0) {
+        // Nothing covers anything: a channel that was never written, or light alone.
+        color.layout.alpha = -1;
+        all = measure(src, color, window, nthreads);
+    }
+    return all.statistics();
+}
+
+}  // namespace tonewright

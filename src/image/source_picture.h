@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <OpenImageIO/imagebuf.h>
+
+#include <cstddef>
+#include <vector>
+
+#include "image/pixel_access.h"
+#include "tonewright/image.h"
+
+/// Pictures that are read span by span, whatever their pixel type, in memory or in OIIO's cache.
+namespace tonewright {
+
+/// Pixels that are worked on at a time: four float planes of them are 16 KiB and stay in the L1
+/// cache.
+inline constexpr std::size_t kSpan = 1024;
+
+/// Which channels are color and alpha. By position, not by name.
+struct ChannelLayout {
+    bool is_grey = false;  // channel 0 alone is color, else 0, 1, 2
+    int alpha = -1;        // -1: none
+};
+
+/// @throws Error  two channels of which the second is no alpha; alpha before color.
+[[nodiscard]] ChannelLayout channel_layout(const OIIO::ImageSpec& spec);
+
+/// True when color has to be divided by alpha to be a color.
+[[nodiscard]] bool divides_by_alpha(const OIIO::ImageSpec& spec,
+                                    TonemapOptions::Unpremult unpremult);
+
+/// @param what    "source" or "destination"
+/// @throws Error  for a type that OIIO has no pixels of.
+void check_pixel_type(const char* what, const OIIO::TypeDesc& type);
+
+/// Reads the header of a picture that is not open yet.
+/// @throws Error  no picture, or one that cannot be read, or deep, or of a type without pixels.
+void check_source(const OIIO::ImageBuf& source);
+
+/// After a pass over it: a cached picture is read as it is worked on, and its cache reports through
+/// the picture.
+/// @throws Error  with the reader's message.
+void check_was_read(const OIIO::ImageBuf& source, bool is_complete);
+
+/// Where the pixels of a span are.
+struct SpanSource {
+    const std::byte* pixels;  // null: outside the data window, black
+    std::ptrdiff_t stride;    // bytes from pixel to pixel
+};
+
+/// Finds the spans of a picture. One for each thread.
+class SpanReader {
+  public:
+    /// @throws std::bad_alloc
+    explicit SpanReader(const OIIO::ImageBuf& picture)
+        : picture_(picture), type_(picture.spec().format) {
+        if (!picture.localpixels()) {
+            fetched_.resize(kSpan * static_cast<std::size_t>(picture.nchannels()) * type_.size());
+        }
+    }
+
+    /// Pixels in memory are read where they are; those of a cached picture are fetched as they are.
+    /// @param n  at most kSpan pixels, all inside the data window.
+    /// @returns  false when the picture could not be read.
+    bool locate(int x, int y, int z, std::size_t n, SpanSource& source) {
+        if (picture_.localpixels()) {
+            source = {static_cast<const std::byte*>(picture_.pixeladdr(x, y, z)),
+                      picture_.pixel_stride()};
+            return true;
+        }
+        const int channels = picture_.nchannels();
+        const OIIO::ROI roi(x, x + static_cast<int>(n), y, y + 1, z, z + 1, 0, channels);
+        source = {fetched_.data(), channels * static_cast<std::ptrdiff_t>(type_.size())};
+        return picture_.get_pixels(roi, type_, fetched_.data());
+    }
+
+  private:
+    const OIIO::ImageBuf& picture_;
+    OIIO::TypeDesc type_;
+    std::vector<std::byte> fetched_;
+};
+
+}  // namespace tonewright

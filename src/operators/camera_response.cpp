@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Camera response: the measured answer of a film or a camera to light, from a file.
+//
+// Source    M. D. Grossberg, S. K. Nayar, "What is the Space of Camera Response Functions?",
+//           CVPR 2003, and its database of response functions (DoRF), Columbia University; used as
+//           a tone curve by 64, "Tone Mapping", 64.github.io ("ISO").
+// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, inf), negatives: clamped
+//           at 0. `iso` is the light that irradiance 1 of the curve stands for; above it the last
+//           value holds.
+// Out       code values in [0, 1]: a response is the pixel value that the camera writes. Nothing is
+//           encoded after it; other displays get its light by the power 2.2.
+// Kind      per channel, straight lines between the measured points; monotone (the reader refuses
+//           curves that fall).
+// Keeps     the first and the last value of the file; of the built-in curve 0 -> 0, iso -> 1.
+// Built in  no measured curve, because the database says nothing of passing it on. Without a file
+//           the curve is synthetic, ours: I(B) = (1 - exp(-3 B^0.7)) / (1 - exp(-3)) at the 1024
+//           irradiances i/1023, with straight lines between.
+// Differs   from the program of 64.github.io in its mistakes. It takes the end of an interval for
+//           its beginning (the result of upper_bound) and so extrapolates from the next one, which
+//           is off by up to 1.04e-4; it divides 0 by 0 in the last interval; at iso itself it reads
+//           behind the table. And it encodes the pixel values once more with the sRGB curve. Its
+//           table is the red curve of dscs315-1 for all channels: curve=red of a four-column file.
+// Check     mid grey 0.18 -> 0.239063797 (python_check/operators/camera_response.py).
+#include <cmath>
+
+#include "color/response_curve.h"
+#include "operators/family.h"
+
+namespace tonewright {
+namespace {
+
+std::shared_ptr<const Table> synthetic_curve() {
+    static const std::shared_ptr<const Table> curve = [] {
+        constexpr int kSamples = 1024;
+        auto table = std::make_shared<Table>();
+        for (int i = 0; i < kSamples; ++i) {
+            const double b = static_cast<double>(i) / (kSamples - 1);
+            table->samples.push_back((1 - std::exp(-3 * std::pow(b, 0.7))) / (1 - std::exp(-3.0)));
+        }
+        return table;
+    }();
+    return curve;
+}
+
+ResponseCurves curves_of(const Params& p) {
+    const std::string& file = p.text("file");
+    const std::string& curve = p.text("curve");
+    if (!file.empty()) {
+        try {
+            return read_response_curves(file, curve);
+        } catch (const FileError& e) {
+            throw FileError(std::string("camera_response: ") + e.what());
+        }
+    }
+    if (!curve.empty()) throw Error("curve is " + curve + "; expected a file that has it");
+    return {synthetic_curve(), synthetic_curve(), synthetic_curve()};
+}
+
+}  // namespace
+
+std::vector<Operator> define_camera_response() {
+    Operator op;
+    op.id = "camera_response";
+    op.title = "Camera response (DoRF)";
+    op.view = "Camera Response";
+    op.character =
+        "a film's or camera's own curve from a file, hard white at iso; the built-in one is bright "
+        "and flat";
+    op.source =
+        "M. Grossberg, S. Nayar, What is the Space of Camera Response Functions?, CVPR 2003; 64, "
+        "Tone Mapping, 64.github.io";
+    op.licence = "published method; measured curves are not part of it";
+    op.negatives = kNegativesClampAtZero;
+    op.output = OutputKind::code_value;
+    op.code_power = 2.2;
+    op.parameters = {
+        text_parameter("file",
+                       "response curves: .rf, CSV or DoRF's text; none: a synthetic curve, built "
+                       "in"),
+        text_parameter("curve",
+                       "of DoRF: a name, or what the names of three channels begin with; of four "
+                       "columns: red, green or blue for all channels"),
+        number_parameter("iso", "scene-linear", 6, 1e-5, 65504,
+                         "light that irradiance 1 stands for: it is shown as the curve's end"),
+    };
+    op.warnings = {
+        "the response is the encoding: nothing is encoded after it, and for other "
+        "displays its light is decoded with 2.2",
+        "without a file the curve is synthetic, of no film or camera"};
+    op.build = [](const Params& p) -> Pipeline {
+        const double iso = p.number("iso");
+        const ResponseCurves curves = curves_of(p);
+        const Expr x = Expr::input() / iso;
+        return {ClampStage{0, iso},
+                CurveStage{{lookup(curves[0], x), lookup(curves[1], x), lookup(curves[2], x)},
+                           std::nullopt}};
+    };
+    return {op};
+}
+
+}  // namespace tonewright

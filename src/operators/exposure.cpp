@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The plainest curves: a division, an exponential, two logarithms, a power. Each needs one number of
+// the picture: its mean or its maximum.
+//
+// Source    linear: common practice, "maximum division" where the divisor is the picture's maximum.
+//           exponential, logarithmic, exponentiation: as in T. Zeltner, "Tone Mapper"
+//           (github.com/tizian/tonemapper), 2015. log_tonemap: T. Madams, "Why Reinhard desaturates
+//           my blacks", imdoingitwrong.wordpress.com, 2010-08-19, comment 9.
+// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, 65504], negatives: clamped
+//           at 0.
+// Out       display-linear RGB, 1.0 = display peak. linear [0, 1]; exponential [0, 1); the others
+//           are 1 at `maximum` or `limit` and go on rising above it.
+// Kind      per channel (linear) or luminance, as `apply` says; monotone on the neutral axis: yes.
+//           linear has an inverse within [0, divisor].
+// Keeps     f(0) = 0; linear f(divisor) = 1; logarithmic, exponentiation f(maximum) = 1; log_tonemap
+//           f(limit) = 1.
+// Differs   luminance forms are 0/0 at black in every source: here black stays black. ln(1 + x) is
+//           computed so that it keeps its digits for small x. exponentiation is black up to 2^-100:
+//           its slope at 0 has no end. log_tonemap's S-curve ("hacky contrast") falls again above 1
+//           and is negative from 1.5 on, so the light is limited to [0, 1] before it; the post has
+//           a dash for its minus and no closing braces.
+// Check     mid grey 0.18 -> 0.045 (linear), 0.164729789 (exponential), 0.0358644304 (logarithmic),
+//           0.0584195562 (log_tonemap), 0.0424264069 (exponentiation)
+//           (python_check/operators/exposure.py).
+#include <cmath>
+
+#include "operators/family.h"
+
+namespace tonewright {
+namespace {
+
+constexpr const char* kZeltner =
+    "T. Zeltner, Tone Mapper, github.com/tizian/tonemapper, commit dd9f7c8, 2015";
+constexpr const char* kChannelsMayClip =
+    "apply=luminance keeps chromaticity, so a saturated channel may exceed 1 and clip";
+
+/// A scene value that every picture has one of its own for: its maximum.
+ParameterSpec maximum_luminance(std::string name, double value, double min, std::string help) {
+    return statistic_parameter(number_parameter(std::move(name), "scene-linear", value, min,
+                                                kHalfMax, std::move(help)),
+                               "maximum luminance",
+                               [](const SceneStatistics& s) { return s.maximum_luminance; });
+}
+
+/// ln(1 + x) for x >= 0. What 1 + x rounds away is missing in both parts of the quotient.
+Expr log_of_1_plus(const Expr& x) {
+    const Expr u = 1 + x;
+    return select(equal(u, 1), x, x * (log(u) / (u - 1)));
+}
+
+Operator linear() {
+    Operator op;
+    op.id = "linear";
+    op.title = "Linear (division by the maximum)";
+    op.view = "Linear";
+    op.character =
+        "contrast and colours exactly as in the scene, then clipped; dark where a picture has "
+        "bright lights";
+    op.source = "common practice; division by the maximum in 64, Tone Mapping, 64.github.io";
+    op.licence = "common practice";
+    op.negatives = kNegativesClampAtZero;
+    op.parameters = with_apply(
+        "channels",
+        {maximum_luminance("divisor", 4, 1e-6, "scene value that is shown as display white")});
+    op.build = [](const Params& p) -> Pipeline {
+        const Expr x = Expr::input();
+        const double divisor = p.number("divisor");
+        return tone_curve_pipeline({.f = x / divisor, .inverse = x * divisor}, p) +
+               Pipeline{ClampStage{0, 1}};
+    };
+    return op;
+}
+
+Operator exponential() {
+    Operator op;
+    op.id = "exponential";
+    op.title = "Exponential";
+    op.view = "Exponential";
+    op.character =
+        "steep in the dark, soft above the average, never clips a grey; bright, with flat lights";
+    op.source = std::string("1 - exp(-L/Lavg) as in ") + kZeltner;
+    op.licence = "published formula (program: MIT)";
+    op.negatives = kNegativesClampAtZero;
+    op.parameters = with_apply(
+        "luminance",
+        {statistic_parameter(
+            number_parameter("average", "scene-linear", 1, 1e-6, kHalfMax,
+                             "scene value that is shown at 1 - 1/e = 0.63 of the display's light"),
+            "mean luminance", [](const SceneStatistics& s) { return s.mean_luminance; })});
+    op.warnings = {kChannelsMayClip};
+    op.build = [](const Params& p) -> Pipeline {
+        return tone_curve_pipeline({.f = 1 - exp(-(Expr::input() / p.number("average")))}, p);
+    };
+    return op;
+}
+
+Operator logarithmic() {
+    Operator op;
+    op.id = "logarithmic";
+    op.title = "Logarithmic";
+    op.view = "Logarithmic";
+    op.character = "equal steps for equal ratios: opens shadows, greys everything, dark mid tones";
+    op.source = std::string("log10(1 + p L)/log10(1 + p Lmax) as in ") + kZeltner;
+    op.licence = "published formula (program: MIT)";
+    op.negatives = kNegativesClampAtZero;
+    op.parameters = with_apply(
+        "luminance",
+        {number_parameter("p", "", 1, 0.001, 1000,
+                          "factor on the scene value inside the logarithm: larger is flatter"),
+         maximum_luminance("maximum", 100, 1e-6, "scene value that is shown as display white")});
+    op.warnings = {kChannelsMayClip};
+    op.deviations = {{Deviation::Kind::exceeds_white, 2.4, ""}};
+    op.build = [](const Params& p) -> Pipeline {
+        const double scale = p.number("p");
+        const double at_maximum = std::log1p(scale * p.number("maximum"));
+        return tone_curve_pipeline({.f = log_of_1_plus(scale * Expr::input()) / at_maximum}, p);
+    };
+    return op;
+}
+
+Operator log_tonemap() {
+    Operator op;
+    op.id = "log_tonemap";
+    op.title = "Log tone map (Madams)";
+    op.view = "Log Tone Map";
+    op.character =
+        "a logarithm that is white at `limit`; flat, but for the optional S-curve behind it";
+    op.source =
+        "T. Madams, Why Reinhard desaturates my blacks, imdoingitwrong.wordpress.com, 2010-08-19, "
+        "comment 9";
+    op.licence = "published formula";
+    op.negatives = kNegativesClampAtZero;
+    op.parameters = with_apply(
+        "luminance",
+        {maximum_luminance("limit", 16, 0.001, "scene value that is shown as display white"),
+         number_parameter("contrast", "", 0, 0, 1,
+                          "share of the S-curve x^2 (3 - 2x), of each channel, after a limit to "
+                          "[0, 1]; 0: neither")});
+    op.warnings = {kChannelsMayClip};
+    op.deviations = {{Deviation::Kind::exceeds_white, 3.9, ""}};
+    op.build = [](const Params& p) -> Pipeline {
+        const Expr x = Expr::input();
+        const double contrast = p.number("contrast");
+        const Pipeline tone =
+            tone_curve_pipeline({.f = log_of_1_plus(x) / std::log1p(p.number("limit"))}, p);
+        if (contrast == 0) return tone;
+        return tone +
+               Pipeline{ClampStage{0, 1}, curve_stage(mix(x, x * x * (3 - 2 * x), contrast))};
+    };
+    return op;
+}
+
+Operator exponentiation() {
+    Operator op;
+    op.id = "exponentiation";
+    op.title = "Exponentiation";
+    op.view = "Exponentiation";
+    op.character = "a power of the scene: every ratio shrinks alike; lifts shadows, grey and flat";
+    op.source = std::string("(L/Lmax)^p as in ") + kZeltner;
+    op.licence = "published formula (program: MIT)";
+    op.negatives = kNegativesClampAtZero;
+    op.parameters = with_apply(
+        "luminance",
+        {number_parameter("p", "", 0.5, 0.01, 1, "the power: smaller is flatter, 1 is linear"),
+         maximum_luminance("maximum", 100, 1e-6, "scene value that is shown as display white")});
+    op.warnings = {kChannelsMayClip};
+    op.deviations = {{Deviation::Kind::exceeds_white, kInfinity, ""}};
+    op.build = [](const Params& p) -> Pipeline {
+        const Expr x = Expr::input();
+        const Expr power = pow(x / p.number("maximum"), p.number("p"));
+        return tone_curve_pipeline({.f = select(less(0x1p-100, x), power, 0)}, p);
+    };
+    return op;
+}
+
+}  // namespace
+
+std::vector<Operator> define_exposure() {
+    return {linear(), exponential(), logarithmic(), log_tonemap(), exponentiation()};
+}
+
+}  // namespace tonewright

@@ -1,0 +1,417 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Filmic curves: toe, straight part, shoulder, each in its author's few numbers.
+//
+// Source    hejl_burgess_dawson: J. Hejl, R. Burgess-Dawson, in J. Hable, "Filmic Tonemapping
+//           Operators", filmicworlds.com, 2010-05-05. hejl_2015: J. Hejl,
+//           twitter.com/jimhejl/status/633777619998130176, 2015, as in M. Pettineo's BakingLab,
+//           ToneMapping.hlsl. aldridge: G. Aldridge, "Approximating Film with Tonemapping",
+//           iwasbeingirony.blogspot.com, 2010-04-19, as in T. Zeltner, "Tone Mapper"
+//           (github.com/tizian/tonemapper). lottes: T. Lottes, "Advanced Techniques and
+//           Optimization of HDR Color Pipelines", GDC 2016. filament_generic: Filament,
+//           ToneMapper.cpp, GenericToneMapper. ue3: Unreal Engine 3 documentation, "Color Grading",
+//           by way of R. Guy's shadertoy. day: M. Day, "An efficient and user-friendly tone mapping
+//           operator", Insomniac Games, 2012. schlick: C. Schlick, "Quantization Techniques for
+//           Visualization of High Dynamic Range Pictures", Eurographics Workshop on Rendering,
+//           1994. toe: ours, after descriptions in T. Madams, "Why Reinhard desaturates my blacks",
+//           imdoingitwrong.wordpress.com, 2010-08-19.
+// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, 65504], negatives: clamped
+//           at 0.
+// Out       CODE VALUES of a 2.2 power: hejl_burgess_dawson and aldridge [0, 1), ue3 [0, 1]. The
+//           others display-linear RGB, 1.0 = display peak, and none has its end there: hejl_2015
+//           [-0.00072, 1.038), filament_generic below its output scale, schlick below p/(p-1), day
+//           below its shoulder's end, lottes and toe without end.
+// Kind      per channel; schlick luminance. Monotone on the neutral axis: yes, but lottes with a
+//           shoulder above 1 falls again.
+// Keeps     hejl_2015, day f(white) = 1; lottes, filament_generic f(mid_in) = mid_out and
+//           f(hdr_max) = 1; schlick f(maximum) = 1; toe: values above its width.
+// Differs   hejl_burgess_dawson, schlick: nowhere (T. Zeltner's schlick ignores p). ue3: its code
+//           values go up to 1.019 in most ports; here they end at 1, where the display does.
+//           hejl_2015: the first factor is BakingLab's 1.435; the author's post is quoted with
+//           1.425 elsewhere, which is up to 0.0014 darker.
+//           aldridge: below twice the cutoff v + (2q - v)^2/(4q) - q is written v^2/(4q), the same
+//           without the difference, so that 0 stays 0. With a cutoff above 0.5 the source is
+//           negative below, down to the pole of the rational: 0 here.
+//           lottes: the power in the denominator ends at 2^-100, because the slope of a power below
+//           1 has no end at 0. The talk's crosstalk between the channels is not in it, as in all
+//           ports.
+//           filament_generic: Filament applies it in Rec.2020.
+//           day: both denominators are written so that they keep their digits where the crossover
+//           comes near black or white.
+// Check     mid grey 0.18 -> 0.508028282 (hejl_burgess_dawson), 0.237508884 (hejl_2015),
+//           0.479315490 (aldridge), 0.267 (lottes), 0.215 (filament_generic), 0.547522388 (ue3),
+//           0.00341873507 (day), 0.0348093212 (schlick), 0.18 (toe)
+//           (python_check/operators/filmic.py).
+#include <cmath>
+
+#include "operators/family.h"
+
+namespace tonewright {
+namespace {
+
+/// Its light is code values: a 2.2 power is in the constants.
+constexpr double kBakedPower = 2.2;
+
+/// The rational that approximates Kodak's film with its print and gamma; of x >= 0.
+Expr hejl_rational(const Expr& x) {
+    return x * (6.2 * x + 0.5) / (x * (6.2 * x + 1.7) + 0.06);
+}
+
+Operator hejl_burgess_dawson() {
+    Operator op;
+    op.id = "hejl_burgess_dawson";
+    op.title = "Hejl/Burgess-Dawson";
+    op.view = "Hejl Burgess-Dawson";
+    op.character =
+        "film print in four constants: crisp blacks, strong contrast, long shoulder; crushes the "
+        "last shadows";
+    op.source =
+        "J. Hejl, R. Burgess-Dawson, in J. Hable, Filmic Tonemapping Operators, filmicworlds.com, "
+        "2010-05-05";
+    op.licence = "published formula";
+    op.negatives = kNegativesClampAtZero;
+    op.output = OutputKind::code_value;
+    op.code_power = kBakedPower;
+    op.dialects = "Hejl";
+    op.parameters = with_apply("channels");
+    op.deviations = {{Deviation::Kind::crushes_black, 0.004, ""}};
+    op.build = [](const Params& p) -> Pipeline {
+        const Expr f = hejl_rational(max(Expr::input() - 0.004, 0));
+        return tone_curve_pipeline({.f = f, .code_power = kBakedPower}, p);
+    };
+    return op;
+}
+
+Operator hejl_2015() {
+    Operator op;
+    op.id = "hejl_2015";
+    op.title = "Hejl 2015";
+    op.view = "Hejl 2015";
+    op.character =
+        "Hejl's film curve as light, with a white of your choice: softer toe, very long shoulder";
+    op.source =
+        "J. Hejl, twitter.com/jimhejl/status/633777619998130176, 2015, as in M. Pettineo's "
+        "BakingLab, ToneMapping.hlsl";
+    op.licence = "published formula (BakingLab: MIT)";
+    op.negatives = kNegativesClampAtZero;
+    op.dialects = "Hejl";
+    op.parameters = with_apply(
+        "channels", {number_parameter("white", "scene-linear", 11.2, 0.1, kHalfMax,
+                                      "smallest scene value that is shown as display white")});
+    op.warnings = {"quoted elsewhere with 1.425 where this, as BakingLab, has 1.435"};
+    op.deviations = {{Deviation::Kind::black, -0.00072, ""},
+                     {Deviation::Kind::crushes_black, 0.0046, ""},
+                     {Deviation::Kind::exceeds_white, 1.0, ""}};
+    op.build = [](const Params& p) -> Pipeline {
+        const auto f = [](const Expr& v) {
+            const Expr a = 1.435 * v + 0.05;
+            return (v * a + 0.004) / (v * (a + 0.55) + 0.0491) - 0.0821;
+        };
+        return tone_curve_pipeline({.f = f(Expr::input()) / f(p.number("white"))}, p);
+    };
+    return op;
+}
+
+Operator aldridge() {
+    Operator op;
+    op.id = "aldridge";
+    op.title = "Aldridge";
+    op.view = "Aldridge";
+    op.character = "Hejl/Burgess-Dawson with a soft start instead of crushed blacks";
+    op.source =
+        "G. Aldridge, Approximating Film with Tonemapping, iwasbeingirony.blogspot.com, "
+        "2010-04-19, as in T. Zeltner, Tone Mapper, github.com/tizian/tonemapper";
+    op.licence = "published formula (program: MIT)";
+    op.negatives = kNegativesClampAtZero;
+    op.output = OutputKind::code_value;
+    op.code_power = kBakedPower;
+    op.dialects = "Hejl";
+    op.parameters = with_apply(
+        "channels",
+        {number_parameter("cutoff", "scene-linear", 0.025, 0.001, 1,
+                          "what is taken from the lights; the start is soft up to twice this")});
+    op.build = [](const Params& p) -> Pipeline {
+        const double q = p.number("cutoff");
+        const Expr v = Expr::input();
+        // v + (2q - v) clamp(2q - v, 0, 1) (0.25/q) - q
+        Expr x = select(less(v, 2 * q), v * v / (4 * q), v - q);
+        if (q > 0.5) x = select(less(v, 2 * q - 1), max(v + (2 * q - v) * (0.25 / q) - q, 0), x);
+        return tone_curve_pipeline({.f = hejl_rational(x), .code_power = kBakedPower}, p);
+    };
+    return op;
+}
+
+/// x^a/(b x^(a d) + c) through (mid_in, mid_out) and (hdr_max, 1).
+Expr lottes_curve(const Params& p) {
+    const double a = p.number("contrast");
+    const double d = p.number("shoulder");
+    const double hdr_max = p.number("hdr_max");
+    const double mid_in = p.number("mid_in");
+    const double mid_out = p.number("mid_out");
+    if (!(hdr_max > mid_in)) {
+        throw Error("hdr_max is " + shortest(hdr_max) + "; expected above mid_in, " +
+                    shortest(mid_in));
+    }
+    const double max_a = std::pow(hdr_max, a);
+    const double max_ad = std::pow(hdr_max, a * d);
+    const double mid_a = std::pow(mid_in, a);
+    const double mid_ad = std::pow(mid_in, a * d);
+    const double b = (max_a * mid_out - mid_a) / ((max_ad - mid_ad) * mid_out);
+    const double c = (max_ad * mid_a - max_a * mid_ad * mid_out) / ((max_ad - mid_ad) * mid_out);
+    if (!(b > 0)) {
+        throw Error("mid_out is " + shortest(mid_out) + "; expected above " +
+                    shortest(mid_a / max_a) + ", where the curve has no shoulder");
+    }
+    if (!(c > 0)) {
+        throw Error("mid_out is " + shortest(mid_out) + "; expected below " +
+                    shortest(max_ad * mid_a / (max_a * mid_ad)) +
+                    ", where the curve has no toe (a larger shoulder allows more)");
+    }
+    const Expr x = Expr::input();
+    return pow(x, a) / (b * pow(max(x, 0x1p-100), a * d) + c);
+}
+
+Operator lottes() {
+    Operator op;
+    op.id = "lottes";
+    op.title = "Lottes";
+    op.view = "Lottes";
+    op.character =
+        "contrast and shoulder set apart, mid grey and white pinned: bright mid tones, firm blacks";
+    op.source =
+        "T. Lottes, Advanced Techniques and Optimization of HDR Color Pipelines, GDC 2016";
+    op.licence = "published formula";
+    op.negatives = kNegativesClampAtZero;
+    op.dialects = "Lottes";
+    op.parameters = with_apply(
+        "channels",
+        {number_parameter("contrast", "", 1.6, 1, 2, "a: power of the toe"),
+         number_parameter("shoulder", "", 0.977, 0.01, 2, "d: 1 has an end, smaller is softer"),
+         number_parameter("hdr_max", "scene-linear", 8, 1, kHalfMax,
+                          "scene value that is shown as display white"),
+         number_parameter("mid_in", "scene-linear", 0.18, 0.01, 1, "mid grey of the scene"),
+         number_parameter("mid_out", "display-linear", 0.267, 0.01, 0.99,
+                          "light that mid grey is shown with")});
+    op.warnings = {"with a shoulder above 1 lights get darker again above some scene value"};
+    op.deviations = {{Deviation::Kind::exceeds_white, 1.4, ""}};
+    op.build = [](const Params& p) -> Pipeline {
+        return tone_curve_pipeline({.f = lottes_curve(p)}, p);
+    };
+    return op;
+}
+
+/// The same with d = 1, in Filament's letters.
+Expr filament_curve(const Params& p) {
+    const double contrast = p.number("contrast");
+    const double mid_out = p.number("mid_out");
+    const double a = std::pow(p.number("mid_in"), contrast);
+    const double b = std::pow(p.number("hdr_max"), contrast);
+    if (!(b > a)) {
+        throw Error("hdr_max is " + shortest(p.number("hdr_max")) + "; expected above mid_in, " +
+                    shortest(p.number("mid_in")));
+    }
+    const double c = a - mid_out * b;
+    if (!(c < 0 && mid_out < 1)) {
+        throw Error("mid_out is " + shortest(mid_out) + "; expected between " + shortest(a / b) +
+                    ", where the curve has no shoulder, and 1, where it has no toe");
+    }
+    const double input_scale = a * b * (mid_out - 1) / c;
+    const double output_scale = mid_out * (a - b) / c;
+    const Expr power = pow(Expr::input(), contrast);
+    return output_scale * power / (power + input_scale);
+}
+
+Operator filament_generic() {
+    Operator op;
+    op.id = "filament_generic";
+    op.title = "Generic (Filament)";
+    op.view = "Filament Generic";
+    op.character = "Lottes without its shoulder's parameter: has an end a little above white";
+    op.source =
+        "Filament, filament/src/ToneMapper.cpp, GenericToneMapper, github.com/google/filament";
+    op.licence = "Apache-2.0";
+    op.negatives = kNegativesClampAtZero;
+    op.dialects = "Lottes";
+    op.parameters = with_apply(
+        "channels",
+        {number_parameter("contrast", "", 1.55, 1, 3, "power of the toe"),
+         number_parameter("mid_in", "scene-linear", 0.18, 0.01, 1, "mid grey of the scene"),
+         number_parameter("mid_out", "display-linear", 0.215, 0.01, 1,
+                          "light that mid grey is shown with"),
+         number_parameter("hdr_max", "scene-linear", 10, 1, kHalfMax,
+                          "scene value that is shown as display white")});
+    op.deviations = {{Deviation::Kind::exceeds_white, 1.0, ""}};
+    op.build = [](const Params& p) -> Pipeline {
+        return tone_curve_pipeline({.f = filament_curve(p)}, p);
+    };
+    return op;
+}
+
+Operator ue3() {
+    Operator op;
+    op.id = "ue3";
+    op.title = "Unreal Engine 3";
+    op.view = "Unreal 3";
+    op.character = "Reinhard's shape on code values: bright, low contrast, no toe; white at 8.2";
+    op.source = "Unreal Engine 3 documentation, Color Grading; R. Guy, shadertoy llXyWr";
+    op.licence = "published formula";
+    op.negatives = kNegativesClampAtZero;
+    op.output = OutputKind::code_value;
+    op.code_power = kBakedPower;
+    op.dialects = "Unreal";
+    op.parameters = with_apply("channels");
+    op.build = [](const Params& p) -> Pipeline {
+        const Expr x = Expr::input();
+        return tone_curve_pipeline({.f = x / (x + 0.155) * 1.019, .code_power = kBakedPower}, p) +
+               Pipeline{ClampStage{0, 1}};
+    };
+    return op;
+}
+
+/// Two hyperbolas that meet in (c, k) with one slope: a toe from black b, a shoulder to white w.
+Expr day_curve(const Params& p) {
+    const double w = p.number("white");
+    const double b = p.number("black");
+    const double t = p.number("toe");
+    const double s = p.number("shoulder");
+    const double c = p.number("crossover");
+    if (!(b < c && c < w)) {
+        throw Error("crossover is " + shortest(c) + "; expected between black, " + shortest(b) +
+                    ", and white, " + shortest(w));
+    }
+    const double k = (1 - t) * (c - b) / ((1 - s) * (w - c) + (1 - t) * (c - b));
+    const Expr x = Expr::input() / p.number("average");
+    const Expr below = min(x, c);
+    const Expr above = max(x, c);
+    // c - (1-t) b - t x and s x + (1-s) w - c of the paper
+    const Expr toe = k * (1 - t) * (below - b) / (t * (c - below) + (1 - t) * (c - b));
+    const Expr shoulder = (1 - k) * (above - c) / (s * (above - c) + (1 - s) * (w - c)) + k;
+    return select(less(x, c), toe, shoulder);
+}
+
+Operator day() {
+    Operator op;
+    op.id = "day";
+    op.title = "Day (Insomniac)";
+    op.view = "Day";
+    op.character =
+        "black, white, crossover and two strengths by hand; as it comes, dark with hard blacks";
+    op.source =
+        "M. Day, An efficient and user-friendly tone mapping operator, Insomniac Games, 2012";
+    op.licence = "published formula";
+    op.negatives = kNegativesClampAtZero;
+    op.parameters = with_apply(
+        "channels",
+        {number_parameter("white", "times the average", 10, 0.1, kHalfMax,
+                          "value that is shown as display white"),
+         number_parameter("black", "times the average", 0.1, 0, 1,
+                          "value that is shown as black; below it the curve is negative"),
+         number_parameter("toe", "", 0.7, 0, 0.99, "strength of the toe: 0 is a straight line"),
+         number_parameter("shoulder", "", 0.8, 0, 0.99,
+                          "strength of the shoulder: 0 is a straight line"),
+         number_parameter("crossover", "times the average", 2, 0.01, 1000,
+                          "value where the toe meets the shoulder"),
+         statistic_parameter(
+             number_parameter("average", "scene-linear", 1, 1e-6, kHalfMax,
+                              "scene value that the others are multiples of"),
+             "mean luminance", [](const SceneStatistics& s) { return s.mean_luminance; })});
+    op.deviations = {{Deviation::Kind::black, -0.0040, ""},
+                     {Deviation::Kind::crushes_black, 0.099, ""},
+                     {Deviation::Kind::exceeds_white, 1.2, ""}};
+    op.build = [](const Params& p) -> Pipeline {
+        return tone_curve_pipeline({.f = day_curve(p)}, p);
+    };
+    return op;
+}
+
+Operator schlick() {
+    Operator op;
+    op.id = "schlick";
+    op.title = "Schlick";
+    op.view = "Schlick";
+    op.character = "Reinhard's shape with white pinned at the maximum: opens shadows, soft lights";
+    op.source =
+        "C. Schlick, Quantization Techniques for Visualization of High Dynamic Range Pictures, "
+        "Eurographics Workshop on Rendering, 1994";
+    op.licence = "published formula";
+    op.negatives = kNegativesClampAtZero;
+    op.parameters = with_apply(
+        "luminance",
+        {number_parameter("p", "", 20, 1, 1000, "slope at black times the maximum; 1 is linear"),
+         statistic_parameter(
+             number_parameter("maximum", "scene-linear", 100, 1e-6, kHalfMax,
+                              "scene value that is shown as display white"),
+             "maximum luminance", [](const SceneStatistics& s) { return s.maximum_luminance; })});
+    op.warnings = {
+        "apply=luminance keeps chromaticity, so a saturated channel may exceed 1 and clip"};
+    op.deviations = {{Deviation::Kind::exceeds_white, 1.1, ""}};
+    op.build = [](const Params& params) -> Pipeline {
+        const Expr x = Expr::input();
+        const double p = params.number("p");
+        const Expr f = p * x / (p * x - x + params.number("maximum"));
+        return tone_curve_pipeline({.f = f}, params);
+    };
+    return op;
+}
+
+Operator toe() {
+    Operator op;
+    op.id = "toe";
+    op.title = "Toe";
+    op.view = "Toe";
+    op.character =
+        "darkens only the deepest shadows, as games of 2009 did: on a plain picture, or (ramp) on "
+        "Reinhard Extended";
+    op.source =
+        "ours, after T. Madams, Why Reinhard desaturates my blacks, imdoingitwrong.wordpress.com, "
+        "2010-08-19, which describes two games' toes without a formula";
+    op.licence = "ours";
+    op.negatives = kNegativesClampAtZero;
+    op.parameters = with_apply(
+        "channels",
+        {choice_parameter("form", {"quadratic", "ramp"}, "quadratic",
+                          "quadratic: a smooth toe on the scene value; ramp: two multiply-adds "
+                          "behind Reinhard Extended"),
+         number_parameter("width", "", 0.05, 0.001, 1, "value where the toe ends"),
+         number_parameter("strength", "", 1, 0, 1, "0: no toe; 1: no slope at black"),
+         number_parameter("brightness", "", 0, -1, 1, "added behind the toe"),
+         number_parameter("contrast", "", 1, 0.01, 4, "slope behind the toe, about 0.5"),
+         number_parameter("white", "scene-linear", 4, 0.01, kHalfMax,
+                          "white of Reinhard Extended; read with form=ramp")});
+    op.presets = {{"ramp",
+                   "Reinhard Extended with its shadows ramped down",
+                   {{"form", "ramp"}, {"width", "0.25"}, {"strength", "0.5"}}}};
+    op.warnings = {"a definition of ours: neither game's formula was published"};
+    op.deviations = {{Deviation::Kind::exceeds_white, kInfinity, ""}};
+    op.build = [](const Params& p) -> Pipeline {
+        const Expr x = Expr::input();
+        const double width = p.number("width");
+        const double strength = p.number("strength");
+        const double contrast = p.number("contrast");
+        Expr y = x;
+        if (p.choice("form") == "quadratic") {
+            const Expr u = min(x, width);
+            const Expr toe = (1 - strength) * u +
+                             strength * (u * u * (2 * width - u) / (width * width));
+            y = select(less(x, width), toe, x);
+        } else {
+            const double white = p.number("white");
+            const Expr r = x * (1 + x / (white * white)) / (1 + x);
+            const Expr weight = clamp(1 - r / width, 0, 1);
+            y = r - strength * weight * r;
+        }
+        // (y - 0.5) contrast + 0.5 + brightness
+        return tone_curve_pipeline(
+            {.f = contrast * y + (p.number("brightness") + 0.5 - 0.5 * contrast)}, p);
+    };
+    return op;
+}
+
+}  // namespace
+
+std::vector<Operator> define_filmic() {
+    return {hejl_burgess_dawson(), hejl_2015(), aldridge(), lottes(),  filament_generic(),
+            ue3(),                 day(),       schlick(),  toe()};
+}
+
+}  // namespace tonewright

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Frostbite: hue-preserving range compression with a little of the per-channel look.
+//
+// Source    A. Fry, "High Dynamic Range Color Grading and Display in Frostbite", GDC 2017; the
+//           numbers of T. Stachowiak's shadertoy after it.
+// In        scene-linear RGB, working primaries Rec.709, D65; 1.0 = 100 cd/m2; domain [0, inf),
+//           negatives: clamped at 0 (PQ has powers).
+// Out       display-linear RGB, 1.0 = display peak; not clamped: saturated colours come out up to
+//           about 1.1, and a little below 0.
+// Kind      3D. Monotone on the neutral axis: yes, but for the tint of greys (the printed matrices
+//           do not take white to Ct = Cp = 0), which grows to 4e-4 near white and takes red down by
+//           up to 1e-6 each 1/64 stop.
+// Keeps     0 -> 0; greys up to linear_end, but for that tint.
+// Differs   Of the largest channel 0 the source divides by it: here the ratio there is 1, as
+//           everywhere below linear_end. smoothstep with falling edges, which GLSL leaves
+//           undefined, is its formula. The inverses of the matrices are computed: the published
+//           ones are rounded.
+// Check     mid grey 0.18 -> red 0.179998742, (0.8, 0.1, 0.05) -> red 0.636523412
+//           (check_values.json).
+#include "operators/family.h"
+
+namespace tonewright {
+namespace {
+
+// clang-format off
+/// Linear sRGB to XYZ as B. Lindbloom prints it.
+constexpr Matrix3 kRgbToXyz = {{{0.4124564, 0.3575761, 0.1804375},
+                                {0.2126729, 0.7151522, 0.0721750},
+                                {0.0193339, 0.1191920, 0.9503041}}};
+/// ICtCp as Dolby's white paper of 2016 prints it.
+constexpr Matrix3 kXyzToLms = {{{ 0.3592, 0.6976, -0.0358},
+                                {-0.1922, 1.1004,  0.0755},
+                                { 0.0070, 0.0749,  0.8434}}};
+constexpr Matrix3 kLmsToIctcp = {{{0.5,     0.5,     0.0},
+                                  {1.6137, -3.3234,  1.7097},
+                                  {4.3780, -4.2455, -0.1325}}};
+// clang-format on
+
+std::array<Expr, 3> through(const Pipeline& pipeline, std::array<Expr, 3> rgb) {
+    for (const Stage& stage : pipeline)
+        rgb = apply_stage(stage, rgb);
+    return rgb;
+}
+
+std::array<Expr, 3> to_ictcp(const std::array<Expr, 3>& rgb) {
+    return through(
+        {MatrixStage{multiply(kXyzToLms, kRgbToXyz)},
+         curve_stage(pq_encode_nits(100 * max(Expr::input(), 0))), MatrixStage{kLmsToIctcp}},
+        rgb);
+}
+
+std::array<Expr, 3> to_rgb(const std::array<Expr, 3>& ictcp) {
+    return through(
+        {MatrixStage{inverse(kLmsToIctcp)}, curve_stage(pq_decode_nits(Expr::input()) / 100),
+         MatrixStage{inverse(multiply(kXyzToLms, kRgbToXyz))}},
+        ictcp);
+}
+
+Map3Stage frostbite_mapping(double linear_end) {
+    const double rest = 1 - linear_end;
+    const auto compress = [&](const Expr& v) {
+        const Expr above = max(v, linear_end) - linear_end;
+        return select(less(v, linear_end), v, linear_end + rest * (1 - exp(-(above / rest))));
+    };
+
+    // Chroma falls with intensity: lights fade to white before anything is compressed.
+    const std::array<Expr, 3> in = to_ictcp(compose({}));
+    const Expr& intensity = in[0];
+    const Expr saturation = pow(smoothstep(1, 0.3, intensity), 1.3);
+    const std::array<Expr, 3> c = to_rgb({intensity, saturation * in[1], saturation * in[2]});
+
+    const Expr largest = max(max(c[0], c[1]), c[2]);
+    const Expr ratio =
+        select(less(largest, linear_end), 1, compress(largest) / max(largest, linear_end));
+    std::array<Expr, 3> compressed = c;
+    for (Expr& v : compressed)
+        v = mix(compress(v), v * ratio, 0.6);
+
+    // What compression took from the chroma is given back in part, where the input was not bright.
+    const std::array<Expr, 3> m = to_ictcp(compressed);
+    const Expr boost = 0.3 * smoothstep(1, 0.5, intensity);
+    const Expr dimmed = m[0] / max(intensity, 1e-3);
+    return {to_rgb({m[0], mix(m[1], in[1] * dimmed, boost), mix(m[2], in[2] * dimmed, boost)})};
+}
+
+}  // namespace
+
+std::vector<Operator> define_frostbite() {
+    Operator op;
+    op.id = "frostbite";
+    op.title = "Frostbite (hue preserving)";
+    op.view = "Frostbite";
+    op.character =
+        "flat by design, a base for grading: hues kept, lights fade to white, shadows untouched";
+    op.source =
+        "A. Fry, High Dynamic Range Color Grading and Display in Frostbite, GDC 2017; numbers of "
+        "T. Stachowiak's shadertoy";
+    op.licence = "published formula; no code of it is used";
+    op.negatives = kNegativesClampAtZero;
+    op.parameters = {number_parameter("linear_end", "scene-linear", 0.25, 0.01, 0.99,
+                                      "end of the straight part of the compression")};
+    op.build = [](const Params& p) -> Pipeline {
+        return {limit_to_positive(), frostbite_mapping(p.number("linear_end"))};
+    };
+    return {op};
+}
+
+}  // namespace tonewright

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Khronos PBR Neutral: base colours of materials as they are, lights compressed and whitened; and
+// Filament's variant.
+//
+// Source    Khronos Group, "Khronos PBR Neutral Tone Mapper", 2024: KhronosGroup/ToneMapping,
+//           PBR_Neutral, pbrNeutral.glsl. Google Filament, ToneMapper.cpp, PBRNeutralToneMapper.
+// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, inf), negatives: clamped
+//           at 0 (the toe's parabola takes them further down).
+// Out       display-linear RGB, 1.0 = display peak; range [0, 1).
+// Kind      3D, of the largest and the smallest channel: a hexcone stage. With x = min, p = max -
+//           offset(x), Ks = start_compression - 0.04 and d = 1 - Ks, the source subtracts the
+//           offset from every channel and returns c = p - (max - in) below Ks. Above it computes
+//           n = 1 - d^2/(p + d - Ks), scales c by n/p and mixes towards n with the weight
+//           g = 1 - 1/(desaturation (p - n) + 1):
+//             n/p (p - (max - in)) (1 - g) + g n = n - (1 - g) n/p (max - in).
+//           So value(p) is p, then n; chroma(p) is 1, then (1 - g) n/p. Filament mixes towards 1:
+//           its value(p) is (1 - g) n + g. Both go over at Ks with one slope. Monotone on the
+//           neutral axis: yes; invertible.
+// Keeps     0 -> 0; the hue of HSV; colours whose smallest channel is 0.08 or more come out less
+//           0.04, up to Ks.
+// Differs   nowhere. The constants 0.04 and 6.25 (a Fresnel reflectance F90 of 0.04, and 1/(4 F90))
+//           stay what they are when start_compression moves.
+// Check     mid grey 0.18 -> 0.14, 1 -> 0.869090909 (check_values.json).
+#include "operators/family.h"
+
+namespace tonewright {
+namespace {
+
+std::vector<ParameterSpec> neutral_parameters() {
+    return {
+        number_parameter("start_compression", "scene-linear", 0.8, 0.1, 0.99,
+                         "scene value of a grey from which on lights are compressed"),
+        number_parameter("desaturation", "", 0.15, 0, 1,
+                         "how fast compressed lights fade to white"),
+    };
+}
+
+/// @param towards_white  mix towards 1 instead of the compressed peak.
+Pipeline neutral(const Params& params, bool towards_white) {
+    const double start = params.number("start_compression") - 0.04;
+    const double d = 1 - start;
+    const Expr x = Expr::input();
+    // Below the start q is constant, so nothing is divided by 0 there.
+    const Expr q = max(x, start);
+    const Expr n = 1 - d * d / (q + d - start);
+    const Expr rest = 1 / (params.number("desaturation") * (q - n) + 1);  // 1 - g
+    const Expr is_base = less(x, start);
+    return {limit_to_positive(),
+            HexconeStage{.offset = select(less(x, 0.08), x - 6.25 * x * x, 0.04),
+                         .value = select(is_base, x, towards_white ? rest * n + (1 - rest) : n),
+                         .chroma = select(is_base, 1, rest * (n / q))}};
+}
+
+Operator khronos() {
+    Operator op;
+    op.id = "khronos_neutral";
+    op.title = "Khronos PBR Neutral";
+    op.view = "Khronos PBR Neutral";
+    op.character =
+        "colors of products as their materials have them, less a reflection of 0.04; only lights "
+        "are compressed and fade to white";
+    op.source = "Khronos Group, Khronos PBR Neutral Tone Mapper, 2024: pbrNeutral.glsl";
+    op.licence = "Apache-2.0 (code), CC-BY-4.0 (text)";
+    op.dialects = "PBR Neutral";
+    op.negatives = kNegativesClampAtZero;
+    op.parameters = neutral_parameters();
+    op.build = [](const Params& p) { return neutral(p, false); };
+    return op;
+}
+
+Operator filament() {
+    Operator op;
+    op.id = "khronos_neutral_filament";
+    op.title = "PBR Neutral (Filament)";
+    op.view = "PBR Neutral Filament";
+    op.character = "Khronos PBR Neutral with lights mixed towards 1: brighter above the start";
+    op.source = "Google Filament, ToneMapper.cpp: PBRNeutralToneMapper";
+    op.licence = "Apache-2.0; formula and constants, no code of it is used";
+    op.dialects = "PBR Neutral";
+    op.negatives = kNegativesClampAtZero;
+    op.parameters = neutral_parameters();
+    op.build = [](const Params& p) { return neutral(p, true); };
+    return op;
+}
+
+}  // namespace
+
+std::vector<Operator> define_khronos_neutral() { return {khronos(), filament()}; }
+
+}  // namespace tonewright

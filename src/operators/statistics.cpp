@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Operators of the 1990s and 2000s that measure a picture first: by its log mean, its maximum, and
+// the eye's adaptation to it.
+//
+// Source    drago: F. Drago, K. Myszkowski, T. Annen, N. Chiba, "Adaptive Logarithmic Mapping for
+//           Displaying High Contrast Scenes", Computer Graphics Forum 22(3), Eurographics 2003.
+//           ward: G. Ward, "A Contrast-Based Scalefactor for Luminance Display", Graphics Gems IV,
+//           1994, pp. 415-421. tumblin_rushmeier: J. Tumblin, H. Rushmeier, "Tone Reproduction for
+//           Realistic Images", IEEE Computer Graphics and Applications 13(6), 1993, pp. 42-48.
+//           ferwerda: J. Ferwerda, S. Pattanaik, P. Shirley, D. Greenberg, "A Model of Visual
+//           Adaptation for Realistic Image Synthesis", SIGGRAPH 1996. durand_dorsey_rods: F. Durand,
+//           J. Dorsey, "Interactive Tone Mapping", Eurographics Workshop on Rendering, 2000.
+// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, 65504], negatives: clamped
+//           at 0. ward, tumblin_rushmeier, ferwerda and durand_dorsey_rods take scene values for
+//           cd/m2.
+// Out       display-linear RGB, 1.0 = display peak, all without end above it: none clamps.
+// Kind      luminance, as `apply` says; the two with rods mix the channels (matrix, curve, matrix).
+//           Monotone on the neutral axis: yes.
+// Keeps     0 -> 0, but tumblin_rushmeier f(0) = -1/contrast_max; drago f(maximum) = display_max/100.
+// Differs   luminance forms are 0/0 at black in every source: here black stays black.
+//           drago: without the paper's changed gamma, which a display's encoding takes the place
+//           of. ln(1 + x) is computed so that it keeps its digits for small x, and the bias power
+//           ends at 2^-100 of the maximum, because its slope has no end at 0.
+//           tumblin_rushmeier: luminance and max forms show negative light as black.
+//           ferwerda, durand_dorsey_rods: the rods' signal -0.702 X + 1.039 Y + 0.433 Z is negative
+//           for saturated reds: no signal here. k is limited to [0, 1] before it is squared
+//           (T. Zeltner's "Tone Mapper" squares first, so bright scenes get night vision).
+// Check     mid grey 0.18 -> 0.0616409117 (drago), 0.0302864674 (ward), 0.0424389891
+//           (tumblin_rushmeier); (0.05, 0.1, 2) -> (0.0241295151, 0.0273945785, 0.151466987)
+//           (ferwerda, rod_weight 0.5), (0.0251727377, 0.0267686450, 0.157100389)
+//           (durand_dorsey_rods, rod_weight 0.5) (python_check/operators/statistics.py).
+#include <algorithm>
+#include <cmath>
+
+#include "operators/family.h"
+
+namespace tonewright {
+namespace {
+
+constexpr const char* kChannelsMayClip =
+    "apply=luminance keeps chromaticity, so a saturated channel may exceed 1 and clip";
+constexpr const char* kScenesAreLuminances =
+    "takes scene values for cd/m2: the picture's absolute level changes its contrast or colours";
+
+ParameterSpec log_average(double value) {
+    return statistic_parameter(
+        number_parameter("log_average", "scene-linear", value, 1e-6, kHalfMax,
+                         "geometric mean of the scene's luminances: what the eye has adapted to"),
+        "log mean luminance", [](const SceneStatistics& s) { return s.log_average; });
+}
+
+ParameterSpec display_max(double value) {
+    return number_parameter("display_max", "cd/m2", value, 1, 10000,
+                            "luminance of the display's white");
+}
+
+/// ln(1 + x) for x >= 0. What 1 + x rounds away is missing in both parts of the quotient.
+Expr log_of_1_plus(const Expr& x) {
+    const Expr u = 1 + x;
+    return select(equal(u, 1), x, x * (log(u) / (u - 1)));
+}
+
+Operator drago() {
+    Operator op;
+    op.id = "drago";
+    op.title = "Drago";
+    op.view = "Drago";
+    op.character =
+        "a logarithm whose base grows with the light: opens shadows, keeps lights apart, grey mid "
+        "tones";
+    op.source =
+        "F. Drago, K. Myszkowski, T. Annen, N. Chiba, Adaptive Logarithmic Mapping for Displaying "
+        "High Contrast Scenes, Computer Graphics Forum 22(3), Eurographics 2003, eq. 4";
+    op.licence = "published formula";
+    op.negatives = kNegativesClampAtZero;
+    op.parameters = with_apply(
+        "luminance",
+        {number_parameter("bias", "", 0.85, 0.5, 1,
+                          "b: smaller is brighter and flatter; also scales the log average, by "
+                          "(1 + b - 0.85)^-5"),
+         number_parameter("display_max", "cd/m2", 100, 1, 10000,
+                          "luminance that the maximum is shown with, where 100 is display white"),
+         log_average(1),
+         statistic_parameter(
+             number_parameter("maximum", "scene-linear", 100, 1e-6, kHalfMax,
+                              "brightest scene value"),
+             "maximum luminance", [](const SceneStatistics& s) { return s.maximum_luminance; })});
+    op.warnings = {kChannelsMayClip};
+    op.deviations = {{Deviation::Kind::exceeds_white, 1.5, ""}};
+    op.build = [](const Params& p) -> Pipeline {
+        const double bias = p.number("bias");
+        const double maximum = p.number("maximum");
+        const double adaptation = p.number("log_average") / std::pow(1 + bias - 0.85, 5);
+        const double at_maximum = std::log1p(maximum / adaptation) / std::log(10.0);
+        const double exponent = std::log(bias) / std::log(0.5);
+        const Expr L = Expr::input();
+        const Expr base = 2 + 8 * pow(max(L / maximum, 0x1p-100), exponent);
+        const Expr f = (p.number("display_max") / 100 / at_maximum) *
+                       (log_of_1_plus(L / adaptation) / log(base));
+        return tone_curve_pipeline({.f = f}, p);
+    };
+    return op;
+}
+
+Operator ward() {
+    Operator op;
+    op.id = "ward";
+    op.title = "Ward (contrast-based scale factor)";
+    op.view = "Ward";
+    op.character =
+        "one factor for the whole picture, so that what is just visible in the scene is just "
+        "visible on the display; clips lights";
+    op.source =
+        "G. Ward, A Contrast-Based Scalefactor for Luminance Display, Graphics Gems IV, 1994, "
+        "pp. 415-421";
+    op.licence = "published formula";
+    op.negatives = kNegativesClampAtZero;
+    op.parameters = with_apply("luminance", {display_max(80), log_average(0.5)});
+    op.warnings = {kScenesAreLuminances};
+    op.deviations = {{Deviation::Kind::exceeds_white, kInfinity, ""}};
+    op.build = [](const Params& p) -> Pipeline {
+        const double display = p.number("display_max");
+        const double threshold_ratio = (1.219 + std::pow(display / 2, 0.4)) /
+                                       (1.219 + std::pow(p.number("log_average"), 0.4));
+        const double m = std::pow(threshold_ratio, 2.5);
+        return tone_curve_pipeline({.f = (m / display) * Expr::input()}, p);
+    };
+    return op;
+}
+
+/// Tumblin and Rushmeier's fit to Stevens' and Stevens' brightness, for an eye adapted to La cd/m2:
+/// log10 of the brightness is alpha log10(L) + beta.
+struct Brightness {
+    double alpha, beta;
+
+    explicit Brightness(double La) {
+        const double log_adaptation = std::log10(La) + 0.84;
+        alpha = 0.4 * log_adaptation + 2.92;
+        beta = -0.4 * log_adaptation * log_adaptation - 2.584 * log_adaptation + 2.0208;
+    }
+};
+
+Operator tumblin_rushmeier() {
+    Operator op;
+    op.id = "tumblin_rushmeier";
+    op.title = "Tumblin-Rushmeier";
+    op.view = "Tumblin-Rushmeier";
+    op.character =
+        "the same brightness for the eye before scene and display: night scenes get darker and "
+        "flatter; crushes black, clips lights";
+    op.source =
+        "J. Tumblin, H. Rushmeier, Tone Reproduction for Realistic Images, IEEE Computer Graphics "
+        "and Applications 13(6), 1993, pp. 42-48";
+    op.licence = "published formula";
+    op.negatives = kNegativesClampAtZero;
+    op.parameters = with_apply(
+        "luminance", {display_max(80),
+                      number_parameter("contrast_max", "", 36, 2, 10000,
+                                       "contrast of the display: white over its darkest black"),
+                      log_average(0.5)});
+    op.warnings = {kScenesAreLuminances};
+    op.deviations = {{Deviation::Kind::crushes_black, 0.060, ""},
+                     {Deviation::Kind::exceeds_white, kInfinity, ""}};
+    op.build = [](const Params& p) -> Pipeline {
+        const double display = p.number("display_max");
+        const double contrast = p.number("contrast_max");
+        const Brightness of_scene(p.number("log_average"));
+        const Brightness of_display(display / std::sqrt(contrast));
+        const double scale =
+            std::pow(10, (of_scene.beta - of_display.beta) / of_display.alpha) / display;
+        const Expr f =
+            scale * pow(Expr::input(), of_scene.alpha / of_display.alpha) - 1 / contrast;
+        return tone_curve_pipeline({.f = f}, p);
+    };
+    return op;
+}
+
+// ---------------------------------------------------------------------------------------------
+// Cones and rods
+
+/// What the rods see of red, green and blue: -0.702 X + 1.039 Y + 0.433 Z, with the XYZ of Rec.709.
+constexpr Vector3 kRods = {-0.702 * 0.412453 + 1.039 * 0.212671 + 0.433 * 0.019334,
+                           -0.702 * 0.357580 + 1.039 * 0.715160 + 0.433 * 0.119193,
+                           -0.702 * 0.180423 + 1.039 * 0.072169 + 0.433 * 0.950227};
+
+double dot(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/// Smallest luminance difference that cones see when adapted to La cd/m2.
+double cone_threshold(double La) {
+    const double l = std::log10(La);
+    if (l <= -2.6) return std::pow(10, -0.72);
+    if (l >= 1.9) return std::pow(10, l - 1.255);
+    return std::pow(10, std::pow(0.249 * l + 0.65, 2.7) - 0.72);
+}
+
+/// The same of rods.
+double rod_threshold(double La) {
+    const double l = std::log10(La);
+    if (l <= -3.94) return std::pow(10, -2.86);
+    if (l >= -1.44) return std::pow(10, l - 0.395);
+    return std::pow(10, std::pow(0.405 * l + 1.6, 2.18) - 2.86);
+}
+
+/// C' = cones C + rods tint max(dot(kRods, C), 0).
+Pipeline cones_and_rods(double cones, double rods, const Vector3& tint) {
+    const Expr x = Expr::input();
+    // In coordinates of which one is the rods' signal and the others do not change along the tint,
+    // only that one bends: exact as matrix, curve, matrix.
+    const auto p = static_cast<std::size_t>(std::max_element(tint.begin(), tint.end()) -
+                                            tint.begin());
+    const double along_tint = dot(kRods, tint);
+    if (std::fabs(along_tint) > 0.1 * tint[p]) {
+        Matrix3 basis = kIdentity3;
+        for (std::size_t i = 0; i < 3; ++i)
+            basis[i][p] = -tint[i] / tint[p];
+        basis[p] = kRods;
+        CurveStage response = curve_stage(cones * x);
+        response.f[p] = cones * x + rods * along_tint * max(x, 0);
+        return {limit_to_positive(), MatrixStage{basis}, response, MatrixStage{inverse(basis)}};
+    }
+    // The rods hardly see their own tint: no such coordinates.
+    const std::array<Expr, 3> c = {Expr::input(0), Expr::input(1), Expr::input(2)};
+    const Expr signal = max(kRods[0] * c[0] + kRods[1] * c[1] + kRods[2] * c[2], 0);
+    const auto channel = [&](std::size_t i) { return cones * c[i] + rods * tint[i] * signal; };
+    return {limit_to_positive(), Map3Stage{{channel(0), channel(1), channel(2)}}};
+}
+
+std::vector<ParameterSpec> rod_parameters() {
+    return {display_max(80),
+            statistic_parameter(
+                number_parameter("photopic_adaptation", "cd/m2", 2, 1e-6, kHalfMax,
+                                 "luminance that the cones have adapted to"),
+                "half the maximum luminance",
+                [](const SceneStatistics& s) { return s.maximum_luminance / 2; }),
+            statistic_parameter(
+                number_parameter("scotopic_adaptation", "scotopic cd/m2", 1.5, 1e-6, kHalfMax,
+                                 "signal that the rods have adapted to"),
+                "half the rods' signal of the channels' maxima",
+                [](const SceneStatistics& s) { return dot(kRods, s.maximum_rgb) / 2; }),
+            choice_parameter("rod_weight_from", {"adaptation", "fixed"}, "adaptation",
+                             "share of the rods: by what the eye has adapted to, or rod_weight"),
+            number_parameter("rod_weight", "", 0.5, 0, 1,
+                             "k, share of the rods; read with rod_weight_from=fixed")};
+}
+
+/// C' = (mp C + k ms tint Ls)/Ldmax.
+Pipeline rod_pipeline(const Params& p, double weight_by_adaptation, const Vector3& tint) {
+    const double display = p.number("display_max");
+    const double threshold = cone_threshold(display / 2);
+    const double mp = threshold / cone_threshold(p.number("photopic_adaptation"));
+    const double ms = threshold / rod_threshold(p.number("scotopic_adaptation"));
+    const double k =
+        p.choice("rod_weight_from") == "fixed" ? p.number("rod_weight") : weight_by_adaptation;
+    return cones_and_rods(mp / display, k * ms / display, tint);
+}
+
+Operator ferwerda() {
+    Operator op;
+    op.id = "ferwerda";
+    op.title = "Ferwerda";
+    op.view = "Ferwerda";
+    op.character =
+        "what is just visible in the scene is just visible on the display; in the dark the rods' "
+        "grey takes over. Clips lights";
+    op.source =
+        "J. Ferwerda, S. Pattanaik, P. Shirley, D. Greenberg, A Model of Visual Adaptation for "
+        "Realistic Image Synthesis, SIGGRAPH 1996";
+    op.licence = "published formula";
+    op.negatives = kNegativesClampAtZero;
+    op.dialects = "Ferwerda";
+    op.parameters = rod_parameters();
+    op.warnings = {kScenesAreLuminances};
+    op.deviations = {{Deviation::Kind::exceeds_white, kInfinity, ""}};
+    op.build = [](const Params& p) -> Pipeline {
+        const double La = p.number("photopic_adaptation");
+        const double k = std::clamp(1 - (La / 2 - 0.01) / (10 - 0.01), 0.0, 1.0);
+        return rod_pipeline(p, k * k, {1, 1, 1});
+    };
+    return op;
+}
+
+Operator durand_dorsey_rods() {
+    Operator op;
+    op.id = "durand_dorsey_rods";
+    op.title = "Ferwerda with blue shift (Durand-Dorsey)";
+    op.view = "Durand-Dorsey Rods";
+    op.character = "Ferwerda whose night is bluish; rods fade more slowly with the light";
+    op.source = "F. Durand, J. Dorsey, Interactive Tone Mapping, Eurographics Workshop on "
+                "Rendering, 2000";
+    op.licence = "published formula";
+    op.negatives = kNegativesClampAtZero;
+    op.dialects = "Ferwerda";
+    op.parameters = rod_parameters();
+    const auto shift = [&](const std::string& color, double value) {
+        op.parameters.push_back(number_parameter("blue_shift_" + color, "", value, 0, 2,
+                                                 color + " of the rods' grey"));
+    };
+    shift("red", 1.05);
+    shift("green", 0.97);
+    shift("blue", 1.27);
+    op.warnings = {kScenesAreLuminances};
+    op.deviations = {{Deviation::Kind::exceeds_white, kInfinity, ""}};
+    op.build = [](const Params& p) -> Pipeline {
+        const double La = p.number("scotopic_adaptation");
+        const double k = std::max((100 - La / 4) / (100 + La), 0.0);
+        return rod_pipeline(p, k * k,
+                            {p.number("blue_shift_red"), p.number("blue_shift_green"),
+                             p.number("blue_shift_blue")});
+    };
+    return op;
+}
+
+}  // namespace
+
+std::vector<Operator> define_statistics() {
+    return {drago(), ward(), tumblin_rushmeier(), ferwerda(), durand_dorsey_rods()};
+}
+
+}  // namespace tonewright

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Unreal Engine 4.15 and later: the filmic curve on log10, between the RRT's modifiers.
+//
+// Source    Epic Games, FilmToneMap of TonemapCommon.ush, Unreal Engine 4.15 and later, as facts:
+//           its text is under the Epic licence and nothing of it is here.
+// In        scene-linear RGB, working primaries AP1 (ACEScg); domain [0, inf), negatives: clamped
+//           at 0.
+// Out       display-linear RGB in AP1, 1.0 = display peak; range [0, 1 + white_clip).
+// Kind      matrix, curve, matrix; with glow_and_red=on 3D before them. Monotone on the neutral
+//           axis: yes with the defaults.
+// Keeps     mid grey 0.18 -> 0.18 for every slope and toe, where the shoulder begins above it; 0 ->
+//           0 (with black_clip above 0 more than black is shown as 0).
+// Differs   The source takes log10 of its input and blends toe, straight line and shoulder with
+//           weights of 0 beyond their parts; at black that is 0 times infinity. Here each part is a
+//           rational in a power of x, u/(1 + u), and is taken only where it has weight, so black is
+//           the toe's own limit, -black_clip, clamped to 0. BlueCorrection, ExpandGamut and
+//           ToneCurveAmount, which come before and after it in the engine, are not in it. Toe 1
+//           without black_clip and shoulder 1 without white_clip leave no toe or shoulder: an
+//           error. The preset legacy has the numbers of the documentation, from memory.
+// Check     mid grey 0.18 -> 0.18, (0.8, 0.1, 0.05) in AP1 -> red 0.582348314 (check_values.json).
+#include <algorithm>
+#include <cmath>
+
+#include "operators/color_modifiers.h"
+#include "operators/family.h"
+
+namespace tonewright {
+namespace {
+
+/// One s-shaped arm, level * 2u/(1 + u) with u = (x/x0)^power: a logistic function of log x. At x0
+/// it is at `level`, half its height.
+Expr arm(double level, const Expr& u) { return 2 * level * (u / (1 + u)); }
+
+/// The source's names: ts, ss are half the heights of toe and shoulder; tm, sm the log10 of where
+/// they are half done; st the offset of the straight line.
+Expr film_curve(double slope, double toe, double shoulder, double black_clip, double white_clip) {
+    const double ts = 1 + black_clip - toe;
+    const double ss = 1 + white_clip - shoulder;
+    if (!(ts > 0)) {
+        throw Error("toe is " + shortest(toe) +
+                    "; expected below 1 + black_clip = " + shortest(1 + black_clip));
+    }
+    if (!(ss > 0)) {
+        throw Error("shoulder is " + shortest(shoulder) +
+                    "; expected below 1 + white_clip = " + shortest(1 + white_clip));
+    }
+    constexpr double kMidGrey = 0.18;  // in and out
+    const double mid = std::log10(kMidGrey);
+    const bool is_long_toe = toe > 0.8;
+    // Height of mid grey in the toe, of its whole height 2 ts.
+    const double grey_in_toe = (kMidGrey + black_clip) / ts / 2;
+    const double tm = is_long_toe
+                          ? (1 - toe - kMidGrey) / slope + mid
+                          : mid - 0.5 * std::log(grey_in_toe / (1 - grey_in_toe)) * ts / slope;
+    const double st = (1 - toe) / slope - tm;
+    const double sm = shoulder / slope - st;
+
+    const Expr x = Expr::input();
+    constexpr double top = 6;  // no input comes to 10^6
+    const double toe_power = 2 * slope / ts / std::log(10.0);
+    const double shoulder_power = 2 * slope / ss / std::log(10.0);
+    // Both arms are written from a point that is a float: of the short toe mid grey (tm may be
+    // 10^230), of the long one tm, which is below mid grey.
+    const Expr u = is_long_toe ? pow(min(x, std::pow(10, tm)) / std::pow(10, tm), toe_power)
+                               : grey_in_toe / (1 - grey_in_toe) * pow(x / kMidGrey, toe_power);
+    const Expr toe_part = arm(ts, u) - black_clip;
+    if (std::min(tm, sm) >= top) return toe_part;
+
+    const double x_shoulder = std::pow(10, std::min(sm, top));
+    const Expr shoulder_part =
+        1 + white_clip - arm(ss, pow(x_shoulder / max(x, x_shoulder), shoulder_power));
+    if (sm < tm) {
+        // No straight part: toe and shoulder go over into each other.
+        const Expr l = log2(max(x, x_shoulder)) * std::log10(2.0);
+        return mix(toe_part, shoulder_part, smoothstep(sm, tm, l));
+    }
+    const double x_toe = std::pow(10, tm);
+    const Expr line = slope * (log2(max(x, x_toe)) * std::log10(2.0) + st);
+    const Expr above = sm < top ? select(less(x_shoulder, x), shoulder_part, line) : line;
+    return select(less(x, x_toe), toe_part, above);
+}
+
+}  // namespace
+
+std::vector<Operator> define_unreal() {
+    Operator op;
+    op.id = "unreal";
+    op.title = "Unreal Engine (filmic)";
+    op.view = "Unreal Filmic";
+    op.character =
+        "ACES look with adjustable toe and shoulder, anchored at mid grey; white a little above "
+        "the display's";
+    op.source = "Epic Games, FilmToneMap of TonemapCommon.ush, Unreal Engine 4.15 and later";
+    op.licence = "Epic EULA; formula and constants as facts, no code of it is used";
+    op.negatives = kNegativesClampAtZero;
+    op.working = kAP1;
+    op.parameters = {
+        number_parameter("slope", "", 0.88, 0.01, 1, "slope of the straight part, per log10"),
+        number_parameter("toe", "", 0.55, 0.01, 1, "how much of the range is toe"),
+        number_parameter("shoulder", "", 0.26, 0.01, 1, "how much of the range is shoulder"),
+        number_parameter("black_clip", "display-linear", 0, 0, 1,
+                         "how far below black the toe ends"),
+        number_parameter("white_clip", "display-linear", 0.04, 0, 1,
+                         "how far above white the shoulder ends"),
+        choice_parameter("glow_and_red", {"on", "off"}, "on",
+                         "glow of dark colors and modifier of reds of the ACES rendering "
+                         "transform, in AP0, before the curve"),
+    };
+    op.presets = {{"legacy",
+                   "settings near the tone mapper of Unreal Engine 4 before 4.15",
+                   {{"slope", "0.98"},
+                    {"toe", "0.3"},
+                    {"shoulder", "0.22"},
+                    {"black_clip", "0"},
+                    {"white_clip", "0.025"}}}};
+    op.deviations = {{Deviation::Kind::exceeds_white, 1.04, ""},
+                     {Deviation::Kind::exceeds_white, 1.025, "legacy"}};
+    op.build = [](const Params& p) -> Pipeline {
+        const Expr f = film_curve(p.number("slope"), p.number("toe"), p.number("shoulder"),
+                                  p.number("black_clip"), p.number("white_clip"));
+        Pipeline stages = {limit_to_positive()};
+        if (p.choice("glow_and_red") == "on") {
+            stages.push_back(ap1_glow_and_red_modifier(1e-10));
+            stages.push_back(ClampStage{0, kInfinity});
+        }
+        stages.push_back(MatrixStage{saturation_matrix(0.96, ap1_weights())});
+        stages.push_back(curve_stage(f));
+        stages.push_back(MatrixStage{saturation_matrix(0.93, ap1_weights())});
+        stages.push_back(ClampStage{0, kInfinity});
+        return stages;
+    };
+    return {op};
+}
+
+}  // namespace tonewright

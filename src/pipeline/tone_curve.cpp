@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/tone_curve.h"
+
+#include <cmath>
+
+namespace tonewright {
+namespace {
+
+/// Mantiuk et al. 2009, table 1: constants of the fit of saturation to contrast.
+struct SaturationFit {
+    double k1, k2;
+};
+constexpr SaturationFit kNonlinearFit = {1.6774, 0.9925};
+constexpr SaturationFit kLuminancePreservingFit = {2.3892, 0.8552};
+
+Matrix3 saturation_matrix(double s, const Vector3& weights) {
+    Matrix3 m{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t j = 0; j < 3; ++j)
+            m[i][j] = (1 - s) * weights[j] + (i == j ? s : 0);
+    }
+    return m;
+}
+
+/// The curve as norms need it: light, and 0 at 0.
+Expr norm_curve(const ToneCurve& curve, const std::string& apply) {
+    // A tenth of a millionth of white: the rounding of a formula that is 0 at 0.
+    constexpr double kZero = 1e-7;
+    const double at_black = evaluate(curve.f, 0.0);
+    if (at_black > kZero) {
+        throw Error("apply is " + apply + "; expected channels or hue_preserving: the curve is " +
+                    shortest(at_black) + " at black, and no ratio of the colors makes that of 0");
+    }
+    const Expr f = at_black == 0 ? curve.f : max(curve.f, 0);
+    return curve.code_power == 0 ? f : pow(f, curve.code_power);
+}
+
+/// The corrections that no norm and matrix express.
+Map3Stage corrected(const Expr& f, const Params& params, const Vector3& w) {
+    const std::array<Expr, 3> c = {Expr::input(0), Expr::input(1), Expr::input(2)};
+    const Expr L = w[0] * c[0] + w[1] * c[1] + w[2] * c[2];
+    const Expr Lo = substitute(f, std::span(&L, 1));
+    const bool is_nonlinear = params.choice("color_correction") == "nonlinear";
+    Expr s = params.number("saturation");
+    if (params.choice("saturation_from") == "contrast") {
+        const auto [k1, k2] = is_nonlinear ? kNonlinearFit : kLuminancePreservingFit;
+        const Expr slope = derivative(f);
+        const Expr contrast =
+            select(less(0, Lo), max(L * substitute(slope, std::span(&L, 1)) / Lo, 0), 0);
+        const Expr fit = k1 * pow(contrast, k2);
+        s = s * ((1 + k1) * (fit / k1) / (1 + fit));
+    }
+    const auto channel = [&](const Expr& v) {
+        const Expr ratio = v / L;
+        if (s.is_constant(0)) return select(less(0, L), Lo, 0);
+        const Expr colored = is_nonlinear ? pow(ratio, s) : (ratio - 1) * s + 1;
+        return select(less(0, L), colored * Lo, 0);
+    };
+    return {{channel(c[0]), channel(c[1]), channel(c[2])}};
+}
+
+Pipeline apply_norm(const ToneCurve& curve, const Params& params) {
+    const std::string& apply = params.choice("apply");
+    const Expr f = norm_curve(curve, apply);
+    if (apply == "max") return {ToneScaleStage{ToneScaleStage::Norm::max_rgb, {}, f}};
+    const ToneScaleStage scale{ToneScaleStage::Norm::luminance, curve.weights, f};
+    const std::string& correction = params.choice("color_correction");
+    if (correction == "ratio") return {scale};
+    // ((C/L - 1) s + 1) f(L) with one s for all is linear in what the norm makes.
+    if (correction == "luminance_preserving" && params.choice("saturation_from") == "fixed")
+        return {scale, MatrixStage{saturation_matrix(params.number("saturation"), curve.weights)}};
+    return {corrected(f, params, curve.weights)};
+}
+
+void check(const Params& params) {
+    const std::string& apply = params.choice("apply");
+    const std::string& correction = params.choice("color_correction");
+    if (correction != "ratio" && apply != "luminance") {
+        throw Error("color_correction is " + correction + "; expected ratio with apply=" + apply);
+    }
+    if (correction != "ratio") return;
+    if (params.number("saturation") != 1) {
+        throw Error("saturation is " + shortest(params.number("saturation")) +
+                    "; expected 1 with color_correction=ratio");
+    }
+    if (params.choice("saturation_from") != "fixed") {
+        throw Error("saturation_from is " + params.choice("saturation_from") +
+                    "; expected fixed with color_correction=ratio");
+    }
+}
+
+}  // namespace
+
+std::vector<ParameterSpec> with_apply(std::string default_apply, std::vector<ParameterSpec> own) {
+    own.push_back(choice_parameter(
+        "apply", {"channels", "luminance", "max", "hue_preserving"}, std::move(default_apply),
+        "how the curve f meets color: f of each channel; or all three scaled by f(n)/n, where n is "
+        "the relative luminance or the largest channel; or f of the largest and the smallest, with "
+        "the middle one in its place between them"));
+    own.push_back(choice_parameter(
+        "color_correction", {"ratio", "nonlinear", "luminance_preserving"}, "ratio",
+        "with apply=luminance, L -> f(L): color is C/L f(L); or (C/L)^s f(L); or "
+        "((C/L - 1) s + 1) f(L) (Mantiuk et al. 2009)"));
+    own.push_back(number_parameter("saturation", "", 1, 0, 2,
+                                   "s of the color correction: 1 as in the scene, 0 grey"));
+    own.push_back(choice_parameter(
+        "saturation_from", {"fixed", "contrast"}, "fixed",
+        "s as it is; or times the paper's fit to the curve's contrast at the pixel's luminance"));
+    return own;
+}
+
+Pipeline apply_tone_curve(const ToneCurve& curve, const Params& params) {
+    check(params);
+    const std::string& apply = params.choice("apply");
+    if (apply == "channels") {
+        return {curve.inverse ? curve_stage(curve.f, *curve.inverse) : curve_stage(curve.f)};
+    }
+    if (apply == "hue_preserving") return {HuePreservingStage{curve.f}};
+    Pipeline stages = apply_norm(curve, params);
+    if (curve.code_power != 0) {
+        stages.push_back(ClampStage{0, kInfinity});
+        stages.push_back(curve_stage(pow(Expr::input(), 1 / curve.code_power)));
+    }
+    return stages;
+}
+
+}  // namespace tonewright

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What a new operator takes: this file, dropped into src/operators/. See new_operator.sh.
+#include "operators/family.h"
+
+namespace tonewright {
+
+std::vector<Operator> define_toy() {
+    Operator op;
+    op.id = "toy";
+    op.title = "Toy";
+    op.view = "Toy";
+    op.character = "nothing to look at";
+    op.source = "none";
+    op.licence = "Apache-2.0";
+    op.negatives = kNegativesClampAtZero;
+    op.parameters = with_apply(
+        "channels", {number_parameter("knee", "scene-linear", 2, 0.1, 10, "half of white")});
+    op.presets = {{"soft", "Toy, softer", {{"knee", "5"}}}};
+    op.build = [](const Params& p) -> Pipeline {
+        const Expr x = Expr::input();
+        return tone_curve_pipeline({.f = x / (x + p.number("knee"))}, p);
+    };
+    return {op};
+}
+
+}  // namespace tonewright

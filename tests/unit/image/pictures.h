@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <OpenImageIO/imagebuf.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+/// Small pictures for tests.
+namespace tonewright {
+
+/// 0..1, different everywhere, the same on every machine.
+inline float noise(std::uint32_t i) {
+    i = (i ^ 61U ^ (i >> 16U)) * 9U;
+    i = (i ^ (i >> 4U)) * 0x27d4eb2dU;
+    return static_cast<float>((i ^ (i >> 15U)) & 0xffffU) / 65535.0F;
+}
+
+inline OIIO::ImageSpec make_spec(int width, int height, std::vector<std::string> channels,
+                                 OIIO::TypeDesc type) {
+    OIIO::ImageSpec spec(width, height, static_cast<int>(channels.size()), type);
+    spec.alpha_channel = -1;
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+        if (channels[c] == "A") spec.alpha_channel = static_cast<int>(c);
+        if (channels[c] == "Z") spec.z_channel = static_cast<int>(c);
+    }
+    spec.channelnames = std::move(channels);
+    return spec;
+}
+
+/// Noise up to `peak` in every channel, stored as OIIO converts it.
+inline OIIO::ImageBuf make_picture(const OIIO::ImageSpec& spec, float peak = 1) {
+    OIIO::ImageBuf picture(spec);
+    std::vector<float> values(static_cast<std::size_t>(spec.image_pixels()) *
+                              static_cast<std::size_t>(spec.nchannels));
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        values[i] = peak * noise(static_cast<std::uint32_t>(i));
+    }
+    EXPECT_TRUE(picture.set_pixels(picture.roi(), OIIO::TypeDesc::FLOAT, values.data()));
+    return picture;
+}
+
+inline OIIO::ImageBuf make_rgb(int width, int height, OIIO::TypeDesc type = OIIO::TypeDesc::FLOAT,
+                               float peak = 1) {
+    return make_picture(make_spec(width, height, {"R", "G", "B"}, type), peak);
+}
+
+inline std::vector<float> pixel(const OIIO::ImageBuf& picture, int x, int y) {
+    std::vector<float> values(static_cast<std::size_t>(picture.nchannels()));
+    picture.getpixel(x, y, values.data(), picture.nchannels());
+    return values;
+}
+
+inline void set(OIIO::ImageBuf& picture, int x, int y, const std::vector<float>& values) {
+    picture.setpixel(x, y, values.data(), static_cast<int>(values.size()));
+}
+
+inline bool same_bits(const OIIO::ImageBuf& a, const OIIO::ImageBuf& b) {
+    return a.spec().format == b.spec().format && a.roi() == b.roi() &&
+           std::memcmp(a.localpixels(), b.localpixels(), a.spec().image_bytes()) == 0;
+}
+
+/// A folder of its own for a test's files.
+class TemporaryFolder {
+  public:
+    TemporaryFolder()
+        : path_(std::filesystem::temp_directory_path() /
+                ("tonewright_test_" + std::to_string(::getpid()))) {
+        std::filesystem::create_directories(path_);
+    }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+    ~TemporaryFolder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+    [[nodiscard]] std::string file(const std::string& name) const {
+        return (path_ / name).string();
+    }
+
+  private:
+    std::filesystem::path path_;
+};
+
+}  // namespace tonewright

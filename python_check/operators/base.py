@@ -141,7 +141,8 @@ def apply_curve(f, rgb, apply="channels", color_correction="ratio", saturation=1
         slope = contrast(norm) if contrast else power * curve_contrast(f, norm)
         saturation = saturation * mantiuk_saturation(slope, color_correction)
     if color_correction == "nonlinear":
-        ratio = ratio**saturation
+        # 0**s is 0 for s above 0; a saturation that follows the contrast is 0 only as the limit of such s.
+        ratio = np.where((ratio == 0) & (saturation_from == "contrast"), 0, ratio**saturation)
     elif color_correction == "luminance_preserving":
         ratio = (ratio - 1) * saturation + 1
     out = np.where(black, 0, ratio * light)

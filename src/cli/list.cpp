@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "cli/catalogue.h"
 #include "cli/command.h"
 
 namespace tonewright {
@@ -134,7 +135,9 @@ std::string default_of(const ParameterSpec& p) {
 }
 
 std::string help_of(const ParameterSpec& p) {
-    return p.from_picture ? p.help + "; `tonewright apply` takes it from the picture: " + p.statistic : p.help;
+    return p.from_picture
+               ? p.help + "; `tonewright apply` takes it from the picture: " + p.statistic
+               : p.help;
 }
 
 /// "AgX; others: agx_minimal, agx_sobotka".
@@ -166,28 +169,6 @@ void print_operator(const Operator& op) {
         fmt::print("  --look {}  {}\n", l.id, l.help);
     for (const std::string& w : all_warnings(op))
         fmt::print("  note        {}\n", w);
-}
-
-void print_markdown(const Operator& op) {
-    fmt::print("## {} (`{}`)\n\n{}.\n\n", op.title, op.id, op.character);
-    fmt::print("* Source: {} ({})\n* Output: {}\n* Negatives: {}\n* View of the config: `{}`\n",
-               op.source, op.licence, output_of(op), op.negatives, op.view);
-    if (!op.dialects.empty()) fmt::print("* Dialect of {}\n", dialects_of(op));
-    if (op.is_diagnostic) fmt::print("* Diagnostic: {}\n", kDiagnostic);
-    for (const std::string& w : all_warnings(op))
-        fmt::print("* Note: {}\n", w);
-    if (!op.parameters.empty()) {
-        fmt::print("\n| parameter | default | range | |\n|---|---|---|---|\n");
-        for (const ParameterSpec& p : op.parameters) {
-            fmt::print("| `{}` | {} | {} | {} |\n", p.name, default_of(p), range_of(p), help_of(p));
-        }
-    }
-    if (!op.presets.empty() || !op.looks.empty()) fmt::print("\n");
-    for (const Preset& p : op.presets)
-        fmt::print("* Preset `{}:{}`: {}\n", op.id, p.id, p.title);
-    for (const Look& l : op.looks)
-        fmt::print("* Look `{}`: {}\n", l.id, l.help);
-    fmt::print("\n");
 }
 
 /// A name, and words behind it that go on below each other where the line is full.
@@ -231,12 +212,39 @@ void print_overview() {
 
 }  // namespace
 
+std::string operator_section(const Operator& op, std::string_view after_character) {
+    std::string text =
+        fmt::format("## {} (`{}`)\n\n{}.\n\n{}", op.title, op.id, op.character, after_character);
+    text += fmt::format(
+        "* Source: {} ({})\n* Works in: {}; output: {}\n* Negatives: {}\n"
+        "* View of the config: `{}`\n",
+        op.source, op.licence, op.working.name, output_of(op), op.negatives, op.view);
+    if (!op.dialects.empty()) text += fmt::format("* Dialect of {}\n", dialects_of(op));
+    if (op.is_diagnostic) text += fmt::format("* Diagnostic: {}\n", kDiagnostic);
+    for (const std::string& w : all_warnings(op))
+        text += fmt::format("* Note: {}\n", w);
+    if (!op.parameters.empty()) {
+        text += "\n| parameter | default | range | |\n|---|---|---|---|\n";
+        for (const ParameterSpec& p : op.parameters) {
+            text += fmt::format("| `{}` | {} | {} | {} |\n", p.name, default_of(p), range_of(p),
+                                help_of(p));
+        }
+    }
+    if (!op.presets.empty() || !op.looks.empty()) text += "\n";
+    for (const Preset& p : op.presets)
+        text += fmt::format("* Preset `{}:{}`: {}\n", op.id, p.id, p.title);
+    for (const Look& l : op.looks)
+        text += fmt::format("* Look `{}`: {}\n", l.id, l.help);
+    return text + "\n";
+}
+
 void add_list(CLI::App& program, int&) {
     struct Options {
         std::string op;
         bool json = false;
         bool markdown = false;
         bool views = false;
+        std::string catalogue;
     };
     auto options = std::make_shared<Options>();
     CLI::App* command = program.add_subcommand(
@@ -245,19 +253,32 @@ void add_list(CLI::App& program, int&) {
     CLI::Option* json = command->add_flag("--json", options->json, "for programs");
     CLI::Option* markdown =
         command->add_flag("--markdown", options->markdown, "for documents")->excludes(json);
+    CLI::Option* views =
+        command
+            ->add_flag(
+                "--views", options->views,
+                "each operator's id and its view in the config, with a tab between: for scripts")
+            ->excludes(json)
+            ->excludes(markdown);
     command
-        ->add_flag("--views", options->views,
-                   "each operator's id and its view in the config, with a tab between: for scripts")
+        ->add_option("--catalogue", options->catalogue,
+                     "write operators.md and curves/, every operator with a plot, into this folder")
         ->excludes(json)
-        ->excludes(markdown);
+        ->excludes(markdown)
+        ->excludes(views);
     command->footer("Example:\n  tonewright list hable --json");
     command->callback([options] {
-        if (!options->op.empty()) {
+        if (!options->catalogue.empty()) {
+            if (!options->op.empty())
+                throw Error("list: operator is " + options->op +
+                            "; expected none with --catalogue");
+            write_catalogue(options->catalogue);
+        } else if (!options->op.empty()) {
             const Operator& op = find_operator(options->op);
             if (options->json) {
                 fmt::print("{}\n", to_json(op).dump(2));
             } else if (options->markdown) {
-                print_markdown(op);
+                fmt::print("{}", operator_section(op));
             } else {
                 print_operator(op);
             }
@@ -268,7 +289,7 @@ void add_list(CLI::App& program, int&) {
             fmt::print("{}\n", spaces_to_json().dump(2));
         } else if (options->markdown) {
             for (const Operator& op : all_operators())
-                print_markdown(op);
+                fmt::print("{}", operator_section(op));
         } else {
             print_overview();
         }

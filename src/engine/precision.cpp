@@ -50,8 +50,12 @@ std::vector<Vector3> probe_colours() {
         if (i % 2) v[(i + 1) % 3] *= -1;
         add(v[0], v[1], v[2]);
     }
-    for (int i = 0; i < 60; ++i) {
-        add(log_uniform(-149, -20), log_uniform(-149, -20), log_uniform(-149, -20));
+    for (std::size_t i = 0; i < 120; ++i) {
+        Vector3 v = {log_uniform(-149, -20), log_uniform(-149, -20), log_uniform(-149, -20)};
+        add(v[0], v[1], v[2]);
+        // A small power of the ratio of two channels is not small, however small the ratio.
+        v[i % 3] = log_uniform(-8, 16);
+        add(v[0], v[1], v[2]);
     }
     for (const double r : {-kHalfMax, 0.0, kHalfMax}) {
         for (const double g : {-kHalfMax, 0.0, kHalfMax}) {
@@ -121,6 +125,9 @@ bool is_steep(const Table& table) {
     return false;
 }
 
+/// Nearer to a kink than this, either side may be taken.
+constexpr double kNearKink = 1e-5;
+
 /// Derivatives of one instruction by its operands, at the side of a kink that is taken.
 std::array<double, 3> partials(const TapeInstruction& step, double value, double a, double b) {
     constexpr double kLn2 = 0.69314718055994531;
@@ -134,8 +141,11 @@ std::array<double, 3> partials(const TapeInstruction& step, double value, double
         case ExprOp::divide:
             return {1 / b, -value / b, 0};
         case ExprOp::minimum:
+            // So near to the kink either side may be taken, and what rounding adds shows.
+            if (std::fabs(a - b) < kNearKink) return {1, 1, 0};
             return b < a ? std::array{0.0, 1.0, 0.0} : std::array{1.0, 0.0, 0.0};
         case ExprOp::maximum:
+            if (std::fabs(a - b) < kNearKink) return {1, 1, 0};
             return a < b ? std::array{0.0, 1.0, 0.0} : std::array{1.0, 0.0, 0.0};
         case ExprOp::power:
             return {b * std::pow(a, b - 1), a > 0 ? value * std::log(a) : 0, 0};

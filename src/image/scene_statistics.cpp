@@ -60,18 +60,18 @@ struct Measured {
     /// @param color  Rec.709, not negative
     void add(const Vector3& color) noexcept {
         ++count;
-        double L = 0;
+        double y = 0;
         for (std::size_t c = 0; c < 3; ++c) {
-            L += kRec709Weights[c] * color[c];
+            y += kRec709Weights[c] * color[c];
             rgb[c].add(color[c]);
             maximum_rgb[c] = std::max(maximum_rgb[c], color[c]);
         }
-        luminance.add(L);
-        maximum = std::max(maximum, L);
-        if (L > 0) {
+        luminance.add(y);
+        maximum = std::max(maximum, y);
+        if (y > 0) {
             ++lit_count;
-            log_luminance.add(std::log(L));
-            minimum_lit = std::min(minimum_lit, L);
+            log_luminance.add(std::log(y));
+            minimum_lit = std::min(minimum_lit, y);
         }
     }
 

@@ -7,6 +7,10 @@
 
 namespace tonewright {
 
+const char* file_extension(const ClfTable& table) {
+    return table.is_hue_preserving ? ".ctf" : ".clf";
+}
+
 std::string write_clf(const ClfTable& table, const std::string& name,
                       const std::vector<std::string>& description) {
     // `id` must be unique to the contents; the hash of the numbers is.
@@ -22,16 +26,19 @@ std::string write_clf(const ClfTable& table, const std::string& name,
         numbers += (i + 1) % per_line == 0 ? '\n' : ' ';
     }
     std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
-    text += fmt::format("<ProcessList id=\"tonewright-{}\" name=\"{}\" compCLFversion=\"3\">\n",
-                        content_hash(numbers), xml_escape(name));
+    // A file has the version of one format only.
+    text += fmt::format("<ProcessList id=\"tonewright-{}\" name=\"{}\" {}>\n",
+                        content_hash(numbers), xml_escape(name),
+                        table.is_hue_preserving ? "version=\"1.4\"" : "compCLFversion=\"3\"");
     for (const std::string& line : description) {
         text += "    <Description>" + xml_escape(line) + "</Description>\n";
     }
     if (table.dimension == 1) {
         text += fmt::format(
-            "    <LUT1D inBitDepth=\"32f\" outBitDepth=\"32f\"{} interpolation=\"linear\">\n"
+            "    <LUT1D inBitDepth=\"32f\" outBitDepth=\"32f\"{}{} interpolation=\"linear\">\n"
             "        <Array dim=\"{} {}\">\n",
-            table.is_half_domain ? " halfDomain=\"true\"" : "", table.size, table.channels);
+            table.is_half_domain ? " halfDomain=\"true\"" : "",
+            table.is_hue_preserving ? " hueAdjust=\"dw3\"" : "", table.size, table.channels);
     } else {
         text += fmt::format(
             "    <LUT3D inBitDepth=\"32f\" outBitDepth=\"32f\" interpolation=\"tetrahedral\">\n"

@@ -6,17 +6,24 @@
 
 namespace tonewright {
 
-/// One table as a Common LUT Format file (Academy S-2014-006, version 3), 32-bit float in and out.
+/// One table as a Common LUT Format file (Academy S-2014-006, version 3), or as a Color Transform
+/// Format file where CLF does not reach; 32-bit float in and out.
 struct ClfTable {
     int dimension = 1;  // 1 or 3
     int size = 0;       // entries, or grid points a side
     int channels = 1;   // 1D: 1 or 3
     bool is_half_domain = false;
+    /// 1D: the largest and the smallest channel are looked up, the middle one keeps its place
+    /// between them. Autodesk's CTF has it (hueAdjust "dw3"), CLF has not: the file is a .ctf.
+    bool is_hue_preserving = false;
     /// 1D: entry by entry. 3D: RGB triplets, BLUE fastest, as CLF has them.
     const std::vector<float>* values = nullptr;
     /// Decimals of a 3D table whose interpolation error dwarfs them; 0 = 9 significant digits.
     int decimals = 0;
 };
+
+/// ".clf" or ".ctf". OCIO knows a format by it.
+[[nodiscard]] const char* file_extension(const ClfTable& table);
 
 [[nodiscard]] std::string write_clf(const ClfTable& table, const std::string& name,
                                     const std::vector<std::string>& description);

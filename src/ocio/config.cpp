@@ -63,8 +63,10 @@ class LutFiles {
     std::string file_for(const ClfTable& table, const std::string& stem, const std::string& what) {
         std::string key(reinterpret_cast<const char*>(table.values->data()),
                         table.values->size() * sizeof(float));
-        key += std::to_string(table.size) + (table.is_half_domain ? "half" : "");
-        const auto [it, is_new] = names_.emplace(key, stem + "_" + content_hash(key) + ".clf");
+        key += std::to_string(table.size) + (table.is_half_domain ? "half" : "") +
+               (table.is_hue_preserving ? "hue" : "");
+        const auto [it, is_new] =
+            names_.emplace(key, stem + "_" + content_hash(key) + file_extension(table));
         if (is_new) {
             const std::string note =
                 table.dimension == 1 ? ": one entry for every half float" : ": behind its shaper";
@@ -95,6 +97,7 @@ class LutFiles {
         table.size = static_cast<int>(n);
         table.channels = one ? 1 : 3;
         table.is_half_domain = lut.getInputHalfDomain();
+        table.is_hue_preserving = lut.getHueAdjust() == OCIO::HUE_DW3;
         return values;
     }
 

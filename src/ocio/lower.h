@@ -30,7 +30,9 @@ struct LowerOptions {
 /// matrix -> MatrixTransform; clamp -> RangeTransform, never baked into a table; every run of
 /// neighbouring curves -> one half-domain 1D LUT of 65536 entries, stored unclamped; a tone scale
 /// -> a matrix to (R/2, L, B), xyY (or HSV for the largest channel), a half LUT on the norm, and
-/// back; true cross-talk -> a shaper with a linear toe, a tetrahedral cube of unclipped smooth
+/// back; a hue-preserving curve -> a half LUT with OCIO's hueAdjust (a cube if the curve falls); a
+/// hexcone stage -> HSV, half LUTs of logarithms with matrices that add one channel to the other,
+/// and back; true cross-talk -> a shaper with a linear toe, a tetrahedral cube of unclipped smooth
 /// output, and the decoding. Native log, power and sRGB operations are not used: OCIO builds with
 /// SSE evaluate them with 15 bits, and OCIO's sRGB is 1e-5 off IEC 61966-2-1.
 ///

@@ -20,7 +20,9 @@
 //           matrices at the end put saturated colours below 0 or above 1.
 // Kind      clamp, matrix, log and sigmoid, (matrix); the looks of agx_filament are 3D, as their
 //           luma is of the value before the power. Monotone on the neutral axis: yes, but order 7
-//           (agx_minimal:order7, agx_filament) dips within the lowest 2.5 % of its range.
+//           (agx_minimal:order7, agx_filament) dips within the lowest 2.5 % of its range, and where
+//           the shaper ends the channels of greys in agx_threejs and agx_godot44 arrive one after
+//           another, so that the last matrix takes 5e-6 of the light away.
 // Keeps     mid grey 0.18 -> code value 0.5 (agx_sobotka), 0.18 of the light (agx_godot, and
 //           agx_godot44 within 0.5 %).
 // Differs   agx_sobotka uses the sigmoid in closed form where the configuration has its 4096-entry
@@ -184,9 +186,9 @@ constexpr Matrix3 kOutsetRec2020 = {{
 // clang-format on
 
 /// Outset, and code values to light: what is below 0 has no power.
-Pipeline outset_to_light(double power) {
+Pipeline outset_to_light() {
     return {MatrixStage{kOutsetRec2020}, ClampStage{0, kInfinity},
-            curve_stage(pow(Expr::input(), power))};
+            curve_stage(pow(Expr::input(), 2.2))};
 }
 
 Operator threejs() {
@@ -219,7 +221,7 @@ Operator threejs() {
         const Pipeline stages = {MatrixStage{to_rec2020}, MatrixStage{kInsetRec2020},
                                  limit_to_shaper(),
                                  curve_stage(polynomial6(normalised_log(Expr::input())))};
-        return stages + outset_to_light(2.2) + Pipeline{MatrixStage{to_rec709}};
+        return stages + outset_to_light() + Pipeline{MatrixStage{to_rec709}};
     };
     return op;
 }
@@ -242,7 +244,7 @@ Operator filament() {
     op.title = "AgX (Filament)";
     op.view = "AgX Filament";
     op.character =
-        "as three.js, in Rec.2020 and with the polynomial of order 7: milky blacks, white at 0.96";
+        "as three.js, in Rec.2020 and with the polynomial of order 7: white at 0.96 of the light";
     op.source = "Google Filament, ToneMapper.cpp: AgxToneMapper";
     op.licence = "Apache-2.0; formula and constants, no code of it is used";
     op.dialects = "AgX";
@@ -251,6 +253,8 @@ Operator filament() {
     op.looks = {{"golden", "Golden", "warm: slope 1 0.9 0.5, power 0.8, saturation 1.3"},
                 {"punchy", "Punchy", "darker and stronger: power 1.35, saturation 1.4"}};
     // Punchy takes black below 0 before it is light: there the lifted black is gone.
+    op.bounds = {.cube = 1.6e-2,
+                 .reason = "looks saturate about a luma taken before their power: a cube"};
     op.deviations = {{Deviation::Kind::black, 2.5e-6, ""},
                      {Deviation::Kind::black, 5.2e-5, "golden"},
                      {Deviation::Kind::black, 0, "punchy"},
@@ -268,7 +272,7 @@ Operator filament() {
             stages.push_back(p.look() == "golden" ? filament_look({1, 0.9, 0.5}, 0.8, 1.3)
                                                   : filament_look({1, 1, 1}, 1.35, 1.4));
         }
-        return stages + outset_to_light(2.2);
+        return stages + outset_to_light();
     };
     return op;
 }

@@ -71,6 +71,9 @@ std::vector<Operator> define_camera_response() {
         "M. Grossberg, S. Nayar, What is the Space of Camera Response Functions?, CVPR 2003; 64, "
         "Tone Mapping, 64.github.io";
     op.licence = "published method; measured curves are not part of it";
+    op.bounds = {.ocio_cpu = 1e-6,
+                 .ocio_gpu = 3e-6,
+                 .reason = "straight lines between the samples: an edge at each"};
     op.negatives = kNegativesClampAtZero;
     op.output = OutputKind::code_value;
     op.code_power = 2.2;

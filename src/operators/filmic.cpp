@@ -10,9 +10,9 @@
 //           (github.com/tizian/tonemapper). lottes: T. Lottes, "Advanced Techniques and
 //           Optimization of HDR Color Pipelines", GDC 2016. filament_generic: Filament,
 //           ToneMapper.cpp, GenericToneMapper. ue3: Unreal Engine 3 documentation, "Color Grading",
-//           by way of R. Guy's shadertoy. day: M. Day, "An efficient and user-friendly tone mapping
-//           operator", Insomniac Games, 2012. schlick: C. Schlick, "Quantization Techniques for
-//           Visualization of High Dynamic Range Pictures", Eurographics Workshop on Rendering,
+//           by way of R. Guy's shadertoy llXyWr. day: M. Day, "An efficient and user-friendly tone
+//           mapping operator", Insomniac Games, 2012. schlick: C. Schlick, "Quantization Techniques
+//           for Visualization of High Dynamic Range Pictures", Eurographics Workshop on Rendering,
 //           1994. toe: ours, after descriptions in T. Madams, "Why Reinhard desaturates my blacks",
 //           imdoingitwrong.wordpress.com, 2010-08-19.
 // In        scene-linear RGB, working primaries Rec.709, D65; domain [0, 65504], negatives: clamped
@@ -28,7 +28,7 @@
 // Differs   hejl_burgess_dawson, schlick: nowhere (T. Zeltner's schlick ignores p). ue3: its code
 //           values go up to 1.019 in most ports; here they end at 1, where the display does.
 //           hejl_2015: the first factor is BakingLab's 1.435; the author's post is quoted with
-//           1.425 elsewhere, which is up to 0.0014 darker.
+//           1.425 elsewhere, which is up to 0.0017 darker.
 //           aldridge: below twice the cutoff v + (2q - v)^2/(4q) - q is written v^2/(4q), the same
 //           without the difference, so that 0 stays 0. With a cutoff above 0.5 the source is
 //           negative below, down to the pole of the rational: 0 here.
@@ -40,7 +40,7 @@
 //           comes near black or white.
 // Check     mid grey 0.18 -> 0.508028282 (hejl_burgess_dawson), 0.237508884 (hejl_2015),
 //           0.479315490 (aldridge), 0.267 (lottes), 0.215 (filament_generic), 0.547522388 (ue3),
-//           0.00341873507 (day), 0.0348093212 (schlick), 0.18 (toe)
+//           0.00341873507 (day), 0.0348095146 (schlick), 0.18 (toe)
 //           (python_check/operators/filmic.py).
 #include <cmath>
 
@@ -53,9 +53,7 @@ namespace {
 constexpr double kBakedPower = 2.2;
 
 /// The rational that approximates Kodak's film with its print and gamma; of x >= 0.
-Expr hejl_rational(const Expr& x) {
-    return x * (6.2 * x + 0.5) / (x * (6.2 * x + 1.7) + 0.06);
-}
+Expr hejl_rational(const Expr& x) { return x * (6.2 * x + 0.5) / (x * (6.2 * x + 1.7) + 0.06); }
 
 Operator hejl_burgess_dawson() {
     Operator op;
@@ -178,8 +176,7 @@ Operator lottes() {
     op.view = "Lottes";
     op.character =
         "contrast and shoulder set apart, mid grey and white pinned: bright mid tones, firm blacks";
-    op.source =
-        "T. Lottes, Advanced Techniques and Optimization of HDR Color Pipelines, GDC 2016";
+    op.source = "T. Lottes, Advanced Techniques and Optimization of HDR Color Pipelines, GDC 2016";
     op.licence = "published formula";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Lottes";
@@ -194,6 +191,10 @@ Operator lottes() {
                           "light that mid grey is shown with")});
     op.warnings = {"with a shoulder above 1 lights get darker again above some scene value"};
     op.deviations = {{Deviation::Kind::exceeds_white, 1.4, ""}};
+    op.bounds = {.simd = 1e-5,
+                 .reason =
+                     "with a shoulder above 1 the curve may pass far above white and come "
+                     "back, and apply=hue_preserving takes the difference"};
     op.build = [](const Params& p) -> Pipeline {
         return tone_curve_pipeline({.f = lottes_curve(p)}, p);
     };
@@ -299,6 +300,7 @@ Operator day() {
     op.source =
         "M. Day, An efficient and user-friendly tone mapping operator, Insomniac Games, 2012";
     op.licence = "published formula";
+    op.bounds = {.ocio_gpu = 3e-6, .reason = "steep where its black ends"};
     op.negatives = kNegativesClampAtZero;
     op.parameters = with_apply(
         "channels",
@@ -311,10 +313,10 @@ Operator day() {
                           "strength of the shoulder: 0 is a straight line"),
          number_parameter("crossover", "times the average", 2, 0.01, 1000,
                           "value where the toe meets the shoulder"),
-         statistic_parameter(
-             number_parameter("average", "scene-linear", 1, 1e-6, kHalfMax,
-                              "scene value that the others are multiples of"),
-             "mean luminance", [](const SceneStatistics& s) { return s.mean_luminance; })});
+         statistic_parameter(number_parameter("average", "scene-linear", 1, 1e-6, kHalfMax,
+                                              "scene value that the others are multiples of"),
+                             "mean luminance",
+                             [](const SceneStatistics& s) { return s.mean_luminance; })});
     op.deviations = {{Deviation::Kind::black, -0.0040, ""},
                      {Deviation::Kind::crushes_black, 0.099, ""},
                      {Deviation::Kind::exceeds_white, 1.2, ""}};
@@ -338,10 +340,10 @@ Operator schlick() {
     op.parameters = with_apply(
         "luminance",
         {number_parameter("p", "", 20, 1, 1000, "slope at black times the maximum; 1 is linear"),
-         statistic_parameter(
-             number_parameter("maximum", "scene-linear", 100, 1e-6, kHalfMax,
-                              "scene value that is shown as display white"),
-             "maximum luminance", [](const SceneStatistics& s) { return s.maximum_luminance; })});
+         statistic_parameter(number_parameter("maximum", "scene-linear", 100, 1e-6, kHalfMax,
+                                              "scene value that is shown as display white"),
+                             "maximum luminance",
+                             [](const SceneStatistics& s) { return s.maximum_luminance; })});
     op.warnings = {
         "apply=luminance keeps chromaticity, so a saturated channel may exceed 1 and clip"};
     op.deviations = {{Deviation::Kind::exceeds_white, 1.1, ""}};
@@ -382,6 +384,8 @@ Operator toe() {
                    "Reinhard Extended with its shadows ramped down",
                    {{"form", "ramp"}, {"width", "0.25"}, {"strength", "0.5"}}}};
     op.warnings = {"a definition of ours: neither game's formula was published"};
+    op.bounds.ocio_cpu = op.bounds.ocio_gpu = 5e-5;
+    op.bounds.reason = "the ramp ends with an edge, between two half floats";
     op.deviations = {{Deviation::Kind::exceeds_white, kInfinity, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const Expr x = Expr::input();
@@ -391,8 +395,8 @@ Operator toe() {
         Expr y = x;
         if (p.choice("form") == "quadratic") {
             const Expr u = min(x, width);
-            const Expr toe = (1 - strength) * u +
-                             strength * (u * u * (2 * width - u) / (width * width));
+            const Expr toe =
+                (1 - strength) * u + strength * (u * u * (2 * width - u) / (width * width));
             y = select(less(x, width), toe, x);
         } else {
             const double white = p.number("white");
@@ -410,8 +414,15 @@ Operator toe() {
 }  // namespace
 
 std::vector<Operator> define_filmic() {
-    return {hejl_burgess_dawson(), hejl_2015(), aldridge(), lottes(),  filament_generic(),
-            ue3(),                 day(),       schlick(),  toe()};
+    return {hejl_burgess_dawson(),
+            hejl_2015(),
+            aldridge(),
+            lottes(),
+            filament_generic(),
+            ue3(),
+            day(),
+            schlick(),
+            toe()};
 }
 
 }  // namespace tonewright

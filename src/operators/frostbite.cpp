@@ -98,6 +98,7 @@ std::vector<Operator> define_frostbite() {
         "T. Stachowiak's shadertoy";
     op.licence = "published formula; no code of it is used";
     op.negatives = kNegativesClampAtZero;
+    op.bounds = {.cube = 1.2e-2, .reason = "a cube: chroma goes within a stop about white"};
     op.parameters = {number_parameter("linear_end", "scene-linear", 0.25, 0.01, 0.99,
                                       "end of the straight part of the compression")};
     op.build = [](const Params& p) -> Pipeline {

@@ -105,6 +105,8 @@ std::vector<Operator> define_gt7() {
         "Perceptual Fidelity in Gran Turismo 7, SIGGRAPH 2025; gt7_tone_mapping.cpp 1.0";
     op.licence = "MIT";
     op.negatives = kNegativesClampAtZero;
+    op.dialects = "Gran Turismo";
+    op.bounds = {.cube = 0.22, .reason = "a cube: lights lose their chroma within 1.4 stops"};
     op.working = kRec2020;
     op.parameters = {
         choice_parameter("output", {"sdr", "hdr"}, "sdr",

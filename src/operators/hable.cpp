@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// John Hable's curves: the rational one of Uncharted 2 with two sets of constants, and the piecewise
-// one of 2017.
+// John Hable's curves: the rational one of Uncharted 2 with two sets of constants, and the
+// piecewise one of 2017.
 //
 // Source    J. Hable, "Filmic Tonemapping Operators", filmicworlds.com, 2010-05-05, with the
 //           constants of that page (A .15 ... W 11.2, exposure bias 2): hable. J. Hable, "Uncharted
@@ -21,9 +21,10 @@
 //           for a scene white of 1; some ports put the bias on the output.)
 //           hable_piecewise: a toe that ends below 2^-100 is no toe (the source takes the logarithm
 //           of 0), and the slopes where the segments meet are limited to [2^-24, 2^24], where the
-//           source has 0 and infinity: a joint at black with a gamma that is not 1. Its floors of
-//           1e-5 on the light of a joint, and its slope of 1 where the straight part has no length,
-//           are kept.
+//           source has 0 and infinity: a joint at black with a gamma that is not 1. A shoulder that
+//           aims a million times above white is an error: no digits of the curve are left. The
+//           source's floors of 1e-5 on the light of a joint, and its slope of 1 where the straight
+//           part has no length, are kept.
 // Check     mid grey 0.18 -> 0.128338449 (hable), 0.305855436 (hable:godot), 0.0664512855
 //           (hable_piecewise:film) (python_check/operators/hable.py).
 #include <algorithm>
@@ -130,8 +131,8 @@ Expr power(const Expr& base, double exponent) {
     return select(less(0x1p-100, base), pow(base, exponent), 0);
 }
 
-/// (1 - t)^exponent for an exponent of 1 or more, 0 below e^-69 = 1e-30. What 1 - t rounds away, and
-/// a large exponent would show, is missing in both parts of the quotient.
+/// (1 - t)^exponent for an exponent of 1 or more, 0 below e^-69 = 1e-30. What 1 - t rounds away,
+/// and a large exponent would show, is missing in both parts of the quotient.
 Expr power_of_1_minus(const Expr& t, double exponent) {
     const Expr u = 1 - t;
     const Expr log_u = select(equal(u, 1), -t, t * (log(u) / (1 - u)));
@@ -177,8 +178,8 @@ Expr piecewise_curve(const Params& p) {
     if (!(1 + overshoot_y < 1e6 * at_white)) {
         throw Error("shoulder_angle is " + shortest(angle) +
                     "; expected less with this gamma, shoulder_strength and shoulder_length: the "
-                    "shoulder would aim at " + shortest((1 + overshoot_y) / at_white) +
-                    " times the light of white");
+                    "shoulder would aim at " +
+                    shortest((1 + overshoot_y) / at_white) + " times the light of white");
     }
 
     const Expr x = Expr::input();

@@ -13,10 +13,11 @@
 // In        scene-linear RGB, working primaries Rec.709, D65; domain [0, 65504], negatives: clamped
 //           at 0 (f has a pole at -1).
 // Out       display-linear RGB, 1.0 = display peak; reinhard and reinhard_devlin [0, 1),
-//           reinhard_extended and nebula unbounded above their white, reinhard_jodie up to 1.002
-//           for very saturated colours, reinhard_constant_luminance up to 13.9 for pure blue.
-// Kind      per channel, luminance or max (parameter `apply`); jodie, constant_luminance and devlin
-//           3D. Monotone on the neutral axis: yes; analytic inverse of reinhard: yes.
+//           reinhard_extended and nebula unbounded above their white, reinhard_jodie up to 1.36 and
+//           reinhard_constant_luminance up to 13.9, both for pure blue.
+// Kind      per channel, luminance or max (parameter `apply`); jodie and constant_luminance 3D,
+//           devlin a curve and 3D. Monotone on the neutral axis: yes; analytic inverse of reinhard:
+//           yes.
 // Keeps     f(0) = 0; reinhard f'(0) = 1; reinhard_extended f(white) = 1; nebula
 //           f(average maximum/middle_grey) = 1.
 // Differs   the paper scales by key/log-average first: here that is the exposure (nebula has both
@@ -26,7 +27,9 @@
 //           near black and has no end, and copies of it have that too; it limits the average to
 //           [0.3, 1]. Neither here.
 //           reinhard_devlin: the adaptation is at least 2^-100; where it is 0 the paper has 0/0.
-// Check     mid grey 0.18 -> 0.152542373 (reinhard), 0.154258475 (reinhard_extended), 0.177763373
+//           The 3D part is a function of a power of the channels, for the sake of cubes: the same
+//           values.
+// Check     mid grey 0.18 -> 0.152542373 (reinhard), 0.154258475 (reinhard_extended), 0.177781456
 //           (nebula), 0.334941443 (reinhard_devlin) (python_check/operators/reinhard.py).
 #include <algorithm>
 #include <cmath>
@@ -117,11 +120,11 @@ Operator nebula() {
          number_parameter("maximum", "scene-linear, after the key", 16, 0.01, kHalfMax,
                           "smallest scaled value that is shown as display white"),
          statistic_parameter(
-             number_parameter("average", "scene-linear", 0.5, 0.001, kHalfMax,
-                              "mean of the scene"),
+             number_parameter("average", "scene-linear", 0.5, 0.001, kHalfMax, "mean of the scene"),
              "mean luminance", [](const SceneStatistics& s) { return s.mean_luminance; })});
-    op.warnings = {"programs with the code as it was printed show another picture, quadratic near "
-                   "black: they do not divide by the luminance"};
+    op.warnings = {
+        "programs with the code as it was printed show another picture, quadratic near "
+        "black: they do not divide by the luminance"};
     op.deviations = {{Deviation::Kind::exceeds_white, kInfinity, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const double white = p.number("maximum");
@@ -169,19 +172,22 @@ Operator constant_luminance() {
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Reinhard";
     op.warnings = {"two channels above 1 lose what they hand to each other, and its luminance"};
+    op.bounds = {
+        .cube = 0.2,
+        .reason = "what a channel hands on starts with an edge, where no node of a cube is"};
     op.build = [](const Params&) -> Pipeline {
-        const Channels c = inputs();
-        const Expr luminance = luminance_of(c);
-        Channels scaled = c;
-        Channels handed_on = c;  // by channel i to each of the others: of the same luminance
+        const Channels c = inputs();  // scaled by 1/(1 + L)
+        Channels handed_on = c;       // by channel i to each of the others: of the same luminance
         for (std::size_t i = 0; i < 3; ++i) {
             const double w = kRec709Weights[i];
-            scaled[i] = c[i] / (1 + luminance);
-            handed_on[i] = max(scaled[i] - 1, 0) * (w / (1 - w));
+            handed_on[i] = max(c[i] - 1, 0) * (w / (1 - w));
         }
-        return {limit_to_positive(), Map3Stage{{scaled[0] + handed_on[1] + handed_on[2],
-                                                scaled[1] + handed_on[2] + handed_on[0],
-                                                scaled[2] + handed_on[0] + handed_on[1]}}};
+        const Expr x = Expr::input();
+        const ToneScaleStage scale{ToneScaleStage::Norm::luminance, kRec709Weights, x / (1 + x)};
+        // No channel is above 1/w, of blue 13.9.
+        return {limit_to_positive(), scale, ClampStage{0, 14},
+                Map3Stage{{c[0] + handed_on[1] + handed_on[2], c[1] + handed_on[2] + handed_on[0],
+                           c[2] + handed_on[0] + handed_on[1]}}};
     };
     return op;
 }
@@ -235,12 +241,19 @@ Operator devlin() {
              [](const SceneStatistics& s) { return s.mean_luminance; })};
     op.warnings = {"contrast=1 with light_adaptation=1 gives every grey but black the same light"};
     op.deviations = {{Deviation::Kind::never_reaches_white, 0.99, ""}};
+    op.bounds.cube = 0.05;
+    op.bounds.reason = "infinitely steep at black, where half floats end at 6e-8; else a cube's";
     op.build = [](const Params& p) -> Pipeline {
-        const Channels in = inputs();
+        const double m = p.number("contrast");
+        // Of greys the formula makes x^(1-m)/(x^(1-m) + exp(-f m)), whose slope at black has no
+        // end. That of this power has none either, and no cube has to hold it.
+        const double steepness = std::max(1 - m, 0.25);
+        Channels in = inputs();
+        for (Expr& channel : in)
+            channel = pow(channel, 1 / steepness);
         const Expr L = luminance_of(in);
         const Vector3 means = {p.number("mean_red"), p.number("mean_green"), p.number("mean_blue")};
         const double mean_luminance = p.number("mean_luminance");
-        const double m = p.number("contrast");
         const double c = p.number("chromatic_adaptation");
         const double a = p.number("light_adaptation");
         const double f = std::exp(-p.number("intensity"));
@@ -251,7 +264,8 @@ Operator devlin() {
             const Expr adaptation = a * local + (1 - a) * global;
             out[i] = in[i] / (in[i] + pow(max(f * adaptation, 0x1p-100), m));
         }
-        return {limit_to_positive(), Map3Stage{out}};
+        return {limit_to_positive(), curve_stage(pow(Expr::input(), steepness)),
+                ClampStage{0, std::pow(kHalfMax, steepness)}, Map3Stage{out}};
     };
     return op;
 }

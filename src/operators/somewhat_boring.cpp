@@ -50,6 +50,7 @@ std::vector<Operator> define_somewhat_boring() {
         "T. Stachowiak, Somewhat boring display transform, in Bevy: tonemapping_shared.wgsl";
     op.licence = "MIT or Apache-2.0";
     op.negatives = kNegativesClampAtZero;
+    op.bounds = {.cube = 1.4e-2, .reason = "a cube: the desaturation starts with an edge"};
     op.deviations = {{Deviation::Kind::never_reaches_white, 0.97, ""}};
     op.build = [](const Params&) -> Pipeline { return {limit_to_positive(), boring_mapping()}; };
     return {op};

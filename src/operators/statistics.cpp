@@ -9,15 +9,16 @@
 //           1994, pp. 415-421. tumblin_rushmeier: J. Tumblin, H. Rushmeier, "Tone Reproduction for
 //           Realistic Images", IEEE Computer Graphics and Applications 13(6), 1993, pp. 42-48.
 //           ferwerda: J. Ferwerda, S. Pattanaik, P. Shirley, D. Greenberg, "A Model of Visual
-//           Adaptation for Realistic Image Synthesis", SIGGRAPH 1996. durand_dorsey_rods: F. Durand,
-//           J. Dorsey, "Interactive Tone Mapping", Eurographics Workshop on Rendering, 2000.
+//           Adaptation for Realistic Image Synthesis", SIGGRAPH 1996.
+//           durand_dorsey_rods: F. Durand, J. Dorsey, "Interactive Tone Mapping", Eurographics
+//           Workshop on Rendering, 2000.
 // In        scene-linear RGB, working primaries Rec.709, D65; domain [0, 65504], negatives: clamped
 //           at 0. ward, tumblin_rushmeier, ferwerda and durand_dorsey_rods take scene values for
 //           cd/m2.
 // Out       display-linear RGB, 1.0 = display peak, all without end above it: none clamps.
 // Kind      luminance, as `apply` says; the two with rods mix the channels (matrix, curve, matrix).
 //           Monotone on the neutral axis: yes.
-// Keeps     0 -> 0, but tumblin_rushmeier f(0) = -1/contrast_max; drago f(maximum) = display_max/100.
+// Keeps     0 -> 0, but tumblin_rushmeier f(0) = -1/contrast_max; drago maximum -> display_max/100.
 // Differs   luminance forms are 0/0 at black in every source: here black stays black.
 //           drago: without the paper's changed gamma, which a display's encoding takes the place
 //           of. ln(1 + x) is computed so that it keeps its digits for small x, and the bias power
@@ -82,10 +83,10 @@ Operator drago() {
          number_parameter("display_max", "cd/m2", 100, 1, 10000,
                           "luminance that the maximum is shown with, where 100 is display white"),
          log_average(1),
-         statistic_parameter(
-             number_parameter("maximum", "scene-linear", 100, 1e-6, kHalfMax,
-                              "brightest scene value"),
-             "maximum luminance", [](const SceneStatistics& s) { return s.maximum_luminance; })});
+         statistic_parameter(number_parameter("maximum", "scene-linear", 100, 1e-6, kHalfMax,
+                                              "brightest scene value"),
+                             "maximum luminance",
+                             [](const SceneStatistics& s) { return s.maximum_luminance; })});
     op.warnings = {kChannelsMayClip};
     op.deviations = {{Deviation::Kind::exceeds_white, 1.5, ""}};
     op.build = [](const Params& p) -> Pipeline {
@@ -121,8 +122,8 @@ Operator ward() {
     op.deviations = {{Deviation::Kind::exceeds_white, kInfinity, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const double display = p.number("display_max");
-        const double threshold_ratio = (1.219 + std::pow(display / 2, 0.4)) /
-                                       (1.219 + std::pow(p.number("log_average"), 0.4));
+        const double threshold_ratio =
+            (1.219 + std::pow(display / 2, 0.4)) / (1.219 + std::pow(p.number("log_average"), 0.4));
         const double m = std::pow(threshold_ratio, 2.5);
         return tone_curve_pipeline({.f = (m / display) * Expr::input()}, p);
     };
@@ -169,8 +170,7 @@ Operator tumblin_rushmeier() {
         const Brightness of_display(display / std::sqrt(contrast));
         const double scale =
             std::pow(10, (of_scene.beta - of_display.beta) / of_display.alpha) / display;
-        const Expr f =
-            scale * pow(Expr::input(), of_scene.alpha / of_display.alpha) - 1 / contrast;
+        const Expr f = scale * pow(Expr::input(), of_scene.alpha / of_display.alpha) - 1 / contrast;
         return tone_curve_pipeline({.f = f}, p);
     };
     return op;
@@ -207,8 +207,8 @@ Pipeline cones_and_rods(double cones, double rods, const Vector3& tint) {
     const Expr x = Expr::input();
     // In coordinates of which one is the rods' signal and the others do not change along the tint,
     // only that one bends: exact as matrix, curve, matrix.
-    const auto p = static_cast<std::size_t>(std::max_element(tint.begin(), tint.end()) -
-                                            tint.begin());
+    const auto p =
+        static_cast<std::size_t>(std::max_element(tint.begin(), tint.end()) - tint.begin());
     const double along_tint = dot(kRods, tint);
     if (std::fabs(along_tint) > 0.1 * tint[p]) {
         Matrix3 basis = kIdentity3;
@@ -227,21 +227,20 @@ Pipeline cones_and_rods(double cones, double rods, const Vector3& tint) {
 }
 
 std::vector<ParameterSpec> rod_parameters() {
-    return {display_max(80),
-            statistic_parameter(
-                number_parameter("photopic_adaptation", "cd/m2", 2, 1e-6, kHalfMax,
-                                 "luminance that the cones have adapted to"),
-                "half the maximum luminance",
-                [](const SceneStatistics& s) { return s.maximum_luminance / 2; }),
-            statistic_parameter(
-                number_parameter("scotopic_adaptation", "scotopic cd/m2", 1.5, 1e-6, kHalfMax,
-                                 "signal that the rods have adapted to"),
-                "half the rods' signal of the channels' maxima",
-                [](const SceneStatistics& s) { return dot(kRods, s.maximum_rgb) / 2; }),
-            choice_parameter("rod_weight_from", {"adaptation", "fixed"}, "adaptation",
-                             "share of the rods: by what the eye has adapted to, or rod_weight"),
-            number_parameter("rod_weight", "", 0.5, 0, 1,
-                             "k, share of the rods; read with rod_weight_from=fixed")};
+    return {
+        display_max(80),
+        statistic_parameter(number_parameter("photopic_adaptation", "cd/m2", 2, 1e-6, kHalfMax,
+                                             "luminance that the cones have adapted to"),
+                            "half the maximum luminance",
+                            [](const SceneStatistics& s) { return s.maximum_luminance / 2; }),
+        statistic_parameter(number_parameter("scotopic_adaptation", "scotopic cd/m2", 1.5, 1e-6,
+                                             kHalfMax, "signal that the rods have adapted to"),
+                            "half the rods' signal of the channels' maxima",
+                            [](const SceneStatistics& s) { return dot(kRods, s.maximum_rgb) / 2; }),
+        choice_parameter("rod_weight_from", {"adaptation", "fixed"}, "adaptation",
+                         "share of the rods: by what the eye has adapted to, or rod_weight"),
+        number_parameter("rod_weight", "", 0.5, 0, 1,
+                         "k, share of the rods; read with rod_weight_from=fixed")};
 }
 
 /// C' = (mp C + k ms tint Ls)/Ldmax.
@@ -253,6 +252,14 @@ Pipeline rod_pipeline(const Params& p, double weight_by_adaptation, const Vector
     const double k =
         p.choice("rod_weight_from") == "fixed" ? p.number("rod_weight") : weight_by_adaptation;
     return cones_and_rods(mp / display, k * ms / display, tint);
+}
+
+DeclaredBounds rod_bounds() {
+    return {.simd = 2e-6,
+            .ocio_cpu = 1e-4,
+            .ocio_gpu = 3e-4,
+            .cube = 0.3,
+            .reason = "the matrix back from the rods' coordinates cancels near black"};
 }
 
 Operator ferwerda() {
@@ -270,6 +277,7 @@ Operator ferwerda() {
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Ferwerda";
     op.parameters = rod_parameters();
+    op.bounds = rod_bounds();
     op.warnings = {kScenesAreLuminances};
     op.deviations = {{Deviation::Kind::exceeds_white, kInfinity, ""}};
     op.build = [](const Params& p) -> Pipeline {
@@ -286,15 +294,17 @@ Operator durand_dorsey_rods() {
     op.title = "Ferwerda with blue shift (Durand-Dorsey)";
     op.view = "Durand-Dorsey Rods";
     op.character = "Ferwerda whose night is bluish; rods fade more slowly with the light";
-    op.source = "F. Durand, J. Dorsey, Interactive Tone Mapping, Eurographics Workshop on "
-                "Rendering, 2000";
+    op.source =
+        "F. Durand, J. Dorsey, Interactive Tone Mapping, Eurographics Workshop on "
+        "Rendering, 2000";
     op.licence = "published formula";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Ferwerda";
     op.parameters = rod_parameters();
+    op.bounds = rod_bounds();
     const auto shift = [&](const std::string& color, double value) {
-        op.parameters.push_back(number_parameter("blue_shift_" + color, "", value, 0, 2,
-                                                 color + " of the rods' grey"));
+        op.parameters.push_back(
+            number_parameter("blue_shift_" + color, "", value, 0, 2, color + " of the rods' grey"));
     };
     shift("red", 1.05);
     shift("green", 0.97);

@@ -64,7 +64,7 @@ Expr film_curve(double slope, double toe, double shoulder, double black_clip, do
     // 10^230), of the long one tm, which is below mid grey.
     const Expr u = is_long_toe ? pow(min(x, std::pow(10, tm)) / std::pow(10, tm), toe_power)
                                : grey_in_toe / (1 - grey_in_toe) * pow(x / kMidGrey, toe_power);
-    const Expr toe_part = arm(ts, u) - black_clip;
+    Expr toe_part = arm(ts, u) - black_clip;
     if (std::min(tm, sm) >= top) return toe_part;
 
     const double x_shoulder = std::pow(10, std::min(sm, top));
@@ -94,6 +94,8 @@ std::vector<Operator> define_unreal() {
     op.source = "Epic Games, FilmToneMap of TonemapCommon.ush, Unreal Engine 4.15 and later";
     op.licence = "Epic EULA; formula and constants as facts, no code of it is used";
     op.negatives = kNegativesClampAtZero;
+    op.dialects = "Unreal";
+    op.bounds = {.cube = 2.4e-2, .reason = "a cube of glow and red modifier, before the contrast"};
     op.working = kAP1;
     op.parameters = {
         number_parameter("slope", "", 0.88, 0.01, 1, "slope of the straight part, per log10"),

@@ -21,6 +21,7 @@ std::string to_string(const Deviation& d) {
     const std::string prefix = d.when.empty() ? "" : d.when + ": ";
     switch (d.kind) {
         case Kind::black:
+            if (d.value == 0) return prefix + "black is 0";
             return prefix + (d.value > 0
                                  ? "lifts black to " + rounded(d.value)
                                  : "takes black to " + rounded(d.value) + ", which displays clip");
@@ -32,7 +33,7 @@ std::string to_string(const Deviation& d) {
         case Kind::exceeds_white:
             return prefix +
                    (d.value == kInfinity ? "exceeds white without end"
-                                         : "exceeds white, up to " + rounded(d.value)) +
+                                         : "exceeds white, up to " + rounded(d.value, 3)) +
                    ": displays clip it";
         case Kind::not_monotone:
             return prefix + "non-monotone" +

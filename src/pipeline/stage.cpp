@@ -133,9 +133,11 @@ std::array<Expr, 3> apply_stage(const Stage& stage, const std::array<Expr, 3>& r
                        const Expr f_lo = substitute(s.f, std::span(&lo, 1));
                        const Expr range = substitute(s.f, std::span(&hi, 1)) - f_lo;
                        std::array<Expr, 3> out = rgb;
-                       // Greys: 0/0, but the range that it would scale is 0.
+                       // Greys: 0/0, but the range that it would scale is 0. The condition is on what
+                       // is divided by: in float a difference may be 0 where its terms differ.
+                       const Expr spread = hi - lo;
                        for (Expr& c : out)
-                           c = f_lo + range * select(less(lo, hi), (c - lo) / (hi - lo), 0);
+                           c = f_lo + range * select(less(0, spread), (c - lo) / spread, 0);
                        return out;
                    },
                    [&](const HexconeStage& s) {

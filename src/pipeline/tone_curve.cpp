@@ -53,7 +53,9 @@ Map3Stage corrected(const Expr& f, const Params& params, const Vector3& w) {
     const auto channel = [&](const Expr& v) {
         const Expr ratio = v / L;
         if (s.is_constant(0)) return select(less(0, L), Lo, 0);
-        const Expr colored = is_nonlinear ? pow(ratio, s) : (ratio - 1) * s + 1;
+        // 0^s is 0 for every s above 0, also where the curve is so flat that s is 0 but for that.
+        const Expr power = s.is_constant() ? pow(ratio, s) : select(less(0, v), pow(ratio, s), 0);
+        const Expr colored = is_nonlinear ? power : (ratio - 1) * s + 1;
         return select(less(0, L), colored * Lo, 0);
     };
     return {{channel(c[0]), channel(c[1]), channel(c[2])}};

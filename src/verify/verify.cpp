@@ -65,31 +65,42 @@ bool has_negative_coefficient(const Matrix3& m) {
 }
 
 /// What the structure of a chain allows (DESIGN of the project, section 4), for display code
-/// values.
+/// values; what the operator declares instead.
 struct Bounds {
+    double simd = 1e-6;
     double cpu = 3e-7;
     double gpu = 1e-6;
     bool is_mixed_metric = false;
 };
 
-Bounds bounds_of(const Pipeline& pipeline) {
+Bounds bounds_of(const Pipeline& pipeline, bool is_exact, const DeclaredBounds& declared) {
     Bounds b;
+    // Below 1 the error is one of float32 numbers around 1; above, it is in proportion to what the
+    // curve grows to before the display's clamp.
+    const auto largest = [](const Expr& f) { return std::max(1.0, evaluate(f, 4096.0)); };
+    const auto allow = [&](double cpu, double gpu) {
+        b.cpu = std::max(b.cpu, cpu);
+        b.gpu = std::max(b.gpu, gpu);
+    };
     for (const Stage& stage : simplify(pipeline)) {
         if (const auto* m = std::get_if<MatrixStage>(&stage); m && has_negative_coefficient(m->m)) {
             b.is_mixed_metric = true;
         }
-        if (const auto* t = std::get_if<ToneScaleStage>(&stage)) {
-            // xyY and HSV subtract numbers as large as the brightest channel, so float32 leaves an
-            // error in proportion to what the curve grows to before the display's clamp.
-            const double largest = std::max(1.0, evaluate(t->f, 4096.0));
-            b.cpu = std::max(b.cpu, 2e-5 * largest);
-            b.gpu = std::max(b.gpu, 5e-5 * largest);
-        }
-        if (std::holds_alternative<Map3Stage>(stage)) {
-            b.cpu = std::max(b.cpu, 1.0 / 1023);  // 65^3 cube: one code of 10 bits
-            b.gpu = std::max(b.gpu, 1.0 / 1023);
-        }
+        // xyY and HSV subtract numbers as large as the brightest channel.
+        if (const auto* t = std::get_if<ToneScaleStage>(&stage))
+            allow(2e-5 * largest(t->f), 5e-5 * largest(t->f));
+        if (const auto* h = std::get_if<HuePreservingStage>(&stage))
+            allow(3e-7 * largest(h->f), 1e-6 * largest(h->f));
+        if (const auto* h = std::get_if<HexconeStage>(&stage))
+            allow(1e-5 * largest(h->value), 3e-5 * largest(h->value));
     }
+    if (!is_exact) {  // 65^3 cube: one code of 10 bits
+        const double cube = declared.cube > 0 ? declared.cube : 1.0 / 1023;
+        allow(cube, cube);
+    }
+    if (declared.simd > 0) b.simd = declared.simd;
+    if (declared.ocio_cpu > 0) b.cpu = declared.ocio_cpu;
+    if (declared.ocio_gpu > 0) b.gpu = declared.ocio_gpu;
     return b;
 }
 
@@ -242,8 +253,10 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
     for (const View& view : views) {
         const Pipeline pipeline = build_view(view);
         const Comparison comparison(view, probes);
-        const Bounds bounds = bounds_of(pipeline);
-        const auto add = [&](const std::string& form, double bound, bool mixed,
+        const DeclaredBounds& declared = view.op.op->bounds;
+        const Lowered lowered = lower_to_ocio(pipeline);
+        const Bounds bounds = bounds_of(pipeline, lowered.is_exact, declared);
+        const auto add = [&](const std::string& form, double bound, bool is_declared, bool mixed,
                              const std::string& lowering, const auto& run) {
             ParityRow row;
             row.op = view.op.label;
@@ -254,6 +267,8 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
             row.is_mixed_metric = mixed;
             run();
             comparison.measure(shown, form == "ocio gpu" ? 0x1p-21 : 0x1p-23, row);
+            if (is_declared)
+                row.note += (row.note.empty() ? "" : "; ") + ("bound: " + declared.reason);
             rows.push_back(row);
             if (on_row) on_row(rows.back());
         };
@@ -261,13 +276,12 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
         const SimdEngine simd(pipeline);
         for (const std::string& target : SimdEngine::targets()) {
             SimdEngine::use_target(target);
-            add("simd " + target, 1e-6, false, "",
+            add("simd " + target, bounds.simd, declared.simd != DeclaredBounds{}.simd, false, "",
                 [&] { simd.run_rgb(probes.rgb.data(), shown.data(), probes.size()); });
         }
         SimdEngine::use_target("");
 
         OCIO::ConstProcessorRcPtr processor;
-        const Lowered lowered = lower_to_ocio(pipeline);
         std::string lowering = lowered.summary;
         try {
             if (is_in_config(view.op)) {
@@ -285,9 +299,9 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
         const auto cpu = [&](OCIO::OptimizationFlags flags) {
             OcioCpu(processor, flags).run_rgb(probes.rgb.data(), shown.data(), probes.size());
         };
-        add("ocio cpu lossless", bounds.cpu, bounds.is_mixed_metric, lowering,
-            [&] { cpu(OCIO::OPTIMIZATION_LOSSLESS); });
-        add("ocio cpu default", bounds.cpu, bounds.is_mixed_metric, lowering,
+        add("ocio cpu lossless", bounds.cpu, declared.ocio_cpu > 0, bounds.is_mixed_metric,
+            lowering, [&] { cpu(OCIO::OPTIMIZATION_LOSSLESS); });
+        add("ocio cpu default", bounds.cpu, declared.ocio_cpu > 0, bounds.is_mixed_metric, lowering,
             [&] { cpu(OCIO::OPTIMIZATION_DEFAULT); });
         if (!options.with_gpu) continue;
         if (const std::string reason = OcioGpu::unavailable_reason(); !reason.empty()) {
@@ -301,7 +315,7 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
             continue;
         }
         const OcioGpu gpu(processor);
-        add("ocio gpu", bounds.gpu, bounds.is_mixed_metric, lowering,
+        add("ocio gpu", bounds.gpu, declared.ocio_gpu > 0, bounds.is_mixed_metric, lowering,
             [&] { gpu.run_rgb(probes.rgb.data(), shown.data(), probes.size()); });
     }
     return rows;

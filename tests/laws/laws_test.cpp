@@ -264,10 +264,16 @@ std::map<Kind, double> measured_deviations(const Pipeline& native, const Pipelin
 std::map<Kind, double> declared_deviations(const OperatorVariant& v) {
     const std::size_t colon = v.name.find(':');
     const std::string preset = colon == std::string::npos ? "" : v.name.substr(colon + 1);
+    const auto is_special = [&](const Deviation& d) {
+        return !d.when.empty() && (d.when == preset || d.when == v.look);
+    };
     std::map<Kind, double> declared;
-    for (const Deviation& d : resolve(v).op->deviations) {
-        if (d.when.empty() || d.when == preset || d.when == v.look) declared[d.kind] = d.value;
+    for (const bool special : {false, true}) {
+        for (const Deviation& d : resolve(v).op->deviations) {
+            if (special ? is_special(d) : d.when.empty()) declared[d.kind] = d.value;
+        }
     }
+    if (declared.contains(Kind::black) && declared[Kind::black] == 0) declared.erase(Kind::black);
     return declared;
 }
 
@@ -311,12 +317,12 @@ TEST_P(Law, BrighterScenesAreShownBrighter) {
         if (crushed == declared.end() || x > 1.05 * crushed->second) ramp.push_back(x);
     }
     const Planes out = run(view("srgb"), grey(ramp));
-    for (const auto& plane : out) {
-        for (std::size_t i = 0; i + 1 < plane.size(); ++i) {
-            // A clamped operator has arrived at white.
-            EXPECT_TRUE(plane[i] == 1 || plane[i] < plane[i + 1])
-                << "from grey " << ramp[i] << ": " << plane[i] << ", then " << plane[i + 1];
-        }
+    for (std::size_t i = 0; i + 1 < ramp.size(); ++i) {
+        // A look may take one channel of a grey down while the grey as a whole gets brighter.
+        const auto code = [&](std::size_t k) { return out[0][k] + out[1][k] + out[2][k]; };
+        // A clamped operator has arrived at white.
+        EXPECT_TRUE(code(i) == 3 || code(i) < code(i + 1))
+            << "from grey " << ramp[i] << ": " << code(i) / 3 << ", then " << code(i + 1) / 3;
     }
 }
 
@@ -367,7 +373,8 @@ TEST_P(Law, ExposureIsAFactorOnTheScene) {
                 // matrix may leave standing (2.4 is its largest sum of coefficients) where the
                 // others cancel, times the steepest slope of the sRGB curve, 12.92.
                 const double largest = std::max({scaled[0][i], scaled[1][i], scaled[2][i]});
-                const double tolerance = 1e-13 + 6 * 0x1p-53 * 2.4 * 12.92 * largest;
+                // PQ's power of 78.84, and 1/0.159 on the way back, multiply a rounding by 500.
+                const double tolerance = 4e-12 + 6 * 0x1p-53 * 2.4 * 12.92 * largest;
                 for (std::size_t c = 0; c < 3; ++c) {
                     ASSERT_NEAR(a[c][i], b[c][i], tolerance)
                         << input << ", " << stops << " stops, " << colour_text(in, i);
@@ -434,7 +441,7 @@ TEST_P(Law, AnalyticInversesInvert) {
 class CurveLaw : public Law {};
 
 TEST_P(CurveLaw, IsInvertedNumerically) {
-    const Expr f = compose(view("native"))[0];
+    const Expr f = compose(resolve(GetParam()).build())[0];
     const Expr slope = derivative(f);
     int inverted = 0;
     for (const double x : grey_ramp()) {
@@ -442,7 +449,8 @@ TEST_P(CurveLaw, IsInvertedNumerically) {
         const double y = evaluate(f, x);
         // What the rounding of y may move x by, relative: some 2^-53 of the formula's terms, which
         // are of the size of 1 (Hable's cancel in the dark), over the slope.
-        const double uncertainty = 1e-15 * std::max(1.0, std::fabs(y)) / (evaluate(slope, x) * x);
+        // PQ's power of 78.84 multiplies them by a hundred.
+        const double uncertainty = 1e-13 * std::max(1.0, std::fabs(y)) / (evaluate(slope, x) * x);
         // Where the curve is flat (a clamp, a shoulder near its end) any x will do.
         if (!(uncertainty >= 0 && uncertainty < 1e-6)) continue;
         EXPECT_NEAR(inverse_at(f, y, 0, kHalfMax) / x, 1, uncertainty + 1e-15) << "at " << x;
@@ -567,7 +575,8 @@ TEST_P(ParameterLaw, WhatIsAcceptedIsTotal) {
     std::vector<float> simd(in.size());
     std::set<Settings> tried;
     std::size_t accepted = 0;
-    for (int round = 0; round < 100; ++round) {
+    // Of two peaks and two blacks hardly one random set in twenty is in order.
+    for (int round = 0; round < 600 && accepted < 100; ++round) {
         const Settings settings = random_settings(op, random);
         if (!tried.insert(settings).second) continue;
         std::optional<ResolvedOperator> resolved;
@@ -593,7 +602,7 @@ TEST_P(ParameterLaw, WhatIsAcceptedIsTotal) {
             }
         }
     }
-    EXPECT_GT(accepted, tried.size() / 10);
+    EXPECT_GE(accepted, std::min<std::size_t>(tried.size(), 10));
 }
 
 // ---------------------------------------------------------------------------------------------

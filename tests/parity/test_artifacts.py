@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The committed luts/ and ocio_config/ against fresh ones: the same files, texts and numbers.
+"""The committed luts/, ocio_config/ and catalogue of docs/ against fresh ones: the same files, texts and numbers.
 
     python3 tests/parity/test_artifacts.py build/release/bin/tonewright SOURCE_DIR
 
@@ -35,6 +35,9 @@ PROBE = 1e-9
 FIGURE_RELATIVE, FIGURE_ABSOLUTE = 0.1, 1e-6
 # Coefficients and limits of the config, 15 digits: other compilers multiply matrices with other last digits.
 TRANSFORM = 1e-9
+# Pixels of a plot have two decimals. Where one is rounded to the other side, a line may get along with other points:
+# two lines that are within 0.2 of one curve.
+PIXEL, LINE = 0.011, 0.41
 
 NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w^])")
 
@@ -152,6 +155,47 @@ def compare_config(report, what, committed, fresh):
     report.check(f"{what} ({len(new)} entries)", not different, "; ".join(different[:3]))
 
 
+def page_differs(is_, expected):
+    """None, or what differs between two catalogue pages: words and parameters exactly, measured figures by a unit of
+    their last digit."""
+    is_, expected = is_.splitlines(), expected.splitlines()
+    for number, (line, other) in enumerate(zip(is_, expected), 1):
+        if line == other:
+            continue
+        if line.startswith("* Measured "):
+            pieces, others = (re.split(r"([-+]?\d+(?:\.\d+)?)", text) for text in (line, other))
+        else:
+            pieces, others = (text.split(" | ") for text in (line.removesuffix(" |"), other.removesuffix(" |")))
+        if len(pieces) != len(others):
+            return f"line {number}: {first_difference(line, other)}"
+        for piece, figure in zip(pieces, others):
+            if piece == figure:
+                continue
+            decimals = re.fullmatch(r"[-+]?\d+\.(\d+)", figure)
+            if not decimals or not re.fullmatch(r"[-+]?\d+\.\d+", piece) or line.startswith("| `") or abs(
+                    float(piece) - float(figure)) > 1.01 * 10.0 ** -len(decimals[1]):
+                return f"line {number}: {piece}, expected {figure}"
+    if len(is_) != len(expected):
+        return f"has {len(is_)} lines, expected {len(expected)}"
+    return None
+
+
+def plot_differs(is_, expected):
+    """None, or what differs between two plots: words and colours exactly, points by what rounding may do."""
+    points = re.compile(r' points="([^"]*)"')
+    difference = figures_differ(points.sub("", is_), points.sub("", expected), 0, PIXEL)
+    if difference:
+        return difference
+    for old, new in zip(points.findall(is_), points.findall(expected)):
+        (x, y), (other_x, other_y) = (np.array([p.split(",") for p in line.split()], float).T for line in (old, new))
+        bound = PIXEL if np.array_equal(x, other_x) else LINE
+        at = np.union1d(x, other_x)
+        apart = np.abs(np.interp(at, x, y) - np.interp(at, other_x, other_y)).max()
+        if not apart <= bound:
+            return f"a line is {apart:.2g} pixels off, expected {bound}"
+    return None
+
+
 def compare_folder(report, committed, fresh):
     """Every file of two folders, found by its name without the hash."""
     old, new = ({without_hash(str(p.relative_to(folder))): p for p in sorted(folder.rglob("*")) if p.is_file()}
@@ -170,6 +214,9 @@ def compare_folder(report, committed, fresh):
             compare_csv(report, what, *texts, (PROBE, PROBE))
         elif name.endswith(".csv"):
             compare_csv(report, what, *texts, (FIGURE_RELATIVE, FIGURE_ABSOLUTE))
+        elif name.endswith(".svg"):
+            difference = plot_differs(*texts)
+            report.check(what, difference is None, difference)
         else:
             difference = figures_differ(*texts)
             report.check(what, difference is None, difference)
@@ -181,7 +228,7 @@ def main():
     parser.add_argument("source_dir", type=Path)
     arguments = parser.parse_args()
     command, source = arguments.command.resolve(), arguments.source_dir.resolve()
-    missing = [name for name in ("luts", "ocio_config") if not (source / name).is_dir()]
+    missing = [name for name in ("luts", "ocio_config", "docs/curves") if not (source / name).is_dir()]
     if missing:
         skip(f"{' and '.join(missing)} not in the source folder; `./run artifacts` writes them")
     report = Report()
@@ -189,8 +236,12 @@ def main():
         scratch = Path(folder)
         run(command, "bake", "--all", scratch / "luts")
         run(command, "config", "-o", scratch / "ocio_config")
+        run(command, "list", "--catalogue", scratch / "docs")
         compare_folder(report, source / "luts", scratch / "luts")
         compare_folder(report, source / "ocio_config", scratch / "ocio_config")
+        compare_folder(report, source / "docs" / "curves", scratch / "docs" / "curves")
+        difference = page_differs(*((folder / "docs" / "operators.md").read_text() for folder in (source, scratch)))
+        report.check("docs/operators.md", difference is None, difference)
     return report.finish()
 
 

@@ -198,7 +198,7 @@ struct Preset {
 /// held to be true by the law tests; lists and docs warn with it.
 struct Deviation {
     enum class Kind : unsigned char {
-        black,                // native value of black, not 0: value
+        black,                // native value of black: value
         crushes_black,        // greys up to value are shown as black
         never_reaches_white,  // the largest grey is shown at value < 1, display-linear
         exceeds_white,        // native light goes up to value > 1 (kInfinity: without end)
@@ -206,7 +206,7 @@ struct Deviation {
     };
     Kind kind;
     double value;
-    /// Id of the preset or look that it is true of; empty: of the operator and all of them.
+    /// Id of the preset or look that it is true of, whatever is said in general; empty: in general.
     std::string when;
 };
 
@@ -218,6 +218,7 @@ struct DeclaredBounds {
     double simd = 1e-6;
     double ocio_cpu = 0;  // 0: as its structure has it
     double ocio_gpu = 0;
+    double cube = 0;  // where the lowering to OCIO needs a 3D cube, of 65^3; 0: a code of 10 bits
     std::string reason;
 };
 

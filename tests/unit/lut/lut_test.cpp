@@ -19,6 +19,7 @@
 
 #include "engine/error_metric.h"
 #include "engine/probe.h"
+#include "lut/clf.h"
 #include "lut/half_domain.h"
 #include "lut/numbers.h"
 #include "tonewright/engine.h"
@@ -896,6 +897,47 @@ INSTANTIATE_TEST_SUITE_P(Formats, LutFile, ::testing::ValuesIn(kFileCases), [](c
     std::replace(name.begin(), name.end(), '.', '_');
     return name;
 });
+
+/// A table of f over the half floats that keeps hue, or not.
+std::string half_table(const Expr& f, bool is_hue_preserving, std::string* extension = nullptr) {
+    const std::vector<float> values = sample_half_domain(f, 0, kHalfMax);
+    ClfTable table;
+    table.size = static_cast<int>(values.size());
+    table.is_half_domain = true;
+    table.is_hue_preserving = is_hue_preserving;
+    table.values = &values;
+    if (extension) *extension = file_extension(table);
+    return write_clf(table, "a < b", {"one & two"});
+}
+
+TEST(WriteClf, HasTheVersionOfOneFormat) {
+    // OCIO refuses a file with both.
+    std::string extension;
+    const std::string clf = half_table(kX, false, &extension);
+    EXPECT_EQ(extension, ".clf");
+    EXPECT_NE(clf.find(" compCLFversion=\"3\">"), std::string::npos);
+    EXPECT_EQ(clf.find(" version=\"1.4\""), std::string::npos);
+    EXPECT_EQ(clf.find("hueAdjust"), std::string::npos) << "CLF has no such attribute";
+
+    const std::string ctf = half_table(kX, true, &extension);
+    EXPECT_EQ(extension, ".ctf");
+    EXPECT_NE(ctf.find(" name=\"a &lt; b\" version=\"1.4\">"), std::string::npos);
+    EXPECT_EQ(ctf.find("compCLFversion"), std::string::npos);
+    EXPECT_NE(ctf.find("halfDomain=\"true\" hueAdjust=\"dw3\""), std::string::npos);
+    EXPECT_NE(ctf.find("<Description>one &amp; two</Description>"), std::string::npos);
+}
+
+TEST(WriteClf, HuePreservingTablesKeepHueInOcio) {
+    const Folder folder;
+    write(folder / "hue.ctf", half_table(kX * kX, true));
+    write(folder / "curve.clf", half_table(kX * kX, false));
+    // By hand: the middle channel of (1, 2, 3) stays in the middle of 1 and 9.
+    const std::vector<float> in = {1, 2, 3, 3, 1, 2, 2, 3, 1, 2, 2, 2, 0, 0, 0};
+    EXPECT_EQ(through_ocio(folder / "hue.ctf", in, 1),
+              (std::vector<float>{1, 5, 9, 9, 1, 5, 5, 9, 1, 4, 4, 4, 0, 0, 0}));
+    EXPECT_EQ(through_ocio(folder / "curve.clf", in, 1),
+              (std::vector<float>{1, 4, 9, 9, 1, 4, 4, 9, 1, 4, 4, 4, 0, 0, 0}));
+}
 
 TEST(WriteLut, HostileTitlesSurviveXml) {
     Operator op = find_operator("clamp");

@@ -6,14 +6,19 @@
 #include "ocio/lower.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <limits>
 #include <set>
 
 #include "engine/error_metric.h"
 #include "engine/probe.h"
+#include "lut/clf.h"
+#include "lut/half_domain.h"
 #include "ocio/gpu.h"
 #include "ocio/model.h"
 #include "tonewright/engine.h"
@@ -334,6 +339,19 @@ TEST(LowerToneScale, OnLuminanceUsesItsOwnWeights) {
     }
 }
 
+TEST(LowerToneScale, OnLuminanceOfRec2020IsAsExact) {
+    // ITU-R BT.2020 table 4. Measured: 6.5e-6 on the CPU, 1.9e-5 in llvmpipe.
+    const Vector3 weights = {0.2627, 0.6780, 0.0593};
+    const Expr hable =
+        (kX * (0.15 * kX + 0.05) + 0.004) / (kX * (0.15 * kX + 0.5) + 0.06) - 0.02 / 0.3;
+    for (const Expr& f : {reinhard(), hable}) {
+        const Pipeline pipeline = {kPositive, ToneScaleStage{Norm::luminance, weights, f}, kSdr,
+                                   srgb()};
+        expect_no_cube(pipeline);
+        expect_close(pipeline, positive_colours(), 1e-5, 3e-5);
+    }
+}
+
 TEST(LowerToneScale, OnTheLargestChannelNeedsNoCube) {
     const Pipeline pipeline = {kPositive, ToneScaleStage{Norm::max_rgb, {}, reinhard()}, kSdr,
                                srgb()};
@@ -382,6 +400,289 @@ TEST(LowerToneScale, NegativeChannelsUnderAPositiveMaximumAreKeptOrRefused) {
         return;
     }
     expect_close(pipeline, in, 5e-6, 5e-6);
+}
+
+// ---------------------------------------------------------------------------------------------
+// Hue-preserving curves
+
+/// Saturated colours of six hues and all orders of the channels, greys, black, and both ends.
+std::vector<float> saturated_colours() {
+    std::vector<float> rgb;
+    for (const float light :
+         {1e-7F, 1e-3F, 0.05F, 0.3F, 0.8F, 1.0F, 3.0F, 50.0F, 4000.0F, 65504.0F}) {
+        for (const float low : {0.0F, 1e-6F, 0.01F, 0.5F, 0.999F, 1.0F}) {
+            for (const float mid : {low, low + (1 - low) * 0.001F, (1 + low) / 2, 1.0F}) {
+                const float v[3] = {light, light * low, light * mid};
+                for (const int i : {0, 1, 2}) {
+                    for (const int j : {1, 2})
+                        rgb.insert(rgb.end(), {v[i], v[(i + j) % 3], v[(i + 2 * j) % 3]});
+                }
+            }
+        }
+    }
+    rgb.insert(rgb.end(), {0, 0, 0, -0.0F, -0.0F, -0.0F, -1, -2, -3, -1, 0.5F, 2});
+    return rgb;
+}
+
+/// NaN, infinities, the largest float: the same picture as the reference, and always a picture.
+void expect_sane(const Pipeline& pipeline, double bound) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const float inf = std::numeric_limits<float>::infinity();
+    const float huge = std::numeric_limits<float>::max();
+    std::vector<float> in;
+    for (const float odd : {nan, inf, -inf, huge, -huge}) {
+        for (const float other : {0.0F, 0.18F, 70000.0F, odd})
+            in.insert(in.end(), {odd, 0.18F, other, other, odd, 0.18F, 0.18F, other, odd});
+    }
+    const std::vector<double> truth = reference(pipeline, in);
+    for (const Form& form : run_forms(pipeline, in)) {
+        for (std::size_t i = 0; i < in.size(); ++i) {
+            const float* rgb = &in[i / 3 * 3];
+            ASSERT_TRUE(form.out[i] >= -1e-6F && form.out[i] <= 1 + 1e-6F)
+                << form.name << " of " << rgb[0] << ", " << rgb[1] << ", " << rgb[2];
+            // What NaN becomes in GLSL is the driver's affair.
+            if (form.is_gpu && std::any_of(rgb, rgb + 3, [](float x) { return std::isnan(x); }))
+                continue;
+            EXPECT_NEAR(static_cast<double>(form.out[i]), truth[i], bound)
+                << form.name << " of " << rgb[0] << ", " << rgb[1] << ", " << rgb[2];
+        }
+    }
+}
+
+TEST(LowerHuePreserving, IsOneTableWithHueAdjust) {
+    const Lowered lowered =
+        lower_to_ocio({kPositive, HuePreservingStage{reinhard()}, kSdr, srgb()});
+    EXPECT_EQ(types_of(lowered), (Types{kRangeType, kLut1D, kRangeType, kLut1D}));
+    EXPECT_TRUE(lowered.is_exact);
+    const auto lut_at = [&](int i) {
+        return OCIO_DYNAMIC_POINTER_CAST<OCIO::Lut1DTransform>(lowered.transform->getTransform(i));
+    };
+    EXPECT_TRUE(lut_at(1)->getInputHalfDomain());
+    EXPECT_EQ(lut_at(1)->getHueAdjust(), OCIO::HUE_DW3);
+    EXPECT_EQ(lut_at(3)->getHueAdjust(), OCIO::HUE_NONE);
+}
+
+TEST(LowerHuePreserving, IsAsExactAsACurve) {
+    const Expr hable =
+        (kX * (0.15 * kX + 0.05) + 0.004) / (kX * (0.15 * kX + 0.5) + 0.06) - 0.02 / 0.3;
+    for (const Expr& f : {reinhard(), hable, 1 - exp(-kX)}) {
+        const Pipeline pipeline = {kPositive, HuePreservingStage{f}, kSdr, srgb()};
+        expect_no_cube(pipeline);
+        expect_close(pipeline, positive_colours(), 3e-7, 1e-6);
+        expect_close(pipeline, saturated_colours(), 3e-7, 1e-6);
+    }
+}
+
+TEST(LowerHuePreserving, KeepsThePlaceOfTheMiddleChannel) {
+    // By hand: x^2 of (3, 1, 2) is (9, 1, 1 + 8/2), not (9, 1, 4).
+    const Pipeline pipeline = {kPositive, HuePreservingStage{kX * kX}};
+    for (const Form& form : run_forms(pipeline, {3, 1, 2, 1, 2, 3, 2, 3, 1, 2, 2, 2, 4, 4, 1})) {
+        const std::vector<double> expected = {9, 1, 5, 1, 5, 9, 5, 9, 1, 4, 4, 4, 16, 16, 1};
+        for (std::size_t i = 0; i < expected.size(); ++i)
+            EXPECT_NEAR(static_cast<double>(form.out[i]), expected[i], 3e-6) << form.name;
+    }
+}
+
+TEST(LowerHuePreserving, FallingCurvesAreACube) {
+    // OCIO's shader takes the smallest and the largest of what it looked up, not of what came in.
+    const Pipeline pipeline = {kPositive, HuePreservingStage{1 / (1 + kX)}, kSdr, srgb()};
+    LowerOptions options;
+    options.cube_edge = 17;
+    const Lowered lowered = lower_to_ocio(pipeline, options);
+    EXPECT_FALSE(lowered.is_exact);
+    const std::vector<float> in = {0.5F, 0.2F, 0.3F, 0.2F, 0.3F, 0.5F, 0.3F, 0.5F, 0.2F, 1, 1, 1};
+    const std::vector<double> truth = reference(pipeline, in);
+    for (const Form& form : run_forms(make_processor(lowered), in)) {
+        for (std::size_t i = 0; i < in.size(); ++i)
+            EXPECT_NEAR(static_cast<double>(form.out[i]), truth[i], 0.02) << form.name;
+    }
+}
+
+TEST(LowerHuePreserving, IsTotal) {
+    expect_sane({kPositive, HuePreservingStage{reinhard()}, kSdr, srgb()}, 1e-6);
+}
+
+TEST(LowerHuePreserving, NeedsAClampAtZeroBeforeIt) {
+    const HuePreservingStage stage{reinhard()};
+    EXPECT_THROW((void)lower_to_ocio({stage}), Error);
+    EXPECT_THROW(
+        (void)lower_to_ocio({kPositive, MatrixStage{rgb_to_rgb(kRec2020, kRec709)}, stage}), Error);
+    EXPECT_NO_THROW((void)lower_to_ocio({ClampStage{0, kInfinity}, stage}));
+}
+
+TEST(LowerHuePreserving, IsNotFusedWithItsNeighbours) {
+    const Pipeline pipeline = {kPositive, curve_stage(sqrt(kX + 0.1)), kPositive,
+                               HuePreservingStage{reinhard()}, curve_stage(kX * kX)};
+    EXPECT_EQ(types_of(lower_to_ocio(pipeline)),
+              (Types{kRangeType, kLut1D, kRangeType, kLut1D, kLut1D}));
+    expect_close(pipeline, positive_colours(), 6e-7, 3e-6);
+}
+
+TEST(LowerHuePreserving, SurvivesAFile) {
+    // Configs hold tables as files, and of OCIO's formats only CTF knows hueAdjust.
+    const Expr f = kX * (1 + kX / 16) / (1 + kX);
+    const std::vector<float> values = sample_half_domain(f, 0, kHalfMax);
+    ClfTable table;
+    table.size = 65536;
+    table.is_half_domain = true;
+    table.is_hue_preserving = true;
+    table.values = &values;
+    const std::filesystem::path path =
+        std::filesystem::temp_directory_path() /
+        ("tonewright-hue-" + std::to_string(::getpid()) + file_extension(table));
+    std::ofstream(path) << write_clf(table, "hue", {"a test"});
+
+    Lowered lowered = lower_to_ocio({kPositive});
+    const OCIO::FileTransformRcPtr file = OCIO::FileTransform::Create();
+    file->setSrc(path.c_str());
+    file->setInterpolation(OCIO::INTERP_LINEAR);
+    lowered.transform->appendTransform(file);
+    const std::vector<float> in = positive_colours();
+    const auto from_file = run_forms(make_processor(lowered), in);
+    const auto from_memory = run_forms({kPositive, HuePreservingStage{f}}, in);
+    std::filesystem::remove(path);
+    for (std::size_t i = 0; i < from_file.size(); ++i)
+        EXPECT_EQ(from_file[i].out, from_memory[i].out) << from_file[i].name << ": bit for bit";
+}
+
+// ---------------------------------------------------------------------------------------------
+// Hexcone
+
+/// Khronos PBR Neutral (pbrNeutral.glsl); `white` as Filament has it, mixing towards 1.
+HexconeStage neutral(double start_compression, double desaturation, bool white) {
+    const double start = start_compression - 0.04;
+    const double d = 1 - start;
+    const Expr q = max(kX, start);
+    const Expr n = 1 - d * d / (q + d - start);
+    const Expr g = 1 - 1 / (desaturation * (q - n) + 1);
+    const Expr is_base = less(kX, start);
+    return {.offset = select(less(kX, 0.08), kX - 6.25 * kX * kX, 0.04),
+            .value = select(is_base, kX, white ? g + (1 - g) * n : n),
+            .chroma = select(is_base, 1, (1 - g) * n / q)};
+}
+
+Pipeline shown(const HexconeStage& stage) { return {kPositive, stage, kSdr, srgb()}; }
+
+TEST(LowerHexcone, PbrNeutralNeedsNoCube) {
+    // On the whole probe set: CPU 7.3e-6, llvmpipe 1.7e-5.
+    const ProbeSet set = make_probes(find_input_space("lin_rec709"), {});
+    std::vector<float> in;
+    for (std::size_t i = 0; i < set.size(); ++i) {
+        if (set.is_non_negative(i))
+            in.insert(in.end(), {set.rgb[3 * i], set.rgb[3 * i + 1], set.rgb[3 * i + 2]});
+    }
+    for (const bool white : {false, true}) {
+        expect_no_cube(shown(neutral(0.8, 0.15, white)));
+        expect_close(shown(neutral(0.8, 0.15, white)), in, 1e-5, 3e-5);
+        expect_close(shown(neutral(0.8, 0.15, white)), saturated_colours(), 1e-5, 3e-5);
+    }
+}
+
+TEST(LowerHexcone, PbrNeutralByHand) {
+    // pbrNeutral.glsl: (1, 0.5, 0.25) less 0.04 is (0.96, 0.46, 0.21); the peak 0.96 becomes
+    // n = 1 - 0.0576/0.44; the rest is scaled by n/0.96 and mixed towards n.
+    const double n = 1 - 0.0576 / 0.44;
+    const double g = 1 - 1 / (0.15 * (0.96 - n) + 1);
+    const auto mixed = [&](double c) { return c * n / 0.96 * (1 - g) + n * g; };
+    // (0.02, 0.04, 0.06): the offset is 0.02 - 6.25 * 0.0004 = 0.0175.
+    const std::vector<float> in = {1, 0.5F, 0.25F, 0.02F, 0.04F, 0.06F, 0.5F, 0.5F, 0.5F};
+    const std::vector<double> expected = {n,      mixed(0.46), mixed(0.21), 0.0025, 0.0225,
+                                          0.0425, 0.46,        0.46,        0.46};
+    for (const Form& form : run_forms({kPositive, neutral(0.8, 0.15, false)}, in)) {
+        for (std::size_t i = 0; i < expected.size(); ++i)
+            EXPECT_NEAR(static_cast<double>(form.out[i]), expected[i], form.is_gpu ? 3e-6 : 1e-6)
+                << form.name;
+    }
+}
+
+TEST(LowerHexcone, PbrNeutralWithAnyParameters) {
+    for (const double start : {0.1, 0.99}) {
+        for (const double desaturation : {0.0, 1.0})
+            expect_close(shown(neutral(start, desaturation, false)), positive_colours(), 1e-5,
+                         3e-5);
+    }
+}
+
+TEST(LowerHexcone, GreysStayGrey) {
+    std::vector<float> in;
+    for (int i = -1000; i <= 800; ++i)
+        in.insert(in.end(), 3, std::exp2(static_cast<float>(i) / 50));
+    in.insert(in.end(), {0, 0, 0, 65504, 65504, 65504, 1e6F, 1e6F, 1e6F});
+    for (const bool white : {false, true}) {
+        for (const Form& form : run_forms(shown(neutral(0.8, 0.15, white)), in)) {
+            for (std::size_t i = 0; i < in.size(); i += 3) {
+                EXPECT_EQ(form.out[i], form.out[i + 1]) << form.name << " " << in[i];
+                EXPECT_EQ(form.out[i], form.out[i + 2]) << form.name << " " << in[i];
+            }
+        }
+    }
+    for (const Form& form : run_forms(shown(neutral(0.8, 0.15, false)), {0, 0, 0, -1, -2, -3})) {
+        for (const float x : form.out)
+            EXPECT_EQ(x, 0) << form.name << ": black";
+    }
+}
+
+TEST(LowerHexcone, LosesChromaGainsChromaOrKeepsIt) {
+    const Expr f = reinhard();
+    const HexconeStage stages[] = {
+        {0, f, 1 / (1 + kX)},                           // the largest channel's tone scale
+        {0, f, max(0, 1 - kX) / (1 + kX)},              // grey from 1 on
+        {0, f, 0},                                      // grey
+        {0.3 * kX, f, 1 / (1 + kX) * (0.5 + 0.5 * f)},  // more chroma where it is brighter
+        {0.3 * kX, f, select(less(kX, 0.5), 1, 0.5) / (1 + kX)},  // a step
+        {kX / 2, 0.01 + f, 1 / (1 + kX)},                         // black is not 0
+        {0, kX / (1 + kX * kX), 1 / (1 + kX * kX) * 0.75},        // value falls again
+    };
+    for (const HexconeStage& stage : stages) {
+        SCOPED_TRACE(to_string(Pipeline{stage}));
+        expect_no_cube(shown(stage));
+        // Nothing here desaturates lights as the Neutrals do: the hue's float rounding is what max
+        // RGB has, twice the bound of the Neutrals.
+        expect_close(shown(stage), positive_colours(), 2e-5, 5e-5);
+        expect_sane(shown(stage), 5e-5);
+    }
+}
+
+TEST(LowerHexcone, LightAboveThePeakIsKept) {
+    // `linear` output: values to 8, in float32's proportions.
+    const HexconeStage stage{0, 8 * kX / (7 + kX), 8 / (7 + kX) * 0.9};
+    expect_close({kPositive, stage}, positive_colours(), 8 * 1e-6, 8 * 3e-6);
+}
+
+TEST(LowerHexcone, ClampsBeforeItEndItsDomain) {
+    // sqrt(3.3 - p) is not defined beyond.
+    const HexconeStage stage{0, sqrt(3.3 - kX) * kX / 2, sqrt(3.3 - kX) / 4};
+    const Pipeline pipeline = {ClampStage{0, 3.25}, stage, kSdr, srgb()};
+    expect_close(pipeline, positive_colours(), 2e-5, 5e-5);
+    const Lowered lowered = lower_to_ocio(pipeline);
+    for (int i = 0; i < lowered.transform->getNumTransforms(); ++i) {
+        const auto lut =
+            OCIO_DYNAMIC_POINTER_CAST<OCIO::Lut1DTransform>(lowered.transform->getTransform(i));
+        for (unsigned long j = 0; lut && j < lut->getLength(); ++j) {
+            float rgb[3];
+            lut->getValue(j, rgb[0], rgb[1], rgb[2]);
+            for (const float x : rgb)
+                ASSERT_TRUE(std::isfinite(x)) << "transform " << i << ", entry " << j;
+        }
+    }
+}
+
+TEST(LowerHexcone, IsTotal) {
+    for (const bool white : {false, true})
+        expect_sane(shown(neutral(0.8, 0.15, white)), 5e-5);
+}
+
+TEST(LowerHexcone, RefusesWhatItCannotShow) {
+    const HexconeStage good = neutral(0.8, 0.15, false);
+    EXPECT_THROW((void)lower_to_ocio({good}), Error) << "no clamp";
+    EXPECT_THROW((void)lower_to_ocio({kPositive, MatrixStage{rgb_to_rgb(kRec2020, kRec709)}, good}),
+                 Error);
+    // Chroma beyond what value leaves room for: negative light.
+    EXPECT_THROW((void)lower_to_ocio({kPositive, HexconeStage{0, reinhard(), 1}}), Error);
+    EXPECT_THROW((void)lower_to_ocio({kPositive, HexconeStage{0, reinhard(), -0.1}}), Error);
+    // Steps up and down: no monotone function is steeper than both.
+    const Expr steps = select(less(kX, 0.5), 1, select(less(kX, 2), 0.5, 1));
+    EXPECT_THROW((void)lower_to_ocio({kPositive, HexconeStage{0, kX, steps}}), Error);
 }
 
 // ---------------------------------------------------------------------------------------------
@@ -517,7 +818,9 @@ TEST(LowerView, PerChannelOperatorsKeepToTheCurveBound) {
             build_view(make_view(resolve_operator(op.id), "lin_rec709", 0, "srgb"));
         if (!is_per_channel(view)) continue;
         SCOPED_TRACE(op.id);
-        expect_close(view, mixed_colours(), 3e-7, 1e-6);
+        // What an operator declares is wider than the structure's bound, and has its reason.
+        expect_close(view, mixed_colours(), std::max(3e-7, op.bounds.ocio_cpu),
+                     std::max(1e-6, op.bounds.ocio_gpu));
     }
 }
 

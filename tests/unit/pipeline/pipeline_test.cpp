@@ -636,6 +636,21 @@ TEST(Apply, ColorCorrections) {
     }
 }
 
+TEST(Apply, NonlinearCorrectionKeepsAChannelThatIsBlack) {
+    for (const char* from : {"fixed", "contrast"}) {
+        // Also where the curve is so flat that its contrast is next to nothing.
+        for (const double light : {0.2, 60000.0}) {
+            const Vector3 out = shown(reinhard({{"apply", "luminance"},
+                                                {"color_correction", "nonlinear"},
+                                                {"saturation", "0.6"},
+                                                {"saturation_from", from}}),
+                                      {light, light / 2, 0});
+            EXPECT_GT(out[1], 0);
+            EXPECT_EQ(out[2], 0);
+        }
+    }
+}
+
 TEST(Apply, LuminancePreservingKeepsTheLuminanceOfTheCurve) {
     const Vector3 out = shown(reinhard({{"apply", "luminance"},
                                         {"color_correction", "luminance_preserving"},
@@ -715,6 +730,7 @@ TEST(Deviations, SayWhatTheUserSees) {
     };
     EXPECT_EQ(text(Kind::black, 0.00287), "lifts black to 0.0029");
     EXPECT_EQ(text(Kind::black, -0.0023), "takes black to -0.0023, which displays clip");
+    EXPECT_EQ(text(Kind::black, 0, "soft"), "soft: black is 0");
     EXPECT_EQ(text(Kind::crushes_black, 0.004), "shows greys up to 0.004 as black");
     EXPECT_EQ(text(Kind::never_reaches_white, 0.9826),
               "never reaches white: at most 0.983 of the display's light");

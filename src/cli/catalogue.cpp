@@ -1,0 +1,666 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/catalogue.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <span>
+#include <thread>
+
+#include "cli/curve_plot.h"
+#include "engine/error_metric.h"
+#include "engine/probe.h"
+#include "tonewright/engine.h"
+
+namespace tonewright {
+namespace {
+
+constexpr double kMidGrey = 0.18;
+
+// ---------------------------------------------------------------------------------------------
+// What a plot and a table need to know of an operator
+
+/// An operator as it is, with one of its presets, or with one of its looks.
+struct Variant {
+    std::string label;  // `default`, `:preset`, `look id`
+    std::string id;     // of an element of a plot: default, preset id, look-id
+    std::string help;
+    View view;
+};
+
+View srgb_view(const std::string& name, const std::string& look = {}) {
+    return make_view(resolve_operator(name, {}, look), "lin_rec709", 0, "srgb");
+}
+
+std::vector<Variant> variants_of(const Operator& op) {
+    std::vector<Variant> all = {{"default", "default", op.character, srgb_view(op.id)}};
+    for (const Preset& p : op.presets)
+        all.push_back({":" + p.id, p.id, p.title, srgb_view(op.id + ":" + p.id)});
+    for (const Look& l : op.looks)
+        all.push_back({"look " + l.id, "look-" + l.id, l.help, srgb_view(op.id, l.id)});
+    return all;
+}
+
+using Planes = std::array<std::vector<double>, 3>;
+
+/// Code values of `color` times each number of `exposures`.
+Planes codes_of(const Pipeline& pipeline, const Vector3& color, std::span<const double> exposures) {
+    Planes planes;
+    for (std::size_t c = 0; c < 3; ++c) {
+        for (const double e : exposures)
+            planes[c].push_back(color[c] * e);
+    }
+    const std::array<double*, 3> p = {planes[0].data(), planes[1].data(), planes[2].data()};
+    ReferenceEngine(pipeline).run({p[0], p[1], p[2]}, p, exposures.size());
+    return planes;
+}
+
+/// The view, and then the code value of the grey that has the luminance of the color it shows: for
+/// a neutral color its own.
+Pipeline with_grey_level(const View& view) {
+    const Display& display = find_display(view.display);
+    Pipeline stages = build_view(view);
+    stages.push_back(curve_stage(display.decode));
+    stages.push_back(MatrixStage{{kRec709Weights, kRec709Weights, kRec709Weights}});
+    stages.push_back(curve_stage(display.encode));
+    return stages;
+}
+
+/// The code value that each scene-linear grey is shown with.
+std::vector<double> grey_codes(const View& view, std::span<const double> scene) {
+    return codes_of(with_grey_level(view), {1, 1, 1}, scene)[0];
+}
+
+double grey_code(const View& view, double scene) { return grey_codes(view, {{scene}})[0]; }
+
+std::vector<double> scene_of(const std::vector<double>& stops) {
+    std::vector<double> scene;
+    scene.reserve(stops.size());
+    for (const double s : stops)
+        scene.push_back(kMidGrey * std::exp2(s));
+    return scene;
+}
+
+double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
+    double largest = 0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        largest = std::max(largest, std::fabs(a[i] - b[i]));
+    return largest;
+}
+
+// ---------------------------------------------------------------------------------------------
+// Plots
+
+/// A color whose hue and saturation are to be watched; its largest channel is 1.
+struct SceneColor {
+    const char* name;
+    const char* numbers;
+    Vector3 rgb;
+};
+constexpr SceneColor kOrange = {"orange", "1, 0.25, 0.02", {1, 0.25, 0.02}};
+constexpr SceneColor kGreen = {"green", "0.05, 1, 0.1", {0.05, 1, 0.1}};
+constexpr SceneColor kBlue = {"blue", "0.02, 0.06, 1", {0.02, 0.06, 1}};
+constexpr SceneColor kGrey = {"grey", "1, 1, 1", {1, 1, 1}};
+
+constexpr std::array kChannelColors = {"#d1242f", "#1a8f3c", "#1f6feb"};
+constexpr std::array kChannelNames = {"red", "green", "blue"};
+
+/// Lines that no eye can tell apart, in code values.
+constexpr double kSameLine = 0.001;
+
+PlotLine reference_line(const std::vector<double>& scene) {
+    return {"clamp",   "no tone mapping: clamp",
+            "#a8b0b9", 1.2,
+            "5 3",     grey_codes(srgb_view("clamp"), scene)};
+}
+
+/// Adds a line, or a name to the label of the one that it would lie on.
+void add_line(std::vector<PlotLine>& lines, PlotLine line, const std::string& short_name) {
+    for (PlotLine& other : lines) {
+        if (largest_difference(other.codes, line.codes) < kSameLine) {
+            other.label += ", " + short_name;
+            return;
+        }
+    }
+    lines.push_back(std::move(line));
+}
+
+/// "0.18 -> 0.435" where the curve is at that scene value.
+PlotMark mark_at(const View& view, double scene) {
+    const double code = grey_code(view, scene);
+    return {std::log2(scene / kMidGrey), code,
+            fmt::format("{} \u2192 {:.3f}", shortest(scene), code)};
+}
+
+std::vector<Vector3> colors_of(const Pipeline& pipeline, const Vector3& color,
+                               const std::vector<double>& stops) {
+    const Planes planes = codes_of(pipeline, color, scene_of(stops));
+    std::vector<Vector3> colors;
+    for (std::size_t i = 0; i < stops.size(); ++i)
+        colors.push_back({planes[0][i], planes[1][i], planes[2][i]});
+    return colors;
+}
+
+CurvePlot plot_of(const Operator& op) {
+    const std::vector<double> scene = scene_of(plot_stops());
+    const std::vector<Variant> variants = variants_of(op);
+    CurvePlot plot;
+    plot.title = op.title;
+    plot.subtitle = "sRGB code value of scene-linear grey";
+    for (const Variant& v : variants) {
+        const std::size_t index = plot.lines.size();
+        add_line(plot.lines,
+                 {v.id, v.label, line_color(index), index == 0 ? 2.4 : 1.3, line_dashes(index),
+                  grey_codes(v.view, scene)},
+                 v.label);
+    }
+    if (variants.size() == 1) plot.lines[0].label.clear();
+
+    const Pipeline view = build_view(variants[0].view);
+    const Planes grey = codes_of(view, kGrey.rgb, scene);
+    double tint = 0;
+    for (const std::vector<double>& channel : grey)
+        tint = std::max(tint, largest_difference(channel, plot.lines[0].codes));
+    if (tint > 0.5 / 255) {
+        if (variants.size() == 1) plot.lines[0].label = "luminance of the shown grey";
+        for (std::size_t c = 0; c < 3; ++c) {
+            plot.lines.push_back({fmt::format("grey-{}", kChannelNames[c]),
+                                  fmt::format("{} of the shown grey", kChannelNames[c]),
+                                  kChannelColors[c], 1, "", grey[c]});
+        }
+    }
+    PlotLine clamp = reference_line(scene);
+    if (largest_difference(clamp.codes, plot.lines[0].codes) >= kSameLine)
+        plot.lines.push_back(clamp);
+    if (!op.is_diagnostic) {
+        plot.marks = {mark_at(variants[0].view, kMidGrey), mark_at(variants[0].view, 1)};
+        plot.lower_heading = fmt::format("red, green and blue of {} ({}) \u00d7 scene",
+                                         kOrange.name, kOrange.numbers);
+        plot.lower_scale.step = 0.5;
+        const Planes orange = codes_of(view, kOrange.rgb, scene);
+        for (std::size_t c = 0; c < 3; ++c)
+            plot.lower_lines.push_back(
+                {kChannelNames[c], "", kChannelColors[c], 1.6, "", orange[c]});
+    }
+    std::vector<double> whole_stops(21);
+    std::iota(whole_stops.begin(), whole_stops.end(), -10.0);
+    for (const SceneColor& color : {kGrey, kOrange, kBlue})
+        plot.sweeps.push_back({color.name, colors_of(view, color.rgb, whole_stops)});
+    return plot;
+}
+
+// ---------------------------------------------------------------------------------------------
+// Dialects: operators of one name
+
+/// One picture that has the name of the group: an operator, or a preset of it.
+struct Dialect {
+    std::string letter;
+    std::string name;
+    std::string op;
+    std::string help;
+    View view;
+    /// Of the probes; interleaved RGB.
+    std::vector<double> codes;
+};
+
+struct DialectGroup {
+    std::string name;
+    std::string slug;
+    std::vector<Dialect> dialects;
+};
+
+std::string slug_of(const std::string& name) {
+    std::string slug;
+    for (const char c : name) {
+        const bool is_plain = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
+        if (c >= 'A' && c <= 'Z') {
+            slug += static_cast<char>(c - 'A' + 'a');
+        } else if (is_plain) {
+            slug += c;
+        } else if (!slug.empty() && slug.back() != '_') {
+            slug += '_';
+        }
+    }
+    return slug;
+}
+
+/// A to Z, then AA.
+std::string letter_of(std::size_t index) {
+    const std::string last(1, static_cast<char>('A' + index % 26));
+    return index < 26 ? last : letter_of(index / 26 - 1) + last;
+}
+
+/// False where no other operator has that name yet.
+bool is_dialect(const Operator& op) {
+    if (op.dialects.empty()) return false;
+    const std::vector<Operator>& all = all_operators();
+    return std::count_if(all.begin(), all.end(),
+                         [&](const Operator& o) { return o.dialects == op.dialects; }) > 1;
+}
+
+/// Sorted by name.
+std::vector<DialectGroup> dialect_groups() {
+    std::map<std::string, std::vector<Dialect>> by_name;
+    for (const Operator& op : all_operators()) {
+        if (!is_dialect(op)) continue;
+        std::vector<Dialect>& dialects = by_name[op.dialects];
+        for (const Variant& v : variants_of(op)) {
+            if (!v.view.op.params.look().empty()) continue;  // meant to differ
+            const bool is_preset = v.label.front() == ':';
+            dialects.push_back({letter_of(dialects.size()),
+                                op.id + (is_preset ? v.label : ""),
+                                op.id,
+                                is_preset ? v.help : op.title,
+                                v.view,
+                                {}});
+        }
+    }
+    std::vector<DialectGroup> groups;
+    groups.reserve(by_name.size());
+    for (auto& [name, dialects] : by_name)
+        groups.push_back({name, slug_of(name), std::move(dialects)});
+    return groups;
+}
+
+/// The smallest round number that is not below `value`.
+double round_scale(double value) {
+    double unit = 1;
+    while (10 * unit < value)
+        unit *= 10;
+    for (const double digit : {1, 2, 3, 5, 7}) {
+        if (digit * unit >= value) return digit * unit;
+    }
+    return 10 * unit;
+}
+
+CurvePlot plot_of(const DialectGroup& group) {
+    const std::vector<double> scene = scene_of(plot_stops());
+    CurvePlot plot;
+    plot.title = group.name + ": the grey curves";
+    plot.subtitle = "sRGB code value of scene-linear grey";
+    std::vector<double> mean(scene.size());
+    for (const Dialect& d : group.dialects) {
+        const std::vector<double> codes = grey_codes(d.view, scene);
+        const std::size_t index = plot.lines.size();
+        add_line(
+            plot.lines,
+            {d.letter, d.letter + " " + d.name, line_color(index), 1.6, line_dashes(index), codes},
+            d.letter);
+        for (std::size_t i = 0; i < scene.size(); ++i)
+            mean[i] += codes[i] / static_cast<double>(group.dialects.size());
+    }
+    double largest = 0;
+    for (PlotLine line : plot.lines) {
+        for (std::size_t i = 0; i < scene.size(); ++i) {
+            line.codes[i] = 255 * (line.codes[i] - mean[i]);
+            largest = std::max(largest, std::fabs(line.codes[i]));
+        }
+        line.id += "-difference";
+        line.label.clear();
+        line.width = 1.3;
+        plot.lower_lines.push_back(line);
+    }
+    const double scale = round_scale(largest);
+    plot.lower_heading = "difference from their mean, in codes of 8 bits";
+    plot.lower_scale = {-scale, scale, scale};
+    plot.lines.push_back(reference_line(scene));
+    return plot;
+}
+
+PatchChart colors_of(const DialectGroup& group) {
+    PatchChart chart;
+    chart.title = group.name + ": colours";
+    chart.subtitle = "scene colour at stops from mid grey, as shown on sRGB";
+    const std::vector<double> stops = {-2, 0, 2, 4, 6};
+    const std::vector<SceneColor> colors = {kOrange, kGreen, kBlue};
+    for (const SceneColor& color : colors) {
+        chart.blocks.push_back({fmt::format("{} ({})", color.name, color.numbers),
+                                {"\u22122", "0", "+2", "+4", "+6"}});
+    }
+    for (const Dialect& d : group.dialects) {
+        const Pipeline view = build_view(d.view);
+        PatchRow row = {d.letter + " " + d.name, {}};
+        for (const SceneColor& color : colors) {
+            const std::vector<Vector3> patches = colors_of(view, color.rgb, stops);
+            row.codes.insert(row.codes.end(), patches.begin(), patches.end());
+        }
+        chart.rows.push_back(row);
+    }
+    return chart;
+}
+
+/// How far two dialects are apart.
+struct Distance {
+    std::size_t a, b;
+    ErrorStats codes;  // of 255
+    ErrorStats delta_e;
+};
+
+/// The standard probe colors that have no negative channel.
+std::vector<float> non_negative_probes() {
+    const ProbeSet probes = make_probes(find_input_space("lin_rec709"));
+    std::vector<float> rgb;
+    for (std::size_t i = 0; i < probes.size(); ++i) {
+        if (probes.is_non_negative(i))
+            rgb.insert(rgb.end(), &probes.rgb[3 * i], &probes.rgb[3 * i] + 3);
+    }
+    return rgb;
+}
+
+Distance distance_of(const DialectGroup& group, std::size_t a, std::size_t b) {
+    const std::vector<double>& x = group.dialects[a].codes;
+    const std::vector<double>& y = group.dialects[b].codes;
+    std::vector<double> worst(x.size() / 3);
+    for (std::size_t i = 0; i < x.size(); ++i)
+        worst[i / 3] = std::max(worst[i / 3], 255 * std::fabs(x[i] - y[i]));
+    const Display& display = find_display("srgb");
+    return {a, b, summarise(worst), summarise(delta_e_itp(display, x, y))};
+}
+
+/// Every pair of the group.
+std::vector<Distance> distances_of(DialectGroup& group, const std::vector<float>& probes) {
+    for (Dialect& d : group.dialects) {
+        d.codes.resize(probes.size());
+        ReferenceEngine(build_view(d.view))
+            .run_rgb(probes.data(), d.codes.data(), probes.size() / 3);
+    }
+    std::vector<Distance> all;
+    for (std::size_t a = 0; a < group.dialects.size(); ++a) {
+        for (std::size_t b = a + 1; b < group.dialects.size(); ++b)
+            all.push_back({a, b, {}, {}});
+    }
+    const std::size_t workers = std::max(1U, std::thread::hardware_concurrency());
+    std::vector<std::thread> threads;
+    for (std::size_t w = 0; w < workers; ++w) {
+        threads.emplace_back([&, w] {
+            for (std::size_t i = w; i < all.size(); i += workers)
+                all[i] = distance_of(group, all[i].a, all[i].b);
+        });
+    }
+    for (std::thread& t : threads)
+        t.join();
+    for (Dialect& d : group.dialects)
+        d.codes = {};
+    return all;
+}
+
+// ---------------------------------------------------------------------------------------------
+// The page
+
+/// Text for a cell of a table.
+std::string cell(std::string text) {
+    for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2)
+        text.insert(at, "\\");
+    return text;
+}
+
+std::string signed_stops(double stops) { return fmt::format("{:+.1f}", stops); }
+
+/// Stops from mid grey where the shown grey first passes `code`; nothing where it does not.
+std::optional<double> stops_at_code(const View& view, double code) {
+    std::vector<double> stops;
+    for (int i = -20 * 32; i <= 18 * 32; ++i)
+        stops.push_back(i / 32.0);
+    const std::vector<double> codes = grey_codes(view, scene_of(stops));
+    const auto found =
+        std::find_if(codes.begin(), codes.end(), [&](double c) { return c >= code; });
+    if (found == codes.begin() || found == codes.end()) return std::nullopt;
+    double hi = stops[static_cast<std::size_t>(found - codes.begin())];
+    double lo = hi - 1 / 32.0;
+    for (int i = 0; i < 30; ++i) {
+        const double middle = (lo + hi) / 2;
+        (grey_code(view, kMidGrey * std::exp2(middle)) >= code ? hi : lo) = middle;
+    }
+    return hi;
+}
+
+/// Slope of log light over log scene at mid grey: 1 for no tone mapping.
+double contrast_at_mid_grey(const View& view) {
+    View linear = view;
+    const Display& display = find_display(view.display);
+    constexpr double kStep = 1.0 / 256;
+    std::vector<double> stops = {-kStep, kStep};
+    const std::vector<double> codes = grey_codes(linear, scene_of(stops));
+    const double low = evaluate(display.decode, codes[0]);
+    const double high = evaluate(display.decode, codes[1]);
+    if (!(low > 0)) return 0;
+    return std::log2(high / low) / (2 * kStep);
+}
+
+std::string measured_line(const Operator& op) {
+    const View view = srgb_view(op.id);
+    const double darkest = grey_code(view, 0);
+    const double brightest = grey_code(view, kHalfMax);
+    const std::optional<double> black = stops_at_code(view, 0.5 / 255);
+    const std::optional<double> white = stops_at_code(view, 254.5 / 255);
+    std::string text = fmt::format(
+        "* Measured on sRGB: 0.18 \u2192 {:.3f}, 1 \u2192 {:.3f}; contrast at mid grey {:.2f}; ",
+        grey_code(view, kMidGrey), grey_code(view, 1), contrast_at_mid_grey(view));
+    if (black) {
+        text += fmt::format("black below {} stops", signed_stops(*black));
+    } else {
+        text += fmt::format("black at code {:.3f}", darkest);
+    }
+    if (white) {
+        text += fmt::format(", white from {} stops (scene-linear {:.3g})\n", signed_stops(*white),
+                            kMidGrey * std::exp2(*white));
+    } else {
+        text += fmt::format(", white at code {:.3f}\n", brightest);
+    }
+    return text;
+}
+
+/// Where an operator stands in the index.
+std::string family_of(const Operator& op) {
+    if (op.is_diagnostic) return "Diagnostic";
+    if (is_dialect(op)) return op.dialects;
+    for (const ParameterSpec& p : op.parameters) {
+        if (p.from_picture) return "Adapting to the picture";
+    }
+    return is_per_channel(resolve_operator(op.id).build()) ? "Curves of each channel"
+                                                           : "Operators that mix channels";
+}
+
+std::string index_section(const std::vector<DialectGroup>& groups) {
+    std::map<std::string, std::vector<const Operator*>> families;
+    for (const Operator& op : all_operators())
+        families[family_of(op)].push_back(&op);
+    std::vector<std::string> order;
+    for (const auto& [name, members] : families) {
+        if (is_dialect(*members[0])) order.push_back(name);
+    }
+    for (const char* name : {"Curves of each channel", "Operators that mix channels",
+                             "Adapting to the picture", "Diagnostic"}) {
+        if (families.count(name)) order.emplace_back(name);
+    }
+    std::string text =
+        "## Index\n\n| operator | what it is like | 0.18 \u2192 | 1 \u2192 |\n|---|---|---|---|\n";
+    for (const std::string& family : order) {
+        const auto group = std::find_if(groups.begin(), groups.end(),
+                                        [&](const DialectGroup& g) { return g.name == family; });
+        text +=
+            fmt::format("| **{}** | {} | | |\n", cell(family),
+                        group == groups.end()
+                            ? ""
+                            : fmt::format("[how far apart they are](#dialects_{})", group->slug));
+        for (const Operator* op : families[family]) {
+            const View view = srgb_view(op->id);
+            text += fmt::format("| [{}](#{})<br>`{}` | {} | {:.3f} | {:.3f} |\n", cell(op->title),
+                                op->id, op->id, cell(op->character), grey_code(view, kMidGrey),
+                                grey_code(view, 1));
+        }
+    }
+    return text + "\n";
+}
+
+std::string link_to(const Dialect& d) { return fmt::format("[`{}`](#{})", d.name, d.op); }
+
+std::string pair_table(const DialectGroup& group, std::vector<Distance> distances) {
+    // By what is printed: the order does not hang on the last digits of a double.
+    std::stable_sort(distances.begin(), distances.end(), [](const Distance& x, const Distance& y) {
+        return std::lround(100 * x.delta_e.mean) > std::lround(100 * y.delta_e.mean);
+    });
+    std::string text =
+        "| pair | max | 99.9 % | mean | \u0394E ITP max | \u0394E ITP mean |\n"
+        "|---|---|---|---|---|---|\n";
+    for (const Distance& d : distances) {
+        const Dialect& a = group.dialects[d.a];
+        const Dialect& b = group.dialects[d.b];
+        text += fmt::format("| {} `{}`, {} `{}` | {:.1f} | {:.1f} | {:.2f} | {:.1f} | {:.2f} |\n",
+                            a.letter, a.name, b.letter, b.name, d.codes.max, d.codes.p999,
+                            d.codes.mean, d.delta_e.max, d.delta_e.mean);
+    }
+    return text + "\n";
+}
+
+/// Mean dE ITP below the diagonal, mean of the code values above it.
+std::string distance_matrix(const DialectGroup& group, const std::vector<Distance>& distances) {
+    const std::size_t n = group.dialects.size();
+    std::vector<std::vector<std::string>> cells(n, std::vector<std::string>(n, "\u00b7"));
+    for (const Distance& d : distances) {
+        cells[d.a][d.b] = fmt::format("{:.1f}", d.codes.mean);
+        cells[d.b][d.a] = fmt::format("{:.1f}", d.delta_e.mean);
+    }
+    std::string text = "|  |";
+    std::string rule = "|---|";
+    for (const Dialect& d : group.dialects) {
+        text += fmt::format(" {} |", d.letter);
+        rule += "--:|";
+    }
+    text += "\n" + rule + "\n";
+    for (std::size_t a = 0; a < n; ++a) {
+        text += fmt::format("| **{}** |", group.dialects[a].letter);
+        for (std::size_t b = 0; b < n; ++b)
+            text += fmt::format(" {} |", cells[a][b]);
+        text += "\n";
+    }
+    return text + "\n";
+}
+
+std::string dialect_section(DialectGroup& group, const std::vector<float>& probes) {
+    const std::vector<Distance> distances = distances_of(group, probes);
+    std::string text = fmt::format(
+        "<a id=\"dialects_{0}\"></a>\n\n### {1}\n\n![Grey curves of {1}]"
+        "(curves/dialects_{0}.svg)\n\n![Colours of {1}](curves/dialects_{0}_colors.svg)\n\n"
+        "|  | dialect |  | 0.18 \u2192 | 1 \u2192 | 4 \u2192 |\n|---|---|---|---|---|---|\n",
+        group.slug, group.name);
+    for (const Dialect& d : group.dialects) {
+        text += fmt::format("| **{}** | {} | {} | {:.3f} | {:.3f} | {:.3f} |\n", d.letter,
+                            link_to(d), cell(d.help), grey_code(d.view, kMidGrey),
+                            grey_code(d.view, 1), grey_code(d.view, 4));
+    }
+    text += "\n";
+    constexpr std::size_t kPlainList = 10;
+    if (distances.size() <= kPlainList) return text + pair_table(group, distances);
+    const auto closest = std::min_element(
+        distances.begin(), distances.end(),
+        [](const auto& x, const auto& y) { return x.delta_e.mean < y.delta_e.mean; });
+    const auto farthest = std::max_element(
+        distances.begin(), distances.end(),
+        [](const auto& x, const auto& y) { return x.delta_e.mean < y.delta_e.mean; });
+    text += fmt::format(
+        "Mean differences: above the diagonal of code values, below it \u0394E ITP. Closest are {} "
+        "and {}, farthest apart {} and {}.\n\n",
+        group.dialects[closest->a].letter, group.dialects[closest->b].letter,
+        group.dialects[farthest->a].letter, group.dialects[farthest->b].letter);
+    text += distance_matrix(group, distances);
+    return text + fmt::format("<details><summary>All {} pairs</summary>\n\n{}</details>\n\n",
+                              distances.size(), pair_table(group, distances));
+}
+
+std::string introduction() {
+    return fmt::format(
+        "# The operators\n\n"
+        "Generated from the registry by `./run artifacts` (`tonewright list --catalogue docs`); do "
+        "not edit. Operators that share\na name are compared under [Dialects](#dialects).\n\n"
+        "**The plots** show an operator with its default parameters on an sRGB display, from the "
+        "double-precision reference.\n\n"
+        "* *Upper graph*: the code value that a scene-linear grey is shown with (at the right: the "
+        "light that it stands for),\n  over stops from mid grey; below them the scene value. "
+        "Thin lines are presets and looks; where what is shown is not\n  grey, the grey of the "
+        "same luminance counts. Vertical lines stand at 0.18, mid grey, and at 1, diffuse white. "
+        "The\n  broken line is no tone mapping at all: whatever is brighter than 1 clips.\n"
+        "* *Lower graph*: what becomes of a saturated orange, ({}) times the scene value. "
+        "Where its lines meet,\n  bright colours fade to white; where one is held at 1 while the "
+        "others go on, the hue shifts.\n"
+        "* *Strips*: the shown colours themselves, one patch for each stop: of grey, of that "
+        "orange, and of a blue ({}).\n\n"
+        "Light above the display's white is cut off, here as in every SDR view: presets for "
+        "brighter displays clip in their plots.\n\n"
+        "**Measured** are code values from 0 to 1. *Contrast at mid grey* is the slope of log "
+        "light over log scene: 1 without tone\nmapping. *Black* and *white* are where 8 bits "
+        "show 0 and 255. An operator that adapts to the picture is shown with its\ndefault "
+        "numbers; `tonewright apply` puts in the picture's.\n\n",
+        kOrange.numbers, kBlue.numbers);
+}
+
+std::string dialect_introduction(std::size_t probe_count) {
+    return fmt::format(
+        "## Dialects\n\n"
+        "Operators of one name that show different pictures, with their presets; looks are meant "
+        "to "
+        "differ and are left out. How\nfar apart two of them are is measured on the {} colours "
+        "of the [probe set](conventions.md) that have no negative\nchannel, in linear Rec.709, on "
+        "an sRGB display: differences of code values in codes of 8 bits (code value \u00d7 255; of "
+        "each\ncolour the worst channel), and \u0394E ITP (ITU-R BT.2124, white at 100 "
+        "cd/m\u00b2), where 1 is about the smallest difference\nthat can be seen. Most probes are "
+        "saturated, and many are far above white: the largest figures are of colours "
+        "that\npictures "
+        "seldom have, and the means are for comparison with each other.\n\n",
+        probe_count);
+}
+
+}  // namespace
+
+std::vector<GeneratedFile> make_catalogue() {
+    std::vector<GeneratedFile> files;
+    std::string manifest = "path,shows\n";
+    const auto add = [&](const std::string& name, const std::string& shows, std::string svg) {
+        files.push_back({"curves/" + name, std::move(svg)});
+        manifest += fmt::format("{},{}\n", name, shows);
+    };
+    std::vector<DialectGroup> groups = dialect_groups();
+    std::string page = introduction() + index_section(groups);
+    for (const Operator& op : all_operators()) {
+        add(op.id + ".svg", op.id, to_svg(plot_of(op)));
+        const std::string plot_and_figures =
+            fmt::format("![Curve of {}](curves/{}.svg)\n\n{}", op.title, op.id, measured_line(op));
+        page +=
+            fmt::format("<a id=\"{}\"></a>\n\n", op.id) + operator_section(op, plot_and_figures);
+    }
+    if (!groups.empty()) {
+        const std::vector<float> probes = non_negative_probes();
+        page += dialect_introduction(probes.size() / 3);
+        for (DialectGroup& group : groups) {
+            add("dialects_" + group.slug + ".svg", group.name, to_svg(plot_of(group)));
+            add("dialects_" + group.slug + "_colors.svg", group.name, to_svg(colors_of(group)));
+            page += dialect_section(group, probes);
+        }
+    }
+    while (page.size() > 1 && page[page.size() - 2] == '\n')
+        page.pop_back();
+    files.push_back({"curves/MANIFEST.csv", manifest});
+    files.push_back({"operators.md", page});
+    return files;
+}
+
+void write_catalogue(const std::string& folder) {
+    // The manifest of the plots is beside them: a folder of documents has other files too.
+    const std::string plots = "curves/";
+    std::vector<GeneratedFile> curves;
+    std::string page;
+    for (GeneratedFile& file : make_catalogue()) {
+        if (file.path.starts_with(plots)) {
+            curves.push_back({file.path.substr(plots.size()), std::move(file.contents)});
+        } else {
+            page = std::move(file.contents);
+        }
+    }
+    write_generated_files(folder + "/curves", curves, "MANIFEST.csv");
+    write_text_atomically(folder + "/operators.md", page);
+}
+
+}  // namespace tonewright

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tonewright/color.h"
+
+namespace tonewright {
+
+/// Where the lines of a plot have their values: stops from mid grey, -10..+10, half a pixel apart.
+[[nodiscard]] const std::vector<double>& plot_stops();
+
+/// One line of a plot.
+struct PlotLine {
+    std::string id;     // of its element; one of a kind in its plot
+    std::string label;  // in the legend; empty: not there
+    std::string color;
+    double width = 1.5;
+    std::string dashes;         // of SVG's stroke-dasharray; empty: a solid line
+    std::vector<double> codes;  // display code values, one for each of plot_stops()
+};
+
+/// What a graph has at its sides.
+struct PlotScale {
+    double low = 0;
+    double high = 1;
+    double step = 0.2;
+};
+
+/// A point of a line with words beside it.
+struct PlotMark {
+    double stops;
+    double code;
+    std::string words;
+};
+
+/// Display code values of one color, shown with the color itself.
+struct PatchRow {
+    std::string label;
+    std::vector<Vector3> codes;
+};
+
+/// Code value over stops: one picture of the catalogue. Empty parts are left out.
+struct CurvePlot {
+    std::string title;
+    std::string subtitle;
+    std::vector<PlotLine> lines;
+    std::vector<PlotMark> marks;
+    /// A second, lower graph over the same stops.
+    std::string lower_heading;
+    PlotScale lower_scale;
+    std::vector<PlotLine> lower_lines;
+    /// One patch for every whole stop, in line with the graphs above.
+    std::vector<PatchRow> sweeps;
+};
+
+/// One scene color at several exposures: patches beside each other under a heading.
+struct PatchBlock {
+    std::string heading;
+    std::vector<std::string> columns;
+};
+
+/// Rows of patches: what several operators make of the same colors.
+struct PatchChart {
+    std::string title;
+    std::string subtitle;
+    std::vector<PatchBlock> blocks;
+    std::vector<PatchRow> rows;  // each with the patches of all blocks
+};
+
+/// The plot as an SVG file of its own: no script, no font, no link; the same bytes on every run.
+/// A line has as few points as keep it within a fifth of a pixel of its values.
+[[nodiscard]] std::string to_svg(const CurvePlot& plot);
+[[nodiscard]] std::string to_svg(const PatchChart& chart);
+
+/// Color `index` of a set that stays apart for color-blind readers too (Okabe and Ito 2008), and
+/// the dashes of its line: from the ninth on the colors come again, dashed.
+[[nodiscard]] std::string line_color(std::size_t index);
+[[nodiscard]] std::string line_dashes(std::size_t index);
+
+/// `&`, `<`, `>` and quotes as entities: for SVG.
+[[nodiscard]] std::string xml_escaped(std::string_view text);
+
+}  // namespace tonewright

@@ -1,0 +1,482 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The operator catalogue of `tonewright list --catalogue`: nothing is missing, and what it shows is so.
+
+    python3 tests/cli/test_catalogue.py build/release/bin/tonewright
+
+Plots are read back from their SVG files and held to `tonewright eval`, to formulas written here, and distances between
+dialects to a recomputation in NumPy: probes, code values and dE ITP. The last line is `N passed, M failed`.
+"""
+
+import argparse
+import json
+import re
+import subprocess
+import sys
+import tempfile
+import xml.etree.ElementTree as ElementTree
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
+from pictures import Report, evaluate, run  # noqa: E402
+
+SVG = "{http://www.w3.org/2000/svg}"
+MID_GREY = 0.18
+WEIGHTS = np.array([0.2126, 0.7152, 0.0722])
+ORANGE, GREEN, BLUE = np.array([1, 0.25, 0.02]), np.array([0.05, 1, 0.1]), np.array([0.02, 0.06, 1])
+
+WIDTH, BYTES = 640, 12 * 1024
+# Pixels: points have two decimals; between them a line may be 0.2 off, and a point is 0.005 off itself.
+POINT, LINE = 0.006, 0.21
+# Code values of lines that count as one.
+SAME = 0.001
+# Half a unit of the last digit printed, and what nine digits of `eval` leave.
+DIGITS = 1e-6
+
+
+# --------------------------------------------------------------------------------------------------
+# Light and colour
+
+
+def encode(light):
+    """sRGB, IEC 61966-2-1."""
+    return np.where(light <= 0.0031308, 12.92 * light, 1.055 * np.maximum(light, 1e-9) ** (1 / 2.4) - 0.055)
+
+
+def decode(code):
+    return np.where(code <= 0.04045, code / 12.92, ((np.maximum(code, 0) + 0.055) / 1.055) ** 2.4)
+
+
+def grey_level(code):
+    """Code value of the grey that has the luminance of each colour."""
+    return encode(decode(code) @ WEIGHTS)
+
+
+def scene(stops):
+    return MID_GREY * 2.0 ** np.asarray(stops, float)
+
+
+def to_xyz(red, green, blue, white):
+    xyz = np.array([[x / y, 1, (1 - x - y) / y] for x, y in (red, green, blue)]).T
+    wx, wy = white
+    return xyz * np.linalg.solve(xyz, [wx / wy, 1, (1 - wx - wy) / wy])
+
+
+D65, ACES_WHITE = (0.3127, 0.3290), (0.32168, 0.33767)
+REC709 = to_xyz((0.64, 0.33), (0.30, 0.60), (0.15, 0.06), D65)
+REC2020 = to_xyz((0.708, 0.292), (0.170, 0.797), (0.131, 0.046), D65)
+AP1 = to_xyz((0.713, 0.293), (0.165, 0.830), (0.128, 0.044), ACES_WHITE)
+BRADFORD = np.array([[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]])
+
+
+def adaptation(source, target):
+    cones = [BRADFORD @ [x / y, 1, (1 - x - y) / y] for x, y in (source, target)]
+    return np.linalg.inv(BRADFORD) @ np.diag(cones[1] / cones[0]) @ BRADFORD
+
+
+def pq_encode(nits):
+    """SMPTE ST 2084."""
+    m1, m2, c1, c2, c3 = 2610 / 16384, 2523 / 32, 3424 / 4096, 2413 / 128, 2392 / 128
+    y = (np.maximum(nits, 0) / 10000) ** m1
+    return ((c1 + c2 * y) / (1 + c3 * y)) ** m2
+
+
+def itp(code, peak_nits=100):
+    """ITU-R BT.2124 of sRGB code values; T is half of Ct."""
+    light = decode(code) @ (np.linalg.inv(REC2020) @ REC709).T * peak_nits
+    lms = light @ (np.array([[1688, 2146, 262], [683, 2951, 462], [99, 309, 3688]]) / 4096).T
+    ictcp = np.array([[2048, 2048, 0], [6610, -13613, 7003], [17933, -17390, -543]]) / 4096
+    return pq_encode(lms) @ ictcp.T * [1, 0.5, 1]
+
+
+class SplitMix64:
+    """Steele et al. 2014: the probes' random numbers, many at a time."""
+
+    def __init__(self, seed):
+        self.state = np.uint64(seed)
+
+    def uniform(self, low, high, shape):
+        count = int(np.prod(shape))
+        step = np.uint64(0x9E3779B97F4A7C15)
+        with np.errstate(over="ignore"):
+            z = self.state + step * np.arange(1, count + 1, dtype=np.uint64)
+            self.state = z[-1]
+            z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+            z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+            z ^= z >> np.uint64(31)
+        return (low + (high - low) * (z >> np.uint64(11)).astype(float) * 2.0**-53).reshape(shape)
+
+
+def non_negative_probes():
+    """The probe set of docs/conventions.md in linear Rec.709, without colours that have a negative channel."""
+    greys = np.repeat(np.concatenate([[0], scene(np.arange(-768, 769) / 64)])[:, None], 3, axis=1)
+    parts = [greys]
+    for matrix in (np.eye(3), np.linalg.inv(REC709) @ REC2020,
+                   np.linalg.inv(REC709) @ adaptation(ACES_WHITE, D65) @ AP1):
+        for exposure in (-6, -2, 0, 3, 6):
+            cube = np.stack(np.meshgrid(*[np.arange(33)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+            parts.append(cube * (2.0**exposure / 32) @ matrix.T)
+    generator = SplitMix64(20021)
+    colours = 2.0 ** generator.uniform(-16, 12, (100000, 3))
+    tenth = np.arange(0, 100000, 10)
+    colours[tenth, tenth // 10 % 3] = 0
+    parts += [colours, 2.0 ** generator.uniform(-148, -10, (5000, 3))]
+    rgb = np.concatenate(parts).astype(np.float32)
+    return rgb[(rgb >= 0).all(axis=1)]
+
+
+# --------------------------------------------------------------------------------------------------
+# The page and the plots
+
+
+class Plot:
+    """An SVG file: its lines by id, in stops and values."""
+
+    def __init__(self, path):
+        self.root = ElementTree.parse(path).getroot()
+        self.texts = [text.text for text in self.root.iter(SVG + "text")]
+        numbers = [float(x) for x in re.findall(r"-?\d+\.?\d*", self.root.findtext(SVG + "desc") or "")]
+        self.lines = {}
+        if len(numbers) < 6:
+            return
+        self.left, self.stop, _, self.lowest = numbers[:4]
+        scales = [numbers[4:6], numbers[6:8]]
+        for index, group in enumerate(g for g in self.root.iter(SVG + "g") if g.find(SVG + "polyline") is not None):
+            zero, self_unit = scales[index]
+            for line in group.iter(SVG + "polyline"):
+                points = np.array([p.split(",") for p in line.get("points").split()], float)
+                stops = (points[:, 0] - self.left) / self.stop - self.lowest
+                self.lines[line.get("id")] = (stops, (zero - points[:, 1]) / self_unit, self_unit)
+
+    def patches(self):
+        """Rows of (first, last, colour)."""
+        rows = []
+        for group in self.root.iter(SVG + "g"):
+            if group.get("transform"):
+                row = []
+                for patch in group.iter(SVG + "path"):
+                    start, width = map(float, re.fullmatch(r"M([\d.]+) 0h([\d.]+)", patch.get("d")).groups())
+                    colour = [int(patch.get("stroke")[i:i + 2], 16) for i in (1, 3, 5)]
+                    row.append((start, start + width, colour))
+                rows.append(row)
+        return rows
+
+
+def variants_of(operator):
+    """(id of the line, arguments of eval, words that the page must have)."""
+    name = operator["id"]
+    yield "default", [name], f'<a id="{name}"></a>'
+    for preset in operator["presets"]:
+        yield preset["id"], [f"{name}:{preset['id']}"], f"`{name}:{preset['id']}`"
+    for look in operator["looks"]:
+        yield "look-" + look["id"], [name, "--look", look["id"]], f"* Look `{look['id']}`"
+
+
+def section(page, name):
+    """The part of the page that belongs to an anchor."""
+    start = page.index(f'<a id="{name}"></a>')
+    end = page.find("<a id=", start + 1)
+    return page[start:end if end > 0 else len(page)]
+
+
+def slug(name):
+    return re.sub("[^a-z0-9]+", "_", name.lower()).strip("_")
+
+
+def check_page(report, folder, operators, groups):
+    page = (folder / "operators.md").read_text()
+    index = page[page.index("## Index"):page.index('<a id="')]
+    bad = []
+    for op in operators:
+        name = op["id"]
+        text = section(page, name) if f'<a id="{name}"></a>' in page else ""
+        wanted = [f"## {op['title']} (`{name}`)", op["character"], op["source"], op["licence"], op["negatives"],
+                  op["output"], op["working_primaries"], f"`{op['view']}`", f"(curves/{name}.svg)",
+                  "* Measured on sRGB"]
+        wanted += op["warnings"] + [f"| `{p['name']}` |" for p in op["parameters"]]
+        wanted += [words for _, _, words in variants_of(op)]
+        bad += [f"{name}: {words}" for words in wanted if words not in text]
+        if not re.search(rf"^\| \[[^\n]*\]\(#{name}\)<br>`{name}` \| .* \| \d\.\d+ \| \d\.\d+ \|$", index, re.M):
+            bad.append(f"{name}: its row of the index")
+    report.check(f"the page has all about {len(operators)} operators", not bad, bad[:5])
+    bad = []
+    for name, members in groups.items():
+        text = section(page, f"dialects_{slug(name)}") if f'"dialects_{slug(name)}"' in page else ""
+        names = [words for op in members for words in [op["id"], *(f"{op['id']}:{p['id']}" for p in op["presets"])]]
+        wanted = [f"### {name}\n", f"(curves/dialects_{slug(name)}.svg)", f"(curves/dialects_{slug(name)}_colors.svg)"]
+        wanted += [f"[`{n}`](#{n.split(':')[0]})" for n in names]
+        bad += [f"{name}: {words}" for words in wanted if words not in text]
+        pairs = len(re.findall(r"^\| \w+ `[^`]+`, \w+ `[^`]+` \|", text, re.M))
+        if pairs != len(names) * (len(names) - 1) // 2:
+            bad.append(f"{name}: {pairs} pairs of {len(names)} dialects")
+        if f"(#dialects_{slug(name)})" not in index:
+            bad.append(f"{name}: its row of the index")
+    report.check(f"the page has all about {len(groups)} groups of dialects", not bad, bad[:5])
+    links = set(re.findall(r"\]\(#([^)]+)\)", page))
+    anchors = set(re.findall(r'<a id="([^"]+)"', page)) | {"dialects"}
+    report.check(f"{len(links)} links within the page have their end", links <= anchors, sorted(links - anchors)[:5])
+    linked = {folder / path for path in re.findall(r"\]\((curves/[^)]+)\)", page)}
+    plots = set((folder / "curves").glob("*.svg"))
+    report.check("every plot is on the page, and no other", linked == plots, sorted(linked ^ plots)[:5])
+    # Looks and presets that are meant to differ are not dialects, and an operator alone is none.
+    report.check("as many groups as there are", len(re.findall('<a id="dialects_', page)) == len(groups))
+    return page
+
+
+def check_files(report, folder, operators, groups):
+    expected = {f"{op['id']}.svg" for op in operators}
+    for name in groups:
+        expected |= {f"dialects_{slug(name)}.svg", f"dialects_{slug(name)}_colors.svg"}
+    there = {path.name for path in (folder / "curves").glob("*.svg")}
+    report.check(f"{len(expected)} plots", there == expected, sorted(there ^ expected)[:5])
+    manifest = [line.split(",")[0] for line in (folder / "curves" / "MANIFEST.csv").read_text().splitlines()[1:]]
+    report.check("the manifest names the plots", sorted(manifest) == sorted(there))
+    bad = []
+    for path in sorted((folder / "curves").glob("*.svg")):
+        data = path.read_text()
+        try:
+            root = Plot(path).root
+        except (ElementTree.ParseError, AttributeError, ValueError) as error:
+            bad.append(f"{path.name}: {error}")
+            continue
+        box = [float(x) for x in root.get("viewBox").split()]
+        if box[2] != WIDTH or [float(root.get("width")), float(root.get("height"))] != box[2:]:
+            bad.append(f"{path.name}: is {box}")
+        if len(data.encode()) > BYTES:
+            bad.append(f"{path.name}: has {len(data.encode())} bytes")
+        if re.search(r"<script|href|url\(|@import|<image", data):
+            bad.append(f"{path.name}: needs something from elsewhere")
+        background = root.find(SVG + "rect")
+        if background is None or (background.get("width"), background.get("fill")) != ("100%", "#fff"):
+            bad.append(f"{path.name}: has no background")
+        ids = re.findall(r' id="([^"]+)"', data)
+        if len(ids) != len(set(ids)):
+            bad.append(f"{path.name}: ids appear twice")
+        for _, values, _ in Plot(path).lines.values():
+            if not np.isfinite(values).all():
+                bad.append(f"{path.name}: a value is not finite")
+    report.check("plots are well-formed, 640 wide, at most 12 kB, complete in themselves", not bad, bad[:5])
+
+
+def evaluate_all(command, arguments, parts):
+    """Code values of several sets of colours through one call of the command."""
+    parts = [np.asarray(part, float).reshape(-1, 3) for part in parts]
+    codes = evaluate(command, np.concatenate(parts), *arguments)
+    return np.split(codes, np.cumsum([len(part) for part in parts])[:-1])
+
+
+def of_scene(stops, colour):
+    return scene(stops)[:, None] * colour
+
+
+def check_operator(report, command, folder, page, operator):
+    """Every line and patch of a plot, and the figures of its row and section."""
+    name = operator["id"]
+    plot = Plot(folder / "curves" / f"{name}.svg")
+    text = section(page, name)
+    problems = [] if "default" in plot.lines else ["has no line `default`"]
+    grid = np.linspace(-10, 10, 541)  # half a pixel apart, twice: what a line knows
+    whole = np.arange(-10, 11)
+    none = np.array([])
+
+    def level_errors(line, codes_at_points, codes_at_grid):
+        stops, values, unit = plot.lines[line]
+        return (np.abs(values - codes_at_points).max() * unit,
+                np.abs(np.interp(grid, stops, values) - codes_at_grid).max() * unit)
+
+    # Everything that is asked of the operator with its defaults, in one call.
+    measured = re.search(r"^\* Measured on sRGB: 0\.18 → (\S+), 1 → ([\d.]+);.*$", text, re.M)
+    ends = [(found[0], float(found[1]), level)
+            for pattern, level in ((r"black below (\S+) stops", 0.5 / 255), (r"white from (\S+) stops", 254.5 / 255))
+            for found in re.finditer(pattern, measured[0])]
+    channels = [(prefix + channel, i, colour) for prefix, colour in (("", ORANGE), ("grey-", np.ones(3)))
+                for i, channel in enumerate(("red", "green", "blue"))]
+    if not operator["is_diagnostic"]:
+        problems += [f"has no line `{channel}`" for channel, _, _ in channels[:3] if channel not in plot.lines]
+    channels = [channel for channel in channels if channel[0] in plot.lines]
+    patch_colours = (np.ones(3), ORANGE, BLUE)
+    first, levels, known, sides, *rest = evaluate_all(command, [name], [
+        of_scene(plot.lines.get("default", (none,))[0], np.ones(3)), of_scene(grid, np.ones(3)),
+        np.array([[MID_GREY] * 3, [1] * 3]),
+        # One digit behind the point; where a curve jumps, only the sides are known.
+        of_scene([stops + side for _, stops, _ in ends for side in (-0.051, 0.051)], np.ones(3)),
+        *(of_scene(whole, colour) for colour in patch_colours),
+        *(of_scene(plot.lines[channel][0], colour) for channel, _, colour in channels)])
+    patches, channel_codes = rest[:3], rest[3:]
+
+    drawn = {"default": grey_level(levels)}
+    points = between = 0.0
+    if "default" in plot.lines:
+        points, between = level_errors("default", grey_level(first), drawn["default"])
+    for (channel, i, _), codes in zip(channels, channel_codes):
+        points = max(points, np.abs(plot.lines[channel][1] - codes[:, i]).max() * plot.lines[channel][2])
+    apart = 0.0
+    for line, arguments, _ in list(variants_of(operator))[1:]:
+        at_points, at_grid = map(grey_level, evaluate_all(command, arguments, [
+            of_scene(plot.lines.get(line, (none,))[0], np.ones(3)), of_scene(grid, np.ones(3))]))
+        if line in plot.lines:
+            errors = level_errors(line, at_points, at_grid)
+            points, between = max(points, errors[0]), max(between, errors[1])
+            drawn[line] = at_grid
+        else:
+            apart = max(apart, min(np.abs(at_grid - other).max() for other in drawn.values()))
+        label = "look " + line[5:] if line.startswith("look-") else ":" + line
+        if not any(label in (words or "") for words in plot.texts):
+            problems.append(f"{label} is in no label")
+    report.bound(f"{name}: points of the lines, in pixels", points, POINT)
+    report.bound(f"{name}: between them", between, LINE)
+    report.bound(f"{name}: lines left out lie on others, in code values", apart, SAME)
+    report.check(f"{name}: every variant is in the plot", not problems, problems)
+
+    off = 0.0
+    for row, codes in zip(plot.patches(), patches):
+        shown = np.zeros((21, 3))
+        for start, end, rgb in row:
+            shown[int(np.floor(start)):int(np.ceil(end))] = rgb
+        off = max(off, np.abs(shown - 255 * codes).max())
+    report.check(f"{name}: patches", len(plot.patches()) == 3 and off <= 0.5 + DIGITS, f"{off} codes of 8 bits")
+
+    row = re.search(rf"^\|.*\(#{name}\)<br>.* \| (\S+) \| (\S+) \|$", page, re.M)
+    figures = np.array([*row.groups(), *measured.groups()], float)
+    report.bound(f"{name}: figures of the text", np.abs(figures - [*grey_level(known)] * 2).max(), 5e-4 + DIGITS)
+    for (words, _, level), (low, high) in zip(ends, grey_level(sides).reshape(-1, 2)):
+        report.check(f"{name}: {words}", low <= level <= high, f"{low} and {high}, expected {level} between")
+
+
+def check_formulas(report, folder):
+    """Plots against formulas of the papers, not the program's own evaluation."""
+    for name, line, formula in (("clamp", "default", lambda x: np.minimum(x, 1)),
+                                ("reinhard", "default", lambda x: x / (1 + x)),
+                                ("reinhard_extended", "default", lambda x: np.minimum(x * (1 + x / 16) / (1 + x), 1))):
+        plot = Plot(folder / "curves" / f"{name}.svg")
+        stops, values, unit = plot.lines[line]
+        report.bound(f"{name}: the formula", np.abs(values - encode(formula(scene(stops)))).max() * unit, POINT)
+        for i, channel in enumerate(("red", "green", "blue")):
+            stops, values, unit = plot.lines[channel]
+            shown = encode(formula(scene(stops) * ORANGE[i]))
+            report.bound(f"{name}: the formula, {channel}", np.abs(values - shown).max() * unit, POINT)
+
+
+def check_group(report, command, folder, page, group, members):
+    """Lines, patches, rows of one group of dialects."""
+    names = [f"{op['id']}{preset}" for op in members for preset in ["", *(":" + p["id"] for p in op["presets"])]]
+    text = section(page, f"dialects_{slug(group)}")
+    plot = Plot(folder / "curves" / f"dialects_{slug(group)}.svg")
+    chart = Plot(folder / "curves" / f"dialects_{slug(group)}_colors.svg")
+    letters = dict(re.findall(r"^\| \*\*(\w+)\*\* \| \[`([^`]+)`\]", text, re.M))
+    report.check(f"{group}: a letter for every dialect", sorted(letters.values()) == sorted(names), letters)
+    stops = np.linspace(-10, 10, 541)
+    colours = (ORANGE, GREEN, BLUE)
+    grey, known, codes = {}, {}, {}
+    for name in names:
+        grey[name], known[name], *codes[name] = evaluate_all(command, [name], [
+            of_scene(stops, np.ones(3)), np.array([MID_GREY, 1, 4])[:, None] * np.ones(3),
+            *(of_scene([-2, 0, 2, 4, 6], colour) for colour in colours)])
+        grey[name] = grey_level(grey[name])
+    mean = np.mean(list(grey.values()), axis=0)
+    worst = difference = off = figures = 0.0
+    rows = chart.patches()
+    for number, (letter, name) in enumerate(letters.items()):
+        if letter in plot.lines:
+            at, values, unit = plot.lines[letter]
+            worst = max(worst, np.abs(np.interp(stops, at, values) - grey[name]).max() * unit)
+            at, values, unit = plot.lines[letter + "-difference"]
+            shown = np.interp(stops, at, values)
+            difference = max(difference, np.abs(shown - 255 * (grey[name] - mean)).max() * unit)
+        else:
+            report.check(f"{group}: {letter} lies on a line", min(
+                np.abs(grey[name] - grey[letters[other]]).max() for other in letters if other in plot.lines) < SAME
+                and any(re.search(rf"\b{letter}\b", words or "") for words in plot.texts))
+        for block, expected in enumerate(codes[name]):
+            for start, end, rgb in rows[block * len(letters) + number]:
+                off = max(off, np.abs(255 * expected[int(start):int(end)] - rgb).max())
+        found = re.search(rf"^\| \*\*{letter}\*\* .* \| (\S+) \| (\S+) \| (\S+) \|$", text, re.M)
+        figures = max(figures, np.abs(np.array(found.groups(), float) - grey_level(known[name])).max())
+    report.bound(f"{group}: figures of the rows", figures, 5e-4 + DIGITS)
+    report.bound(f"{group}: lines, in pixels", worst, LINE)
+    report.bound(f"{group}: differences, in pixels", difference, LINE)
+    report.check(f"{group}: patches", off <= 0.5 + DIGITS, f"{off} codes of 8 bits")
+
+
+def check_distances(report, command, page, group, a, b):
+    """Figures of a pair, recomputed: own probes, `tonewright eval`, own dE ITP."""
+    probes = non_negative_probes()
+    count = int(re.search(r"measured on the (\d+) colours", page)[1])
+    # Colours on the hull of a wide gamut: rounding decides which have a channel below 0.
+    report.bound("distances: as many probes", abs(count - len(probes)) / len(probes), 1e-4)
+    code = [evaluate(command, probes, name) for name in (a, b)]
+    difference = 255 * np.abs(code[0] - code[1]).max(axis=1)
+    delta_e = 720 * np.linalg.norm(itp(code[0]) - itp(code[1]), axis=1)
+    expected = [difference.max(), np.percentile(difference, 99.9), difference.mean(), delta_e.max(), delta_e.mean()]
+    found = re.search(rf"^\| \w+ `{a}`, \w+ `{b}` \| (\S+) \| (\S+) \| (\S+) \| (\S+) \| (\S+) \|$",
+                      section(page, f"dialects_{slug(group)}"), re.M)
+    for what, shown, value, digit in zip(("max", "99.9 %", "mean", "dE max", "dE mean"), map(float, found.groups()),
+                                         expected, (0.1, 0.1, 0.01, 0.1, 0.01)):
+        # Half of the last digit, and the few probes that may be others.
+        report.bound(f"{a}, {b}: {what} {shown}, recomputed {value:.4f}", abs(shown - value),
+                     0.5 * digit + 1e-3 * value)
+
+
+def check_errors(report, command, scratch):
+    (scratch / "file").write_text("")
+    for code, arguments, words in ((2, ["--catalogue", scratch / "new", "hable"], "operator is hable"),
+                                   (2, ["--catalogue", scratch / "new", "--json"], "--json"),
+                                   (2, ["--catalogue", scratch / "new", "--markdown"], "--markdown"),
+                                   (2, ["--catalogue", scratch / "new", "--views"], "--views")):
+        done = subprocess.run([command, "list", *arguments], capture_output=True, text=True, check=False)
+        report.check(f"list {' '.join(map(str, arguments))}", done.returncode == code and words in done.stderr
+                     and done.stderr.startswith("tonewright: ") and done.stderr.count("\n") == 1
+                     and not (scratch / "new").exists(), done.stderr)
+    done = subprocess.run([command, "list", "--catalogue", scratch / "file"], capture_output=True, text=True,
+                          check=False)
+    report.check("list --catalogue where a file is", done.returncode == 3 and str(scratch / "file") in done.stderr
+                 and done.stderr.count("\n") == 1, done.stderr)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("command", type=Path)
+    command = parser.parse_args().command.resolve()
+    report = Report()
+    operators = json.loads(run(command, "list", "--json"))["operators"]
+    groups = {}
+    for op in operators:
+        groups.setdefault(op["dialects"], []).append(op)
+    groups = {name: members for name, members in groups.items() if name and len(members) > 1}
+    with tempfile.TemporaryDirectory(prefix="tonewright-") as scratch, ThreadPoolExecutor() as pool:
+        folder = Path(scratch) / "docs"
+        curves = folder / "curves"
+        curves.mkdir(parents=True)
+        (curves / "MANIFEST.csv").write_text("path,shows\nold.svg,old\n")
+        (curves / "old.svg").write_text("of an operator that is gone")
+        (curves / "own.txt").write_text("of somebody else")
+        (folder / "MANIFEST.csv").write_text("path\nown.md\n")
+        (folder / "own.md").write_text("of somebody else")
+        run(command, "list", "--catalogue", folder)
+        report.check("a plot of an operator that is gone is removed, nothing else", not (curves / "old.svg").exists()
+                     and (curves / "own.txt").exists() and (folder / "own.md").exists())
+        page = check_page(report, folder, operators, groups)
+        check_files(report, folder, operators, groups)
+        check_formulas(report, folder)
+        check_errors(report, command, Path(scratch))
+        jobs = [(check_operator, op["id"], (op,)) for op in operators]
+        jobs += [(check_group, name, (name, members)) for name, members in groups.items()]
+
+        def run_job(job):
+            check, what, arguments = job
+            try:
+                check(report, command, folder, page, *arguments)
+            except Exception as error:  # what is looked for is not there
+                report.check(what, False, repr(error))
+
+        list(pool.map(run_job, jobs))
+        # One pair is as good as all: what is measured does not know which operators it is of.
+        group = "AgX" if "AgX" in groups else next(iter(groups))
+        check_distances(report, command, page, group, *[op["id"] for op in groups[group][:2]])
+    return report.finish()
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -243,9 +243,10 @@ class PrecisionChooser {
         for (std::size_t i = 0; i < code_.size(); ++i) {
             if (is_cancelling_row(i)) in_double_[i] = true;
             // In float the rounding of y log2(x) grows with it, and kernels have no better for an
-            // exponent that is not constant.
+            // exponent that is not constant. A small power of a ratio too small for float is not
+            // small.
             if (code_[i].op == ExprOp::power && code_[code_[i].b].op != ExprOp::constant)
-                in_double_[i] = true;
+                in_double_[i] = in_double_[code_[i].a] = true;
         }
         // Nor need a probe lie in a narrow and steep cell of a table: what such a table is indexed
         // with is double from the start, and all that it is computed from.

@@ -42,7 +42,9 @@ HWY_INLINE Vec<D> horner(D d, Vec<D> x, double c0, C... c) {
 
 #if HWY_TARGET <= HWY_AVX3  // AVX-512 has instructions for both
 
-// 4/3 x has the next exponent exactly where the fraction of x is 3/2 or more.
+// 4/3 x has the next exponent exactly where the fraction of x is 3/2 or more, also when rounded: with
+// 4/3 rounded up to float (by 1/3 of a last place) and down to double (by 1/3), 3/2 gives 2 and the
+// number before it gives less. Rounded up to double (by 2/3), that one would give 2 as well.
 HWY_INLINE void split(hn::Full512<float> d, Vec<hn::Full512<float>> x, Vec<hn::Full512<float>>& e,
                       Vec<hn::Full512<float>>& f) {
     e.raw = _mm512_getexp_ps(hn::Mul(x, hn::Set(d, 1.33333337F)).raw);
@@ -57,7 +59,7 @@ HWY_INLINE void split(hn::Full256<float> d, Vec<hn::Full256<float>> x, Vec<hn::F
 }
 HWY_INLINE void split(hn::Full512<double> d, Vec<hn::Full512<double>> x,
                       Vec<hn::Full512<double>>& e, Vec<hn::Full512<double>>& f) {
-    e.raw = _mm512_getexp_pd(hn::Mul(x, hn::Set(d, 0x1.5555555555556p+0)).raw);
+    e.raw = _mm512_getexp_pd(hn::Mul(x, hn::Set(d, 0x1.5555555555555p+0)).raw);
     f.raw = _mm512_getmant_pd(x.raw, _MM_MANT_NORM_p75_1p5, _MM_MANT_SIGN_zero);
     f = hn::Sub(f, hn::Set(d, 1.0));
 }

@@ -253,7 +253,7 @@ Operator filament() {
     op.looks = {{"golden", "Golden", "warm: slope 1 0.9 0.5, power 0.8, saturation 1.3"},
                 {"punchy", "Punchy", "darker and stronger: power 1.35, saturation 1.4"}};
     // Punchy takes black below 0 before it is light: there the lifted black is gone.
-    op.bounds = {.cube = 1.6e-2,
+    op.bounds = {.cube = 2.4e-2,
                  .reason = "looks saturate about a luma taken before their power: a cube"};
     op.deviations = {{Deviation::Kind::black, 2.5e-6, ""},
                      {Deviation::Kind::black, 5.2e-5, "golden"},

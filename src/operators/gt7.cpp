@@ -106,7 +106,7 @@ std::vector<Operator> define_gt7() {
     op.licence = "MIT";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Gran Turismo";
-    op.bounds = {.cube = 0.22, .reason = "a cube: lights lose their chroma within 1.4 stops"};
+    op.bounds = {.cube = 0.26, .reason = "a cube: lights lose their chroma within 1.4 stops"};
     op.working = kRec2020;
     op.parameters = {
         choice_parameter("output", {"sdr", "hdr"}, "sdr",

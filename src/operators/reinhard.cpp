@@ -184,8 +184,9 @@ Operator constant_luminance() {
         }
         const Expr x = Expr::input();
         const ToneScaleStage scale{ToneScaleStage::Norm::luminance, kRec709Weights, x / (1 + x)};
-        // No channel is above 1/w, of blue 13.9.
-        return {limit_to_positive(), scale, ClampStage{0, 14},
+        // No channel is above 1/w, of blue 13.9. Of the 65 nodes of a cube that ends at 16 one is
+        // at 1.00, where what is handed on starts with an edge.
+        return {limit_to_positive(), scale, ClampStage{0, 16},
                 Map3Stage{{c[0] + handed_on[1] + handed_on[2], c[1] + handed_on[2] + handed_on[0],
                            c[2] + handed_on[0] + handed_on[1]}}};
     };

@@ -41,7 +41,7 @@ def through_oiiotool(config, picture, display, view, out):
 
 
 def through_apply(command, picture, operator, out, *options):
-    run(command, "apply", picture, out, "--operator", operator, "-d", "float", *options)
+    run(command, "apply", picture, out, "--operator", operator, "--statistics", "defaults", "-d", "float", *options)
     return read_rgb(out, Path(out).parent)
 
 

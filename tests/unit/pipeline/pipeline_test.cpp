@@ -734,7 +734,7 @@ TEST(Deviations, SayWhatTheUserSees) {
     EXPECT_EQ(text(Kind::crushes_black, 0.004), "shows greys up to 0.004 as black");
     EXPECT_EQ(text(Kind::never_reaches_white, 0.9826),
               "never reaches white: at most 0.983 of the display's light");
-    EXPECT_EQ(text(Kind::exceeds_white, 1.287), "exceeds white, up to 1.3: displays clip it");
+    EXPECT_EQ(text(Kind::exceeds_white, 1.287), "exceeds white, up to 1.29: displays clip it");
     EXPECT_EQ(text(Kind::exceeds_white, kInfinity), "exceeds white without end: displays clip it");
     EXPECT_EQ(text(Kind::not_monotone, 0.0044), "non-monotone below 0.0044");
     EXPECT_EQ(text(Kind::not_monotone, kInfinity), "non-monotone");

@@ -21,12 +21,18 @@ from pictures import (Report, need_program, read_exr, read_planes, read_rgb, run
 # `apply` runs the SIMD engine, which may be 1e-6 from the double reference, and a chain of matrices, ranges and
 # half-domain curves in OpenColorIO may be 3e-7 from it: code values, on the other side of the reference at worst.
 EXACT = 3e-7 + 1e-6
-# Where it has to sample an operator into a 65^3 cube, it is held to one code of 10 bits.
-CUBE = 1 / 1023 + 1e-6
+# Where a chain is not that exact, the config says by how much: the largest error of its README, which is that of
+# random colours. A picture may find a little more between them.
+BETWEEN_PROBES = 2
 
 
-def bound_of(config, operator):
-    return CUBE if list(config.parent.glob(f"luts/{operator}_cube*")) else EXACT
+def bound_of(config, view):
+    """The error that the config's README publishes for a view, in code values of sRGB."""
+    rows = [[cell.strip() for cell in line.split("|")] for line in
+            (config.parent / "README.md").read_text().splitlines() if line.startswith(f"| {view} |")]
+    if len(rows) != 1:
+        raise ValueError(f"{config.parent}/README.md: {len(rows)} rows of {view}; expected 1")
+    return max(EXACT, BETWEEN_PROBES * float(rows[0][4]) + 1e-6)
 
 
 def through_oiiotool(config, picture, display, view, out):
@@ -57,8 +63,8 @@ def compare_views(report, command, config, picture, scratch, jobs, what=""):
                                     "--display", option)
 
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        for (operator, _, option, _), (shown, applied) in zip(jobs, pool.map(both, jobs)):
-            report.compare(f"{what or picture.name} {option} {operator}", shown, applied, bound_of(config, operator))
+        for (operator, view, option, _), (shown, applied) in zip(jobs, pool.map(both, jobs)):
+            report.compare(f"{what or picture.name} {option} {operator}", shown, applied, bound_of(config, view))
 
 
 def check_alpha(report, command, config, picture, scratch):

@@ -109,7 +109,7 @@ SETTINGS = {
     "aces_hill": [{"prescale": 0.5}, {"gain": 1.8}, {"prescale": 1.8, "white": 1, "clamp": "no"}, {"clamp": "no"},
                   {"prescale": 1 / 0.6}, {"white": 4}, {"gain": 100, "white": 65504}],
     "aces_filament": [{"brightness": 1 / 0.6}, {"brightness": 0.01}, {"brightness": 100}],
-    "unreal": [{"glow_and_red": "off"}, UNREAL_LEGACY, {"toe": 0.9}, {"toe": 1, "shoulder": 1},
+    "unreal": [{"glow_and_red": "off"}, UNREAL_LEGACY, {"toe": 0.9}, {"toe": 0.95, "shoulder": 1},
                {"black_clip": 0.05, "white_clip": 0.2}, {**UNREAL_LEGACY, "glow_and_red": "off"}],
     "agx_sobotka": [{"look": "golden"}, {"look": "punchy"}],
     "agx_minimal": [{"order": 7}],
@@ -168,7 +168,8 @@ def probes(count=2000):
     """Colours as (count, 3): greys, hues, out of gamut, beyond every limit, random."""
     grey = 0.18 * 2.0 ** np.arange(-12, 12.01, 0.5)
     hues = [(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 0), (0, 1, 1), (1, 0, 1), (0.8, 0.1, 0.05), (0.05, 0.1, 2)]
-    limits = [0.0, -0.0, 1e-310, 1e-10, -0.1, -5.0, 1.0, 4.0, 11.2, 65504.0, 70000.0, 1e30, np.inf, -np.inf, np.nan]
+    limits = [0.0, -0.0, 1e-30, 1e-10,  # below 2^-100 = 8e-31 operators without an end of slope are black
+               -0.1, -5.0, 1.0, 4.0, 11.2, 65504.0, 70000.0, 1e30, np.inf, -np.inf, np.nan]
     special = np.concatenate([
         np.repeat(grey[:, None], 3, axis=1),
         *(np.array(hues) * gain for gain in (0.01, 0.18, 1, 8, 1000)),

@@ -151,7 +151,8 @@ def aces_filament(rgb, brightness=1.0):
     ap0 = red_modifier(glow(ap0, saturation), saturation)
     x = saturate(np.clip(ap0 @ rgb_to_rgb("ap0", "ap1").T, 0, HALF_MAX), 0.96) * brightness
     x = x * (2.785085 * x + 0.107772) / (x * (2.936045 * x + 0.887122) + 0.806889)
-    x = x * np.maximum((x * AP1_WEIGHTS).sum(-1, keepdims=True), 1e-10) ** (0.9811 - 1)
+    light = (x * AP1_WEIGHTS).sum(-1, keepdims=True)  # Filament's floor, below 1e-5, only keeps it from 0/0
+    x = np.where(light > 0, x * np.where(light > 0, light, 1) ** (0.9811 - 1), 0)
     return saturate(x, 0.93) @ np.linalg.inv(to_ap1).T
 
 

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from .base import HALF_MAX, limit_scene, luminance
+from .base import limit_scene, luminance
 
 AGX_INSET = np.array([[0.842479062253094, 0.0784335999999992, 0.0792237451477643],
                       [0.0423282422610123, 0.878468636469772, 0.0791661274605434],
@@ -127,7 +127,7 @@ def agx_threejs(rgb):
     >>> agx_threejs([0.8, 0.1, 0.05]).round(9).tolist()
     [0.607619019, 0.177156407, 0.1125247]
     """
-    x = np.clip(np.asarray(rgb, float), -HALF_MAX, HALF_MAX) @ THREE_TO_2020.T @ INSET_2020.T
+    x = np.asarray(rgb, float) @ THREE_TO_2020.T @ INSET_2020.T
     code = np.polyval(AGX_POLYNOMIALS[6], agx_shape(np.maximum(x, 1e-10))) @ OUTSET_2020.T
     return np.maximum(code, 0) ** 2.2 @ THREE_TO_709.T
 

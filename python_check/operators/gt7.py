@@ -30,7 +30,8 @@ def from_ictcp(ictcp):
     >>> from_ictcp(to_ictcp(np.array([1.0, 1, 1]))).round(6).tolist()
     [1.000005, 0.999999, 0.999996]
     """
-    return np.maximum(pq_decode(ictcp @ FROM_ICTCP.T) / UNIT @ FROM_LMS.T, 0)
+    # The source's PQ takes codes in [0, 1] only.
+    return np.maximum(pq_decode(np.clip(ictcp @ FROM_ICTCP.T, 0, 1)) / UNIT @ FROM_LMS.T, 0)
 
 
 def gt7_curve(x, target, alpha=0.25, mid=0.538, linear=0.444, toe=1.28):

@@ -68,14 +68,14 @@ SETTINGS = {
                         {"chromatic_adaptation": 1}, {"light_adaptation": 0}, DEVLIN_MEANS,
                         {"intensity": -1, "contrast": 0.5, "chromatic_adaptation": 0.3, "light_adaptation": 0.7,
                          **DEVLIN_MEANS},
-                        {"light_adaptation": 0, "mean_luminance": 0}],
+                        {"light_adaptation": 0, "mean_luminance": 0.001}],
     "hable": [HABLE_GDC, HABLE_GODOT, HABLE_ALL, {"white": 4}, {"exposure_bias": 1}, {"exposure_bias": 100},
               {**HABLE_ALL, **MAX}],
     "hable_gdc": [{"white": 4}, {"exposure_bias": 0.01}, {"exposure_bias": 2, "white": 65504}],
     "hable_piecewise": [FILM, {**FILM, "gamma": 1 / 2.2}, SOFT, {"toe_length": 0}, {"toe_strength": 1},
                         {"toe_strength": 1, "gamma": 0.5}, {"toe_length": 1, "toe_strength": 0.3},
                         {"shoulder_length": 1}, {"shoulder_length": 1e-5, "shoulder_strength": 1},
-                        {"shoulder_strength": 16, "shoulder_angle": 0.3}, {"gamma": 10}, {"gamma": 0.1, **SOFT},
+                        {"shoulder_strength": 16, "shoulder_angle": 0.3}, {"gamma": 4}, {"gamma": 0.1, **SOFT},
                         {**FILM, **LUMINANCE}, {**FILM, **HUE}],
     "hejl_burgess_dawson": [],
     "hejl_2015": [{"white": 0.1}, {"white": 4}, {"white": 65504}],
@@ -168,7 +168,7 @@ def probes(count=2000):
     """Colours as (count, 3): greys, hues, out of gamut, beyond every limit, random."""
     grey = 0.18 * 2.0 ** np.arange(-12, 12.01, 0.5)
     hues = [(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 0), (0, 1, 1), (1, 0, 1), (0.8, 0.1, 0.05), (0.05, 0.1, 2)]
-    limits = [0.0, -0.0, 1e-30, 1e-10,  # below 2^-100 = 8e-31 operators without an end of slope are black
+    limits = [0.0, -0.0, 1e-7, 1e-10,
                -0.1, -5.0, 1.0, 4.0, 11.2, 65504.0, 70000.0, 1e30, np.inf, -np.inf, np.nan]
     special = np.concatenate([
         np.repeat(grey[:, None], 3, axis=1),

@@ -14,6 +14,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 import operators
+from operators.pq import pq_decode
 
 # Both sides compute in double and `eval --digits 17` prints a double without loss. What differs is the order of the
 # arithmetic: 1e-16 a step, times the condition of the curves (powers of up to 80 in PQ, logarithms near 1).
@@ -21,8 +22,10 @@ RELATIVE = 1e-9
 # Where the result is a difference (Hable's E/F, saturation, matrices, S(0)), 1e-16 of the terms is left beside 0; the
 # terms are of the size of the colour's largest channel, or of 1. The looks' power of 0.8 raises that to 2e-13.
 ABSOLUTE = 1e-12
-# Pure-power displays have an infinite slope at black, where 1e-16 of light is 2e-7 in code: compared as light.
-DISPLAY_POWER = {"rec1886": 2.4, "g22": 2.2, "rec2020": 2.4}
+# Displays with an infinite slope at black, where 1e-16 of light is 2e-7 in code, are compared as light. HLG: its root.
+DISPLAY_LIGHT = {"rec1886": lambda code: code**2.4, "g22": lambda code: code**2.2, "rec2020": lambda code: code**2.4,
+                 "rec2100_pq": lambda code: pq_decode(code) / 100, "p3d65_pq": lambda code: pq_decode(code) / 100,
+                 "rec2100_hlg": lambda code: code**2}
 
 LUMINANCE, MAX, HUE = {"apply": "luminance"}, {"apply": "max"}, {"apply": "hue_preserving"}
 NONLINEAR = {**LUMINANCE, "color_correction": "nonlinear"}
@@ -46,9 +49,13 @@ UCHIMURA_ALL = {"max_brightness": 4, "contrast": 1.2, "linear_start": 0.3, "line
 DEVLIN_MEANS = {"mean_red": 0.6, "mean_green": 0.5, "mean_blue": 0.4, "mean_luminance": 0.45}
 RAMP = {"form": "ramp", "width": 0.25, "strength": 0.5}
 RODS = {"display_max": 200, "photopic_adaptation": 0.05, "scotopic_adaptation": 0.01}
+P3D60 = "0.68 0.32 0.265 0.69 0.15 0.06 0.32168 0.33767"
+AGX_LOOKS = ("punchy greyscale very_high_contrast high_contrast medium_high_contrast base_contrast "
+             "medium_low_contrast low_contrast very_low_contrast").split()
 UNREAL_LEGACY = {"slope": 0.98, "toe": 0.3, "shoulder": 0.22, "white_clip": 0.025}
 EETF = [{"source_peak": 4000, "target_peak": 250, "source_black": 0.01, "target_black": 0.05},
-        {"source_peak": 100, "target_peak": 400}, {"reference_white": 203, "source_peak": 10000}]
+        {"source_peak": 100, "target_peak": 400}, {"output": "hdr", "target_peak": 600, "source_peak": 4000},
+        {"output": "hdr", "target_peak": 20, "target_black": 0.1}, {"reference_white": 203, "source_peak": 10000}]
 # Operator -> sets of settings beside the defaults; "look" among them is the look.
 SETTINGS = {
     "clamp": [],
@@ -75,7 +82,9 @@ SETTINGS = {
     "hable_piecewise": [FILM, {**FILM, "gamma": 1 / 2.2}, SOFT, {"toe_length": 0}, {"toe_strength": 1},
                         {"toe_strength": 1, "gamma": 0.5}, {"toe_length": 1, "toe_strength": 0.3},
                         {"shoulder_length": 1}, {"shoulder_length": 1e-5, "shoulder_strength": 1},
-                        {"shoulder_strength": 16, "shoulder_angle": 0.3}, {"gamma": 4}, {"gamma": 0.1, **SOFT},
+                        {"shoulder_strength": 16, "shoulder_angle": 0.3}, {"gamma": 4}, {"max_brightness": 100},
+                        {"max_brightness": 10, **SOFT}, {"max_brightness": 4, **FILM, **LUMINANCE},
+                        {"gamma": 0.1, **SOFT},
                         {**FILM, **LUMINANCE}, {**FILM, **HUE}],
     "hejl_burgess_dawson": [],
     "hejl_2015": [{"white": 0.1}, {"white": 4}, {"white": 65504}],
@@ -109,6 +118,18 @@ SETTINGS = {
     "aces_hill": [{"prescale": 0.5}, {"gain": 1.8}, {"prescale": 1.8, "white": 1, "clamp": "no"}, {"clamp": "no"},
                   {"prescale": 1 / 0.6}, {"white": 4}, {"gain": 100, "white": 65504}],
     "aces_filament": [{"brightness": 1 / 0.6}, {"brightness": 0.01}, {"brightness": 100}],
+    "aces_13": [{"limit": "none"}, {"limit": "p3d65"}, {"limit": "rec2020"}, {"gamut_compression": "yes"},
+                {"spline": "ctl"}, {"spline": "ctl", "gamut_compression": "yes", "limit": "p3d65"},
+                *({"output": "sdr_cinema", "limit": limit, "spline": spline}
+                  for limit, spline in (("rec709", "ocio"), ("none", "ctl"), ("p3d65", "ctl"))),
+                *({"output": f"hdr_{peak}", "limit": limit, "spline": spline} for spline in ("ocio", "ctl")
+                  for peak, limit in (("1000", "rec709"), ("1000", "p3d65"), ("2000", "rec2020"), ("4000", "p3d65"),
+                                      ("cinema", "p3d65"))),
+                {"output": "hdr_1000", "limit": "rec2020", "gamut_compression": "yes"}],
+    "aces_20": [{"limit": "p3d65"}, {"limit": "rec2020"}, {"peak": 203.5}, {"peak": 500, "limit": "p3d65"},
+                {"peak": 1000, "limit": "rec2020"}, {"peak": 2000}, {"peak": 4000, "limit": "p3d65"},
+                {"peak": 10000, "limit": "rec2020"}, {"primaries": P3D60},
+                {"peak": 300, "primaries": "0.73 0.27 0.1 0.8 0.15 0.02 0.3127 0.329"}],
     "unreal": [{"glow_and_red": "off"}, UNREAL_LEGACY, {"toe": 0.9}, {"toe": 0.95, "shoulder": 1},
                {"black_clip": 0.05, "white_clip": 0.2}, {**UNREAL_LEGACY, "glow_and_red": "off"}],
     "agx_sobotka": [{"look": "golden"}, {"look": "punchy"}],
@@ -118,6 +139,12 @@ SETTINGS = {
     "agx_godot44": [],
     "agx_godot": [{"contrast": 0.1}, {"contrast": 4}, {"white": 2}, {"white": 65504}, {"output_max": 0.2},
                   {"output_max": 100, "white": 100}],
+    "agx_blender": [{"limit": "p3d65"}, {"limit": "rec2020"}, {"range": "hdr"}, {"method": "formula"},
+                    {"method": "formula", "limit": "p3d65"}, {"method": "formula", "limit": "rec2020"},
+                    {"method": "formula", "range": "hdr"}, *({"look": look} for look in AGX_LOOKS),
+                    *({"look": look, "method": "formula"} for look in AGX_LOOKS),
+                    {"look": "high_contrast", "range": "hdr", "method": "formula"},
+                    {"look": "punchy", "range": "hdr"}, {"look": "low_contrast", "limit": "p3d65"}],
     "khronos_neutral": [{"start_compression": 0.1}, {"start_compression": 0.99}, {"desaturation": 0},
                         {"desaturation": 1, "start_compression": 0.5}],
     "khronos_neutral_filament": [{"start_compression": 0.1}, {"start_compression": 0.99}, {"desaturation": 0},
@@ -143,6 +170,10 @@ PRESETS = {
     "aces_narkowicz": {"matched": {"prescale": 0.6}},
     "aces_hill": {"bakinglab": {"gain": 1.8}, "godot": {"prescale": 1.8, "white": 1, "clamp": "no"},
                   "threejs": {"prescale": 1 / 0.6}},
+    "aces_13": {"sdr_cinema": {"output": "sdr_cinema"}, "hdr_1000": {"output": "hdr_1000"}, "ctl": {"spline": "ctl"},
+                "gamut_compressed": {"gamut_compression": "yes"}},
+    "aces_20": {f"hdr_{peak}": {"peak": peak} for peak in (500, 1000, 2000, 4000)},
+    "agx_blender": {"formula": {"method": "formula"}, "hdr": {"range": "hdr"}},
     "aces_filament": {"legacy": {"brightness": 1 / 0.6}},
     "unreal": {"legacy": UNREAL_LEGACY},
     "agx_minimal": {"order7": {"order": 7}},
@@ -159,9 +190,32 @@ REFUSED = [
     ("lottes", {"shoulder": 0.01, "contrast": 2}),
     ("filament_generic", {"mid_out": 0.01, "hdr_max": 1, "mid_in": 0.9}),
     ("day", {"crossover": 20}),
+    ("aces_13", {"output": "hdr_1000", "limit": "none"}),
+    ("aces_20", {"primaries": "0.64 0.33 0.3 0.6 0.15 0.06"}),
 ]
 # Operators whose views are run with every display and input: each kind of working primaries and output.
 FULL_VIEWS = ("clamp", "agx_sobotka", "unreal", "gt7")
+# Views in which settings and display want different things, and reference whites at their ends.
+VIEWS = [
+    {"operator": "aces_13", "settings": {"output": "hdr_4000"}, "display": "srgb"},
+    {"operator": "aces_13", "settings": {"output": "hdr_4000", "limit": "rec2020"}, "display": "p3d65_pq"},
+    {"operator": "aces_13", "settings": {"limit": "none"}, "display": "rec2020"},
+    {"operator": "aces_13", "display": "rec2100_pq", "reference_white": 50},
+    {"operator": "aces_20", "settings": {"peak": 500, "limit": "p3d65"}, "display": "rec2100_pq"},
+    {"operator": "aces_20", "settings": {"primaries": P3D60}, "display": "display_p3"},
+    {"operator": "aces_20", "settings": {"primaries": P3D60}, "display": "linear"},
+    {"operator": "aces_20", "display": "p3d65_pq", "reference_white": 1000},
+    {"operator": "agx_blender", "settings": {"range": "sdr"}, "display": "rec2100_hlg"},
+    {"operator": "agx_blender", "preset": "hdr", "settings": {"range": "hdr"}, "display": "srgb"},
+    {"operator": "agx_blender", "look": "punchy", "display": "p3d65_pq", "reference_white": 203},
+    {"operator": "gt7", "settings": {"output": "hdr"}, "display": "display_p3"},
+    {"operator": "gt7", "display": "rec2100_pq", "reference_white": 1000},
+    {"operator": "uchimura", "settings": {"max_brightness": 2}, "display": "rec2100_hlg", "reference_white": 203},
+    {"operator": "uchimura", "preset": "hdr", "settings": {"max_brightness": 10}, "display": "rec1886"},
+    {"operator": "hable_piecewise", "preset": "soft", "settings": SOFT, "display": "rec2100_pq"},
+    {"operator": "bt2390", "settings": {"target_peak": 400}, "display": "rec2100_pq", "reference_white": 203},
+    {"operator": "spline", "settings": {"output": "sdr"}, "display": "rec2100_hlg"},
+]
 
 
 def probes(count=2000):
@@ -205,15 +259,20 @@ def runs():
         full = operator in FULL_VIEWS
         for space in inputs if full else [inputs[number % len(inputs)]]:
             yield {"operator": operator, "input": space, "display": "linear", "exposure": 2}
+        full = full or operator in operators.FROM_DISPLAY
         for k in range(len(displays) if full else 2):
-            yield {"operator": operator, "display": displays[(number + k) % len(displays)], "exposure": -1.5}
+            display = displays[(number + k) % len(displays)]
+            white = {"reference_white": 203} if operators.DISPLAYS[display].is_hdr and (number + k) % 2 else {}
+            yield {"operator": operator, "display": display, "exposure": -1.5, **white}
+    yield from VIEWS
 
 
 def command(binary, view):
     """`tonewright eval` for a run; also the text that names the run."""
     preset = view.get("preset")
     options = [] if preset else [f"--set={name}={value}" for name, value in view.get("settings", {}).items()]
-    options += [f"--{name}={view[name]}" for name in ("look", "exposure", "input", "display") if view.get(name)]
+    options += [f"--{name.replace('_', '-')}={view[name]}"
+                for name in ("look", "exposure", "input", "display", "reference_white") if view.get(name)]
     name = view["operator"] + (f":{preset}" if preset else "")
     label = " ".join([name, *options]).replace("--set=", "").replace("--", "")
     return [binary, "eval", name, "--engine=reference", "--digits=17", *options], label
@@ -240,11 +299,12 @@ def compare(binary, view, rgb):
         actual = evaluate(arguments, rgb)
     except ValueError as error:
         return f"{line}  FAIL {error}", False
-    power = DISPLAY_POWER.get(view["display"], 1)
-    light, wanted = np.maximum(actual, 0) ** power if power != 1 else actual, expected**power
+    light, wanted = actual, expected
+    if view["display"] in DISPLAY_LIGHT:
+        light, wanted = (DISPLAY_LIGHT[view["display"]](np.maximum(code, 0)) for code in (actual, expected))
     error = np.abs(light - wanted)
     size = np.maximum(np.abs(wanted).max(-1, keepdims=True), 1)
-    ratio = error / (RELATIVE * power * np.abs(wanted) + ABSOLUTE * size)
+    ratio = error / (RELATIVE * np.abs(wanted) + ABSOLUTE * size)
     ok = bool((ratio <= 1).all())  # NaN fails
     line += f" {error.max():9.2e} {ratio.max():9.3g}  {'ok' if ok else 'FAIL'}"
     if not ok:

@@ -10,6 +10,7 @@ they have 12 digits.
 
 import json
 import os
+import re
 import sys
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -32,7 +33,7 @@ class Mapping:
     """An operator and how its values correspond to a figure.
 
     figure = limit(output_scale * operator(input_scale * 2^exposure * input)); `limit` is applied to the figure alone,
-    where the operator limits what the source leaves unlimited.
+    where the operator limits what the source leaves unlimited, or where the figure is in another space.
     """
 
     operator: str
@@ -89,6 +90,72 @@ REC2020 = {"input": "lin_rec2020"}
 NITS = {**REC2020, "input_scale": 1 / 100, "output_scale": 100.0}
 RESPONSE = f"file={SHARED}/data/camera_response/"
 
+
+def from_xyz(primaries):
+    """CIE XYZ under D65 to light of `primaries`, for Mapping.limit."""
+    to_xyz = operators.rgb_to_xyz("rec709") @ operators.rgb_to_rgb(primaries, "rec709")
+    return lambda figure: np.linalg.solve(to_xyz, figure)
+
+
+ACES_SDR_XYZ = {"limit": from_xyz("ap1"), "absolute": 5e-12, "reason": "the figures are XYZ of 12 digits"}
+ACES_HDR_XYZ = {"limit": from_xyz("rec2020"), "absolute": 2e-10, "reason": "the figures are XYZ of 12 digits"}
+ACES_HDR_CTL = {**ACES_HDR_XYZ, "tolerance": 2e-8, "reason": "XYZ figures, of curves through knots of 9 digits"}
+ACES_HDR_PQ = {"limit": lambda code: operators.pq.pq_decode(code) / 100, "reason": "the figures are Rec.2100-PQ codes"}
+
+
+def aces_13_hdr(name, peak, limit, spline):
+    """Mapping of aces13_hdr_xyz and aces13_hdr_pq."""
+    settings = ("output=hdr_cinema" if peak == 108 else f"output=hdr_{peak}") + f";limit={limit}"
+    if spline == "ctl":
+        return Mapping("aces_13", settings + ";spline=ctl", **ACES_HDR_CTL)
+    return Mapping("aces_13", settings, **(ACES_HDR_PQ if name == "aces13_hdr_pq" else ACES_HDR_XYZ))
+
+
+# OpenColorIO starts its search for a cusp from the one before: M differs by 1e-5, a small channel by 3e-7.
+ACES_20_OCIO = {"tolerance": 4e-7, "reason": "OpenColorIO's searches for cusps end elsewhere in their tolerance"}
+ACES_20_XYZ = {limit: {"limit": from_xyz(limit), **ACES_20_OCIO} for limit in ("rec709", "rec2020")}
+ACES_20_LIMITS = {"REC709": "rec709", "P3-D65": "p3d65", "REC2020": "rec2020"}
+
+
+def aces_20(entry):
+    """Mapping of aces2_<SDR or HDR>-<peak>nit-<limiting primaries>, or None.
+
+    >>> aces_20({"operator": "aces2_HDR-500nit-REC2020", "params": {"peak": 500}, "space": "ACES2065-1 -> "}).settings
+    'peak=500;limit=rec2020'
+    """
+    name = re.fullmatch(r"aces2_.DR-(\d+)nit-(REC709|P3-D65|REC2020)(_xyz)?", entry["operator"])
+    if not name:
+        return None
+    limit = ACES_20_LIMITS[name[2]]
+    peak = entry["params"].get("peak", int(name[1]))  # of the 108 cd/m2 of cinemas: 225, before a factor of 0.48
+    settings = [f"peak={peak}"] * (peak != 100) + [f"limit={limit}"] * (limit != "rec709")
+    accuracy = ACES_20_XYZ[limit] if name[3] else {} if "peak" in entry["params"] else ACES_20_OCIO
+    space = "lin_rec709" if entry["space"].startswith("rec709") else "lin_ap0"
+    return Mapping("aces_20", ";".join(settings), input=space, **accuracy)
+
+
+AGX_CODE = {"limit": lambda code: code**2.4, "reason": "the figures are codes of a 2.4 power"}
+AGX_FILE = {**AGX_CODE, "tolerance": 4e-7, "reason": "codes of a 2.4 power, from a file of seven decimals"}
+AGX_HLG = {"limit": operators.agx_blender.hlg_decode, "tolerance": 4e-9,
+           "reason": "the figures are HLG codes, with the constant c of eight printed digits"}
+
+
+def agx_blender(entry):
+    """Mapping of agx_blender_lut_encoded and agx_blender_look_*, a reason, or None.
+
+    >>> agx_blender({"operator": "agx_blender_look_punchy_lut", "params": {"look": "punchy"}}).look
+    'punchy'
+    """
+    name, params = entry["operator"], entry["params"]
+    if name == "agx_blender_lut_encoded":
+        return Mapping("agx_blender", **(AGX_CODE if params["lut"].startswith("rebuilt") else AGX_FILE))
+    if name.startswith("agx_blender_look_"):
+        return Mapping("agx_blender", "" if name.endswith("_lut") else "method=formula", params["look"], **AGX_CODE)
+    if name in ("agx_blender_exact_p3_encoded", "agx_blender_exact_rec2020_encoded") and entry["input"] == [0, 32, 32]:
+        return "a figure with the log limited to 1; Blender's cubes of P3 and Rec.2020 are without that limit"
+    return None
+
+
 # Name -> Mapping, for the names with one set of parameters.
 MAPPINGS = {
     "linear_clamp": Mapping("clamp"),
@@ -115,6 +182,15 @@ MAPPINGS = {
     "aces_hill": Mapping("aces_hill"),
     "aces_hill_three": Mapping("aces_hill", "prescale=1.6666666666666667"),
     "aces_hill_godot": Mapping("aces_hill", "prescale=1.8;white=1;clamp=no"),
+    "aces1_sdr_video_rec709": Mapping("aces_13", "spline=ctl"),
+    "aces1_sdr_srgb_encoded": Mapping("aces_13", "spline=ctl", limit=operators.false_color.srgb_decode,
+                                      reason="the figures are sRGB codes"),
+    "aces1_sdr_video_rec709_AP0in": Mapping("aces_13", "spline=ctl", input="lin_ap0"),
+    "aces1_sdr_video_xyz": Mapping("aces_13", "limit=none;spline=ctl", input="lin_ap0", **ACES_SDR_XYZ),
+    "aces13_sdr_video_xyz": Mapping("aces_13", "limit=none", **ACES_SDR_XYZ),
+    "aces13_sdr_video_rec709lim": Mapping("aces_13"),
+    "aces13_sdr_video_p3lim": Mapping("aces_13", "limit=p3d65"),
+    "aces13_sdr_cinema_xyz": Mapping("aces_13", "output=sdr_cinema;limit=none", **ACES_SDR_XYZ),
     "unreal_film_default": Mapping("unreal", output="linear"),
     "unreal_film_default_ap1": Mapping("unreal", input="lin_ap1"),
     "unreal3_simple": Mapping("ue3"),
@@ -131,6 +207,12 @@ MAPPINGS = {
     "agx_filament_rec2020": Mapping("agx_filament", **REC2020),
     "agx_godot_4.4": Mapping("agx_godot44"),
     "agx_godot_4.6": Mapping("agx_godot"),
+    "agx_blender_exact_encoded": Mapping("agx_blender", "method=formula", **AGX_CODE),
+    "agx_blender_exact_p3_encoded": Mapping("agx_blender", "method=formula;limit=p3d65", **AGX_CODE),
+    "agx_blender_exact_rec2020_encoded": Mapping("agx_blender", "method=formula;limit=rec2020", **AGX_CODE),
+    "agx_blender_exact_linear": Mapping("agx_blender", "method=formula"),
+    "agx_blender_hdr1000_linear": Mapping("agx_blender", "method=formula;range=hdr"),
+    "agx_blender_hdr1000_hlg_lut": Mapping("agx_blender", "range=hdr", **AGX_HLG),
     "camera_response_dorf": Mapping("camera_response", RESPONSE + "Portra-400NCCD.rf"),
     "camera_response_dscs315_1": Mapping("camera_response", RESPONSE + "dscs315-1.rf;curve=red"),
     "log_tonemap": Mapping("log_tonemap", "limit=16"),
@@ -167,22 +249,24 @@ MAPPINGS = {
 
 # Beginning of a name -> why none of its entries has an operator.
 REASONS = {
-    "aces1_": "the ACES 1 output transform is an issue of its own",
-    "aces13_": "the ACES 1.3 output transforms and the gamut compression are an issue of their own",
-    "aces2_": "the ACES 2 output transform is an issue of its own",
-    "agx_blender": "Blender's AgX with its looks and cubes is an issue of its own",
-    "agx_sigmoid_SB2383": "the inner curve of Blender's AgX, an issue of its own; test_operators.py holds agx_sigmoid "
-                          "to it",
+    "aces13_sdr_cinema_p3dci": "the XYZ of aces13_sdr_cinema_xyz on a projector with the DCI white, which is no "
+                               "display here",
+    "aces13_sdr_video_d60sim": "left out: a simulation of the ACES white on a display of D65",
+    "aces13_sdr_cinema_d60sim": "left out: a simulation of the ACES white on a projector",
+    "aces13_sdr_cinema_d65sim": "left out: a simulation of D65 on a projector with the DCI white",
+    "aces13_reference_gamut_compression": "a step of aces_13; test_operators.py holds aces_13.compress_gamut to it",
+    "aces2_inverse_": "the inverse of aces_20; test_operators.py holds aces_20.aces_20_inverse to it",
+    "agx_sigmoid_SB2383": "the inner curve of agx_blender; test_operators.py holds agx_sigmoid to it",
     "agx_sobotka_curve": "the inner curve of agx_sobotka: behind the inset these values need negative colours, which "
                          "the operator limits; sobotka_table is held to it in test_operators.py",
     "nebula_as_printed": "a bug of the post kept as a reference: it multiplies by the luminance where it should divide",
     "reinhard_local": "a local operator, which reads its neighbours; the _64_repo_ figures also have a kernel bug",
     "exposure_fusion": "a local operator, which reads a pyramid of the picture",
     "auto_exposure": "a statistic of a picture, not of a colour",
-    "display_rec2100": "HDR displays, an issue of their own",
+    "display_rec2100": "a display encoding, tested in tests/unit/color and test_check_values.py",
     "srgb_encode": "a display encoding, tested in tests/unit/color and test_check_values.py",
     "pq_encode_nits": "a display encoding, tested in tests/unit/color and test_check_values.py",
-    "hlg_oetf": "a display encoding, tested in tests/unit/color",
+    "hlg_oetf": "a display encoding, tested in tests/unit/color and test_check_values.py",
     "tony_mc_mapface": "left out: the operator is a LUT of 48^3 texels without a formula",
     "opendrt": "left out: its code is GPL-3.0, and the description in the dossier covers a part of its 60 parameters",
     "filmic_blender": "left out: two LUTs without a formula, whose licence is unclear",
@@ -195,14 +279,20 @@ def classify(entry):
     >>> classify({"operator": "reinhard_luminance", "params": {}}).settings
     'apply=luminance'
     >>> classify({"operator": "hlg_oetf", "params": {}})
-    'a display encoding, tested in tests/unit/color'
+    'a display encoding, tested in tests/unit/color and test_check_values.py'
     """
     name, params = entry["operator"], entry["params"]
+    if mapping := agx_blender(entry):
+        return mapping
     if name in MAPPINGS:
         return MAPPINGS[name]
     if name == "aces_filament":
         brightness = {1.0: "", "1/0.6": f"brightness={1 / 0.6!r}"}[params["brightness"]]
         return Mapping("aces_filament", brightness, **REC2020)
+    if mapping := aces_20(entry):
+        return mapping
+    if name in ("aces13_hdr_xyz", "aces13_hdr_pq"):
+        return aces_13_hdr(name, params["peak"], params["limit"], params["spline"])
     if name == "hable_piecewise_power":
         return Mapping("hable_piecewise", PIECEWISE_SETS[next(iter(params.values()))], **PIECEWISE)
     if name == "libplacebo_spline":

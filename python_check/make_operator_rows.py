@@ -30,6 +30,8 @@ COLOURS = (BLACK, GREY, SATURATED, BRIGHT, *EVERYWHERE)
 FEW = (GREY, SATURATED, BRIGHT, MIXED, BEYOND)
 BLUE, RED, DARK_RED = (0.05, 0.1, 2), (6, 0.4, 0.3), (0.06, 0.004, 0.003)  # where glow and red modifier act
 HUES = (*COLOURS, BLUE, RED, DARK_RED)
+# What picture formations move: saturated colours of every brightness, at their limits.
+FORMED = (BLACK, GREY, BLUE, RED, (0.02, 0.4, 0.05), (3, 0.2, 2.5), MIXED, BEYOND)
 STOPS = tuple((0.18 * 2.0**s,) * 3
               for s in (-8, -6.52, -5.48, -3, -2.5, -1.46, -0.4, 0.5, 1.53, 2.49, 4, 5.51, 6.55, 9))
 
@@ -54,7 +56,8 @@ CURVES = {
     "hable_piecewise": ["toe_strength=0.5;toe_length=0.5;shoulder_strength=2;shoulder_length=0.5;shoulder_angle=1",
                         "toe_length=0",
                         "toe_strength=0.2;toe_length=0.3;shoulder_strength=4;shoulder_length=0.7;shoulder_angle=0.4;"
-                        "gamma=0.8", "toe_strength=0.6;shoulder_length=1;shoulder_strength=1;apply=luminance"],
+                        "gamma=0.8", "max_brightness=10;shoulder_strength=2;shoulder_angle=0.5;toe_strength=0.3",
+                        "toe_strength=0.6;shoulder_length=1;shoulder_strength=1;apply=luminance"],
     "hejl_burgess_dawson": CORRECTIONS,
     "hejl_2015": ["white=4"],
     "aldridge": ["cutoff=0.2"],
@@ -71,6 +74,7 @@ CURVES = {
     "tumblin_rushmeier": ["display_max=200;contrast_max=100;log_average=3"],
     "aces_narkowicz": ["prescale=0.6", CORRECTIONS[2]],
     "bt2390": [BLACKS, BLACKS + ";knee_offset=1;black_lift=libplacebo", "source_peak=4000;knee_offset=2",
+               BLACKS + ";output=hdr;target_peak=600;source_peak=4000",
                "source_peak=100;target_peak=400", "source_peak=10000;reference_white=203", CORRECTIONS[2]],
     "bt2446a": [BLACKS, "source_peak=4000;target_peak=250;reference_white=203", "source_peak=400;target_peak=400"],
     "spline": [BLACKS, "contrast=0.2;average=50", "source_peak=4000;target_peak=250;contrast=1.5;reference_white=203"],
@@ -91,6 +95,13 @@ OTHERS = {
                            "blue_shift_blue=1.4"],
     "aces_hill": ["gain=1.8", "prescale=0.6;white=4;clamp=no", "prescale=1.8;white=2;gain=0.5"],
     "aces_filament": ["brightness=1.6666666666666667"],
+    "aces_13": ["limit=none", "gamut_compression=yes", "spline=ctl", "output=sdr_cinema;limit=p3d65",
+                "output=hdr_1000;limit=rec2020", "output=hdr_4000;limit=p3d65;spline=ctl",
+                "output=hdr_cinema;limit=p3d65;gamut_compression=yes"],
+    "aces_20": ["peak=1000;limit=rec2020", "peak=500;limit=p3d65", "peak=10000;limit=rec2020",
+                "primaries=0.68 0.32 0.265 0.69 0.15 0.06 0.32168 0.33767"],
+    "agx_blender": ["limit=p3d65", "limit=rec2020", "range=hdr", "method=formula", "method=formula;limit=p3d65",
+                    "method=formula;limit=rec2020", "method=formula;range=hdr"],
     "unreal": ["glow_and_red=off", "slope=0.98;toe=0.3;shoulder=0.22;black_clip=0;white_clip=0.025",
                "toe=0.85;shoulder=0.4;black_clip=0.02"],
     "agx_sobotka": [],
@@ -111,7 +122,9 @@ OTHERS = {
                         "file=synthetic_dorf.txt;curve=SyntheticMono;iso=2"],
     "false_color": [],
 }
-LOOKS = {"agx_sobotka": ("golden", "punchy"), "agx_filament": ("golden", "punchy")}
+LOOKS = {"agx_sobotka": ("golden", "punchy"), "agx_filament": ("golden", "punchy"),
+         "agx_blender": ("punchy", "greyscale", *operators.agx_blender.CONTRASTS)}
+FORMATIONS = ("aces_13", "aces_20", "agx_blender")
 
 
 def read_rows():
@@ -159,15 +172,18 @@ def derived_cases():
         code = operator in operators.CODE_POWER
         hues = HUES if operator in ("aces_filament", "unreal", "gt7", "frostbite", "agx_threejs") else COLOURS
         hues = (*COLOURS, *STOPS) if operator == "false_color" else hues
+        colours = COLOURS
+        if operator in FORMATIONS:
+            hues, colours = HUES, FORMED
         yield operator, "", "", "native", working, hues
         for settings in (*CURVES.get(operator, ()), *OTHERS.get(operator, ())):
-            yield operator, settings, "", "native", working, COLOURS
+            yield operator, settings, "", "native", working, colours
         for settings in forms:
             yield operator, settings, "", "native", working, FEW
             if code and settings == "apply=luminance":
                 yield operator, settings, "", "linear", working, FEW
         for look in LOOKS.get(operator, ()):
-            yield operator, "", look, "native", working, COLOURS
+            yield operator, "", look, "native", working, colours
         if code or working != "lin_rec709":
             yield operator, "", "", "linear", "lin_rec709", COLOURS
     for space in operators.INPUTS:

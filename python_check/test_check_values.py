@@ -19,12 +19,12 @@ import numpy as np
 
 import check_values
 import operators
-from operators import agx, camera_response, eetf, false_color, gt7, pq, unreal
+from operators import agx, camera_response, eetf, false_color, gt7, pq, spaces, unreal
 
 # Operators without a published figure: inventions of this project, variants without a program to run, diagnostics.
 NO_FIGURES = {"reinhard_constant_luminance", "hable_gdc", "toe", "khronos_neutral_filament", "false_color"}
-MODULES = ("aces unreal agx khronos_neutral gt7 frostbite somewhat_boring eetf camera_response "
-           "false_color").split()
+MODULES = ("aces aces_13 aces_20 unreal agx agx_blender khronos_neutral gt7 frostbite somewhat_boring eetf "
+           "camera_response false_color").split()
 FOLDER = check_values.CSV_FOLDER
 counts = {True: 0, False: 0}
 
@@ -51,9 +51,12 @@ def check_mapping(entries):
 
 
 def check_figures(entries, shared):
-    for name, f in (("srgb_encode", operators.srgb_encode), ("pq_encode_nits", pq.pq_encode)):
-        error = max(np.abs(f(np.array(e["input"])) - e["output"]).max() for e in entries if e["operator"] == name)
-        report(name, error, 1e-12)
+    for name, f in (("srgb_encode", operators.srgb_encode), ("pq_encode_nits", pq.pq_encode),
+                    ("hlg_oetf", spaces.hlg_oetf), ("display_rec2100_pq", spaces.pq_display),
+                    ("display_rec2100_hlg_1000nit", spaces.hlg_display)):
+        figures = [(np.array(e["input"]), e["output"]) for e in entries if e["operator"] == name]
+        errors = [np.abs(f(light) - code).max() for light, code in figures if light.min() >= 0]  # views limit before
+        report(f"{name} ({len(errors)})", np.max(errors), 1e-12)
     for name, mapping, members in check_values.group(entries):
         if isinstance(mapping, check_values.Mapping):
             error, ratio = check_values.compare(mapping, members, shared)
@@ -63,6 +66,11 @@ def check_figures(entries, shared):
 EXTREMES = (0.0, 1e-310, 1e-30, 1e-6, 0.18, 1.0, 20.0, 65504.0, 1e9, 1e300, -1e-9, -0.5, -70000.0)
 CORNERS = {  # settings at the ends of their ranges, where terms vanish or grow
     "aces_hill": ("prescale=100;gain=100", "prescale=0.01;white=65504;clamp=no"),
+    "aces_13": ("output=hdr_4000;limit=rec2020", "output=hdr_cinema;spline=ctl;gamut_compression=yes",
+                "output=sdr_cinema;limit=none;spline=ctl", "gamut_compression=yes"),
+    "aces_20": ("peak=10000;limit=rec2020", "peak=1000;limit=p3d65"),
+    "agx_blender": ("method=formula", "method=formula;range=hdr", "range=hdr;look=punchy", "look=greyscale",
+                    "method=formula;limit=p3d65;look=very_low_contrast"),
     "unreal": ("toe=1;shoulder=1", "toe=0.9;shoulder=0.1", "slope=0.01;toe=0.01;shoulder=0.01;black_clip=1"),
     "agx_godot": ("contrast=0.1;white=65504;output_max=100", "contrast=4;white=2;output_max=0.2"),
     "khronos_neutral": ("start_compression=0.1;desaturation=1", "start_compression=0.99;desaturation=0"),

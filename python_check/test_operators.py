@@ -22,7 +22,7 @@ import check_operators
 import check_values
 import make_operator_rows
 import operators
-from operators import hable, reinhard
+from operators import aces_13, aces_20, hable, reinhard
 
 FLOOR = 1e-3  # errors are relative to max(|expected|, FLOOR), as in operators.csv
 counts = {True: 0, False: 0}
@@ -226,12 +226,19 @@ def check_shared(shared):
         y = xyz[1] * gain
         return xyz * np.divide(reinhard.extended(y, white), xyz[1], where=xyz[1] > 0, out=np.zeros(1)) @ printed.T
 
+    def aces_20_inverse(rgb, *settings):
+        return aces_20.aces_20_inverse(rgb, *settings) @ operators.rgb_to_rgb("ap1", "ap0").T
+
     parts = {
         "hable_uncharted2_partial": (1e-9, hable.hable_curve),
         "reinhard_extended_xyY_lindbloom": (1e-9, lambda x: by_xyy(x, 3.0, 1 / (9.6 * 0.1 + 0.0001))),
         "nebula_as_printed": (1e-9, lambda x: operators.OPERATORS["nebula"](x) * operators.luminance(x)),
         "aces_hill_unclamped": (1e-9, lambda x: operators.hill_curve(x @ operators.HILL_IN.T) @ operators.HILL_OUT.T),
         "agx_sobotka_curve": (1e-9, sobotka_table),
+        "aces13_reference_gamut_compression": (1e-9, aces_13.compress_gamut),
+        "aces2_inverse_100nit-REC709": (1e-9, aces_20_inverse),
+        "aces2_inverse_1000nit-REC2020": (1e-9, lambda x: aces_20_inverse(x, 1000, "rec2020")),
+        "aces2_inverse_1000nit-P3-D65": (1e-9, lambda x: aces_20_inverse(x, 1000, "p3d65")),
         "agx_sigmoid_SB2383": (1e-9, lambda n: operators.agx_sigmoid(n, **sigmoid)),
     }
     for name, (tolerance, f) in parts.items():

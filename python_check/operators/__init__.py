@@ -9,36 +9,43 @@ An operator takes scene-linear in its working primaries (`WORKING`), ``rgb : (..
 limits it to [0, 65504] first, and returns its own ("native") output: display-linear in the same primaries, or code
 values where `CODE_POWER` names it. `view` adds input space, exposure and display.
 
-Each family is a module with the dicts OPERATORS (name -> function), WORKING (name -> primaries, where they are not
-Rec.709) and CODE_POWER (name -> power, where it puts out code values); the latter two may be missing.
+Each family is a module with the dict OPERATORS (name -> function), and where they are needed
+
+* WORKING: name -> primaries, where they are not Rec.709;
+* CODE_POWER: name -> power, where it puts out code values;
+* OUTPUT_PRIMARIES: name -> function of the settings, where it puts out other primaries than the working ones;
+* PEAK: name -> function of the settings, the largest light that it puts out for HDR displays, where that is not 1;
+* FROM_DISPLAY: name -> setting -> function of a `spaces.Display`, what a display decides where the user has not.
 """
 
 import numpy as np
 
-from . import (aces, agx, camera_response, eetf, exposure, false_color, filmic, frostbite, gt7, hable, khronos_neutral,
-               reinhard, somewhat_boring, statistics, uchimura, unreal)
+from . import (aces, aces_13, aces_20, agx, agx_blender, camera_response, eetf, exposure, false_color, filmic,
+               frostbite, gt7, hable, khronos_neutral, reinhard, somewhat_boring, statistics, uchimura, unreal)
 from .aces import HILL_IN, HILL_OUT, hill_curve
 from .agx import AGX_INSET, AGX_LOG2, AGX_LOOKS, agx_shape, agx_sigmoid, cdl
 from .base import (HALF_MAX, MANTIUK, REC709_WEIGHTS, REC2020_WEIGHTS, apply_curve, curve_contrast, limit_scene, log1p,
                    luminance, mantiuk_saturation)
-from .spaces import (DISPLAYS, INPUTS, PRIMARIES, power_encode, rgb_to_rgb, rgb_to_xyz, sanitise, srgb_encode, xyz)
+from .spaces import (DISPLAYS, INPUTS, PRIMARIES, UNIT, power_encode, rgb_to_rgb, rgb_to_xyz, sanitise, srgb_encode,
+                     xyz)
 
-FAMILIES = (exposure, reinhard, hable, filmic, uchimura, statistics, aces, unreal, agx, khronos_neutral, gt7, frostbite,
-            somewhat_boring, eetf, camera_response, false_color)
+FAMILIES = (exposure, reinhard, hable, filmic, uchimura, statistics, aces, aces_13, aces_20, unreal, agx, agx_blender,
+            khronos_neutral, gt7, frostbite, somewhat_boring, eetf, camera_response, false_color)
 
-OPERATORS, CODE_POWER, WORKING = {}, {}, {}
-for _family in FAMILIES:
-    OPERATORS.update(_family.OPERATORS)
-    CODE_POWER.update(getattr(_family, "CODE_POWER", {}))
-    WORKING.update(getattr(_family, "WORKING", {}))
+OPERATORS, CODE_POWER, WORKING, OUTPUT_PRIMARIES, PEAK, FROM_DISPLAY = ({
+    name: value for family in FAMILIES for name, value in getattr(family, kind, {}).items()
+} for kind in ("OPERATORS", "CODE_POWER", "WORKING", "OUTPUT_PRIMARIES", "PEAK", "FROM_DISPLAY"))
 WORKING = {name: WORKING.get(name, "rec709") for name in OPERATORS}
 
 
-def view(operator, rgb, settings=None, look="", exposure=0.0, input="lin_rec709", display="srgb"):
+def view(operator, rgb, settings=None, look="", exposure=0.0, input="lin_rec709", display="srgb",
+         reference_white=UNIT):
     """What `tonewright eval` prints: input space -> working primaries -> exposure -> operator -> display.
 
-    For a display: code values are decoded, limited to [0, 1] in the working primaries where the display holds them
-    whole, converted to the display's primaries, limited to [0, 1] there, and encoded.
+    For a display: settings that it decides are decided; code values are decoded; light is limited to [0, white] in its
+    own primaries where the display holds them whole, converted to the display's primaries, limited to [0, white] there,
+    and encoded. For an HDR display the limit is the peak of the operator instead of white, or that of the display where
+    this is less, and 1 is shown at the reference white.
 
     Parameters
     ----------
@@ -49,6 +56,7 @@ def view(operator, rgb, settings=None, look="", exposure=0.0, input="lin_rec709"
     exposure : stops
     input : key of INPUTS
     display : key of DISPLAYS, or 'native' (the operator's own output), or 'linear' (display-linear Rec.709, unclamped)
+    reference_white : cd/m2 of light 1 on an HDR display
 
     Returns
     -------
@@ -56,18 +64,29 @@ def view(operator, rgb, settings=None, look="", exposure=0.0, input="lin_rec709"
 
     >>> view("agx_sobotka", [0.18, 0.18, 0.18], display="g22").round(4).tolist()
     [0.5, 0.5, 0.5]
+    >>> view("clamp", [4.0, 4.0, 4.0], display="rec2100_pq", reference_white=203).round(9).tolist()
+    [0.580688881, 0.580688881, 0.580688881]
     """
+    settings = dict(settings or {})
+    if display in DISPLAYS:
+        shown_on = DISPLAYS[display]
+        facts = shown_on._replace(peak=shown_on.peak * UNIT / reference_white) if shown_on.is_hdr else shown_on
+        settings = {**{name: decide(facts) for name, decide in FROM_DISPLAY.get(operator, {}).items()}, **settings}
     working = WORKING[operator]
     scene = sanitise(rgb) @ rgb_to_rgb(INPUTS[input], working).T * 2.0**exposure
-    out = OPERATORS[operator](scene, **(settings or {}), **({"look": look} if look else {}))
+    out = OPERATORS[operator](scene, **settings, **({"look": look} if look else {}))
     if display == "native":
         return out
     if operator in CODE_POWER:
         out = np.maximum(out, 0) ** CODE_POWER[operator]
+    primaries = OUTPUT_PRIMARIES[operator](**settings) if operator in OUTPUT_PRIMARIES else working
     if display == "linear":
-        return out @ rgb_to_rgb(working, "rec709").T
-    primaries, encode = DISPLAYS[display]
-    to_display = rgb_to_rgb(working, primaries)
-    if (to_display > -1e-9).all():  # no working colour needs negative light of the display
-        out = np.clip(out, 0, 1)
-    return encode(np.clip(out @ to_display.T, 0, 1))
+        return out @ rgb_to_rgb(primaries, "rec709").T
+    peak = min(PEAK[operator](**settings) if operator in PEAK else 1.0, shown_on.largest)
+    to_display = rgb_to_rgb(primaries, shown_on.primaries)
+    if (to_display > -1e-9).all():  # none of its colours needs negative light of the display
+        out = np.clip(out, 0, peak)
+    out = np.clip(out @ to_display.T, 0, peak)
+    if shown_on.is_hdr:
+        out = np.minimum(out * reference_white / UNIT, shown_on.largest)
+    return shown_on.encode(out)

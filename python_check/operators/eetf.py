@@ -29,8 +29,10 @@ def lerp(a, b, t):
 
 
 def map_range(curve, rgb, source_peak=1000.0, target_peak=100.0, source_black=0.0, target_black=0.0,
-              reference_white=100.0, apply="channels", **color):
+              reference_white=100.0, output="sdr", apply="channels", **color):
     """Scene-linear -> cd/m2 within the source's range -> curve -> cd/m2 within the target's range -> 1.0 = its peak.
+
+    With ``output=hdr``, 1.0 = 100 cd/m2.
 
     `curve` gets (cd/m2, source_black, source_peak, target_black, target_peak). When the source's peak is not above
     the target's, only the limits remain.
@@ -45,7 +47,8 @@ def map_range(curve, rgb, source_peak=1000.0, target_peak=100.0, source_black=0.
         nits = limit(x * reference_white, source_black, source_peak)
         nits = curve(nits, source_black, source_peak, target_black, target_peak) if source_peak > target_peak else (
             limit(nits, 0, target_peak))
-        return limit(nits, target_black, np.inf) / target_peak  # a lifted black may lift the peak as well
+        unit = 100 if output == "hdr" else target_peak
+        return limit(nits, target_black, np.inf) / unit  # a lifted black may lift the peak as well
 
     return apply_curve(f, limit_scene(rgb), apply=apply, weights=REC2020_WEIGHTS, **color)
 
@@ -149,3 +152,7 @@ def spline(rgb, contrast=0.5, average=0.0, **common):
 
 OPERATORS = {f.__name__: f for f in (bt2390, bt2446a, spline)}
 WORKING = {name: "rec2020" for name in OPERATORS}
+PEAK = {name: lambda target_peak=100.0, output="sdr", **_: target_peak / 100 if output == "hdr" else 1.0
+        for name in OPERATORS}
+FROM_DISPLAY = {name: {"target_peak": lambda display: display.peak,
+                       "output": lambda display: "hdr" if display.is_hdr else "sdr"} for name in OPERATORS}

@@ -75,3 +75,6 @@ def gt7(rgb, output="sdr", peak=1000.0):
 
 OPERATORS = {"gt7": gt7}
 WORKING = {"gt7": "rec2020"}
+PEAK = {"gt7": lambda output="sdr", peak=1000.0: peak / UNIT if output == "hdr" else 1.0}
+FROM_DISPLAY = {"gt7": {"output": lambda display: "hdr" if display.is_hdr else "sdr",
+                        "peak": lambda display: max(display.peak, 250.0) if display.is_hdr else 1000.0}}

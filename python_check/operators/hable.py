@@ -51,12 +51,13 @@ def hable_gdc(rgb, white=11.2, exposure_bias=1.0, apply="channels", **color):
 
 
 def hable_piecewise(rgb, toe_strength=0.0, toe_length=0.5, shoulder_strength=0.0, shoulder_length=0.5,
-                    shoulder_angle=0.0, gamma=1.0, apply="channels", **color):
+                    shoulder_angle=0.0, gamma=1.0, max_brightness=1.0, apply="channels", **color):
     """Toe and shoulder of power curves about a straight line; `gamma` is baked in. Without a toe or shoulder, x.
 
     Where the toe ends, (x0, y0), and the shoulder starts, (x1, y1), value and slope are those of the line. The
     shoulder heads for a point beyond (1, 1) when it has strength and angle, and all is scaled to be 1 at the white,
     which lies 2^shoulder_strength - 1 beyond the end of the line; above it the shoulder goes on to its own end.
+    A display `max_brightness` times as bright as white has the same curve, that much larger both ways.
 
     References
     ----------
@@ -93,12 +94,15 @@ def hable_piecewise(rgb, toe_strength=0.0, toe_length=0.5, shoulder_strength=0.0
         return 1 + over_y - rise * power((1 + over_x - x) / run, slope1 * run / rise)
 
     def f(x):
-        x = x / white
+        x = x / max_brightness / white
         toe = y0 * power(np.minimum(x, x0) / x0, slope0 * x0 / y0) if x0 > 0 else 0
         line = power(slope * np.clip(x, x0, x1) + offset, gamma)
-        return np.where(x < x0, toe, np.where(x < x1, line, shoulder(np.maximum(x, x1)))) / shoulder(1.0)
+        y = np.where(x < x0, toe, np.where(x < x1, line, shoulder(np.maximum(x, x1)))) / shoulder(1.0)
+        return max_brightness * y
 
     return apply_curve(f, limit_scene(rgb), apply, **color)
 
 
 OPERATORS = {f.__name__: f for f in (hable, hable_gdc, hable_piecewise)}
+PEAK = {"hable_piecewise": lambda max_brightness=1.0, **_: max_brightness}
+FROM_DISPLAY = {"hable_piecewise": {"max_brightness": lambda display: display.peak / 100}}

@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Colour spaces by their chromaticities, display encodings, and what happens to scene-linear before an operator."""
 
+from typing import Callable, NamedTuple
+
 import numpy as np
 
-from .base import HALF_MAX
+from .base import HALF_MAX, REC2020_WEIGHTS, luminance
+from .pq import pq_encode
 
 D65 = (0.3127, 0.3290)  # ITU-R BT.709-6, table 1
 ACES_WHITE = (0.32168, 0.33767)  # SMPTE ST 2065-1
@@ -28,13 +31,18 @@ def xyz(xy):
     return np.array([x / y, 1, (1 - x - y) / y])
 
 
-def rgb_to_xyz(name):
+def chromaticities(space):
+    """xy of red, green, blue and white of a key of PRIMARIES; other than texts are taken for these themselves."""
+    return PRIMARIES[space] if isinstance(space, str) else space
+
+
+def rgb_to_xyz(space):
     """Matrix of linear RGB to CIE XYZ under the space's own white (SMPTE RP 177).
 
     >>> rgb_to_xyz("ap1")[1].round(9).tolist()
     [0.272228717, 0.674081766, 0.053689517]
     """
-    *rgb, white = PRIMARIES[name]
+    *rgb, white = chromaticities(space)
     columns = np.stack([xyz(p) for p in rgb], axis=-1)
     return columns * np.linalg.solve(columns, xyz(white))
 
@@ -47,9 +55,10 @@ def rgb_to_rgb(source, target):
     """
     if source == target:
         return np.eye(3)
-    cones = [BRADFORD @ xyz(PRIMARIES[name][3]) for name in (source, target)]
+    whites = [chromaticities(space)[3] for space in (source, target)]
+    cones = [BRADFORD @ xyz(white) for white in whites]
     adapt = np.linalg.solve(BRADFORD, np.diag(cones[1] / cones[0]) @ BRADFORD)
-    if PRIMARIES[source][3] == PRIMARIES[target][3]:
+    if whites[0] == whites[1]:
         adapt = np.eye(3)
     return np.linalg.solve(rgb_to_xyz(target), adapt @ rgb_to_xyz(source))
 
@@ -73,13 +82,65 @@ def power_encode(exponent):
     return lambda light: np.maximum(light, 0) ** (1 / exponent)
 
 
+UNIT = 100.0  # cd/m2 of light 1 on an HDR display, before the reference white
+
+
+def pq_display(light):
+    """Light in units of 100 cd/m2 -> code value of SMPTE ST 2084.
+
+    >>> pq_display(np.array([1.0, 100.0])).round(12).tolist()
+    [0.508078421517, 1.0]
+    """
+    return pq_encode(light * UNIT)
+
+
+HLG_A, HLG_GAMMA = 0.17883277, 1.2  # ITU-R BT.2100-2, table 5; the OOTF of 1000 cd/m2
+HLG_B, HLG_C = 1 - 4 * HLG_A, 0.5 - HLG_A * np.log(4 * HLG_A)
+HLG_FLOOR = 1e-4 / 3**HLG_GAMMA  # of the luminance in the OOTF's gain, in OpenColorIO: black stays 0
+HLG_PEAK = 1000.0
+
+
+def hlg_oetf(scene):
+    """Scene light of [0, 1] -> code value, ITU-R BT.2100-2, table 5.
+
+    >>> hlg_oetf(np.array([0.0, 1 / 12, 1])).round(8).tolist()
+    [0.0, 0.5, 1.0]
+    """
+    return np.where(scene <= 1 / 12, np.sqrt(3 * scene), HLG_A * np.log(np.maximum(12 * scene - HLG_B, 1e-9)) + HLG_C)
+
+
+def hlg_display(light):
+    """Rec.2020 light in units of 100 cd/m2 -> code value of a display of 1000 cd/m2, at most 1: OpenColorIO's.
+
+    >>> hlg_display(np.full(3, 0.18)).round(7).tolist(), hlg_display(np.full(3, 2.03)).round(7).tolist()
+    ([0.3247812, 0.3247812, 0.3247812], [0.7498774, 0.7498774, 0.7498774])
+    >>> hlg_display(np.array([0.0, 0.0, 10.0])).round(7).tolist()
+    [0.0, 0.0, 1.0]
+    """
+    e = light * UNIT / HLG_PEAK
+    return np.minimum(hlg_oetf(e * np.maximum(luminance(e, REC2020_WEIGHTS), HLG_FLOOR) ** (1 / HLG_GAMMA - 1)), 1)
+
+
+class Display(NamedTuple):
+    """Primaries, light -> code values, and what operators may ask: cd/m2 of the peak. `largest`: light of code 1."""
+
+    primaries: str
+    encode: Callable
+    is_hdr: bool = False
+    peak: float = 100.0
+    largest: float = 1.0
+
+
 INPUTS = {f"lin_{name}": name for name in PRIMARIES}
 DISPLAYS = {
-    "srgb": ("rec709", srgb_encode),
-    "rec1886": ("rec709", power_encode(2.4)),  # ITU-R BT.1886 with black at 0
-    "g22": ("rec709", power_encode(2.2)),
-    "display_p3": ("p3d65", srgb_encode),
-    "rec2020": ("rec2020", power_encode(2.4)),
+    "srgb": Display("rec709", srgb_encode),
+    "rec1886": Display("rec709", power_encode(2.4)),  # ITU-R BT.1886 with black at 0
+    "g22": Display("rec709", power_encode(2.2)),
+    "display_p3": Display("p3d65", srgb_encode),
+    "rec2020": Display("rec2020", power_encode(2.4)),
+    "rec2100_pq": Display("rec2020", pq_display, True, 1000.0, 100.0),
+    "rec2100_hlg": Display("rec2020", hlg_display, True, HLG_PEAK, HLG_PEAK / UNIT),
+    "p3d65_pq": Display("p3d65", pq_display, True, 1000.0, 100.0),
 }
 
 

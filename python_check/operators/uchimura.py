@@ -38,3 +38,5 @@ def uchimura(rgb, max_brightness=1.0, contrast=1.0, linear_start=0.22, linear_le
 
 
 OPERATORS = {f.__name__: f for f in (uchimura,)}
+PEAK = {"uchimura": lambda max_brightness=1.0, **_: max_brightness}
+FROM_DISPLAY = {"uchimura": {"max_brightness": lambda display: display.peak / 100}}

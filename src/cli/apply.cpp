@@ -58,6 +58,7 @@ void add_apply(CLI::App& program, int&) {
         tonemap.exposure_stops = options->exposure;
         tonemap.input = options->input;
         tonemap.display = options->display;
+        tonemap.reference_white = options->reference_white;
         if (options->unpremult) tonemap.unpremult = TonemapOptions::Unpremult::yes;
         if (options->no_unpremult) tonemap.unpremult = TonemapOptions::Unpremult::no;
         tonemap.statistics = parse_statistics(options->statistics);

@@ -63,9 +63,9 @@ Planes codes_of(const Pipeline& pipeline, const Vector3& color, std::span<const 
 Pipeline with_grey_level(const View& view) {
     const Display& display = find_display(view.display);
     Pipeline stages = build_view(view);
-    stages.push_back(curve_stage(display.decode));
+    stages.insert(stages.end(), display.decode.begin(), display.decode.end());
     stages.push_back(MatrixStage{{kRec709Weights, kRec709Weights, kRec709Weights}});
-    stages.push_back(curve_stage(display.encode));
+    stages.insert(stages.end(), display.encode.begin(), display.encode.end());
     return stages;
 }
 
@@ -424,8 +424,9 @@ double contrast_at_mid_grey(const View& view) {
     constexpr double kStep = 1.0 / 256;
     std::vector<double> stops = {-kStep, kStep};
     const std::vector<double> codes = grey_codes(linear, scene_of(stops));
-    const double low = evaluate(display.decode, codes[0]);
-    const double high = evaluate(display.decode, codes[1]);
+    const ReferenceEngine decode(display.decode);
+    const double low = decode({codes[0], codes[0], codes[0]})[0];
+    const double high = decode({codes[1], codes[1], codes[1]})[0];
     if (!(low > 0)) return 0;
     return std::log2(high / low) / (2 * kStep);
 }

@@ -23,7 +23,8 @@ Settings ViewOptions::settings() const {
 }
 
 View ViewOptions::view() const {
-    return make_view(resolve_operator(op, settings(), look), input, exposure, display);
+    return make_view(resolve_operator(op, settings(), look), input, exposure, display,
+                     reference_white);
 }
 
 namespace {
@@ -69,6 +70,10 @@ void add_view_options(CLI::App& command, ViewOptions& options) {
         .add_option("--display", options.display,
                     "display, or `linear` (display-linear Rec.709, unclamped), or `native` (the "
                     "operator's own output)")
+        ->capture_default_str();
+    command
+        .add_option("--reference-white", options.reference_white,
+                    "what an HDR display shows light 1 at, cd/m2; 203 as BT.2408 has it")
         ->capture_default_str();
 }
 

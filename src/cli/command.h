@@ -22,6 +22,7 @@ struct ViewOptions {
     double exposure = 0;
     std::string input = "lin_rec709";
     std::string display = "srgb";
+    double reference_white = kReferenceWhite;
 
     /// `name=value` texts as settings. @throws Error for one without `=`.
     [[nodiscard]] Settings settings() const;
@@ -29,7 +30,7 @@ struct ViewOptions {
     [[nodiscard]] View view() const;
 };
 
-/// --set, --look, --exposure, --input, --display.
+/// --set, --look, --exposure, --input, --display, --reference-white.
 void add_view_options(CLI::App& command, ViewOptions& options);
 
 /// read_image() with the terminal kept clean: libraries below OpenImageIO (libpng, libtiff) print

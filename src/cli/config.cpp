@@ -14,7 +14,10 @@ void add_config(CLI::App& program, int&) {
         "Example:\n  tonewright config -o ocio_config\n"
         "  oiiotool --colorconfig ocio_config/config.ocio in.exr --ociodisplay sRGB Hable -o "
         "out.png");
-    command->callback([folder] { write_generated_files(*folder, make_config(), "config.ocio"); });
+    command->callback([folder] {
+        require_writable_folder(*folder);
+        write_generated_files(*folder, make_config(), "config.ocio");
+    });
 }
 
 }  // namespace tonewright

@@ -71,6 +71,7 @@ Json to_json(const ParameterSpec& p) {
     j["choices"] = p.choices;
     j["help"] = p.help;
     if (p.from_picture) j["statistic"] = p.statistic;
+    j["decided_by_display"] = p.from_display != nullptr;
     return j;
 }
 
@@ -135,9 +136,9 @@ std::string default_of(const ParameterSpec& p) {
 }
 
 std::string help_of(const ParameterSpec& p) {
-    return p.from_picture
-               ? p.help + "; `tonewright apply` takes it from the picture: " + p.statistic
-               : p.help;
+    if (p.from_picture)
+        return p.help + "; `tonewright apply` takes it from the picture: " + p.statistic;
+    return p.from_display ? p.help + "; where it is not set, --display decides" : p.help;
 }
 
 /// "AgX; others: agx_minimal, agx_sobotka".

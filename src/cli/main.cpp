@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <system_error>
 
 #include "cli/command.h"
 
@@ -61,6 +62,8 @@ int main(int argc, char** argv) {
         }
         program.parse(argc, argv);
         if (std::fflush(stdout) != 0) return report("write: standard output: cannot write", kFile);
+    } catch (const std::system_error& e) {  // what printing throws
+        return report("write: standard output: " + e.code().message(), kFile);
     } catch (const CLI::Success& e) {
         return program.exit(e);  // --help, --version
     } catch (const CLI::ParseError& e) {

@@ -63,6 +63,20 @@ Expr hlg_inverse_oetf(const Expr& code) {
 }
 
 namespace {
+constexpr double kHlgGamma = 1.2;
+const double kHlgStraightBelow = 1e-4 / std::pow(3.0, kHlgGamma);
+}  // namespace
+
+Expr hlg_inverse_ootf_luminance(const Expr& display_luminance) {
+    return display_luminance * pow(max(display_luminance, kHlgStraightBelow), 1 / kHlgGamma - 1);
+}
+
+Expr hlg_ootf_luminance(const Expr& scene_luminance) {
+    const double straight_below = std::pow(kHlgStraightBelow, 1 / kHlgGamma);
+    return scene_luminance * pow(max(scene_luminance, straight_below), kHlgGamma - 1);
+}
+
+namespace {
 // Academy S-2016-001, equations 1 and 2.
 constexpr double kCctBreakLinear = 0.0078125;
 constexpr double kCctBreakCode = 0.155251141552511;

@@ -45,23 +45,26 @@ double channel_error(const double* truth, const float* candidate) {
 namespace {
 
 /// Code values of a display -> ICtCp (ITU-R BT.2100-2, table 7).
-Pipeline ictcp_of(const Display& display, double peak_nits) {
+Pipeline ictcp_of(const Display& display, double unit_nits) {
     constexpr Matrix3 to_lms = {{{1688.0 / 4096, 2146.0 / 4096, 262.0 / 4096},
                                  {683.0 / 4096, 2951.0 / 4096, 462.0 / 4096},
                                  {99.0 / 4096, 309.0 / 4096, 3688.0 / 4096}}};
     constexpr Matrix3 to_ictcp = {{{0.5, 0.5, 0},
                                    {6610.0 / 4096, -13613.0 / 4096, 7003.0 / 4096},
                                    {17933.0 / 4096, -17390.0 / 4096, -543.0 / 4096}}};
-    const Matrix3 light = scale(rgb_to_rgb(display.primaries, kRec2020), peak_nits);
-    return {curve_stage(display.decode), MatrixStage{multiply(to_lms, light)},
-            curve_stage(pq_encode_nits(Expr::input())), MatrixStage{to_ictcp}};
+    const Matrix3 light = scale(rgb_to_rgb(display.primaries, kRec2020), unit_nits);
+    Pipeline stages = display.decode;
+    stages.insert(stages.end(),
+                  {MatrixStage{multiply(to_lms, light)}, curve_stage(pq_encode_nits(Expr::input())),
+                   MatrixStage{to_ictcp}});
+    return stages;
 }
 
 }  // namespace
 
 std::vector<double> delta_e_itp(const Display& display, std::span<const double> code_a,
-                                std::span<const double> code_b, double peak_nits) {
-    const ReferenceEngine to_ictcp(ictcp_of(display, peak_nits));
+                                std::span<const double> code_b, double unit_nits) {
+    const ReferenceEngine to_ictcp(ictcp_of(display, unit_nits));
     const std::size_t count = code_a.size() / 3;
     const auto planes = [&](std::span<const double> code) {
         std::array<std::vector<double>, 3> p;

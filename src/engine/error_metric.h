@@ -28,11 +28,12 @@ struct ErrorStats {
 
 /// Colour differences of pairs of code-value triplets (interleaved RGB) shown on a display, ITU-R
 /// BT.2124-0: dE_ITP, where 1 is about the smallest difference that can be seen.
-/// @param peak_nits  luminance of code value 1 in cd/m2; 100 is the reference of SDR grading.
+/// @param unit_nits  luminance of light 1 in cd/m2; 100 is the reference of SDR grading, and what
+///                   HDR displays have.
 [[nodiscard]] std::vector<double> delta_e_itp(const Display& display,
                                               std::span<const double> code_a,
                                               std::span<const double> code_b,
-                                              double peak_nits = 100);
+                                              double unit_nits = kReferenceWhite);
 
 /// Two significant digits, rounded up, so that what is printed is never less than what was
 /// measured.

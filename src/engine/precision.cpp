@@ -82,6 +82,7 @@ int operand_count(ExprOp op) {
         case ExprOp::lookup:
             return 1;
         case ExprOp::select:
+        case ExprOp::lattice:
             return 3;
         default:
             return 2;
@@ -129,7 +130,8 @@ bool is_steep(const Table& table) {
 constexpr double kNearKink = 1e-5;
 
 /// Derivatives of one instruction by its operands, at the side of a kink that is taken.
-std::array<double, 3> partials(const TapeInstruction& step, double value, double a, double b) {
+std::array<double, 3> partials(const TapeInstruction& step, double value, double a, double b,
+                               double c) {
     constexpr double kLn2 = 0.69314718055994531;
     switch (step.op) {
         case ExprOp::add:
@@ -169,6 +171,8 @@ std::array<double, 3> partials(const TapeInstruction& step, double value, double
             return a != 0 ? std::array{0.0, 1.0, 0.0} : std::array{0.0, 0.0, 1.0};
         case ExprOp::lookup:
             return {slope(*step.table, a), 0, 0};
+        case ExprOp::lattice:
+            return step.lattice->gradient(step.input, a, b, c);
         default:
             return {0, 0, 0};
     }
@@ -208,6 +212,8 @@ double half_ulps(ExprOp op) {
             return 3;
         case ExprOp::lookup:
             return 3;
+        case ExprOp::lattice:  // nodes, weights, and a sum of four products
+            return 4;
         default:
             return 1;
     }
@@ -220,6 +226,7 @@ double cost_of_double(ExprOp op) {
         case ExprOp::log2:
         case ExprOp::power:
         case ExprOp::lookup:
+        case ExprOp::lattice:
             return 4;
         default:
             return 1;
@@ -331,6 +338,9 @@ class PrecisionChooser {
                 value_[i] = step.value;
             } else if (step.op == ExprOp::input) {
                 value_[i] = rgb[static_cast<std::size_t>(step.input)];
+            } else if (step.op == ExprOp::lattice) {
+                value_[i] =
+                    (*step.lattice)(step.input, value_[step.a], value_[step.b], value_[step.c]);
             } else {
                 value_[i] =
                     scalar_op(step.op, value_[step.a], value_[step.b], value_[step.c], step.table);
@@ -399,7 +409,8 @@ class PrecisionChooser {
             const TapeInstruction& step = code_[i];
             const int operands = operand_count(step.op);
             if (adjoint_[i] == 0 || operands == 0) continue;
-            const auto partial = partials(step, value_[i], value_[step.a], value_[step.b]);
+            const auto partial =
+                partials(step, value_[i], value_[step.a], value_[step.b], value_[step.c]);
             const std::array<std::uint32_t, 3> operand = {step.a, step.b, step.c};
             for (std::size_t k = 0; k < static_cast<std::size_t>(operands); ++k) {
                 // Kernels take a constant exponent in double.
@@ -432,6 +443,15 @@ class PrecisionChooser {
                 of_position = std::fabs(slope(*step.table, x) * x) * kHalfUlp;
             } else {
                 units = 1;  // computed in double
+            }
+        }
+        if (step.op == ExprOp::lattice) {
+            const std::array<double, 3> at = {value_[step.a], value_[step.b], value_[step.c]};
+            const std::array<double, 3> slope =
+                step.lattice->gradient(step.input, at[0], at[1], at[2]);
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::array<std::uint32_t, 3> operand = {step.a, step.b, step.c};
+                if (!in_double_[operand[k]]) of_position += std::fabs(slope[k] * at[k]) * kHalfUlp;
             }
         }
         if (i == output) units = std::max(0.0, units - 1);  // that one there is in any case

@@ -66,6 +66,10 @@ void run_instruction(const TapeInstruction& step, double* out, const double* a, 
             return run_op<ExprOp::select>(out, a, b, c, t, n);
         case ExprOp::lookup:
             return run_op<ExprOp::lookup>(out, a, b, c, t, n);
+        case ExprOp::lattice:
+            for (std::size_t i = 0; i < n; ++i)
+                out[i] = (*step.lattice)(step.input, a[i], b[i], c[i]);
+            return;
         case ExprOp::constant:
         case ExprOp::input:
             return;
@@ -83,13 +87,14 @@ ReferenceEngine& ReferenceEngine::operator=(ReferenceEngine&&) noexcept = defaul
 void ReferenceEngine::run(const std::array<const double*, 3>& in, const std::array<double*, 3>& out,
                           std::size_t count) const noexcept {
     const auto& code = tape_->code();
-    std::vector<double> values(code.size() * kTile);
-    const auto row = [&](std::uint32_t i) { return values.data() + i * kTile; };
+    const std::size_t tile = std::min(kTile, count);
+    std::vector<double> values(code.size() * tile);
+    const auto row = [&](std::uint32_t i) { return values.data() + i * tile; };
     for (std::uint32_t i = 0; i < code.size(); ++i) {
-        if (code[i].op == ExprOp::constant) std::fill_n(row(i), kTile, code[i].value);
+        if (code[i].op == ExprOp::constant) std::fill_n(row(i), tile, code[i].value);
     }
-    for (std::size_t begin = 0; begin < count; begin += kTile) {
-        const std::size_t n = std::min(kTile, count - begin);
+    for (std::size_t begin = 0; begin < count; begin += tile) {
+        const std::size_t n = std::min(tile, count - begin);
         for (std::uint32_t i = 0; i < code.size(); ++i) {
             const TapeInstruction& step = code[i];
             if (step.op == ExprOp::input) {

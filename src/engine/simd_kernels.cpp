@@ -226,6 +226,107 @@ HWY_NOINLINE void lookup(const Frame& frame, const Instruction& step, const Samp
     }
 }
 
+/// Nodes and weights of one vector of pixels.
+template <class T>
+struct LatticePlaces {
+    alignas(kVectorBytes) T node[4][kLaneMultiple];
+    alignas(kVectorBytes) T weight[4][kLaneMultiple];
+};
+
+template <class D>
+HWY_INLINE void find_places(D d, const std::array<Source, 3>& source, std::size_t i, int edge,
+                            LatticePlaces<hn::TFromD<D>>& places) {
+    using T = hn::TFromD<D>;
+    const auto one = hn::Set(d, static_cast<T>(1));
+    std::array<Vec<D>, 3> cell = {one, one, one};
+    std::array<Vec<D>, 3> f = {one, one, one};
+    for (std::size_t c = 0; c < 3; ++c) {
+        const auto t = hn::Min(hn::Max(source[c].load(d, i), hn::Zero(d)), one);
+        const auto place = hn::Mul(t, hn::Set(d, static_cast<T>(edge - 1)));
+        cell[c] = hn::Min(hn::Floor(place), hn::Set(d, static_cast<T>(edge - 2)));
+        f[c] = hn::Sub(place, cell[c]);
+    }
+    // Whole numbers below 2^24 are exact in float, and so is their sum.
+    const auto n1 = hn::Set(d, static_cast<T>(edge));
+    const auto n2 = hn::Mul(n1, n1);
+    const auto corner = hn::MulAdd(cell[0], n2, hn::MulAdd(cell[1], n1, cell[2]));
+    // Steps of the axes with the largest and the smallest fraction.
+    const auto red_below_green = hn::Lt(f[0], f[1]);
+    const auto upper = hn::Max(f[0], f[1]);
+    const auto lower = hn::Min(f[0], f[1]);
+    const auto step_upper = hn::IfThenElse(red_below_green, n1, n2);
+    const auto step_lower = hn::IfThenElse(red_below_green, n2, n1);
+    const auto step_highest = hn::IfThenElse(hn::Lt(upper, f[2]), one, step_upper);
+    const auto step_lowest = hn::IfThenElse(hn::Lt(lower, f[2]), step_lower, one);
+    const auto highest = hn::Max(upper, f[2]);
+    const auto lowest = hn::Min(lower, f[2]);
+    const auto middle = hn::Max(lower, hn::Min(upper, f[2]));
+    const auto far = hn::Add(corner, hn::Add(hn::Add(n2, n1), one));
+    const auto store = [&](std::size_t k, Vec<D> node, Vec<D> weight) HWY_ATTR {
+        hn::Store(node, d, places.node[k]);
+        hn::Store(weight, d, places.weight[k]);
+    };
+    store(0, corner, hn::Sub(one, highest));
+    store(1, hn::Add(corner, step_highest), hn::Sub(highest, middle));
+    store(2, hn::Sub(far, step_lowest), hn::Sub(middle, lowest));
+    store(3, far, lowest);
+}
+
+/// Four nodes a pixel, each loaded whole: their places and weights for a vector of pixels, then
+/// pixel by pixel.
+template <class D>
+HWY_INLINE void interpolate(D d, const Frame& frame, const Instruction& step, int edge,
+                            const hn::TFromD<D>* nodes) {
+    using T = hn::TFromD<D>;
+    const std::size_t lanes = hn::Lanes(d);
+    const hn::CappedTag<T, 4> part;
+    const std::array<Source, 3> source = {Source(frame, step.in[0]), Source(frame, step.in[1]),
+                                          Source(frame, step.in[2])};
+    LatticePlaces<T> places;
+    alignas(kVectorBytes) T pixels[4 * kLaneMultiple];
+    for (std::size_t i = 0; i < frame.count; i += lanes) {
+        find_places(d, source, i, edge, places);
+        for (std::size_t p = 0; p < lanes; ++p) {
+            for (std::size_t c = 0; c < 4; c += hn::Lanes(part)) {
+                const auto node = [&](std::size_t k) HWY_ATTR {
+                    return hn::LoadU(part,
+                                     nodes + 4 * static_cast<std::size_t>(places.node[k][p]) + c);
+                };
+                const auto weight = [&](std::size_t k)
+                                        HWY_ATTR { return hn::Set(part, places.weight[k][p]); };
+                auto sum = hn::Mul(weight(0), node(0));
+                sum = hn::MulAdd(weight(1), node(1), sum);
+                sum = hn::MulAdd(weight(2), node(2), sum);
+                sum = hn::MulAdd(weight(3), node(3), sum);
+                hn::Store(sum, part, pixels + 4 * p + c);
+            }
+        }
+        for (std::size_t c = 0; c < 3; ++c) {
+            const Operand& channel = step.channel[c];
+            if (channel.constant) continue;
+            const auto store = [&](auto* out) {
+                for (std::size_t p = 0; p < lanes; ++p)
+                    out[i + p] =
+                        static_cast<std::remove_pointer_t<decltype(out)>>(pixels[4 * p + c]);
+            };
+            if (channel.wide) {
+                store(reinterpret_cast<double*>(frame.registers + channel.offset));
+            } else {
+                store(reinterpret_cast<float*>(frame.registers + channel.offset));
+            }
+        }
+    }
+}
+
+HWY_NOINLINE void lattice(const Frame& frame, const Instruction& step,
+                          const SampledLattice& table) {
+    if (step.wide) {
+        interpolate(DD(), frame, step, table.edge, table.wide.data());
+    } else {
+        interpolate(DF(), frame, step, table.edge, table.narrow.data());
+    }
+}
+
 HWY_NOINLINE void run_instruction(const Frame& frame, const Code& code, const Instruction& step) {
     switch (step.op) {
         case Op::copy:
@@ -319,6 +420,8 @@ HWY_NOINLINE void run_instruction(const Frame& frame, const Code& code, const In
             });
         case Op::lookup:
             return lookup(frame, step, code.tables[step.table]);
+        case Op::lattice:
+            return lattice(frame, step, code.lattices[step.table]);
     }
 }
 

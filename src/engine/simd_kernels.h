@@ -47,6 +47,7 @@ enum class Op : std::uint8_t {
     select_less_equal,
     select_equal,
     lookup,
+    lattice,  // of coordinates a, b, c: all three channels
 };
 
 /// Where a value is: in the tile's register file, or among the constants, which stand there as one
@@ -66,6 +67,13 @@ struct SampledTable {
     Table::Interpolation interpolation = Table::Interpolation::linear;
 };
 
+/// Nodes of red, green, blue and one unused; in double where its results are.
+struct SampledLattice {
+    int edge = 0;
+    std::vector<float> narrow;
+    std::vector<double> wide;
+};
+
 /// An instruction computes over a whole tile. A wide one computes in double, whatever its operands
 /// and its result are kept in; another has float operands and a float result.
 struct Instruction {
@@ -74,7 +82,10 @@ struct Instruction {
     Operand out;
     std::array<Operand, 4> in;
     std::array<double, 3> k{};  // coefficients of dot3, exponent of power_constant
-    std::uint32_t table = 0;    // of a lookup
+    std::uint32_t table = 0;    // of a lookup; of a lattice, its index among the lattices
+    /// Of a lattice, which has three results: where each channel goes. One that nobody reads is
+    /// marked as a constant.
+    std::array<Operand, 3> channel;
 };
 
 /// Largest tile, in pixels.
@@ -91,6 +102,7 @@ struct Code {
     std::vector<Instruction> instructions;
     std::vector<ConstantVector> constants;
     std::vector<SampledTable> tables;
+    std::vector<SampledLattice> lattices;
     /// Float registers of the three input channels; a channel that is not read has none.
     std::array<std::uint32_t, 3> input_offset{};
     std::array<bool, 3> reads_input{};

@@ -115,8 +115,15 @@ struct Selected {
     std::array<std::int64_t, 4> operands = {kNone, kNone, kNone, kNone};
     std::array<double, 3> k{};
     const Table* table = nullptr;
+    const Lattice* lattice = nullptr;
+    int channel = 0;  // of the lattice
     bool wide = false;
 };
+
+/// Two channels of one lattice at one place: one instruction computes both.
+bool same_place(const Selected& x, const Selected& y) {
+    return x.lattice && x.lattice == y.lattice && x.operands == y.operands;
+}
 
 class Selector {
   public:
@@ -151,6 +158,7 @@ class Selector {
             result.push_back(current_);
         }
         std::reverse(result.begin(), result.end());
+        gather_lattices(result);
         return result;
     }
 
@@ -170,6 +178,7 @@ class Selector {
             case ExprOp::lookup:
                 return {step.a};
             case ExprOp::select:
+            case ExprOp::lattice:
                 return {step.a, step.b, step.c};
             default:
                 return {step.a, step.b};
@@ -177,6 +186,27 @@ class Selector {
     }
 
   private:
+    /// The channels of a lattice one behind the other: their operands are there at the first.
+    static void gather_lattices(std::vector<Selected>& program) {
+        for (std::size_t i = 0; i < program.size(); ++i) {
+            if (!program[i].lattice) continue;
+            for (std::size_t k = i + 1; k < program.size(); ++k) {
+                if (!same_place(program[i], program[k])) continue;
+                ++i;
+                std::rotate(program.begin() + static_cast<std::ptrdiff_t>(i),
+                            program.begin() + static_cast<std::ptrdiff_t>(k),
+                            program.begin() + static_cast<std::ptrdiff_t>(k) + 1);
+            }
+        }
+        // One double channel, or coordinate, and all three are computed in double.
+        for (std::size_t i = 1; i < program.size(); ++i) {
+            if (same_place(program[i - 1], program[i])) program[i].wide |= program[i - 1].wide;
+        }
+        for (std::size_t i = program.size(); i-- > 1;) {
+            if (same_place(program[i - 1], program[i])) program[i - 1].wide |= program[i].wide;
+        }
+    }
+
     [[nodiscard]] bool is(std::uint32_t i, ExprOp op) const { return code_[i].op == op; }
     [[nodiscard]] bool is_constant(std::uint32_t i) const { return is(i, ExprOp::constant); }
     /// Value i is computed by `op`, and for this one use alone: it can become a part of the user.
@@ -272,6 +302,10 @@ class Selector {
             case ExprOp::lookup:
                 current_.table = step.table;
                 return emit(Op::lookup, {a});
+            case ExprOp::lattice:
+                current_.lattice = step.lattice;
+                current_.channel = step.input;
+                return emit(Op::lattice, {a, b, step.c});
             case ExprOp::multiply:
                 return emit(Op::multiply, {a, b});
             case ExprOp::divide:
@@ -336,8 +370,8 @@ class Assembler {
             if (tape_[value].op == ExprOp::constant) continue;
             auto slot = static_cast<std::size_t>(slot_of_[value]);
             if (is_wide_[slot]) {
-                steps_.push_back(
-                    Selected{Op::copy, value, {value, kNone, kNone, kNone}, {}, nullptr, true});
+                steps_.push_back(Selected{
+                    .value = value, .operands = {value, kNone, kNone, kNone}, .wide = true});
                 is_wide_.push_back(false);
                 slot = steps_.size() - 1;
             }
@@ -358,6 +392,10 @@ class Assembler {
                 code.input_offset[channel] = place(slot).offset;
                 continue;
             }
+            if (slot > 0 && same_place(steps_[slot - 1], s)) {
+                channels_of(code.instructions.back(), slot);
+                continue;
+            }
             Instruction step;
             step.op = s.op;
             step.wide = s.wide || s.op == Op::sine || s.op == Op::cosine || s.op == Op::atan2 ||
@@ -365,6 +403,12 @@ class Assembler {
             step.out = place(slot);
             step.k = s.k;
             if (s.table) step.table = table(*s.table);
+            if (s.lattice) {
+                step.table = lattice(*s.lattice, step.wide);
+                for (Operand& channel : step.channel)
+                    channel.constant = true;
+                channels_of(step, slot);
+            }
             for (std::size_t k = 0; k < 4; ++k) {
                 if (s.operands[k] == kNone) continue;
                 step.in[k] = operand(static_cast<std::uint32_t>(s.operands[k]), step.wide);
@@ -378,6 +422,7 @@ class Assembler {
         }
         code.constants = std::move(constants_);
         code.tables = std::move(tables_);
+        code.lattices = std::move(lattices_);
         return code;
     }
 
@@ -465,6 +510,33 @@ class Assembler {
         return result;
     }
 
+    void channels_of(Instruction& step, std::size_t slot) const {
+        step.channel[static_cast<std::size_t>(steps_[slot].channel)] = place(slot);
+    }
+
+    std::uint32_t lattice(const Lattice& source, bool is_wide) {
+        auto [it, is_new] =
+            lattice_index_.try_emplace(&source, static_cast<std::uint32_t>(lattices_.size()));
+        if (is_new) {
+            lattices_.emplace_back();
+            lattices_.back().edge = source.edge();
+        }
+        SampledLattice& sampled = lattices_[it->second];
+        const auto fill = [&](auto& nodes) {
+            if (!nodes.empty()) return;
+            nodes.resize(source.nodes().size() / 3 * 4);
+            using T = std::remove_reference_t<decltype(nodes[0])>;
+            for (std::size_t i = 0; i < source.nodes().size(); ++i)
+                nodes[i / 3 * 4 + i % 3] = static_cast<T>(source.nodes()[i]);
+        };
+        if (is_wide) {
+            fill(sampled.wide);
+        } else {
+            fill(sampled.narrow);
+        }
+        return it->second;
+    }
+
     std::uint32_t table(const Table& source) {
         auto [it, is_new] =
             table_index_.try_emplace(&source, static_cast<std::uint32_t>(tables_.size()));
@@ -497,6 +569,8 @@ class Assembler {
     std::map<std::pair<std::uint64_t, bool>, std::size_t> constant_index_;
     std::vector<SampledTable> tables_;
     std::map<const Table*, std::uint32_t> table_index_;
+    std::vector<SampledLattice> lattices_;
+    std::map<const Lattice*, std::uint32_t> lattice_index_;
 };
 
 }  // namespace

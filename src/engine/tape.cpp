@@ -20,6 +20,10 @@ std::uint32_t Tape::add(const Expr& expr,
     if (expr.is_constant()) step.value = expr.value();
     if (expr.op() == ExprOp::input) step.input = expr.input_index();
     if (expr.op() == ExprOp::lookup) step.table = expr.table().get();
+    if (expr.op() == ExprOp::lattice) {
+        step.lattice = expr.lattice().get();
+        step.input = expr.channel();
+    }
     std::array<std::uint32_t*, 3> slots = {&step.a, &step.b, &step.c};
     for (int i = 0; i < expr.operand_count(); ++i) {
         *slots[static_cast<std::size_t>(i)] = add(expr.operand(i), seen);

@@ -15,10 +15,11 @@ namespace tonewright {
 struct TapeInstruction {
     ExprOp op = ExprOp::constant;
     std::uint32_t a = 0, b = 0, c = 0;
-    double value = 0;                // of a constant
-    int input = 0;                   // of an input
-    const Table* table = nullptr;    // of a lookup; owned by the tape
-    const ExprNode* node = nullptr;  // where it came from
+    double value = 0;                  // of a constant
+    int input = 0;                     // of an input; channel of a lattice
+    const Table* table = nullptr;      // of a lookup; owned by the tape
+    const Lattice* lattice = nullptr;  // owned by the tape
+    const ExprNode* node = nullptr;    // where it came from
 };
 
 /// Expressions as straight-line code in single-assignment form: every node once, operands first.

@@ -9,6 +9,7 @@
 #include <mutex>
 #include <numbers>
 #include <unordered_map>
+#include <utility>
 
 #include "expr/node.h"
 #include "expr/scalar_ops.h"
@@ -48,12 +49,97 @@ double Table::operator()(double x) const noexcept {
 
 namespace {
 
+/// The tetrahedron of a place: its four nodes, from the one nearest to the origin on, each one step
+/// along another coordinate, in the order of the fractions.
+struct Tetrahedron {
+    std::array<std::size_t, 4> node{};
+    std::array<double, 4> weight{};
+    std::array<std::size_t, 3> axis{0, 1, 2};
+
+    Tetrahedron(int edge, const std::array<double, 3>& at) noexcept {
+        const auto n = static_cast<std::size_t>(edge);
+        const std::array<std::size_t, 3> stride = {n * n, n, 1};
+        std::array<double, 3> fraction{};
+        std::size_t corner = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const double t = at[i] > 0 ? (at[i] < 1 ? at[i] : 1.0) : 0.0;  // NaN -> 0
+            const double place = t * static_cast<double>(n - 1);
+            const std::size_t cell = std::min(static_cast<std::size_t>(place), n - 2);
+            fraction[i] = place - static_cast<double>(cell);
+            corner += cell * stride[i];
+        }
+        const auto order = [&](std::size_t i, std::size_t k) {
+            if (fraction[axis[i]] < fraction[axis[k]]) std::swap(axis[i], axis[k]);
+        };
+        order(0, 1);
+        order(1, 2);
+        order(0, 1);
+        node[0] = corner;
+        weight[0] = 1 - fraction[axis[0]];
+        for (std::size_t i = 0; i < 3; ++i) {
+            node[i + 1] = node[i] + stride[axis[i]];
+            weight[i + 1] = fraction[axis[i]] - (i < 2 ? fraction[axis[i + 1]] : 0.0);
+        }
+    }
+};
+
+}  // namespace
+
+Lattice::Lattice(int edge, std::function<std::vector<double>()> make)
+    : edge_(edge), make_(std::move(make)) {
+    if (edge < 2) {
+        throw Error("lattice: edge is " + std::to_string(edge) + "; expected at least 2");
+    }
+}
+
+const std::vector<double>& Lattice::nodes() const {
+    std::call_once(made_, [this] {
+        nodes_ = make_();
+        make_ = nullptr;
+        const auto n = static_cast<std::size_t>(edge_);
+        if (nodes_.size() != 3 * n * n * n) {
+            throw Error("lattice: it has " + std::to_string(nodes_.size()) +
+                        " numbers; expected 3 of each of " + std::to_string(edge_) + "^3 nodes");
+        }
+    });
+    return nodes_;
+}
+
+double Lattice::operator()(int channel, double r, double g, double b) const noexcept {
+    const Tetrahedron t(edge_, {r, g, b});
+    const auto c = static_cast<std::size_t>(channel);
+    const std::vector<double>& node = nodes();
+    double sum = 0;
+    for (std::size_t i = 0; i < 4; ++i)
+        sum += t.weight[i] * node[3 * t.node[i] + c];
+    return sum;
+}
+
+std::array<double, 3> Lattice::operator()(double r, double g, double b) const noexcept {
+    return {(*this)(0, r, g, b), (*this)(1, r, g, b), (*this)(2, r, g, b)};
+}
+
+std::array<double, 3> Lattice::gradient(int channel, double r, double g, double b) const noexcept {
+    const std::array<double, 3> at = {r, g, b};
+    const Tetrahedron t(edge_, at);
+    const auto c = static_cast<std::size_t>(channel);
+    const std::vector<double>& node = nodes();
+    std::array<double, 3> slope{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        if (!(at[t.axis[i]] > 0 && at[t.axis[i]] < 1)) continue;
+        slope[t.axis[i]] = (node[3 * t.node[i + 1] + c] - node[3 * t.node[i] + c]) * (edge_ - 1);
+    }
+    return slope;
+}
+
+namespace {
+
 /// Key under which a node is shared. Constants are told apart by their bits: 0 and -0 differ.
 struct NodeKey {
     ExprOp op;
-    std::uint64_t bits;  // of the constant, or the input's index
+    std::uint64_t bits;  // of the constant, or the input's index, or the lattice's channel
     std::array<const ExprNode*, 3> operands;
-    const Table* table;
+    const void* data;  // table or lattice
     friend bool operator==(const NodeKey&, const NodeKey&) = default;
 };
 
@@ -64,7 +150,7 @@ struct NodeKeyHash {
         for (const ExprNode* p : key.operands) {
             h = h * 1000003U ^ std::hash<const void*>{}(p);
         }
-        return h * 1000003U ^ std::hash<const void*>{}(key.table);
+        return h * 1000003U ^ std::hash<const void*>{}(key.data);
     }
 };
 
@@ -81,8 +167,10 @@ SharedNodes& shared_nodes() {
 
 std::shared_ptr<const ExprNode> share(ExprNode node) {
     NodeKey key{node.op, 0, {}, node.table.get()};
-    key.bits = node.op == ExprOp::input ? static_cast<std::uint64_t>(node.input)
-                                        : std::bit_cast<std::uint64_t>(node.value);
+    if (node.lattice) key.data = node.lattice.get();
+    key.bits = node.op == ExprOp::input || node.op == ExprOp::lattice
+                   ? static_cast<std::uint64_t>(node.input)
+                   : std::bit_cast<std::uint64_t>(node.value);
     for (std::size_t i = 0; i < node.operands.size(); ++i)
         key.operands[i] = node.operands[i].node();
 
@@ -168,6 +256,8 @@ bool Expr::is_constant(double v) const noexcept {
 double Expr::value() const noexcept { return node_->value; }
 int Expr::input_index() const noexcept { return node_->input; }
 const std::shared_ptr<const Table>& Expr::table() const noexcept { return node_->table; }
+const std::shared_ptr<const Lattice>& Expr::lattice() const noexcept { return node_->lattice; }
+int Expr::channel() const noexcept { return node_->input; }
 int Expr::operand_count() const noexcept { return static_cast<int>(node_->operands.size()); }
 Expr Expr::operand(int i) const { return node_->operands[static_cast<std::size_t>(i)]; }
 
@@ -232,6 +322,18 @@ Expr lookup(std::shared_ptr<const Table> table, const Expr& index) {
         }
     }
     return make_expr(ExprOp::lookup, std::array{index}, std::move(table));
+}
+
+Expr interpolate(std::shared_ptr<const Lattice> lattice, int channel, const Expr& r, const Expr& g,
+                 const Expr& b) {
+    if (r.is_constant() && g.is_constant() && b.is_constant())
+        return (*lattice)(channel, r.value(), g.value(), b.value());
+    ExprNode node;
+    node.op = ExprOp::lattice;
+    node.input = channel;
+    node.operands = {r, g, b};
+    node.lattice = std::move(lattice);
+    return Expr(share(std::move(node)));
 }
 
 Expr exp(const Expr& a) { return exp2(a * std::numbers::log2e); }

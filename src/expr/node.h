@@ -11,9 +11,10 @@ namespace tonewright {
 struct ExprNode {
     ExprOp op = ExprOp::constant;
     double value = 0;  // constant
-    int input = 0;     // input
+    int input = 0;     // input; channel of a lattice
     std::vector<Expr> operands;
     std::shared_ptr<const Table> table;  // lookup
+    std::shared_ptr<const Lattice> lattice;
 };
 
 }  // namespace tonewright

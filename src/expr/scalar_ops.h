@@ -7,7 +7,8 @@
 
 namespace tonewright {
 
-/// What each operation means, in double. Folding, evaluate() and the reference engine all call it.
+/// What each operation means, in double; of a lattice, Lattice::operator(). Folding, evaluate() and
+/// the reference engine all call it.
 inline double scalar_op(ExprOp op, double a, double b, double c, const Table* table) noexcept {
     switch (op) {
         case ExprOp::add:
@@ -54,6 +55,7 @@ inline double scalar_op(ExprOp op, double a, double b, double c, const Table* ta
             return (*table)(a);
         case ExprOp::constant:
         case ExprOp::input:
+        case ExprOp::lattice:
             break;
     }
     return a;

@@ -25,8 +25,9 @@ Claim claim_of(const View& view) {
     if (view.display == kLinearOutput) return {"Linear", kRec709};
     if (view.display == kNativeOutput) {
         const Operator& op = *view.op.op;
+        const Primaries primaries = view.op.output_primaries();
         // OIIO's names imply Rec.709: for other primaries there is none.
-        if (!(op.working == kRec709)) return {"", op.working};
+        if (!(primaries == kRec709)) return {"", primaries};
         if (op.output == OutputKind::display_linear) return {"Linear", kRec709};
         return power_claim(op.code_power, kRec709);
     }

@@ -67,7 +67,7 @@ ImageSpec result_spec(const ImageSpec& source, bool grey_becomes_color) {
 
 View view_of(const TonemapOptions& options, const Settings& settings) {
     return make_view(resolve_operator(options.op, settings, options.look), options.input,
-                     options.exposure_stops, options.display);
+                     options.exposure_stops, options.display, options.reference_white);
 }
 
 /// True when a picture decides on some of the operator's parameters.

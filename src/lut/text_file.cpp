@@ -51,6 +51,23 @@ void write_text_atomically(const std::string& path, std::string_view contents) {
     }
 }
 
+namespace {
+void make_folder(const fs::path& folder) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) throw FileError("write: " + folder.string() + ": " + error.message());
+}
+}  // namespace
+
+void require_writable_folder(const std::string& folder) {
+    const fs::path root(folder);
+    make_folder(root);
+    const fs::path probe = root / ".tonewright";
+    write_text_atomically(probe.string(), "");
+    std::error_code error;
+    fs::remove(probe, error);
+}
+
 void write_generated_files(const std::string& folder, const std::vector<GeneratedFile>& files,
                            std::string_view last) {
     const fs::path root(folder);
@@ -64,10 +81,7 @@ void write_generated_files(const std::string& folder, const std::vector<Generate
     }
     const auto write = [&](const GeneratedFile& file) {
         const fs::path path = root / file.path;
-        std::error_code error;
-        fs::create_directories(path.parent_path(), error);
-        if (error)
-            throw FileError("write: " + path.parent_path().string() + ": " + error.message());
+        make_folder(path.parent_path());
         write_text_atomically(path.string(), file.contents);
         stale.erase(fs::path(file.path).lexically_normal().string());
     };

@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "lut/fit.h"
 #include "lut/half_domain.h"
 #include "tonewright/engine.h"
 #include "tonewright/lut.h"
@@ -50,6 +53,16 @@ OCIO::FixedFunctionTransformRcPtr make_fixed(OCIO::FixedFunctionStyle style,
     return t;
 }
 
+OCIO::FixedFunctionTransformRcPtr make_fixed(const FixedFunction& function) {
+    const auto style = OCIO::FixedFunctionStyleFromString((function.style).c_str());
+    OCIO::FixedFunctionTransformRcPtr t =
+        function.parameters.empty()
+            ? OCIO::FixedFunctionTransform::Create(style)
+            : OCIO::FixedFunctionTransform::Create(style, function.parameters.data(),
+                                                   function.parameters.size());
+    return t;
+}
+
 OCIO::Lut1DTransformRcPtr make_half_lut(const std::array<std::vector<float>, 3>& channels) {
     OCIO::Lut1DTransformRcPtr t = OCIO::Lut1DTransform::Create(kHalfCount, true);
     t->setInterpolation(OCIO::INTERP_LINEAR);
@@ -58,6 +71,20 @@ OCIO::Lut1DTransformRcPtr make_half_lut(const std::array<std::vector<float>, 3>&
         t->setValue(i, channels[0][i], channels[1][i], channels[2][i]);
     }
     return t;
+}
+
+/// @param color  of node i, blue fastest
+template <class F>
+OCIO::Lut3DTransformRcPtr make_cube(unsigned long edge, const F& color) {
+    OCIO::Lut3DTransformRcPtr cube = OCIO::Lut3DTransform::Create(edge);
+    cube->setInterpolation(OCIO::INTERP_TETRAHEDRAL);
+    cube->setFileOutputBitDepth(OCIO::BIT_DEPTH_F32);
+    for (unsigned long i = 0; i < edge * edge * edge; ++i) {
+        const Vector3 v = color(i);
+        cube->setValue(i / (edge * edge), i / edge % edge, i % edge, static_cast<float>(v[0]),
+                       static_cast<float>(v[1]), static_cast<float>(v[2]));
+    }
+    return cube;
 }
 
 /// Widest to narrowest of what stages so far let through, per channel.
@@ -69,8 +96,9 @@ struct Domain {
 /// Smallest power of two t such that limiting every channel to [0, t] moves no colour of a ramp to
 /// 65504 (greys, primaries and secondaries, saturated and not) by more than a quarter of a 10-bit
 /// code: where the operator saturates, a cube's nodes beyond would be wasted.
-double saturation_point(const Map3Stage& stage, const Expr& code) {
-    const ReferenceEngine engine({stage, curve_stage(code)});
+/// @param codes  light -> the code values that are stored, limited as behind the cube
+double saturation_point(const Pipeline& codes) {
+    const ReferenceEngine engine(codes);
     const auto moved = [&](double top) {
         double worst = 0;
         for (int direction = 1; direction < 8; ++direction) {
@@ -95,6 +123,52 @@ double saturation_point(const Map3Stage& stage, const Expr& code) {
     while (top < 65536 && moved(top) > 0.25 / 1023)
         top *= 2;
     return std::min(top, kHalfMax);
+}
+
+/// Of the axis of a fitted cube, for the lights above 64: what choose_log_axis() finds for ACES 2.0
+/// in SDR.
+constexpr double kShareOfLights = 5.0 / 64;
+
+/// Log with a linear toe: equal steps in stops above it, no floor above black.
+CubeAxis sampled_axis(double top) {
+    const Expr x = Expr::input();
+    constexpr double k = 0.01;
+    const double lowest = std::log2(k);
+    const double span = std::log2(top + k) - lowest;
+    return {(log2(x + k) - lowest) / span, max(exp2(x * span + lowest) - k, 0), top};
+}
+
+/// The nodes of a cube; of those asked for before, what was computed then.
+std::shared_ptr<const std::vector<double>> nodes_of(const CubeProblem& problem, bool is_fitted) {
+    struct Entry {
+        std::vector<Expr> said;  // equal expressions are the same node, as long as one lives
+        double lo, hi;
+        int edge;
+        bool is_fitted;
+        Primaries primaries;
+        std::shared_ptr<const std::vector<double>> nodes;
+    };
+    static std::mutex mutex;
+    static std::vector<Entry> entries;
+    const std::array<Expr, 3> rgb = compose(problem.pipeline);
+    Entry wanted{{rgb[0], rgb[1], rgb[2], problem.axis.light},
+                 problem.lo,
+                 problem.hi,
+                 problem.edge,
+                 is_fitted,
+                 problem.primaries,
+                 nullptr};
+    const std::lock_guard lock(mutex);
+    for (const Entry& e : entries) {
+        if (std::equal(e.said.begin(), e.said.end(), wanted.said.begin(), same) &&
+            e.lo == wanted.lo && e.hi == wanted.hi && e.edge == wanted.edge &&
+            e.is_fitted == wanted.is_fitted && e.primaries == wanted.primaries)
+            return e.nodes;
+    }
+    wanted.nodes = std::make_shared<const std::vector<double>>(is_fitted ? fit_cube(problem)
+                                                                         : sample_cube(problem));
+    entries.push_back(wanted);
+    return wanted.nodes;
 }
 
 class Lowering {
@@ -156,7 +230,12 @@ class Lowering {
                  "xyY inverse");
             emit(make_matrix(inverse(basis)), "matrix back");
         }
-        domain_ = {};
+        // A channel is at most the norm divided by its weight; so is what it is scaled to.
+        const auto largest = static_cast<double>(*std::max_element(f.begin(), f.end()));
+        const double weight = stage.norm == ToneScaleStage::Norm::max_rgb
+                                  ? 1
+                                  : *std::min_element(stage.weights.begin(), stage.weights.end());
+        domain_ = domain_.lo >= 0 && weight > 0 ? Domain{0, largest / weight} : Domain{};
     }
 
     void hue_preserving(const HuePreservingStage& stage) {
@@ -176,43 +255,62 @@ class Lowering {
 
     void hexcone(const HexconeStage& stage);
 
-    void map3(const Map3Stage& stage) {
+    void lattice(const LatticeStage& stage) {
+        // OCIO limits what enters a cube to [0, 1] as the lattice does; between half floats such a
+        // corner would be blunt.
+        curve({stage.shaper, stage.shaper, stage.shaper});
         flush_curves();
-        if (!(domain_.lo >= 0)) throw Error("ocio: map3 stage without a clamp at 0 before it");
+        const auto edge = static_cast<unsigned long>(stage.lattice->edge());
+        const std::vector<double>& nodes = stage.lattice->nodes();
+        emit(make_cube(edge,
+                       [&](unsigned long i) {
+                           return Vector3{nodes[3 * i], nodes[3 * i + 1], nodes[3 * i + 2]};
+                       }),
+             std::to_string(edge) + "^3 lattice");
+        const auto [lo, hi] = std::minmax_element(nodes.begin(), nodes.end());
+        domain_ = {*lo, *hi};
+    }
+
+    /// @param behind  what limits the result: outside of it the cube may hold anything
+    void map3(const Map3Stage& stage, const ClampStage& behind = {-kInfinity, kInfinity}) {
+        flush_curves();
+        if (!stage.ocio.empty()) {
+            for (const FixedFunction& function : stage.ocio)
+                emit(make_fixed(function), function.style);
+            result_.is_exact = result_.is_exact && stage.is_ocio_exact;
+            domain_ = {};
+            return;
+        }
+        result_.loses_negatives = result_.loses_negatives || !(domain_.lo >= 0);
         const Expr x = Expr::input();
         const Expr code = srgb_encode(x);  // smooth, signed: negatives follow the straight part
-        const double top = std::min(saturation_point(stage, code), domain_.hi);
-        // Log with a linear toe: equal steps in stops above k, no floor above black.
-        constexpr double k = 0.01;
-        const double lowest = std::log2(k);
-        const double span = std::log2(top + k) - lowest;
-        const Expr shaper = (log2(x + k) - lowest) / span;
-        const Expr unshape = exp2(x * span + lowest) - k;
+        CubeProblem problem;
+        problem.edge = options_.cube_edge;
+        problem.pipeline = {stage, curve_stage(code)};
+        problem.primaries = options_.primaries;
+        const double lo = std::max(behind.lo, -kHalfMax);
+        const double hi = std::min(behind.hi, kHalfMax);
+        problem.lo = evaluate(code, lo);
+        problem.hi = evaluate(code, hi);
+        // A fitted cube may hold anything where the display clips; for a sampled one the corners
+        // of the clip would be a fault like any other.
+        Pipeline seen = problem.pipeline;
+        if (stage.is_cube_fitted) seen.insert(seen.begin() + 1, ClampStage{lo, hi});
+        const double top = std::min(saturation_point(seen), domain_.hi);
+        problem.axis = stage.is_cube_fitted ? make_log_axis(top, problem.edge, kShareOfLights)
+                                            : sampled_axis(top);
 
-        const auto shaper_table = sample_half_domain(shaper, 0, top);
+        const auto shaper = sample_half_domain(problem.axis.place, 0, top);
         emit(make_range(0, top), "range");
-        emit(make_half_lut({shaper_table, shaper_table, shaper_table}), "half LUT shaper");
-
-        const auto edge = static_cast<unsigned long>(options_.cube_edge);
-        OCIO::Lut3DTransformRcPtr cube = OCIO::Lut3DTransform::Create(edge);
-        cube->setInterpolation(OCIO::INTERP_TETRAHEDRAL);
-        cube->setFileOutputBitDepth(OCIO::BIT_DEPTH_F32);
-        const ReferenceEngine engine({stage, curve_stage(code)});
-        std::vector<double> axis(edge);
-        for (unsigned long i = 0; i < edge; ++i) {
-            axis[i] = std::max(
-                0.0, evaluate(unshape, static_cast<double>(i) / static_cast<double>(edge - 1)));
-        }
-        for (unsigned long r = 0; r < edge; ++r) {
-            for (unsigned long g = 0; g < edge; ++g) {
-                for (unsigned long b = 0; b < edge; ++b) {
-                    const Vector3 v = engine({axis[r], axis[g], axis[b]});
-                    cube->setValue(r, g, b, static_cast<float>(v[0]), static_cast<float>(v[1]),
-                                   static_cast<float>(v[2]));
-                }
-            }
-        }
-        emit(cube, std::to_string(edge) + "^3 cube to " + shortest(top));
+        emit(make_half_lut({shaper, shaper, shaper}), "half LUT shaper");
+        const auto nodes = nodes_of(problem, stage.is_cube_fitted);
+        emit(
+            make_cube(static_cast<unsigned long>(problem.edge),
+                      [&](unsigned long i) {
+                          return Vector3{(*nodes)[3 * i], (*nodes)[3 * i + 1], (*nodes)[3 * i + 2]};
+                      }),
+            std::to_string(problem.edge) + "^3 cube to " + shortest(top) +
+                (stage.is_cube_fitted ? ", fitted" : ""));
         result_.is_exact = false;
         domain_ = {};
         curve({srgb_decode(x), srgb_decode(x), srgb_decode(x)});
@@ -617,14 +715,21 @@ void Lowering::hexcone(const HexconeStage& stage) {
 
 Lowered lower_to_ocio(const Pipeline& pipeline, const LowerOptions& options) {
     Lowering lowering(options);
-    for (const Stage& stage : simplify(pipeline)) {
+    const Pipeline stages = simplify(pipeline);
+    for (std::size_t i = 0; i < stages.size(); ++i) {
+        const Stage& stage = stages[i];
         if (const auto* m = std::get_if<MatrixStage>(&stage)) lowering.matrix(m->m);
         if (const auto* c = std::get_if<ClampStage>(&stage)) lowering.clamp(c->lo, c->hi);
         if (const auto* c = std::get_if<CurveStage>(&stage)) lowering.curve(c->f);
         if (const auto* t = std::get_if<ToneScaleStage>(&stage)) lowering.tone_scale(*t);
         if (const auto* h = std::get_if<HuePreservingStage>(&stage)) lowering.hue_preserving(*h);
         if (const auto* h = std::get_if<HexconeStage>(&stage)) lowering.hexcone(*h);
-        if (const auto* m = std::get_if<Map3Stage>(&stage)) lowering.map3(*m);
+        if (const auto* m = std::get_if<Map3Stage>(&stage)) {
+            const auto* behind =
+                i + 1 < stages.size() ? std::get_if<ClampStage>(&stages[i + 1]) : nullptr;
+            lowering.map3(*m, behind ? *behind : ClampStage{-kInfinity, kInfinity});
+        }
+        if (const auto* l = std::get_if<LatticeStage>(&stage)) lowering.lattice(*l);
     }
     return lowering.finish();
 }

@@ -17,12 +17,16 @@ struct Lowered {
     /// False when a part had to be sampled into a 3D cube; otherwise only float32 rounding and the
     /// linear interpolation between neighbouring half floats separate it from the reference.
     bool is_exact = true;
+    /// True when a cube stands where the pipeline would take negatives: it sees them as 0.
+    bool loses_negatives = false;
     /// What was emitted, for reports: "matrix, range, half LUT, range".
     std::string summary;
 };
 
 struct LowerOptions {
     int cube_edge = 65;
+    /// What a true cross-talk works in: cubes are fitted to colors of these and of Rec.709.
+    Primaries primaries = kRec709;
 };
 
 /// Lowers stage by stage, asking each stage what it is (DESIGN of the project, "Lowering to OCIO"):
@@ -33,8 +37,9 @@ struct LowerOptions {
 /// back; a hue-preserving curve -> a half LUT with OCIO's hueAdjust (a cube if the curve falls); a
 /// hexcone stage -> HSV, half LUTs of logarithms with matrices that add one channel to the other,
 /// and back; true cross-talk -> a shaper with a linear toe, a tetrahedral cube of unclipped smooth
-/// output, and the decoding. Native log, power and sRGB operations are not used: OCIO builds with
-/// SSE evaluate them with 15 bits, and OCIO's sRGB is 1e-5 off IEC 61966-2-1.
+/// output, and the decoding; a lattice -> a half LUT of its shaper and the same cube. Native log,
+/// power and sRGB operations are not used: OCIO builds with SSE evaluate them with 15 bits, and
+/// OCIO's sRGB is 1e-5 off IEC 61966-2-1.
 ///
 /// @throws Error  when a stage has no lowering.
 [[nodiscard]] Lowered lower_to_ocio(const Pipeline& pipeline, const LowerOptions& options = {});

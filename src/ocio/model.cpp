@@ -178,9 +178,10 @@ ConfigModel make_config_model() {
              display.title + kDisplaySuffix,
              aliases,
              "Display",
-             display.source +
-                 ". Light above white is not limited here (pure powers: up to 2); views are.",
-             "sdr-video",
+             display.source + (display.is_hdr ? "."
+                                              : ". Light above white is not limited here (pure "
+                                                "powers: up to 2); views are."),
+             display.is_hdr ? "hdr-video" : "sdr-video",
              {"file-io"},
              &display.primaries,
              &display});

@@ -9,7 +9,8 @@
 //           curve. libplacebo, tone_mapping.c: spline, and its variant of bt2390.
 // In        RGB light, working primaries Rec.2020, D65; 1.0 = reference_white cd/m2; domain
 //           [source_black, source_peak], what is outside is as its ends (negatives: 0).
-// Out       display-linear RGB, 1.0 = target_peak; [target_black/target_peak, 1], but bt2390 with
+// Out       display-linear RGB; output=sdr: 1.0 = target_peak, [target_black/target_peak, 1];
+//           output=hdr: the same in units of 100 cd/m2. But bt2390 with
 //           target_black above source_black ends a little above 1, as its black is added there too.
 // Kind      per channel, luminance, max or hue-preserving (parameter `apply`). Monotone on the
 //           neutral axis: yes with the defaults; bt2446a jumps up where its parts meet, by 0.0006
@@ -56,14 +57,21 @@ struct Limits {
     [[nodiscard]] double highest() const { return source_peak / reference_white; }
 };
 
+/// cd/m2 of output 1.
+double output_unit(const Params& p) {
+    return p.choice("output") == "hdr" ? 100 : p.number("target_peak");
+}
+
 std::vector<ParameterSpec> with_limits(std::vector<ParameterSpec> own) {
     std::vector<ParameterSpec> all = {
         number_parameter("source_peak", "cd/m2", 1000, 1, 10000, "of what the source was made for"),
-        number_parameter("target_peak", "cd/m2", 100, 1, 10000, "of the display"),
+        display_parameter(number_parameter("target_peak", "cd/m2", 100, 1, 10000, "of the display"),
+                          [](const DisplayFacts& display) { return shortest(display.peak); }),
         number_parameter("source_black", "cd/m2", 0, 0, 10000, "of what the source was made for"),
         number_parameter("target_black", "cd/m2", 0, 0, 10000, "of the display"),
         number_parameter("reference_white", "cd/m2", 100, 1, 1000,
                          "what scene-linear 1 stands for"),
+        sdr_or_hdr_parameter("sdr: 1 is target_peak; hdr: 1 is 100 cd/m2"),
     };
     all.insert(all.end(), own.begin(), own.end());
     return with_apply("channels", all);
@@ -74,13 +82,15 @@ Operator eetf_operator() {
     op.negatives = kNegativesClampAtZero;
     op.working = kRec2020;
     op.dialects = "EETF";
+    op.peak = [](const Params& p) { return p.number("target_peak") / output_unit(p); };
     return op;
 }
 
 /// @param nits  light of the target in cd/m2, of the scene value between the source's limits.
 Pipeline eetf(const Expr& nits, const Limits& limits, const Params& params) {
-    const double target_lo = limits.is_compressed() ? limits.target_black / limits.target_peak : 0;
-    const Expr f = nits / limits.target_peak;
+    const double unit = output_unit(params);
+    const double target_lo = limits.is_compressed() ? limits.target_black / unit : 0;
+    const Expr f = nits / unit;
     // Channel by channel the limits are stages of their own: their corners stay out of the tables.
     if (params.choice("apply") == "channels") {
         return Pipeline{ClampStage{limits.lowest(), limits.highest()}} +

@@ -29,4 +29,31 @@ inline Pipeline tone_curve_pipeline(const ToneCurve& curve, const Params& params
     return Pipeline{limit_to_positive()} + apply_tone_curve(curve, params);
 }
 
+/// Of an operator that makes pictures for SDR and HDR displays: "output", sdr or hdr.
+inline ParameterSpec sdr_or_hdr_parameter(std::string help) {
+    return display_parameter(
+        choice_parameter("output", {"sdr", "hdr"}, "sdr", std::move(help)),
+        [](const DisplayFacts& display) -> std::string { return display.is_hdr ? "hdr" : "sdr"; });
+}
+
+/// Of an operator that keeps its colors inside the primaries of a display: "limit", which of them
+/// the display decides.
+/// @param choices  of none, rec709, p3d65, rec2020
+inline ParameterSpec limit_parameter(std::vector<std::string> choices, std::string value) {
+    ParameterSpec spec = choice_parameter("limit", std::move(choices), std::move(value),
+                                          "primaries that its colors are kept inside");
+    return display_parameter(std::move(spec), [](const DisplayFacts& display) -> std::string {
+        if (display.primaries == kRec709) return "rec709";
+        return display.primaries == kP3D65 ? "p3d65" : "rec2020";
+    });
+}
+
+/// What the parameter "limit" says; `none` stands for none.
+inline Primaries limiting_primaries(const Params& params, const Primaries& none) {
+    const std::string& limit = params.choice("limit");
+    if (limit == "none") return none;
+    if (limit == "rec709") return kRec709;
+    return limit == "p3d65" ? kP3D65 : kRec2020;
+}
+
 }  // namespace tonewright

@@ -19,6 +19,7 @@
 //           tinted by some 1e-6.
 // Check     mid grey 0.18 in Rec.2020 -> red 0.0579497689 (sdr), 0.144874422 (hdr)
 //           (check_values.json).
+#include <algorithm>
 #include <cmath>
 
 #include "operators/family.h"
@@ -109,9 +110,12 @@ std::vector<Operator> define_gt7() {
     op.bounds = {.cube = 0.26, .reason = "a cube: lights lose their chroma within 1.4 stops"};
     op.working = kRec2020;
     op.parameters = {
-        choice_parameter("output", {"sdr", "hdr"}, "sdr",
-                         "sdr: 1 is the peak of a display of 250 cd/m2; hdr: 1 is 100 cd/m2"),
-        number_parameter("peak", "cd/m2", 1000, 250, 10000, "of the display; read with output=hdr"),
+        sdr_or_hdr_parameter("sdr: 1 is the peak of a display of 250 cd/m2; hdr: 1 is 100 cd/m2"),
+        display_parameter(number_parameter("peak", "cd/m2", 1000, 250, 10000,
+                                           "of the display; read with output=hdr"),
+                          [](const DisplayFacts& display) -> std::string {
+                              return display.is_hdr ? shortest(std::max(display.peak, 250.0)) : "";
+                          }),
     };
     op.presets = {{"hdr", "for an HDR display, in units of 100 cd/m2", {{"output", "hdr"}}}};
     op.warnings = {
@@ -119,6 +123,9 @@ std::vector<Operator> define_gt7() {
         "operators that show 1 near white",
         "with output=hdr an SDR display clips at 100 cd/m2"};
     op.deviations = {{Deviation::Kind::exceeds_white, 10, "hdr"}};
+    op.peak = [](const Params& p) {
+        return p.choice("output") == "hdr" ? p.number("peak") / kReferenceLuminance : 1;
+    };
     op.build = [](const Params& p) -> Pipeline {
         const bool is_hdr = p.choice("output") == "hdr";
         const double peak = is_hdr ? p.number("peak") / kReferenceLuminance : 2.5;

@@ -216,7 +216,12 @@ Operator piecewise() {
                           "share of what is above the toe that the shoulder takes"),
          number_parameter("shoulder_angle", "", 0, 0, 1,
                           "how far the shoulder aims above white, which it then passes"),
-         number_parameter("gamma", "", 1, 0.1, 10, "power of the light that the curve puts out")});
+         number_parameter("gamma", "", 1, 0.1, 10, "power of the light that the curve puts out"),
+         display_parameter(
+             number_parameter("max_brightness", "display-linear", 1, 1, 100,
+                              "P: display peak over paper white; the curve f becomes P f(x/P)"),
+             [](const DisplayFacts& display) { return shortest(display.peak / 100); })});
+    op.peak = [](const Params& params) { return params.number("max_brightness"); };
     op.presets = {{"film",
                    "a toe, two stops of highlights and a shoulder that goes on",
                    {{"toe_strength", "0.5"},
@@ -234,7 +239,10 @@ Operator piecewise() {
     op.deviations = {{Deviation::Kind::exceeds_white, 1.1, "film"},
                      {Deviation::Kind::exceeds_white, 1.0, "soft"}};
     op.build = [](const Params& p) -> Pipeline {
-        return tone_curve_pipeline({.f = piecewise_curve(p)}, p);
+        const double brightness = p.number("max_brightness");
+        const Expr x = Expr::input() / brightness;
+        const Expr f = brightness * substitute(piecewise_curve(p), std::span(&x, 1));
+        return tone_curve_pipeline({.f = f}, p);
     };
     return op;
 }

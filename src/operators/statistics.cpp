@@ -256,7 +256,7 @@ Pipeline rod_pipeline(const Params& p, double weight_by_adaptation, const Vector
 
 DeclaredBounds rod_bounds() {
     return {.simd = 2e-6,
-            .ocio_cpu = 1e-4,
+            .ocio_cpu = 1.5e-4,
             .ocio_gpu = 6e-3,
             .cube = 0.3,
             .reason = "the matrix back from the rods' coordinates cancels near black"};

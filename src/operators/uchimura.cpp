@@ -29,8 +29,10 @@ std::vector<Operator> define_uchimura() {
     // them.
     op.parameters = with_apply(
         "channels",
-        {number_parameter("max_brightness", "display-linear", 1, 1, 100,
-                          "P: display peak over paper white"),
+        {display_parameter(
+             number_parameter("max_brightness", "display-linear", 1, 1, 100,
+                              "P: display peak over paper white"),
+             [](const DisplayFacts& display) { return shortest(display.peak / 100); }),
          number_parameter("contrast", "", 1, 0.01, 5, "a: slope of the straight part"),
          number_parameter("linear_start", "scene-linear", 0.22, 0.01, 0.99,
                           "m: where the straight part starts"),
@@ -42,6 +44,7 @@ std::vector<Operator> define_uchimura() {
                    {{"max_brightness", "10"}}}};
     op.warnings = {"with max_brightness above 1 an SDR display clips at paper white"};
     op.deviations = {{Deviation::Kind::exceeds_white, 10, "hdr"}};
+    op.peak = [](const Params& params) { return params.number("max_brightness"); };
     op.build = [](const Params& params) -> Pipeline {
         const double P = params.number("max_brightness");
         const double a = params.number("contrast");

@@ -57,6 +57,12 @@ ParameterSpec statistic_parameter(ParameterSpec number, std::string statistic,
     return number;
 }
 
+ParameterSpec display_parameter(ParameterSpec spec,
+                                std::string (*from_display)(const DisplayFacts&)) {
+    spec.from_display = from_display;
+    return spec;
+}
+
 ParameterSpec choice_parameter(std::string name, std::vector<std::string> choices,
                                std::string value, std::string help) {
     ParameterSpec spec;
@@ -126,12 +132,27 @@ Settings settings_for_picture(std::string_view name, const Settings& settings,
     return all;
 }
 
+ResolvedOperator resolve_for_display(const ResolvedOperator& resolved,
+                                     const DisplayFacts& display) {
+    const auto [op, preset] = find_preset(resolved.name);
+    Settings all = resolved.settings;
+    for (const ParameterSpec& spec : op->parameters) {
+        if (!spec.from_display || (preset && preset->settings.contains(spec.name))) continue;
+        const std::string decided = spec.from_display(display);
+        if (!decided.empty()) all.try_emplace(spec.name, decided);
+    }
+    ResolvedOperator shown = resolve_operator(resolved.name, all, resolved.params.look());
+    shown.label = resolved.label;
+    shown.settings = resolved.settings;
+    return shown;
+}
+
 ResolvedOperator resolve_operator(std::string_view name, const Settings& settings,
                                   std::string_view look) {
     using Kind = ParameterSpec::Kind;
     const auto [found_op, preset] = find_preset(name);
     const Operator& op = *found_op;
-    ResolvedOperator resolved{&op, {}, op.id};
+    ResolvedOperator resolved{&op, {}, op.id, std::string(name), settings};
 
     Settings merged;
     if (preset) {

@@ -34,10 +34,62 @@ const Item& find_named(const std::vector<Item>& items, std::string_view name, co
                 did_you_mean(name, all));
 }
 
-Display make_display(std::string id, std::string title, std::vector<std::string> aliases,
-                     const Primaries& primaries, Expr encode, Expr decode, std::string source) {
-    return {std::move(id), std::move(title), std::move(aliases), primaries,
-            encode,        decode,           std::move(source)};
+Display sdr_display(std::string id, std::string title, std::vector<std::string> aliases,
+                    const Primaries& primaries, Expr (*encode)(const Expr&),
+                    Expr (*decode)(const Expr&), std::string source) {
+    const Expr x = Expr::input(0);
+    return {.id = std::move(id),
+            .title = std::move(title),
+            .aliases = std::move(aliases),
+            .primaries = primaries,
+            .encode = {curve_stage(encode(x), decode(x))},
+            .decode = {curve_stage(decode(x), encode(x))},
+            .source = std::move(source)};
+}
+
+constexpr double kHdrPeak = 1000;     // cd/m2: what grading displays and OCIO's HLG display have
+constexpr double kPqLargest = 10000;  // SMPTE ST 2084
+
+Display pq_display(std::string id, std::string title, std::vector<std::string> aliases,
+                   const Primaries& primaries, std::string source) {
+    const Expr x = Expr::input(0);
+    const Expr encode = pq_encode_nits(x * kReferenceWhite);
+    const Expr decode = pq_decode_nits(x) / kReferenceWhite;
+    return {.id = std::move(id),
+            .title = std::move(title),
+            .aliases = std::move(aliases),
+            .primaries = primaries,
+            .encode = {curve_stage(encode, decode)},
+            .decode = {curve_stage(decode, encode)},
+            .source = std::move(source),
+            .is_hdr = true,
+            .peak = kHdrPeak,
+            .largest_light = kPqLargest / kReferenceWhite};
+}
+
+Display hlg_display() {
+    const Expr x = Expr::input(0);
+    const double unit = kHdrPeak / kReferenceWhite;
+    const auto luminance = [](const Expr& f) {
+        // ITU-R BT.2100-2, table 5
+        return ToneScaleStage{ToneScaleStage::Norm::luminance, {0.2627, 0.6780, 0.0593}, f};
+    };
+    return {.id = "rec2100_hlg",
+            .title = "Rec.2100-HLG",
+            .aliases = {"rec2100_hlg_display"},
+            .primaries = kRec2020,
+            .encode = {MatrixStage{scale(kIdentity3, 1 / unit)},
+                       luminance(hlg_inverse_ootf_luminance(x)),
+                       curve_stage(hlg_oetf(x), hlg_inverse_oetf(x)),
+                       // A color of one bright channel has a luminance below 1, so a channel's
+                       // scene light may be above 1 where its display light is the largest.
+                       ClampStage{0, 1}},
+            .decode = {curve_stage(hlg_inverse_oetf(x), hlg_oetf(x)),
+                       luminance(hlg_ootf_luminance(x)), MatrixStage{scale(kIdentity3, unit)}},
+            .source = "ITU-R BT.2100-2 HLG, a display of 1000 cd/m2",
+            .is_hdr = true,
+            .peak = kHdrPeak,
+            .largest_light = unit};
 }
 
 }  // namespace
@@ -70,21 +122,25 @@ const std::vector<InputSpace>& all_input_spaces() {
 }
 
 const std::vector<Display>& all_displays() {
-    static const Expr x = Expr::input(0);
     static const std::vector<Display> displays = {
-        make_display("srgb", "sRGB", {"srgb_display", "srgb_rec709_display"}, kRec709,
-                     srgb_encode(x), srgb_decode(x), "IEC 61966-2-1:1999"),
-        make_display("display_p3", "Display P3", {"displayp3_display", "srgb_p3d65_display"},
-                     kP3D65, srgb_encode(x), srgb_decode(x),
-                     "SMPTE EG 432-1 primaries, D65, IEC 61966-2-1:1999 curve"),
-        make_display("rec1886", "Rec.1886", {"rec1886_rec709_display", "g24_rec709_display"},
-                     kRec709, bt1886_encode(x), bt1886_decode(x),
-                     "ITU-R BT.1886 (black 0), BT.709-6"),
-        make_display("rec2020", "Rec.2020", {"rec1886_rec2020_display", "g24_rec2020_display"},
-                     kRec2020, bt1886_encode(x), bt1886_decode(x),
-                     "ITU-R BT.1886 (black 0), BT.2020-2"),
-        make_display("g22", "Gamma 2.2", {"g22_rec709_display"}, kRec709, power_encode(x, 2.2),
-                     power_decode(x, 2.2), "2.2 power, BT.709-6 primaries"),
+        sdr_display("srgb", "sRGB", {"srgb_display", "srgb_rec709_display"}, kRec709, srgb_encode,
+                    srgb_decode, "IEC 61966-2-1:1999"),
+        sdr_display("display_p3", "Display P3", {"displayp3_display", "srgb_p3d65_display"}, kP3D65,
+                    srgb_encode, srgb_decode,
+                    "SMPTE EG 432-1 primaries, D65, IEC 61966-2-1:1999 curve"),
+        sdr_display("rec1886", "Rec.1886", {"rec1886_rec709_display", "g24_rec709_display"},
+                    kRec709, bt1886_encode, bt1886_decode, "ITU-R BT.1886 (black 0), BT.709-6"),
+        sdr_display("rec2020", "Rec.2020", {"rec1886_rec2020_display", "g24_rec2020_display"},
+                    kRec2020, bt1886_encode, bt1886_decode, "ITU-R BT.1886 (black 0), BT.2020-2"),
+        sdr_display(
+            "g22", "Gamma 2.2", {"g22_rec709_display"}, kRec709,
+            [](const Expr& x) { return power_encode(x, 2.2); },
+            [](const Expr& x) { return power_decode(x, 2.2); }, "2.2 power, BT.709-6 primaries"),
+        pq_display("rec2100_pq", "Rec.2100-PQ", {"rec2100_pq_display", "pq_rec2020_display"},
+                   kRec2020, "ITU-R BT.2100-2 PQ (SMPTE ST 2084); light 1 is 100 cd/m2"),
+        hlg_display(),
+        pq_display("p3d65_pq", "P3-D65 PQ", {"st2084_p3d65_display", "pq_p3d65_display"}, kP3D65,
+                   "SMPTE EG 432-1 primaries, D65, SMPTE ST 2084; light 1 is 100 cd/m2"),
     };
     return displays;
 }

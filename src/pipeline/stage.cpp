@@ -42,7 +42,8 @@ std::string_view stage_kind(const Stage& stage) {
                                  [](const HuePreservingStage&) { return "hue-preserving curve"; },
                                  [](const HexconeStage&) { return "hexcone"; },
                                  [](const ClampStage&) { return "clamp"; },
-                                 [](const Map3Stage&) { return "map3"; }},
+                                 [](const Map3Stage&) { return "map3"; },
+                                 [](const LatticeStage&) { return "lattice"; }},
                       stage);
 }
 
@@ -54,6 +55,7 @@ bool is_identity(const Stage& stage) {
                    [](const ToneScaleStage&) { return false; },
                    [](const HuePreservingStage& s) { return same(s.f, input0()); },
                    [](const HexconeStage&) { return false; },
+                   [](const LatticeStage&) { return false; },
                    [](const ClampStage& s) { return s.lo == -kInfinity && s.hi == kInfinity; },
                    [](const Map3Stage& s) {
                        return same(s.f[0], Expr::input(0)) && same(s.f[1], Expr::input(1)) &&
@@ -76,7 +78,8 @@ bool mixes_channels(const Stage& stage) {
             },
             [](const CurveStage&) { return false; }, [](const ToneScaleStage&) { return true; },
             [](const HuePreservingStage&) { return true; },
-            [](const HexconeStage&) { return true; }, [](const ClampStage&) { return false; },
+            [](const HexconeStage&) { return true; }, [](const LatticeStage&) { return true; },
+            [](const ClampStage&) { return false; },
             [](const Map3Stage& s) {
                 for (int i = 0; i < 3; ++i) {
                     for (int j = 0; j < 3; ++j) {
@@ -133,8 +136,8 @@ std::array<Expr, 3> apply_stage(const Stage& stage, const std::array<Expr, 3>& r
                        const Expr f_lo = substitute(s.f, std::span(&lo, 1));
                        const Expr range = substitute(s.f, std::span(&hi, 1)) - f_lo;
                        std::array<Expr, 3> out = rgb;
-                       // Greys: 0/0, but the range that it would scale is 0. The condition is on what
-                       // is divided by: in float a difference may be 0 where its terms differ.
+                       // Greys: 0/0, but the range that it would scale is 0. The condition is on
+                       // what is divided by: in float a difference may be 0 where its terms differ.
                        const Expr spread = hi - lo;
                        for (Expr& c : out)
                            c = f_lo + range * select(less(0, spread), (c - lo) / spread, 0);
@@ -156,6 +159,17 @@ std::array<Expr, 3> apply_stage(const Stage& stage, const std::array<Expr, 3>& r
                        for (Expr& x : out) {
                            if (s.lo != -kInfinity) x = max(x, s.lo);
                            if (s.hi != kInfinity) x = min(x, s.hi);
+                       }
+                       return out;
+                   },
+                   [&](const LatticeStage& s) {
+                       std::array<Expr, 3> at = rgb;
+                       for (Expr& c : at)
+                           c = substitute(s.shaper, std::span(&c, 1));
+                       std::array<Expr, 3> out = rgb;
+                       for (int c = 0; c < 3; ++c) {
+                           out[static_cast<std::size_t>(c)] =
+                               interpolate(s.lattice, c, at[0], at[1], at[2]);
                        }
                        return out;
                    },
@@ -202,31 +216,34 @@ std::string to_string(const Pipeline& pipeline) {
     for (const Stage& stage : pipeline) {
         s += std::string(stage_kind(stage)) + ": ";
         s += std::visit(
-            Overloaded{[](const MatrixStage& m) { return to_text(m.m); },
-                       [](const CurveStage& c) {
-                           if (c.is_uniform()) return to_string(c.f[0]);
-                           return to_string(c.f[0]) + " | " + to_string(c.f[1]) + " | " +
-                                  to_string(c.f[2]);
-                       },
-                       [](const ToneScaleStage& t) {
-                           return std::string(t.norm == ToneScaleStage::Norm::max_rgb
-                                                  ? "of max(r, g, b): "
-                                                  : "of luminance: ") +
-                                  to_string(t.f);
-                       },
-                       [](const HuePreservingStage& h) { return to_string(h.f); },
-                       [](const HexconeStage& h) {
-                           return "offset " + to_string(h.offset) + ", value " +
-                                  to_string(h.value) + ", chroma " + to_string(h.chroma);
-                       },
-                       [](const ClampStage& c) {
-                           return "[" + shortest(c.lo) + ", " + shortest(c.hi) + "]";
-                       },
-                       [](const Map3Stage& m) {
-                           static const std::array<std::string, 3> rgb = {"r", "g", "b"};
-                           return to_string(m.f[0], rgb) + " | " + to_string(m.f[1], rgb) + " | " +
-                                  to_string(m.f[2], rgb);
-                       }},
+            Overloaded{
+                [](const MatrixStage& m) { return to_text(m.m); },
+                [](const CurveStage& c) {
+                    if (c.is_uniform()) return to_string(c.f[0]);
+                    return to_string(c.f[0]) + " | " + to_string(c.f[1]) + " | " +
+                           to_string(c.f[2]);
+                },
+                [](const ToneScaleStage& t) {
+                    return std::string(t.norm == ToneScaleStage::Norm::max_rgb ? "of max(r, g, b): "
+                                                                               : "of luminance: ") +
+                           to_string(t.f);
+                },
+                [](const HuePreservingStage& h) { return to_string(h.f); },
+                [](const HexconeStage& h) {
+                    return "offset " + to_string(h.offset) + ", value " + to_string(h.value) +
+                           ", chroma " + to_string(h.chroma);
+                },
+                [](const LatticeStage& l) {
+                    return std::to_string(l.lattice->edge()) + "^3 at " + to_string(l.shaper);
+                },
+                [](const ClampStage& c) {
+                    return "[" + shortest(c.lo) + ", " + shortest(c.hi) + "]";
+                },
+                [](const Map3Stage& m) {
+                    static const std::array<std::string, 3> rgb = {"r", "g", "b"};
+                    return to_string(m.f[0], rgb) + " | " + to_string(m.f[1], rgb) + " | " +
+                           to_string(m.f[2], rgb);
+                }},
             stage);
         s += "\n";
     }

@@ -21,13 +21,21 @@ void append(Pipeline& to, const Pipeline& from) { to.insert(to.end(), from.begin
 }  // namespace
 
 View make_view(ResolvedOperator op, std::string_view input, double exposure_stops,
-               std::string_view display) {
+               std::string_view display, double reference_white) {
     if (!(std::fabs(exposure_stops) <= 64)) {
         throw Error("exposure is " + shortest(exposure_stops) + "; expected [-64, 64] stops");
     }
-    View view{std::move(op), find_input_space(input).id, exposure_stops, std::string(display)};
-    if (display != kLinearOutput && display != kNativeOutput)
-        view.display = find_display(display).id;
+    if (!(reference_white >= 50 && reference_white <= 1000)) {
+        throw Error("reference white is " + shortest(reference_white) +
+                    "; expected [50, 1000] cd/m2");
+    }
+    View view{std::move(op), find_input_space(input).id, exposure_stops, std::string(display),
+              reference_white};
+    if (display == kLinearOutput || display == kNativeOutput) return view;
+    const Display& found = find_display(display);
+    view.display = found.id;
+    const double unit = found.is_hdr ? kReferenceWhite / reference_white : 1;
+    view.op = resolve_for_display(view.op, {found.primaries, found.is_hdr, found.peak * unit});
     return view;
 }
 
@@ -42,15 +50,17 @@ bool is_inside(const Primaries& gamut, const Primaries& display) {
     return true;
 }
 
-Pipeline display_light_stages(const Operator& op, const Primaries& display) {
-    Pipeline stages = decode_stages(op);
-    // A gamut inside the display's is limited as its own: then every such display shows the same
-    // colours. A wider one is limited where the display ends.
-    if (is_inside(op.working, display)) stages.push_back(ClampStage{0, 1});
-    if (!(display == op.working)) {
-        stages.push_back(MatrixStage{rgb_to_rgb(op.working, display)});
-        stages.push_back(ClampStage{0, 1});
-    }
+DisplayLimit display_limit(const ResolvedOperator& op, const Display& display) {
+    const Primaries own = op.output_primaries();
+    return {is_inside(own, display.primaries) ? own : display.primaries,
+            std::min(op.peak(), display.largest_light)};
+}
+
+Pipeline display_light_stages(const ResolvedOperator& op, const DisplayLimit& limit) {
+    Pipeline stages = decode_stages(*op.op);
+    if (!(limit.primaries == op.output_primaries()))
+        stages.push_back(MatrixStage{rgb_to_rgb(op.output_primaries(), limit.primaries)});
+    stages.push_back(ClampStage{0, limit.peak});
     return stages;
 }
 
@@ -63,12 +73,21 @@ Pipeline build_view(const View& view) {
     if (view.display == kNativeOutput) return stages;
     if (view.display == kLinearOutput) {
         append(stages, decode_stages(op));
-        stages.push_back(MatrixStage{rgb_to_rgb(op.working, kRec709)});
+        stages.push_back(MatrixStage{rgb_to_rgb(view.op.output_primaries(), kRec709)});
         return stages;
     }
     const Display& display = find_display(view.display);
-    append(stages, display_light_stages(op, display.primaries));
-    stages.push_back(curve_stage(display.encode, display.decode));
+    const DisplayLimit limit = display_limit(view.op, display);
+    append(stages, display_light_stages(view.op, limit));
+    if (!(limit.primaries == display.primaries)) {
+        stages.push_back(MatrixStage{rgb_to_rgb(limit.primaries, display.primaries)});
+        stages.push_back(ClampStage{0, limit.peak});
+    }
+    if (display.is_hdr && view.reference_white != kReferenceWhite) {
+        stages.push_back(MatrixStage{scale(kIdentity3, view.reference_white / kReferenceWhite)});
+        stages.push_back(ClampStage{0, display.largest_light});
+    }
+    append(stages, display.encode);
     return stages;
 }
 

@@ -73,11 +73,32 @@ struct Bounds {
     bool is_mixed_metric = false;
 };
 
-Bounds bounds_of(const Pipeline& pipeline, bool is_exact, const DeclaredBounds& declared) {
+/// The largest value that a stage puts out, of inputs up to `largest` (and not below its negative).
+double largest_after(const Stage& stage, double largest) {
+    const auto at = [&](const Expr& f) { return std::fabs(evaluate(f, largest)); };
+    if (const auto* m = std::get_if<MatrixStage>(&stage)) {
+        double sum = 0;
+        for (const auto& row : m->m)
+            sum = std::max(sum, std::fabs(row[0]) + std::fabs(row[1]) + std::fabs(row[2]));
+        return sum * largest;
+    }
+    if (const auto* c = std::get_if<ClampStage>(&stage)) return std::min(largest, c->hi);
+    if (const auto* c = std::get_if<CurveStage>(&stage))
+        return std::max({at(c->f[0]), at(c->f[1]), at(c->f[2])});
+    if (const auto* l = std::get_if<LatticeStage>(&stage)) {
+        const std::vector<double>& nodes = l->lattice->nodes();
+        return *std::max_element(nodes.begin(), nodes.end());
+    }
+    return largest;
+}
+
+Bounds bounds_of(const Pipeline& pipeline, const Lowered& lowered, bool is_hdr,
+                 const DeclaredBounds& declared) {
     Bounds b;
     // Below 1 the error is one of float32 numbers around 1; above, it is in proportion to what the
     // curve grows to before the display's clamp.
-    const auto largest = [](const Expr& f) { return std::max(1.0, evaluate(f, 4096.0)); };
+    double largest_input = 4096;
+    const auto largest = [&](const Expr& f) { return std::max(1.0, evaluate(f, largest_input)); };
     const auto allow = [&](double cpu, double gpu) {
         b.cpu = std::max(b.cpu, cpu);
         b.gpu = std::max(b.gpu, gpu);
@@ -93,21 +114,28 @@ Bounds bounds_of(const Pipeline& pipeline, bool is_exact, const DeclaredBounds& 
             allow(3e-7 * largest(h->f), 1e-6 * largest(h->f));
         if (const auto* h = std::get_if<HexconeStage>(&stage))
             allow(1e-5 * largest(h->value), 3e-5 * largest(h->value));
-    }
-    if (!is_exact) {  // 65^3 cube: one code of 10 bits
-        const double cube = declared.cube > 0 ? declared.cube : 1.0 / 1023;
-        allow(cube, cube);
+        if (std::holds_alternative<LatticeStage>(stage)) allow(1e-5, 5e-5);
+        largest_input = largest_after(stage, largest_input);
     }
     if (declared.simd > 0) b.simd = declared.simd;
     if (declared.ocio_cpu > 0) b.cpu = declared.ocio_cpu;
     if (declared.ocio_gpu > 0) b.gpu = declared.ocio_gpu;
+    if (!lowered.is_exact) {  // 65^3 cube: one code of 10 bits
+        const double declared_cube =
+            is_hdr && declared.cube_hdr > 0 ? declared.cube_hdr : declared.cube;
+        const double cube = declared_cube > 0 ? declared_cube : 1.0 / 1023;
+        allow(cube, cube);
+    }
     return b;
 }
 
 class Comparison {
   public:
     Comparison(const View& view, const ProbeSet& probes)
-        : probes_(probes), decode_(find_display(view.display).decode), truth_(probes.rgb.size()) {
+        : probes_(probes),
+          to_working_(rgb_to_rgb(find_input_space(view.input).primaries, view.op.op->working)),
+          decode_(find_display(view.display).decode),
+          truth_(probes.rgb.size()) {
         const Pipeline whole = build_view(view);
         ReferenceEngine(whole).run_rgb(probes.rgb.data(), truth_.data(), probes.size());
         for (std::size_t i = 0; i < whole.size(); ++i) {
@@ -120,7 +148,10 @@ class Comparison {
     }
 
     /// @param unit  relative rounding of the form, see ParityRow::max_beyond_rounding
-    void measure(const std::vector<float>& shown, double unit, ParityRow& row) const {
+    /// @param loses_negatives  the form has a cube that sees negatives of the working primaries as
+    ///                         0: colors outside of them are shown, not held to the bound
+    void measure(const std::vector<float>& shown, double unit, bool loses_negatives,
+                 ParityRow& row) const {
         std::vector<double> errors;
         errors.reserve(probes_.size());
         std::size_t worst = 0;
@@ -137,7 +168,7 @@ class Comparison {
                 row.max_all = error;
                 worst = i;
             }
-            if (error <= row.bound) continue;
+            if (error <= row.bound || (loses_negatives && !is_inside_working(i))) continue;
             const Vector3 allowed = row.is_mixed_metric ? rounding_allowance(i, unit) : Vector3{};
             row.max_beyond_rounding = std::max(row.max_beyond_rounding, excess(i, v, allowed));
         }
@@ -153,16 +184,28 @@ class Comparison {
     }
 
   private:
+    [[nodiscard]] bool is_inside_working(std::size_t i) const {
+        const Vector3 v =
+            multiply(to_working_, Vector3{static_cast<double>(probes_.rgb[3 * i]),
+                                          static_cast<double>(probes_.rgb[3 * i + 1]),
+                                          static_cast<double>(probes_.rgb[3 * i + 2])});
+        return std::min({v[0], v[1], v[2]}) >= 0;
+    }
+
     /// Worst channel's error less what is allowed for it. Of a code value, or of light in units in
     /// which sRGB's slope at black turns it into code values, whichever is less: a display with a
     /// pure power has an infinite slope there, where light too faint to see is many code values.
     [[nodiscard]] double excess(std::size_t i, const float* shown, const Vector3& allowed) const {
         constexpr double kSrgbSlopeAtBlack = 12.92;
         double worst = 0;
+        const Vector3 true_light = decode_({truth_[3 * i], truth_[3 * i + 1], truth_[3 * i + 2]});
+        const Vector3 shown_light =
+            decode_({static_cast<double>(shown[0]), static_cast<double>(shown[1]),
+                     static_cast<double>(shown[2])});
         for (std::size_t c = 0; c < 3; ++c) {
             const double code = static_cast<double>(shown[c]);
             const double truth = truth_[3 * i + c];
-            const double light = std::fabs(evaluate(decode_, code) - evaluate(decode_, truth));
+            const double light = std::fabs(shown_light[c] - true_light[c]);
             const double error = std::min(std::fabs(code - truth), kSrgbSlopeAtBlack * light);
             if (std::isnan(code)) return kInfinity;
             worst = std::max(worst, error - allowed[c]);
@@ -201,7 +244,8 @@ class Comparison {
         ReferenceEngine after;
     };
     const ProbeSet& probes_;
-    Expr decode_;
+    Matrix3 to_working_;
+    ReferenceEngine decode_;
     std::vector<double> truth_;
     std::vector<RoundingPoint> rounding_points_;
 };
@@ -254,8 +298,9 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
         const Pipeline pipeline = build_view(view);
         const Comparison comparison(view, probes);
         const DeclaredBounds& declared = view.op.op->bounds;
-        const Lowered lowered = lower_to_ocio(pipeline);
-        const Bounds bounds = bounds_of(pipeline, lowered.is_exact, declared);
+        const Lowered lowered = lower_to_ocio(pipeline, {.primaries = view.op.op->working});
+        const bool is_hdr = find_display(view.display).is_hdr;
+        const Bounds bounds = bounds_of(pipeline, lowered, is_hdr, declared);
         const auto add = [&](const std::string& form, double bound, bool is_declared, bool mixed,
                              const std::string& lowering, const auto& run) {
             ParityRow row;
@@ -266,7 +311,9 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
             row.bound = bound;
             row.is_mixed_metric = mixed;
             run();
-            comparison.measure(shown, form == "ocio gpu" ? 0x1p-21 : 0x1p-23, row);
+            const bool is_ocio = form.starts_with("ocio");
+            comparison.measure(shown, form == "ocio gpu" ? 0x1p-21 : 0x1p-23,
+                               is_ocio && lowered.loses_negatives, row);
             if (is_declared)
                 row.note += (row.note.empty() ? "" : "; ") + ("bound: " + declared.reason);
             rows.push_back(row);

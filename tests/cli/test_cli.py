@@ -162,6 +162,25 @@ def check_eval_text(report, command):
     report.check("eval: display by title, input by alias",
                  run(command, "eval", "hable", "--display", "Display P3", "--input", "acescg", stdin="1 .5 .2")
                  == run(command, "eval", "hable", "--display", "display_p3", "--input", "lin_ap1", stdin="1 .5 .2"))
+    # Report ITU-R BT.2408: 203 cd/m2 is a PQ signal of 0.58, and of 0.75 in HLG.
+    for display, white, expected in (("rec2100_pq", 100, "0.508078422"), ("p3d65_pq", 203, "0.580688881"),
+                                     ("rec2100_hlg", 100, "0.629620321"), ("Rec.2100-HLG", 203, "0.749877365"),
+                                     ("srgb", 203, "1")):
+        out = run(command, "eval", "clamp", "--display", display, "--reference-white", white, stdin="1 1 1")
+        report.check(f"eval --display {display} --reference-white {white}", out.split() == [expected] * 3, out)
+    for display, operator, decided in (
+            ("rec2100_pq", "aces_20", ["peak=1000", "limit=rec2020"]), ("display_p3", "aces_20", ["limit=p3d65"]),
+            ("p3d65_pq", "aces_13", ["output=hdr_1000", "limit=p3d65"]), ("rec2100_hlg", "agx_blender", ["range=hdr"]),
+            ("rec2100_pq", "uchimura", ["max_brightness=10"]), ("rec2020", "agx_blender", ["limit=rec2020"]),
+            ("rec2100_pq", "gt7", ["output=hdr", "peak=1000"]), ("rec2100_hlg", "gt7:hdr", ["peak=1000"]),
+            ("rec2100_pq", "bt2390", ["target_peak=1000", "output=hdr"])):
+        settings = [text for setting in decided for text in ("--set", setting)]
+        told, left = (run(command, "eval", operator, "--display", display, *words, stdin="9 2 .5")
+                      for words in (settings, []))
+        report.check(f"eval: {display} decides {' '.join(decided)} of {operator}", told == left, f"{told}{left}")
+    out = [run(command, "eval", "aces_20", "--display", "rec2100_pq", *words, stdin="50 50 50")
+           for words in ([], ["--set", "peak=500"], ["--set", "peak=500", "--reference-white", "200"])]
+    report.check("eval: a setting wins over the display", out[1] < out[0] and out[1] < out[2], out)
     # 9/59, the double nearest to which has 17 digits.
     for digits, text in ((1, "0.2"), (4, "0.1525"), (9, "0.152542373"), (17, repr(9 / 59))):
         out = run(command, "eval", "reinhard", "--display", "native", "--digits", digits, stdin="0.18 0.18 0.18")
@@ -392,7 +411,8 @@ def check_config(report, command, scratch, folder):
     first = files_of(folder)
     report.check("config writes its files and nothing else",
                  {"config.ocio", "probe.csv", "README.md", "MANIFEST.csv"} <= set(first)
-                 and all(n.startswith("luts/") and n.endswith(".clf") for n in first if "/" in n), list(first))
+                 and all(n.startswith("luts/") and n.endswith((".clf", ".ctf")) for n in first if "/" in n),
+                 list(first))
     (folder / "luts" / "old_curve_00000000.clf").write_text("stale")
     (folder / "luts" / "mine.clf").write_text("of the user")
     with open(folder / "MANIFEST.csv", "a") as manifest:
@@ -477,6 +497,13 @@ def usage_errors(bad, picture):
         (["eval", "hable", "--engine", "smid"], "engine is smid; did you mean simd?"),
         (["eval", "hable", "--exposure", "bright"], "--exposure; bright"),
         (["eval", "hable", "--exposure", "65"], "exposure is 65; [-64, 64]"),
+        (["eval", "hable", "--reference-white", "20"], "reference white is 20; [50, 1000]"),
+        (["apply", picture, "out.png", "--operator", "hable", "--reference-white", "1001"], "is 1001; [50, 1000]"),
+        (["bake", "hable", "-o", "out.cube", "--reference-white", "big"], "--reference-white; big"),
+        (["eval", "hable", "--display", "rec2100"], "display is rec2100; did you mean rec2100_pq?"),
+        (["eval", "aces_13", "--set", "output=hdr_1000", "--set", "limit=none"],
+         "aces_13: limit is none; expected rec709, p3d65 or rec2020 with output=hdr_1000"),
+        (["eval", "aces_20", "--set", "primaries=0.64 0.33"], "aces_20: primaries is; eight numbers"),
         (["apply", picture, "out.png"], "--operator"), (["apply", picture], "out"),
         (["apply", picture, "out.png", "--operator", "hable", "-d", "unit8"], "unit8; did you mean uint8?"),
         (["apply", picture, "out.png", "--operator", "hable", "--threads", "-1"], "--threads; -1"),

@@ -417,9 +417,11 @@ TEST_P(Law, AnalyticInversesInvert) {
             const auto* curve = std::get_if<CurveStage>(&stages[s]);
             const auto* domain = std::get_if<ClampStage>(&stages[s - 1]);
             if (!curve || !curve->inverse) continue;
-            ASSERT_TRUE(domain) << "an inverse needs to know where it holds";
-            const double lo = std::max(domain->lo, -kHalfMax);
-            const double hi = std::min(domain->hi, kHalfMax);
+            // The scene light of HLG is behind the OOTF: up to the peak's, 1.
+            const bool is_hlg = display.id == "rec2100_hlg" && s + 2 == stages.size();
+            ASSERT_TRUE(domain || is_hlg) << "an inverse needs to know where it holds";
+            const double lo = is_hlg ? 0 : std::max(domain->lo, -kHalfMax);
+            const double hi = is_hlg ? 1 : std::min(domain->hi, kHalfMax);
             for (std::size_t c = 0; c < 3; ++c) {
                 for (int i = 0; i <= 2000; ++i) {
                     // Even steps, and stops down from the upper end. None falls into the 7e-9 above
@@ -576,8 +578,11 @@ TEST_P(ParameterLaw, WhatIsAcceptedIsTotal) {
     std::vector<float> simd(in.size());
     std::set<Settings> tried;
     std::size_t accepted = 0;
+    // Preparing an engine for the largest operators takes a good part of a second.
+    const Pipeline usual = build_view(make_view(resolve_operator(op.id), "lin_rec709", 0, "srgb"));
+    const std::size_t wanted = node_count(compose(usual)) > 300 ? 15 : 100;
     // Of two peaks and two blacks hardly one random set in twenty is in order.
-    for (int round = 0; round < 600 && accepted < 100; ++round) {
+    for (int round = 0; round < 600 && accepted < wanted; ++round) {
         const Settings settings = random_settings(op, random);
         if (!tried.insert(settings).second) continue;
         std::optional<ResolvedOperator> resolved;

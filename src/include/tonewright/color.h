@@ -105,6 +105,14 @@ inline constexpr Vector3 kRec709Weights = {0.2126, 0.7152, 0.0722};
 /// Its inverse.
 [[nodiscard]] Expr hlg_inverse_oetf(const Expr& code);
 
+/// ITU-R BT.2100-2 table 5, HLG inverse OOTF of a display of 1000 cd/m2 (gamma 1.2), on the
+/// luminance of display light, 1 = peak: L -> scene luminance L^(1/1.2). Below 1e-4/3^1.2 it is a
+/// straight line, as in OpenColorIO's DISPLAY - CIE-XYZ-D65_to_REC.2100-HLG-1000nit: the power's
+/// gain at black has no end.
+[[nodiscard]] Expr hlg_inverse_ootf_luminance(const Expr& display_luminance);
+/// Its inverse, the OOTF: scene luminance -> display luminance.
+[[nodiscard]] Expr hlg_ootf_luminance(const Expr& scene_luminance);
+
 /// Academy S-2016-001, ACEScct: AP1 scene-linear -> log code value. 1 is 222.86 scene-linear.
 [[nodiscard]] Expr acescct_encode(const Expr& linear);
 /// Its inverse; the clamp at 65504 of the standard is not in it.

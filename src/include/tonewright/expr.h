@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
@@ -33,8 +35,9 @@ enum class ExprOp : unsigned char {
     sine,
     cosine,
     floor,
-    select,  // b where a is not 0, else c
-    lookup,  // table, index
+    select,   // b where a is not 0, else c
+    lookup,   // table, index
+    lattice,  // one channel of a lattice at three coordinates
 };
 
 /// Samples of a function, at equal distances over [0, 1] or where `positions` says; outside, the
@@ -52,6 +55,36 @@ struct Table {
 
     /// NaN gives the first sample.
     [[nodiscard]] double operator()(double x) const noexcept;
+};
+
+/// Colours on a grid of edge^3 nodes over the unit cube, interpolated in tetrahedra along the grey
+/// diagonal; outside, the nearest face holds.
+class Lattice {
+  public:
+    /// @param make  gives red, green, blue of each node, the third coordinate running fastest. It
+    /// is
+    ///              called once, when a node is first asked for.
+    /// @throws Error  for an edge below 2.
+    Lattice(int edge, std::function<std::vector<double>()> make);
+
+    [[nodiscard]] int edge() const noexcept { return edge_; }
+    /// Safe to call from several threads.
+    /// @throws Error  when `make` has not given 3 edge^3 numbers.
+    [[nodiscard]] const std::vector<double>& nodes() const;
+
+    /// NaN counts as 0.
+    [[nodiscard]] std::array<double, 3> operator()(double r, double g, double b) const noexcept;
+    [[nodiscard]] double operator()(int channel, double r, double g, double b) const noexcept;
+    /// d channel / d each coordinate, in the tetrahedron that holds the place; 0 along a coordinate
+    /// that is outside.
+    [[nodiscard]] std::array<double, 3> gradient(int channel, double r, double g,
+                                                 double b) const noexcept;
+
+  private:
+    int edge_;
+    mutable std::once_flag made_;
+    mutable std::function<std::vector<double>()> make_;
+    mutable std::vector<double> nodes_;
 };
 
 struct ExprNode;
@@ -83,6 +116,10 @@ class Expr {
     [[nodiscard]] int input_index() const noexcept;
     /// @pre op() is lookup
     [[nodiscard]] const std::shared_ptr<const Table>& table() const noexcept;
+    /// @pre op() is lattice
+    [[nodiscard]] const std::shared_ptr<const Lattice>& lattice() const noexcept;
+    /// @pre op() is lattice
+    [[nodiscard]] int channel() const noexcept;
     [[nodiscard]] int operand_count() const noexcept;
     [[nodiscard]] Expr operand(int i) const;
     /// Identity of the shared node: equal for two expressions exactly when they were built equal.
@@ -91,6 +128,8 @@ class Expr {
   private:
     friend Expr make_expr(ExprOp op, std::span<const Expr> operands,
                           std::shared_ptr<const Table> table);
+    friend Expr interpolate(std::shared_ptr<const Lattice> lattice, int channel, const Expr& r,
+                            const Expr& g, const Expr& b);
     explicit Expr(std::shared_ptr<const ExprNode> node) : node_(std::move(node)) {}
     std::shared_ptr<const ExprNode> node_;
 };
@@ -124,6 +163,9 @@ Expr equal(const Expr& a, const Expr& b);
 Expr select(const Expr& condition, const Expr& if_true, const Expr& if_false);
 /// @throws Error  when the table's positions are not as Table wants them.
 Expr lookup(std::shared_ptr<const Table> table, const Expr& index);
+/// Channel 0, 1 or 2 of the lattice at coordinates in [0, 1].
+Expr interpolate(std::shared_ptr<const Lattice> lattice, int channel, const Expr& r, const Expr& g,
+                 const Expr& b);
 
 // Words of the papers, made of the above.
 Expr exp(const Expr& a);                                    // exp2(a * log2(e))

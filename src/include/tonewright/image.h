@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "tonewright/error.h"
-#include "tonewright/pipeline.h"
+#include "tonewright/view.h"
 
 /// Pictures: tone mapping of OpenImageIO images, their files, the test chart and contact sheets.
 ///
@@ -52,6 +52,8 @@ struct TonemapOptions {
     std::string input = "lin_rec709";
     /// Display (id, title or alias), or `linear`, or `native`.
     std::string display = "srgb";
+    /// What an HDR display shows light 1 at, cd/m2, [50, 1000].
+    double reference_white = kReferenceWhite;
     Unpremult unpremult = Unpremult::automatic;
     Statistics statistics = Statistics::from_picture;
 };

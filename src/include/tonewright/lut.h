@@ -101,6 +101,11 @@ struct GeneratedFile {
 /// @throws FileError  naming the path and the reason.
 void write_text_atomically(const std::string& path, std::string_view contents);
 
+/// Makes the folder if it is missing, and a file in it for a moment: what takes a minute to compute
+/// should not find out at its end that it cannot be written.
+/// @throws FileError  naming the path and the reason.
+void require_writable_folder(const std::string& folder);
+
 /// Writes a set into a folder (made if missing), the file named `last` at the end, and then removes
 /// what the folder's previous MANIFEST.csv named and the new set no longer has.
 void write_generated_files(const std::string& folder, const std::vector<GeneratedFile>& files,

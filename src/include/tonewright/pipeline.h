@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -72,14 +73,34 @@ struct ClampStage {
     double hi = kInfinity;
 };
 
+/// One of OpenColorIO's FixedFunctionTransforms: "ACES_GLOW_10".
+struct FixedFunction {
+    std::string style;
+    std::vector<double> parameters = {};
+};
+
 /// True cross-talk: three functions of red, green, blue (inputs 0, 1, 2), which no chain of the
-/// other stages expresses. Defined for inputs >= 0 (a ClampStage stands before it).
+/// other stages expresses.
 struct Map3Stage {
     std::array<Expr, 3> f;
+    /// What OpenColorIO has of it, if anything: these one behind the other, for all inputs.
+    std::vector<FixedFunction> ocio = {};
+    /// False where they differ from f a little.
+    bool is_ocio_exact = true;
+    /// Where a cube has to hold it: its nodes are chosen for the least error between them, not
+    /// sampled. For what bends in many directions; it takes seconds.
+    bool is_cube_fitted = false;
+};
+
+/// A picture that a host defines by a cube: every channel placed on the cube's axes by one curve,
+/// and the cube interpolated in tetrahedra. The interpolation is part of the definition.
+struct LatticeStage {
+    Expr shaper;  // of input 0; limited to [0, 1]
+    std::shared_ptr<const Lattice> lattice;
 };
 
 using Stage = std::variant<MatrixStage, CurveStage, ToneScaleStage, HuePreservingStage,
-                           HexconeStage, ClampStage, Map3Stage>;
+                           HexconeStage, ClampStage, Map3Stage, LatticeStage>;
 using Pipeline = std::vector<Stage>;
 
 [[nodiscard]] MatrixStage exposure_stage(double stops);
@@ -88,7 +109,7 @@ using Pipeline = std::vector<Stage>;
 [[nodiscard]] CurveStage curve_stage(const Expr& f, const Expr& inverse);
 
 /// What the stage is called in messages and docs: "matrix", "curve", "tone scale", "hue-preserving
-/// curve", "hexcone", "clamp", "map3".
+/// curve", "hexcone", "clamp", "map3", "lattice".
 [[nodiscard]] std::string_view stage_kind(const Stage& stage);
 /// True when no pixel changes.
 [[nodiscard]] bool is_identity(const Stage& stage);
@@ -122,6 +143,14 @@ struct SceneStatistics {
     Vector3 maximum_rgb{};
 };
 
+/// What operators ask of the display that their picture is for.
+struct DisplayFacts {
+    Primaries primaries;
+    bool is_hdr = false;
+    /// cd/m2, on a display that shows light 1 at 100 cd/m2; 100 of an SDR display.
+    double peak = 100;
+};
+
 /// One named, typed, bounded parameter of an operator.
 struct ParameterSpec {
     enum class Kind : unsigned char { number, choice, text };
@@ -141,6 +170,9 @@ struct ParameterSpec {
     double (*from_picture)(const SceneStatistics&) = nullptr;
     /// What from_picture takes: "maximum luminance of the picture".
     std::string statistic;
+    /// Not null: a value that the display decides. In a view of a display, where the user has not
+    /// set it, this is its value; else, and where this is empty, the default.
+    std::string (*from_display)(const DisplayFacts&) = nullptr;
 };
 
 [[nodiscard]] ParameterSpec number_parameter(std::string name, std::string unit, double value,
@@ -152,6 +184,10 @@ struct ParameterSpec {
 /// A number with a default, and a value of its own for every picture.
 [[nodiscard]] ParameterSpec statistic_parameter(ParameterSpec number, std::string statistic,
                                                 double (*from_picture)(const SceneStatistics&));
+
+/// A parameter with a default, and a value of its own for every display.
+[[nodiscard]] ParameterSpec display_parameter(ParameterSpec spec,
+                                              std::string (*from_display)(const DisplayFacts&));
 
 /// Text as typed by a user: name -> value.
 using Settings = std::map<std::string, std::string>;
@@ -219,6 +255,7 @@ struct DeclaredBounds {
     double ocio_cpu = 0;  // 0: as its structure has it
     double ocio_gpu = 0;
     double cube = 0;  // where the lowering to OCIO needs a 3D cube, of 65^3; 0: a code of 10 bits
+    double cube_hdr = 0;  // the same on HDR displays; 0: as `cube`
     std::string reason;
 };
 
@@ -255,6 +292,15 @@ struct Operator {
     bool is_diagnostic = false;
     /// Working-space scene-linear, finite -> the operator's own output.
     Pipeline (*build)(const Params& params) = nullptr;
+    /// Back: the operator's own output -> working-space scene-linear. Null: it has no inverse.
+    Pipeline (*build_inverse)(const Params& params) = nullptr;
+    /// Of the output. Null: `working`.
+    Primaries (*output_primaries)(const Params& params) = nullptr;
+    /// Largest light of the output on a display that can show more than white. Null: 1.
+    double (*peak)(const Params& params) = nullptr;
+    /// The style of OpenColorIO's BuiltinTransform from ACES2065-1 to CIE XYZ D65 that this equals;
+    /// empty: none. Null: never.
+    std::string (*ocio_builtin)(const Params& params) = nullptr;
 };
 
 /// Every operator, sorted by id. The table is generated from the files of src/operators/.
@@ -268,8 +314,21 @@ struct ResolvedOperator {
     Params params;
     /// `id`, `id:preset`, or with the settings that differ from the defaults: names it in reports.
     std::string label;
+    /// What it was resolved from.
+    std::string name;
+    Settings settings;
 
     [[nodiscard]] Pipeline build() const { return op->build(params); }
+    /// Primaries of the output.
+    [[nodiscard]] Primaries output_primaries() const {
+        return op->output_primaries ? op->output_primaries(params) : op->working;
+    }
+    /// Largest light of the output that a display should show; 1 is white.
+    [[nodiscard]] double peak() const { return op->peak ? op->peak(params) : 1; }
+    /// @see Operator::ocio_builtin
+    [[nodiscard]] std::string ocio_builtin() const {
+        return op->ocio_builtin ? op->ocio_builtin(params) : "";
+    }
 };
 
 /// Looks up `id` or `id:preset` and checks the settings against the operator's parameters.
@@ -287,5 +346,10 @@ struct ResolvedOperator {
 /// picture has, from its statistics.
 [[nodiscard]] Settings settings_for_picture(std::string_view name, const Settings& settings,
                                             const SceneStatistics& statistics);
+
+/// The same operator for a display: parameters that neither the user nor the preset set and that a
+/// display decides have its values. The label stays.
+[[nodiscard]] ResolvedOperator resolve_for_display(const ResolvedOperator& resolved,
+                                                   const DisplayFacts& display);
 
 }  // namespace tonewright

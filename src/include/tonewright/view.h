@@ -17,17 +17,23 @@ struct InputSpace {
     Primaries primaries;
 };
 
-/// A display: its primaries and how light becomes code values.
+/// A display: its primaries and how light becomes code values. Light 1 is the peak of an SDR
+/// display and 100 cd/m2 of an HDR one, as in OpenColorIO's displays.
 struct Display {
     std::string id;     // srgb
     std::string title;  // as the OCIO config names it: "sRGB"
     std::vector<std::string> aliases;
     Primaries primaries;
-    /// Display-linear (1 = peak) -> code value, of input 0.
-    Expr encode;
+    /// Display-linear -> code values.
+    Pipeline encode;
     /// Its inverse.
-    Expr decode;
+    Pipeline decode;
     std::string source;  // the standard
+    bool is_hdr = false;
+    /// cd/m2: what operators that can make pictures for HDR displays aim at.
+    double peak = 100;
+    /// Light of the largest code value.
+    double largest_light = 1;
 };
 
 [[nodiscard]] const std::vector<InputSpace>& all_input_spaces();
@@ -35,6 +41,9 @@ struct Display {
 /// By id, title or alias; letters' case does not matter. @throws Error with the nearest name.
 [[nodiscard]] const InputSpace& find_input_space(std::string_view name);
 [[nodiscard]] const Display& find_display(std::string_view name);
+
+/// What OpenColorIO's HDR displays show light 1 at, cd/m2.
+inline constexpr double kReferenceWhite = 100;
 
 /// The two outputs that are no display: `linear` = display-linear Rec.709, unclamped;
 /// `native` = the operator's own output, untouched.
@@ -49,20 +58,35 @@ struct View {
     double exposure_stops = 0;
     /// Id of a display, or `linear`, or `native`.
     std::string display = "srgb";
+    /// What light 1 is shown at on an HDR display, cd/m2.
+    double reference_white = kReferenceWhite;
 };
 
-/// @param op        as resolve_operator() gives it.
+/// @param op        as resolve_operator() gives it. On a display, what the display decides of its
+///                  parameters is decided here.
 /// @param exposure  stops, finite, within [-64, 64].
-/// @throws Error    unknown input space or display; exposure out of range.
+/// @param reference_white  what an HDR display shows light 1 at, cd/m2, within [50, 1000]: 100, or
+///                  203 as Report ITU-R BT.2408 has it. SDR displays have no such thing.
+/// @throws Error    unknown input space or display; exposure or reference white out of range.
 [[nodiscard]] View make_view(ResolvedOperator op, std::string_view input, double exposure_stops,
-                             std::string_view display);
+                             std::string_view display, double reference_white = kReferenceWhite);
 
 /// True when light of `gamut` needs no negative light of `display`: no color of it is lost there.
 [[nodiscard]] bool is_inside(const Primaries& gamut, const Primaries& display);
 
-/// Operator output -> display-linear in the display's primaries, limited to [0, 1] (SDR): code
-/// values are decoded with the operator's own power, so that nothing is encoded twice.
-[[nodiscard]] Pipeline display_light_stages(const Operator& op, const Primaries& display);
+/// Where a display's colors are limited: the gamut that light leaves the operator in, and its
+/// largest value.
+struct DisplayLimit {
+    Primaries primaries;
+    double peak = 1;
+};
+/// The operator's own gamut where all of it is inside the display's, so that all such displays show
+/// the same colors; else the display's. White, or more where both operator and display have more.
+[[nodiscard]] DisplayLimit display_limit(const ResolvedOperator& op, const Display& display);
+
+/// Operator output -> display-linear in the limit's primaries, limited to [0, peak]: code values
+/// are decoded with the operator's own power, so that nothing is encoded twice.
+[[nodiscard]] Pipeline display_light_stages(const ResolvedOperator& op, const DisplayLimit& limit);
 
 /// The whole view as stages. Its input is sanitised scene-linear in the view's input space.
 /// @see sanitise in engine.h: NaN -> 0, then each channel to +-kHalfMax

@@ -3,8 +3,8 @@
 
     python3 tests/parity/clients/test_oiiotool.py build/release/bin/tonewright
 
-Real pictures join the test chart where they are found, see pictures.shared_picture; a config that is committed as
-ocio_config/ in the working directory is tried as well. The last line is `N passed, M failed`.
+Real pictures join the test chart where they are found, see pictures.shared_picture; the config is ocio_config/ of the
+working directory where there is one, else a fresh one. The last line is `N passed, M failed`.
 """
 
 import argparse
@@ -101,12 +101,17 @@ def main():
     report = Report()
     with tempfile.TemporaryDirectory(prefix="tonewright-") as folder:
         scratch = Path(folder)
-        run(command, "config", "-o", scratch / "config")
-        config = scratch / "config" / "config.ocio"
+        # The committed config is held to be what the command writes by test_artifacts.py.
+        config = Path("ocio_config/config.ocio").resolve()
+        if not config.is_file():
+            run(command, "config", "-o", scratch / "config")
+            config = scratch / "config" / "config.ocio"
         chart = scratch / "chart.exr"
         run(command, "chart", "-o", chart, "--width", 768, "--height", 432)
         jobs = [(operator, view, "srgb", "sRGB") for operator, view in views(command)]
-        extra = [("agx_sobotka", "AgX Sobotka", "display_p3", "Display P3")]
+        extra = [("agx_sobotka", "AgX Sobotka", "display_p3", "Display P3"),
+                 ("aces_13", "ACES 1.3", "rec2100_pq", "Rec.2100-PQ"), ("hable", "Hable", "p3d65_pq", "P3-D65 PQ"),
+                 ("uchimura", "Gran Turismo", "rec2100_hlg", "Rec.2100-HLG")]
         compare_views(report, command, config, chart, scratch, jobs + extra)
         for name in ("memorial.hdr", "Desk.exr"):
             picture = shared_picture(name)
@@ -121,12 +126,6 @@ def main():
         glow = shared_picture("CandleGlass.exr")  # light where alpha is 0: a flame
         if glow:
             check_alpha(report, command, config, glow, scratch)
-
-        committed = Path("ocio_config/config.ocio")
-        if committed.is_file():
-            compare_views(report, command, committed.resolve(), chart, scratch, jobs, "committed config, chart")
-        else:
-            print(f"skipped: {committed} (not here)")
     return report.finish()
 
 

@@ -986,13 +986,99 @@ TEST(View, LinearAndNativeAreNotLimited) {
     EXPECT_EQ(shown(view_of("agx_minimal", "linear"), {0, 0, 0}), (Vector3{0, 0, 0}));
 }
 
+/// Operator output -> light of the display, as a view of it has it.
+Pipeline light_of(const Operator& op, const Display& display) {
+    const ResolvedOperator resolved{&op, {}, "", "", {}};
+    const DisplayLimit limit = display_limit(resolved, display);
+    Pipeline stages = display_light_stages(resolved, limit);
+    if (!(limit.primaries == display.primaries))
+        stages.push_back(MatrixStage{rgb_to_rgb(limit.primaries, display.primaries)});
+    return stages;
+}
+
 TEST(View, DisplayLightIsDecodedAndLimited) {
     Operator linear;
-    EXPECT_EQ(shown(display_light_stages(linear, kRec709), {-1, 0.5, 3}), (Vector3{0, 0.5, 1}));
+    const Display& srgb = find_display("srgb");
+    EXPECT_EQ(shown(light_of(linear, srgb), {-1, 0.5, 3}), (Vector3{0, 0.5, 1}));
     Operator code;
     code.output = OutputKind::code_value;
     code.code_power = 2;
-    EXPECT_EQ(shown(display_light_stages(code, kRec709), {-1, 0.5, 3}), (Vector3{0, 0.25, 1}));
+    EXPECT_EQ(shown(light_of(code, srgb), {-1, 0.5, 3}), (Vector3{0, 0.25, 1}));
+}
+
+TEST(View, LightAboveWhiteNeedsAnOperatorAndADisplayThatHaveIt) {
+    Operator op;
+    const Display& srgb = find_display("srgb");
+    const Display& pq = find_display("rec2100_pq");
+    const auto peak = [&](const Display& display) {
+        return display_limit({&op, {}, "", "", {}}, display).peak;
+    };
+    EXPECT_EQ(peak(srgb), 1);
+    EXPECT_EQ(peak(pq), 1) << "an SDR picture on an HDR display";
+    op.peak = [](const Params&) { return 10.0; };
+    EXPECT_EQ(peak(srgb), 1);
+    EXPECT_EQ(peak(pq), 10);
+    EXPECT_EQ(peak(find_display("rec2100_hlg")), 10);
+    op.peak = [](const Params&) { return 40.0; };
+    EXPECT_EQ(peak(pq), 40);
+    EXPECT_EQ(peak(find_display("rec2100_hlg")), 10) << "HLG of 1000 cd/m2";
+}
+
+TEST(View, HdrDisplaysShowLightInUnitsOf100Nits) {
+    // ITU-R BT.2100-2 and Report BT.2408: 100 and 203 cd/m2 in PQ; 75 % HLG is 203 cd/m2 of 1000.
+    const Vector3 white = {1, 1, 1};
+    constexpr double pq_100 = 0.508078421517;
+    constexpr double pq_203 = 0.580688881042;
+    for (const char* display : {"rec2100_pq", "p3d65_pq"}) {
+        expect_rgb(shown(view_of("clamp", display), white), {pq_100, pq_100, pq_100}, 1e-12);
+        const View bright = make_view(resolve_operator("clamp"), "lin_rec709", 0, display, 203);
+        expect_rgb(shown(build_view(bright), white), {pq_203, pq_203, pq_203}, 1e-12);
+    }
+    const View hlg = make_view(resolve_operator("clamp"), "lin_rec709", 0, "rec2100_hlg", 203);
+    expect_rgb(shown(build_view(hlg), white), {0.7498774, 0.7498774, 0.7498774}, 5e-8);
+    // OpenColorIO's DISPLAY - CIE-XYZ-D65_to_REC.2100-HLG-1000nit of 1, 18 and 100 cd/m2
+    for (const auto& [light, code] :
+         {std::pair{0.01, 0.0974004}, std::pair{0.18, 0.3247812}, std::pair{1.0, 0.6296203}}) {
+        expect_rgb(shown(view_of("clamp", "rec2100_hlg"), {light, light, light}),
+                   {code, code, code}, 5e-8);
+    }
+    // A saturated colour: BT.2100-2 by hand. Red of Rec.2020 at 100 cd/m2 of 1000: the luminance is
+    // 0.02627 of the peak, the scene light 0.1 * 0.02627^(-1/6), the code its OETF.
+    const double scene = 0.1 * std::pow(0.02627, -1 / 6.0);
+    const double a = 0.17883277;
+    const double red = a * std::log(12 * scene - (1 - 4 * a)) + 0.5 - a * std::log(4 * a);
+    expect_rgb(shown(view_of("clamp", "rec2100_hlg", 0, "lin_rec2020"), {1, 0, 0}),
+               shown(view_of("clamp", "rec2100_hlg", 0, "lin_rec2020"), {1, 0, 0}), 0);
+    expect_rgb(shown(Pipeline(find_display("rec2100_hlg").encode), {1, 0, 0}), {red, 0, 0}, 1e-9);
+}
+
+TEST(View, DisplaysDecideWhatTheUserDoesNot) {
+    const auto number = [](const View& v, const char* name) { return v.op.params.number(name); };
+    const auto view = [](const Settings& settings, const char* display, double white = 100) {
+        return make_view(resolve_operator("uchimura", settings), "lin_rec709", 0, display, white);
+    };
+    EXPECT_EQ(number(view({}, "srgb"), "max_brightness"), 1);
+    EXPECT_EQ(number(view({}, "rec2100_pq"), "max_brightness"), 10);
+    EXPECT_EQ(number(view({{"max_brightness", "4"}}, "rec2100_pq"), "max_brightness"), 4);
+    EXPECT_NEAR(number(view({}, "rec2100_pq", 200), "max_brightness"), 5, 1e-12)
+        << "1000 cd/m2 are five times a white of 200";
+    EXPECT_EQ(view({}, "rec2100_pq").op.label, "uchimura") << "nobody has set it";
+    const View p3 = make_view(resolve_operator("agx_blender"), "lin_rec709", 0, "display_p3");
+    EXPECT_EQ(p3.op.params.choice("limit"), "p3d65");
+    EXPECT_EQ(make_view(p3.op, "lin_rec709", 0, "srgb").op.params.choice("limit"), "rec709")
+        << "what a display decided is open on another one";
+    const View preset = make_view(resolve_operator("agx_blender:hdr"), "lin_rec709", 0, "srgb");
+    EXPECT_EQ(preset.op.params.choice("range"), "hdr") << "a preset is the user's word";
+}
+
+TEST(View, ReferenceWhiteHasAnInterval) {
+    for (const double white : {49.0, 1001.0, std::nan("")}) {
+        EXPECT_NE(error_of([&] {
+                      (void)make_view(resolve_operator("clamp"), "lin_rec709", 0, "rec2100_pq",
+                                      white);
+                  }).find("; expected [50, 1000] cd/m2"),
+                  std::string::npos);
+    }
 }
 
 TEST(View, KnowsWhichGamutIsInsideWhich) {
@@ -1008,32 +1094,35 @@ TEST(View, KnowsWhichGamutIsInsideWhich) {
 
 TEST(View, AGamutInsideTheDisplaysIsLimitedAsItsOwn) {
     Operator op;  // works in Rec.709
-    EXPECT_EQ(kinds(display_light_stages(op, kRec709)), (Kinds{"clamp"}));
-    EXPECT_EQ(kinds(display_light_stages(op, kP3D65)), (Kinds{"clamp", "matrix", "clamp"}));
+    EXPECT_EQ(kinds(light_of(op, find_display("srgb"))), (Kinds{"clamp"}));
+    EXPECT_EQ(kinds(light_of(op, find_display("display_p3"))), (Kinds{"clamp", "matrix"}));
     // (3, 0, 0) is the red of Rec.709, not a brighter one.
-    expect_rgb(shown(display_light_stages(op, kP3D65), {3, 0, 0}),
-               shown(display_light_stages(op, kP3D65), {1, 0, 0}), kRounding);
+    expect_rgb(shown(light_of(op, find_display("display_p3")), {3, 0, 0}),
+               shown(light_of(op, find_display("display_p3")), {1, 0, 0}), kRounding);
 }
 
 TEST(View, AWiderGamutIsLimitedWhereTheDisplayEnds) {
     Operator op;
     op.working = kRec2020;
-    EXPECT_EQ(kinds(display_light_stages(op, kRec709)), (Kinds{"matrix", "clamp"}));
-    EXPECT_EQ(kinds(display_light_stages(op, kRec2020)), (Kinds{"clamp"}));
+    const Display& srgb = find_display("srgb");
+    EXPECT_EQ(kinds(light_of(op, srgb)), (Kinds{"matrix", "clamp"}));
+    EXPECT_EQ(kinds(light_of(op, find_display("rec2020"))), (Kinds{"clamp"}));
     op.output = OutputKind::code_value;
-    EXPECT_EQ(kinds(display_light_stages(op, kRec709)),
-              (Kinds{"clamp", "curve", "matrix", "clamp"}));
+    EXPECT_EQ(kinds(light_of(op, srgb)), (Kinds{"clamp", "curve", "matrix", "clamp"}));
     op.output = OutputKind::display_linear;
     // ITU-R BT.2087-0, annex 2, in its four decimals, half a unit of the last three times. A limit
     // of green's 1.1 before the matrix would show (0.2208, 1.0682, 0.2258).
-    expect_rgb(shown(display_light_stages(op, kRec709), {0.5, 1.1, 0.3}),
+    expect_rgb(shown(light_of(op, srgb), {0.5, 1.1, 0.3}),
                {1.6605 * 0.5 - 0.5876 * 1.1 - 0.0728 * 0.3, 1,
                 -0.0182 * 0.5 - 0.1006 * 1.1 + 1.1187 * 0.3},
                1e-4);
     // The green of Rec.2020 has red and blue below 0.
-    expect_rgb(shown(display_light_stages(op, kRec709), {0, 0.5, 0}), {0, 1.1329 * 0.5, 0}, 5e-5);
+    expect_rgb(shown(light_of(op, srgb), {0, 0.5, 0}), {0, 1.1329 * 0.5, 0}, 5e-5);
     // White stays white.
-    expect_rgb(shown(display_light_stages(op, kRec709), {1, 1, 1}), {1, 1, 1}, kRounding);
+    expect_rgb(shown(light_of(op, srgb), {1, 1, 1}), {1, 1, 1}, kRounding);
+    // The gamut of the output counts, not the one it works in.
+    op.output_primaries = [](const Params&) { return kRec709; };
+    EXPECT_EQ(kinds(light_of(op, srgb)), (Kinds{"clamp"}));
 }
 
 TEST(View, ExposureIsAFactorOfTwoAStop) {
@@ -1094,9 +1183,11 @@ TEST(View, WhiteStaysWhiteOnEveryDisplay) {
     for (const InputSpace& space : all_input_spaces()) {
         for (const Display& display : all_displays()) {
             // 2 is beyond white: the clamp in between keeps it at the peak.
-            expect_rgb(shown(view_of("clamp", display.id, 0, space.id), {2, 2, 2}), {1, 1, 1},
+            const Vector3 white = shown(display.encode, {1, 1, 1});
+            const Vector3 black = shown(display.encode, {0, 0, 0});
+            expect_rgb(shown(view_of("clamp", display.id, 0, space.id), {2, 2, 2}), white,
                        kRounding, space.id + " to " + display.id);
-            expect_rgb(shown(view_of("clamp", display.id, 0, space.id), {0, 0, 0}), {0, 0, 0},
+            expect_rgb(shown(view_of("clamp", display.id, 0, space.id), {0, 0, 0}), black,
                        kRounding, space.id + " to " + display.id);
         }
     }
@@ -1106,11 +1197,20 @@ TEST(View, DisplaysEncodeAsTheirStandardsSay) {
     const Vector3 rgb = {0.5, 0.5, 0.5};
     // IEC 61966-2-1: 1.055 * 0.5^(1/2.4) - 0.055
     const double srgb = 0.735356983052;
+    // SMPTE ST 2084 and BT.2100-2 by hand
+    const double y = std::pow(50.0 / 10000, 2610.0 / 16384);
+    const double pq_of_50 = std::pow((0.8359375 + 18.8515625 * y) / (1 + 18.6875 * y), 2523.0 / 32);
+    const double hlg_of_50 = std::sqrt(3 * std::pow(0.05, 1 / 1.2));
     const std::map<std::string, double> expected = {{"srgb", srgb},
                                                     {"display_p3", srgb},
                                                     {"rec1886", std::pow(0.5, 1 / 2.4)},
                                                     {"rec2020", std::pow(0.5, 1 / 2.4)},
-                                                    {"g22", std::pow(0.5, 1 / 2.2)}};
+                                                    {"g22", std::pow(0.5, 1 / 2.2)},
+                                                    // ST 2084 and HLG of 50 cd/m2, see
+                                                    // HdrDisplaysShowLightInUnitsOf100Nits
+                                                    {"rec2100_pq", pq_of_50},
+                                                    {"p3d65_pq", pq_of_50},
+                                                    {"rec2100_hlg", hlg_of_50}};
     EXPECT_EQ(expected.size(), all_displays().size()) << "a display without expected values";
     for (const auto& [id, code] : expected)
         expect_rgb(shown(view_of("clamp", id), rgb), {code, code, code}, 1e-12, id);
@@ -1119,8 +1219,10 @@ TEST(View, DisplaysEncodeAsTheirStandardsSay) {
 TEST(View, DecodingInvertsEncoding) {
     for (const Display& display : all_displays()) {
         for (const double x : {0.0, 0.001, 0.01, 0.18, 0.5, 1.0}) {
-            EXPECT_NEAR(evaluate(display.decode, evaluate(display.encode, x)), x, kRounding)
-                << display.id;
+            const Vector3 light = {x, x / 2, 0.25};
+            // PQ to the power of 78 and back: some hundred roundings.
+            expect_rgb(shown(display.decode, shown(display.encode, light)), light, 1e-13,
+                       display.id);
         }
     }
 }
@@ -1171,10 +1273,9 @@ TEST(View, UnknownNamesGetTheNearest) {
     EXPECT_EQ(view_error("bayer", 0, "srgb"),
               "input space is bayer; expected lin_rec709, lin_ap1, lin_ap0, lin_rec2020, "
               "lin_p3d65 or lin_egamut");
-    EXPECT_EQ(
-        view_error("lin_rec709", 0, "srbg"),
-        "display is srbg; expected srgb, display_p3, rec1886, rec2020, g22, linear or native; "
-        "did you mean srgb?");
+    EXPECT_EQ(view_error("lin_rec709", 0, "srbg"),
+              "display is srbg; expected srgb, display_p3, rec1886, rec2020, g22, rec2100_pq, "
+              "rec2100_hlg, p3d65_pq, linear or native; did you mean srgb?");
     EXPECT_EQ(view_error("lin_rec709", 65, "srgb"), "exposure is 65; expected [-64, 64] stops");
     EXPECT_EQ(view_error("lin_rec709", -64.5, "srgb"),
               "exposure is -64.5; expected [-64, 64] stops");

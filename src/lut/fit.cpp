@@ -1,0 +1,478 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lut/fit.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <future>
+#include <numbers>
+#include <thread>
+
+#include "engine/probe.h"
+#include "tonewright/engine.h"
+
+// With weights that interpolate linearly inside each of a cell's six tetrahedra, the normal matrix
+// of the least squares connects a node with those that it shares an edge with: seven neighbours up
+// (the other corners of the cell above it) and seven down. So it is eight numbers a node, however
+// many samples are in it, and a step of conjugate gradients costs little; some 15 are needed.
+
+namespace tonewright {
+namespace {
+
+/// Of a logarithmic axis: where its toe ends and its longer steps begin.
+constexpr double kToe = 0.01;
+constexpr double kLights = 64;
+
+/// Training colours: their darkest channel in stops, and the brightest of most.
+constexpr double kDarkest = -10;
+constexpr double kUsualBrightest = 6.5;
+
+/// One training colour in ten is as pictures have them. None is grey: greys are fitted on their
+/// own.
+constexpr bool is_picture_color(std::size_t i) { return i % 10 == 0; }
+
+/// Of the squared distance to the sampled node, where one sample at a node counts 1.
+constexpr float kPull = 0.1F;
+/// A difference that nobody sees: a quarter of a 10-bit code.
+constexpr float kUnseen = 0.25F / 1023;
+
+constexpr int kRounds = 3;
+constexpr int kSteps = 30;
+constexpr double kConverged = 1e-8;
+
+/// A training colour: the tetrahedron that it is in, what its corners weigh, what is wanted.
+struct Sample {
+    std::uint32_t cell;   // the node at its near corner
+    std::uint8_t second;  // the next two corners, as masks of steps: red 4, green 2, blue 1
+    std::uint8_t third;
+    std::array<float, 3> weight;  // of the second, the third and the far corner
+    std::array<float, 3> code;
+};
+
+/// Runs f(0) ... f(count - 1) on threads; what they throw is thrown.
+template <class F>
+void in_parallel(std::size_t count, unsigned thread_count, const F& f) {
+    const auto run = [&](std::size_t first) {
+        for (std::size_t i = first; i < count; i += thread_count)
+            f(i);
+    };
+    std::vector<std::future<void>> others;
+    for (std::size_t first = 1; first < std::min<std::size_t>(thread_count, count); ++first)
+        others.push_back(std::async(std::launch::async, run, first));
+    run(0);
+    for (std::future<void>& other : others)
+        other.get();
+}
+
+class Fit {
+  public:
+    Fit(const CubeProblem& problem, const CubeFitOptions& options)
+        : problem_(problem),
+          n_(static_cast<std::size_t>(problem.edge)),
+          node_count_(n_ * n_ * n_),
+          pad_(n_ * n_ + n_ + 1),
+          threads_(options.thread_count > 0 ? options.thread_count
+                                            : std::max(1U, std::thread::hardware_concurrency())) {
+        for (std::size_t mask = 0; mask < 8; ++mask)
+            step_[mask] = ((mask >> 2 & 1) * n_ + (mask >> 1 & 1)) * n_ + (mask & 1);
+        const double wanted = options.samples_per_node * static_cast<double>(node_count_);
+        sample_count_ =
+            std::min(static_cast<std::size_t>(std::max(wanted, 0.0)), options.largest_sample_count);
+    }
+
+    std::vector<double> run() {
+        const std::vector<double> start = take_sampled();
+        fit_greys();
+        sort_samples(draw_samples());
+        in_parallel(3, threads_, [&](std::size_t c) { solve(c); });
+        std::vector<double> nodes(start.size());
+        for (std::size_t i = 0; i < nodes.size(); ++i)
+            nodes[i] = static_cast<double>(nodes_[i % 3][pad_ + i / 3]);
+        for (std::size_t c = 0; c < 3; ++c)
+            nodes[c] = start[c];
+        return nodes;
+    }
+
+    /// Of the sampled cube, from what is seen: over colours of pictures times over all others, as
+    /// neither is to be had at the other's cost; fourth powers, as what is worst is what matters.
+    double error_of_sampled() {
+        take_sampled();
+        const std::vector<Sample> samples = draw_samples();
+        double of_pictures = 0;
+        double of_others = 0;
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            double& sum = is_picture_color(i) ? of_pictures : of_others;
+            for (std::size_t c = 0; c < 3; ++c) {
+                const double seen = static_cast<double>(clip(samples[i].code[c])) -
+                                    static_cast<double>(clip(shown(start_[c], samples[i])));
+                sum += seen * seen * seen * seen;
+            }
+        }
+        return of_pictures * of_others;
+    }
+
+  private:
+    /// A number for every node, and zeros around, so that every neighbour can be read.
+    using Plane = std::vector<float>;
+
+    /// matrix[mask][i]: between node i and the one that many steps above; matrix[0]: with itself.
+    struct NormalEquations {
+        std::array<Plane, 8> matrix;
+        Plane right;
+    };
+
+    [[nodiscard]] Plane make_plane() const { return Plane(node_count_ + 2 * pad_, 0.0F); }
+    /// Distance of the nodes of two neighbouring greys.
+    [[nodiscard]] std::size_t grey_step() const { return step_[7]; }
+
+    std::vector<double> take_sampled() {
+        std::vector<double> start = sample_cube(problem_);
+        for (std::size_t c = 0; c < 3; ++c) {
+            start_[c] = make_plane();
+            for (std::size_t i = 0; i < node_count_; ++i)
+                start_[c][pad_ + i] = static_cast<float>(start[3 * i + c]);
+        }
+        return start;
+    }
+
+    /// Least squares in one dimension, with colours at equal distances: the edge between two greys'
+    /// nodes is an edge of tetrahedra, so no other node has to do with a grey.
+    void fit_greys() {
+        constexpr std::size_t kPerStep = 64;
+        const std::size_t count = (n_ - 1) * kPerStep;
+        std::vector<double> light(count);
+        for (std::size_t k = 0; k < count; ++k) {
+            light[k] = evaluate(problem_.axis.light,
+                                (static_cast<double>(k) + 0.5) / static_cast<double>(count));
+        }
+        std::array<std::vector<double>, 3> code = {light, light, light};
+        ReferenceEngine(problem_.pipeline)
+            .run({light.data(), light.data(), light.data()},
+                 {code[0].data(), code[1].data(), code[2].data()}, count);
+        for (std::size_t c = 0; c < 3; ++c) {
+            for (int round = 0; round < kRounds; ++round)
+                fit_greys(code[c], kPerStep, start_[c]);
+        }
+    }
+
+    /// @param code  of greys, so many in each step of the axis.
+    void fit_greys(const std::vector<double>& code, std::size_t per_step, Plane& x) const {
+        // A tridiagonal matrix; black is known.
+        std::vector<double> diagonal(n_, static_cast<double>(kPull));
+        std::vector<double> beside(n_, 0.0);
+        std::vector<double> right(n_, 0.0);
+        const auto node = [&](std::size_t i) -> float& { return x[pad_ + i * grey_step()]; };
+        for (std::size_t k = 0; k < code.size(); ++k) {
+            const std::size_t i = k / per_step;
+            const double t =
+                (static_cast<double>(k % per_step) + 0.5) / static_cast<double>(per_step);
+            const double current =
+                (1 - t) * static_cast<double>(node(i)) + t * static_cast<double>(node(i + 1));
+            const auto w = static_cast<double>(
+                importance(static_cast<float>(code[k]), static_cast<float>(current)));
+            diagonal[i] += w * (1 - t) * (1 - t);
+            beside[i] += w * t * (1 - t);
+            diagonal[i + 1] += w * t * t;
+            right[i] += w * (1 - t) * (code[k] - current);
+            right[i + 1] += w * t * (code[k] - current);
+        }
+        for (std::size_t i = 2; i < n_; ++i) {
+            const double ratio = beside[i - 1] / diagonal[i - 1];
+            diagonal[i] -= ratio * beside[i - 1];
+            right[i] -= ratio * right[i - 1];
+        }
+        double above = 0;
+        for (std::size_t i = n_ - 1; i > 0; --i) {
+            above = (right[i] - beside[i] * above) / diagonal[i];
+            node(i) += static_cast<float>(above);
+        }
+    }
+
+    [[nodiscard]] std::vector<Sample> draw_samples() const {
+        constexpr std::size_t kBlock = 4096;
+        std::vector<Sample> drawn(sample_count_);
+        const ReferenceEngine engine(problem_.pipeline);
+        const ReferenceEngine axis({curve_stage(problem_.axis.place)});
+        const Matrix3 from_rec709 = rgb_to_rgb(kRec709, problem_.primaries);
+        in_parallel((sample_count_ + kBlock - 1) / kBlock, threads_, [&](std::size_t block) {
+            const std::size_t begin = block * kBlock;
+            const std::size_t count = std::min(kBlock, sample_count_ - begin);
+            std::vector<float> light(3 * count);
+            ProbeRandom random(block);
+            for (std::size_t i = 0; i < count; ++i) {
+                const Vector3 color = draw_color(begin + i, random, from_rec709);
+                for (std::size_t c = 0; c < 3; ++c) {
+                    light[3 * i + c] =
+                        static_cast<float>(std::clamp(color[c], 0.0, problem_.axis.top));
+                }
+            }
+            std::vector<double> code(light.size());
+            std::vector<double> place(light.size());
+            engine.run_rgb(light.data(), code.data(), count);
+            axis.run_rgb(light.data(), place.data(), count);
+            for (std::size_t i = 0; i < count; ++i)
+                drawn[begin + i] = make_sample(&place[3 * i], &code[3 * i]);
+        });
+        return drawn;
+    }
+
+    /// By cell: what is added to the matrix stays in the processor's cache.
+    void sort_samples(const std::vector<Sample>& drawn) {
+        std::vector<std::size_t> next(node_count_ + 1, 0);
+        for (const Sample& sample : drawn)
+            ++next[sample.cell + 1];
+        for (std::size_t i = 0; i < node_count_; ++i)
+            next[i + 1] += next[i];
+        samples_.resize(drawn.size());
+        for (const Sample& sample : drawn)
+            samples_[next[sample.cell]++] = sample;
+    }
+
+    /// As pictures have them: brightness log-uniform over 15 stops, channels some half of a stop
+    /// apart, in Rec.709. Others: half inside Rec.709 and half inside the primaries of the light,
+    /// channels log-uniform, a tenth with a channel at 0.
+    [[nodiscard]] Vector3 draw_color(std::size_t i, ProbeRandom& random,
+                                     const Matrix3& from_rec709) const {
+        Vector3 color{};
+        if (is_picture_color(i)) {
+            const double stops = std::log2(0.18) + random.uniform(-9, 6.2);
+            for (double& channel : color) {
+                // Box and Muller: a normal distribution, of 0.6 stops.
+                const double radius = std::sqrt(-2 * std::log(1 - random.uniform(0, 1)));
+                const double angle = 2 * std::numbers::pi * random.uniform(0, 1);
+                channel = std::exp2(stops + 0.6 * radius * std::cos(angle));
+            }
+            return multiply(from_rec709, color);
+        }
+        double brightest = std::log2(problem_.axis.top);
+        if (random.uniform(0, 10) < 7) brightest = std::min(brightest, kUsualBrightest);
+        // Additive recurrence of the powers of the root of x^4 = x + 1 (M. Roberts 2018): fills
+        // space more evenly than random numbers.
+        constexpr double kRoot = 1.22074408460575947536;
+        double part = 1;
+        for (double& channel : color) {
+            part /= kRoot;
+            const double u = 0.5 + part * static_cast<double>(i + 1);
+            channel = std::exp2(kDarkest + (brightest - kDarkest) * (u - std::floor(u)));
+        }
+        if (random.uniform(0, 10) < 1) color[random.bits() % 3] = 0;
+        return random.uniform(0, 1) < 0.5 ? color : multiply(from_rec709, color);
+    }
+
+    [[nodiscard]] Sample make_sample(const double* place, const double* code) const {
+        std::array<std::size_t, 3> corner{};
+        std::array<float, 3> f{};
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double position = std::clamp(place[c], 0.0, 1.0) * static_cast<double>(n_ - 1);
+            corner[c] = std::min(static_cast<std::size_t>(position), n_ - 2);
+            f[c] = static_cast<float>(position - static_cast<double>(corner[c]));
+        }
+        // From the near corner to the far one along the axes, largest fraction first.
+        std::array<std::size_t, 3> order = {0, 1, 2};
+        std::stable_sort(order.begin(), order.end(),
+                         [&](std::size_t a, std::size_t b) { return f[a] > f[b]; });
+        Sample sample{};
+        sample.cell = static_cast<std::uint32_t>((corner[0] * n_ + corner[1]) * n_ + corner[2]);
+        sample.second = static_cast<std::uint8_t>(4U >> order[0]);
+        sample.third = static_cast<std::uint8_t>(7U ^ 4U >> order[2]);
+        sample.weight = {f[order[0]] - f[order[1]], f[order[1]] - f[order[2]], f[order[2]]};
+        for (std::size_t c = 0; c < 3; ++c)
+            sample.code[c] = static_cast<float>(code[c]);
+        return sample;
+    }
+
+    [[nodiscard]] float clip(float code) const {
+        return std::clamp(code, static_cast<float>(problem_.lo), static_cast<float>(problem_.hi));
+    }
+
+    /// How much a difference counts: behind the display's clip it is smaller, or nothing. Without a
+    /// step at the clip, or the nodes would hang on the last digit of a code that is exactly there.
+    [[nodiscard]] float importance(float wanted, float shown) const {
+        const float seen = std::fabs(clip(wanted) - clip(shown));
+        const float share = (seen + kUnseen) / (std::fabs(wanted - shown) + kUnseen);
+        return share * share;
+    }
+
+    /// What the nodes x make of a sample.
+    [[nodiscard]] float shown(const Plane& x, const Sample& sample) const {
+        const float* first = x.data() + pad_ + sample.cell;
+        const auto [second, third, last] = sample.weight;
+        return (1 - second - third - last) * first[0] + second * first[step_[sample.second]] +
+               third * first[step_[sample.third]] + last * first[step_[7]];
+    }
+
+    /// Equations of what has to be added to the nodes of channel c.
+    void add_up(std::size_t c, NormalEquations& equations) const {
+        auto& [matrix, right] = equations;
+        for (Plane& plane : matrix)
+            std::fill(plane.begin(), plane.end(), 0.0F);
+        std::fill(right.begin(), right.end(), 0.0F);
+        const Plane& x = nodes_[c];
+        for (const Sample& sample : samples_) {
+            const float current = shown(x, sample);
+            const float missing = sample.code[c] - current;
+            const float w = importance(sample.code[c], current);
+            const auto [second, third, last] = sample.weight;
+            const std::array<float, 4> weight = {1 - second - third - last, second, third, last};
+            const std::array<std::size_t, 4> mask = {0, sample.second, sample.third, 7};
+            for (std::size_t k = 0; k < 4; ++k) {
+                const std::size_t node = pad_ + sample.cell + step_[mask[k]];
+                const float share = w * weight[k];
+                right[node] += share * missing;
+                for (std::size_t l = k; l < 4; ++l)
+                    matrix[mask[l] ^ mask[k]][node] += share * weight[l];
+            }
+        }
+        for (std::size_t i = pad_; i < pad_ + node_count_; ++i) {
+            matrix[0][i] += kPull;
+            right[i] += kPull * (start_[c][i] - x[i]);
+        }
+        for (std::size_t i = 0; i < n_; ++i)
+            hold(pad_ + i * grey_step(), equations);
+    }
+
+    /// The node does not change.
+    void hold(std::size_t node, NormalEquations& equations) const {
+        auto& [matrix, right] = equations;
+        matrix[0][node] = 1;
+        right[node] = 0;
+        for (std::size_t mask = 1; mask < 8; ++mask) {
+            matrix[mask][node] = 0;
+            matrix[mask][node - step_[mask]] = 0;
+        }
+    }
+
+    /// y = matrix x
+    void multiply_by(const std::array<Plane, 8>& matrix, const Plane& x, Plane& y) const {
+        for (std::size_t i = pad_; i < pad_ + node_count_; ++i)
+            y[i] = matrix[0][i] * x[i];
+        for (std::size_t mask = 1; mask < 8; ++mask) {
+            const std::size_t step = step_[mask];
+            const float* a = matrix[mask].data();
+            const float* in = x.data();
+            float* out = y.data();
+            for (std::size_t i = pad_; i < pad_ + node_count_; ++i)
+                out[i] += a[i] * in[i + step] + a[i - step] * in[i - step];
+        }
+    }
+
+    void solve(std::size_t c) {
+        nodes_[c] = start_[c];
+        NormalEquations equations;
+        for (Plane& plane : equations.matrix)
+            plane = make_plane();
+        equations.right = make_plane();
+        for (int round = 0; round < kRounds; ++round) {
+            add_up(c, equations);
+            add_solution(equations, nodes_[c]);
+        }
+    }
+
+    /// Conjugate gradients, preconditioned with the diagonal.
+    void add_solution(NormalEquations& equations, Plane& x) const {
+        const Plane& diagonal = equations.matrix[0];
+        Plane& residual = equations.right;
+        Plane direction = make_plane();
+        Plane image = make_plane();
+        const auto dot = [&](const Plane& a, const auto& b) {
+            double sum = 0;
+            for (std::size_t i = pad_; i < pad_ + node_count_; ++i)
+                sum += static_cast<double>(a[i]) * static_cast<double>(b(i));
+            return sum;
+        };
+        const auto conditioned = [&](std::size_t i) { return residual[i] / diagonal[i]; };
+        double size = dot(residual, conditioned);
+        const double enough = kConverged * size;
+        float turn = 0;
+        for (int step = 0; step < kSteps && size > enough; ++step) {
+            for (std::size_t i = pad_; i < pad_ + node_count_; ++i)
+                direction[i] = conditioned(i) + turn * direction[i];
+            multiply_by(equations.matrix, direction, image);
+            const auto length =
+                static_cast<float>(size / dot(direction, [&](std::size_t i) { return image[i]; }));
+            for (std::size_t i = pad_; i < pad_ + node_count_; ++i) {
+                x[i] += length * direction[i];
+                residual[i] -= length * image[i];
+            }
+            const double next = dot(residual, conditioned);
+            turn = static_cast<float>(next / size);
+            size = next;
+        }
+    }
+
+    const CubeProblem& problem_;
+    std::size_t n_;
+    std::size_t node_count_;
+    std::size_t pad_;
+    unsigned threads_;
+    std::size_t sample_count_ = 0;
+    std::array<std::size_t, 8> step_{};  // from a node to the one that a mask of steps leads to
+    std::array<Plane, 3> start_;
+    std::array<Plane, 3> nodes_;
+    std::vector<Sample> samples_;
+};
+
+}  // namespace
+
+CubeAxis make_log_axis(double top, int edge, double share_of_lights) {
+    const Expr x = Expr::input();
+    const double lowest = std::log2(kToe);
+    const double all = std::log2(top + kToe) - lowest;
+    const double below = std::log2(kLights + kToe) - lowest;
+    const double steps = edge - 1;
+    const double above = std::round(share_of_lights * steps);
+    const double longer = (all - below) / above * (steps - above) / below;
+    const Expr stops = log2(x + kToe) - lowest;
+    if (!(above > 0 && longer > 1)) return {stops / all, exp2(x * all + lowest) - kToe, top};
+    const double length = below + (all - below) / longer;
+    const Expr place = x * length;
+    return {(min(stops, below) + max(stops - below, 0) / longer) / length,
+            exp2(min(place, below) + max(place - below, 0) * longer + lowest) - kToe, top};
+}
+
+CubeAxis choose_log_axis(const CubeProblem& problem, double top) {
+    // A smaller cube tells.
+    CubeProblem smaller = problem;
+    smaller.edge = std::min(problem.edge, 33);
+    double least = kInfinity;
+    double best = 0;
+    for (const double share : {0.0, 0.25, 0.1875, 0.125, 0.078125}) {
+        smaller.axis = make_log_axis(top, smaller.edge, share);
+        const double error = Fit(smaller, {.samples_per_node = 1}).error_of_sampled();
+        if (error < least) best = share;
+        least = std::min(error, least);
+    }
+    return make_log_axis(top, problem.edge, best);
+}
+
+std::vector<double> sample_cube(const CubeProblem& problem) {
+    const auto n = static_cast<std::size_t>(problem.edge);
+    std::vector<double> axis(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        axis[i] = std::clamp(
+            evaluate(problem.axis.light, static_cast<double>(i) / static_cast<double>(n - 1)), 0.0,
+            problem.axis.top);
+    }
+    const std::size_t count = n * n * n;
+    std::array<std::vector<double>, 3> plane;
+    for (auto& p : plane)
+        p.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        plane[0][i] = axis[i / (n * n)];
+        plane[1][i] = axis[i / n % n];
+        plane[2][i] = axis[i % n];
+    }
+    const std::array<double*, 3> out = {plane[0].data(), plane[1].data(), plane[2].data()};
+    ReferenceEngine(problem.pipeline).run({out[0], out[1], out[2]}, out, count);
+    std::vector<double> nodes(3 * count);
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+        nodes[i] = plane[i % 3][i / 3];
+    return nodes;
+}
+
+std::vector<double> fit_cube(const CubeProblem& problem, const CubeFitOptions& options) {
+    return Fit(problem, options).run();
+}
+
+}  // namespace tonewright

@@ -1,0 +1,471 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The output transforms of ACES 1.0 to 1.3: RRT and ODT for SDR, the single-stage ones for HDR, and
+// before them, if wanted, the reference gamut compression.
+//
+// Source    Academy of Motion Picture Arts and Sciences, aces-dev 1.3 (CTL): RRT 1.0.3 with
+//           ACESlib.RRT_Common, ACESlib.Tonescales and ACESlib.ODT_Common; ODT.Academy.* of 48 and
+//           of 100 cd/m2 dim; ACESlib.SSTS and ACESlib.OutputTransforms 1.1 (RRTODT.Academy.*);
+//           LMT.Academy.ReferenceGamutCompress. OpenColorIO 2.1, transforms/builtins/ACES.cpp and
+//           ops/gradingrgbcurve, FixedFunction ACES_GLOW_10, ACES_RED_MOD_10, ACES_DARK_TO_DIM_10,
+//           ACES_GAMUT_COMP_13.
+// In        scene-linear RGB, working primaries AP0 (ACES2065-1); domain (-inf, inf), limited to
+//           +-65504.
+// Out       SDR: display-linear RGB of the limiting primaries, 1.0 = white (48 cd/m2 in the cinema,
+//           100 else); [0, 1]; with limit=none of AP1 and up to 1.1. HDR: display-linear RGB of
+//           Rec.2020, 1.0 = 100 cd/m2. It is limited to [0, peak] in the limiting primaries, still
+//           under the ACES white, and then adapted to D65: that moves colours at the limit a little
+//           outside of the primaries, and blue to at most 1.09 times the peak, which OpenColorIO
+//           and the CTL show. So the output is of Rec.2020 for all limits.
+// Kind      3D (gamut compression, glow and red modifier), then matrix, curve, for video a scale by
+//           luminance (dim surround), matrix. Monotone on the neutral axis: SDR yes; HDR in the
+//           limiting primaries not in the last 5 % below the peak, where the red of greys, which
+//           has arrived at its limit, falls by up to 0.13 % while green and blue still rise.
+// Keeps     0 -> 0 (spline=ocio: 6e-12). In SDR greys up to 0.00199 are at black.
+// Differs   spline=ocio is OpenColorIO's built-in transform, spline=ctl the Academy's. The two
+//           differ in the saturation that the red modifier takes (after the glow, before it), in
+//           the CTL's limit of AP1 at 65504, in a floor of OpenColorIO's under the luminance of the
+//           dim surround, and in the curve: OpenColorIO's stands on knots of eight decimals, and
+//           the tops of three of its curves (RRT, 1000 and 108 cd/m2) are others: ocio_knots().
+//           limit=rec2020 of SDR and rec709 of HDR, and limits of the cinema that OpenColorIO has
+//           no transform for, are made like the others. Left out: the simulations of the D60 and
+//           DCI whites.
+// Check     mid grey 0.18 -> 0.104063516219 (ocio), 0.104063518162 (ctl); output=hdr_1000: 0.15
+//           (check_values.json).
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "operators/color_modifiers.h"
+#include "operators/family.h"
+
+namespace tonewright {
+namespace {
+
+/// A form of the standard: what `output` chooses.
+struct Form {
+    const char* id;
+    /// In the names of OpenColorIO's built-in transforms.
+    const char* style;
+    bool is_hdr;
+    bool is_video;
+    double peak;     // cd/m2 of the curve's largest light
+    double mid = 0;  // of HDR: cd/m2 of scene-linear 0.18
+    /// @see ocio_knots
+    bool has_other_top = false;
+};
+
+constexpr std::array<Form, 6> kForms = {{
+    {"sdr_video", "SDR-VIDEO", false, true, 48},
+    {"sdr_cinema", "SDR-CINEMA", false, false, 48},
+    {"hdr_1000", "HDR-VIDEO-1000nit-15nit", true, true, 1000, 15, true},
+    {"hdr_2000", "HDR-VIDEO-2000nit-15nit", true, true, 2000, 15},
+    {"hdr_4000", "HDR-VIDEO-4000nit-15nit", true, true, 4000, 15},
+    {"hdr_cinema", "HDR-CINEMA-108nit-7.2nit", true, false, 108, 7.2, true},
+}};
+
+const Form& form_of(const Params& p) {
+    return *std::find_if(kForms.begin(), kForms.end(),
+                         [&](const Form& f) { return p.choice("output") == f.id; });
+}
+
+// ---------------------------------------------------------------------------------------------
+// Curves, of log10 to log10: quadratics between knots
+
+struct Knot {
+    double x, y, slope;
+};
+using Knots = std::vector<Knot>;
+
+/// Knots of the uniform quadratic B-spline whose coefficients straddle them.
+template <std::size_t N>
+Knots bspline_knots(const std::array<double, N>& c, double begin, double end) {
+    const double step = (end - begin) / static_cast<double>(N - 2);
+    Knots knots;
+    for (std::size_t i = 0; i + 1 < N; ++i) {
+        knots.push_back({begin + static_cast<double>(i) * step, (c[i] + c[i + 1]) / 2,
+                         (c[i + 1] - c[i]) / step});
+    }
+    return knots;
+}
+
+/// The CTL's curves: below and above mid grey, where either has a knot.
+struct TwoSplines {
+    Knots low, high;
+};
+
+/// y + t (slope + t bend) with t = x - `x`.
+struct Quadratic {
+    double x, y, slope, bend;
+};
+using Quadratics = std::vector<Quadratic>;
+
+Quadratics quadratics(const Knots& knots) {
+    Quadratics pieces;
+    for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
+        const Knot& k = knots[i];
+        const Knot& next = knots[i + 1];
+        pieces.push_back({k.x, k.y, k.slope, (next.slope - k.slope) / (2 * (next.x - k.x))});
+    }
+    pieces.push_back({knots.back().x, knots.back().y, knots.back().slope, 0});
+    return pieces;
+}
+
+Quadratics quadratics(const TwoSplines& splines) {
+    Quadratics pieces = quadratics(splines.low);
+    pieces.pop_back();
+    const Quadratics high = quadratics(splines.high);
+    pieces.insert(pieces.end(), high.begin(), high.end());
+    return pieces;
+}
+
+/// Flat below the first piece; the last one has no end.
+Expr spline(const Quadratics& pieces, const Expr& x) {
+    const Expr at = max(x, pieces.front().x);
+    const auto value = [&](const Quadratic& q) {
+        const Expr t = at - q.x;
+        return q.y + t * (q.slope + t * q.bend);
+    };
+    Expr y = value(pieces.back());
+    for (std::size_t i = pieces.size() - 1; i-- > 0;)
+        y = select(less(at, pieces[i + 1].x), value(pieces[i]), y);
+    return y;
+}
+
+constexpr double kMidGrey = 0.18;
+constexpr double kMidLight = 4.8;  // cd/m2 of it
+constexpr double kMidSlope = 1.55;
+
+/// Of scene-linear 0.18, `stops` up.
+double log10_scene(double stops) { return std::log10(kMidGrey) + stops * std::log10(2.0); }
+
+/// ACESlib.Tonescales, segmented_spline_c5, without the last of each six coefficients, which no
+/// interval uses.
+TwoSplines rrt_splines() {
+    constexpr std::array low = {-4.0, -4.0, -3.1573765773, -0.4852499958, 1.8477324706};
+    constexpr std::array high = {-0.7185482425, 2.0810307172, 3.6681241237, 4.0, 4.0};
+    const double mid = log10_scene(0);
+    return {bspline_knots(low, log10_scene(-15), mid), bspline_knots(high, mid, log10_scene(18))};
+}
+
+/// ACESlib.Tonescales, segmented_spline_c9 of 48 cd/m2, without the last coefficients.
+TwoSplines odt_splines() {
+    constexpr std::array low = {-1.6989700043, -1.6989700043, -1.4779,      -1.2291,     -0.8648,
+                                -0.4480,       0.00518,       0.4511080334, 0.9113744414};
+    constexpr std::array high = {0.5154386965, 0.8470437783, 1.1358,       1.3802,      1.5197,
+                                 1.5985,       1.6467,       1.6746091357, 1.6878733390};
+    const auto rendered = [rrt = quadratics(rrt_splines())](double stops) {
+        return spline(rrt, log10_scene(stops)).value();
+    };
+    constexpr double stops = 6.5;
+    TwoSplines odt = {bspline_knots(low, rendered(-stops), rendered(0)),
+                      bspline_knots(high, rendered(0), rendered(stops))};
+    odt.high.back().slope = 0.04;
+    return odt;
+}
+
+double between(double x, double x0, double x1, double y0, double y1) {
+    return std::lerp(y0, y1, std::clamp((x - x0) / (x1 - x0), 0.0, 1.0));
+}
+
+constexpr double kHdrBlack = 1e-4;  // cd/m2
+constexpr double kSdrBlack = 0.02;
+
+/// ACESlib.SSTS, init_TsParams, with the exposure of ACESlib.OutputTransforms that puts 0.18 at
+/// `mid_light`.
+TwoSplines ssts_splines(double peak, double mid_light) {
+    const double bottom = std::log10(kHdrBlack);
+    const double top = std::log10(peak);
+    const double mid = std::log10(kMidLight);
+    constexpr double low_stops = -15;  // of 0.0001 cd/m2; 0.02 has -6.5
+    const double high_stops = between(top, std::log10(48.0), 4, 6.5, 18);
+    // Half an interval up or down the slope at mid grey, of the outermost coefficients.
+    const double half_low = kMidSlope * std::log10(2.0) * -low_stops / 6;
+    const double half_high = kMidSlope * std::log10(2.0) * high_stops / 6;
+    const std::array low = {bottom, bottom, std::lerp(bottom, mid, 0.18), mid - half_low,
+                            mid + half_low};
+    const double bend = between(high_stops, 6.5, 18, 0.89, 0.90);
+    const std::array high = {mid - half_high, mid + half_high, std::lerp(mid, top, bend), top, top};
+    TwoSplines splines = {bspline_knots(low, log10_scene(low_stops), log10_scene(0)),
+                          bspline_knots(high, log10_scene(0), log10_scene(high_stops))};
+    const double exposure =
+        inverse_at(spline(quadratics(splines), Expr::input()), std::log10(mid_light),
+                   log10_scene(0), log10_scene(high_stops)) -
+        log10_scene(0);
+    for (Knots* knots : {&splines.low, &splines.high}) {
+        for (Knot& k : *knots)
+            k.x -= exposure;
+    }
+    return splines;
+}
+
+/// Two quadratics with the slopes of two knots where one would miss the second: where they meet.
+Knot knot_between(const Knot& a, const Knot& b) {
+    const double width = b.x - a.x;
+    const double mean = (b.y - a.y) / width;
+    const double bend = b.slope - a.slope;
+    const double from_a = a.slope - mean;
+    const double from_b = b.slope - mean;
+    const double x = std::fabs(from_a) > std::fabs(from_b) ? b.x + from_a * width / bend
+                                                           : a.x + from_b * width / bend;
+    const double slope = 2 * mean - b.slope + bend * (x - a.x) / width;
+    return {x, a.y + (a.slope + slope) / 2 * (x - a.x), slope};
+}
+
+/// The knots as OpenColorIO prints them, with eight decimals.
+/// @param has_other_top  OpenColorIO limits slopes so that a curve stays monotone. In the flat last
+///                       interval of this curve a rounding to float makes it take 0.995 of the
+///                       slope at its begin, and divide the two intervals that meet there.
+Knots ocio_knots(const TwoSplines& splines, bool has_other_top) {
+    Knots knots = splines.low;
+    knots.insert(knots.end(), splines.high.begin() + 1, splines.high.end());
+    for (Knot& k : knots) {
+        for (double* number : {&k.x, &k.y, &k.slope})
+            *number = std::round(*number * 1e8) / 1e8;
+    }
+    if (!has_other_top) return knots;
+    const std::size_t n = knots.size();
+    knots[n - 2].slope *= 0.995;
+    const Knot before = knot_between(knots[n - 3], knots[n - 2]);
+    const Knot behind = knot_between(knots[n - 2], knots[n - 1]);
+    knots.insert(knots.end() - 1, behind);
+    knots.insert(knots.end() - 3, before);
+    return knots;
+}
+
+Expr power_of_10(const Expr& y) { return exp2(y * std::log2(10.0)); }
+
+/// Light of a channel of AP1 -> light between the black and the peak of the form, [0, 1].
+Expr tone_curve(const Form& form, bool is_ocio) {
+    constexpr double half_min = 0x1p-24;  // below it all curves are flat
+    const Expr x = log2(max(Expr::input(), half_min)) * std::log10(2.0);
+    const auto curve = [&](const TwoSplines& splines, bool has_other_top) {
+        return is_ocio ? quadratics(ocio_knots(splines, has_other_top)) : quadratics(splines);
+    };
+    Expr y = x;
+    double bottom = 0;
+    if (form.is_hdr) {
+        const Quadratics ssts = curve(ssts_splines(form.peak, form.mid), form.has_other_top);
+        y = spline(ssts, x);
+        bottom = ssts.front().y;
+    } else {
+        const Quadratics odt = curve(odt_splines(), false);
+        y = spline(odt, spline(curve(rrt_splines(), true), x));
+        bottom = odt.front().y;
+    }
+    // The CTL computes its black so that black is 0.
+    const double standard_black = form.is_hdr ? kHdrBlack : kSdrBlack;
+    const double black = is_ocio ? standard_black : power_of_10(bottom).value();
+    return (power_of_10(y) - black) / (form.peak - black);
+}
+
+// ---------------------------------------------------------------------------------------------
+// Before the curve
+
+/// In AP1. The distance of a channel from the largest, D = max - c, is left alone up to u0 = thr a,
+/// a = |max|; with u = D - u0 beyond it becomes u0 + u/(1 + (u/s)^p)^(1/p), s = scale a: the
+/// standard's formula, times a, which needs no division by it.
+Map3Stage compress_gamut() {
+    constexpr double power = 1.2;
+    constexpr std::array limit = {1.147, 1.264, 1.312};  // cyan, magenta, yellow
+    constexpr std::array threshold = {0.815, 0.803, 0.880};
+    const std::array<Expr, 3> c = {Expr::input(0), Expr::input(1), Expr::input(2)};
+    const Expr achromatic = max(max(c[0], c[1]), c[2]);
+    const Expr a = abs(achromatic);
+    Map3Stage stage{c};
+    stage.ocio = {
+        {"ACES_GamutComp13",
+         {limit[0], limit[1], limit[2], threshold[0], threshold[1], threshold[2], power}}};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double range = limit[i] - threshold[i];
+        const double scale =
+            range / std::pow(std::pow((1 - threshold[i]) / range, -power) - 1, 1 / power);
+        const Expr u = achromatic - c[i] - threshold[i] * a;
+        const Expr s = scale * a;
+        // The same in u and s: with the ratio of the smaller to the larger nothing overflows.
+        const Expr beyond = max(u, 0);
+        constexpr double tiny = 1e-30;
+        const Expr ratio = min(beyond, s) / max(max(beyond, s), tiny);
+        const Expr compressed = min(beyond, s) * pow(1 + pow(ratio, power), -1 / power);
+        stage.f[i] = select(less(u, 0), c[i], achromatic - threshold[i] * a - compressed);
+    }
+    return stage;
+}
+
+Expr saturation_of(const std::array<Expr, 3>& ap0) {
+    constexpr double tiny = 1e-10;
+    const Expr hi = max(max(ap0[0], ap0[1]), ap0[2]);
+    const Expr lo = min(min(ap0[0], ap0[1]), ap0[2]);
+    return (max(hi, tiny) - max(lo, tiny)) / max(hi, 0.01);
+}
+
+/// The first two steps of the RRT, in AP0; also of negatives.
+Map3Stage glow_and_red_modifier(bool is_ocio) {
+    const std::array<Expr, 3> c = {Expr::input(0), Expr::input(1), Expr::input(2)};
+    const auto& [r, g, b] = c;
+    Expr saturation = saturation_of(c);
+    // b(b-g) + g(g-r) + r(r-b) as a sum of squares: never below 0, whatever is rounded.
+    const Expr chroma = sqrt(0.5 * ((r - g) * (r - g) + (g - b) * (g - b) + (b - r) * (b - r)));
+    const Expr yc = (b + g + r + 1.75 * chroma) / 3;
+    const Expr x = (saturation - 0.4) / 0.2;
+    const Expr t = max(1 - abs(x / 2), 0);
+    const Expr sigmoid = select(less(x, 0), 0.5 * (t * t), 1 - 0.5 * (t * t));
+    // Full up to yc = 2/3 of 0.08, none from twice 0.08 on. The floor stands below the former.
+    const Expr gain = 0.05 * sigmoid * clamp(0.08 / max(yc, 0.05) - 0.5, 0, 1);
+    Map3Stage stage{{r * (1 + gain), g * (1 + gain), b * (1 + gain)}};
+    stage.ocio = {{"ACES_Glow10"}, {"ACES_RedMod10"}};
+    // The saturation of the dark: where all channels are below 0.01.
+    stage.is_ocio_exact = is_ocio;
+    auto& out = stage.f;
+    if (is_ocio) saturation = saturation_of(out);
+
+    // The cubic B-spline over 135 degrees about red, as a sum of two truncated powers: 1 at red.
+    const Expr hue = atan2(std::numbers::sqrt3 * (out[1] - out[2]), 2 * out[0] - out[1] - out[2]);
+    constexpr double interval = 135.0 / 4 * std::numbers::pi / 180;
+    const Expr distance = abs(hue / interval);
+    const Expr outer = max(2 - distance, 0);
+    const Expr inner = max(1 - distance, 0);
+    const Expr weight = 0.25 * (outer * outer * outer) - inner * inner * inner;
+    out[0] = out[0] + weight * saturation * (0.03 - out[0]) * (1 - 0.82);
+    return stage;
+}
+
+// ---------------------------------------------------------------------------------------------
+// Behind it
+
+/// Limited in the primaries under the ACES white, then adapted to D65, in units of 100 cd/m2.
+Pipeline hdr_light(const Primaries& limit, double peak) {
+    const Matrix3 to_limit = multiply(inverse(rgb_to_xyz(limit)), rgb_to_xyz(kAP1));
+    const Matrix3 adapted = multiply(bradford_adaptation(kAcesWhite, kD65), rgb_to_xyz(limit));
+    return {MatrixStage{to_limit}, ClampStage{0, 1},
+            MatrixStage{scale(multiply(inverse(rgb_to_xyz(kRec2020)), adapted), peak / 100)}};
+}
+
+/// From a dark to a dim surround: Y^0.9811 with the chromaticity kept.
+ToneScaleStage dim_surround(bool is_ocio) {
+    const Expr x = Expr::input();
+    constexpr double gamma = 0.9811;
+    return {ToneScaleStage::Norm::luminance, ap1_weights(),
+            is_ocio ? x * pow(max(x, 1e-10), gamma - 1) : pow(x, gamma)};
+}
+
+Pipeline build(const Params& p) {
+    const Form& form = form_of(p);
+    const bool is_ocio = p.choice("spline") == "ocio";
+    const bool is_limited = p.choice("limit") != "none";
+    if (form.is_hdr && !is_limited) {
+        throw Error("limit is none; expected rec709, p3d65 or rec2020 with output=" +
+                    p.choice("output"));
+    }
+    Pipeline stages = {ClampStage{-kHalfMax, kHalfMax}};
+    if (p.choice("gamut_compression") == "yes") {
+        stages.push_back(MatrixStage{rgb_to_rgb(kAP0, kAP1)});
+        stages.push_back(compress_gamut());
+        stages.push_back(MatrixStage{rgb_to_rgb(kAP1, kAP0)});
+    }
+    stages.push_back(glow_and_red_modifier(is_ocio));
+    stages.push_back(ClampStage{0, kInfinity});
+    stages.push_back(MatrixStage{rgb_to_rgb(kAP0, kAP1)});
+    stages.push_back(ClampStage{0, is_ocio ? kInfinity : kHalfMax});
+    stages.push_back(MatrixStage{saturation_matrix(0.96, ap1_weights())});
+    stages.push_back(curve_stage(tone_curve(form, is_ocio)));
+    const Primaries limit = limiting_primaries(p, kAP1);
+    if (form.is_hdr) return stages + hdr_light(limit, form.peak);
+    if (form.is_video) {
+        stages.push_back(dim_surround(is_ocio));
+        stages.push_back(MatrixStage{saturation_matrix(0.93, ap1_weights())});
+    }
+    if (is_limited) {
+        stages.push_back(MatrixStage{rgb_to_rgb(kAP1, limit)});
+        stages.push_back(ClampStage{0, 1});
+    }
+    return stages;
+}
+
+std::string ocio_builtin(const Params& p) {
+    if (p.choice("spline") != "ocio" || p.choice("gamut_compression") != "no") return "";
+    const Form& form = form_of(p);
+    const std::string& limit = p.choice("limit");
+    std::string kind;
+    if (limit == "none" && !form.is_hdr) kind = "_1.0";
+    if (limit == "rec709" && !form.is_hdr) kind = "-REC709lim_1.1";
+    if (limit == "p3d65" && (form.is_hdr || form.is_video)) kind = "-P3lim_1.1";
+    if (limit == "rec2020" && form.is_hdr && form.is_video) kind = "-REC2020lim_1.1";
+    if (kind.empty()) return "";
+    return std::string("ACES-OUTPUT - ACES2065-1_to_CIE-XYZ-D65 - ") + form.style + kind;
+}
+
+}  // namespace
+
+std::vector<Operator> define_aces_13() {
+    Operator op;
+    op.id = "aces_13";
+    op.title = "ACES 1.3";
+    op.view = "ACES 1.3";
+    op.character =
+        "the film look of ACES 1: strong contrast, mid grey at 0.104; bright saturated colors turn "
+        "to yellow, cyan and magenta";
+    op.source =
+        "Academy of Motion Picture Arts and Sciences, aces-dev 1.3: RRT 1.0.3, ODT and RRTODT, "
+        "LMT.Academy.ReferenceGamutCompress; OpenColorIO 2.1, built-in transforms ACES-OUTPUT";
+    op.licence =
+        "Academy (free to use with its notice), BSD-3-Clause; formulas and constants, no code of "
+        "them is used";
+    op.negatives =
+        "pass through glow and red modifier, in AP0, then clamped at 0 there and again in AP1; "
+        "gamut_compression=yes first brings in those of AP1";
+    op.dialects = "ACES";
+    op.working = kAP0;
+    op.bounds = {.simd = 5e-6,
+                 .ocio_cpu = 3e-5,
+                 .ocio_gpu = 6e-5,
+                 .cube = 2e-3,
+                 .reason =
+                     "hdr: light of 10, of which a float's unit is 1e-6; ctl: OpenColorIO's red "
+                     "modifier takes another saturation in the dark"};
+    ParameterSpec output = choice_parameter(
+        "output", {"sdr_video", "sdr_cinema", "hdr_1000", "hdr_2000", "hdr_4000", "hdr_cinema"},
+        "sdr_video",
+        "sdr: 1 is white, in a dim surround (video) or a dark one; hdr: 1 is 100 cd/m2, the number "
+        "the peak; hdr_cinema: of 108 cd/m2");
+    output = display_parameter(std::move(output), [](const DisplayFacts& display) -> std::string {
+        if (!display.is_hdr) return "sdr_video";
+        if (display.peak >= 4000) return "hdr_4000";
+        return display.peak >= 2000 ? "hdr_2000" : "hdr_1000";
+    });
+    ParameterSpec limit = limit_parameter({"none", "rec709", "p3d65", "rec2020"}, "rec709");
+    limit.help += "; none, of an sdr output: the display limits them";
+    op.parameters = {
+        output,
+        limit,
+        choice_parameter("gamut_compression", {"no", "yes"}, "no",
+                         "the reference gamut compression of ACES 1.3 first, for colors outside "
+                         "AP1"),
+        choice_parameter("spline", {"ocio", "ctl"}, "ocio",
+                         "ocio: as OpenColorIO and its hosts show it; ctl: as the Academy's CTL"),
+    };
+    op.presets = {
+        {"sdr_cinema", "for a cinema: white 48 cd/m2, dark surround", {{"output", "sdr_cinema"}}},
+        {"hdr_1000", "for an HDR display of 1000 cd/m2", {{"output", "hdr_1000"}}},
+        {"ctl", "the curve of the Academy's CTL", {{"spline", "ctl"}}},
+        {"gamut_compressed",
+         "with the reference gamut compression before it",
+         {{"gamut_compression", "yes"}}},
+    };
+    op.warnings = {"of hdr outputs greys near the peak are a little blue: red is limited first"};
+    op.deviations = {{Deviation::Kind::exceeds_white, 10, "hdr_1000"},
+                     {Deviation::Kind::crushes_black, 0.00199, "ctl"}};
+    op.build = build;
+    op.output_primaries = [](const Params& p) {
+        return form_of(p).is_hdr ? kRec2020 : limiting_primaries(p, kAP1);
+    };
+    op.peak = [](const Params& p) {
+        constexpr double bluest = 1.09;  // what the adaptation to D65 makes of the limit's blue
+        const Form& form = form_of(p);
+        return form.is_hdr ? bluest * form.peak / 100 : 1;
+    };
+    op.ocio_builtin = ocio_builtin;
+    return {op};
+}
+
+}  // namespace tonewright

@@ -1,0 +1,626 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// AgX as Blender shows it: the cubes of its configuration, computed; and the formula that they
+// sample. For SDR displays of three gamuts, and for HDR displays of 1000 cd/m2.
+//
+// Source    E. Chow, AgX and AgX_LUT_Gen (github.com/EaryChow), 2023 to 2025; Blender 5.2,
+//           release/datafiles/colormanagement: config.ocio, its views AgX and AgX - HDR 1000 nits
+//           and its looks. Sigmoid: T. Sobotka, SB2383. Axes of the cubes: FilmLight E-Gamut.
+// In        scene-linear RGB, working primaries Rec.2020, D65; domain (-inf, inf). Formula: colours
+//           outside Rec.2020 are lifted until no channel is below 0 and scaled for the light that
+//           this adds. Lattice: limited to its axes, 10 stops below to 15 above mid grey in
+//           E-Gamut.
+// Out       display-linear RGB. range=sdr: primaries of `limit`, 1.0 = display peak; [0, 1]. The
+//           source stores codes of a 2.4 power, which are decoded. range=hdr: Rec.2020 light of
+//           colours within P3, 1.0 = 100 cd/m2; [0, 10].
+// Kind      lattice: 57^3, behind it a power, or the inverse of an HLG display. Formula: 3D, with
+//           c the scene in the inset and f(c) its light through log, sigmoid and 2.4 power:
+//             0.4 f(c) + 0.6 (f(min) + (f(max) - f(min)) (c - min)/(max - min)).
+//           The source turns the hue of HSV back by 60 % of what f has turned it. f is monotone, so
+//           the channels keep their order and the hue its sixth of the circle, within which it is
+//           the place of the middle channel between the others: that is the formula above. The HDR
+//           form has a second curve after f, of which hue and saturation count half.
+//           Guard rails: with off = max(-min, 0), r = c + off and Y the luminance, the source
+//           compares the luminances of c and r, each plus what the largest channel of the
+//           complement has above the complement's luminance: 2 Y - min, since the weights sum to 1.
+//           For r that is never less than for c; so r is multiplied by 1 - off/(2 Y(r)), or black.
+//           Monotone on the neutral axis: yes.
+// Keeps     formula: 0 -> 0, mid grey 0.18 -> 0.18, greys neutral. Lattice: mid grey within 3e-5
+//           (hdr: 0.181), greys within 4e-5 of the sRGB code (hdr: 7e-5).
+// Differs   Where Y(r) of a colour outside Rec.2020 is below off/2, the source multiplies by a
+//           negative number; the next step makes it black: here it is black at once. The cubes are
+//           computed in double: 5e-8 from the files, which have seven decimals; only that of the
+//           looks' guard rail is rounded to them as well. The formula has exact matrices where the
+//           generator's have a white of (0.31271, 0.32902). The light of HLG codes is by the exact
+//           inverse of OpenColorIO's DISPLAY - CIE-XYZ-D65_to_REC.2100-HLG-1000nit.
+// Check     (0.8, 0.1, 0.05) in Rec.709 -> red 0.597988220 (formula), 0.595668176 (lattice)
+//           (check_values.json).
+#include <cmath>
+#include <memory>
+
+#include "operators/color_modifiers.h"
+#include "operators/family.h"
+
+namespace tonewright {
+namespace {
+
+// clang-format off
+constexpr Matrix3 kInset = {{
+    {0.856627153315983, 0.0951212405381588, 0.0482516061458583},
+    {0.137318972929847, 0.761241990602591,  0.101439036467562},
+    {0.11189821299995,  0.0767994186031903, 0.811302368396859}}};
+/// The inverse of another inset than this.
+constexpr Matrix3 kOutset = {{
+    { 1.1271005818144368, -0.1106066430966033, -0.0164939387178346},
+    {-0.1413297634984383,  1.1578237022162718, -0.0164939387178343},
+    {-0.1413297634984383, -0.1106066430966029,  1.2519364065950402}}};
+
+/// FilmLight's matrix of E-Gamut to XYZ under D65, as the configuration has it.
+constexpr Matrix3 kEGamutToXyz = {{
+    { 0.7053968501,  0.1640413283,   0.08101774865},
+    { 0.2801307241,  0.8202066415,  -0.1003373656},
+    {-0.1037815116, -0.07290725703,  1.265746519}}};
+
+/// What the generator of the cubes converts with.
+constexpr Matrix3 kXyzToRec2020 = {{
+    { 1.7166634277958805, -0.3556733197301399, -0.2533680878902478},
+    {-0.6666738361988869,  1.6164557398246981,  0.0157682970961337},
+    { 0.0176424817849772, -0.0427769763827532,  0.9422432810184308}}};
+constexpr Matrix3 kRec2020ToXyz = {{
+    {0.6369535067850740, 0.1446191846692331, 0.1688558539228734},
+    {0.2626983389565560, 0.6780087657728165, 0.0592928952706273},
+    {0.0,                0.0280731358475570, 1.0608272349505707}}};
+constexpr Matrix3 kXyzToRec709 = {{
+    { 3.2410032329763588, -1.5373989694887856, -0.4986158819963629},
+    {-0.9692242522025164,  1.8759299836951759,  0.0415542263400847},
+    { 0.0556394198519755, -0.2040112061239099,  1.0571489771875333}}};
+constexpr Matrix3 kXyzToP3 = {{
+    { 2.4935091239346101, -0.9313881794047790, -0.4027127567416516},
+    {-0.8294732139295544,  1.7626305796003032,  0.0236242371055886},
+    { 0.0358512644339181, -0.0761839369220759,  0.9570295866943110}}};
+// clang-format on
+
+/// Rec.2020 weights of the luminance in the guard rails, each for its cubes: those of the SDR cubes
+/// and of the looks, and those of the generator since 2025, which made the HDR cube.
+constexpr Vector3 kRailWeights = {0.2658180370250449, 0.59846986045365, 0.1357121025213052};
+constexpr Vector3 kRailWeights2025 = {0.2589235355689848, 0.6104985346066525, 0.13057792982436284};
+
+constexpr double kMidGrey = 0.18;
+/// Light of the HDR view's peak over that of its reference white: 1000 and 100 cd/m2.
+constexpr double kHdrPeak = 10;
+/// Nothing is divided by less, and no logarithm is of less.
+constexpr double kTiny = 1e-30;
+
+// ---------------------------------------------------------------------------------------------
+// The formula, of expressions or, for the nodes of the cubes, of numbers.
+
+template <class T>
+using Color = std::array<T, 3>;
+
+double min(double a, double b) { return b < a ? b : a; }
+double max(double a, double b) { return a < b ? b : a; }
+double pow(double base, double exponent) { return std::pow(base, exponent); }
+double exp2(double a) { return std::exp2(a); }
+double log2(double a) { return std::log2(a); }
+
+/// a < b ? below() : above()
+template <class Below, class Above>
+Expr if_less(const Expr& a, const Expr& b, const Below& below, const Above& above) {
+    return select(less(a, b), below(), above());
+}
+template <class Below, class Above>
+double if_less(double a, double b, const Below& below, const Above& above) {
+    return a < b ? below() : above();
+}
+
+template <class T>
+T smallest(const Color<T>& c) {
+    return min(min(c[0], c[1]), c[2]);
+}
+template <class T>
+T largest(const Color<T>& c) {
+    return max(max(c[0], c[1]), c[2]);
+}
+template <class T>
+T luminance(const Color<T>& c, const Vector3& weights) {
+    return weights[0] * c[0] + weights[1] * c[1] + weights[2] * c[2];
+}
+
+/// Colors outside the gamut, with Rec.2020 channels below 0, are lifted and scaled into it. Of a
+/// color without light black is left.
+template <class T>
+Color<T> scene_rail(const Color<T>& c, const Vector3& weights) {
+    const T off = max(-smallest(c), 0);
+    Color<T> out = {c[0] + off, c[1] + off, c[2] + off};
+    const T y = luminance(out, weights);
+    const T ratio = max(1 - 0.5 * off / max(y, kTiny), 0);
+    for (T& v : out)
+        v = v * ratio;
+    return out;
+}
+
+/// The same with light, in the gamut of a display: what the complement adds counts the less the
+/// more light a color has, by y^0.08.
+/// @param weights  of the gamut's channels; they sum to 1.
+template <class T>
+Color<T> display_rail(const Color<T>& c, const Vector3& weights) {
+    const auto fade = [](const T& y) -> T { return min(pow(max(y, 0), 0.08), 1); };
+    const T off = max(-smallest(c), 0);
+    Color<T> out = {c[0] + off, c[1] + off, c[2] + off};
+    const T y = luminance(out, weights);
+    const T before = 2 * y - off - y * fade(y - off);
+    const T after = y * (2 - fade(y));
+    const T ratio = max(before / max(after, kTiny), 0);
+    for (T& v : out)
+        v = v * ratio;
+    return out;
+}
+
+/// What scales an arm of the SB2383 sigmoid, from the pivot over lx and ly, to its end.
+double arm_scale(double lx, double ly, double k, double p) {
+    return std::pow(std::pow(k * lx, -p) * (std::pow(k * lx / ly, p) - 1), -1 / p);
+}
+
+/// The SB2383 sigmoid: two hyperbolic arms that meet in the pivot, mid grey, with slope k.
+class Sigmoid {
+  public:
+    explicit Sigmoid(double shoulder_power)
+        : py_(std::pow(kMidGrey, 1 / 2.4)),
+          toe_(-arm_scale(kPivot, py_, kSlope, kToePower)),
+          shoulder_(arm_scale(1 - kPivot, 1 - py_, kSlope, shoulder_power)),
+          shoulder_power_(shoulder_power) {}
+
+    template <class T>
+    [[nodiscard]] T operator()(const T& n) const {
+        const auto arm = [&](double s, double p) -> T {
+            const T u = max(kSlope * (n - kPivot) / s, 0);  // on the other arm's side: 0
+            return s * (u / pow(1 + pow(u, p), 1 / p)) + py_;
+        };
+        return if_less(
+            n, T(kPivot), [&] { return arm(toe_, kToePower); },
+            [&] { return arm(shoulder_, shoulder_power_); });
+    }
+
+  private:
+    static constexpr double kPivot = 10 / 16.5;
+    static constexpr double kSlope = 2.4;
+    static constexpr double kToePower = 1.5;
+    double py_, toe_, shoulder_, shoulder_power_;
+};
+
+/// Stops from 10 below to 6.5 above mid grey as [0, 1], which goes on above.
+template <class T>
+T stops_of(const T& x) {
+    constexpr double lowest = kMidGrey / 1024;
+    return max((log2(max(x, lowest) / kMidGrey) + 10) / 16.5, 0);
+}
+
+template <class T>
+T sdr_light(const T& x) {
+    static const Sigmoid curve(1.5);
+    return pow(max(curve(stops_of(x)), 0), 2.4);
+}
+
+/// Light on the way to an HDR display, of which 1 is its peak: with the larger shoulder power.
+template <class T>
+T first_hdr_light(const T& x) {
+    static const Sigmoid curve(1.5 * std::pow(kHdrPeak, std::log10(2.0)));
+    return pow(max(curve(T(min(stops_of(x), 1))), 0), 2.4);
+}
+
+/// That light, mid grey where the peak has it: over the stops from 20 below mid grey to 1, a
+/// sigmoid of slope 1.000001 whose shoulder is a plain hyperbola. Black stays black.
+/// @param x  the scene's, `light` its first light.
+template <class T>
+T second_hdr_light(const T& x, const T& light) {
+    static const double height = 20 + std::log2(1 / kMidGrey);
+    static const double px = 20 / height;
+    static const double py = (20 - std::log2(kHdrPeak)) / height;
+    constexpr double k = 1.000001;
+    static const double toe = -arm_scale(px, py, k, 3);
+    static const double run = k * (1 - px);
+    static const double shoulder = run / (run / (1 - py) - 1);
+
+    const T e = (log2(max(light, kTiny) / kMidGrey) + 20) / height;
+    const T mapped = if_less(
+        e, T(px),
+        [&]() -> T {
+            const T u = max(k * (e - px) / toe, 0);
+            return toe * (u / pow(1 + u * u * u, 1.0 / 3)) + py;
+        },
+        [&]() -> T {
+            const T u = k * max(e - px, 0);
+            return u / (1 + u / shoulder) + py;
+        });
+    return if_less(
+        T(0), stops_of(x), [&]() -> T { return kMidGrey * exp2(height * mapped - 20); },
+        []() -> T { return 0; });
+}
+
+/// (c - min)/(max - min): the place of each channel between the others. Greys: 0.
+template <class T>
+Color<T> places(const Color<T>& c) {
+    const T lo = smallest(c);
+    const T spread = largest(c) - lo;
+    Color<T> out = c;
+    for (T& v : out) {
+        v = if_less(
+            T(0), spread, [&]() -> T { return (v - lo) / spread; }, []() -> T { return 0; });
+    }
+    return out;
+}
+
+/// The inset's scene >= 0 -> light, of which the hue is 40 % the curve's and 60 % the scene's.
+template <class T>
+Color<T> sdr_map(const Color<T>& scene) {
+    Color<T> out = {sdr_light(scene[0]), sdr_light(scene[1]), sdr_light(scene[2])};
+    const T lo = smallest(out);
+    const T spread = largest(out) - lo;
+    const Color<T> place = places(scene);
+    for (std::size_t i = 0; i < 3; ++i)
+        out[i] = 0.4 * out[i] + 0.6 * (lo + spread * place[i]);
+    return out;
+}
+
+/// The same for HDR: value of the second light, saturation half of the first, half of the second
+/// light, and so the hue that is mixed 40 % with the scene's.
+template <class T>
+Color<T> hdr_map(const Color<T>& scene) {
+    const Color<T> first = {first_hdr_light(scene[0]), first_hdr_light(scene[1]),
+                            first_hdr_light(scene[2])};
+    Color<T> out = {second_hdr_light(scene[0], first[0]), second_hdr_light(scene[1], first[1]),
+                    second_hdr_light(scene[2], first[2])};
+    const T value = largest(out);
+    const T first_value = largest(first);
+    const T first_saturation = if_less(
+        T(0), first_value, [&]() -> T { return (first_value - smallest(first)) / first_value; },
+        []() -> T { return 0; });
+    const T spread = 0.5 * (value * first_saturation + (value - smallest(out)));
+    const Color<T> place0 = places(scene);
+    const Color<T> place1 = places(first);
+    const Color<T> place2 = places(out);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const T place = 0.6 * place0[i] + 0.2 * (place1[i] + place2[i]);
+        out[i] = value - spread * (1 - place);
+    }
+    return out;
+}
+
+const std::array<Expr, 3>& inputs() {
+    static const std::array<Expr, 3> rgb = {Expr::input(0), Expr::input(1), Expr::input(2)};
+    return rgb;
+}
+
+/// Weights of the luminance of Rec.2020 for the channels of another gamut of the same white.
+Vector3 weights_of(const Primaries& gamut, const Vector3& weights) {
+    const Matrix3 m = rgb_to_rgb(gamut, kRec2020);
+    Vector3 out{};
+    for (std::size_t i = 0; i < 3; ++i)
+        out[i] = weights[0] * m[0][i] + weights[1] * m[1][i] + weights[2] * m[2][i];
+    return out;
+}
+
+Map3Stage as_one(const Pipeline& chain) {
+    Map3Stage stage{compose(chain)};
+    stage.is_cube_fitted = true;
+    return stage;
+}
+
+/// The formula up to the guard rail of the limit, behind a look's stages: one stage of cross-talk,
+/// so that where it has to be sampled it is sampled once. It takes channels below 0.
+Pipeline sdr_formula(const Pipeline& look, const Primaries& limit) {
+    Pipeline chain =
+        look + Pipeline{Map3Stage{scene_rail(inputs(), kRailWeights)}, MatrixStage{kInset},
+                        Map3Stage{sdr_map(inputs())}, MatrixStage{kOutset}};
+    if (!(limit == kRec2020)) {
+        chain.push_back(MatrixStage{rgb_to_rgb(kRec2020, limit)});
+        chain.push_back(Map3Stage{display_rail(inputs(), weights_of(limit, kRailWeights))});
+    }
+    return {as_one(chain), ClampStage{0, 1}};
+}
+
+Pipeline hdr_formula(const Pipeline& look) {
+    const Pipeline chain =
+        look + Pipeline{Map3Stage{scene_rail(inputs(), kRailWeights2025)},
+                        MatrixStage{kInset},
+                        Map3Stage{hdr_map(inputs())},
+                        MatrixStage{kOutset},
+                        MatrixStage{rgb_to_rgb(kRec2020, kP3D65)},
+                        Map3Stage{display_rail(inputs(), weights_of(kP3D65, kRailWeights2025))}};
+    return {as_one(chain), MatrixStage{rgb_to_rgb(kP3D65, kRec2020)}, ClampStage{0, 1},
+            MatrixStage{scale(kIdentity3, kHdrPeak)}};
+}
+
+// ---------------------------------------------------------------------------------------------
+// The cubes
+
+/// Axes of the cubes where pictures are looked up: log2 of E-Gamut light, as the configuration
+/// prints the ends; the generator places its nodes from exactly 10 stops below mid grey on, over
+/// exactly 25.
+constexpr double kLowest = -12.47393;
+constexpr double kHighest = 12.5260688117;
+
+Matrix3 rec2020_to_e_gamut() { return multiply(inverse(kEGamutToXyz), rgb_to_xyz(kRec2020)); }
+
+/// What `node(Rec.2020 light)` returns for every node of a cube.
+template <class Node>
+std::vector<double> all_nodes(int edge, const Node& node) {
+    const auto n = static_cast<std::size_t>(edge);
+    const Matrix3 to_rec2020 = multiply(kXyzToRec2020, kEGamutToXyz);
+    std::vector<double> light(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        const double place = static_cast<double>(i) / static_cast<double>(n - 1);
+        light[i] = kMidGrey * std::exp2(25 * place - 10);
+    }
+    std::vector<double> nodes;
+    nodes.reserve(3 * n * n * n);
+    for (const double r : light) {
+        for (const double g : light) {
+            for (const double b : light) {
+                const Vector3 value = node(multiply(to_rec2020, Vector3{r, g, b}));
+                nodes.insert(nodes.end(), value.begin(), value.end());
+            }
+        }
+    }
+    return nodes;
+}
+
+constexpr int kEdge = 57;
+constexpr int kRailEdge = 37;
+
+/// Codes of a 2.4 power.
+/// @param from_xyz  to the limit, the generator's; null: the limit is Rec.2020, which has no rail.
+std::vector<double> sdr_nodes(const Primaries& limit, const Matrix3* from_xyz) {
+    const Matrix3 to_limit =
+        from_xyz ? multiply(multiply(*from_xyz, kRec2020ToXyz), kOutset) : kOutset;
+    const Vector3 weights = weights_of(limit, kRailWeights);
+    return all_nodes(kEdge, [&](const Vector3& c) {
+        const Vector3 scene = multiply(kInset, scene_rail(c, kRailWeights));
+        Vector3 out = multiply(to_limit, sdr_map(scene));
+        if (from_xyz) out = display_rail(out, weights);
+        for (double& v : out)
+            v = std::pow(min(max(v, 0), 1), 1 / 2.4);
+        return out;
+    });
+}
+
+/// ITU-R BT.2100-2, table 5: Rec.2020 light of [0, 1], 1 = 1000 cd/m2, to HLG codes.
+Vector3 hlg_codes(const Vector3& light) {
+    constexpr double a = 0.17883277;
+    constexpr double b = 1 - 4 * a;
+    const double c = 0.5 - a * std::log(4 * a);
+    const double y = luminance(light, kRec2020Weights);
+    const double gain = y > 0 ? std::pow(y, 1 / 1.2 - 1) : 0.0;
+    Vector3 out{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double e = light[i] * gain;
+        out[i] = e <= 1.0 / 12 ? std::sqrt(3 * e) : a * std::log(12 * e - b) + c;
+    }
+    return out;
+}
+
+std::vector<double> hdr_nodes() {
+    const Matrix3 to_p3 = multiply(kXyzToP3, kRec2020ToXyz);
+    const Matrix3 outset = multiply(to_p3, kOutset);
+    const Matrix3 back = inverse(to_p3);
+    const Vector3 weights = weights_of(kP3D65, kRailWeights2025);
+    return all_nodes(kEdge, [&](const Vector3& c) {
+        const Vector3 scene = multiply(kInset, scene_rail(c, kRailWeights2025));
+        Vector3 out = multiply(back, display_rail(multiply(outset, hdr_map(scene)), weights));
+        for (double& v : out)
+            v = min(max(v, 0), 1);
+        return hlg_codes(out);
+    });
+}
+
+/// The first guard rail alone, before looks: log values, of the axes' own kind.
+std::vector<double> rail_nodes() {
+    const Matrix3 to_e_gamut = multiply(inverse(kEGamutToXyz), kRec2020ToXyz);
+    return all_nodes(kRailEdge, [&](const Vector3& c) {
+        Vector3 out = multiply(to_e_gamut, scene_rail(c, kRailWeights));
+        for (double& v : out) {
+            v = max((std::log2(max(v, kTiny) / kMidGrey) + 10) / 25, 0);
+            v = std::round(v * 1e7) / 1e7;  // as the file has it
+        }
+        return out;
+    });
+}
+
+/// Each cube is computed when it is first looked into, and kept.
+std::shared_ptr<const Lattice> sdr_lattice(const std::string& limit) {
+    if (limit == "rec709") {
+        static const auto rec709 = std::make_shared<const Lattice>(
+            kEdge, [] { return sdr_nodes(kRec709, &kXyzToRec709); });
+        return rec709;
+    }
+    if (limit == "p3d65") {
+        static const auto p3 =
+            std::make_shared<const Lattice>(kEdge, [] { return sdr_nodes(kP3D65, &kXyzToP3); });
+        return p3;
+    }
+    static const auto rec2020 =
+        std::make_shared<const Lattice>(kEdge, [] { return sdr_nodes(kRec2020, nullptr); });
+    return rec2020;
+}
+std::shared_ptr<const Lattice> hdr_lattice() {
+    static const auto lattice = std::make_shared<const Lattice>(kEdge, hdr_nodes);
+    return lattice;
+}
+std::shared_ptr<const Lattice> rail_lattice() {
+    static const auto lattice = std::make_shared<const Lattice>(kRailEdge, rail_nodes);
+    return lattice;
+}
+
+/// log2 of light as places on the axes: mid grey is at 0.4.
+Expr log_encode(const Expr& x) { return (log2(x) - kLowest) / (kHighest - kLowest); }
+Expr log_decode(const Expr& v) { return exp2(kLowest + (kHighest - kLowest) * v); }
+
+/// Rec.2020 -> what the cube has.
+Pipeline through(const std::shared_ptr<const Lattice>& lattice) {
+    return {MatrixStage{rec2020_to_e_gamut()}, ClampStage{std::exp2(kLowest), std::exp2(kHighest)},
+            LatticeStage{log_encode(Expr::input()), lattice}};
+}
+
+/// HLG codes -> Rec.2020 light, 1 = 100 cd/m2, on a display of 1000 cd/m2.
+Pipeline hlg_display() {
+    return {curve_stage(hlg_inverse_oetf(Expr::input())),
+            ToneScaleStage{ToneScaleStage::Norm::luminance, kRec2020Weights,
+                           hlg_ootf_luminance(Expr::input())},
+            MatrixStage{scale(kIdentity3, kHdrPeak)}};
+}
+
+// ---------------------------------------------------------------------------------------------
+// Looks: between the first guard rail and the whole chain, in the inset, on log values
+
+/// Below which OpenColorIO takes no logarithm: the smallest normal float.
+constexpr double kSmallestLog = 0x1p-126;
+/// Above which nothing is: with more, the largest contrast would leave the floats.
+constexpr double kLargestLog = 0x1p60;
+
+/// Slope and saturation of the looks that are a contrast about mid grey.
+struct Contrast {
+    const char* id;
+    const char* title;
+    double slope;
+    double saturation;
+};
+constexpr std::array<Contrast, 7> kContrasts = {{
+    {"very_high_contrast", "Very High Contrast", 1.57, 0.9},
+    {"high_contrast", "High Contrast", 1.4, 0.95},
+    {"medium_high_contrast", "Medium High Contrast", 1.2, 1},
+    {"base_contrast", "Base Contrast", 1, 1},
+    {"medium_low_contrast", "Medium Low Contrast", 0.9, 1.05},
+    {"low_contrast", "Low Contrast", 0.8, 1.1},
+    {"very_low_contrast", "Very Low Contrast", 0.7, 1.15},
+}};
+
+/// The shadow curve of OpenColorIO's GradingTone below 1: slope `m0` up to the pivot, and from
+/// there two parabolas that reach the identity at 0.4.
+Expr lowered_shadows(const Expr& t, double m0) {
+    constexpr double x0 = 0.1;
+    constexpr double x2 = 0.4;
+    constexpr double x1 = x0 + (x2 - x0) / 2;
+    const double y1 = 0.5 / (x2 - x0) *
+                      ((2 * x0 + m0 * (x1 - x0)) * (x2 - x1) + (2 * x2 - (x2 - x1)) * (x1 - x0));
+    const Expr a = (t - x0) / (x1 - x0);
+    const Expr b = (t - x1) / (x2 - x1);
+    const Expr lower = x0 * (1 - a * a) + y1 * (a * a) + m0 * (x1 - x0) * ((1 - a) * a);
+    const Expr upper = y1 * ((1 - b) * (1 - b)) + x2 * ((2 - b) * b) + (x2 - x1) * ((b - 1) * b);
+    return select(less(t, x0), x0 + m0 * (t - x0),
+                  select(less(t, x1), lower, select(less(t, x2), upper, t)));
+}
+
+/// The inset's light, to be limited to what has a logarithm -> the look's.
+Pipeline look_stages(const std::string& look) {
+    const Expr v = log_encode(Expr::input());
+    if (look == "punchy") {
+        const Expr lowered = lowered_shadows(lowered_shadows(v, 0.2), 0.35);
+        const Expr darkened = select(less(0, lowered), pow(max(lowered, 0), 1.0912), lowered);
+        return {curve_stage(log_decode(darkened))};
+    }
+    // Its log values are decoded for the sum and encoded again.
+    if (look == "greyscale")
+        return {MatrixStage{{kRailWeights2025, kRailWeights2025, kRailWeights2025}}};
+    for (const Contrast& contrast : kContrasts) {
+        if (look != contrast.id) continue;
+        constexpr double pivot = 0.4;
+        return {curve_stage((v - pivot) * contrast.slope + pivot),
+                MatrixStage{saturation_matrix(contrast.saturation, kRec709Weights)},
+                curve_stage(log_decode(Expr::input()))};
+    }
+    return {};
+}
+
+/// Rec.2020 -> Rec.2020.
+Pipeline apply_look(const std::string& look, bool is_lattice) {
+    if (look.empty()) return {};
+    Pipeline rail = {Map3Stage{scene_rail(inputs(), kRailWeights)}};
+    if (is_lattice) {
+        rail = through(rail_lattice()) + Pipeline{curve_stage(log_decode(Expr::input())),
+                                                  MatrixStage{inverse(rec2020_to_e_gamut())}};
+    }
+    return rail + Pipeline{MatrixStage{kInset}, ClampStage{kSmallestLog, kLargestLog}} +
+           look_stages(look) + Pipeline{MatrixStage{inverse(kInset)}};
+}
+
+std::vector<Look> looks() {
+    std::vector<Look> all = {
+        {"punchy", "Punchy", "darker shadows: GradingTone 0.2 and 0.35, log power 1.0912"},
+        {"greyscale", "Greyscale", "without colors, of equal luminance"}};
+    for (const Contrast& c : kContrasts) {
+        all.push_back({c.id, c.title,
+                       "log contrast " + shortest(c.slope) + " about mid grey, saturation " +
+                           shortest(c.saturation)});
+    }
+    return all;
+}
+
+bool is_hdr(const Params& params) { return params.choice("range") == "hdr"; }
+
+}  // namespace
+
+std::vector<Operator> define_agx_blender() {
+    Operator op;
+    op.id = "agx_blender";
+    op.title = "AgX (Blender)";
+    op.view = "AgX";
+    op.character =
+        "soft: bright colors fade to white and keep most of their hue, mid grey stays; low in "
+        "contrast until a look is chosen";
+    op.source =
+        "E. Chow, AgX and AgX_LUT_Gen, github.com/EaryChow; Blender 5.2, config.ocio: AgX, AgX - "
+        "HDR 1000 nits and their looks";
+    op.licence = "formula and constants; no file or code of it is used";
+    op.dialects = "AgX";
+    op.negatives =
+        "colors outside Rec.2020 are lifted until no channel is below 0, and scaled for the light "
+        "that this adds; the lattice limits to E-Gamut first";
+    op.working = kRec2020;
+    op.parameters = {
+        limit_parameter({"rec709", "p3d65", "rec2020"}, "rec709"),
+        choice_parameter("method", {"lattice", "formula"}, "lattice",
+                         "lattice: the cube that Blender has; formula: what the cube samples"),
+        display_parameter(choice_parameter("range", {"sdr", "hdr"}, "sdr",
+                                           "hdr: for displays of 1000 cd/m2, within P3"),
+                          [](const DisplayFacts& display) -> std::string {
+                              return display.is_hdr ? "hdr" : "sdr";
+                          }),
+    };
+    op.presets = {{"formula", "without the cube's interpolation", {{"method", "formula"}}},
+                  {"hdr", "for an HDR display of 1000 cd/m2", {{"range", "hdr"}}}};
+    op.looks = looks();
+    op.warnings = {
+        "the lattice is what Blender shows: its interpolation moves saturated colors by up to 0.1 "
+        "of the sRGB code from the formula",
+        "with range=hdr an SDR display clips at 100 cd/m2",
+        "Blender multiplies the light of its HDR view by 2.03 where it shows or saves it"};
+    // The cube of the looks' guard rail ends 10 stops below mid grey, where these looks lift.
+    op.deviations = {{Deviation::Kind::exceeds_white, 10, "hdr"},
+                     {Deviation::Kind::black, 0.000105, "punchy"},
+                     {Deviation::Kind::black, 1.85e-5, "medium_low_contrast"},
+                     {Deviation::Kind::black, 0.000128, "low_contrast"},
+                     {Deviation::Kind::black, 0.000456, "very_low_contrast"}};
+    op.bounds = {.simd = 1e-5,
+                 .ocio_cpu = 1.5e-5,
+                 .cube = 0.11,
+                 .reason =
+                     "hdr: light of 10, of which a float's unit is 1e-6; formula: its guard "
+                     "rails have corners that no cube holds"};
+    op.build = [](const Params& p) -> Pipeline {
+        const bool is_lattice = p.choice("method") == "lattice";
+        const Pipeline look = apply_look(p.look(), is_lattice);
+        if (is_lattice) {
+            if (is_hdr(p)) return look + through(hdr_lattice()) + hlg_display();
+            return look + through(sdr_lattice(p.choice("limit"))) +
+                   Pipeline{curve_stage(pow(Expr::input(), 2.4))};
+        }
+        return is_hdr(p) ? hdr_formula(look) : sdr_formula(look, limiting_primaries(p, kRec709));
+    };
+    op.output_primaries = [](const Params& p) -> Primaries {
+        return is_hdr(p) ? kRec2020 : limiting_primaries(p, kRec709);
+    };
+    op.peak = [](const Params& p) -> double { return is_hdr(p) ? kHdrPeak : 1; };
+    return {op};
+}
+
+}  // namespace tonewright

@@ -254,10 +254,10 @@ def sdr_lattice(limit):
 
 @functools.lru_cache
 def hdr_lattice():
-    """57^3 nodes: HLG codes of 1000 cd/m2."""
+    """57^3 nodes: HLG codes of 1000 cd/m2, limited to 1 as in the file."""
     to_p3 = XYZ_TO["p3d65"] @ REC2020_TO_XYZ
     light = formation(lattice_scene(57), RAIL_2025, to_p3, rgb_to_rgb("p3d65", "rec2020"), HDR_PEAK)
-    return hlg_encode(np.clip(light @ np.linalg.inv(to_p3).T, 0, 1))
+    return np.minimum(hlg_encode(np.clip(light @ np.linalg.inv(to_p3).T, 0, 1)), 1)
 
 
 CONTRASTS = {  # contrast about 0.4 of the log code, saturation

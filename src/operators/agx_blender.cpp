@@ -384,7 +384,8 @@ std::vector<double> sdr_nodes(const Primaries& limit, const Matrix3* from_xyz) {
     });
 }
 
-/// ITU-R BT.2100-2, table 5: Rec.2020 light of [0, 1], 1 = 1000 cd/m2, to HLG codes.
+/// ITU-R BT.2100-2, table 5: Rec.2020 light of [0, 1], 1 = 1000 cd/m2, to HLG codes. The file ends at
+/// 1, which the scene light of a saturated blue passes.
 Vector3 hlg_codes(const Vector3& light) {
     constexpr double a = 0.17883277;
     constexpr double b = 1 - 4 * a;
@@ -395,6 +396,7 @@ Vector3 hlg_codes(const Vector3& light) {
     for (std::size_t i = 0; i < 3; ++i) {
         const double e = light[i] * gain;
         out[i] = e <= 1.0 / 12 ? std::sqrt(3 * e) : a * std::log(12 * e - b) + c;
+        out[i] = min(out[i], 1);
     }
     return out;
 }

@@ -35,11 +35,14 @@ OCIO::MatrixTransformRcPtr make_matrix(const Matrix3& m) {
 
 OCIO::RangeTransformRcPtr make_range(double lo, double hi) {
     OCIO::RangeTransformRcPtr t = OCIO::RangeTransform::Create();
-    if (lo != -kInfinity) {
+    // OCIO 2.1 writes whole numbers with a point behind them, "1e+18." too, which is no GLSL.
+    // Tables over half floats hold at 65504 in any case.
+    constexpr double largest = 1e15;
+    if (lo > -largest) {
         t->setMinInValue(lo);
         t->setMinOutValue(lo);
     }
-    if (hi != kInfinity) {
+    if (hi < largest) {
         t->setMaxInValue(hi);
         t->setMaxOutValue(hi);
     }

@@ -860,20 +860,10 @@ std::vector<Operator> define_aces_20() {
                        "x and y of red, green, blue and white of any other display, eight numbers; "
                        "empty: those of limit"),
     };
-    op.presets = {
-        {"hdr_500", "for a peak of 500 cd/m2", {{"peak", "500"}}},
-        {"hdr_1000", "for a peak of 1000 cd/m2", {{"peak", "1000"}}},
-        {"hdr_2000", "for a peak of 2000 cd/m2", {{"peak", "2000"}}},
-        {"hdr_4000", "for a peak of 4000 cd/m2", {{"peak", "4000"}}},
-    };
     op.warnings = {
         "a peak above the display's clips: an SDR display shows light up to 100 cd/m2",
         "primaries with another white than D65 are adapted to the display's: the standard's "
         "D60 variants, which are not, are left out"};
-    op.deviations = {{Deviation::Kind::exceeds_white, 5, "hdr_500"},
-                     {Deviation::Kind::exceeds_white, 10, "hdr_1000"},
-                     {Deviation::Kind::exceeds_white, 20, "hdr_2000"},
-                     {Deviation::Kind::exceeds_white, 40, "hdr_4000"}};
     op.output_primaries = primaries_of;
     op.peak = [](const Params& p) { return p.number("peak") / 100; };
     op.ocio_builtin = builtin_of;

@@ -140,6 +140,7 @@ Operator filament() {
     op.dialects = "ACES";
     op.negatives = kNegativesClampAtZero;
     op.working = kRec2020;
+    op.bounds = {.cube = 2e-2, .reason = "a cube: glow and red modifier bend about red"};
     op.parameters = {number_parameter("brightness", "", 1, 0.01, 100,
                                       "factor before the curve: 1 in ACES, 1/0.6 in ACESLegacy")};
     op.presets = {{"legacy", "as Filament's ACESLegacy", {{"brightness", "1.6666666666666667"}}}};

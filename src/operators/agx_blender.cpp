@@ -384,8 +384,8 @@ std::vector<double> sdr_nodes(const Primaries& limit, const Matrix3* from_xyz) {
     });
 }
 
-/// ITU-R BT.2100-2, table 5: Rec.2020 light of [0, 1], 1 = 1000 cd/m2, to HLG codes. The file ends at
-/// 1, which the scene light of a saturated blue passes.
+/// ITU-R BT.2100-2, table 5: Rec.2020 light of [0, 1], 1 = 1000 cd/m2, to HLG codes. The file ends
+/// at 1, which the scene light of a saturated blue passes.
 Vector3 hlg_codes(const Vector3& light) {
     constexpr double a = 0.17883277;
     constexpr double b = 1 - 4 * a;
@@ -603,11 +603,12 @@ std::vector<Operator> define_agx_blender() {
                      {Deviation::Kind::black, 0.000128, "low_contrast"},
                      {Deviation::Kind::black, 0.000456, "very_low_contrast"}};
     op.bounds = {.simd = 1e-5,
-                 .ocio_cpu = 1.5e-5,
+                 .ocio_cpu = 8e-5,
+                 .ocio_gpu = 2e-4,
                  .cube = 0.11,
                  .reason =
-                     "hdr: light of 10, of which a float's unit is 1e-6; formula: its guard "
-                     "rails have corners that no cube holds"};
+                     "hdr: HLG codes as light of 10; colors far outside of Rec.709 cancel; "
+                     "formula: its guard rails have corners that no cube holds"};
     op.build = [](const Params& p) -> Pipeline {
         const bool is_lattice = p.choice("method") == "lattice";
         const Pipeline look = apply_look(p.look(), is_lattice);

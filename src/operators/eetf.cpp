@@ -82,6 +82,10 @@ Operator eetf_operator() {
     op.negatives = kNegativesClampAtZero;
     op.working = kRec2020;
     op.dialects = "EETF";
+    op.bounds = {
+        .ocio_cpu = 3e-5,
+        .ocio_gpu = 5e-5,
+        .reason = "hdr: light of 10 in PQ, beside which a channel near 0 keeps float's rounding"};
     op.peak = [](const Params& p) { return p.number("target_peak") / output_unit(p); };
     return op;
 }

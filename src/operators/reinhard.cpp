@@ -173,7 +173,7 @@ Operator constant_luminance() {
     op.dialects = "Reinhard";
     op.warnings = {"two channels above 1 lose what they hand to each other, and its luminance"};
     op.bounds = {
-        .cube = 0.2,
+        .cube = 0.25,
         .reason = "what a channel hands on starts with an edge, where no node of a cube is"};
     op.build = [](const Params&) -> Pipeline {
         const Channels c = inputs();  // scaled by 1/(1 + L)

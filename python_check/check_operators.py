@@ -172,7 +172,6 @@ PRESETS = {
                   "threejs": {"prescale": 1 / 0.6}},
     "aces_13": {"sdr_cinema": {"output": "sdr_cinema"}, "hdr_1000": {"output": "hdr_1000"}, "ctl": {"spline": "ctl"},
                 "gamut_compressed": {"gamut_compression": "yes"}},
-    "aces_20": {f"hdr_{peak}": {"peak": peak} for peak in (500, 1000, 2000, 4000)},
     "agx_blender": {"formula": {"method": "formula"}, "hdr": {"range": "hdr"}},
     "aces_filament": {"legacy": {"brightness": 1 / 0.6}},
     "unreal": {"legacy": UNREAL_LEGACY},

@@ -292,41 +292,23 @@ Map3Stage compress_gamut() {
     return stage;
 }
 
-Expr saturation_of(const std::array<Expr, 3>& ap0) {
-    constexpr double tiny = 1e-10;
-    const Expr hi = max(max(ap0[0], ap0[1]), ap0[2]);
-    const Expr lo = min(min(ap0[0], ap0[1]), ap0[2]);
-    return (max(hi, tiny) - max(lo, tiny)) / max(hi, 0.01);
-}
-
 /// The first two steps of the RRT, in AP0; also of negatives.
 Map3Stage glow_and_red_modifier(bool is_ocio) {
-    const std::array<Expr, 3> c = {Expr::input(0), Expr::input(1), Expr::input(2)};
-    const auto& [r, g, b] = c;
-    Expr saturation = saturation_of(c);
-    // b(b-g) + g(g-r) + r(r-b) as a sum of squares: never below 0, whatever is rounded.
-    const Expr chroma = sqrt(0.5 * ((r - g) * (r - g) + (g - b) * (g - b) + (b - r) * (b - r)));
-    const Expr yc = (b + g + r + 1.75 * chroma) / 3;
-    const Expr x = (saturation - 0.4) / 0.2;
-    const Expr t = max(1 - abs(x / 2), 0);
-    const Expr sigmoid = select(less(x, 0), 0.5 * (t * t), 1 - 0.5 * (t * t));
-    // Full up to yc = 2/3 of 0.08, none from twice 0.08 on. The floor stands below the former.
-    const Expr gain = 0.05 * sigmoid * clamp(0.08 / max(yc, 0.05) - 0.5, 0, 1);
-    Map3Stage stage{{r * (1 + gain), g * (1 + gain), b * (1 + gain)}};
-    stage.ocio = {{"ACES_Glow10"}, {"ACES_RedMod10"}};
-    // The saturation of the dark: where all channels are below 0.01.
-    stage.is_ocio_exact = is_ocio;
-    auto& out = stage.f;
-    if (is_ocio) saturation = saturation_of(out);
-
+    constexpr double floor = 1e-10;
+    const std::array<Expr, 3> rgb = {Expr::input(0), Expr::input(1), Expr::input(2)};
+    const Expr saturation = rrt_saturation(rgb, floor);
+    const std::array<Expr, 3> glowing = rrt_glow(rgb, saturation);
     // The cubic B-spline over 135 degrees about red, as a sum of two truncated powers: 1 at red.
-    const Expr hue = atan2(std::numbers::sqrt3 * (out[1] - out[2]), 2 * out[0] - out[1] - out[2]);
     constexpr double interval = 135.0 / 4 * std::numbers::pi / 180;
-    const Expr distance = abs(hue / interval);
+    const Expr distance = abs(rrt_hue(glowing) / interval);
     const Expr outer = max(2 - distance, 0);
     const Expr inner = max(1 - distance, 0);
     const Expr weight = 0.25 * (outer * outer * outer) - inner * inner * inner;
-    out[0] = out[0] + weight * saturation * (0.03 - out[0]) * (1 - 0.82);
+    Map3Stage stage{
+        rrt_red_modifier(glowing, weight, is_ocio ? rrt_saturation(glowing, floor) : saturation)};
+    stage.ocio = {{"ACES_Glow10"}, {"ACES_RedMod10"}};
+    // The saturation of the dark: where all channels are below 0.01.
+    stage.is_ocio_exact = is_ocio;
     return stage;
 }
 

@@ -35,6 +35,7 @@
 //           0.18 (agx_godot) (check_values.json).
 #include <cmath>
 
+#include "operators/agx_sigmoid.h"
 #include "operators/color_modifiers.h"
 #include "operators/family.h"
 
@@ -65,25 +66,6 @@ Stage limit_to_shaper() { return ClampStage{std::exp2(kLowest), std::exp2(kHighe
 
 /// Scene-linear in the shaper's range -> [0, 1]; mid grey -> 10/16.5.
 Expr normalised_log(const Expr& x) { return (log2(x) - kLowest) / (kHighest - kLowest); }
-
-/// The SB2383 sigmoid: two hyperbolic arms that meet in the pivot (px, py) with slope k.
-struct Sigmoid {
-    double px, py, slope, toe_power, shoulder_power;
-
-    [[nodiscard]] static double arm_scale(double lx, double ly, double k, double p) {
-        return std::pow(std::pow(k * lx, -p) * (std::pow(k * lx / ly, p) - 1), -1 / p);
-    }
-    [[nodiscard]] Expr operator()(const Expr& n) const {
-        const double toe = -arm_scale(px, py, slope, toe_power);
-        const double shoulder = arm_scale(1 - px, 1 - py, slope, shoulder_power);
-        const auto arm = [&](double s, double p) {
-            const Expr u =
-                max(slope * (n - px) / s, 0);  // the other side of the pivot is not this arm's
-            return s * (u / pow(1 + pow(u, p), 1 / p)) + py;
-        };
-        return select(less(n, px), arm(toe, toe_power), arm(shoulder, shoulder_power));
-    }
-};
 
 /// Wrensch's fits of the sigmoid; order 7 is Filament's.
 Expr polynomial6(const Expr& n) {
@@ -131,7 +113,7 @@ Operator sobotka() {
     op.deviations = {{Deviation::Kind::never_reaches_white, 0.193, "golden"},
                      {Deviation::Kind::exceeds_white, 1.06, "golden"}};
     op.build = [](const Params& p) -> Pipeline {
-        constexpr Sigmoid sigmoid = {10 / 16.5, 0.5, 2.0, 3.0, 3.25};
+        const AgxSigmoid sigmoid(10 / 16.5, 0.5, 2.0, 3.0, 3.25);
         Pipeline stages = {limit_to_positive(), MatrixStage{kInset}, limit_to_shaper(),
                            curve_stage(sigmoid(normalised_log(Expr::input())))};
         Pipeline look;
@@ -173,21 +155,9 @@ Operator minimal() {
     return op;
 }
 
-// clang-format off
-/// Blender's inset and outset, for Rec.2020. The outset is the inverse of another inset than this.
-constexpr Matrix3 kInsetRec2020 = {{
-    {0.856627153315983, 0.0951212405381588, 0.0482516061458583},
-    {0.137318972929847, 0.761241990602591,  0.101439036467562},
-    {0.11189821299995,  0.0767994186031903, 0.811302368396859}}};
-constexpr Matrix3 kOutsetRec2020 = {{
-    { 1.1271005818144368, -0.1106066430966033, -0.0164939387178346},
-    {-0.1413297634984383,  1.1578237022162718, -0.0164939387178343},
-    {-0.1413297634984383, -0.1106066430966029,  1.2519364065950402}}};
-// clang-format on
-
 /// Outset, and code values to light: what is below 0 has no power.
 Pipeline outset_to_light() {
-    return {MatrixStage{kOutsetRec2020}, ClampStage{0, kInfinity},
+    return {MatrixStage{kAgxOutsetRec2020}, ClampStage{0, kInfinity},
             curve_stage(pow(Expr::input(), 2.2))};
 }
 
@@ -218,7 +188,7 @@ Operator threejs() {
                                         {-0.1246,  1.1329, -0.0083},
                                         {-0.0182, -0.1006,  1.1187}}};
         // clang-format on
-        const Pipeline stages = {MatrixStage{to_rec2020}, MatrixStage{kInsetRec2020},
+        const Pipeline stages = {MatrixStage{to_rec2020}, MatrixStage{kAgxInsetRec2020},
                                  limit_to_shaper(),
                                  curve_stage(polynomial6(normalised_log(Expr::input())))};
         return stages + outset_to_light() + Pipeline{MatrixStage{to_rec709}};
@@ -265,7 +235,7 @@ Operator filament() {
                      {Deviation::Kind::exceeds_white, 1.24, "golden"},
                      {Deviation::Kind::not_monotone, 0.00021, "golden"}};
     op.build = [](const Params& p) -> Pipeline {
-        Pipeline stages = {limit_to_positive(), MatrixStage{kInsetRec2020}, limit_to_shaper(),
+        Pipeline stages = {limit_to_positive(), MatrixStage{kAgxInsetRec2020}, limit_to_shaper(),
                            curve_stage(polynomial7(normalised_log(Expr::input())))};
         if (!p.look().empty()) {
             stages.push_back(ClampStage{0, 1});  // finds nothing: the polynomial stays inside

@@ -38,6 +38,7 @@
 #include <cmath>
 #include <memory>
 
+#include "operators/agx_sigmoid.h"
 #include "operators/color_modifiers.h"
 #include "operators/family.h"
 
@@ -45,16 +46,6 @@ namespace tonewright {
 namespace {
 
 // clang-format off
-constexpr Matrix3 kInset = {{
-    {0.856627153315983, 0.0951212405381588, 0.0482516061458583},
-    {0.137318972929847, 0.761241990602591,  0.101439036467562},
-    {0.11189821299995,  0.0767994186031903, 0.811302368396859}}};
-/// The inverse of another inset than this.
-constexpr Matrix3 kOutset = {{
-    { 1.1271005818144368, -0.1106066430966033, -0.0164939387178346},
-    {-0.1413297634984383,  1.1578237022162718, -0.0164939387178343},
-    {-0.1413297634984383, -0.1106066430966029,  1.2519364065950402}}};
-
 /// FilmLight's matrix of E-Gamut to XYZ under D65, as the configuration has it.
 constexpr Matrix3 kEGamutToXyz = {{
     { 0.7053968501,  0.1640413283,   0.08101774865},
@@ -96,22 +87,6 @@ constexpr double kTiny = 1e-30;
 
 template <class T>
 using Color = std::array<T, 3>;
-
-double min(double a, double b) { return b < a ? b : a; }
-double max(double a, double b) { return a < b ? b : a; }
-double pow(double base, double exponent) { return std::pow(base, exponent); }
-double exp2(double a) { return std::exp2(a); }
-double log2(double a) { return std::log2(a); }
-
-/// a < b ? below() : above()
-template <class Below, class Above>
-Expr if_less(const Expr& a, const Expr& b, const Below& below, const Above& above) {
-    return select(less(a, b), below(), above());
-}
-template <class Below, class Above>
-double if_less(double a, double b, const Below& below, const Above& above) {
-    return a < b ? below() : above();
-}
 
 template <class T>
 T smallest(const Color<T>& c) {
@@ -156,37 +131,10 @@ Color<T> display_rail(const Color<T>& c, const Vector3& weights) {
     return out;
 }
 
-/// What scales an arm of the SB2383 sigmoid, from the pivot over lx and ly, to its end.
-double arm_scale(double lx, double ly, double k, double p) {
-    return std::pow(std::pow(k * lx, -p) * (std::pow(k * lx / ly, p) - 1), -1 / p);
+/// Blender's: mid grey stays where it is behind the 2.4 power.
+AgxSigmoid sigmoid(double shoulder_power) {
+    return {10 / 16.5, std::pow(kMidGrey, 1 / 2.4), 2.4, 1.5, shoulder_power};
 }
-
-/// The SB2383 sigmoid: two hyperbolic arms that meet in the pivot, mid grey, with slope k.
-class Sigmoid {
-  public:
-    explicit Sigmoid(double shoulder_power)
-        : py_(std::pow(kMidGrey, 1 / 2.4)),
-          toe_(-arm_scale(kPivot, py_, kSlope, kToePower)),
-          shoulder_(arm_scale(1 - kPivot, 1 - py_, kSlope, shoulder_power)),
-          shoulder_power_(shoulder_power) {}
-
-    template <class T>
-    [[nodiscard]] T operator()(const T& n) const {
-        const auto arm = [&](double s, double p) -> T {
-            const T u = max(kSlope * (n - kPivot) / s, 0);  // on the other arm's side: 0
-            return s * (u / pow(1 + pow(u, p), 1 / p)) + py_;
-        };
-        return if_less(
-            n, T(kPivot), [&] { return arm(toe_, kToePower); },
-            [&] { return arm(shoulder_, shoulder_power_); });
-    }
-
-  private:
-    static constexpr double kPivot = 10 / 16.5;
-    static constexpr double kSlope = 2.4;
-    static constexpr double kToePower = 1.5;
-    double py_, toe_, shoulder_, shoulder_power_;
-};
 
 /// Stops from 10 below to 6.5 above mid grey as [0, 1], which goes on above.
 template <class T>
@@ -197,14 +145,14 @@ T stops_of(const T& x) {
 
 template <class T>
 T sdr_light(const T& x) {
-    static const Sigmoid curve(1.5);
+    static const AgxSigmoid curve = sigmoid(1.5);
     return pow(max(curve(stops_of(x)), 0), 2.4);
 }
 
 /// Light on the way to an HDR display, of which 1 is its peak: with the larger shoulder power.
 template <class T>
 T first_hdr_light(const T& x) {
-    static const Sigmoid curve(1.5 * std::pow(kHdrPeak, std::log10(2.0)));
+    static const AgxSigmoid curve = sigmoid(1.5 * std::pow(kHdrPeak, std::log10(2.0)));
     return pow(max(curve(T(min(stops_of(x), 1))), 0), 2.4);
 }
 
@@ -217,7 +165,7 @@ T second_hdr_light(const T& x, const T& light) {
     static const double px = 20 / height;
     static const double py = (20 - std::log2(kHdrPeak)) / height;
     constexpr double k = 1.000001;
-    static const double toe = -arm_scale(px, py, k, 3);
+    static const double toe = -AgxSigmoid::arm_scale(px, py, k, 3);
     static const double run = k * (1 - px);
     static const double shoulder = run / (run / (1 - py) - 1);
 
@@ -309,9 +257,9 @@ Map3Stage as_one(const Pipeline& chain) {
 /// The formula up to the guard rail of the limit, behind a look's stages: one stage of cross-talk,
 /// so that where it has to be sampled it is sampled once. It takes channels below 0.
 Pipeline sdr_formula(const Pipeline& look, const Primaries& limit) {
-    Pipeline chain =
-        look + Pipeline{Map3Stage{scene_rail(inputs(), kRailWeights)}, MatrixStage{kInset},
-                        Map3Stage{sdr_map(inputs())}, MatrixStage{kOutset}};
+    Pipeline chain = look + Pipeline{Map3Stage{scene_rail(inputs(), kRailWeights)},
+                                     MatrixStage{kAgxInsetRec2020}, Map3Stage{sdr_map(inputs())},
+                                     MatrixStage{kAgxOutsetRec2020}};
     if (!(limit == kRec2020)) {
         chain.push_back(MatrixStage{rgb_to_rgb(kRec2020, limit)});
         chain.push_back(Map3Stage{display_rail(inputs(), weights_of(limit, kRailWeights))});
@@ -322,9 +270,9 @@ Pipeline sdr_formula(const Pipeline& look, const Primaries& limit) {
 Pipeline hdr_formula(const Pipeline& look) {
     const Pipeline chain =
         look + Pipeline{Map3Stage{scene_rail(inputs(), kRailWeights2025)},
-                        MatrixStage{kInset},
+                        MatrixStage{kAgxInsetRec2020},
                         Map3Stage{hdr_map(inputs())},
-                        MatrixStage{kOutset},
+                        MatrixStage{kAgxOutsetRec2020},
                         MatrixStage{rgb_to_rgb(kRec2020, kP3D65)},
                         Map3Stage{display_rail(inputs(), weights_of(kP3D65, kRailWeights2025))}};
     return {as_one(chain), MatrixStage{rgb_to_rgb(kP3D65, kRec2020)}, ClampStage{0, 1},
@@ -371,11 +319,12 @@ constexpr int kRailEdge = 37;
 /// Codes of a 2.4 power.
 /// @param from_xyz  to the limit, the generator's; null: the limit is Rec.2020, which has no rail.
 std::vector<double> sdr_nodes(const Primaries& limit, const Matrix3* from_xyz) {
-    const Matrix3 to_limit =
-        from_xyz ? multiply(multiply(*from_xyz, kRec2020ToXyz), kOutset) : kOutset;
+    const Matrix3 to_limit = from_xyz
+                                 ? multiply(multiply(*from_xyz, kRec2020ToXyz), kAgxOutsetRec2020)
+                                 : kAgxOutsetRec2020;
     const Vector3 weights = weights_of(limit, kRailWeights);
     return all_nodes(kEdge, [&](const Vector3& c) {
-        const Vector3 scene = multiply(kInset, scene_rail(c, kRailWeights));
+        const Vector3 scene = multiply(kAgxInsetRec2020, scene_rail(c, kRailWeights));
         Vector3 out = multiply(to_limit, sdr_map(scene));
         if (from_xyz) out = display_rail(out, weights);
         for (double& v : out)
@@ -403,11 +352,11 @@ Vector3 hlg_codes(const Vector3& light) {
 
 std::vector<double> hdr_nodes() {
     const Matrix3 to_p3 = multiply(kXyzToP3, kRec2020ToXyz);
-    const Matrix3 outset = multiply(to_p3, kOutset);
+    const Matrix3 outset = multiply(to_p3, kAgxOutsetRec2020);
     const Matrix3 back = inverse(to_p3);
     const Vector3 weights = weights_of(kP3D65, kRailWeights2025);
     return all_nodes(kEdge, [&](const Vector3& c) {
-        const Vector3 scene = multiply(kInset, scene_rail(c, kRailWeights2025));
+        const Vector3 scene = multiply(kAgxInsetRec2020, scene_rail(c, kRailWeights2025));
         Vector3 out = multiply(back, display_rail(multiply(outset, hdr_map(scene)), weights));
         for (double& v : out)
             v = min(max(v, 0), 1);
@@ -541,8 +490,8 @@ Pipeline apply_look(const std::string& look, bool is_lattice) {
         rail = through(rail_lattice()) + Pipeline{curve_stage(log_decode(Expr::input())),
                                                   MatrixStage{inverse(rec2020_to_e_gamut())}};
     }
-    return rail + Pipeline{MatrixStage{kInset}, ClampStage{kSmallestLog, kLargestLog}} +
-           look_stages(look) + Pipeline{MatrixStage{inverse(kInset)}};
+    return rail + Pipeline{MatrixStage{kAgxInsetRec2020}, ClampStage{kSmallestLog, kLargestLog}} +
+           look_stages(look) + Pipeline{MatrixStage{inverse(kAgxInsetRec2020)}};
 }
 
 std::vector<Look> looks() {

@@ -34,7 +34,7 @@ std::string to_string(const Deviation& d) {
             return prefix +
                    (d.value == kInfinity ? "exceeds white without end"
                                          : "exceeds white, up to " + rounded(d.value, 3)) +
-                   ": displays clip it";
+                   ": SDR displays clip it";
         case Kind::not_monotone:
             return prefix + "non-monotone" +
                    (d.value == kInfinity ? "" : " below " + rounded(d.value));

@@ -103,7 +103,7 @@ def check_list(report, command):
     report.check("list --json: a statistic",
                  [p.get("statistic") for p in ops["exponential"]["parameters"]][:2] == ["mean luminance", None])
     report.check("list --json: a deviation without end has no number", ops["reinhard_extended"]["deviations"] == [
-        {"kind": "exceeds_white", "value": None, "when": "", "text": "exceeds white without end: displays clip it"}])
+        {"kind": "exceeds_white", "value": None, "when": "", "text": "exceeds white without end: SDR displays clip it"}])
     report.check("list --json: dialects and diagnostics",
                  ops["agx_sobotka"]["dialects"] == ops["agx_minimal"]["dialects"] == "AgX"
                  and [name for name, op in ops.items() if op["is_diagnostic"]] == ["false_color"])

@@ -77,6 +77,7 @@ void add_eval(CLI::App& program, int&) {
     struct Options : ViewOptions {
         std::string engine = "reference";
         int digits = 9;
+        bool inverse = false;
     };
     auto options = std::make_shared<Options>();
     CLI::App* command =
@@ -88,6 +89,10 @@ void add_eval(CLI::App& program, int&) {
     command->add_option("--digits", options->digits, "significant digits of the output")
         ->capture_default_str()
         ->check(CLI::Range(1, 17));
+    command->add_flag(
+        "--inverse", options->inverse,
+        "from what the display shows back to scene-linear; for operators that have an "
+        "inverse");
     command->footer(
         "One colour a line: r g b or r,g,b; nan and inf are numbers; # begins a comment.\n"
         "The engines other than reference take the numbers as floats. There is no picture: "
@@ -100,7 +105,8 @@ void add_eval(CLI::App& program, int&) {
             throw Error("eval: engine is " + options->engine + "; expected " +
                         join_choices(engines) + did_you_mean(options->engine, engines));
         }
-        const Pipeline pipeline = build_view(options->view());
+        const View view = options->view();
+        const Pipeline pipeline = options->inverse ? build_inverse_view(view) : build_view(view);
         std::cin.sync_with_stdio(false);
         const std::string text{std::istreambuf_iterator<char>(std::cin), {}};
         const std::vector<double> values = parse_triplets(text);

@@ -128,50 +128,40 @@ double saturation_point(const Pipeline& codes) {
     return std::min(top, kHalfMax);
 }
 
-/// Of the axis of a fitted cube, for the lights above 64: what choose_log_axis() finds for ACES 2.0
-/// in SDR.
-constexpr double kShareOfLights = 5.0 / 64;
+/// A cube: where light stands on its axes, and what its nodes hold.
+struct Cube {
+    CubeAxis axis;
+    std::vector<double> nodes;
+};
 
-/// Log with a linear toe: equal steps in stops above it, no floor above black.
-CubeAxis sampled_axis(double top) {
-    const Expr x = Expr::input();
-    constexpr double k = 0.01;
-    const double lowest = std::log2(k);
-    const double span = std::log2(top + k) - lowest;
-    return {(log2(x + k) - lowest) / span, max(exp2(x * span + lowest) - k, 0), top};
-}
-
-/// The nodes of a cube; of those asked for before, what was computed then.
-std::shared_ptr<const std::vector<double>> nodes_of(const CubeProblem& problem, bool is_fitted) {
+/// The cube of a problem whose axis is not chosen yet; of one asked for before, what was computed
+/// then.
+/// @param top  of the axis
+std::shared_ptr<const Cube> cube_of(CubeProblem problem, double top, bool is_fitted) {
     struct Entry {
-        std::vector<Expr> said;  // equal expressions are the same node, as long as one lives
-        double lo, hi;
+        std::array<Expr, 3> codes;  // equal expressions are the same node, as long as one lives
+        double lo, hi, top;
         int edge;
         bool is_fitted;
         Primaries primaries;
-        std::shared_ptr<const std::vector<double>> nodes;
+        std::shared_ptr<const Cube> cube;
     };
     static std::mutex mutex;
     static std::vector<Entry> entries;
-    const std::array<Expr, 3> rgb = compose(problem.pipeline);
-    Entry wanted{{rgb[0], rgb[1], rgb[2], problem.axis.light},
-                 problem.lo,
-                 problem.hi,
-                 problem.edge,
-                 is_fitted,
-                 problem.primaries,
-                 nullptr};
+    const std::array<Expr, 3> codes = compose(problem.pipeline);
     const std::lock_guard lock(mutex);
     for (const Entry& e : entries) {
-        if (std::equal(e.said.begin(), e.said.end(), wanted.said.begin(), same) &&
-            e.lo == wanted.lo && e.hi == wanted.hi && e.edge == wanted.edge &&
-            e.is_fitted == wanted.is_fitted && e.primaries == wanted.primaries)
-            return e.nodes;
+        if (std::equal(e.codes.begin(), e.codes.end(), codes.begin(), same) && e.lo == problem.lo &&
+            e.hi == problem.hi && e.top == top && e.edge == problem.edge &&
+            e.is_fitted == is_fitted && e.primaries == problem.primaries)
+            return e.cube;
     }
-    wanted.nodes = std::make_shared<const std::vector<double>>(is_fitted ? fit_cube(problem)
-                                                                         : sample_cube(problem));
-    entries.push_back(wanted);
-    return wanted.nodes;
+    problem.axis = is_fitted ? choose_log_axis(problem, top) : make_log_axis(top, problem.edge);
+    const auto cube = std::make_shared<const Cube>(
+        Cube{problem.axis, is_fitted ? fit_cube(problem) : sample_cube(problem)});
+    entries.push_back(
+        {codes, problem.lo, problem.hi, top, problem.edge, is_fitted, problem.primaries, cube});
+    return cube;
 }
 
 class Lowering {
@@ -300,20 +290,18 @@ class Lowering {
         Pipeline seen = problem.pipeline;
         if (stage.is_cube_fitted) seen.insert(seen.begin() + 1, ClampStage{lo, hi});
         const double top = std::min(saturation_point(seen), domain_.hi);
-        problem.axis = stage.is_cube_fitted ? make_log_axis(top, problem.edge, kShareOfLights)
-                                            : sampled_axis(top);
+        const auto cube = cube_of(problem, top, stage.is_cube_fitted);
 
-        const auto shaper = sample_half_domain(problem.axis.place, 0, top);
+        const auto shaper = sample_half_domain(cube->axis.place, 0, top);
         emit(make_range(0, top), "range");
         emit(make_half_lut({shaper, shaper, shaper}), "half LUT shaper");
-        const auto nodes = nodes_of(problem, stage.is_cube_fitted);
-        emit(
-            make_cube(static_cast<unsigned long>(problem.edge),
-                      [&](unsigned long i) {
-                          return Vector3{(*nodes)[3 * i], (*nodes)[3 * i + 1], (*nodes)[3 * i + 2]};
-                      }),
-            std::to_string(problem.edge) + "^3 cube to " + shortest(top) +
-                (stage.is_cube_fitted ? ", fitted" : ""));
+        const std::vector<double>& nodes = cube->nodes;
+        emit(make_cube(static_cast<unsigned long>(problem.edge),
+                       [&](unsigned long i) {
+                           return Vector3{nodes[3 * i], nodes[3 * i + 1], nodes[3 * i + 2]};
+                       }),
+             std::to_string(problem.edge) + "^3 cube to " + shortest(top) +
+                 (stage.is_cube_fitted ? ", fitted" : ""));
         result_.is_exact = false;
         domain_ = {};
         curve({srgb_decode(x), srgb_decode(x), srgb_decode(x)});

@@ -31,7 +31,13 @@ View make_view(ResolvedOperator op, std::string_view input, double exposure_stop
     }
     View view{std::move(op), find_input_space(input).id, exposure_stops, std::string(display),
               reference_white};
-    if (display == kLinearOutput || display == kNativeOutput) return view;
+    const bool is_display = display != kLinearOutput && display != kNativeOutput;
+    if (reference_white != kReferenceWhite && !(is_display && find_display(display).is_hdr)) {
+        throw Error("reference white is " + shortest(reference_white) + "; expected " +
+                    shortest(kReferenceWhite) + " with display " + std::string(display) +
+                    ", which is none of HDR");
+    }
+    if (!is_display) return view;
     const Display& found = find_display(display);
     view.display = found.id;
     const double unit = found.is_hdr ? kReferenceWhite / reference_white : 1;
@@ -88,6 +94,33 @@ Pipeline build_view(const View& view) {
         stages.push_back(ClampStage{0, display.largest_light});
     }
     append(stages, display.encode);
+    return stages;
+}
+
+Pipeline build_inverse_view(const View& view) {
+    const Operator& op = *view.op.op;
+    if (!op.build_inverse) {
+        std::vector<std::string> ids;
+        for (const Operator& other : all_operators()) {
+            if (other.build_inverse) ids.push_back(other.id);
+        }
+        throw Error(op.id + " has no inverse; expected " + join_choices(ids));
+    }
+    Pipeline stages;
+    const Primaries own = view.op.output_primaries();
+    if (view.display == kLinearOutput) {
+        stages.push_back(MatrixStage{rgb_to_rgb(kRec709, own)});
+    } else if (view.display != kNativeOutput) {
+        const Display& display = find_display(view.display);
+        stages = display.decode;
+        stages.push_back(MatrixStage{
+            scale(rgb_to_rgb(display.primaries, own), kReferenceWhite / view.reference_white)});
+    }
+    if (view.display != kNativeOutput && op.output == OutputKind::code_value)
+        stages.push_back(curve_stage(power_encode(Expr::input(), op.code_power)));
+    append(stages, op.build_inverse(view.op.params));
+    const Matrix3 to_input = rgb_to_rgb(op.working, find_input_space(view.input).primaries);
+    stages.push_back(MatrixStage{scale(to_input, std::exp2(-view.exposure_stops))});
     return stages;
 }
 

@@ -250,6 +250,28 @@ class Comparison {
     std::vector<RoundingPoint> rounding_points_;
 };
 
+/// OpenColorIO's built-in transform that the view's operator equals, on its display; null where
+/// there is none, or this OpenColorIO has it not.
+OCIO::ConstProcessorRcPtr builtin_processor(const View& view) {
+    const std::string style = view.op.ocio_builtin();
+    const auto registry = OCIO::BuiltinTransformRegistry::Get();
+    bool is_known = false;
+    for (std::size_t i = 0; i < registry->getNumBuiltins(); ++i)
+        is_known = is_known || style == registry->getBuiltinStyle(i);
+    if (!is_known) return nullptr;
+    const Display& display = find_display(view.display);
+    Pipeline behind = {MatrixStage{inverse(rgb_to_xyz_d65(display.primaries))},
+                       ClampStage{0, display_limit(view.op, display).peak}};
+    behind.insert(behind.end(), display.encode.begin(), display.encode.end());
+    const Matrix3 to_aces = rgb_to_rgb(find_input_space(view.input).primaries, kAP0);
+    Lowered whole = lower_to_ocio({MatrixStage{to_aces}});
+    const auto builtin = OCIO::BuiltinTransform::Create();
+    builtin->setStyle(style.c_str());
+    whole.transform->appendTransform(builtin);
+    whole.transform->appendTransform(lower_to_ocio(behind).transform);
+    return make_processor(whole);
+}
+
 bool is_in_config(const ResolvedOperator& op) { return op.label == op.op->id; }
 
 }  // namespace
@@ -350,6 +372,13 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
             lowering, [&] { cpu(OCIO::OPTIMIZATION_LOSSLESS); });
         add("ocio cpu default", bounds.cpu, declared.ocio_cpu > 0, bounds.is_mixed_metric, lowering,
             [&] { cpu(OCIO::OPTIMIZATION_DEFAULT); });
+        if (const auto builtin = builtin_processor(view)) {
+            // Not our lowering: OpenColorIO's, in float32 throughout.
+            add("ocio builtin", 1e-3, false, true, view.op.ocio_builtin(), [&] {
+                OcioCpu(builtin, OCIO::OPTIMIZATION_LOSSLESS)
+                    .run_rgb(probes.rgb.data(), shown.data(), probes.size());
+            });
+        }
         if (!options.with_gpu) continue;
         if (const std::string reason = OcioGpu::unavailable_reason(); !reason.empty()) {
             ParityRow row;

@@ -165,7 +165,7 @@ def check_eval_text(report, command):
     # Report ITU-R BT.2408: 203 cd/m2 is a PQ signal of 0.58, and of 0.75 in HLG.
     for display, white, expected in (("rec2100_pq", 100, "0.508078422"), ("p3d65_pq", 203, "0.580688881"),
                                      ("rec2100_hlg", 100, "0.629620321"), ("Rec.2100-HLG", 203, "0.749877365"),
-                                     ("srgb", 203, "1")):
+                                     ("srgb", 100, "1")):
         out = run(command, "eval", "clamp", "--display", display, "--reference-white", white, stdin="1 1 1")
         report.check(f"eval --display {display} --reference-white {white}", out.split() == [expected] * 3, out)
     for display, operator, decided in (
@@ -178,6 +178,14 @@ def check_eval_text(report, command):
         told, left = (run(command, "eval", operator, "--display", display, *words, stdin="9 2 .5")
                       for words in (settings, []))
         report.check(f"eval: {display} decides {' '.join(decided)} of {operator}", told == left, f"{told}{left}")
+    # aces2_inverse_100nit-REC709 of the reference collection: within 5e-7 of OpenColorIO 2.5.1's code in double.
+    out = run(command, "eval", "aces_20", "--inverse", "--display", "native", "--input", "lin_ap0", stdin="0.2 0.1 0.8")
+    report.check("eval --inverse", np.allclose([float(v) for v in out.split()], [0.481954734, 0.311477121, 1.324501466],
+                                               rtol=2e-6, atol=0), out)
+    there = run(command, "eval", "aces_20", "--display", "rec2100_pq", "--exposure", 1, stdin="0.3 0.2 0.05")
+    out = run(command, "eval", "aces_20", "--display", "rec2100_pq", "--exposure", 1, "--inverse", stdin=there)
+    report.check("eval --inverse of a display", np.allclose([float(v) for v in out.split()], [0.3, 0.2, 0.05],
+                                                            rtol=1e-5), out)
     out = [run(command, "eval", "aces_20", "--display", "rec2100_pq", *words, stdin="50 50 50")
            for words in ([], ["--set", "peak=500"], ["--set", "peak=500", "--reference-white", "200"])]
     report.check("eval: a setting wins over the display", out[1] < out[0] and out[1] < out[2], out)
@@ -498,6 +506,9 @@ def usage_errors(bad, picture):
         (["eval", "hable", "--exposure", "bright"], "--exposure; bright"),
         (["eval", "hable", "--exposure", "65"], "exposure is 65; [-64, 64]"),
         (["eval", "hable", "--reference-white", "20"], "reference white is 20; [50, 1000]"),
+        (["eval", "hable", "--reference-white", "203"], "reference white is 203; srgb, which is none of HDR"),
+        (["eval", "hable", "--reference-white", "203", "--display", "native"], "is 203; native, which"),
+        (["eval", "hable", "--inverse"], "hable has no inverse; aces_20"),
         (["apply", picture, "out.png", "--operator", "hable", "--reference-white", "1001"], "is 1001; [50, 1000]"),
         (["bake", "hable", "-o", "out.cube", "--reference-white", "big"], "--reference-white; big"),
         (["eval", "hable", "--display", "rec2100"], "display is rec2100; did you mean rec2100_pq?"),

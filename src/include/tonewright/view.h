@@ -66,7 +66,8 @@ struct View {
 ///                  parameters is decided here.
 /// @param exposure  stops, finite, within [-64, 64].
 /// @param reference_white  what an HDR display shows light 1 at, cd/m2, within [50, 1000]: 100, or
-///                  203 as Report ITU-R BT.2408 has it. SDR displays have no such thing.
+///                  203 as Report ITU-R BT.2408 has it. SDR displays, `linear` and
+///                  `native` know only the default.
 /// @throws Error    unknown input space or display; exposure or reference white out of range.
 [[nodiscard]] View make_view(ResolvedOperator op, std::string_view input, double exposure_stops,
                              std::string_view display, double reference_white = kReferenceWhite);
@@ -91,6 +92,11 @@ struct DisplayLimit {
 /// The whole view as stages. Its input is sanitised scene-linear in the view's input space.
 /// @see sanitise in engine.h: NaN -> 0, then each channel to +-kHalfMax
 [[nodiscard]] Pipeline build_view(const View& view);
+
+/// The way back: what the view shows -> scene-linear in the view's input space. What the view
+/// limits is not brought back.
+/// @throws Error  when the operator has no inverse.
+[[nodiscard]] Pipeline build_inverse_view(const View& view);
 
 /// True when R = G = B stays so within half a code value of 10 bits, over -16..+16 stops: such a
 /// view shows a grey picture as a grey picture.

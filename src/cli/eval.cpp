@@ -125,7 +125,8 @@ void add_eval(CLI::App& program, int&) {
         const std::vector<float> in(values.begin(), values.end());
         std::vector<float> out(in.size());
         if (options->engine == "simd") {
-            SimdEngine(pipeline).run_rgb(in.data(), out.data(), count);
+            SimdEngine(pipeline, view.op.op->bounds.simd_goal)
+                .run_rgb(in.data(), out.data(), count);
         } else {
             const auto processor = make_processor(lower_to_ocio(pipeline));
             if (options->engine == "ocio") {

@@ -50,6 +50,11 @@ std::vector<Vector3> probe_colours() {
         if (i % 2) v[(i + 1) % 3] *= -1;
         add(v[0], v[1], v[2]);
     }
+    for (int i = 0; i < 500; ++i) {  // of wider gamuts, where rows cancel nearly, not wholly
+        const double peak = log_uniform(-6, 6);
+        add(peak * random.uniform(-0.3, 1), peak * random.uniform(-0.3, 1),
+            peak * random.uniform(-0.3, 1));
+    }
     for (std::size_t i = 0; i < 120; ++i) {
         Vector3 v = {log_uniform(-149, -20), log_uniform(-149, -20), log_uniform(-149, -20)};
         add(v[0], v[1], v[2]);
@@ -64,29 +69,6 @@ std::vector<Vector3> probe_colours() {
         }
     }
     return probes;
-}
-
-int operand_count(ExprOp op) {
-    switch (op) {
-        case ExprOp::constant:
-        case ExprOp::input:
-            return 0;
-        case ExprOp::negate:
-        case ExprOp::absolute:
-        case ExprOp::square_root:
-        case ExprOp::exp2:
-        case ExprOp::log2:
-        case ExprOp::sine:
-        case ExprOp::cosine:
-        case ExprOp::floor:
-        case ExprOp::lookup:
-            return 1;
-        case ExprOp::select:
-        case ExprOp::lattice:
-            return 3;
-        default:
-            return 2;
-    }
 }
 
 /// Where cell i of a table with two samples or more begins.
@@ -115,13 +97,12 @@ double slope(const Table& table, double x) {
 
 /// A cell of it is so steep that a float's half unit in the last place of the index is a good part
 /// of the budget.
-bool is_steep(const Table& table) {
+bool is_steep(const Table& table, double max_error) {
     if (table.interpolation == Table::Interpolation::step) return false;
     for (std::size_t i = 0; i + 1 < table.samples.size(); ++i) {
         const double reach =
             std::max(std::fabs(cell_begin(table, i)), std::fabs(cell_begin(table, i + 1)));
-        if (!(std::fabs(cell_slope(table, i)) * reach * kHalfUlp < kFloatErrorBudget / 4))
-            return true;
+        if (!(std::fabs(cell_slope(table, i)) * reach * kHalfUlp < max_error / 8)) return true;
     }
     return false;
 }
@@ -170,7 +151,7 @@ std::array<double, 3> partials(const TapeInstruction& step, double value, double
         case ExprOp::select:
             return a != 0 ? std::array{0.0, 1.0, 0.0} : std::array{0.0, 0.0, 1.0};
         case ExprOp::lookup:
-            return {slope(*step.table, a), 0, 0};
+            return {step.curve ? step.curve->slope(a) : slope(*step.table, a), 0, 0};
         case ExprOp::lattice:
             return step.lattice->gradient(step.input, a, b, c);
         default:
@@ -236,49 +217,81 @@ double cost_of_double(ExprOp op) {
 class PrecisionChooser {
   public:
     PrecisionChooser(const std::vector<TapeInstruction>& code,
-                     const std::array<std::uint32_t, 3>& outputs)
+                     const std::array<std::uint32_t, 3>& outputs, double max_error)
         : code_(code),
           outputs_(outputs),
+          max_error_(max_error),
           in_double_(code.size()),
           value_(code.size()),
-          adjoint_(code.size()) {}
+          adjoint_(code.size()),
+          has_pole_(code.size()) {}
 
-    std::vector<bool> choose() {
+    Influence influence() {
+        Influence result;
         const std::vector<Vector3> probes = probe_colours();
+        for (std::size_t p = 0; p < probes.size(); p += 3) {
+            evaluate(probes[p], code_.size());
+            std::vector<double> largest(code_.size());
+            for (const std::uint32_t output : outputs_) {
+                accumulate(output);
+                for (std::size_t i = 0; i < code_.size(); ++i)
+                    largest[i] =
+                        std::max(largest[i], has_pole_[i] ? kPole : std::fabs(adjoint_[i]));
+            }
+            result.value.push_back(value_);
+            result.influence.push_back(std::move(largest));
+        }
+        return result;
+    }
+
+    Precision choose() {
+        const std::vector<Vector3> probes = probe_colours();
+        for (std::size_t i = 0; i < code_.size(); ++i)
+            in_double_[i] = code_[i].curve && code_[i].curve->is_precise;
         // Where the rows of a matrix cancel, the loss has no bound, and no set of probes comes near
         // enough to every zero of every row: these are double from the start.
         for (std::size_t i = 0; i < code_.size(); ++i) {
-            if (is_cancelling_row(i)) in_double_[i] = true;
+            if (is_cancelling_row(i)) keep_in_double(i);
             // In float the rounding of y log2(x) grows with it, and kernels have no better for an
             // exponent that is not constant. A small power of a ratio too small for float is not
             // small.
-            if (code_[i].op == ExprOp::power && code_[code_[i].b].op != ExprOp::constant)
-                in_double_[i] = in_double_[code_[i].a] = true;
+            if (code_[i].op == ExprOp::power && code_[code_[i].b].op != ExprOp::constant) {
+                keep_in_double(i);
+                keep_in_double(code_[i].a);
+            }
         }
         // Nor need a probe lie in a narrow and steep cell of a table: what such a table is indexed
         // with is double from the start, and all that it is computed from.
         for (std::size_t i = 0; i < code_.size(); ++i) {
-            if (code_[i].op == ExprOp::lookup && is_steep(*code_[i].table)) {
-                in_double_[i] = true;
+            if (code_[i].op == ExprOp::lookup && !code_[i].curve &&
+                is_steep(*code_[i].table, max_error_)) {
+                keep_in_double(i);
                 keep_index_in_double(code_[i].a);
             }
         }
         for (std::size_t i = 0; i < code_.size(); ++i) {
             if (is_branch(code_[i].op)) branches_.push_back({i, {}});
         }
+        // Most curves that are too coarse are so for many colours: those few are enough to say so.
+        for (std::size_t p = 0; p < probes.size(); p += 7)
+            visit(probes[p]);
+        if (!too_coarse_.empty()) return {in_double_, too_coarse_};
         // A copy (min, select, ...) of a float is exact, one of a double is not: what was decided
         // may have to be looked at again.
         for (int pass = 0; pass < 4; ++pass) {
             const std::vector<bool> before = in_double_;
+            std::vector<Probe> visited;
             for (const Vector3& rgb : probes) {
-                visit(rgb);
+                visited.push_back({rgb, visit(rgb)});
                 if (pass == 0) collect_sides(rgb);
             }
+            climb(visited);
+            if (!too_coarse_.empty()) break;
             for (const Branch& branch : branches_)
                 approach(branch);
             if (in_double_ == before) break;
         }
-        return in_double_;
+        return {in_double_, too_coarse_};
     }
 
   private:
@@ -286,12 +299,18 @@ class PrecisionChooser {
         double error;
         std::size_t index;
     };
+    struct Probe {
+        Vector3 rgb;
+        double worst;  // see visit()
+    };
     /// Where the program takes one side or the other, and probes of either.
     struct Branch {
         std::size_t index;
         std::array<std::vector<Vector3>, 2> sides;
     };
     static constexpr std::size_t kPairs = 4;
+    /// Influence where the derivative has no end.
+    static constexpr double kPole = 1e12;
 
     /// A sum of constant multiples of values, with a negative constant among them.
     [[nodiscard]] bool is_cancelling_row(std::size_t i) const {
@@ -324,7 +343,7 @@ class PrecisionChooser {
             const int operands = operand_count(step.op);
             if (operands == 0 || seen[i]) continue;
             seen[i] = true;
-            in_double_[i] = true;
+            keep_in_double(i);
             const std::array<std::uint32_t, 3> operand = {step.a, step.b, step.c};
             rest.insert(rest.end(), operand.begin(), operand.begin() + operands);
         }
@@ -341,6 +360,8 @@ class PrecisionChooser {
             } else if (step.op == ExprOp::lattice) {
                 value_[i] =
                     (*step.lattice)(step.input, value_[step.a], value_[step.b], value_[step.c]);
+            } else if (step.curve) {
+                value_[i] = (*step.curve)(value_[step.a]);
             } else {
                 value_[i] =
                     scalar_op(step.op, value_[step.a], value_[step.b], value_[step.c], step.table);
@@ -348,14 +369,42 @@ class PrecisionChooser {
         }
     }
 
-    void visit(const Vector3& rgb) {
+    /// Keeps the errors of this colour within what they may be.
+    /// @return  how near the worst output is to it
+    double visit(const Vector3& rgb) {
         evaluate(rgb, code_.size());
         constexpr double kTooLarge = 0.5 * static_cast<double>(std::numeric_limits<float>::max());
         for (std::size_t i = 0; i < code_.size(); ++i) {
-            if (std::isfinite(value_[i]) && std::fabs(value_[i]) > kTooLarge) in_double_[i] = true;
+            if (std::isfinite(value_[i]) && std::fabs(value_[i]) > kTooLarge) keep_in_double(i);
         }
+        double worst = 0;
         for (const std::uint32_t output : outputs_)
-            keep_within_budget(output);
+            worst = std::max(worst, keep_within_budget(output));
+        return worst;
+    }
+
+    /// From the worst probes on to worse colours: where rows of matrices nearly cancel, or a curve
+    /// is steep, there may be few of them, and no probe among them.
+    void climb(std::vector<Probe>& probes) {
+        constexpr std::size_t kStarts = 24;
+        constexpr int kSteps = 40;
+        const std::size_t starts = std::min(kStarts, probes.size());
+        std::partial_sort(probes.begin(), probes.begin() + static_cast<std::ptrdiff_t>(starts),
+                          probes.end(),
+                          [](const Probe& x, const Probe& y) { return x.worst > y.worst; });
+        for (std::size_t p = 0; p < starts; ++p) {
+            Probe here = probes[p];
+            for (int step = 0; step < kSteps; ++step) {
+                const double reach = step < kSteps / 2 ? 0.3 : 0.03;
+                Probe next = here;
+                for (double& x : next.rgb) {
+                    x = std::clamp(x * (1 + random_.uniform(-reach, reach)), -kHalfMax, kHalfMax);
+                    x = static_cast<double>(static_cast<float>(x));
+                }
+                next.worst = visit(next.rgb);
+                if (next.worst > here.worst) here = next;
+            }
+        }
     }
 
     [[nodiscard]] bool takes_first(std::size_t i) const {
@@ -404,6 +453,7 @@ class PrecisionChooser {
     /// Adjoints of all values for one output, relative to its size above 1.
     void accumulate(std::uint32_t output) {
         std::fill(adjoint_.begin(), adjoint_.end(), 0.0);
+        std::fill(has_pole_.begin(), has_pole_.end(), false);
         adjoint_[output] = 1 / std::max(1.0, std::fabs(value_[output]));
         for (std::size_t i = output + 1; i-- > 0;) {
             const TapeInstruction& step = code_[i];
@@ -417,7 +467,11 @@ class PrecisionChooser {
                 if (k == 1 && step.op == ExprOp::power && code_[step.b].op == ExprOp::constant)
                     continue;
                 const double added = adjoint_[i] * partial[k];
-                if (std::isfinite(added)) adjoint_[operand[k]] += added;  // not at a pole
+                if (std::isfinite(added)) {  // not at a pole
+                    adjoint_[operand[k]] += added;
+                } else {
+                    has_pole_[operand[k]] = true;
+                }
             }
         }
     }
@@ -427,6 +481,14 @@ class PrecisionChooser {
         const double v = value_[i];
         if (step.op == ExprOp::constant) {
             return std::fabs(v - static_cast<double>(static_cast<float>(v)));
+        }
+        if (step.curve) {
+            const double x = value_[step.a];
+            double error = step.curve->tolerance.at(x, v);
+            // A curve in float is exact to that for x in float.
+            if (!step.curve->is_precise && in_double_[step.a])
+                error += std::fabs(step.curve->slope(x) * x) * kHalfUlp;
+            return i == output ? std::max(0.0, error - kHalfUlp * std::fabs(v)) : error;
         }
         double units = half_ulps(step.op);
         if (is_exact(step.op)) {
@@ -458,45 +520,77 @@ class PrecisionChooser {
         return units * std::max(kHalfUlp * std::fabs(v), kSmallestStep) + of_position;
     }
 
-    void keep_within_budget(std::uint32_t output) {
+    double keep_within_budget(std::uint32_t output) {
         accumulate(output);
         shares_.clear();
-        double sum = 0;
+        curves_.clear();
+        const double most = 0.25 * 0.25 * max_error_ * max_error_;
+        double sum = 0;  // of squares
         for (std::size_t i = 0; i <= output; ++i) {
-            if (adjoint_[i] == 0 || in_double_[i]) continue;
+            const bool is_curve = code_[i].curve != nullptr;
+            if (adjoint_[i] == 0 || (in_double_[i] && !is_curve)) continue;
             const double error = std::fabs(adjoint_[i]) * rounding(i, output);
             if (!(error > 0)) continue;
-            sum += error;
-            shares_.push_back({error, i});
+            sum += error * error;
+            (is_curve ? curves_ : shares_).push_back({error, i});
         }
-        if (!(sum > kFloatErrorBudget)) return;
-        const auto by_merit = [&](const Share& x, const Share& y) {
+        if (sum <= most) return sum / most;
+        const auto double_has_more_merit = [&](const Share& x, const Share& y) {
             return x.error / cost_of_double(code_[x.index].op) >
                    y.error / cost_of_double(code_[y.index].op);
         };
-        std::sort(shares_.begin(), shares_.end(), by_merit);
+        std::sort(shares_.begin(), shares_.end(), double_has_more_merit);
         for (const Share& share : shares_) {
+            if (sum <= most) return sum / most;
             in_double_[share.index] = true;
-            sum -= share.error;
-            if (sum <= kFloatErrorBudget) break;
+            sum -= share.error * share.error;
+        }
+        std::sort(curves_.begin(), curves_.end(),
+                  [](const Share& x, const Share& y) { return x.error > y.error; });
+        for (const Share& share : curves_) {
+            if (sum <= most) return sum / most;
+            reject(code_[share.index].curve);
+            sum -= share.error * share.error;
+        }
+        return sum / most;
+    }
+
+    void reject(const CompiledCurve* curve) {
+        if (std::find(too_coarse_.begin(), too_coarse_.end(), curve) == too_coarse_.end())
+            too_coarse_.push_back(curve);
+    }
+
+    void keep_in_double(std::size_t i) {
+        if (code_[i].curve && !code_[i].curve->is_precise) {
+            reject(code_[i].curve);
+        } else {
+            in_double_[i] = true;
         }
     }
 
     const std::vector<TapeInstruction>& code_;
     const std::array<std::uint32_t, 3>& outputs_;
+    double max_error_;
     std::vector<bool> in_double_;
+    std::vector<const CompiledCurve*> too_coarse_;
     std::vector<double> value_;
     std::vector<double> adjoint_;
-    std::vector<Share> shares_;
+    std::vector<bool> has_pole_;
+    std::vector<Share> shares_, curves_;
     std::vector<Branch> branches_;
     ProbeRandom random_{11};
 };
 
 }  // namespace
 
-std::vector<bool> values_in_double(const std::vector<TapeInstruction>& code,
-                                   const std::array<std::uint32_t, 3>& outputs) {
-    return PrecisionChooser(code, outputs).choose();
+Influence measure_influence(const std::vector<TapeInstruction>& code,
+                            const std::array<std::uint32_t, 3>& outputs) {
+    return PrecisionChooser(code, outputs, 0).influence();
+}
+
+Precision choose_precision(const std::vector<TapeInstruction>& code,
+                           const std::array<std::uint32_t, 3>& outputs, double max_error) {
+    return PrecisionChooser(code, outputs, max_error).choose();
 }
 
 }  // namespace tonewright

@@ -121,15 +121,42 @@ HWY_INLINE V maximum(V a, V b) {
     return hn::Max(b, a);
 }
 
-HWY_NOINLINE void dot3(const Frame& frame, const Instruction& step) {
-    const auto dot = [&step](auto d, auto a, auto b, auto c) HWY_ATTR {
-        using T = hn::TFromD<decltype(d)>;
-        const auto k0 = hn::Set(d, static_cast<T>(step.k[0]));
-        const auto k1 = hn::Set(d, static_cast<T>(step.k[1]));
-        const auto k2 = hn::Set(d, static_cast<T>(step.k[2]));
-        return hn::MulAdd(k2, c, hn::MulAdd(k1, b, hn::Mul(k0, a)));
-    };
-    map<3>(frame, step, dot);
+/// A result of a wide operation to where it goes.
+HWY_INLINE void store_result(const Frame& frame, const Operand& out, std::size_t i, Vec<DD> value) {
+    store_wide(frame, out, i, value);
+}
+HWY_INLINE void store_result(const Frame& frame, const Operand& out, std::size_t i, Vec<DF> value) {
+    hn::Store(value, DF(), reinterpret_cast<float*>(frame.registers + out.offset) + i);
+}
+
+/// Operands loaded, and converted, once for all rows.
+template <class D>
+HWY_INLINE void rows3(D d, const Frame& frame, const Instruction& step) {
+    using T = hn::TFromD<D>;
+    const Source a(frame, step.in[0]);
+    const Source b(frame, step.in[1]);
+    const Source c(frame, step.in[2]);
+    const auto k = [&step, d](std::size_t i)
+                       HWY_ATTR { return hn::Set(d, static_cast<T>(step.k[i])); };
+    for (std::size_t i = 0; i < frame.count; i += hn::Lanes(d)) {
+        const auto va = a.load(d, i);
+        const auto vb = b.load(d, i);
+        const auto vc = c.load(d, i);
+        for (std::size_t row = 0; row < 3; ++row) {
+            if (step.channel[row].constant) continue;
+            const auto sum = hn::MulAdd(k(3 * row + 2), vc,
+                                        hn::MulAdd(k(3 * row + 1), vb, hn::Mul(k(3 * row), va)));
+            store_result(frame, step.channel[row], i, sum);
+        }
+    }
+}
+
+HWY_NOINLINE void rows3(const Frame& frame, const Instruction& step) {
+    if (step.wide) {
+        rows3(DD(), frame, step);
+    } else {
+        rows3(DF(), frame, step);
+    }
 }
 
 HWY_NOINLINE void exp2(const Frame& frame, const Instruction& step) {
@@ -205,12 +232,6 @@ HWY_NOINLINE void lookup(const Frame& frame, const Instruction& step, const Samp
     const Source a(frame, step.in[0]);
     const std::size_t n = table.wide.size();
     const bool linear = table.interpolation == Table::Interpolation::linear;
-    if (!table.positions.empty()) {
-        const auto at_positions = [&](DD d, Vec<DD> x) HWY_ATTR {
-            return lookup_at(d, x, table.positions.data(), table.wide.data(), n, linear);
-        };
-        return map_double(frame, step, at_positions, a);
-    }
     const auto in_float = [&](DF d, Vec<DF> x) HWY_ATTR {
         return linear ? lookup_linear(d, x, table.narrow.data(), n)
                       : lookup_step(d, x, table.narrow.data(), n);
@@ -225,6 +246,278 @@ HWY_NOINLINE void lookup(const Frame& frame, const Instruction& step, const Samp
         map_float(frame, step, in_float, a);
     }
 }
+
+/// One value of an operand at a time, as its own type.
+template <class F>
+HWY_INLINE void with_number(const Frame& frame, const Operand& operand, std::size_t i, F use) {
+    if (operand.wide) {
+        use(reinterpret_cast<double*>(frame.registers + operand.offset)[i]);
+    } else {
+        use(reinterpret_cast<float*>(frame.registers + operand.offset)[i]);
+    }
+}
+
+/// Always in double. Pixel by pixel: gathers are slower, and all tables lie in one line of memory.
+HWY_NOINLINE void lookup_at(const Frame& frame, const Instruction& step,
+                            const PositionedTables& tables) {
+    const DD d;
+    const hn::CappedTag<double, 4> part;
+    const std::size_t lanes = hn::Lanes(d);
+    const Source source(frame, step.in[0]);
+    const auto first = hn::Set(d, tables.first);
+    const auto last = hn::Set(d, tables.last);
+    const auto parts_per_unit = hn::Set(d, tables.parts_per_unit);
+    alignas(kVectorBytes) double place[kLaneMultiple];
+    alignas(kVectorBytes) double part_of[kLaneMultiple];
+    alignas(kVectorBytes) double values[4];
+    for (std::size_t i = 0; i < frame.count; i += lanes) {
+        const auto x = source.load(d, i);
+        // NaN -> the first position: the comparison fails.
+        const auto t = hn::Min(hn::IfThenElse(hn::Gt(x, first), x, first), last);
+        hn::Store(t, d, place);
+        hn::Store(hn::Mul(hn::Sub(t, first), parts_per_unit), d, part_of);
+        for (std::size_t p = 0; p < lanes; ++p) {
+            std::size_t cell = tables.first_cell[static_cast<std::size_t>(part_of[p])];
+            for (int k = 0; k < tables.steps; ++k)
+                cell += place[p] >= tables.end[cell] ? 1 : 0;
+            const PositionedTables::Line& line = tables.lines[cell];
+            const auto at = hn::Set(part, place[p]);
+            for (std::size_t c = 0; c < 4; c += hn::Lanes(part)) {
+                hn::Store(hn::MulAdd(hn::Load(part, line.slope.data() + c), at,
+                                     hn::Load(part, line.constant.data() + c)),
+                          part, values + c);
+            }
+            for (std::size_t c = 0; c < 3; ++c) {
+                if (step.channel[c].constant) continue;
+                with_number(frame, step.channel[c], i + p, [&](auto& out) {
+                    out = static_cast<std::decay_t<decltype(out)>>(values[c]);
+                });
+            }
+        }
+    }
+}
+
+/// A float operand, or a double one rounded to float.
+HWY_INLINE Vec<DF> load_narrow(DF d, const Source& source, std::size_t i) {
+    if (!source.wide) return source.load(d, i);
+#if HWY_TARGET == HWY_SCALAR
+    return hn::DemoteTo(d, source.load(DD(), i));
+#else
+    const hn::Half<DF> half;
+    const auto lower = hn::DemoteTo(half, source.load(DD(), i));
+    const auto upper = hn::DemoteTo(half, source.load(DD(), i + hn::Lanes(half)));
+    return hn::Combine(d, upper, lower);
+#endif
+}
+
+#if HWY_TARGET <= HWY_AVX3
+
+/// 16, 32 or 64 numbers, and those of them that a vector of indices picks.
+template <int kSize>
+struct PermutedTable {
+    Vec<DF> part[kSize / 16];
+
+    HWY_INLINE explicit PermutedTable(const float* numbers) {
+        for (int i = 0; i < kSize / 16; ++i)
+            part[i] = hn::Load(DF(), numbers + 16 * i);
+    }
+    HWY_INLINE Vec<DF> at(Vec<hn::RebindToSigned<DF>> index) const {
+        if constexpr (kSize == 16) {
+            return Vec<DF>{_mm512_permutexvar_ps(index.raw, part[0].raw)};
+        } else {
+            const auto low = _mm512_permutex2var_ps(part[0].raw, index.raw, part[1].raw);
+            if constexpr (kSize == 32) return Vec<DF>{low};
+            const auto high = _mm512_permutex2var_ps(part[kSize / 16 - 2].raw, index.raw,
+                                                     part[kSize / 16 - 1].raw);
+            const __mmask16 is_high = _mm512_test_epi32_mask(index.raw, _mm512_set1_epi32(32));
+            return Vec<DF>{_mm512_mask_blend_ps(is_high, low, high)};
+        }
+    }
+};
+
+/// The segment that x is in.
+template <int kCells, int kSegments>
+struct SegmentFinder {
+    using DI = hn::RebindToSigned<DF>;
+    PermutedTable<kCells> threshold;
+    PermutedTable<kCells> segment;
+    Vec<DF> cell_floor;
+    Vec<DI> first_cell;
+    int shift;
+
+    HWY_INLINE explicit SegmentFinder(const CompiledCurve& curve)
+        : threshold(curve.threshold.data()),
+          segment(reinterpret_cast<const float*>(curve.segment.data())),
+          cell_floor(hn::Set(DF(), curve.cell_floor)),
+          first_cell(hn::Set(DI(), static_cast<std::int32_t>(curve.first_cell))),
+          shift(curve.shift) {}
+
+    HWY_INLINE Vec<DI> operator()(Vec<DF> x) const {
+        const DI di;
+        const auto bits = hn::BitCast(di, hn::Max(x, cell_floor));
+        const auto cell = hn::Sub(hn::ShiftRightSame(bits, shift), first_cell);
+        const auto is_behind = hn::RebindMask(di, hn::Ge(x, threshold.at(cell)));
+        return hn::Sub(hn::BitCast(di, segment.at(cell)), hn::VecFromMask(di, is_behind));
+    }
+};
+
+/// Without cells: a bit of the index at a time, the highest first.
+template <int kSegments>
+struct SegmentFinder<0, kSegments> {
+    using DI = hn::RebindToSigned<DF>;
+    PermutedTable<kSegments> threshold;
+
+    HWY_INLINE explicit SegmentFinder(const CompiledCurve& curve)
+        : threshold(curve.threshold.data()) {}
+
+    HWY_INLINE Vec<DI> operator()(Vec<DF> x) const {
+        const DI di;
+        auto index = hn::Zero(di);
+        for (int bit = kSegments / 2; bit > 0; bit /= 2) {
+            const auto next = hn::Or(index, hn::Set(di, bit));
+            const auto is_there = hn::RebindMask(di, hn::Ge(x, threshold.at(next)));
+            index = hn::IfThenElse(is_there, next, index);
+        }
+        return index;
+    }
+};
+
+/// Two vectors of doubles, as many as there are floats in one.
+struct DoublePair {
+    Vec<DD> lower, upper;
+};
+
+HWY_INLINE DoublePair promote(Vec<DF> x) {
+    const hn::Half<DF> half;
+    const DF d;
+    return {hn::PromoteTo(DD(), hn::LowerHalf(half, x)),
+            hn::PromoteTo(DD(), hn::UpperHalf(half, x))};
+}
+HWY_INLINE Vec<DF> demote(const DoublePair& x) {
+    const hn::Half<DF> half;
+    return hn::Combine(DF(), hn::DemoteTo(half, x.upper), hn::DemoteTo(half, x.lower));
+}
+
+template <int kCells, int kSegments, int kDegree, bool kIsPrecise>
+HWY_NOINLINE void run_curve(const Frame& frame, const Instruction& step,
+                            const CompiledCurve& curve) {
+    const DF d;
+    const SegmentFinder<kCells, kSegments> find_segment(curve);
+    const PermutedTable<kSegments> scale(curve.scale.data());
+    const PermutedTable<kSegments> offset(curve.offset.data());
+    const auto coefficient = [&curve](int k) HWY_ATTR {
+        return PermutedTable<kSegments>(curve.coefficient[static_cast<std::size_t>(k)].data());
+    };
+    const auto lo = hn::Set(d, curve.lo);
+    const auto hi = hn::Set(d, curve.hi);
+    // NaN is not above lo.
+    const auto finished = [&curve](auto tag, auto y, auto is_above) HWY_ATTR {
+        using T = hn::TFromD<decltype(tag)>;
+        const auto number = [tag](auto k) HWY_ATTR { return hn::Set(tag, static_cast<T>(k)); };
+        const auto limited = hn::Min(hn::Max(y, number(curve.least)), number(curve.most));
+        return hn::IfThenElse(is_above, limited, number(curve.at_lo));
+    };
+    const Source source(frame, step.in[0]);
+    for (std::size_t i = 0; i < frame.count; i += hn::Lanes(d)) {
+        const auto given = load_narrow(d, source, i);
+        const auto x = hn::Min(hn::Max(given, lo), hi);
+        const auto index = find_segment(x);
+        auto t = hn::MulAdd(x, scale.at(index), offset.at(index));
+        if (kIsPrecise && source.wide) {
+            const DD dd;
+            const DoublePair rounded = promote(given);
+            const auto rest = demote({hn::Sub(source.load(dd, i), rounded.lower),
+                                      hn::Sub(source.load(dd, i + hn::Lanes(dd)), rounded.upper)});
+            const auto is_inside = hn::Eq(given, x);
+            t = hn::MulAdd(hn::IfThenElseZero(is_inside, rest), scale.at(index), t);
+        }
+        auto y = coefficient(kDegree).at(index);
+        for (int k = kDegree - 1; k >= 1; --k)
+            y = hn::MulAdd(y, t, coefficient(k).at(index));
+        const auto first = coefficient(0).at(index);
+        if constexpr (kIsPrecise) {
+            const PermutedTable<kSegments> rest(curve.rest.data());
+            const DoublePair base = promote(first);
+            const DoublePair change = promote(hn::MulAdd(y, t, rest.at(index)));
+            const DoublePair sum = {hn::Add(base.lower, change.lower),
+                                    hn::Add(base.upper, change.upper)};
+            const DD dd;
+            const DoublePair from = promote(x);
+            const auto at_lo = hn::Set(dd, static_cast<double>(curve.lo));
+            store_wide(frame, step.out, i, finished(dd, sum.lower, hn::Gt(from.lower, at_lo)));
+            store_wide(frame, step.out, i + hn::Lanes(dd),
+                       finished(dd, sum.upper, hn::Gt(from.upper, at_lo)));
+        } else {
+            hn::Store(finished(d, hn::MulAdd(y, t, first), hn::Gt(x, lo)), d,
+                      reinterpret_cast<float*>(frame.registers + step.out.offset) + i);
+        }
+    }
+}
+
+template <int kCells, int kSegments, int kDegree>
+HWY_INLINE void run_curve(const Frame& frame, const Instruction& step, const CompiledCurve& curve) {
+    if (curve.is_precise) return run_curve<kCells, kSegments, kDegree, true>(frame, step, curve);
+    run_curve<kCells, kSegments, kDegree, false>(frame, step, curve);
+}
+
+template <int kCells, int kSegments>
+HWY_INLINE void run_curve(const Frame& frame, const Instruction& step, const CompiledCurve& curve) {
+    switch (curve.degree) {
+        case 3:
+            return run_curve<kCells, kSegments, 3>(frame, step, curve);
+        case 4:
+            return run_curve<kCells, kSegments, 4>(frame, step, curve);
+        case 5:
+            return run_curve<kCells, kSegments, 5>(frame, step, curve);
+        case 6:
+            return run_curve<kCells, kSegments, 6>(frame, step, curve);
+        case 7:
+            return run_curve<kCells, kSegments, 7>(frame, step, curve);
+        case 8:
+            return run_curve<kCells, kSegments, 8>(frame, step, curve);
+        default:
+            return run_curve<kCells, kSegments, 9>(frame, step, curve);
+    }
+}
+
+HWY_NOINLINE void curve(const Frame& frame, const Instruction& step, const CompiledCurve& curve) {
+    static_assert(CompiledCurve::kMinDegree == 3 && CompiledCurve::kMaxDegree == 9);
+    if (curve.cells == 0) {
+        if (curve.segments <= 16) return run_curve<0, 16>(frame, step, curve);
+        if (curve.segments <= 32) return run_curve<0, 32>(frame, step, curve);
+        return run_curve<0, 64>(frame, step, curve);
+    }
+    if (curve.cells <= 32) {
+        if (curve.segments <= 16) return run_curve<32, 16>(frame, step, curve);
+        if (curve.segments <= 32) return run_curve<32, 32>(frame, step, curve);
+        return run_curve<32, 64>(frame, step, curve);
+    }
+    if (curve.segments <= 16) return run_curve<64, 16>(frame, step, curve);
+    if (curve.segments <= 32) return run_curve<64, 32>(frame, step, curve);
+    return run_curve<64, 64>(frame, step, curve);
+}
+
+bool has_fast_curves() { return true; }
+
+#else
+
+// An engine made for AVX-512 computes the same here, slowly; one made for this instruction set has
+// no compiled curves.
+HWY_NOINLINE void curve(const Frame& frame, const Instruction& step, const CompiledCurve& curve) {
+    for (std::size_t i = 0; i < frame.count; ++i) {
+        double y = 0;
+        with_number(frame, step.in[0], i, [&](auto& x) {
+            y = curve(curve.is_precise ? static_cast<double>(x)
+                                       : static_cast<double>(static_cast<float>(x)));
+        });
+        with_number(frame, step.out, i,
+                    [&](auto& out) { out = static_cast<std::decay_t<decltype(out)>>(y); });
+    }
+}
+
+bool has_fast_curves() { return false; }
+
+#endif
 
 /// Nodes and weights of one vector of pixels.
 template <class T>
@@ -301,19 +594,16 @@ HWY_INLINE void interpolate(D d, const Frame& frame, const Instruction& step, in
                 hn::Store(sum, part, pixels + 4 * p + c);
             }
         }
+#if HWY_TARGET == HWY_SCALAR
+        const std::array<Vec<D>, 3> rgb = {hn::Load(d, pixels), hn::Load(d, pixels + 1),
+                                           hn::Load(d, pixels + 2)};
+#else
+        std::array<Vec<D>, 3> rgb;
+        auto unused = hn::Undefined(d);
+        hn::LoadInterleaved4(d, pixels, rgb[0], rgb[1], rgb[2], unused);
+#endif
         for (std::size_t c = 0; c < 3; ++c) {
-            const Operand& channel = step.channel[c];
-            if (channel.constant) continue;
-            const auto store = [&](auto* out) {
-                for (std::size_t p = 0; p < lanes; ++p)
-                    out[i + p] =
-                        static_cast<std::remove_pointer_t<decltype(out)>>(pixels[4 * p + c]);
-            };
-            if (channel.wide) {
-                store(reinterpret_cast<double*>(frame.registers + channel.offset));
-            } else {
-                store(reinterpret_cast<float*>(frame.registers + channel.offset));
-            }
+            if (!step.channel[c].constant) store_result(frame, step.channel[c], i, rgb[c]);
         }
     }
 }
@@ -351,8 +641,8 @@ HWY_NOINLINE void run_instruction(const Frame& frame, const Code& code, const In
             return map<3>(frame, step, [](auto, auto a, auto b, auto c) HWY_ATTR {
                 return hn::NegMulAdd(a, b, c);
             });
-        case Op::dot3:
-            return dot3(frame, step);
+        case Op::rows3:
+            return rows3(frame, step);
         case Op::minimum:
             return map<2>(frame, step, [](auto, auto a, auto b) HWY_ATTR { return minimum(a, b); });
         case Op::maximum:
@@ -420,6 +710,10 @@ HWY_NOINLINE void run_instruction(const Frame& frame, const Code& code, const In
             });
         case Op::lookup:
             return lookup(frame, step, code.tables[step.table]);
+        case Op::lookup_at:
+            return lookup_at(frame, step, code.positioned[step.table]);
+        case Op::curve:
+            return curve(frame, step, code.curves[step.table]);
         case Op::lattice:
             return lattice(frame, step, code.lattices[step.table]);
     }
@@ -577,6 +871,7 @@ namespace tonewright::simd {
 namespace {
 
 HWY_EXPORT(run);
+HWY_EXPORT(has_fast_curves);
 
 /// Highway's bits of the targets compiled in that the machine has, best (lowest bit) first.
 const std::vector<std::int64_t>& targets() {
@@ -591,6 +886,8 @@ void run(const Code& code, const std::array<const float*, 3>& in, std::ptrdiff_t
          const std::array<float*, 3>& out, std::ptrdiff_t out_stride, std::size_t count) noexcept {
     HWY_DYNAMIC_DISPATCH(run)(code, in, in_stride, out, out_stride, count);
 }
+
+bool has_fast_curves() { return HWY_DYNAMIC_DISPATCH(has_fast_curves)(); }
 
 const std::vector<std::string>& target_names() {
     static const std::vector<std::string> names = [] {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/compiled_curve.h"
 #include "tonewright/expr.h"
 
 namespace tonewright::simd {
@@ -24,7 +25,7 @@ enum class Op : std::uint8_t {
     multiply_add,       // a*b + c, rounded once where the processor can
     multiply_subtract,  // a*b - c
     subtract_product,   // c - a*b
-    dot3,               // k0*a + k1*b + k2*c
+    rows3,              // k0*a + k1*b + k2*c, of one to three rows of a matrix
     minimum,            // b < a ? b : a
     maximum,            // a < b ? b : a
     clamp,              // minimum(maximum(a, b), c)
@@ -47,7 +48,9 @@ enum class Op : std::uint8_t {
     select_less_equal,
     select_equal,
     lookup,
-    lattice,  // of coordinates a, b, c: all three channels
+    lookup_at,  // of one to three tables with the same positions
+    curve,      // compiled
+    lattice,    // of coordinates a, b, c: all three channels
 };
 
 /// Where a value is: in the tile's register file, or among the constants, which stand there as one
@@ -58,13 +61,30 @@ struct Operand {
     bool wide = false;  // double, else float
 };
 
+/// At equal distances over [0, 1].
 struct SampledTable {
     std::vector<float> narrow;
     std::vector<double> wide;
-    /// Empty: equal distances. Else of each sample, filled up with infinity to a power of two and
-    /// one more; `wide` is filled up with its last sample, and the lookup is always in double.
-    std::vector<double> positions;
     Table::Interpolation interpolation = Table::Interpolation::linear;
+};
+
+/// Up to three tables with the same positions.
+struct PositionedTables {
+    /// What is before the first and behind the last position counts as that.
+    double first = 0;
+    double last = 0;
+    /// Equal parts of [first, last], and in which cell each of them begins. No part has more than
+    /// `steps` further cells in it.
+    double parts_per_unit = 0;
+    std::vector<std::uint32_t> first_cell;
+    int steps = 0;
+    std::vector<double> end;  // of each cell; of the last one infinity
+    /// What each cell holds of the tables, and one number that is not used.
+    struct alignas(64) Line {
+        std::array<double, 4> constant{};
+        std::array<double, 4> slope{};
+    };
+    std::vector<Line> lines;
 };
 
 /// Nodes of red, green, blue and one unused; in double where its results are.
@@ -75,16 +95,17 @@ struct SampledLattice {
 };
 
 /// An instruction computes over a whole tile. A wide one computes in double, whatever its operands
-/// and its result are kept in; another has float operands and a float result.
+/// and its result are kept in; another has float operands and a float result. A compiled curve
+/// computes in float and takes either.
 struct Instruction {
     Op op = Op::copy;
     bool wide = false;
     Operand out;
     std::array<Operand, 4> in;
-    std::array<double, 3> k{};  // coefficients of dot3, exponent of power_constant
-    std::uint32_t table = 0;    // of a lookup; of a lattice, its index among the lattices
-    /// Of a lattice, which has three results: where each channel goes. One that nobody reads is
-    /// marked as a constant.
+    std::array<double, 9> k{};  // coefficients of rows3, exponent of power_constant
+    std::uint32_t table = 0;    // of a lookup, a curve, a lattice: its index among those
+    /// Where the results go of an operation that has up to three. One that nobody reads is marked
+    /// as a constant.
     std::array<Operand, 3> channel;
 };
 
@@ -102,7 +123,9 @@ struct Code {
     std::vector<Instruction> instructions;
     std::vector<ConstantVector> constants;
     std::vector<SampledTable> tables;
+    std::vector<PositionedTables> positioned;
     std::vector<SampledLattice> lattices;
+    std::vector<CompiledCurve> curves;
     /// Float registers of the three input channels; a channel that is not read has none.
     std::array<std::uint32_t, 3> input_offset{};
     std::array<bool, 3> reads_input{};
@@ -116,6 +139,9 @@ struct Code {
 void run(const Code& code, const std::array<const float*, 3>& in, std::ptrdiff_t in_stride,
          const std::array<float*, 3>& out, std::ptrdiff_t out_stride, std::size_t count) noexcept;
 
+/// True when the instruction set that runs now has permutes over whole tables, so that compiled
+/// curves pay.
+[[nodiscard]] bool has_fast_curves();
 /// Instruction sets compiled in that this machine has, best first.
 const std::vector<std::string>& target_names();
 /// @param index  into target_names(), or -1 for the best.

@@ -42,9 +42,10 @@ HWY_INLINE Vec<D> horner(D d, Vec<D> x, double c0, C... c) {
 
 #if HWY_TARGET <= HWY_AVX3  // AVX-512 has instructions for both
 
-// 4/3 x has the next exponent exactly where the fraction of x is 3/2 or more, also when rounded: with
-// 4/3 rounded up to float (by 1/3 of a last place) and down to double (by 1/3), 3/2 gives 2 and the
-// number before it gives less. Rounded up to double (by 2/3), that one would give 2 as well.
+// 4/3 x has the next exponent exactly where the fraction of x is 3/2 or more, also when rounded:
+// with 4/3 rounded up to float (by 1/3 of a last place) and down to double (by 1/3), 3/2 gives 2
+// and the number before it gives less. Rounded up to double (by 2/3), that one would give 2 as
+// well.
 HWY_INLINE void split(hn::Full512<float> d, Vec<hn::Full512<float>> x, Vec<hn::Full512<float>>& e,
                       Vec<hn::Full512<float>>& f) {
     e.raw = _mm512_getexp_ps(hn::Mul(x, hn::Set(d, 1.33333337F)).raw);
@@ -407,34 +408,6 @@ HWY_INLINE Vec<D> lookup_step(D d, Vec<D> x, const hn::TFromD<D>* samples, std::
     const auto cell = hn::Min(hn::Floor(hn::Mul(t, hn::Set(d, static_cast<T>(count)))),
                               hn::Set(d, static_cast<T>(count - 1)));
     return hn::GatherIndex(d, samples, hn::ConvertTo(di, cell));
-}
-
-/// The same of a table with positions.
-/// @param count  of positions and samples, both filled up: a power of two and one more.
-HWY_INLINE Vec<hn::ScalableTag<double>> lookup_at(hn::ScalableTag<double> d,
-                                                  Vec<hn::ScalableTag<double>> x,
-                                                  const double* positions, const double* samples,
-                                                  std::size_t count, bool linear) {
-    const hn::RebindToSigned<decltype(d)> di;
-    // NaN -> the first position: the comparison fails.
-    const auto first = hn::Set(d, positions[0]);
-    const auto t = hn::IfThenElse(hn::Gt(x, first), x, first);
-    // The last cell that begins at or before t: a bit of its index at a time, the highest first.
-    auto cell = hn::Zero(di);
-    for (std::size_t half = (count - 1) / 2; half > 0; half /= 2) {
-        const auto next = hn::Add(cell, hn::Set(di, static_cast<std::int64_t>(half)));
-        const auto begins = hn::Le(hn::GatherIndex(d, positions, next), t);
-        cell = hn::IfThenElse(hn::RebindMask(di, begins), next, cell);
-    }
-    const auto a = hn::GatherIndex(d, samples, cell);
-    if (!linear) return a;
-    const auto begin = hn::GatherIndex(d, positions, cell);
-    const auto end = hn::GatherIndex(d, positions + 1, cell);
-    const auto b = hn::GatherIndex(d, samples + 1, cell);
-    // Behind the last position the cell has no end, and its two samples are the same.
-    const auto inside = hn::Lt(end, hn::Inf(d));
-    const auto part = hn::IfThenElseZero(inside, hn::Div(hn::Sub(t, begin), hn::Sub(end, begin)));
-    return hn::MulAdd(part, hn::Sub(b, a), a);
 }
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)

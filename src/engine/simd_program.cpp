@@ -7,6 +7,7 @@
 #include <cstring>
 #include <map>
 
+#include "engine/curve_folding.h"
 #include "engine/precision.h"
 #include "engine/tape.h"
 #include "tonewright/engine.h"
@@ -38,6 +39,11 @@ class FloatTape {
         }
         for (std::size_t i = 0; i < 3; ++i)
             outputs_[i] = moved[tape.outputs()[i]];
+    }
+
+    /// @param cache  owns the curves
+    void fold(const Influence& influence, CurveCache& cache) {
+        fold_curves(code_, outputs_, influence, cache);
     }
 
     [[nodiscard]] const std::vector<TapeInstruction>& code() const { return code_; }
@@ -116,13 +122,26 @@ struct Selected {
     std::array<double, 3> k{};
     const Table* table = nullptr;
     const Lattice* lattice = nullptr;
+    const CompiledCurve* curve = nullptr;
     int channel = 0;  // of the lattice
+    int sibling = 0;  // 0, or how many siblings come before: they are one instruction
     bool wide = false;
 };
 
-/// Two channels of one lattice at one place: one instruction computes both.
-bool same_place(const Selected& x, const Selected& y) {
-    return x.lattice && x.lattice == y.lattice && x.operands == y.operands;
+/// One instruction computes both: two channels of one lattice at one place, two rows of a matrix,
+/// two tables with the same positions.
+bool are_siblings(const Selected& x, const Selected& y) {
+    if (x.op != y.op || x.operands != y.operands) return false;
+    switch (x.op) {
+        case Op::lattice:
+            return x.lattice == y.lattice;
+        case Op::rows3:
+            return true;
+        case Op::lookup_at:
+            return x.table->positions == y.table->positions;
+        default:
+            return false;
+    }
 }
 
 class Selector {
@@ -153,57 +172,41 @@ class Selector {
                 if (operand == kNone) continue;
                 const auto v = static_cast<std::size_t>(operand);
                 is_needed_[v] = true;
-                current_.wide = current_.wide || in_double_[v];
+                current_.wide = current_.wide || (in_double_[v] && !current_.curve);
             }
             result.push_back(current_);
         }
         std::reverse(result.begin(), result.end());
-        gather_lattices(result);
+        gather_siblings(result);
         return result;
     }
 
     static std::vector<std::uint32_t> operands_of(const TapeInstruction& step) {
-        switch (step.op) {
-            case ExprOp::constant:
-            case ExprOp::input:
-                return {};
-            case ExprOp::negate:
-            case ExprOp::absolute:
-            case ExprOp::square_root:
-            case ExprOp::exp2:
-            case ExprOp::log2:
-            case ExprOp::sine:
-            case ExprOp::cosine:
-            case ExprOp::floor:
-            case ExprOp::lookup:
-                return {step.a};
-            case ExprOp::select:
-            case ExprOp::lattice:
-                return {step.a, step.b, step.c};
-            default:
-                return {step.a, step.b};
-        }
+        std::vector<std::uint32_t> operands = {step.a, step.b, step.c};
+        operands.resize(static_cast<std::size_t>(operand_count(step.op)));
+        return operands;
     }
 
   private:
-    /// The channels of a lattice one behind the other: their operands are there at the first.
-    static void gather_lattices(std::vector<Selected>& program) {
-        for (std::size_t i = 0; i < program.size(); ++i) {
-            if (!program[i].lattice) continue;
-            for (std::size_t k = i + 1; k < program.size(); ++k) {
-                if (!same_place(program[i], program[k])) continue;
-                ++i;
-                std::rotate(program.begin() + static_cast<std::ptrdiff_t>(i),
+    /// Up to three siblings one behind the other: their operands are there at the first.
+    static void gather_siblings(std::vector<Selected>& program) {
+        for (std::size_t i = 0; i < program.size();) {
+            std::size_t end = i + 1;
+            for (std::size_t k = end; k < program.size() && end - i < 3; ++k) {
+                if (!are_siblings(program[i], program[k])) continue;
+                std::rotate(program.begin() + static_cast<std::ptrdiff_t>(end),
                             program.begin() + static_cast<std::ptrdiff_t>(k),
                             program.begin() + static_cast<std::ptrdiff_t>(k) + 1);
+                program[end].sibling = static_cast<int>(end - i);
+                ++end;
             }
-        }
-        // One double channel, or coordinate, and all three are computed in double.
-        for (std::size_t i = 1; i < program.size(); ++i) {
-            if (same_place(program[i - 1], program[i])) program[i].wide |= program[i - 1].wide;
-        }
-        for (std::size_t i = program.size(); i-- > 1;) {
-            if (same_place(program[i - 1], program[i])) program[i - 1].wide |= program[i].wide;
+            // One of them, or an operand, in double, and all are computed in double.
+            bool wide = false;
+            for (std::size_t k = i; k < end; ++k)
+                wide = wide || program[k].wide;
+            for (std::size_t k = i; k < end; ++k)
+                program[k].wide = wide;
+            i = end;
         }
     }
 
@@ -236,7 +239,7 @@ class Selector {
     }
 
     /// (k0 a + k1 b) + k2 c: a row of a matrix, or a luminance.
-    bool match_dot3(const TapeInstruction& sum) {
+    bool match_rows3(const TapeInstruction& sum) {
         if (!absorbs(sum.a, ExprOp::add)) return false;
         const TapeInstruction& first = code_[sum.a];
         std::array<double, 3> k{};
@@ -245,7 +248,7 @@ class Selector {
             !is_term(sum.b, k[2], x[2])) {
             return false;
         }
-        emit(Op::dot3, {x[0], x[1], x[2]}, {sum.a, first.a, first.b, sum.b});
+        emit(Op::rows3, {x[0], x[1], x[2]}, {sum.a, first.a, first.b, sum.b});
         current_.k = k;
         return true;
     }
@@ -259,7 +262,7 @@ class Selector {
             case ExprOp::input:
                 return;
             case ExprOp::add:
-                if (match_dot3(step)) return;
+                if (match_rows3(step)) return;
                 if (absorbs(b, ExprOp::multiply)) {
                     return emit(Op::multiply_add, {product(b).a, product(b).b, a}, {b});
                 }
@@ -301,7 +304,11 @@ class Selector {
             }
             case ExprOp::lookup:
                 current_.table = step.table;
-                return emit(Op::lookup, {a});
+                current_.curve = step.curve;
+                return emit(step.curve                      ? Op::curve
+                            : step.table->positions.empty() ? Op::lookup
+                                                            : Op::lookup_at,
+                            {a});
             case ExprOp::lattice:
                 current_.lattice = step.lattice;
                 current_.channel = step.input;
@@ -392,23 +399,25 @@ class Assembler {
                 code.input_offset[channel] = place(slot).offset;
                 continue;
             }
-            if (slot > 0 && same_place(steps_[slot - 1], s)) {
-                channels_of(code.instructions.back(), slot);
+            if (s.sibling > 0) {
+                add_result(code.instructions.back(), slot);
                 continue;
             }
             Instruction step;
             step.op = s.op;
             step.wide = s.wide || s.op == Op::sine || s.op == Op::cosine || s.op == Op::atan2 ||
-                        (s.table && !s.table->positions.empty());
+                        s.op == Op::lookup_at;
             step.out = place(slot);
-            step.k = s.k;
-            if (s.table) step.table = table(*s.table);
-            if (s.lattice) {
-                step.table = lattice(*s.lattice, step.wide);
-                for (Operand& channel : step.channel)
-                    channel.constant = true;
-                channels_of(step, slot);
+            for (Operand& channel : step.channel)
+                channel.constant = true;
+            if (s.op == Op::lookup) step.table = table(*s.table);
+            if (s.op == Op::curve) step.table = curve(*s.curve);
+            if (s.op == Op::lattice) step.table = lattice(*s.lattice, step.wide);
+            if (s.op == Op::lookup_at) {
+                step.table = static_cast<std::uint32_t>(positioned_.size());
+                positioned_.push_back(at_positions(s.table->positions));
             }
+            add_result(step, slot);
             for (std::size_t k = 0; k < 4; ++k) {
                 if (s.operands[k] == kNone) continue;
                 step.in[k] = operand(static_cast<std::uint32_t>(s.operands[k]), step.wide);
@@ -422,7 +431,9 @@ class Assembler {
         }
         code.constants = std::move(constants_);
         code.tables = std::move(tables_);
+        code.positioned = std::move(positioned_);
         code.lattices = std::move(lattices_);
+        code.curves = std::move(curves_);
         return code;
     }
 
@@ -510,8 +521,55 @@ class Assembler {
         return result;
     }
 
-    void channels_of(Instruction& step, std::size_t slot) const {
-        step.channel[static_cast<std::size_t>(steps_[slot].channel)] = place(slot);
+    /// Where the result goes, and what it is made with.
+    void add_result(Instruction& step, std::size_t slot) {
+        const Selected& s = steps_[slot];
+        const auto n = static_cast<std::size_t>(s.sibling);
+        step.channel[s.op == Op::lattice ? static_cast<std::size_t>(s.channel) : n] = place(slot);
+        std::copy(s.k.begin(), s.k.end(), step.k.begin() + 3 * s.sibling);
+        if (s.op == Op::lookup_at) add_lines(positioned_[step.table], *s.table, n);
+    }
+
+    static PositionedTables at_positions(const std::vector<double>& positions) {
+        PositionedTables result;
+        result.first = positions.front();
+        result.last = positions.back();
+        result.end.assign(positions.begin() + 1, positions.end());
+        result.end.push_back(kInfinity);
+        result.lines.resize(positions.size());
+        const double length = result.last - result.first;
+        // Twice as many parts as cells: few parts have more than one boundary.
+        const std::size_t parts = length > 0 ? 2 * std::bit_ceil(positions.size()) : 1;
+        result.parts_per_unit = length > 0 ? static_cast<double>(parts) / length : 0;
+        const auto cell_of = [&](double x) {
+            const auto behind = std::upper_bound(positions.begin(), positions.end(), x);
+            return static_cast<std::uint32_t>(
+                std::max<std::ptrdiff_t>(behind - positions.begin() - 1, 0));
+        };
+        for (std::size_t part = 0; part <= parts; ++part) {
+            // A little earlier than it begins: the division may round.
+            const double begin = result.first + length * (static_cast<double>(part) - 1e-9) /
+                                                    static_cast<double>(parts);
+            const double end = result.first + length * (static_cast<double>(part) + 1 + 1e-9) /
+                                                  static_cast<double>(parts);
+            result.first_cell.push_back(cell_of(begin));
+            result.steps =
+                std::max(result.steps, static_cast<int>(cell_of(end) - result.first_cell.back()));
+        }
+        return result;
+    }
+
+    static void add_lines(PositionedTables& tables, const Table& source, std::size_t n) {
+        const bool is_linear = source.interpolation == Table::Interpolation::linear;
+        for (std::size_t i = 0; i < tables.lines.size(); ++i) {
+            double slope = 0;
+            if (is_linear && i + 1 < tables.lines.size()) {
+                slope = (source.samples[i + 1] - source.samples[i]) /
+                        (source.positions[i + 1] - source.positions[i]);
+            }
+            tables.lines[i].slope[n] = slope;
+            tables.lines[i].constant[n] = source.samples[i] - slope * source.positions[i];
+        }
     }
 
     std::uint32_t lattice(const Lattice& source, bool is_wide) {
@@ -537,6 +595,13 @@ class Assembler {
         return it->second;
     }
 
+    std::uint32_t curve(const CompiledCurve& source) {
+        const auto [it, is_new] =
+            curve_index_.try_emplace(&source, static_cast<std::uint32_t>(curves_.size()));
+        if (is_new) curves_.push_back(source);
+        return it->second;
+    }
+
     std::uint32_t table(const Table& source) {
         auto [it, is_new] =
             table_index_.try_emplace(&source, static_cast<std::uint32_t>(tables_.size()));
@@ -545,13 +610,6 @@ class Assembler {
             sampled.wide = source.samples;
             sampled.narrow.assign(source.samples.begin(), source.samples.end());
             sampled.interpolation = source.interpolation;
-            if (!source.positions.empty()) {
-                const std::size_t size = std::bit_ceil(source.positions.size()) + 1;
-                sampled.positions = source.positions;
-                sampled.positions.resize(size, kInfinity);
-                sampled.wide.resize(size, source.samples.back());
-                sampled.narrow.clear();
-            }
             tables_.push_back(std::move(sampled));
         }
         return it->second;
@@ -569,28 +627,45 @@ class Assembler {
     std::map<std::pair<std::uint64_t, bool>, std::size_t> constant_index_;
     std::vector<SampledTable> tables_;
     std::map<const Table*, std::uint32_t> table_index_;
+    std::vector<PositionedTables> positioned_;
     std::vector<SampledLattice> lattices_;
     std::map<const Lattice*, std::uint32_t> lattice_index_;
+    std::vector<CompiledCurve> curves_;
+    std::map<const CompiledCurve*, std::uint32_t> curve_index_;
 };
 
 }  // namespace
 
-Code compile(const Pipeline& pipeline) {
+Code compile(const Pipeline& pipeline, double max_error, bool has_curves) {
     const Tape source(compose(simplify(pipeline)));
-    const FloatTape tape(source);
-    const std::vector<bool> in_double = values_in_double(tape.code(), tape.outputs());
-    const std::vector<Selected> selected = Selector(tape, in_double).select();
-    return Assembler(tape, in_double, selected).assemble();
+    const FloatTape plain(source);
+    Influence influence;
+    if (has_curves) influence = measure_influence(plain.code(), plain.outputs());
+    CurveCache curves;
+    while (true) {
+        FloatTape tape = plain;
+        if (has_curves) tape.fold(influence, curves);
+        const Precision precision = choose_precision(tape.code(), tape.outputs(), max_error);
+        // Exact enough where it stands, or compiled again or not at all.
+        for (const CompiledCurve* curve : precision.too_coarse)
+            reject_curve(curves, curve);
+        if (!precision.too_coarse.empty()) continue;
+        const std::vector<bool>& in_double = precision.in_double;
+        const std::vector<Selected> selected = Selector(tape, in_double).select();
+        return Assembler(tape, in_double, selected).assemble();
+    }
 }
 
 }  // namespace simd
 
 struct SimdEngine::Program {
     simd::Code code;
+    bool has_fast_curves;
 };
 
-SimdEngine::SimdEngine(const Pipeline& pipeline)
-    : program_(std::make_unique<const Program>(Program{simd::compile(pipeline)})) {}
+SimdEngine::SimdEngine(const Pipeline& pipeline, double max_error)
+    : program_(std::make_unique<const Program>(
+          Program{simd::compile(pipeline, max_error), simd::has_fast_curves()})) {}
 SimdEngine::~SimdEngine() = default;
 SimdEngine::SimdEngine(SimdEngine&&) noexcept = default;
 SimdEngine& SimdEngine::operator=(SimdEngine&&) noexcept = default;
@@ -606,6 +681,10 @@ void SimdEngine::run_rgb(const float* in, float* out, std::size_t pixel_count) c
 }
 
 std::vector<std::string> SimdEngine::targets() { return simd::target_names(); }
+
+bool SimdEngine::is_made_for_target() const noexcept {
+    return program_->has_fast_curves == simd::has_fast_curves();
+}
 
 void SimdEngine::use_target(const std::string& name) {
     if (name.empty()) return simd::use_target(-1);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/simd_kernels.h"
+#include "tonewright/engine.h"
 #include "tonewright/pipeline.h"
 
 namespace tonewright::simd {
@@ -10,10 +11,14 @@ namespace tonewright::simd {
 ///
 /// 1. neighbouring matrices multiplied; division by a constant as multiplication by its reciprocal;
 ///    small whole powers as products;
-/// 2. the values that float is too coarse for are kept in double (precision.h);
-/// 3. products and sums contracted to fused multiply-adds and dot products, comparisons joined to
+/// 2. what is a function of one value compiled to piecewise polynomials, where the instruction set
+///    that runs now is made for them (curve_folding.h);
+/// 3. the values that float is too coarse for are kept in double (precision.h);
+/// 4. products and sums contracted to fused multiply-adds and dot products, comparisons joined to
 ///    their selects;
-/// 4. registers allocated, and the tile made as large as the first-level cache allows.
-[[nodiscard]] Code compile(const Pipeline& pipeline);
+/// 5. registers allocated, and the tile made as large as the first-level cache allows.
+/// @param has_curves  whether to do 2, to test what is compiled without.
+[[nodiscard]] Code compile(const Pipeline& pipeline, double max_error = kSimdError,
+                           bool has_curves = has_fast_curves());
 
 }  // namespace tonewright::simd

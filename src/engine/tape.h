@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "engine/compiled_curve.h"
 #include "tonewright/expr.h"
 
 namespace tonewright {
@@ -15,12 +16,37 @@ namespace tonewright {
 struct TapeInstruction {
     ExprOp op = ExprOp::constant;
     std::uint32_t a = 0, b = 0, c = 0;
-    double value = 0;                  // of a constant
-    int input = 0;                     // of an input; channel of a lattice
-    const Table* table = nullptr;      // of a lookup; owned by the tape
-    const Lattice* lattice = nullptr;  // owned by the tape
-    const ExprNode* node = nullptr;    // where it came from
+    double value = 0;                      // of a constant
+    int input = 0;                         // of an input; channel of a lattice
+    const Table* table = nullptr;          // of a lookup; owned by the tape
+    const Lattice* lattice = nullptr;      // owned by the tape
+    const CompiledCurve* curve = nullptr;  // of a lookup, instead of a table: see fold_curves()
+    const ExprNode* node = nullptr;        // where it came from
 };
+
+/// How many of a, b, c the operation reads.
+[[nodiscard]] constexpr int operand_count(ExprOp op) noexcept {
+    switch (op) {
+        case ExprOp::constant:
+        case ExprOp::input:
+            return 0;
+        case ExprOp::negate:
+        case ExprOp::absolute:
+        case ExprOp::square_root:
+        case ExprOp::exp2:
+        case ExprOp::log2:
+        case ExprOp::sine:
+        case ExprOp::cosine:
+        case ExprOp::floor:
+        case ExprOp::lookup:
+            return 1;
+        case ExprOp::select:
+        case ExprOp::lattice:
+            return 3;
+        default:
+            return 2;
+    }
+}
 
 /// Expressions as straight-line code in single-assignment form: every node once, operands first.
 /// No pass has touched it: running it in double is evaluate(), bit for bit.

@@ -79,7 +79,9 @@ bool depends_on_picture(const TonemapOptions& options) {
 /// What a picture is run through.
 struct Prepared {
     explicit Prepared(View v)
-        : view(std::move(v)), engine(build_view(view)), keeps_grey(keeps_greys(build_view(view))) {}
+        : view(std::move(v)),
+          engine(build_view(view), view.op.op->bounds.simd_goal),
+          keeps_grey(keeps_greys(build_view(view))) {}
 
     View view;
     SimdEngine engine;

@@ -398,12 +398,14 @@ std::vector<Operator> define_aces_13() {
         "gamut_compression=yes first brings in those of AP1";
     op.dialects = "ACES";
     op.working = kAP0;
-    op.bounds = {.simd = 5e-6,
+    op.bounds = {.simd = 2e-5,
+                 .simd_goal = 8e-6,
                  .ocio_cpu = 3e-5,
                  .ocio_gpu = 6e-5,
                  .cube = 2e-3,
                  .reason =
-                     "hdr: light of 10, of which a float's unit is 1e-6; ctl: OpenColorIO's red "
+                     "simd: twice as fast as with 1e-6; hdr: light of 10, of which a float's unit "
+                     "is 1e-6; ctl: OpenColorIO's red "
                      "modifier takes another saturation in the dark"};
     ParameterSpec output = choice_parameter(
         "output", {"sdr_video", "sdr_cinema", "hdr_1000", "hdr_2000", "hdr_4000", "hdr_cinema"},

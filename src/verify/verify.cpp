@@ -342,11 +342,12 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
             if (on_row) on_row(rows.back());
         };
 
-        const SimdEngine simd(pipeline);
+        std::optional<SimdEngine> simd;
         for (const std::string& target : SimdEngine::targets()) {
             SimdEngine::use_target(target);
+            if (!simd || !simd->is_made_for_target()) simd.emplace(pipeline, declared.simd_goal);
             add("simd " + target, bounds.simd, declared.simd != DeclaredBounds{}.simd, false, "",
-                [&] { simd.run_rgb(probes.rgb.data(), shown.data(), probes.size()); });
+                [&] { simd->run_rgb(probes.rgb.data(), shown.data(), probes.size()); });
         }
         SimdEngine::use_target("");
 

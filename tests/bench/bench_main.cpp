@@ -85,6 +85,8 @@ Pipeline view_of(const std::string& name) {
     return build_view(make_view(resolve_operator(name), "lin_rec709", 0, "srgb"));
 }
 
+double goal_of(const std::string& name) { return resolve_operator(name).op->bounds.simd_goal; }
+
 void run_rows(const SimdEngine& engine, std::size_t channels, std::size_t begin, std::size_t end) {
     const float* in = picture(channels).data() + begin * kWidth * channels;
     float* out = result(channels).data() + begin * kWidth * channels;
@@ -94,14 +96,14 @@ void run_rows(const SimdEngine& engine, std::size_t channels, std::size_t begin,
 }
 
 void simd_one_thread(benchmark::State& state, const std::string& name, std::size_t channels) {
-    const SimdEngine engine(view_of(name));
+    const SimdEngine engine(view_of(name), goal_of(name));
     for (auto _ : state)
         run_rows(engine, channels, 0, kHeight);
     report(state, kPixels, channels);
 }
 
 void simd_all_threads(benchmark::State& state, const std::string& name) {
-    const SimdEngine engine(view_of(name));
+    const SimdEngine engine(view_of(name), goal_of(name));
     const auto rows = static_cast<std::int64_t>(kHeight);
     for (auto _ : state) {
         OIIO::parallel_for_chunked(0, rows, 0, [&](std::int64_t begin, std::int64_t end) {
@@ -135,7 +137,7 @@ void reference(benchmark::State& state, const std::string& name) {
 void prepare(benchmark::State& state, const std::string& name) {
     const Pipeline view = view_of(name);
     for (auto _ : state)
-        benchmark::DoNotOptimize(SimdEngine(view));
+        benchmark::DoNotOptimize(SimdEngine(view, goal_of(name)));
 }
 
 template <class F, class... Args>

@@ -131,8 +131,8 @@ TEST_P(Law, SimdIsTotal) {
     for (const OperatorVariant& v : all_variants())
         sharers += resolve(v).op->id == op().id ? 1 : 0;
     const std::size_t float_count = kPatternCount / sharers;
-    const SimdEngine display(view("srgb"));
-    const SimdEngine native(view("native"));
+    const SimdEngine display(view("srgb"), op().bounds.simd_goal);
+    const SimdEngine native(view("native"), op().bounds.simd_goal);
     constexpr std::size_t kThreads = 2;
     std::array<std::string, kThreads> failure;
     std::vector<std::thread> threads;
@@ -193,7 +193,7 @@ TEST_P(Law, ExtremeExposuresAreTotal) {
     for (const double stops : {-64.0, -20.0, 20.0, 64.0}) {
         const Pipeline pipeline = view("srgb", stops);
         const Planes out = run(pipeline, in);
-        const SimdEngine simd(pipeline);
+        const SimdEngine simd(pipeline, op().bounds.simd_goal);
         std::vector<float> rgb;
         for (std::size_t i = 0; i < in[0].size(); ++i) {
             for (std::size_t c = 0; c < 3; ++c) {
@@ -470,7 +470,7 @@ TEST_P(Law, SimdIsWithinItsBoundOnEveryTarget) {
     const Pipeline pipeline = view("srgb");
     std::vector<double> truth(probes.rgb.size());
     ReferenceEngine(pipeline).run_rgb(probes.rgb.data(), truth.data(), probes.size());
-    const SimdEngine engine(pipeline);
+    const SimdEngine engine(pipeline, op().bounds.simd_goal);
     std::vector<float> out(probes.rgb.size());
     for (const std::string& target : SimdEngine::targets()) {
         SimdEngine::use_target(target);
@@ -595,7 +595,8 @@ TEST_P(ParameterLaw, WhatIsAcceptedIsTotal) {
         for (const char* display : {"native", "srgb"}) {
             const Pipeline pipeline = build_view(make_view(*resolved, "lin_rec709", 0, display));
             ReferenceEngine(pipeline).run_rgb(in.data(), reference.data(), in.size() / 3);
-            SimdEngine(pipeline).run_rgb(in.data(), simd.data(), in.size() / 3);
+            SimdEngine(pipeline, op.bounds.simd_goal)
+                .run_rgb(in.data(), simd.data(), in.size() / 3);
             for (std::size_t i = 0; i < in.size(); ++i) {
                 ASSERT_TRUE(std::isfinite(reference[i]))
                     << text_of(settings) << ": " << display << " of " << in[i] << " is "

@@ -43,11 +43,14 @@ class ReferenceEngine {
 /// Single-precision SIMD evaluation of a pipeline, chosen at run time for the processor.
 ///
 /// Passes that change the last bits (matrices multiplied together, division by a constant as
-/// multiplication, fused multiply-add) are allowed here and only here; the result stays within 1e-6
-/// of the reference in display-encoded values for every operator. Total. Safe to share.
+/// multiplication, fused multiply-add, piecewise polynomials for whole curves) are allowed here and
+/// only here. Total. Safe to share.
 class SimdEngine {
   public:
-    explicit SimdEngine(const Pipeline& pipeline);
+    /// @param max_error  how far the result may be from the reference: absolute up to 1, relative
+    ///                   above. What needs more than float for that is computed in double. Each
+    ///                   operator declares what its views are made for (DeclaredBounds::simd_goal).
+    explicit SimdEngine(const Pipeline& pipeline, double max_error = kSimdError);
     ~SimdEngine();
     SimdEngine(SimdEngine&&) noexcept;
     SimdEngine& operator=(SimdEngine&&) noexcept;
@@ -63,9 +66,13 @@ class SimdEngine {
 
     /// Names of the instruction sets compiled in that this machine has, best first ("AVX3", ...).
     [[nodiscard]] static std::vector<std::string> targets();
-    /// Restricts all engines to one of targets(), or back to the best with "". For tests.
+    /// Restricts all engines to one of targets(), or back to the best with "". An engine is made
+    /// for the target that is set then: on another one it computes the same, but not as fast as
+    /// could be. For tests.
     /// @throws Error  when the machine has no such target.
     static void use_target(const std::string& name);
+    /// False where an engine made now, for the target that is set, would compute otherwise.
+    [[nodiscard]] bool is_made_for_target() const noexcept;
 
   private:
     struct Program;

@@ -249,10 +249,15 @@ struct Deviation {
 /// "lifts black to 0.0029".
 [[nodiscard]] std::string to_string(const Deviation& deviation);
 
+/// What SimdEngine keeps to unless told otherwise.
+inline constexpr double kSimdError = 1e-6;
+
 /// Error bounds that an operator's nature makes wider than its structure's, in display code values.
 struct DeclaredBounds {
-    double simd = 1e-6;
-    double ocio_cpu = 0;  // 0: as its structure has it
+    double simd = kSimdError;
+    double simd_goal = kSimdError;  // what SimdEngine is made for; `simd` is for colors beyond all
+                                    // gamuts, too
+    double ocio_cpu = 0;            // 0: as its structure has it
     double ocio_gpu = 0;
     double cube = 0;  // where the lowering to OCIO needs a 3D cube, of 65^3; 0: a code of 10 bits
     double cube_hdr = 0;  // the same on HDR displays; 0: as `cube`

@@ -1,0 +1,476 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/compiled_curve.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace tonewright {
+namespace {
+
+constexpr double kHalfUlp = 0x1p-24;
+constexpr double kFloatMax = static_cast<double>(std::numeric_limits<float>::max());
+/// Exponents of x below this are not told apart.
+constexpr int kLowestExponent = -100;
+
+float to_float(double x) { return static_cast<float>(x); }
+
+/// The first float that is not before x.
+float float_from(double x) {
+    const float nearest = to_float(x);
+    return static_cast<double>(nearest) < x
+               ? std::nextafter(nearest, std::numeric_limits<float>::infinity())
+               : nearest;
+}
+
+/// A number in every half octave from `from` up to `to`, with both.
+std::vector<double> half_octaves(double from, double to) {
+    std::vector<double> places = {from};
+    for (double x = from * 1.5; x < to; x *= std::numbers::sqrt2)
+        places.push_back(x);
+    places.push_back(to);
+    return places;
+}
+
+/// One piece of a curve under construction.
+struct Segment {
+    double begin, end;
+    float scale, offset;
+    std::vector<float> coefficients;
+    float rest;
+};
+
+/// What the kernels compute. Of a precise curve x is a double, else a float.
+/// @param coefficient  k -> that of t^k
+template <class C>
+double evaluate(double x, float scale, float offset, int degree, const C& coefficient, float rest,
+                bool is_precise) {
+    const float x_float = to_float(x);
+    float t = std::fma(x_float, scale, offset);
+    if (is_precise) t = std::fma(to_float(x - static_cast<double>(x_float)), scale, t);
+    float y = coefficient(degree);
+    for (int k = degree - 1; k >= 1; --k)
+        y = std::fma(y, t, coefficient(k));
+    if (!is_precise) return static_cast<double>(std::fma(y, t, coefficient(0)));
+    return static_cast<double>(coefficient(0)) + static_cast<double>(std::fma(y, t, rest));
+}
+
+/// Monomial coefficients of the polynomial through f at the Chebyshev nodes of [-1, 1].
+std::vector<double> interpolate(const std::function<double(double)>& f, int degree) {
+    const int n = degree + 1;
+    std::vector<double> value(static_cast<std::size_t>(n));
+    for (int i = 0; i < n; ++i) {
+        value[static_cast<std::size_t>(i)] = f(std::cos(std::numbers::pi * (i + 0.5) / n));
+    }
+    // Chebyshev coefficients, then the recurrence T_k+1 = 2 t T_k - T_k-1.
+    std::vector<double> sum(static_cast<std::size_t>(n));
+    std::vector<double> before(static_cast<std::size_t>(n)), current(static_cast<std::size_t>(n));
+    before[0] = 1;
+    if (n > 1) current[1] = 1;
+    for (int k = 0; k < n; ++k) {
+        double c = 0;
+        for (int i = 0; i < n; ++i)
+            c +=
+                value[static_cast<std::size_t>(i)] * std::cos(std::numbers::pi * k * (i + 0.5) / n);
+        c *= (k == 0 ? 1.0 : 2.0) / n;
+        const std::vector<double>& basis = k == 0 ? before : current;
+        for (std::size_t j = 0; j < sum.size(); ++j)
+            sum[j] += c * basis[j];
+        if (k == 0) continue;
+        std::vector<double> next(static_cast<std::size_t>(n));
+        for (std::size_t j = 0; j + 1 < next.size(); ++j)
+            next[j + 1] = 2 * current[j];
+        for (std::size_t j = 0; j < next.size(); ++j)
+            next[j] -= before[j];
+        before = current;
+        current = next;
+    }
+    return sum;
+}
+
+class CurveFit {
+  public:
+    CurveFit(const std::function<double(double)>& f, double hi, std::span<const double> kinks,
+             const CurveTolerance& tolerance, bool is_precise, int degree, int shift,
+             std::size_t most_segments)
+        : f_(f),
+          hi_(hi),
+          kinks_(kinks),
+          tolerance_(tolerance),
+          is_precise_(is_precise),
+          degree_(degree),
+          shift_(shift),
+          most_segments_(most_segments) {}
+
+    /// Segments of any length, without cells.
+    std::optional<CompiledCurve> fit_free() {
+        // Ends may be at kinks and at eighths of octaves.
+        std::vector<double> ends;
+        const std::uint32_t top = cell_of(to_float(hi_));
+        for (std::uint32_t cell = cell_of(0x1p-60F); cell <= top; ++cell)
+            ends.push_back(edge(cell));
+        for (const double kink : kinks_) {
+            if (kink < hi_) ends.push_back(static_cast<double>(float_from(kink)));
+        }
+        ends.push_back(hi_);
+        std::sort(ends.begin(), ends.end());
+        ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+        double begin = 0;
+        std::size_t next = 0;     // of the ends, the first that is not behind us
+        std::size_t stride = 64;  // how far the segment before went
+        while (next < ends.size()) {
+            const auto fits = [&](std::size_t i) {
+                // Up to the float before, unless it is the last.
+                const double end =
+                    i + 1 == ends.size()
+                        ? ends[i]
+                        : static_cast<double>(std::nextafter(to_float(ends[i]), 0.0F));
+                return try_segment(begin, end);
+            };
+            // Doubling the stride while it fits, then halving the rest.
+            std::size_t good = next;
+            if (!fits(good)) return std::nullopt;
+            Segment best = tried_;
+            std::size_t bad = ends.size();
+            while (bad - good > 1) {
+                const std::size_t reach = good + std::max<std::size_t>(stride, 1);
+                const std::size_t i = reach < bad ? reach : good + (bad - good) / 2;
+                if (fits(i)) {
+                    best = tried_;
+                    good = i;
+                    stride *= 2;
+                } else {
+                    bad = i;
+                    stride /= 2;
+                }
+            }
+            stride = std::max<std::size_t>(good - next, 1);
+            segments_.push_back(best);
+            if (segments_.size() > most_segments_) return std::nullopt;
+            begin = ends[good];
+            next = good + 1;
+        }
+        return curve();
+    }
+
+    std::optional<CompiledCurve> fit() {
+        // The first segment, from 0: as far up as one polynomial goes.
+        const auto top = cell_of(to_float(hi_));
+        std::uint32_t lowest = cell_of(to_float(std::ldexp(1.0, kLowestExponent)));
+        if (!try_segment(0, std::min(edge(lowest + 1), hi_))) return std::nullopt;
+        std::uint32_t failing = top + 2;
+        while (failing - lowest > 1) {  // fits up to the end of `lowest`
+            const std::uint32_t middle = lowest + (failing - lowest) / 2;
+            (try_segment(0, std::min(edge(middle + 1), hi_)) ? lowest : failing) = middle;
+        }
+        lowest = std::min(lowest, top);
+        if (top - lowest >= CompiledCurve::kMaxCells) return std::nullopt;
+        first_cell_ = lowest;
+        (void)try_segment(0, std::min(edge(lowest + 1), hi_));
+        segments_.push_back(tried_);
+        cells_.push_back({0, kNever});
+        for (std::uint32_t cell = lowest + 1; cell <= top; ++cell) {
+            if (!fit_cell(cell)) return std::nullopt;
+            if (segments_.size() > most_segments_) return std::nullopt;
+        }
+        return curve();
+    }
+
+  private:
+    /// The least number so far, and how often it came.
+    struct Least {
+        double value = std::numeric_limits<double>::infinity();
+        int times = 0;
+
+        void add(double x) {
+            if (x < value) times = 0;
+            value = std::min(value, x);
+            times += x == value ? 1 : 0;
+        }
+    };
+    static constexpr float kNever = std::numeric_limits<float>::infinity();
+    struct Cell {
+        int segment;
+        float threshold;
+    };
+
+    [[nodiscard]] std::uint32_t cell_of(float x) const {
+        return std::bit_cast<std::uint32_t>(x) >> shift_;
+    }
+    [[nodiscard]] double edge(std::uint32_t cell) const {
+        const auto x = std::bit_cast<float>(cell << shift_);
+        return std::isfinite(x) ? static_cast<double>(x) : kFloatMax;
+    }
+
+    /// The polynomial over [begin, end] into tried_; whether it keeps to the tolerance.
+    bool try_segment(double begin, double end) {
+        Segment s;
+        s.begin = begin;
+        s.end = end;
+        const double middle = 0.5 * (begin + end);
+        const double half = std::max({0.5 * (end - begin), 1e-6 * end, 0x1p-110});
+        s.scale = to_float(1 / half);
+        s.offset = to_float(-middle / half);
+        // In the t of the rounded scale and offset.
+        const auto x_of = [&](double t) {
+            return (t - static_cast<double>(s.offset)) / static_cast<double>(s.scale);
+        };
+        const std::vector<double> c =
+            interpolate([&](double t) { return f_(std::clamp(x_of(t), begin, end)); }, degree_);
+        for (const double k : c) {
+            if (!(std::fabs(k) < kFloatMax)) return false;
+            s.coefficients.push_back(to_float(k));
+        }
+        s.rest = to_float(c[0] - static_cast<double>(s.coefficients[0]));
+        tried_ = s;
+        // First where it is most likely to be wrong.
+        if (!is_within(s, begin) || !is_within(s, end)) return false;
+        for (const double kink : kinks_) {
+            if (!(kink >= begin && kink <= end)) continue;
+            const float at = to_float(kink);
+            for (const double x : {static_cast<double>(std::nextafter(at, 0.0F)), kink,
+                                   static_cast<double>(std::nextafter(at, kNever))}) {
+                if (x >= begin && x <= end && !is_within(s, x)) return false;
+            }
+        }
+        const int steps = 5 * (degree_ + 1);
+        for (int i = 1; i < steps; ++i) {
+            if (!is_within(s, begin + (end - begin) * i / steps)) return false;
+        }
+        if (begin == 0) {  // the tolerance is of the result, which may be proportional to x
+            for (double x = end; x > 0x1p-126; x *= 0.37) {
+                if (!is_within(s, x)) return false;
+            }
+        }
+        return true;
+    }
+
+    bool is_within(const Segment& s, double x) {
+        if (!is_precise_) x = static_cast<double>(to_float(x));
+        const double expected = f_(x);
+        least_.add(expected);
+        most_.add(-expected);
+        const auto coefficient = [&](int k) { return s.coefficients[static_cast<std::size_t>(k)]; };
+        const double actual =
+            evaluate(x, s.scale, s.offset, degree_, coefficient, s.rest, is_precise_);
+        return std::fabs(actual - expected) <= tolerance_.at(x, expected);
+    }
+
+    bool fit_cell(std::uint32_t cell) {
+        const double begin = edge(cell);
+        const double end = std::min(edge(cell + 1), hi_);
+        const auto current = static_cast<int>(segments_.size()) - 1;
+        // The segment before may go on.
+        if (extend(end)) {
+            cells_.push_back({current, kNever});
+            return true;
+        }
+        if (try_segment(begin, end)) {
+            segments_.push_back(tried_);
+            cells_.push_back({current + 1, kNever});
+            return true;
+        }
+        // Two in this cell: the boundary at a kink, or in the middle.
+        std::vector<double> boundaries;
+        for (const double kink : kinks_) {
+            if (kink > begin && kink < end) boundaries.push_back(kink);
+        }
+        boundaries.push_back(0.5 * (begin + end));
+        for (const double place : boundaries) {
+            const auto boundary = static_cast<double>(float_from(place));
+            if (!(boundary > begin && boundary < end)) continue;
+            // The float before it is the last of the first segment.
+            const double before = static_cast<double>(std::nextafter(to_float(boundary), 0.0F));
+            if (!try_segment(boundary, end)) continue;
+            const Segment second = tried_;
+            if (extend(before)) {
+                segments_.push_back(second);
+                cells_.push_back({current, to_float(boundary)});
+                return true;
+            }
+            if (!try_segment(begin, before)) continue;
+            segments_.push_back(tried_);
+            segments_.push_back(second);
+            cells_.push_back({current + 1, to_float(boundary)});
+            return true;
+        }
+        return false;
+    }
+
+    bool extend(double end) {
+        Segment& last = segments_.back();
+        // A polynomial over more than a few octaves is not worth trying.
+        if (last.begin > 0 && end > 8 * last.begin) return false;
+        if (!try_segment(last.begin, end)) return false;
+        last = tried_;
+        return true;
+    }
+
+    [[nodiscard]] CompiledCurve curve() const {
+        CompiledCurve result;
+        result.hi = to_float(hi_);
+        result.at_lo = f_(0);
+        // Between the places of a dip there may be a lower one, but what it has at its ends, or
+        // again and again, is an end.
+        const double first = f_(0);
+        const double last = f_(hi_);
+        const bool has_least = least_.times > 8 || least_.value >= std::min(first, last);
+        const bool has_most = most_.times > 8 || -most_.value <= std::max(first, last);
+        constexpr float kMost = std::numeric_limits<float>::max();
+        result.least = has_least ? to_float(least_.value) : -kMost;
+        result.most = has_most ? to_float(-most_.value) : kMost;
+        result.shift = shift_;
+        result.first_cell = first_cell_;
+        result.cell_floor = to_float(edge(first_cell_));
+        result.degree = degree_;
+        result.cells = cells_.size() <= 32 ? 32 : 64;
+        result.segments = segments_.size() <= 16 ? 16 : segments_.size() <= 32 ? 32 : 64;
+        result.is_precise = is_precise_;
+        result.tolerance = tolerance_;
+        if (cells_.empty()) {
+            result.cells = 0;
+            result.threshold.fill(kNever);
+            for (std::size_t i = 0; i < segments_.size(); ++i)
+                result.threshold[i] = to_float(segments_[i].begin);
+        }
+        for (std::size_t i = 0; i < result.threshold.size() && !cells_.empty(); ++i) {
+            const Cell& cell = cells_[std::min(i, cells_.size() - 1)];
+            result.threshold[i] = cell.threshold;
+            result.segment[i] = cell.segment;
+        }
+        for (std::size_t i = 0; i < segments_.size(); ++i) {
+            result.scale[i] = segments_[i].scale;
+            result.offset[i] = segments_[i].offset;
+            result.rest[i] = segments_[i].rest;
+            for (std::size_t k = 0; k < segments_[i].coefficients.size(); ++k)
+                result.coefficient[k][i] = segments_[i].coefficients[k];
+        }
+        return result;
+    }
+
+    const std::function<double(double)>& f_;
+    double hi_;
+    std::span<const double> kinks_;
+    const CurveTolerance& tolerance_;
+    bool is_precise_;
+    int degree_;
+    int shift_;
+    std::size_t most_segments_;
+    std::uint32_t first_cell_ = 0;
+    Least least_, most_;  // of the function, and of the negative function
+    Segment tried_{};
+    std::vector<Segment> segments_;
+    std::vector<Cell> cells_;
+};
+
+}  // namespace
+
+std::size_t CurveTolerance::exponent_of(double x) noexcept {
+    return std::bit_cast<std::uint32_t>(std::fabs(to_float(x))) >> 23;
+}
+
+double CurveTolerance::at(double x, double y) const noexcept {
+    return std::max(half_ulps * kHalfUlp * std::fabs(y),
+                    static_cast<double>(floor[exponent_of(x)]));
+}
+
+std::size_t CompiledCurve::segment_of(float x) const noexcept {
+    if (cells == 0) {
+        const auto behind = std::upper_bound(threshold.begin() + 1, threshold.end(), x);
+        return static_cast<std::size_t>(behind - threshold.begin()) - 1;
+    }
+    const auto cell = static_cast<std::size_t>(
+        (std::bit_cast<std::uint32_t>(std::max(x, cell_floor)) >> shift) - first_cell);
+    return static_cast<std::size_t>(segment[cell]) + (x >= threshold[cell] ? 1 : 0);
+}
+
+double CompiledCurve::operator()(double x) const noexcept {
+    if (!(x > static_cast<double>(lo)))  // NaN, too
+        return is_precise ? at_lo : static_cast<double>(to_float(at_lo));
+    x = std::min(x, static_cast<double>(hi));
+    const std::size_t s = segment_of(to_float(x));
+    const auto of_power = [&](int k) { return coefficient[static_cast<std::size_t>(k)][s]; };
+    const double y = evaluate(x, scale[s], offset[s], degree, of_power, rest[s], is_precise);
+    return std::clamp(y, static_cast<double>(least), static_cast<double>(most));
+}
+
+double CompiledCurve::slope(double x) const noexcept {
+    if (!(x >= static_cast<double>(lo) && x <= static_cast<double>(hi))) return 0;
+    const std::size_t s = segment_of(static_cast<float>(x));
+    const double t = x * static_cast<double>(scale[s]) + static_cast<double>(offset[s]);
+    double y = 0;
+    for (auto k = static_cast<std::size_t>(degree) + 1; k-- > 1;)
+        y = y * t + static_cast<double>(k) * static_cast<double>(coefficient[k][s]);
+    return y * static_cast<double>(scale[s]);
+}
+
+int CompiledCurve::cost() const noexcept {
+    const int of_cells = cells == 0 ? 4 * std::bit_width(static_cast<unsigned>(segments)) - 4
+                                    : 2 * (cells <= 32 ? 1 : 3);
+    const int of_segments = (degree + 3) * (segments <= 32 ? 1 : 3);
+    const int of_doubles = is_precise ? 24 : 0;
+    return 12 + of_cells + of_segments + degree + of_doubles;
+}
+
+std::optional<CompiledCurve> compile_curve(const std::function<double(double)>& f,
+                                           std::array<double, 2> range,
+                                           std::span<const double> kinks,
+                                           const CurveTolerance& tolerance, bool is_precise) {
+    const double at_zero = f(0);
+    if (!std::isfinite(at_zero)) return std::nullopt;
+    const auto is_constant = [&](double from, double to, double value) {
+        std::vector<double> places = half_octaves(from, to);
+        for (const double kink : kinks) {
+            if (!(kink >= from && kink <= to)) continue;
+            const auto near = static_cast<double>(to_float(kink));
+            for (const double x : {near * (1 - 1e-6), near, near * (1 + 1e-6)})
+                places.push_back(std::clamp(x, from, to));
+        }
+        return std::all_of(places.begin(), places.end(), [&](double x) {
+            return std::fabs(f(x) - value) <= 0.5 * tolerance.at(x, value);
+        });
+    };
+    if (range[0] < 0) {
+        const double lowest = std::max(range[0], -kFloatMax);
+        for (const double x : half_octaves(0x1p-126, -lowest)) {
+            if (!(std::fabs(f(-x) - at_zero) <= tolerance.at(x, at_zero))) return std::nullopt;
+        }
+    }
+    double hi = std::min(range[1], kFloatMax);
+    if (!(hi > 0)) return std::nullopt;
+    hi = static_cast<double>(to_float(hi));
+    const double at_top = f(hi);
+    if (!std::isfinite(at_top)) return std::nullopt;
+    while (hi > 0x1p-60 && is_constant(hi / 2, hi, at_top))
+        hi = static_cast<double>(to_float(hi / 2));
+
+    // Eighths of octaves are what segments without cells end at.
+    constexpr int kFree = 20;
+    const auto fit = [&](int degree, int shift, std::size_t most_segments) {
+        CurveFit curve(f, hi, kinks, tolerance, is_precise, degree, shift, most_segments);
+        return shift == kFree ? curve.fit_free() : curve.fit();
+    };
+    // Segments above 32 cost three times as much, a degree one instruction for its coefficient and
+    // one more: the lowest degree with 32 segments at most is the best.
+    for (const int shift : {23, 22, kFree}) {
+        std::optional<CompiledCurve> best =
+            fit(CompiledCurve::kMaxDegree, shift, CompiledCurve::kMaxSegments);
+        if (!best) continue;
+        const std::size_t most = best->segments <= 32 ? 32 : CompiledCurve::kMaxSegments;
+        int too_low = CompiledCurve::kMinDegree - 1;
+        while (best->degree - too_low > 1) {
+            const int degree = too_low + (best->degree - too_low) / 2;
+            if (const auto lower = fit(degree, shift, most)) {
+                best = lower;
+            } else {
+                too_low = degree;
+            }
+        }
+        return best;
+    }
+    return std::nullopt;
+}
+
+}  // namespace tonewright

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/compiled_curve.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "engine/simd_kernels.h"
+#include "engine/simd_program.h"
+#include "tonewright/engine.h"
+#include "tonewright/view.h"
+
+namespace tonewright {
+namespace {
+
+struct Function {
+    std::string name;
+    std::function<double(double)> f;
+    std::array<double, 2> range;
+    std::vector<double> kinks;
+    double floor;
+};
+
+double srgb(double x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055; }
+
+/// Curves as operators have them, and what is hard about them.
+std::vector<Function> functions() {
+    const auto limited = [](double x) { return std::fmin(std::fmax(x, 0), 1); };
+    return {
+        {"sRGB, black and white limited",
+         [=](double x) { return srgb(limited(x)); },
+         {-65504, 65504},
+         {0.0031308, 1},
+         0x1p-26},
+        {"no end of slope at 0",
+         [](double x) { return std::pow(x, 1 / 2.4); },
+         {0, 1},
+         {},
+         0x1p-26},
+        {"no end of the range",
+         [](double x) { return std::fmax(x, 0) / (1 + std::fmax(x, 0)); },
+         {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()},
+         {},
+         0x1p-26},
+        {"relative to small results",
+         [](double x) { return std::pow(x, 1.5); },
+         {0, 65536},
+         {},
+         1e-12},
+        {"three kinks in an octave",
+         [](double x) {
+             return std::fabs(std::fmax(x, 0) - 0.3) + std::fabs(std::fmax(x, 0) - 0.4) +
+                    std::fabs(std::fmax(x, 0) - 0.45);
+         },
+         {-10, 10},
+         {0.3, 0.4, 0.45},
+         0x1p-26},
+        {"a step", [](double x) { return x < 0.7 ? x : x + 1; }, {0, 4}, {0.7}, 0x1p-26},
+        {"a pulse",
+         [](double x) { return x < 0.3 || x >= 0.31 ? 0.0 : 1.0; },
+         {-4, 9},
+         {0.3, 0.31},
+         0x1p-26},
+        {"constant", [](double) { return 0.25; }, {-65504, 65504}, {}, 0x1p-26},
+    };
+}
+
+CurveTolerance tolerance_of(const Function& f, bool is_precise) {
+    CurveTolerance tolerance;
+    tolerance.half_ulps = is_precise ? 1.5 : 3;
+    tolerance.floor.fill(static_cast<float>(f.floor));
+    return tolerance;
+}
+
+/// Floats of all magnitudes in the range, and those about the kinks.
+std::vector<float> places(const Function& f) {
+    std::vector<float> x;
+    for (std::uint32_t bits = 0; bits < 0x7F800000; bits += 9973) {
+        for (const float sign : {1.0F, -1.0F}) {
+            const float place = sign * std::bit_cast<float>(bits);
+            if (static_cast<double>(place) >= f.range[0] &&
+                static_cast<double>(place) <= f.range[1])
+                x.push_back(place);
+        }
+    }
+    for (const double kink : f.kinks) {
+        auto place = static_cast<float>(kink);
+        for (int i = 0; i < 8; ++i)
+            place = std::nextafter(place, 0.0F);
+        for (int i = 0; i < 16; ++i) {
+            x.push_back(place);
+            place = std::nextafter(place, 1e9F);
+        }
+    }
+    return x;
+}
+
+TEST(CompiledCurve, IsWithinItsTolerance) {
+    for (const Function& f : functions()) {
+        const CurveTolerance tolerance = tolerance_of(f, false);
+        const auto curve = compile_curve(f.f, f.range, f.kinks, tolerance);
+        ASSERT_TRUE(curve) << f.name;
+        double worst = 0;
+        for (const float place : places(f)) {
+            const auto x = static_cast<double>(place);
+            const double error = std::fabs((*curve)(x)-f.f(x)) / tolerance.at(x, f.f(x));
+            worst = std::max(worst, error);
+            // It was measured at some hundred places of each segment, and these are others.
+            ASSERT_LE(error, 1.3) << f.name << " at " << place << ": " << (*curve)(x)
+                                  << ", expected " << f.f(x);
+        }
+        RecordProperty(f.name, std::to_string(worst));
+    }
+}
+
+TEST(CompiledCurve, PreciseOnesTakeDoublesToHalfAFloatsError) {
+    const auto f = [](double x) { return std::pow(x, 1.5) + 0.01; };
+    const CurveTolerance tolerance = tolerance_of({"", f, {0, 64}, {}, 1e-12}, true);
+    const auto curve = compile_curve(f, {0, 64}, {}, tolerance, true);
+    ASSERT_TRUE(curve);
+    EXPECT_TRUE(curve->is_precise);
+    for (double x = 1e-6; x < 64; x *= 1.00037) {
+        EXPECT_LE(std::fabs((*curve)(x)-f(x)), 1.3 * tolerance.at(x, f(x))) << x;
+    }
+}
+
+TEST(CompiledCurve, StaysBetweenTheLeastAndTheMostOfTheFunction) {
+    const Function f = functions().front();
+    const auto curve = compile_curve(f.f, f.range, f.kinks, tolerance_of(f, false));
+    ASSERT_TRUE(curve);
+    for (std::uint32_t bits = 0; bits < 0x7F800000; bits += 7919) {
+        const double y = (*curve)(static_cast<double>(std::bit_cast<float>(bits)));
+        EXPECT_GE(y, 0);
+        EXPECT_LE(y, 1);
+    }
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ((*curve)(0.0), 0) << "black";
+    EXPECT_EQ((*curve)(nan), 0);
+    EXPECT_EQ((*curve)(-std::numeric_limits<double>::infinity()), 0);
+    EXPECT_EQ((*curve)(std::numeric_limits<double>::infinity()), 1);
+}
+
+TEST(CompiledCurve, DoesNotPretend) {
+    const CurveTolerance tolerance = tolerance_of(functions().front(), false);
+    const auto compiled = [&](const std::function<double(double)>& f) {
+        return compile_curve(f, {-4, 65504}, {}, tolerance).has_value();
+    };
+    EXPECT_FALSE(compiled([](double x) { return x; })) << "values below 0";
+    EXPECT_FALSE(compiled([](double x) { return 1 / std::fmax(x - 1, 0); })) << "a pole";
+    EXPECT_FALSE(compiled([](double x) { return std::sin(100 * std::fmax(x, 0)); })) << "waves";
+    EXPECT_FALSE(compiled([](double x) { return x < 1000 ? 0 : std::fmod(x, 1); })) << "noise";
+}
+
+/// What a kernel and operator() do has to be the same arithmetic.
+TEST(CompiledCurve, KernelsComputeWhatItSays) {
+    for (const Function& f : functions()) {
+        for (const bool is_precise : {false, true}) {
+            const auto curve =
+                compile_curve(f.f, f.range, f.kinks, tolerance_of(f, is_precise), is_precise);
+            if (!curve) continue;
+            simd::Code code;
+            code.tile = simd::kMaxTile;
+            code.curves.push_back(*curve);
+            code.reads_input = {true, false, false};
+            simd::Instruction step;
+            step.op = simd::Op::curve;
+            step.wide = is_precise;
+            step.out.offset = sizeof(float) * simd::kMaxTile;
+            code.instructions.push_back(step);
+            code.output = {step.out, step.out, step.out};
+            // Pixels are limited to half floats' numbers before anything else.
+            std::vector<float> x;
+            for (const float place : places(f)) {
+                if (std::fabs(place) <= 65504) x.push_back(place);
+            }
+            std::vector<float> y(x.size()), rest(x.size());
+            for (const std::string& target : SimdEngine::targets()) {
+                SimdEngine::use_target(target);
+                simd::run(code, {x.data(), x.data(), x.data()}, 1,
+                          {y.data(), rest.data(), rest.data()}, 1, x.size());
+                for (std::size_t i = 0; i < x.size(); ++i) {
+                    ASSERT_EQ(y[i], static_cast<float>((*curve)(static_cast<double>(x[i]))))
+                        << f.name << " of " << x[i] << " on " << target;
+                }
+            }
+            SimdEngine::use_target("");
+        }
+    }
+}
+
+TEST(CompiledCurve, AWholeChannelIsOneInstruction) {
+    if (!simd::has_fast_curves()) GTEST_SKIP() << "this machine has no AVX-512";
+    const auto count = [](const char* op) {
+        const View view = make_view(resolve_operator(op), "lin_rec709", 0, "srgb");
+        return simd::compile(build_view(view)).instructions.size();
+    };
+    EXPECT_EQ(count("hable"), 3U);
+    EXPECT_EQ(count("reinhard"), 3U);
+    // Inset, curve, outset to the display's primaries, encoding.
+    EXPECT_LE(count("agx_sobotka"), 8U);
+}
+
+}  // namespace
+}  // namespace tonewright

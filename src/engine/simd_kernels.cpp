@@ -389,7 +389,6 @@ struct DoublePair {
 
 HWY_INLINE DoublePair promote(Vec<DF> x) {
     const hn::Half<DF> half;
-    const DF d;
     return {hn::PromoteTo(DD(), hn::LowerHalf(half, x)),
             hn::PromoteTo(DD(), hn::UpperHalf(half, x))};
 }

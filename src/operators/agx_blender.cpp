@@ -551,8 +551,8 @@ std::vector<Operator> define_agx_blender() {
                      {Deviation::Kind::black, 1.85e-5, "medium_low_contrast"},
                      {Deviation::Kind::black, 0.000128, "low_contrast"},
                      {Deviation::Kind::black, 0.000456, "very_low_contrast"}};
-    op.bounds = {.simd = 2e-5,
-                 .simd_goal = 4e-6,
+    op.bounds = {.simd = 3e-5,
+                 .simd_goal = 1e-5,
                  .ocio_cpu = 8e-5,
                  .ocio_gpu = 2e-4,
                  .cube = 0.11,

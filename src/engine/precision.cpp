@@ -343,7 +343,12 @@ class PrecisionChooser {
             const int operands = operand_count(step.op);
             if (operands == 0 || seen[i]) continue;
             seen[i] = true;
-            keep_in_double(i);
+            // No curve is as exact as a double.
+            if (step.curve) {
+                reject(step.curve);
+            } else {
+                in_double_[i] = true;
+            }
             const std::array<std::uint32_t, 3> operand = {step.a, step.b, step.c};
             rest.insert(rest.end(), operand.begin(), operand.begin() + operands);
         }

@@ -373,6 +373,24 @@ TEST_F(Simd, SteepTablesAreIndexedInDouble) {
     }
 }
 
+TEST_F(Simd, WhatASteepTableIsIndexedWithIsNoCompiledCurve) {
+    const auto table = std::make_shared<const Table>(
+        Table{{0, 0, 1, 1}, Table::Interpolation::linear, {0, 1, 1.00001, 3}});
+    const Expr index = (pow(max(Expr::input(0), 0), 0.42) + pow(max(Expr::input(1), 0), 0.42)) / 2;
+    const Expr y = lookup(table, index);
+    const Pipeline pipeline = {Map3Stage{{y, index, y}}};
+    std::vector<float> rgb;
+    for (float x = 0.9999F; x < 1.0001F; x = std::nextafterf(x, 2))
+        rgb.insert(rgb.end(), {x, 1.0F, 1.0F});
+    const std::vector<double> truth = run(ReferenceEngine(pipeline), rgb);
+    for (const std::string& target : SimdEngine::targets()) {
+        SimdEngine::use_target(target);
+        const std::vector<float> out = run(SimdEngine(pipeline), rgb);
+        for (std::size_t i = 0; i < out.size(); ++i)
+            ASSERT_NEAR(static_cast<double>(out[i]), truth[i], kBound) << target << " " << rgb[i];
+    }
+}
+
 // ---------------------------------------------------------------------------------------------
 // Operators
 

@@ -518,16 +518,28 @@ bool has_fast_curves() { return false; }
 
 #endif
 
-/// Nodes and weights of one vector of pixels.
+/// Pixels of a lattice at a time. A read that spans several writes which have not reached the cache
+/// waits for them: with a loop of its own for each step, and this many pixels between, none does.
+inline constexpr std::size_t kLatticeBlock = 64;
+
+/// Nodes and weights of a block of pixels.
 template <class T>
 struct LatticePlaces {
-    alignas(kVectorBytes) T node[4][kLaneMultiple];
-    alignas(kVectorBytes) T weight[4][kLaneMultiple];
+    /// Where the node's numbers begin among those of all nodes.
+    alignas(kVectorBytes) std::int32_t node[4][kLatticeBlock];
+    alignas(kVectorBytes) T weight[4][kLatticeBlock];
 };
+
+HWY_INLINE Vec<hn::RebindToSigned<DF>> to_whole(Vec<DF> x) {
+    return hn::ConvertTo(hn::RebindToSigned<DF>(), x);
+}
+HWY_INLINE Vec<hn::Rebind<std::int32_t, DD>> to_whole(Vec<DD> x) {
+    return hn::DemoteTo(hn::Rebind<std::int32_t, DD>(), x);
+}
 
 template <class D>
 HWY_INLINE void find_places(D d, const std::array<Source, 3>& source, std::size_t i, int edge,
-                            LatticePlaces<hn::TFromD<D>>& places) {
+                            std::size_t in_block, LatticePlaces<hn::TFromD<D>>& places) {
     using T = hn::TFromD<D>;
     const auto one = hn::Set(d, static_cast<T>(1));
     std::array<Vec<D>, 3> cell = {one, one, one};
@@ -555,8 +567,9 @@ HWY_INLINE void find_places(D d, const std::array<Source, 3>& source, std::size_
     const auto middle = hn::Max(lower, hn::Min(upper, f[2]));
     const auto far = hn::Add(corner, hn::Add(hn::Add(n2, n1), one));
     const auto store = [&](std::size_t k, Vec<D> node, Vec<D> weight) HWY_ATTR {
-        hn::Store(node, d, places.node[k]);
-        hn::Store(weight, d, places.weight[k]);
+        const hn::Rebind<std::int32_t, D> di;
+        hn::Store(hn::ShiftLeft<2>(to_whole(node)), di, places.node[k] + in_block);
+        hn::Store(weight, d, places.weight[k] + in_block);
     };
     store(0, corner, hn::Sub(one, highest));
     store(1, hn::Add(corner, step_highest), hn::Sub(highest, middle));
@@ -575,14 +588,15 @@ HWY_INLINE void interpolate(D d, const Frame& frame, const Instruction& step, in
     const std::array<Source, 3> source = {Source(frame, step.in[0]), Source(frame, step.in[1]),
                                           Source(frame, step.in[2])};
     LatticePlaces<T> places;
-    alignas(kVectorBytes) T pixels[4 * kLaneMultiple];
-    for (std::size_t i = 0; i < frame.count; i += lanes) {
-        find_places(d, source, i, edge, places);
-        for (std::size_t p = 0; p < lanes; ++p) {
+    alignas(kVectorBytes) T pixels[4 * kLatticeBlock];
+    for (std::size_t begin = 0; begin < frame.count; begin += kLatticeBlock) {
+        const std::size_t count = HWY_MIN(kLatticeBlock, frame.count - begin);
+        for (std::size_t p = 0; p < count; p += lanes)
+            find_places(d, source, begin + p, edge, p, places);
+        for (std::size_t p = 0; p < count; ++p) {
             for (std::size_t c = 0; c < 4; c += hn::Lanes(part)) {
                 const auto node = [&](std::size_t k) HWY_ATTR {
-                    return hn::LoadU(part,
-                                     nodes + 4 * static_cast<std::size_t>(places.node[k][p]) + c);
+                    return hn::LoadU(part, nodes + places.node[k][p] + c);
                 };
                 const auto weight = [&](std::size_t k)
                                         HWY_ATTR { return hn::Set(part, places.weight[k][p]); };
@@ -593,16 +607,20 @@ HWY_INLINE void interpolate(D d, const Frame& frame, const Instruction& step, in
                 hn::Store(sum, part, pixels + 4 * p + c);
             }
         }
+        for (std::size_t p = 0; p < count; p += lanes) {
 #if HWY_TARGET == HWY_SCALAR
-        const std::array<Vec<D>, 3> rgb = {hn::Load(d, pixels), hn::Load(d, pixels + 1),
-                                           hn::Load(d, pixels + 2)};
+            const std::array<Vec<D>, 3> rgb = {hn::Load(d, pixels + 4 * p),
+                                               hn::Load(d, pixels + 4 * p + 1),
+                                               hn::Load(d, pixels + 4 * p + 2)};
 #else
-        std::array<Vec<D>, 3> rgb;
-        auto unused = hn::Undefined(d);
-        hn::LoadInterleaved4(d, pixels, rgb[0], rgb[1], rgb[2], unused);
+            std::array<Vec<D>, 3> rgb;
+            auto unused = hn::Undefined(d);
+            hn::LoadInterleaved4(d, pixels + 4 * p, rgb[0], rgb[1], rgb[2], unused);
 #endif
-        for (std::size_t c = 0; c < 3; ++c) {
-            if (!step.channel[c].constant) store_result(frame, step.channel[c], i, rgb[c]);
+            for (std::size_t c = 0; c < 3; ++c) {
+                if (!step.channel[c].constant)
+                    store_result(frame, step.channel[c], begin + p, rgb[c]);
+            }
         }
     }
 }

@@ -46,7 +46,8 @@ Expr pq_encode_nits(const Expr& nits) {
 }
 
 Expr pq_decode_nits(const Expr& code) {
-    const Expr p = pow(abs(code), 1 / kPqM2);
+    // The standard ends at 1; at 1.95 the formula divides by 0.
+    const Expr p = pow(min(abs(code), 1), 1 / kPqM2);
     return mirror(code, 10000 * pow(max(p - kPqC1, 0) / (kPqC2 - kPqC3 * p), 1 / kPqM1));
 }
 

@@ -18,13 +18,23 @@ std::string write_clf(const ClfTable& table, const std::string& name,
     const std::vector<float>& v = *table.values;
     const auto per_line = static_cast<std::size_t>(table.dimension == 3 ? 3 : table.channels);
     for (std::size_t i = 0; i < v.size(); ++i) {
-        if (table.decimals > 0) {
-            append_decimals(numbers, v[i], table.decimals);
-        } else {
-            append_number(numbers, v[i]);
+        switch (table.numbers) {
+            case ClfTable::Numbers::exact:
+                append_number(numbers, v[i]);
+                break;
+            case ClfTable::Numbers::compact:
+                append_compact(numbers, v[i]);
+                break;
+            case ClfTable::Numbers::codes:
+                append_decimals(numbers, v[i] * 65535, 0);
+                break;
+            case ClfTable::Numbers::decimals_7:
+                append_decimals(numbers, v[i], 7);
+                break;
         }
         numbers += (i + 1) % per_line == 0 ? '\n' : ' ';
     }
+    const char* depth = table.numbers == ClfTable::Numbers::codes ? "16i" : "32f";
     std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
     // A file has the version of one format only.
     text += fmt::format("<ProcessList id=\"tonewright-{}\" name=\"{}\" {}>\n",
@@ -35,15 +45,15 @@ std::string write_clf(const ClfTable& table, const std::string& name,
     }
     if (table.dimension == 1) {
         text += fmt::format(
-            "    <LUT1D inBitDepth=\"32f\" outBitDepth=\"32f\"{}{} interpolation=\"linear\">\n"
+            "    <LUT1D inBitDepth=\"32f\" outBitDepth=\"{}\"{}{} interpolation=\"linear\">\n"
             "        <Array dim=\"{} {}\">\n",
-            table.is_half_domain ? " halfDomain=\"true\"" : "",
+            depth, table.is_half_domain ? " halfDomain=\"true\"" : "",
             table.is_hue_preserving ? " hueAdjust=\"dw3\"" : "", table.size, table.channels);
     } else {
         text += fmt::format(
-            "    <LUT3D inBitDepth=\"32f\" outBitDepth=\"32f\" interpolation=\"tetrahedral\">\n"
+            "    <LUT3D inBitDepth=\"32f\" outBitDepth=\"{1}\" interpolation=\"tetrahedral\">\n"
             "        <Array dim=\"{0} {0} {0} 3\">\n",
-            table.size);
+            table.size, depth);
     }
     text += numbers;
     text += fmt::format("        </Array>\n    </LUT{}D>\n</ProcessList>\n", table.dimension);

@@ -18,8 +18,16 @@ struct ClfTable {
     bool is_hue_preserving = false;
     /// 1D: entry by entry. 3D: RGB triplets, BLUE fastest, as CLF has them.
     const std::vector<float>* values = nullptr;
-    /// Decimals of a 3D table whose interpolation error dwarfs them; 0 = 9 significant digits.
-    int decimals = 0;
+    /// How its numbers are written.
+    enum class Numbers : unsigned char {
+        exact,    // 9 significant digits without exponents: reads back as the same float
+        compact,  // @see append_compact
+        /// Multiples of 1/65535, as whole numbers of 16 bits: for cubes whose interpolation error
+        /// dwarfs half of that. Not limited to [0, 65535].
+        codes,
+        decimals_7  // as the cubes that hosts ship have
+    };
+    Numbers numbers = Numbers::exact;
 };
 
 /// ".clf" or ".ctf". OCIO knows a format by it.

@@ -27,6 +27,13 @@ void append_number(std::string& text, float value) {
     append_decimals(text, value, std::max(0, 8 - leading));
 }
 
+void append_compact(std::string& text, float value) {
+    const float magnitude = std::fabs(value);
+    const int leading = magnitude > 0 ? static_cast<int>(std::floor(std::log10(magnitude))) : 0;
+    fmt::format_to(std::back_inserter(text), "{:.{}g}", magnitude == 0 ? 0.0F : value,
+                   std::clamp(9 + leading, 7, 9));
+}
+
 std::string content_hash(const std::string& contents) {
     std::uint32_t hash = 2166136261U;
     for (const char c : contents) {

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <OpenColorIO/OpenColorIO.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <set>
@@ -11,6 +14,7 @@
 #include "engine/probe.h"
 #include "lut/clf.h"
 #include "lut/numbers.h"
+#include "ocio/inverse.h"
 #include "ocio/lower.h"
 #include "ocio/model.h"
 #include "tonewright/engine.h"
@@ -33,6 +37,7 @@ class LutFiles {
         for (int i = 0; i < group->getNumTransforms(); ++i) {
             const OCIO::TransformRcPtr t = group->getTransform(i);
             ClfTable table;
+            table.numbers = ClfTable::Numbers::compact;
             std::vector<float> values;
             std::string part;
             if (const auto lut = OCIO_DYNAMIC_POINTER_CAST<OCIO::Lut1DTransform>(t)) {
@@ -40,10 +45,9 @@ class LutFiles {
                 part = "curve";
             } else if (const auto cube = OCIO_DYNAMIC_POINTER_CAST<OCIO::Lut3DTransform>(t)) {
                 values = values_of(*cube, table);
-                // Half of the fifth decimal is 0.005 codes of 10 bits, a hundredth of what
-                // interpolating between the nodes of a sampled operator costs; nine digits would
-                // double the file. A lattice has nothing else to be wrong in.
-                table.decimals = is_exact ? 8 : 5;
+                // 8e-6, a thirtieth of what interpolating between the nodes of a sampled operator
+                // costs in the mean. A lattice has nothing else to be wrong in: 5e-8.
+                table.numbers = is_exact ? ClfTable::Numbers::decimals_7 : ClfTable::Numbers::codes;
                 part = "cube";
             } else {
                 out->appendTransform(t);
@@ -185,9 +189,9 @@ OCIO::ColorSpaceRcPtr make_space(const ConfigModel::Space& space, LutFiles& luts
                     OCIO::COLORSPACE_DIR_TO_REFERENCE);
             }
             break;
-        case Kind::acescct: {
+        case Kind::builtin: {
             OCIO::BuiltinTransformRcPtr builtin = OCIO::BuiltinTransform::Create();
-            builtin->setStyle("ACEScct_to_ACES2065-1");
+            builtin->setStyle(space.style.c_str());
             cs->setTransform(builtin, OCIO::COLORSPACE_DIR_TO_REFERENCE);
             break;
         }
@@ -220,8 +224,9 @@ OCIO::ColorSpaceRcPtr make_space(const ConfigModel::Space& space, LutFiles& luts
 /// space of the same primaries OCIO multiplies the two matrices to the identity, and the clamp is
 /// the first thing that a pixel meets, NaN and infinities included. A Range before the matrix would
 /// keep the matrices apart and cost 1e-6 by float32 cancellation.
-Pipeline view_stages(const ResolvedOperator& op, const DisplayLimit& limit) {
-    Pipeline stages = {MatrixStage{from_reference(op.op->working)}};
+Pipeline view_stages(const ResolvedOperator& op, double exposure_stops, const DisplayLimit& limit) {
+    Pipeline stages = {
+        MatrixStage{scale(from_reference(op.op->working), std::exp2(exposure_stops))}};
     for (const Pipeline& part : {op.build(), display_light_stages(op, limit)})
         stages.insert(stages.end(), part.begin(), part.end());
     stages.push_back(MatrixStage{rgb_to_xyz_d65(limit.primaries)});
@@ -233,6 +238,9 @@ struct DisplayedView {
     std::string transform;
     Pipeline stages;
     const Display* display;
+    /// What the view is called on the display.
+    std::string name;
+    ResolvedOperator op;
 };
 
 /// One view transform for all displays that it is the same for. "AgX", or where there are several,
@@ -246,11 +254,16 @@ std::vector<DisplayedView> displayed_views(const ConfigModel::View& view,
     };
     std::vector<Form> forms;
     std::vector<std::size_t> form_of;
+    std::vector<ResolvedOperator> op_of;
+    std::vector<const Display*> its_displays;
     for (const Display* display : displays) {
+        if (!view.is_on(*display)) continue;
+        its_displays.push_back(display);
         const ResolvedOperator op =
             make_view(view.op, find_input_space("lin_ap0").id, 0, display->id).op;
+        op_of.push_back(op);
         const DisplayLimit limit = display_limit(op, *display);
-        const Pipeline stages = view_stages(op, limit);
+        const Pipeline stages = view_stages(op, view.exposure_stops, limit);
         const std::array<Expr, 3> rgb = compose(stages);
         std::size_t i = 0;
         while (i < forms.size() &&
@@ -265,14 +278,120 @@ std::vector<DisplayedView> displayed_views(const ConfigModel::View& view,
         form_of.push_back(i);
     }
     std::vector<DisplayedView> shown;
-    for (std::size_t d = 0; d < displays.size(); ++d) {
+    for (std::size_t d = 0; d < its_displays.size(); ++d) {
         const Form& form = forms[form_of[d]];
-        shown.push_back({forms.size() == 1 ? view.name : form.name, form.stages, displays[d]});
+        shown.push_back({forms.size() == 1 ? view.name : form.name, form.stages, its_displays[d],
+                         config_view_name(view.name, op_of[d], *its_displays[d]), op_of[d]});
     }
     return shown;
 }
 
+/// "AgX - HDR 1000 nits" on "Rec.2100-PQ" -> "agx_hdr_1000_nits_rec2100_pq".
+std::string output_alias(const DisplayedView& shown) {
+    std::string alias = "out_";
+    for (const char c : shown.name) {
+        const bool is_word = std::isalnum(static_cast<unsigned char>(c)) != 0;
+        if (is_word) alias += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+        if (!is_word && alias.back() != '_') alias += '_';
+    }
+    return alias + "_" + shown.display->id;
+}
+
+/// A view as a colour space: write nodes, textures and `--colorconvert` know no views.
+OCIO::ColorSpaceRcPtr make_output_space(const DisplayedView& shown) {
+    const std::string& display = shown.display->title;
+    OCIO::ColorSpaceRcPtr cs = OCIO::ColorSpace::Create(OCIO::REFERENCE_SPACE_SCENE);
+    cs->setName(("Output - " + shown.name + " - " + display).c_str());
+    cs->addAlias(output_alias(shown).c_str());
+    cs->setFamily(("Output/" + display).c_str());
+    cs->setDescription(
+        ("The picture of the view " + shown.name + " on " + display + ", in its code values.")
+            .c_str());
+    cs->setEncoding(shown.display->is_hdr ? "hdr-video" : "sdr-video");
+    cs->setBitDepth(OCIO::BIT_DEPTH_F32);
+    cs->addCategory("file-io");
+    OCIO::DisplayViewTransformRcPtr view = OCIO::DisplayViewTransform::Create();
+    view->setSrc(find_input_space("lin_ap0").title.c_str());
+    view->setDisplay(display.c_str());
+    view->setView(shown.name.c_str());
+    cs->setTransform(view, OCIO::COLORSPACE_DIR_FROM_REFERENCE);
+    return cs;
+}
+
+/// The space that is linear in these primaries.
+const InputSpace& space_of(const Primaries& primaries) {
+    for (const InputSpace& space : all_input_spaces()) {
+        if (space.primaries == primaries) return space;
+    }
+    throw Error("config: no space has the primaries " + std::string(primaries.name));
+}
+
+void append(OCIO::GroupTransformRcPtr& group, const Pipeline& stages) {
+    const Lowered lowered = lower_to_ocio(stages);  // nothing, of identities
+    for (int i = 0; i < lowered.transform->getNumTransforms(); ++i)
+        group->appendTransform(lowered.transform->getTransform(i));
+}
+
+/// Display reference -> scene reference, of what the view transform makes; null where OpenColorIO's
+/// own inversion of the view transform is as good: its tables and cubes, on the CPU.
+OCIO::GroupTransformRcPtr way_back(const ConfigModel::View& view, const DisplayedView& shown) {
+    const DisplayLimit limit = display_limit(shown.op, *shown.display);
+    const OCIO::GroupTransformRcPtr inverted = invert_light(shown.op, limit);
+    if (!inverted) return nullptr;
+    OCIO::GroupTransformRcPtr group = OCIO::GroupTransform::Create();
+    append(group, {MatrixStage{inverse(rgb_to_xyz_d65(limit.primaries))}});
+    for (int i = 0; i < inverted->getNumTransforms(); ++i)
+        group->appendTransform(inverted->getTransform(i));
+    append(
+        group,
+        {MatrixStage{scale(to_reference(shown.op.op->working), std::exp2(-view.exposure_stops))}});
+    return group;
+}
+
+/// How far code values of the view's own pictures are from themselves after the way back and the
+/// view once more, by the reference.
+ErrorStats measure_round_trip(const View& view, const OCIO::GroupTransformRcPtr& back,
+                              OCIO::OptimizationFlags flags, const ProbeSet& probes) {
+    const Display& display = find_display(view.display);
+    const ReferenceEngine engine(build_view(view));
+    OCIO::GroupTransformRcPtr whole = OCIO::GroupTransform::Create();
+    append(whole, joined(display.decode, {MatrixStage{rgb_to_xyz_d65(display.primaries)}}));
+    whole->appendTransform(back);
+    append(whole, {MatrixStage{rgb_to_rgb(kAP0, find_input_space(view.input).primaries)}});
+    std::vector<float> in;
+    for (std::size_t i = 0; i < probes.size(); ++i) {
+        if (!probes.is_non_negative(i) || probes.kind[i] == ProbeKind::special) continue;
+        in.insert(in.end(), &probes.rgb[3 * i], &probes.rgb[3 * i] + 3);
+    }
+    const std::size_t count = in.size() / 3;
+    std::vector<double> codes(in.size());
+    engine.run_rgb(in.data(), codes.data(), count);
+    const std::vector<float> given(codes.begin(), codes.end());
+    std::vector<float> scene(in.size());
+    Lowered lowered;
+    lowered.transform = whole;
+    OcioCpu(make_processor(lowered), flags).run_rgb(given.data(), scene.data(), count);
+    std::vector<double> again(in.size());
+    engine.run_rgb(scene.data(), again.data(), count);
+    std::vector<double> errors;
+    for (std::size_t i = 0; i < count; ++i) {
+        double error = 0;
+        for (std::size_t c = 0; c < 3; ++c)
+            error = std::max(error, std::fabs(again[3 * i + c] - codes[3 * i + c]));
+        errors.push_back(error);
+    }
+    return summarise(errors);
+}
+
+/// Beyond this, what comes back is another picture.
+bool is_way_back(const ErrorStats& lossless) { return lossless.mean <= 5e-3; }
+
 struct ViewError {
+    /// Of the way back without loss, and as applications have it: with OpenColorIO's default
+    /// optimisation, which inverts a cube by a table of 48^3, as its shaders always do.
+    ErrorStats round_trip_lossless;
+    ErrorStats round_trip;
+    bool has_way_back = false;
     ErrorStats in_gamut;
     double delta_e = 0;
     bool is_exact = true;
@@ -304,36 +423,51 @@ ViewError measure_view(const View& view, const ProbeSet& probes) {
     return result;
 }
 
-std::string readme(const ConfigModel& model, const std::map<std::string, ViewError>& errors) {
-    std::string text =
+/// As one argument of a shell.
+std::string quoted(const std::string& name) {
+    return name.find(' ') == std::string::npos ? name : '"' + name + '"';
+}
+
+std::string readme(const ConfigModel& model, const std::string& profile,
+                   const std::map<std::string, ViewError>& errors) {
+    std::string text = fmt::format(
         "# OpenColorIO config\n\n"
-        "Generated by `tonewright config -o ocio_config`; do not edit. Profile 2.1: any "
-        "application with\n"
-        "OpenColorIO 2.1 or newer reads it.\n\n"
+        "Generated by `tonewright config`; do not edit. Profile {0}: any application with\n"
+        "OpenColorIO {0} or newer reads it.\n\n"
         "```\n"
         "export OCIO=/path/to/ocio_config/config.ocio      # Blender, Nuke, Maya, Houdini, Krita, "
         "...\n"
-        "oiiotool --colorconfig /path/to/ocio_config/config.ocio in.exr --ociodisplay sRGB \"AgX "
-        "Sobotka\" -o out.png\n"
-        "```\n\n"
-        "Displays: ";
+        "oiiotool --colorconfig /path/to/ocio_config/config.ocio in.exr --ociodisplay sRGB {1} "
+        "-o out.png\n"
+        "```\n\n",
+        profile, quoted(model.views.front().name));
+    text += "Displays: ";
     for (const Display* d : model.displays)
         text += (d == model.displays.front() ? "" : ", ") + d->title;
     text +=
-        ". Every display has every view:\n\n"
-        "| view | operator | how | max error | 99.9 % | mean |\n|---|---|---|---|---|---|\n";
+        ".\n\n| view | operator | how | max error | 99.9 % | mean | and back, 99.9 %: "
+        "without loss | by default |\n"
+        "|---|---|---|---|---|---|---|---|\n";
     for (const auto& view : model.views) {
         const ViewError& e = errors.at(view.name);
-        text += fmt::format("| {} | {} | {} | {} | {} | {} |\n", view.name, view.op.op->title,
-                            e.is_exact ? "exact chain" : "65^3 cube", rounded_up(e.in_gamut.max),
-                            rounded_up(e.in_gamut.p999), rounded_up(e.in_gamut.mean));
+        text +=
+            fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} |\n", view.name, view.op.op->title,
+                        e.is_exact ? "exact chain" : "65^3 cube", rounded_up(e.in_gamut.max),
+                        rounded_up(e.in_gamut.p999), rounded_up(e.in_gamut.mean),
+                        e.has_way_back ? rounded_up(e.round_trip_lossless.p999) : "none",
+                        e.has_way_back ? rounded_up(e.round_trip.p999) : "none");
     }
     text += fmt::format(
         "\nErrors: sRGB code values (1 code of 10 bits is 0.00098) of OpenColorIO {}'s CPU path "
         "against the\n"
         "double-precision reference, for Rec.709 light from 0 to 4096 and more. "
         "`python_check/check_config.py`\n"
-        "measures the same in the application that you run it in, against `probe.csv`.\n",
+        "measures the same in the application that you run it in, against `probe.csv`. And back: "
+        "how far code\n"
+        "values are from themselves after `Output - VIEW - sRGB` to the scene and the view again. "
+        "By default\n"
+        "OpenColorIO inverts a cube by a coarse table (48^3; always on the GPU), without loss "
+        "exactly.\n",
         OCIO::GetVersion());
     return text;
 }
@@ -396,7 +530,10 @@ std::string probe_csv(const ConfigModel& model,
         "view,display,space,in_r,in_g,in_b,out_r,out_g,out_b,within_r,within_g,within_b\n";
     for (const auto& view : model.views) {
         for (const Display* display : model.displays) {
-            const ReferenceEngine engine(build_view(make_view(view.op, space.id, 0, display->id)));
+            if (!view.is_on(*display)) continue;
+            const View shown = make_view(view.op, space.id, view.exposure_stops, display->id);
+            const std::string name = config_view_name(view.name, shown.op, *display);
+            const ReferenceEngine engine(build_view(shown));
             for (const Vector3& v : colors) {
                 const Vector3 out = engine(v);
                 double bound =
@@ -408,8 +545,8 @@ std::string probe_csv(const ConfigModel& model,
                 const Vector3 within = code_tolerance(*display, out, bound);
                 text += fmt::format(
                     "{},{},{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.2g},{:.2g},{:.2g}\n",
-                    view.name, display->title, space.title, v[0], v[1], v[2], out[0], out[1],
-                    out[2], within[0], within[1], within[2]);
+                    name, display->title, space.title, v[0], v[1], v[2], out[0], out[1], out[2],
+                    within[0], within[1], within[2]);
             }
         }
     }
@@ -422,11 +559,13 @@ std::string config_space_name(std::string_view input_id) {
     return find_input_space(input_id).title;
 }
 
-std::vector<GeneratedFile> make_config() {
-    const ConfigModel model = make_config_model();
+std::vector<GeneratedFile> make_config(const ConfigOptions& options) {
+    if (options.profile != "2.0" && options.profile != "2.1")
+        throw Error("config: profile is " + options.profile + "; expected 2.0 or 2.1");
+    const ConfigModel model = make_config_model(options);
     LutFiles luts;
     OCIO::ConfigRcPtr config = OCIO::Config::Create();
-    config->setVersion(2, 1);
+    config->setVersion(2, options.profile == "2.0" ? 0 : 1);
     config->setName(model.name.c_str());
     config->setDescription(model.description.c_str());
     config->setSearchPath(kLutFolder);
@@ -451,6 +590,8 @@ std::vector<GeneratedFile> make_config() {
     config->setDefaultViewTransformName(kUntonemappedView);
 
     const ProbeSet probes = make_probes(find_input_space("lin_rec709"), {9, 40000});
+    // OpenColorIO inverts cubes slowly.
+    const ProbeSet few_probes = make_probes(find_input_space("lin_rec709"), {3, 1000});
     std::map<std::string, ViewError> errors;
     const ProbeSet wide_probes = make_probes(find_input_space("lin_ap1"), {9, 40000});
     std::map<std::string, std::vector<DisplayedView>> displayed;
@@ -463,8 +604,27 @@ std::vector<GeneratedFile> make_config() {
                 largest_error[view.name][shown.display->title] = known->second;
                 continue;
             }
-            const ViewError error =
-                measure_view(make_view(view.op, "lin_rec709", 0, shown.display->id), probes);
+            const View measured =
+                make_view(view.op, "lin_rec709", view.exposure_stops, shown.display->id);
+            ViewError error = measure_view(measured, probes);
+            const Lowered forward = lower_to_ocio(shown.stages, {.primaries = view.op.op->working});
+            const OCIO::GroupTransformRcPtr own_back = way_back(view, shown);
+            OCIO::GroupTransformRcPtr back = own_back;
+            if (!back) {
+                back = OCIO::GroupTransform::Create();
+                for (int i = 0; i < forward.transform->getNumTransforms(); ++i)
+                    back->appendTransform(forward.transform->getTransform(i));
+                back->setDirection(OCIO::TRANSFORM_DIR_INVERSE);
+            }
+            // OpenColorIO takes seconds to invert a cube: once for a view.
+            const bool is_measured = !view.op.op->is_diagnostic && (own_back || made.empty());
+            if (is_measured) {
+                error.round_trip_lossless =
+                    measure_round_trip(measured, back, OCIO::OPTIMIZATION_LOSSLESS, few_probes);
+                error.round_trip =
+                    measure_round_trip(measured, back, OCIO::OPTIMIZATION_DEFAULT, few_probes);
+                error.has_way_back = is_way_back(error.round_trip_lossless);
+            }
             made[shown.transform] = error.in_gamut.max;
             largest_error[view.name][shown.display->title] = error.in_gamut.max;
             errors.emplace(view.name, error);
@@ -474,8 +634,9 @@ std::vector<GeneratedFile> make_config() {
                 view.description, shown.display->title, rounded_up(error.in_gamut.max),
                 rounded_up(error.in_gamut.p999));
             if (!error.is_exact) {
-                const ViewError wide =
-                    measure_view(make_view(view.op, "lin_ap1", 0, shown.display->id), wide_probes);
+                const ViewError wide = measure_view(
+                    make_view(view.op, "lin_ap1", view.exposure_stops, shown.display->id),
+                    wide_probes);
                 text += fmt::format(
                     " A 3D table: mean {}, dE ITP at most {}; colors of all of AP1: max {}, 99.9 % "
                     "{}, mean {}.",
@@ -483,52 +644,95 @@ std::vector<GeneratedFile> make_config() {
                     rounded_up(wide.in_gamut.max), rounded_up(wide.in_gamut.p999),
                     rounded_up(wide.in_gamut.mean));
             }
+            if (error.has_way_back) {
+                text += fmt::format(" And back: 99.9 % {} without loss, {} by default.",
+                                    rounded_up(error.round_trip_lossless.p999),
+                                    rounded_up(error.round_trip.p999));
+            } else if (is_measured || view.op.op->is_diagnostic) {
+                text += " There is no way back.";
+            }
             OCIO::ViewTransformRcPtr vt = OCIO::ViewTransform::Create(OCIO::REFERENCE_SPACE_SCENE);
             vt->setName(shown.transform.c_str());
             vt->setDescription(text.c_str());
-            vt->setTransform(lower_part(luts, shown.stages, view.op.op->id, view.op.op->title,
-                                        view.op.op->working),
+            vt->setTransform(luts.externalise(forward.transform, view.op.op->id, view.op.op->title,
+                                              forward.is_exact),
                              OCIO::VIEWTRANSFORM_DIR_FROM_REFERENCE);
+            if (own_back) {
+                vt->setTransform(luts.externalise(own_back, view.op.op->id + "_inverse",
+                                                  view.op.op->title + ", inverse", true),
+                                 OCIO::VIEWTRANSFORM_DIR_TO_REFERENCE);
+            }
             config->addViewTransform(vt);
         }
+    }
+
+    for (const auto& look : model.looks) {
+        OCIO::LookRcPtr added = OCIO::Look::Create();
+        added->setName(look.name.c_str());
+        added->setProcessSpace(space_of(look.op->working).title.c_str());
+        added->setDescription(look.description.c_str());
+        added->setTransform(
+            lower_part(luts, look.stages, look.op->id + "_look", look.name, look.op->working));
+        config->addLook(added);
     }
 
     std::string active_displays;
     for (const Display* display : model.displays) {
         active_displays += (active_displays.empty() ? "" : ", ") + display->title;
     }
-    std::string active_views;
+    std::vector<std::string> active_views;
+    const auto activate = [&](const std::string& name) {
+        if (std::find(active_views.begin(), active_views.end(), name) == active_views.end())
+            active_views.push_back(name);
+    };
     const auto add_view = [&](const std::string& name, const std::string& transform,
                               const std::string& space, const std::string& description) {
         config->addSharedView(name.c_str(), transform.c_str(), space.c_str(), "", "",
                               description.c_str());
-        active_views += (active_views.empty() ? "" : ", ") + name;
         for (const Display* display : model.displays) {
             config->addDisplaySharedView(display->title.c_str(), name.c_str());
         }
     };
     for (const auto& view : model.views) {
-        if (displayed[view.name].front().transform == view.name) {
+        const std::vector<DisplayedView>& forms = displayed[view.name];
+        const bool is_shared = forms.size() == model.displays.size() &&
+                               std::all_of(forms.begin(), forms.end(), [&](const auto& shown) {
+                                   return shown.transform == view.name && shown.name == view.name;
+                               });
+        for (const DisplayedView& shown : forms)
+            activate(shown.name);
+        if (is_shared) {
             add_view(view.name, view.name, OCIO::OCIO_VIEW_USE_DISPLAY_NAME, view.description);
             continue;
         }
-        active_views += (active_views.empty() ? "" : ", ") + view.name;
-        for (const DisplayedView& shown : displayed[view.name]) {
-            config->addDisplayView(
-                shown.display->title.c_str(), view.name.c_str(), shown.transform.c_str(),
-                (shown.display->title + kDisplaySuffix).c_str(), "", "", view.description.c_str());
+        for (const DisplayedView& shown : forms) {
+            config->addDisplayView(shown.display->title.c_str(), shown.name.c_str(),
+                                   shown.transform.c_str(), shown.display->title.c_str(), "", "",
+                                   view.description.c_str());
         }
     }
     add_view(kUntonemappedView, kUntonemappedView, OCIO::OCIO_VIEW_USE_DISPLAY_NAME,
-             "Scene light shown as it is.");
+             "Scene light shown as it is, not limited.");
     add_view(kRawView, "", kDataSpace, "The numbers as they are.");
+    activate(kUntonemappedView);
+    activate(kRawView);
     config->setActiveDisplays(active_displays.c_str());
-    config->setActiveViews(active_views.c_str());
+    config->setActiveViews(fmt::format("{}", fmt::join(active_views, ", ")).c_str());
+
+    for (const auto& view : model.views) {
+        for (const DisplayedView& shown : displayed[view.name])
+            config->addColorSpace(make_output_space(shown));
+    }
 
     const OCIO::FileRulesRcPtr rules = config->getFileRules()->createEditableCopy();
     std::size_t index = 0;
-    for (const auto& [extension, space] : model.file_rules) {
-        rules->insertRule(index++, extension.c_str(), space.c_str(), "*", extension.c_str());
+    for (const auto& rule : model.file_rules) {
+        if (rule.regex.empty()) {
+            rules->insertRule(index++, rule.name.c_str(), rule.space.c_str(), "*",
+                              rule.extension.c_str());
+        } else {
+            rules->insertRule(index++, rule.name.c_str(), rule.space.c_str(), rule.regex.c_str());
+        }
     }
     rules->setDefaultRuleColorSpace(model.default_space.c_str());
     config->setFileRules(rules);
@@ -541,7 +745,7 @@ std::vector<GeneratedFile> make_config() {
     for (const GeneratedFile& f : files)
         manifest += f.path + "," + content_hash(f.contents) + "\n";
     files.push_back({"probe.csv", probe_csv(model, largest_error)});
-    files.push_back({"README.md", readme(model, errors)});
+    files.push_back({"README.md", readme(model, options.profile, errors)});
     files.push_back({"MANIFEST.csv", manifest});
     files.push_back({"config.ocio", yaml.str()});
     return files;

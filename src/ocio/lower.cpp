@@ -173,7 +173,13 @@ class Lowering {
     void matrix(const Matrix3& m) {
         flush_curves();
         emit(make_matrix(m), "matrix");
-        domain_ = {};
+        double largest_sum = 0;
+        bool adds_only = domain_.lo >= 0;
+        for (const auto& row : m) {
+            adds_only = adds_only && std::min({row[0], row[1], row[2]}) >= 0;
+            largest_sum = std::max(largest_sum, row[0] + row[1] + row[2]);
+        }
+        domain_ = adds_only ? Domain{0, std::min(largest_sum * domain_.hi, kHalfMax)} : Domain{};
     }
 
     void clamp(double lo, double hi) {
@@ -198,7 +204,9 @@ class Lowering {
         flush_curves();
         const Expr x = Expr::input();
         // The norm of what the domain holds is in the domain too (weights of a luminance sum to 1).
-        const auto identity = sample_half_domain(x, -kHalfMax, kHalfMax);
+        // Of light, hue and saturation are in [0, 1], and so are x and y.
+        const auto identity = domain_.lo >= 0 ? sample_half_domain(x, 0, 1)
+                                              : sample_half_domain(x, -kHalfMax, kHalfMax);
         const auto f = sample_half_domain(stage.f, std::max(domain_.lo, 0.0), domain_.hi);
         const auto lut = make_half_lut({identity, identity, f});
         if (stage.norm == ToneScaleStage::Norm::max_rgb) {
@@ -237,7 +245,7 @@ class Lowering {
             throw Error("ocio: hue-preserving curve without a clamp at 0 before it");
         }
         // OCIO's shader turns the hue around where the curve falls, its CPU path does not.
-        if (!is_rising(sample_half_domain(stage.f, domain_.lo, domain_.hi))) {
+        if (!is_rising(sample_half_domain(stage.f, domain_.lo, domain_.hi), domain_)) {
             map3({apply_stage(stage, {Expr::input(0), Expr::input(1), Expr::input(2)})});
             return;
         }
@@ -350,13 +358,19 @@ class Lowering {
         const OCIO::Lut1DTransformRcPtr lut = make_half_lut(tables);
         lut->setHueAdjust(hue);
         emit(lut, hue == OCIO::HUE_DW3 ? "half LUT keeping hue" : "half LUT");
-        domain_ = {};
+        domain_ = {kHalfMax, -kHalfMax};
+        for (const std::vector<float>& table : tables) {
+            const auto [lo, hi] = std::minmax_element(table.begin(), table.end());
+            domain_.lo = std::min(domain_.lo, static_cast<double>(*lo));
+            domain_.hi = std::max(domain_.hi, static_cast<double>(*hi));
+        }
     }
 
-    /// From half float to half float, but for rounding.
-    static bool is_rising(const std::vector<float>& table) {
+    /// From half float to half float of the domain, but for rounding.
+    static bool is_rising(const std::vector<float>& table, const Domain& domain) {
         double largest = -kInfinity;
         for (unsigned bits = 0; bits <= 0x7BFF; ++bits) {
+            if (half_value(bits) < domain.lo || half_value(bits) > domain.hi) continue;
             const auto y = static_cast<double>(table[bits]);
             if (y < largest - 1e-6 * std::max(1.0, std::fabs(largest))) return false;
             largest = std::max(largest, y);

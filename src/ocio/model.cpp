@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ocio/model.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <map>
 #include <set>
@@ -9,57 +12,208 @@
 namespace tonewright {
 namespace {
 
-constexpr const char* kDefaultOperator = "agx_sobotka";
-
 using Space = ConfigModel::Space;
 using SpaceKind = ConfigModel::SpaceKind;
 
-const std::vector<std::pair<std::string, std::string>>& role_table() {
-    const static std::string linear = find_input_space("lin_rec709").title;
-    const static std::string acescg = find_input_space("lin_ap1").title;
-    const static std::string aces = find_input_space("lin_ap0").title;
-    const static std::string srgb = "sRGB - Texture";
-    static const std::vector<std::pair<std::string, std::string>> roles = {
+constexpr const char* kTextureSpace = "sRGB - Texture";
+
+struct StandardView {
+    const char* id;
+    const char* look = "";
+    /// The tables of the HDR forms are larger than all others together.
+    bool is_sdr_only = false;
+};
+
+/// The views that the config has when nobody asks for others. The first is what applications start
+/// with: what artists know by the name of AgX, from Blender, where nothing clips and lights of all
+/// colors fade to white. Then the two standards, a rendering that leaves colors of products alone,
+/// and the curves that games and engines are known for.
+constexpr std::array<StandardView, 12> kStandardViews = {{
+    {"agx_blender"},
+    {"agx_blender", "punchy"},
+    {"aces_20", "", true},
+    {"aces_13"},
+    {"khronos_neutral"},
+    {"reinhard_extended"},
+    {"hable"},
+    {"uchimura"},
+    {"aces_narkowicz"},
+    {"agx_sobotka"},
+    {"clamp"},
+    {"false_color"},
+}};
+
+/// What OpenColorIO 2.0 has built-in transforms for; names and aliases as in the ACES configs.
+struct BuiltinSpace {
+    const char* name;
+    std::vector<std::string> aliases;
+    const char* family;
+    const char* description;
+    const char* style;
+};
+
+const std::vector<BuiltinSpace>& builtin_spaces() {
+    static const std::vector<BuiltinSpace> spaces = {
+        {"ACEScct",
+         {"acescct_ap1", "ACES - ACEScct"},
+         "ACES",
+         "Academy S-2016-001: AP1, log with a linear toe; for grading.",
+         "ACEScct_to_ACES2065-1"},
+        {"ACEScc",
+         {"acescc_ap1", "ACES - ACEScc"},
+         "ACES",
+         "Academy S-2014-003: AP1, pure log; for grading.",
+         "ACEScc_to_ACES2065-1"},
+        {"ADX10",
+         {"Input - ADX - ADX10"},
+         "Input/Film",
+         "Film scans of 10 bits, SMPTE ST 2065-3, with the Academy's unbuild.",
+         "ADX10_to_ACES2065-1"},
+        {"ADX16",
+         {"Input - ADX - ADX16"},
+         "Input/Film",
+         "Film scans of 16 bits, SMPTE ST 2065-3, with the Academy's unbuild.",
+         "ADX16_to_ACES2065-1"},
+        {"ARRI LogC3 (EI800)",
+         {"arri_logc3_ei800", "logc3ei800_alexawide",
+          "Input - ARRI - V3 LogC (EI800) - Wide Gamut"},
+         "Input/ARRI",
+         "ARRI LogC3 of exposure index 800, ALEXA Wide Gamut.",
+         "ARRI_ALEXA-LOGC-EI800-AWG_to_ACES2065-1"},
+        {"CanonLog2 CinemaGamut D55",
+         {"canonlog2_cgamut_d55", "Input - Canon - Canon-Log2 - Cinema Gamut (Daylight)"},
+         "Input/Canon",
+         "Canon Log 2, Cinema Gamut, daylight.",
+         "CANON_CLOG2-CGAMUT_to_ACES2065-1"},
+        {"CanonLog3 CinemaGamut D55",
+         {"canonlog3_cgamut_d55", "Input - Canon - Canon-Log3 - Cinema Gamut (Daylight)"},
+         "Input/Canon",
+         "Canon Log 3, Cinema Gamut, daylight.",
+         "CANON_CLOG3-CGAMUT_to_ACES2065-1"},
+        {"V-Log V-Gamut",
+         {"vlog_vgamut", "Input - Panasonic - V-Log - V-Gamut"},
+         "Input/Panasonic",
+         "Panasonic V-Log, V-Gamut.",
+         "PANASONIC_VLOG-VGAMUT_to_ACES2065-1"},
+        {"Log3G10 REDWideGamutRGB",
+         {"log3g10_rwg", "Input - RED - REDLog3G10 - REDWideGamutRGB"},
+         "Input/RED",
+         "RED Log3G10, REDWideGamutRGB.",
+         "RED_LOG3G10-RWG_to_ACES2065-1"},
+        {"REDLogFilm REDWideGamutRGB",
+         {"redlogfilm_rwg"},
+         "Input/RED",
+         "REDlogFilm, REDWideGamutRGB.",
+         "RED_REDLOGFILM-RWG_to_ACES2065-1"},
+        {"S-Log3 S-Gamut3",
+         {"slog3_sgamut3", "Input - Sony - S-Log3 - S-Gamut3"},
+         "Input/Sony",
+         "Sony S-Log3, S-Gamut3.",
+         "SONY_SLOG3-SGAMUT3_to_ACES2065-1"},
+        {"S-Log3 S-Gamut3.Cine",
+         {"slog3_sgamut3cine", "Input - Sony - S-Log3 - S-Gamut3.Cine"},
+         "Input/Sony",
+         "Sony S-Log3, S-Gamut3.Cine.",
+         "SONY_SLOG3-SGAMUT3.CINE_to_ACES2065-1"},
+        {"S-Log3 Venice S-Gamut3",
+         {"slog3_sgamut3_venice", "Input - Sony - S-Log3 - Venice S-Gamut3"},
+         "Input/Sony",
+         "Sony VENICE, S-Log3, S-Gamut3.",
+         "SONY_SLOG3-SGAMUT3-VENICE_to_ACES2065-1"},
+        {"S-Log3 Venice S-Gamut3.Cine",
+         {"slog3_sgamut3cine_venice", "Input - Sony - S-Log3 - Venice S-Gamut3.Cine"},
+         "Input/Sony",
+         "Sony VENICE, S-Log3, S-Gamut3.Cine.",
+         "SONY_SLOG3-SGAMUT3.CINE-VENICE_to_ACES2065-1"},
+    };
+    return spaces;
+}
+
+/// Pictures and textures in the code values of a display's curve, for other primaries too.
+struct TextureSpace {
+    const char* name;
+    std::vector<std::string> aliases;
+    const char* display;
+    const Primaries* primaries;
+};
+
+const std::vector<TextureSpace>& texture_spaces() {
+    static const std::vector<TextureSpace> spaces = {
+        {kTextureSpace,
+         {"srgb_tx", "srgb_rec709_scene", "Utility - sRGB - Texture",
+          "sRGB Encoded Rec.709 (sRGB)"},
+         "srgb",
+         &kRec709},
+        {"Gamma 2.2 Rec.709 - Texture",
+         {"g22_rec709_tx", "g22_rec709_scene", "Gamma 2.2 Encoded Rec.709"},
+         "g22",
+         &kRec709},
+        {"Gamma 2.4 Rec.709 - Texture",
+         {"g24_rec709_tx", "g24_rec709_scene", "Gamma 2.4 Encoded Rec.709"},
+         "rec1886",
+         &kRec709},
+        {"sRGB Encoded AP1 - Texture",
+         {"srgb_encoded_ap1_tx", "srgb_ap1_scene", "srgb_ap1"},
+         "srgb",
+         &kAP1},
+        {"Gamma 2.2 AP1 - Texture",
+         {"g22_ap1_tx", "g22_ap1_scene", "Gamma 2.2 Encoded AP1"},
+         "g22",
+         &kAP1},
+        {"sRGB Encoded P3-D65 - Texture",
+         {"srgb_encoded_p3d65_tx", "srgb_p3d65_scene"},
+         "srgb",
+         &kP3D65},
+    };
+    return spaces;
+}
+
+std::vector<std::pair<std::string, std::string>> role_table(const std::string& working) {
+    const std::string acescct = "ACEScct";
+    const std::string aces = find_input_space("lin_ap0").title;
+    const std::string srgb = find_display("srgb").title;
+    const std::string texture = kTextureSpace;
+    return {
         {"aces_interchange", aces},
         {"cie_xyz_d65_interchange", "CIE-XYZ-D65"},
-        {"default", linear},
+        {"default", working},
         {"reference", aces},
-        {"scene_linear", linear},
-        {"rendering", linear},
+        {"scene_linear", working},
+        {"rendering", working},
         {"data", kDataSpace},
         {"color_picking", srgb},
-        {"color_timing", "ACEScct"},
-        {"compositing_log", "ACEScct"},
-        {"matte_paint", srgb},
+        {"color_timing", acescct},
+        {"compositing_log", acescct},
+        {"matte_paint", texture},
         {"texture_paint", srgb},
-        // Blender: without default_byte it opens 8-bit pictures as texture_paint.
+        // Blender: without default_byte it opens 8-bit pictures as texture_paint; its name for it
+        // is sRGB.
         {"default_byte", srgb},
-        {"default_float", linear},
+        {"default_float", working},
         {"default_sequencer", srgb},
         // Mari
-        {"mari_monitor", srgb},
-        {"mari_scalar_monitor", srgb},
-        {"mari_color_picker", srgb},
-        {"mari_working", linear},
-        {"mari_int8", srgb},
-        {"mari_int16", srgb},
+        {"mari_monitor", texture},
+        {"mari_scalar_monitor", texture},
+        {"mari_color_picker", texture},
+        {"mari_working", working},
+        {"mari_int8", texture},
+        {"mari_int16", texture},
         {"mari_int_scalar", kDataSpace},
         {"mari_scalar8", kDataSpace},
-        {"mari_float", linear},
+        {"mari_float", working},
         // RenderMan
-        {"srgb_linear", linear},
-        {"srgb_texture", srgb},
+        {"srgb_linear", working},
+        {"srgb_texture", texture},
         // Substance Painter
-        {"substance_3d_painter_standard_srgb", srgb},
-        {"substance_3d_painter_bitmap_import_8bit", srgb},
-        {"substance_3d_painter_bitmap_import_16bit", srgb},
-        {"substance_3d_painter_bitmap_import_floating", linear},
-        {"substance_3d_painter_substance_material", srgb},
-        {"substance_3d_painter_bitmap_export_8bit", srgb},
-        {"substance_3d_painter_bitmap_export_16bit", srgb},
-        {"substance_3d_painter_bitmap_export_floating", linear},
+        {"substance_3d_painter_standard_srgb", texture},
+        {"substance_3d_painter_bitmap_import_8bit", texture},
+        {"substance_3d_painter_bitmap_import_16bit", texture},
+        {"substance_3d_painter_bitmap_import_floating", working},
+        {"substance_3d_painter_substance_material", texture},
+        {"substance_3d_painter_bitmap_export_8bit", texture},
+        {"substance_3d_painter_bitmap_export_16bit", texture},
+        {"substance_3d_painter_bitmap_export_floating", working},
     };
-    return roles;
 }
 
 std::string lower(const std::string& s) {
@@ -89,7 +243,7 @@ void check_names(const ConfigModel& model) {
         for (const std::string& alias : space.aliases)
             claim(alias, "space " + space.name);
     }
-    std::set<std::string> views;
+    std::set<std::string> views = {lower(kUntonemappedView), lower(kRawView)};
     for (const auto& view : model.views) {
         if (view.name.size() > 63)
             throw Error("config: view is " + view.name + "; expected at most 63 bytes");
@@ -107,9 +261,212 @@ void check_names(const ConfigModel& model) {
     }
 }
 
+/// Where a picture's name says what it is in: "plate_acescg.0001.exr". Words between separators in
+/// the last part of a path, so that a folder "raw" means nothing.
+std::string word_pattern(const std::string& words) {
+    return R"(.*[_.\- ]()" + words + R"()[_.\- ][^/\\]*)";
+}
+
+std::vector<ConfigModel::FileRule> make_file_rules(const std::string& working) {
+    std::vector<ConfigModel::FileRule> rules;
+    const auto word = [&](const std::string& name, const std::string& space,
+                          const std::string& words) {
+        rules.push_back({name, space, "", word_pattern(words)});
+    };
+    word("ACEScg", find_input_space("lin_ap1").title, "acescg|ACEScg|lin_ap1");
+    word("ACEScct", "ACEScct", "acescct|ACEScct");
+    word("ACES2065-1", find_input_space("lin_ap0").title,
+         "aces2065-1|ACES2065-1|aces2065_1|lin_ap0|ap0");
+    word("Linear Rec.709", find_input_space("lin_rec709").title, "lin_rec709|lin_srgb");
+    word("Linear Rec.2020", find_input_space("lin_rec2020").title, "lin_rec2020");
+    word("Linear P3-D65", find_input_space("lin_p3d65").title, "lin_p3d65|lin_displayp3");
+    word("sRGB", kTextureSpace, "srgb|sRGB|srgb_tx");
+    word("LogC3", "ARRI LogC3 (EI800)", "logc3|LogC3|arri_logc3_ei800");
+    word("S-Log3", "S-Log3 S-Gamut3", "slog3|S-Log3|slog3_sgamut3");
+    word("V-Log", "V-Log V-Gamut", "vlog|V-Log|vlog_vgamut");
+    word("data", kDataSpace, "raw|data|noncolor|Non-Color");
+    for (const char* extension : {"exr", "hdr", "pfm"})
+        rules.push_back({extension, working, extension, ""});
+    for (const char* extension :
+         {"png", "jpg", "jpeg", "tif", "tiff", "tga", "bmp", "gif", "webp", "psd"})
+        rules.push_back({extension, kTextureSpace, extension, ""});
+    return rules;
+}
+
+bool same_stage(const Stage& a, const Stage& b) {
+    static const std::array<Expr, 3> rgb = {Expr::input(0), Expr::input(1), Expr::input(2)};
+    const std::array<Expr, 3> x = apply_stage(a, rgb);
+    const std::array<Expr, 3> y = apply_stage(b, rgb);
+    return same(x[0], y[0]) && same(x[1], y[1]) && same(x[2], y[2]);
+}
+
+/// The stages that a look puts before the operator's own; empty where it changes the operator.
+Pipeline scene_look(const Operator& op, const Look& look) {
+    const Pipeline with = resolve_operator(op.id, {}, look.id).build();
+    const Pipeline without = resolve_operator(op.id).build();
+    if (with.size() <= without.size()) return {};
+    const auto begin = with.begin() + static_cast<std::ptrdiff_t>(with.size() - without.size());
+    if (!std::equal(begin, with.end(), without.begin(), same_stage)) return {};
+    return {with.begin(), begin};
+}
+
+std::string look_name(const Operator& op, const Look& look) { return op.view + " - " + look.title; }
+
+std::string description_of(const Operator& op, const std::string& extra = "") {
+    return op.title + extra + ": " + op.character + ". Source: " + op.source + ".";
+}
+
+ConfigModel::View view_of(const Operator& op, const std::string& look_id = "") {
+    for (const Look& look : op.looks) {
+        if (look.id != look_id) continue;
+        return {op.view + " " + look.title, resolve_operator(op.id, {}, look.id),
+                description_of(op, ", look " + look.title)};
+    }
+    return {op.view, resolve_operator(op.id), description_of(op)};
+}
+
+/// Every operator, and every operator with each of its looks.
+std::vector<ConfigModel::View> every_view() {
+    std::vector<ConfigModel::View> all;
+    for (const Operator& op : all_operators()) {
+        all.push_back(view_of(op));
+        for (const Look& look : op.looks)
+            all.push_back(view_of(op, look.id));
+    }
+    return all;
+}
+
+std::vector<ConfigModel::View> choose_views(const ConfigOptions& options) {
+    std::vector<ConfigModel::View> views;
+    const auto add = [&](ConfigModel::View view) {
+        for (const auto& other : views) {
+            if (other.name == view.name) return;
+        }
+        views.push_back(std::move(view));
+    };
+    const auto add_standard = [&] {
+        for (const StandardView& standard : kStandardViews) {
+            ConfigModel::View view = view_of(find_operator(standard.id), standard.look);
+            view.is_sdr_only = standard.is_sdr_only && options.views.empty();
+            add(std::move(view));
+        }
+    };
+    if (options.views.empty()) add_standard();
+    for (const std::string& wanted : options.views) {
+        const std::vector<ConfigModel::View> all = every_view();
+        if (wanted == "standard") {
+            add_standard();
+            continue;
+        }
+        if (wanted == "all") {
+            add_standard();
+            for (const auto& view : all)
+                add(view);
+            continue;
+        }
+        const auto named = std::find_if(all.begin(), all.end(), [&](const ConfigModel::View& v) {
+            return lower(v.name) == lower(wanted);
+        });
+        if (named != all.end()) {
+            add(*named);
+            continue;
+        }
+        try {
+            const ResolvedOperator op = parse_operator(wanted);
+            std::string name = op.op->view;
+            for (const Preset& preset : op.op->presets) {
+                if (op.name == op.op->id + ":" + preset.id) name += " " + preset.title;
+            }
+            add({name, op, description_of(*op.op)});
+        } catch (const Error& e) {
+            std::vector<std::string> names = {"standard", "all"};
+            for (const auto& view : all)
+                names.push_back(view.name);
+            throw Error("config: view is " + wanted +
+                        "; expected the name of a view or an operator (" + e.what() + ")" +
+                        did_you_mean(wanted, names));
+        }
+    }
+    for (const auto& custom : options.custom) {
+        const ResolvedOperator op = parse_operator(custom.op);
+        if (custom.name.empty())
+            throw Error("config: the view of " + custom.op + " has no name; expected one");
+        views.push_back({custom.name, op, description_of(*op.op) + " As " + op.label + "."});
+    }
+    const std::size_t count = views.size();
+    for (const double stops : options.exposure_stops) {
+        for (std::size_t i = 0; i < count; ++i) {
+            ConfigModel::View view = views[i];
+            view.name += fmt::format(" {:+g} {}", stops, std::abs(stops) == 1 ? "stop" : "stops");
+            view.exposure_stops = stops;
+            views.push_back(view);
+        }
+    }
+    return views;
+}
+
+std::vector<ConfigModel::Look> choose_looks(const ConfigOptions& options,
+                                            const std::vector<ConfigModel::View>& views) {
+    std::vector<ConfigModel::Look> all;
+    for (const Operator& op : all_operators()) {
+        const bool is_shown = std::any_of(views.begin(), views.end(),
+                                          [&](const auto& view) { return view.op.op == &op; });
+        if (!is_shown) continue;
+        for (const Look& look : op.looks) {
+            const Pipeline stages = scene_look(op, look);
+            if (!stages.empty()) all.push_back({look_name(op, look), stages, &op, look.help});
+        }
+    }
+    if (options.looks.empty()) return all;
+    std::vector<ConfigModel::Look> chosen;
+    for (const std::string& wanted : options.looks) {
+        if (wanted == "none") continue;
+        const auto found = std::find_if(all.begin(), all.end(), [&](const auto& look) {
+            return lower(look.name) == lower(wanted);
+        });
+        if (found == all.end()) {
+            std::vector<std::string> names = {"none"};
+            for (const auto& look : all)
+                names.push_back(look.name);
+            throw Error("config: look is " + wanted + "; expected " + join_choices(names) +
+                        did_you_mean(wanted, names));
+        }
+        chosen.push_back(*found);
+    }
+    return chosen;
+}
+
 }  // namespace
 
-ConfigModel make_config_model() {
+ResolvedOperator parse_operator(std::string_view text) {
+    std::string name;
+    Settings settings;
+    std::string look;
+    std::size_t begin = 0;
+    while (begin <= text.size()) {
+        const std::size_t end = std::min(text.find(':', begin), text.size());
+        const std::string part(text.substr(begin, end - begin));
+        const std::size_t equals = part.find('=');
+        if (equals == std::string::npos) {
+            name += (name.empty() ? "" : ":") + part;
+        } else if (part.substr(0, equals) == "look") {
+            look = part.substr(equals + 1);
+        } else {
+            settings[part.substr(0, equals)] = part.substr(equals + 1);
+        }
+        begin = end + 1;
+    }
+    return resolve_operator(name, settings, look);
+}
+
+std::string config_view_name(const std::string& name, const ResolvedOperator& op,
+                             const Display& display) {
+    const double peak = std::min(op.peak() * kReferenceWhite, display.peak);
+    if (!display.is_hdr || peak <= kReferenceWhite) return name;
+    return name + fmt::format(" - HDR {:g} nits", peak);
+}
+
+ConfigModel make_config_model(const ConfigOptions& options) {
     ConfigModel model;
     model.name = "tonewright";
     model.description =
@@ -125,33 +482,35 @@ ConfigModel make_config_model() {
             {SpaceKind::scene_linear,
              space.title,
              aliases,
-             is_aces ? "ACES" : "Utility",
+             is_aces ? "ACES" : "Utility/Linear",
              "Scene-linear, " + std::string(space.primaries.name) + " primaries.",
              "scene-linear",
              {"file-io", "working-space"},
              &space.primaries,
              nullptr});
     }
-    model.spaces.push_back({SpaceKind::acescct,
-                            "ACEScct",
-                            {"acescct_ap1", "ACES - ACEScct"},
-                            "ACES",
-                            "Academy S-2016-001: AP1, log with a linear toe; for grading.",
-                            "log",
-                            {"file-io", "working-space"},
-                            nullptr,
-                            nullptr});
-    const Display& srgb = find_display("srgb");
-    model.spaces.push_back(
-        {SpaceKind::texture,
-         "sRGB - Texture",
-         {"srgb_tx", "srgb_rec709_scene", "Utility - sRGB - Texture"},
-         "Utility",
-         "Pictures and textures in sRGB code values (IEC 61966-2-1), read as scene light.",
-         "sdr-video",
-         {"file-io", "texture"},
-         &srgb.primaries,
-         &srgb});
+    for (const BuiltinSpace& space : builtin_spaces()) {
+        const bool is_working = std::string_view(space.family) == "ACES";
+        model.spaces.push_back({SpaceKind::builtin, space.name, space.aliases, space.family,
+                                space.description, "log",
+                                is_working ? std::vector<std::string>{"file-io", "working-space"}
+                                           : std::vector<std::string>{"file-io"},
+                                nullptr, nullptr, space.style});
+    }
+    for (const TextureSpace& space : texture_spaces()) {
+        const Display& display = find_display(space.display);
+        model.spaces.push_back({SpaceKind::texture,
+                                space.name,
+                                space.aliases,
+                                "Utility/Texture",
+                                "Pictures and textures of " + std::string(space.primaries->name) +
+                                    " primaries in the code values of " + display.source +
+                                    ", read as scene light.",
+                                "sdr-video",
+                                {"file-io", "texture"},
+                                space.primaries,
+                                &display});
+    }
     model.spaces.push_back({SpaceKind::data,
                             kDataSpace,
                             {"Utility - Raw", "Generic Data", "Non-Colour Data", "Raw"},
@@ -170,12 +529,13 @@ ConfigModel make_config_model() {
                             {"file-io"},
                             nullptr,
                             nullptr});
+    // All of them, whichever displays are chosen: pictures come in their code values.
     for (const Display& display : all_displays()) {
-        std::vector<std::string> aliases = {display.title};
+        std::vector<std::string> aliases = {display.title + kDisplaySuffix};
         aliases.insert(aliases.end(), display.aliases.begin(), display.aliases.end());
         model.spaces.push_back(
             {SpaceKind::display,
-             display.title + kDisplaySuffix,
+             display.title,
              aliases,
              "Display",
              display.source + (display.is_hdr ? "."
@@ -185,28 +545,19 @@ ConfigModel make_config_model() {
              {"file-io"},
              &display.primaries,
              &display});
-        model.displays.push_back(&display);
+        if (options.displays.empty()) model.displays.push_back(&display);
     }
-
-    // The first view is what applications start with: the one that holds up on any picture. The
-    // rest by name.
-    std::vector<const Operator*> order;
-    for (const Operator& op : all_operators())
-        order.push_back(&op);
-    std::stable_partition(order.begin(), order.end(),
-                          [](const Operator* op) { return op->id == kDefaultOperator; });
-    for (const Operator* view_operator : order) {
-        const Operator& op = *view_operator;
-        model.views.push_back({op.view, resolve_operator(op.id),
-                               op.title + ": " + op.character + ". Source: " + op.source + "."});
+    for (const std::string& name : options.displays) {
+        const Display* display = &find_display(name);
+        if (std::find(model.displays.begin(), model.displays.end(), display) ==
+            model.displays.end())
+            model.displays.push_back(display);
     }
-
-    model.roles = role_table();
-    model.default_space = find_input_space("lin_rec709").title;
-    for (const char* extension :
-         {"png", "jpg", "jpeg", "tif", "tiff", "tga", "bmp", "gif", "webp"}) {
-        model.file_rules.emplace_back(extension, "sRGB - Texture");
-    }
+    model.views = choose_views(options);
+    model.looks = choose_looks(options, model.views);
+    model.default_space = find_input_space(options.working).title;
+    model.roles = role_table(model.default_space);
+    model.file_rules = make_file_rules(model.default_space);
     check_names(model);
     return model;
 }

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "tonewright/ocio.h"
 #include "tonewright/view.h"
 
 namespace tonewright {
@@ -14,7 +15,9 @@ namespace tonewright {
 struct ConfigModel {
     enum class SpaceKind : unsigned char {
         scene_linear,
-        acescct,
+        /// What OCIO has a BuiltinTransform to ACES2065-1 for: logs of cameras and of ACES.
+        builtin,
+        /// Pictures and textures in a display's code values, read as scene light.
         texture,
         data,
         display_reference,
@@ -28,13 +31,35 @@ struct ConfigModel {
         std::string description;
         std::string encoding;  // OCIO's word
         std::vector<std::string> categories;
-        const Primaries* primaries = nullptr;  // linear spaces and displays
+        const Primaries* primaries = nullptr;  // linear spaces, textures and displays
         const Display* display = nullptr;  // displays, and the display whose curve a texture has
+        std::string style = {};            // of a builtin
     };
     struct View {
         std::string name;
         ResolvedOperator op;
         std::string description;  // without the measured error
+        double exposure_stops = 0;
+        bool is_sdr_only = false;
+
+        [[nodiscard]] bool is_on(const Display& display) const {
+            return !(is_sdr_only && display.is_hdr);
+        }
+    };
+    /// What is done to a scene before a view of the operator, and is the same as the operator with
+    /// that look: then hosts that know looks can combine it with the view.
+    struct Look {
+        std::string name;  // "AgX - Punchy": Blender shows it for the view AgX
+        Pipeline stages;   // in the operator's working space
+        const Operator* op = nullptr;
+        std::string description;
+    };
+    /// Names of pictures -> space; the first that fits counts.
+    struct FileRule {
+        std::string name;
+        std::string space;
+        std::string extension;  // or
+        std::string regex;
     };
 
     std::string name;
@@ -42,23 +67,22 @@ struct ConfigModel {
     std::vector<Space> spaces;
     std::vector<const Display*> displays;
     std::vector<View> views;
+    std::vector<Look> looks;
     /// Role -> space.
     std::vector<std::pair<std::string, std::string>> roles;
-    /// File extension -> space, first match first; everything else is `default_space`.
-    std::vector<std::pair<std::string, std::string>> file_rules;
+    std::vector<FileRule> file_rules;
     std::string default_space;
 };
 
-/// @throws Error  for names that hosts cannot take: over 63 bytes, twice the same, an alias that is
-/// a
-///                role.
-[[nodiscard]] ConfigModel make_config_model();
+/// @throws Error  for unknown views, looks and displays, and for names that hosts cannot take: over
+///                63 bytes, twice the same, an alias that is a role.
+[[nodiscard]] ConfigModel make_config_model(const ConfigOptions& options = {});
 
 inline constexpr const char* kDataSpace = "Non-Color";
 inline constexpr const char* kUntonemappedView = "Un-tone-mapped";
 inline constexpr const char* kRawView = "Raw";
-/// Display colour spaces have the display's name with this behind it, and the display's name as
-/// alias.
+/// Display colour spaces have the display's name, as Blender looks for them, and with this behind
+/// it, as the ACES configs have them, for an alias.
 inline constexpr const char* kDisplaySuffix = " - Display";
 
 }  // namespace tonewright

@@ -858,7 +858,13 @@ std::vector<Operator> define_aces_20() {
             [](const DisplayFacts& display) {
                 return shortest(std::clamp(display.peak, kLowestPeak, kHighestPeak));
             }),
-        limit_parameter({"rec709", "p3d65", "rec2020"}, "rec709"),
+        // For SDR displays the standard has forms of Rec.709 and P3 only.
+        display_parameter(limit_parameter({"rec709", "p3d65", "rec2020"}, "rec709"),
+                          [](const DisplayFacts& display) -> std::string {
+                              if (display.primaries == kRec709) return "rec709";
+                              const bool is_p3 = display.primaries == kP3D65 || !display.is_hdr;
+                              return is_p3 ? "p3d65" : "rec2020";
+                          }),
         text_parameter("primaries",
                        "x and y of red, green, blue and white of any other display, eight numbers; "
                        "empty: those of limit"),

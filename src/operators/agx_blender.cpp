@@ -474,10 +474,13 @@ Pipeline look_stages(const std::string& look) {
         return {MatrixStage{{kRailWeights2025, kRailWeights2025, kRailWeights2025}}};
     for (const Contrast& contrast : kContrasts) {
         if (look != contrast.id) continue;
+        // pivot + slope (v - pivot): what is added does not change saturation, and is a factor of
+        // light. So all of these looks have the same curves.
         constexpr double pivot = 0.4;
-        return {curve_stage((v - pivot) * contrast.slope + pivot),
-                MatrixStage{saturation_matrix(contrast.saturation, kRec709Weights)},
-                curve_stage(log_decode(Expr::input()))};
+        const double gain = std::exp2((kHighest - kLowest) * pivot * (1 - contrast.slope));
+        const Matrix3 saturate = saturation_matrix(contrast.saturation, kRec709Weights);
+        return {curve_stage(v), MatrixStage{scale(saturate, contrast.slope)},
+                curve_stage(log_decode(Expr::input())), MatrixStage{scale(kIdentity3, gain)}};
     }
     return {};
 }

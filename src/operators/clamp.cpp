@@ -17,7 +17,7 @@ std::vector<Operator> define_clamp() {
     Operator op;
     op.id = "clamp";
     op.title = "Clamp";
-    op.view = "Clamp";
+    op.view = "Standard";
     op.character = "hard clip at 1: exact below, flat and hue-shifting above";
     op.source = "common practice";
     op.licence = "public domain";

@@ -99,8 +99,8 @@ const std::vector<InputSpace>& all_input_spaces() {
     // space.
     static const std::vector<InputSpace> spaces = {
         {"lin_rec709",
-         "Linear Rec.709 (sRGB)",
-         {"Linear Rec.709", "Linear", "lin_rec709_srgb", "lin_srgb", "lin_rec709_scene",
+         "Linear Rec.709",
+         {"Linear Rec.709 (sRGB)", "Linear", "lin_rec709_srgb", "lin_srgb", "lin_rec709_scene",
           "Utility - Linear - sRGB"},
          kRec709},
         {"lin_ap1", "ACEScg", {"lin_ap1_scene", "ACES - ACEScg"}, kAP1},
@@ -116,7 +116,7 @@ const std::vector<InputSpace>& all_input_spaces() {
          "Linear P3-D65",
          {"lin_p3d65_scene", "lin_displayp3", "Utility - Linear - P3-D65"},
          kP3D65},
-        {"lin_egamut", "Linear FilmLight E-Gamut", {"Linear E-Gamut"}, kEGamut},
+        {"lin_egamut", "Linear FilmLight E-Gamut", {"Linear E-Gamut", "lin_egamut_scene"}, kEGamut},
     };
     return spaces;
 }

@@ -25,12 +25,12 @@ namespace fs = std::filesystem;
 /// A config in a folder of its own, gone with the object.
 class TemporaryConfig {
   public:
-    TemporaryConfig() {
+    explicit TemporaryConfig(const std::vector<std::string>& views) {
         std::string pattern = (fs::temp_directory_path() / "tonewright-XXXXXX").string();
         if (!::mkdtemp(pattern.data()))
             throw FileError("write: " + pattern + ": cannot make a folder");
         folder_ = pattern;
-        write_generated_files(folder_, make_config(), "config.ocio");
+        write_generated_files(folder_, make_config({.views = views}), "config.ocio");
     }
     ~TemporaryConfig() {
         std::error_code ignored;
@@ -272,7 +272,25 @@ OCIO::ConstProcessorRcPtr builtin_processor(const View& view) {
     return make_processor(whole);
 }
 
-bool is_in_config(const ResolvedOperator& op) { return op.label == op.op->id; }
+/// What a config calls the operator as it is, or with a look; empty where it has other settings.
+std::string view_name(const ResolvedOperator& op) {
+    if (op.label == op.op->id) return op.op->view;
+    for (const Look& look : op.op->looks) {
+        if (op.label == op.op->id + " look=" + look.id) return op.op->view + " " + look.title;
+    }
+    return "";
+}
+
+/// The config's view of it on its display; empty where there is none.
+std::string view_in_config(const OCIO::ConstConfigRcPtr& config, const View& view) {
+    const std::string name = view_name(view.op);
+    if (name.empty()) return "";
+    const Display& display = find_display(view.display);
+    const std::string shown = config_view_name(name, view.op, display);
+    const char* transform =
+        config->getDisplayViewTransformName(display.title.c_str(), shown.c_str());
+    return transform && *transform ? shown : "";
+}
 
 }  // namespace
 
@@ -310,7 +328,14 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
                    static_cast<double>(options.picture[i + 2]), ProbeKind::picture);
     }
     std::optional<TemporaryConfig> fresh;
-    if (options.config_folder.empty()) fresh.emplace();
+    if (options.config_folder.empty()) {
+        std::vector<std::string> wanted;
+        for (const View& view : views) {
+            if (const std::string name = view_name(view.op); !name.empty()) wanted.push_back(name);
+        }
+        if (wanted.empty()) wanted.push_back(views.front().op.op->id);
+        fresh.emplace(wanted);
+    }
     const OCIO::ConstConfigRcPtr config =
         read_config(fresh ? fresh->folder() : options.config_folder);
 
@@ -354,10 +379,10 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
         OCIO::ConstProcessorRcPtr processor;
         std::string lowering = lowered.summary;
         try {
-            if (is_in_config(view.op)) {
-                processor = config->getProcessor(
-                    config_space_name(view.input).c_str(), find_display(view.display).title.c_str(),
-                    view.op.op->view.c_str(), OCIO::TRANSFORM_DIR_FORWARD);
+            if (const std::string name = view_in_config(config, view); !name.empty()) {
+                processor = config->getProcessor(config_space_name(view.input).c_str(),
+                                                 find_display(view.display).title.c_str(),
+                                                 name.c_str(), OCIO::TRANSFORM_DIR_FORWARD);
                 lowering = "config: " + lowering;
             } else {
                 processor = make_processor(lowered);

@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent / "clients"))
-from pictures import Report, run, skip, views  # noqa: E402
+from pictures import Report, run, skip  # noqa: E402
 
 try:
     import PyOpenColorIO as ocio
@@ -31,17 +31,31 @@ ROLES = ["aces_interchange", "cie_xyz_d65_interchange", "default", "reference", 
          "default_float", "default_sequencer"]
 # Names that scripts and files use, and the space that each must find: what OpenImageIO calls every EXR and every HDR,
 # the names of Blender 3 and of the ACES configs, the ids of the colour interop forum.
-ALIASES = {"Linear": "Linear Rec.709 (sRGB)", "linear": "Linear Rec.709 (sRGB)", "lin_srgb": "Linear Rec.709 (sRGB)",
-           "Linear Rec.709": "Linear Rec.709 (sRGB)", "lin_rec709_scene": "Linear Rec.709 (sRGB)",
-           "Utility - Linear - sRGB": "Linear Rec.709 (sRGB)", "lin_ap1": "ACEScg", "ACES - ACEScg": "ACEScg",
+ALIASES = {"Linear": "Linear Rec.709", "linear": "Linear Rec.709", "lin_srgb": "Linear Rec.709",
+           "Linear Rec.709 (sRGB)": "Linear Rec.709", "lin_rec709_scene": "Linear Rec.709",
+           "Utility - Linear - sRGB": "Linear Rec.709", "lin_ap1": "ACEScg", "ACES - ACEScg": "ACEScg",
            "lin_ap0": "ACES2065-1", "lin_rec2020": "Linear Rec.2020", "lin_p3d65": "Linear P3-D65",
-           "srgb_tx": "sRGB - Texture", "Raw": "Non-Color", "Utility - Raw": "Non-Color", "sRGB": "sRGB - Display",
-           "Rec.1886": "Rec.1886 - Display"}
+           "srgb_tx": "sRGB - Texture", "Raw": "Non-Color", "Utility - Raw": "Non-Color", "sRGB - Display": "sRGB",
+           "Rec.1886 - Display": "Rec.1886", "g22_ap1_tx": "Gamma 2.2 AP1 - Texture",
+           "arri_logc3_ei800": "ARRI LogC3 (EI800)", "acescct_ap1": "ACEScct", "displayp3_display": "Display P3",
+           "rec2100_pq_display": "Rec.2100-PQ", "out_agx_srgb": "Output - AgX - sRGB"}
 # space of the config -> primaries in python_check/operators.py
-LINEAR = {"Linear Rec.709 (sRGB)": "rec709", "ACEScg": "ap1", "ACES2065-1": "ap0", "Linear Rec.2020": "rec2020",
+LINEAR = {"Linear Rec.709": "rec709", "ACEScg": "ap1", "ACES2065-1": "ap0", "Linear Rec.2020": "rec2020",
           "Linear P3-D65": "p3d65", "Linear FilmLight E-Gamut": "egamut"}
 # FilmLight E-Gamut, 2018: the one space that no operator there needs.
 EGAMUT = ((0.8, 0.3177), (0.18, 0.9), (0.065, -0.0805), (0.3127, 0.3290))
+# What artists look for, in the order that menus have; the first is what applications start with.
+VIEWS = ["AgX", "AgX Punchy", "ACES 2.0", "ACES 1.3", "Khronos PBR Neutral", "Reinhard Extended", "Hable", "Gran Turismo",
+         "ACES Narkowicz", "AgX Sobotka", "Standard", "False Color", "Un-tone-mapped", "Raw"]
+DISPLAYS = ["sRGB", "Display P3", "Rec.1886", "Rec.2020", "Gamma 2.2", "Rec.2100-PQ", "Rec.2100-HLG", "P3-D65 PQ"]
+# Names of pictures, and the space that they are read in.
+FILES = {"shot.exr": "Linear Rec.709", "light.hdr": "Linear Rec.709", "logo.png": "sRGB - Texture",
+         "photo.jpg": "sRGB - Texture", "scan.tif": "sRGB - Texture", "/plates/shot_acescg.0001.exr": "ACEScg",
+         "/plates/shot_lin_ap0_v2.exr": "ACES2065-1", "a.LogC3.dpx": "ARRI LogC3 (EI800)",
+         "wood_raw.png": "Non-Color", "/raw/wood.png": "sRGB - Texture", "/acescg/data/sky.exr": "Linear Rec.709",
+         "rawhide.png": "sRGB - Texture", "shot_srgb.exr": "sRGB - Texture"}
+# 60 MB for a config that people clone.
+LARGEST = 60e6
 NAME_BYTES = 63  # Blender's limit
 # Float32: one product of matrices with entries up to 2.
 MATRIX = 1e-6
@@ -83,28 +97,88 @@ def check_names(report, config):
     report.check("spaces have description, encoding and family", not no_text, no_text)
 
 
-def check_views(report, config, expected):
-    """Every operator on every display, shown through a view transform, and every processor can be built."""
+def check_views(report, config):
+    """Views and displays in their order, shown through view transforms, and every processor can be built."""
     displays = list(config.getDisplays())
-    report.check("the first display is sRGB", displays[0] == "sRGB" == config.getDefaultDisplay(), displays)
-    missing, direct, broken, count = [], [], [], 0
+    report.check("displays", displays == DISPLAYS and config.getDefaultDisplay() == "sRGB", displays)
+    shown_views = list(config.getViews("sRGB"))
+    report.check("views", shown_views == VIEWS, shown_views)
+    missing, direct, broken, differ, count = [], [], [], [], 0
+    grey = [0.18, 0.18, 0.18]
+    names = {s.getName() for s in config.getColorSpaces()}
     for display in displays:
-        names = list(config.getViews(display))
-        missing += [f"{display}: {view}" for view in expected if view not in names]
-        for view in names:
+        plain = {view.split(" - HDR ")[0] for view in config.getViews(display)}
+        # The HDR forms of ACES 2.0 are large: `tonewright config --views`.
+        missing += [f"{display}: {v}" for v in VIEWS if v not in plain and not (v == "ACES 2.0" and "2100" in display)]
+        for view in config.getViews(display):
             count += 1
             if not config.getDisplayViewTransformName(display, view) and view != "Raw":
                 direct.append(f"{display}: {view}")
             try:
-                processor = config.getProcessor("Linear Rec.709 (sRGB)", display, view, ocio.TRANSFORM_DIR_FORWARD)
-                shown = processor.getDefaultCPUProcessor().applyRGB([0.18, 0.18, 0.18])
+                processor = config.getProcessor("Linear Rec.709", display, view, ocio.TRANSFORM_DIR_FORWARD)
+                shown = processor.getDefaultCPUProcessor().applyRGB(grey)
                 if not all(0 <= v <= 1 for v in shown):
                     broken.append(f"{display}: {view}: grey is {shown}")
+                space = f"Output - {view} - {display}"
+                if view in ("Raw", "Un-tone-mapped"):
+                    continue
+                if space not in names:
+                    missing.append(space)
+                    continue
+                same = config.getProcessor("Linear Rec.709", space).getDefaultCPUProcessor().applyRGB(grey)
+                if same != shown:
+                    differ.append(f"{space}: grey is {same}, of the view {shown}")
             except ocio.Exception as error:
                 broken.append(f"{display}: {view}: {error}")
-    report.check("every operator is a view of every display", not missing, missing[:3])
+    report.check("every view is on every display, and is a space", missing in ([], ["P3-D65 PQ: ACES 2.0"]), missing[:3])
     report.check("every view but Raw has a view transform", not direct, direct[:3])
     report.check(f"{count} processors, all display-referred grey", not broken, broken[:3])
+    report.check("output spaces show what views show", not differ, differ[:3])
+
+
+def check_looks(report, config):
+    """A look of its own before the view, for hosts that know looks, and the view that has it built in."""
+    looks = list(config.getLookNames())
+    report.check("looks", len(looks) == 9 and "AgX - Punchy" in looks and
+                 all(n.split(" - ")[0] in VIEWS for n in looks), looks)
+    rng = np.random.default_rng(3)
+    light = np.exp2(rng.uniform(-10, 5, (4096, 3))).astype(np.float32)
+    look = ocio.LookTransform(src="Linear Rec.709", dst="Linear Rec.709", looks="AgX - Punchy")
+    for display in ("sRGB", "Rec.2020"):
+        shown = []
+        for transforms in ([look, ocio.DisplayViewTransform("Linear Rec.709", display, "AgX")],
+                           [ocio.DisplayViewTransform("Linear Rec.709", display, "AgX Punchy")]):
+            image = light.copy()
+            for transform in transforms:
+                config.getProcessor(transform).getOptimizedCPUProcessor(ocio.OPTIMIZATION_LOSSLESS).applyRGB(image)
+            shown.append(image)
+        # Two matrices and float32 more, before the logarithm of a cube's axes.
+        report.compare(f"the look Punchy is the view AgX Punchy on {display}", *shown, 2e-5)
+
+
+def check_rules(report, config):
+    wrong = [(name, config.getColorSpaceFromFilepath(name)) for name in FILES]
+    wrong = [f"{name}: {space}, expected {FILES[name]}" for name, (space, _) in wrong if space != FILES[name]]
+    report.check(f"{len(FILES)} names of pictures", not wrong, wrong)
+
+
+def check_round_trips(report, config, folder):
+    """What the README says of the way back, for colours of its kind, without loss."""
+    stated = {}
+    for line in (folder / "README.md").read_text().splitlines():
+        cells = [c.strip() for c in line.split("|")]
+        if len(cells) > 8 and cells[1] in VIEWS:
+            stated[cells[1]] = None if cells[7] == "none" else float(cells[7])
+    rng = np.random.default_rng(21)
+    light = np.exp2(rng.uniform(-12, 12, (4000, 3))).astype(np.float32)
+    for view, bound in stated.items():
+        space = f"Output - {view} - sRGB"
+        if bound is None:
+            continue
+        there = apply(config, "Linear Rec.709", space, light)
+        again = apply(config, "Linear Rec.709", space, apply(config, space, "Linear Rec.709", there))
+        # Other colours than those that the README's figure is of, and float32 each way.
+        report.bound(f"{space}: and back, 99.9 %", np.quantile(np.abs(again - there).max(1), 0.999), 3 * bound + 1e-6)
 
 
 def check_files(report, folder):
@@ -112,12 +186,14 @@ def check_files(report, folder):
     odd = [n for n in names if not re.fullmatch(r"[a-z0-9_]+_[0-9a-f]{8}\.(clf|ctf)", n)]
     report.check(f"{len(names)} LUT files have plain ASCII names that end in a hash", names and not odd, odd)
     text = (folder / "config.ocio").read_text()
-    used = set(re.findall(r"src: ([^,}]+)", text))
+    used = set(re.findall(r"src: (\w+\.c[lt]f)", text))
     report.check("the config names these files and no others", used == set(names), used ^ set(names))
     report.check("every interpolation is linear or tetrahedral",
                  set(re.findall(r"interpolation: (\w+)", text)) <= {"linear", "tetrahedral"})
     cubes = {m for m in re.findall(r"src: (\w*_cube\w*\.clf), interpolation: (\w+)", text) if m[1] != "tetrahedral"}
     report.check("cubes are tetrahedral", not cubes, cubes)
+    size = sum(p.stat().st_size for p in folder.rglob("*") if p.is_file())
+    report.bound("bytes", size, LARGEST)
     listed = [line.split(",")[0] for line in (folder / "MANIFEST.csv").read_text().splitlines()[1:]]
     report.check("MANIFEST.csv lists them", sorted(listed) == sorted("luts/" + n for n in names))
 
@@ -153,7 +229,7 @@ def check_spaces(report, config, operators):
                        HDR_ROUND_TRIP if scale.max() > 2 else ROUND_TRIP)
     # Without an operator sRGB is what IEC 61966-2-1 says, not OCIO's own curve, which is 1e-5 off.
     light = operators.sanitise(rng.random((4096, 3)))
-    encoded = apply(config, "Linear Rec.709 (sRGB)", "sRGB - Texture", light)
+    encoded = apply(config, "Linear Rec.709", "sRGB - Texture", light)
     report.compare("sRGB - Texture of linear light", encoded, operators.srgb_encode(light.astype(np.float32)),
                    ROUND_TRIP)
 
@@ -179,7 +255,10 @@ def main():
         config = ocio.Config.CreateFromFile(str(path))
         report.check("profile 2.1", (config.getMajorVersion(), config.getMinorVersion()) == (2, 1))
         check_names(report, config)
-        check_views(report, config, [view for _, view in views(arguments.command.resolve())])
+        check_views(report, config)
+        check_looks(report, config)
+        check_rules(report, config)
+        check_round_trips(report, config, folder)
         check_files(report, folder)
         check_spaces(report, config, operators)
         report.check("check_config.py", check_config.main([str(path)]) == 0)

@@ -8,15 +8,52 @@
 
 namespace tonewright {
 
-/// The OpenColorIO config of the whole registry, profile 2.1: `config.ocio`, `luts/*.clf` named by
-/// their contents, `probe.csv` (expected code values for check_config.py), README.md, MANIFEST.csv.
-///
-/// Scene reference ACES2065-1, display reference CIE XYZ D65. Every operator is a view transform
-/// and a view of every display; descriptions carry the measured error.
-/// @throws Error  when a name would break a host (over 63 bytes, twice the same).
-[[nodiscard]] std::vector<GeneratedFile> make_config();
+/// What goes into a config.
+struct ConfigOptions {
+    /// Of the file: 2.0, or 2.1.
+    std::string profile = "2.1";
+    /// Names of views ("AgX", "AgX Punchy"), operators (`id`, `id:preset`) or `all`, in the order
+    /// of the config; the first is what applications start with. Empty: the standard ones, without
+    /// the HDR forms whose tables are largest.
+    std::vector<std::string> views = {};
+    /// Ids, titles or aliases. Empty: all.
+    std::vector<std::string> displays = {};
+    /// Names ("AgX - Punchy"). Empty: all of the views' operators; "none".
+    std::vector<std::string> looks = {};
+    /// Where applications compute: id of an input space.
+    std::string working = "lin_rec709";
+    /// Views of the user's own, behind the others.
+    struct CustomView {
+        std::string name;
+        /// `id[:preset][:parameter=value...]`
+        std::string op;
+    };
+    std::vector<CustomView> custom = {};
+    /// Every view once more, with this many stops more light: "AgX +1 stop".
+    std::vector<double> exposure_stops = {};
+};
 
-/// Name of the config's space for an input space id: "lin_rec709" -> "Linear Rec.709 (sRGB)".
+/// An OpenColorIO config: `config.ocio`, `luts/*.clf` named by their contents, `probe.csv`
+/// (expected code values for check_config.py), README.md, MANIFEST.csv.
+///
+/// Scene reference ACES2065-1, display reference CIE XYZ D65. Every view of an operator is a view
+/// transform and a view of every display, and a colour space for hosts that know no views
+/// ("Output - AgX - sRGB"); descriptions carry the measured error.
+/// @throws Error  for unknown views, looks and displays, and for names that would break a host
+/// (over
+///                63 bytes, twice the same).
+[[nodiscard]] std::vector<GeneratedFile> make_config(const ConfigOptions& options = {});
+
+/// `id[:preset][:parameter=value...]`. @throws Error as resolve_operator() does.
+[[nodiscard]] ResolvedOperator parse_operator(std::string_view text);
+
+/// What the config calls a view of an operator on a display: the operator's name, and where its
+/// picture is brighter than white, its peak: "AgX - HDR 1000 nits".
+/// @param name  the view's, on SDR displays
+[[nodiscard]] std::string config_view_name(const std::string& name, const ResolvedOperator& op,
+                                           const Display& display);
+
+/// Name of the config's space for an input space id: "lin_rec709" -> "Linear Rec.709".
 [[nodiscard]] std::string config_space_name(std::string_view input_id);
 
 }  // namespace tonewright

@@ -12,7 +12,7 @@ namespace tonewright {
 /// A scene-linear space that pictures come in.
 struct InputSpace {
     std::string id;     // lin_rec709
-    std::string title;  // as the OCIO config names it: "Linear Rec.709 (sRGB)"
+    std::string title;  // as the OCIO config names it: "Linear Rec.709"
     std::vector<std::string> aliases;
     Primaries primaries;
 };

@@ -855,7 +855,7 @@ std::string lower(std::string text) {
 }
 
 TEST(ConfigModel, NamesAreWhatHostsCanTake) {
-    const ConfigModel model = make_config_model();
+    const ConfigModel model = make_config_model({.views = {"all"}});
     std::set<std::string> taken;
     const auto claim = [&](const std::string& name) {
         EXPECT_LE(name.size(), 63U) << name << ": Blender cuts it";
@@ -878,10 +878,74 @@ TEST(ConfigModel, NamesAreWhatHostsCanTake) {
     }
 }
 
-TEST(ConfigModel, HasEveryOperatorDisplayAndSpace) {
+TEST(ConfigModel, StandardViewsBeginWithAgxAndEndWithRaw) {
     const ConfigModel model = make_config_model();
+    ASSERT_GE(model.views.size(), 12U);
+    // Blender's names.
+    EXPECT_EQ(model.views[0].name, "AgX");
+    EXPECT_EQ(model.views[1].name, "AgX Punchy");
+    for (const char* name :
+         {"ACES 1.3", "ACES 2.0", "Khronos PBR Neutral", "False Color", "Standard"}) {
+        EXPECT_TRUE(std::any_of(model.views.begin(), model.views.end(), [&](const auto& v) {
+            return v.name == name;
+        })) << name;
+    }
+    ASSERT_FALSE(model.looks.empty());
+    EXPECT_TRUE(std::any_of(model.looks.begin(), model.looks.end(),
+                            [](const auto& look) { return look.name == "AgX - Punchy"; }));
+}
+
+TEST(ConfigModel, ALookBeforeTheOperatorIsTheOperatorWithTheLook) {
+    const ConfigModel model = make_config_model();
+    for (const ConfigModel::Look& look : model.looks) {
+        SCOPED_TRACE(look.name);
+        const auto found = std::find_if(
+            look.op->looks.begin(), look.op->looks.end(),
+            [&](const Look& l) { return look.name == look.op->view + " - " + l.title; });
+        ASSERT_NE(found, look.op->looks.end());
+        Pipeline both = look.stages;
+        const Pipeline plain = resolve_operator(look.op->id).build();
+        both.insert(both.end(), plain.begin(), plain.end());
+        const ReferenceEngine apart(both);
+        const ReferenceEngine whole(resolve_operator(look.op->id, {}, found->id).build());
+        for (const Vector3& v : {Vector3{0.18, 0.18, 0.18}, Vector3{4, 0.1, -0.02},
+                                 Vector3{0.001, 0.5, 30}, Vector3{0, 0, 0}})
+            EXPECT_EQ(apart(v), whole(v));
+    }
+}
+
+TEST(ConfigModel, ViewsAreChosenByNameOperatorAndPreset) {
+    const ConfigModel model =
+        make_config_model({.views = {"hable", "agx punchy", "reinhard:luminance"},
+                           .displays = {"rec1886"},
+                           .looks = {"AgX - Greyscale"},
+                           .working = "lin_ap1",
+                           .custom = {{"Studio", "reinhard_extended:white=6"}},
+                           .exposure_stops = {-1}});
+    std::vector<std::string> names;
+    for (const auto& view : model.views)
+        names.push_back(view.name);
+    const std::string luminance = names.at(2);
+    EXPECT_TRUE(luminance.starts_with("Reinhard ")) << luminance;
+    EXPECT_EQ(names, (std::vector<std::string>{"Hable", "AgX Punchy", luminance, "Studio",
+                                               "Hable -1 stop", "AgX Punchy -1 stop",
+                                               luminance + " -1 stop", "Studio -1 stop"}));
+    EXPECT_EQ(model.views[3].op.params.number("white"), 6);
+    ASSERT_EQ(model.displays.size(), 1U);
+    EXPECT_EQ(model.displays[0]->id, "rec1886");
+    ASSERT_EQ(model.looks.size(), 1U);
+    EXPECT_EQ(model.default_space, "ACEScg");
+    EXPECT_THROW((void)make_config_model({.views = {"AgY"}}), Error);
+    EXPECT_THROW((void)make_config_model({.looks = {"AgX - Funky"}}), Error);
+    EXPECT_THROW((void)make_config_model({.displays = {"crt"}}), Error);
+    EXPECT_THROW((void)make_config_model({.custom = {{"Hable", "reinhard"}}}), Error)
+        << "a name twice";
+    EXPECT_THROW((void)make_config_model({.custom = {{"Raw", "reinhard"}}}), Error) << "ours";
+}
+
+TEST(ConfigModel, HasEveryOperatorDisplayAndSpace) {
+    const ConfigModel model = make_config_model({.views = {"all"}});
     EXPECT_EQ(model.displays.size(), all_displays().size());
-    ASSERT_EQ(model.views.size(), all_operators().size());
     for (const Operator& op : all_operators()) {
         EXPECT_EQ(std::count_if(model.views.begin(), model.views.end(),
                                 [&](const auto& v) { return v.op.op == &op && v.name == op.view; }),
@@ -897,11 +961,11 @@ TEST(ConfigModel, HasEveryOperatorDisplayAndSpace) {
         EXPECT_EQ(config_space_name(space.id), space.title);
     }
     for (const Display& display : all_displays())
-        EXPECT_TRUE(has_space(display.title + kDisplaySuffix)) << display.id;
+        EXPECT_TRUE(has_space(display.title)) << display.id;
     for (const auto& [role, space] : model.roles)
         EXPECT_TRUE(has_space(space)) << role << " is " << space;
-    for (const auto& [extension, space] : model.file_rules)
-        EXPECT_TRUE(has_space(space)) << extension << " is " << space;
+    for (const auto& rule : model.file_rules)
+        EXPECT_TRUE(has_space(rule.space)) << rule.name << " is " << rule.space;
     EXPECT_TRUE(has_space(model.default_space));
     // Roles that OCIO or applications do not start without.
     for (const char* role : {"scene_linear", "aces_interchange", "cie_xyz_d65_interchange", "data",

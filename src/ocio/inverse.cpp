@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ocio/inverse.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "tonewright/engine.h"
+
+namespace tonewright {
+namespace {
+
+// ---------------------------------------------------------------------------------------------
+// Channels apart
+
+/// What a run of stages makes of one channel.
+class ChannelCurve {
+  public:
+    ChannelCurve(const Pipeline& run, std::size_t channel) : engine_(run), channel_(channel) {}
+
+    double operator()(double x) const {
+        Vector3 v{};
+        v[channel_] = x;
+        return engine_(v)[channel_];
+    }
+
+  private:
+    ReferenceEngine engine_;
+    std::size_t channel_;
+};
+
+/// The scene of least size that f makes y of: f rises.
+double solve(const ChannelCurve& f, double y, double lo, double hi) {
+    // In the float's own steps: light spans many magnitudes.
+    const auto to_place = [](double x) { return std::copysign(std::log1p(std::fabs(x) * 1e6), x); };
+    const auto to_light = [](double p) {
+        return std::copysign(std::expm1(std::fabs(p)) * 1e-6, p);
+    };
+    double a = to_place(lo);
+    double b = to_place(hi);
+    for (int i = 0; i < 60; ++i) {
+        const double middle = (a + b) / 2;
+        (f(to_light(middle)) < y ? a : b) = middle;
+    }
+    return to_light(b);
+}
+
+/// Tables of the inverses of a run, at equal distances over what it puts out.
+/// @return false where a channel falls somewhere
+bool append_inverse(const Pipeline& run, OCIO::GroupTransformRcPtr& group) {
+    std::array<double, 3> first{};
+    std::array<double, 3> last{};
+    std::array<std::vector<double>, 3> inverse;
+    const bool is_uniform = is_per_channel(run);
+    for (std::size_t c = 0; c < 3; ++c) {
+        if (c > 0 && is_uniform) {
+            first[c] = first[0];
+            last[c] = last[0];
+            inverse[c] = inverse[0];
+            continue;
+        }
+        const ChannelCurve f(run, c);
+        // Where black is limited to 0, nothing below it is to be brought back.
+        const double lo = f(-kHalfMax) == f(0) ? 0 : -kHalfMax;
+        first[c] = f(lo);
+        last[c] = f(kHalfMax);
+        double previous = first[c];
+        for (int i = -120; i <= 16 * 8; ++i) {
+            const double y = f(std::exp2(i / 8.0));
+            if (y < previous - 1e-9) return false;
+            previous = y;
+        }
+        if (!(last[c] > first[c])) return false;
+        constexpr int kEntries = 16384;
+        for (int i = 0; i < kEntries; ++i) {
+            const double y = first[c] + (last[c] - first[c]) * i / (kEntries - 1);
+            inverse[c].push_back(solve(f, y, lo, kHalfMax));
+        }
+    }
+    const auto to_table = OCIO::MatrixTransform::Create();
+    std::array<double, 16> m{};
+    std::array<double, 4> offset{};
+    for (std::size_t c = 0; c < 3; ++c) {
+        m[5 * c] = 1 / (last[c] - first[c]);
+        offset[c] = -first[c] * m[5 * c];
+    }
+    m[15] = 1;
+    to_table->setMatrix(m.data());
+    to_table->setOffset(offset.data());
+    group->appendTransform(to_table);
+    const auto lut = OCIO::Lut1DTransform::Create(inverse[0].size(), false);
+    lut->setInterpolation(OCIO::INTERP_LINEAR);
+    lut->setFileOutputBitDepth(OCIO::BIT_DEPTH_F32);
+    for (unsigned long i = 0; i < inverse[0].size(); ++i) {
+        lut->setValue(i, static_cast<float>(inverse[0][i]), static_cast<float>(inverse[1][i]),
+                      static_cast<float>(inverse[2][i]));
+    }
+    group->appendTransform(lut);
+    return true;
+}
+
+bool treats_channels_apart(const Stage& stage) {
+    return std::holds_alternative<CurveStage>(stage) || std::holds_alternative<ClampStage>(stage);
+}
+
+void append(OCIO::GroupTransformRcPtr& group, const Lowered& lowered) {
+    for (int i = 0; i < lowered.transform->getNumTransforms(); ++i)
+        group->appendTransform(lowered.transform->getTransform(i));
+}
+
+/// Stage by stage, from the last on.
+OCIO::GroupTransformRcPtr invert_stages(const Pipeline& stages) {
+    OCIO::GroupTransformRcPtr group = OCIO::GroupTransform::Create();
+    std::size_t end = stages.size();
+    while (end > 0) {
+        if (const auto* m = std::get_if<MatrixStage>(&stages[end - 1])) {
+            append(group, lower_to_ocio({MatrixStage{inverse(m->m)}}));
+            --end;
+            continue;
+        }
+        std::size_t begin = end;
+        bool has_curve = false;
+        while (begin > 0 && treats_channels_apart(stages[begin - 1])) {
+            --begin;
+            has_curve = has_curve || std::holds_alternative<CurveStage>(stages[begin]);
+        }
+        if (begin == end) return nullptr;
+        const Pipeline run(stages.begin() + static_cast<std::ptrdiff_t>(begin),
+                           stages.begin() + static_cast<std::ptrdiff_t>(end));
+        if (!has_curve) {
+            append(group, lower_to_ocio(run));
+        } else if (!append_inverse(run, group)) {
+            return nullptr;
+        }
+        end = begin;
+    }
+    return group;
+}
+
+/// OpenColorIO's own, where it has one that the operator equals; null where it has none.
+OCIO::GroupTransformRcPtr invert_builtin(const ResolvedOperator& op, const DisplayLimit& limit) {
+    const std::string style = op.ocio_builtin();
+    const auto registry = OCIO::BuiltinTransformRegistry::Get();
+    for (std::size_t i = 0; i < registry->getNumBuiltins(); ++i) {
+        if (style.empty() || style != registry->getBuiltinStyle(i)) continue;
+        const auto builtin = OCIO::BuiltinTransform::Create();
+        builtin->setStyle(style.c_str());
+        builtin->setDirection(OCIO::TRANSFORM_DIR_INVERSE);
+        OCIO::GroupTransformRcPtr group = OCIO::GroupTransform::Create();
+        append(group, lower_to_ocio({MatrixStage{rgb_to_xyz_d65(limit.primaries)}}));
+        group->appendTransform(builtin);
+        append(group, lower_to_ocio({MatrixStage{rgb_to_rgb(kAP0, op.op->working)}}));
+        return group;
+    }
+    return nullptr;
+}
+
+}  // namespace
+
+OCIO::GroupTransformRcPtr invert_light(const ResolvedOperator& op, const DisplayLimit& limit) {
+    if (const auto group = invert_builtin(op, limit)) return group;
+    Pipeline forward = op.build();
+    const Pipeline light = display_light_stages(op, limit);
+    forward.insert(forward.end(), light.begin(), light.end());
+    return invert_stages(simplify(forward));
+}
+
+}  // namespace tonewright

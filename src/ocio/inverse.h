@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "ocio/lower.h"
+#include "tonewright/view.h"
+
+namespace tonewright {
+
+/// The way back from a display's light, of the limit's primaries and [0, peak], to scene-linear in
+/// the operator's working space: OpenColorIO's built-in transform, where the operator equals one;
+/// or matrices inverted, and every run of curves and clamps that treats channels apart as one table
+/// of its inverse, whose entries are at equal distances of light (a half-domain table, inverted,
+/// has few of them next to white).
+/// @return null where stages mix channels in another way.
+[[nodiscard]] OCIO::GroupTransformRcPtr invert_light(const ResolvedOperator& op,
+                                                     const DisplayLimit& limit);
+
+}  // namespace tonewright

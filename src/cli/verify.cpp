@@ -3,10 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "cli/command.h"
 #include "tonewright/image.h"
+#include "tonewright/lint.h"
 
 namespace tonewright {
 namespace {
@@ -33,6 +36,21 @@ std::vector<float> picture_pixels(const std::string& path) {
     return rgb;
 }
 
+const char* level_name(LintFinding::Level level) {
+    if (level == LintFinding::Level::error) return "error";
+    return level == LintFinding::Level::warning ? "warning" : "note";
+}
+
+void print_lint(const std::vector<LintFinding>& findings) {
+    std::map<LintFinding::Level, std::size_t> count;
+    for (const LintFinding& f : findings) {
+        ++count[f.level];
+        fmt::print("{}: {}: {}\n", level_name(f.level), f.where, f.what);
+    }
+    fmt::print("{} errors, {} warnings, {} notes\n\n", count[LintFinding::Level::error],
+               count[LintFinding::Level::warning], count[LintFinding::Level::note]);
+}
+
 }  // namespace
 
 void add_verify(CLI::App& program, int& exit_code) {
@@ -47,16 +65,19 @@ void add_verify(CLI::App& program, int& exit_code) {
     CLI::App* command = program.add_subcommand(
         "verify", "the parity table: every form against the double reference");
     command->add_option("operators", options->verify.operators,
-                        "default: all, with their presets and looks");
-    command->add_option("--display", options->verify.displays, "displays; repeat for more")
-        ->capture_default_str()
+                        "or all, with their presets and looks, the default; of a config its "
+                        "views are the default");
+    command
+        ->add_option("--display", options->verify.displays,
+                     "displays; repeat for more; default: srgb, of a config all")
         ->allow_extra_args(false);
     command->add_option("--input", options->verify.input, "scene-linear space of the probes")
         ->capture_default_str();
-    command->add_option("--config", options->verify.config_folder,
-                        "folder of a config to check; default: a fresh one");
+    command->add_option("--config", options->verify.config,
+                        "a config to check, or its folder: any, ours or not; default: a fresh one");
     command->add_option("--picture", options->picture, "picture whose pixels join the probes");
-    command->add_flag("--quick", options->quick, "gamut lattices of 9 instead of 33 points a side");
+    command->add_flag("--quick", options->quick,
+                      "gamut lattices of 9 instead of 33 points a side (of a config 17)");
     command->add_flag("--no-gpu", options->no_gpu, "leave OCIO's GPU path out");
     command->add_flag("--json", options->json, "for programs");
     command->footer(
@@ -70,6 +91,21 @@ void add_verify(CLI::App& program, int& exit_code) {
         VerifyOptions& verify_options = options->verify;
         verify_options.with_gpu = !options->no_gpu;
         if (options->quick) verify_options.lattice_edge = 9;
+        nlohmann::ordered_json lint = nlohmann::ordered_json::array();
+        const bool is_of_config =
+            !verify_options.config.empty() && verify_options.operators.empty();
+        if (is_of_config) {
+            const std::filesystem::path given(verify_options.config);
+            const std::vector<LintFinding> findings =
+                lint_config(std::filesystem::is_directory(given) ? given / "config.ocio" : given,
+                            verify_options.with_gpu);
+            if (!options->json) print_lint(findings);
+            for (const LintFinding& f : findings) {
+                if (f.level == LintFinding::Level::error) exit_code = kCheckFailed;
+                lint.push_back(
+                    {{"level", level_name(f.level)}, {"where", f.where}, {"what", f.what}});
+            }
+        }
         if (!options->picture.empty()) verify_options.picture = picture_pixels(options->picture);
         bool has_heading = false;  // not before the names have proved good
         const auto print = [&](const ParityRow& row) {
@@ -100,8 +136,10 @@ void add_verify(CLI::App& program, int& exit_code) {
                                {"ok", r.is_ok},
                                {"note", r.note}});
             }
+            // Rows alone, of operators; of a config, what the lint found, too.
+            if (is_of_config) all = {{"lint", lint}, {"rows", all}};
             fmt::print("{}\n", all.dump(2));
-        } else {
+        } else if (!rows.empty() || !is_of_config) {
             fmt::print("{} comparisons, {} beyond their bound\n", rows.size(), failed);
         }
         if (failed) exit_code = kCheckFailed;

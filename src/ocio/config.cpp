@@ -289,7 +289,12 @@ std::vector<DisplayedView> displayed_views(const ConfigModel::View& view,
 /// "AgX - HDR 1000 nits" on "Rec.2100-PQ" -> "agx_hdr_1000_nits_rec2100_pq".
 std::string output_alias(const DisplayedView& shown) {
     std::string alias = "out_";
-    for (const char c : shown.name) {
+    for (std::size_t i = 0; i < shown.name.size(); ++i) {
+        const char c = shown.name[i];
+        const bool is_sign = i + 1 < shown.name.size() &&
+                             std::isdigit(static_cast<unsigned char>(shown.name[i + 1])) != 0;
+        if (is_sign && c == '+') alias += "plus";
+        if (is_sign && c == '-') alias += "minus";
         const bool is_word = std::isalnum(static_cast<unsigned char>(c)) != 0;
         if (is_word) alias += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
         if (!is_word && alias.back() != '_') alias += '_';

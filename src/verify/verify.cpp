@@ -44,8 +44,8 @@ class TemporaryConfig {
     std::string folder_;
 };
 
-OCIO::ConstConfigRcPtr read_config(const std::string& folder) {
-    const std::string path = folder + "/config.ocio";
+OCIO::ConstConfigRcPtr read_config(const std::string& given) {
+    const std::string path = fs::is_directory(given) ? given + "/config.ocio" : given;
     try {
         OCIO::ConfigRcPtr config = OCIO::Config::CreateFromFile(path.c_str())->createEditableCopy();
         config->setProcessorCacheFlags(OCIO::PROCESSOR_CACHE_OFF);
@@ -272,6 +272,46 @@ OCIO::ConstProcessorRcPtr builtin_processor(const View& view) {
     return make_processor(whole);
 }
 
+double rounded_to_half(double x) {
+    constexpr double largest = 65504;
+    constexpr double smallest_normal = 0x1p-14;
+    const double magnitude = std::min(std::fabs(x), largest);
+    // Eleven bits, or what is left of them below the normal numbers.
+    const double unit = std::exp2(std::floor(std::log2(std::max(magnitude, smallest_normal))) - 10);
+    return std::copysign(std::nearbyint(magnitude / unit) * unit, x);
+}
+
+/// The processor with tables as Blender's viewport has them, which uploads every table as textures
+/// of half floats: a model, in which everything else is exact.
+OCIO::ConstProcessorRcPtr with_half_textures(const OCIO::ConstProcessorRcPtr& processor) {
+    Lowered lowered;
+    lowered.transform =
+        processor->getOptimizedProcessor(OCIO::OPTIMIZATION_DEFAULT)->createGroupTransform();
+    const auto half = [](float x) {
+        return static_cast<float>(rounded_to_half(static_cast<double>(x)));
+    };
+    for (int i = 0; i < lowered.transform->getNumTransforms(); ++i) {
+        const OCIO::TransformRcPtr part = lowered.transform->getTransform(i);
+        float r = 0;
+        float g = 0;
+        float b = 0;
+        if (const auto lut = OCIO_DYNAMIC_POINTER_CAST<OCIO::Lut1DTransform>(part)) {
+            for (unsigned long k = 0; k < lut->getLength(); ++k) {
+                lut->getValue(k, r, g, b);
+                lut->setValue(k, half(r), half(g), half(b));
+            }
+        }
+        if (const auto cube = OCIO_DYNAMIC_POINTER_CAST<OCIO::Lut3DTransform>(part)) {
+            const unsigned long n = cube->getGridSize();
+            for (unsigned long k = 0; k < n * n * n; ++k) {
+                cube->getValue(k / (n * n), k / n % n, k % n, r, g, b);
+                cube->setValue(k / (n * n), k / n % n, k % n, half(r), half(g), half(b));
+            }
+        }
+    }
+    return make_processor(lowered);
+}
+
 /// What a config calls the operator as it is, or with a look; empty where it has other settings.
 std::string view_name(const ResolvedOperator& op) {
     if (op.label == op.op->id) return op.op->view;
@@ -308,36 +348,58 @@ std::vector<OperatorVariant> all_variants() {
 
 std::vector<ParityRow> verify(const VerifyOptions& options,
                               const std::function<void(const ParityRow&)>& on_row) {
+    // The views of a config, on its displays; of nobody else's: its AgX may be another.
+    const bool is_of_config = options.operators.empty() && !options.config.empty();
+    OCIO::ConstConfigRcPtr config;
+    if (!options.config.empty()) config = read_config(options.config);
     std::vector<OperatorVariant> variants;
+    for (const std::string& name : options.operators) {
+        if (name == "all") {
+            variants = all_variants();
+        } else {
+            variants.push_back({name, ""});
+        }
+    }
     if (options.operators.empty()) variants = all_variants();
-    for (const std::string& name : options.operators)
-        variants.push_back({name, ""});
+    std::vector<std::string> displays = options.displays;
+    if (displays.empty() && is_of_config) {
+        for (const Display& display : all_displays())
+            displays.push_back(display.id);
+    }
+    if (displays.empty()) displays = {"srgb"};
     const InputSpace& input = find_input_space(options.input);
     std::vector<View> views;
     for (const OperatorVariant& v : variants) {
-        for (const std::string& display : options.displays) {
-            views.push_back(make_view(resolve_operator(v.name, {}, v.look), input.id, 0,
-                                      find_display(display).id));
+        for (const std::string& display : displays) {
+            View view = make_view(resolve_operator(v.name, {}, v.look), input.id, 0,
+                                  find_display(display).id);
+            if (is_of_config && (std::string_view(config->getName()) != kConfigName ||
+                                 view_in_config(config, view).empty()))
+                continue;
+            views.push_back(std::move(view));
         }
     }
 
-    ProbeSet probes = make_probes(input, {options.lattice_edge, 100000});
+    // Every view on every display, in a minute.
+    constexpr int kConfigEdge = 17;
+    const int edge =
+        is_of_config ? std::min(options.lattice_edge, kConfigEdge) : options.lattice_edge;
+    ProbeSet probes = make_probes(input, {edge, is_of_config ? 50000U : 100000U});
     for (std::size_t i = 0; i + 2 < options.picture.size(); i += 3) {
         probes.add(static_cast<double>(options.picture[i]),
                    static_cast<double>(options.picture[i + 1]),
                    static_cast<double>(options.picture[i + 2]), ProbeKind::picture);
     }
     std::optional<TemporaryConfig> fresh;
-    if (options.config_folder.empty()) {
+    if (!config) {
         std::vector<std::string> wanted;
         for (const View& view : views) {
             if (const std::string name = view_name(view.op); !name.empty()) wanted.push_back(name);
         }
         if (wanted.empty()) wanted.push_back(views.front().op.op->id);
         fresh.emplace(wanted);
+        config = read_config(fresh->folder());
     }
-    const OCIO::ConstConfigRcPtr config =
-        read_config(fresh ? fresh->folder() : options.config_folder);
 
     std::vector<ParityRow> rows;
     std::vector<float> shown(probes.rgb.size());
@@ -368,7 +430,9 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
         };
 
         std::optional<SimdEngine> simd;
-        for (const std::string& target : SimdEngine::targets()) {
+        // Of a config the engine says nothing.
+        for (const std::string& target :
+             is_of_config ? std::vector<std::string>{} : SimdEngine::targets()) {
             SimdEngine::use_target(target);
             if (!simd || !simd->is_made_for_target()) simd.emplace(pipeline, declared.simd_goal);
             add("simd " + target, bounds.simd, declared.simd != DeclaredBounds{}.simd, false, "",
@@ -404,6 +468,14 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
                 OcioCpu(builtin, OCIO::OPTIMIZATION_LOSSLESS)
                     .run_rgb(probes.rgb.data(), shown.data(), probes.size());
             });
+        }
+        if (is_of_config) {
+            // Bounded by nothing but the display: it is Blender's choice.
+            add("half textures", 1, false, false, lowering, [&] {
+                OcioCpu(with_half_textures(processor), OCIO::OPTIMIZATION_LOSSLESS)
+                    .run_rgb(probes.rgb.data(), shown.data(), probes.size());
+            });
+            rows.back().note = "a model of Blender's viewport";
         }
         if (!options.with_gpu) continue;
         if (const std::string reason = OcioGpu::unavailable_reason(); !reason.empty()) {

@@ -44,6 +44,9 @@ struct ConfigOptions {
 ///                63 bytes, twice the same).
 [[nodiscard]] std::vector<GeneratedFile> make_config(const ConfigOptions& options = {});
 
+/// What the configs that make_config() writes are called inside.
+inline constexpr const char* kConfigName = "tonewright";
+
 /// `id[:preset][:parameter=value...]`. @throws Error as resolve_operator() does.
 [[nodiscard]] ResolvedOperator parse_operator(std::string_view text);
 

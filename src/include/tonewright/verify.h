@@ -11,13 +11,15 @@ namespace tonewright {
 
 /// What to compare with the reference.
 struct VerifyOptions {
-    /// `id`, `id:preset`; empty = every operator, preset and look.
+    /// `id`, `id:preset`; empty or `all` = every operator, preset and look;
+    /// empty, with a config: those that it has views of.
     std::vector<std::string> operators;
-    std::vector<std::string> displays = {"srgb"};
+    /// Empty = sRGB; of a config without operators named, all that it has.
+    std::vector<std::string> displays;
     std::string input = "lin_rec709";
-    /// Folder of a config to check; empty = a fresh one, written to a temporary folder and read
-    /// back.
-    std::string config_folder;
+    /// A config to check, or its folder; empty = a fresh one, written to a temporary folder and
+    /// read back.
+    std::string config;
     /// Grid points a side of the gamut lattices.
     int lattice_edge = 33;
     bool with_gpu = true;

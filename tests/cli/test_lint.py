@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What `tonewright verify --config` says of a config: each fault that a config can have, in one that has no other.
+
+    python3 tests/cli/test_lint.py build/release/bin/tonewright
+
+The last line is `N passed, M failed`.
+"""
+
+import argparse
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
+from pictures import Report  # noqa: E402
+
+# Without a fault: what the lint asks for and nothing else.
+GOOD = """ocio_profile_version: 2.1
+search_path: luts
+strictparsing: true
+environment: {}
+roles: {scene_linear: lin, default: lin, aces_interchange: aces, cie_xyz_d65_interchange: xyz, data: raw,
+        color_picking: sRGB, texture_paint: sRGB, default_byte: sRGB, default_float: lin, default_sequencer: sRGB,
+        compositing_log: lin}
+file_rules:
+  - !<Rule> {name: Default, colorspace: lin}
+displays:
+  sRGB:
+    - !<View> {name: Plain, view_transform: plain, display_colorspace: sRGB}
+    - !<View> {name: Raw, colorspace: raw}
+active_displays: [sRGB]
+active_views: [Plain, Raw]
+inactive_colorspaces: []
+default_view_transform: plain
+view_transforms:
+  - !<ViewTransform>
+    name: plain
+    from_scene_reference: !<RangeTransform> {min_in_value: 0, min_out_value: 0, max_in_value: 1, max_out_value: 1}
+display_colorspaces:
+  - !<ColorSpace> {name: xyz, encoding: display-linear}
+  - !<ColorSpace> {name: sRGB, encoding: sdr-video}
+colorspaces:
+  - !<ColorSpace> {name: lin, aliases: [Linear], encoding: scene-linear}
+  - !<ColorSpace> {name: aces, encoding: scene-linear}
+  - !<ColorSpace> {name: raw, isdata: true, encoding: data}
+"""
+LONG = "n" * 64
+CUBE = "LUT_3D_SIZE 2\n" + "".join(f"{i & 1} {i >> 1 & 1} {i >> 2}\n" for i in range(8))
+# name -> (what is replaced, by what, level, where, words of what is said)
+FAULTS = {
+    "a long name": ("name: aces,", f"name: aces, aliases: [{LONG}],", "warning", "space aces", "64 bytes"),
+    "a name that is not ASCII": ("name: aces,", "name: aces, aliases: [Süd],", "warning", "space aces", "ASCII"),
+    "no encoding": (", encoding: display-linear", "", "note", "space xyz", "encoding"),
+    "no scene_linear": ("scene_linear: lin, ", "", "error", "role scene_linear", "missing"),
+    "no aces_interchange": ("aces_interchange: aces, ", "", "warning", "role aces_interchange", "missing"),
+    "no display interchange": ("cie_xyz_d65_interchange: xyz, ", "", "warning", "role cie_xyz_d65_interchange",
+                               "missing"),
+    "no data": (" data: raw,", "", "warning", "role data", "Blender 4"),
+    "no default_byte": (" default_byte: sRGB,", "", "warning", "role default_byte", "8-bit"),
+    "no Linear": ("[Linear]", "[Linehar]", "note", "config", "Linear"),
+    "an inactive space that is none": ("inactive_colorspaces: []", "inactive_colorspaces: [gone]", "warning",
+                                       "inactive_colorspaces", "gone"),
+    "an active view that is none": ("[Plain, Raw]", "[Plain, Raw, Gone]", "warning", "active_views", "Gone"),
+    "an absolute path": ("search_path: luts", "search_path: /luts", "warning", "config", "absolute"),
+    "parsing": ("strictparsing: true", "strictparsing: false", "note", "config", "strictparsing"),
+    "a view without a view transform": ("{name: Plain, view_transform: plain, display_colorspace: sRGB}",
+                                        "{name: Plain, colorspace: lin}", "warning", "view sRGB / Plain",
+                                        "no view transform"),
+    "NaN comes through": (
+        "from_scene_reference: !<RangeTransform> {min_in_value: 0, min_out_value: 0, max_in_value: 1, "
+        "max_out_value: 1}",
+        "from_scene_reference: !<MatrixTransform> {matrix: [2, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}",
+        "warning", "view sRGB / Plain", "NaN"),
+    "a table that is not there": ("{name: aces, encoding: scene-linear}",
+                                  "{name: aces, encoding: log, to_scene_reference: !<FileTransform> "
+                                  "{src: gone.clf, interpolation: linear}}", "error", "space aces", "gone.clf"),
+    "a cube that bands": ("{name: aces, encoding: scene-linear}",
+                          "{name: aces, encoding: log, to_scene_reference: !<FileTransform> "
+                          "{src: t.cube, interpolation: linear}}", "note", "space aces", "tetrahedra"),
+}
+
+
+def lint(command, folder, text):
+    (folder / "luts").mkdir(exist_ok=True)
+    (folder / "luts" / "t.cube").write_text(CUBE)
+    path = folder / "config.ocio"
+    path.write_text(text, encoding="utf-8")
+    done = subprocess.run([command, "verify", "--no-gpu", "--json", "--config", path], capture_output=True, text=True,
+                          check=False)
+    found = json.loads(done.stdout)["lint"] if done.stdout else []
+    return done.returncode, found, done.stderr
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("command", type=Path)
+    command = parser.parse_args().command.resolve()
+    report = Report()
+    with tempfile.TemporaryDirectory(prefix="tonewright-") as name:
+        folder = Path(name)
+        code, found, err = lint(command, folder, GOOD)
+        report.check("a config without a fault", code == 0 and not found, f"{code} {found} {err}")
+        for what, fault in FAULTS.items():
+            old, new, level, where, words = fault
+            report.check(f"{what}: the fault is in the file", GOOD.count(old) == 1, old)
+            code, found, err = lint(command, folder, GOOD.replace(old, new))
+            hit = [f for f in found if f["level"] == level and f["where"] == where and words in f["what"]]
+            report.check(what, hit and code == (1 if level == "error" else 0), f"{code} {found} {err}")
+        code, _, err = lint(command, folder, "not a config")
+        report.check("no config", code == 3 and err.count("\n") >= 1 and str(folder) in err, f"{code} {err}")
+        done = subprocess.run([command, "verify", "--no-gpu", "--config", folder / "none.ocio"], capture_output=True,
+                              text=True, check=False)
+        report.check("no file", done.returncode == 3 and "none.ocio" in done.stderr, done.stderr)
+    return report.finish()
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -28,6 +28,9 @@ constexpr const char* kLutFolder = "luts";
 /// Collects the LUT files that transforms need: OCIO configs cannot hold tables themselves.
 class LutFiles {
   public:
+    /// @param folder  that they are in, beside the config
+    explicit LutFiles(std::string folder) : folder_(std::move(folder)) {}
+
     /// The same chain with every table replaced by a file of its numbers.
     OCIO::GroupTransformRcPtr externalise(const OCIO::GroupTransformRcPtr& group,
                                           const std::string& stem, const std::string& what,
@@ -79,7 +82,7 @@ class LutFiles {
         if (is_new) {
             const std::string note =
                 table.dimension == 1 ? ": one entry for every half float" : ": behind its shaper";
-            files_.push_back({std::string(kLutFolder) + "/" + it->second,
+            files_.push_back({folder_ + "/" + it->second,
                               write_clf(table, what, {"Tonewright, " + what + note})});
         }
         return it->second;
@@ -129,6 +132,7 @@ class LutFiles {
         return values;
     }
 
+    std::string folder_;
     std::map<std::string, std::string> names_;
     std::vector<GeneratedFile> files_;
 };
@@ -303,8 +307,7 @@ std::string output_alias(const DisplayedView& shown) {
 }
 
 /// A view as a colour space: write nodes, textures and `--colorconvert` know no views.
-OCIO::ColorSpaceRcPtr make_output_space(const DisplayedView& shown) {
-    const std::string& display = shown.display->title;
+OCIO::ColorSpaceRcPtr make_output_space(const DisplayedView& shown, const std::string& display) {
     OCIO::ColorSpaceRcPtr cs = OCIO::ColorSpace::Create(OCIO::REFERENCE_SPACE_SCENE);
     cs->setName(("Output - " + shown.name + " - " + display).c_str());
     cs->addAlias(output_alias(shown).c_str());
@@ -558,6 +561,235 @@ std::string probe_csv(const ConfigModel& model,
     return text;
 }
 
+/// Makes the parts of a config from the model and adds them to an OCIO one: to a new one, or to
+/// somebody's.
+class ConfigBuilder {
+  public:
+    /// @param host  what is there already, with both interchange roles
+    ConfigBuilder(const ConfigModel& model, OCIO::ConfigRcPtr host, std::string lut_folder)
+        : model_(model), config_(std::move(host)), luts_(std::move(lut_folder)) {}
+
+    void add_spaces() {
+        for (const auto& space : model_.spaces)
+            config_->addColorSpace(make_space(space, luts_));
+        for (const auto& [role, space] : model_.roles)
+            config_->setRole(role.c_str(), space.c_str());
+    }
+
+    void add_untonemapped() {
+        OCIO::ViewTransformRcPtr plain = OCIO::ViewTransform::Create(OCIO::REFERENCE_SPACE_SCENE);
+        plain->setName(kUntonemappedView);
+        plain->setDescription("Scene light shown as it is, not limited: 1 is display white.");
+        plain->setTransform(
+            lower_part(luts_, {MatrixStage{rgb_to_xyz_d65(kAP0)}}, "", kUntonemappedView),
+            OCIO::VIEWTRANSFORM_DIR_FROM_REFERENCE);
+        config_->addViewTransform(plain);
+        config_->setDefaultViewTransformName(kUntonemappedView);
+    }
+
+    void add_view_transforms() {
+        for (const auto& view : model_.views) {
+            displayed_[view.name] = displayed_views(view, model_.displays);
+            std::map<std::string, double> made;  // transform -> its largest error
+            for (const DisplayedView& shown : displayed_[view.name]) {
+                if (!made.contains(shown.transform))
+                    made[shown.transform] = add_view_transform(view, shown, made.empty());
+                largest_error_[view.name][shown.display->title] = made[shown.transform];
+            }
+        }
+    }
+
+    void add_looks() {
+        for (const auto& look : model_.looks) {
+            OCIO::LookRcPtr added = OCIO::Look::Create();
+            added->setName(look.name.c_str());
+            added->setDescription(look.description.c_str());
+            const OCIO::GroupTransformRcPtr transform =
+                lower_part(luts_, look.stages, look.op->id + "_look", look.name, look.op->working);
+            const InputSpace& space = space_of(look.op->working);
+            if (config_->getColorSpace(space.title.c_str())) {
+                added->setProcessSpace(space.title.c_str());
+                added->setTransform(transform);
+            } else {
+                OCIO::GroupTransformRcPtr group = OCIO::GroupTransform::Create();
+                append(group, {MatrixStage{from_reference(look.op->working)}});
+                group->appendTransform(transform);
+                append(group, {MatrixStage{to_reference(look.op->working)}});
+                added->setProcessSpace(interchange_space("aces_interchange").c_str());
+                added->setTransform(group);
+            }
+            config_->addLook(added);
+        }
+    }
+
+    /// The views of a new config: shared where they are the same on every display.
+    void add_views() {
+        std::vector<std::string> active;
+        const auto activate = [&](const std::string& name) {
+            if (std::find(active.begin(), active.end(), name) == active.end())
+                active.push_back(name);
+        };
+        for (const auto& view : model_.views) {
+            const std::vector<DisplayedView>& forms = displayed_[view.name];
+            for (const DisplayedView& shown : forms)
+                activate(shown.name);
+            const bool is_shared =
+                forms.size() == model_.displays.size() &&
+                std::all_of(forms.begin(), forms.end(), [&](const auto& shown) {
+                    return shown.transform == view.name && shown.name == view.name;
+                });
+            if (is_shared) {
+                add_shared_view(view.name, view.name, OCIO::OCIO_VIEW_USE_DISPLAY_NAME,
+                                view.description);
+                continue;
+            }
+            for (const DisplayedView& shown : forms) {
+                config_->addDisplayView(shown.display->title.c_str(), shown.name.c_str(),
+                                        shown.transform.c_str(), shown.display->title.c_str(), "",
+                                        "", view.description.c_str());
+            }
+        }
+        add_shared_view(kUntonemappedView, kUntonemappedView, OCIO::OCIO_VIEW_USE_DISPLAY_NAME,
+                        "Scene light shown as it is, not limited.");
+        add_shared_view(kRawView, "", kDataSpace, "The numbers as they are.");
+        activate(kUntonemappedView);
+        activate(kRawView);
+        std::vector<std::string> displays;
+        for (const Display* display : model_.displays)
+            displays.push_back(display->title);
+        config_->setActiveDisplays(fmt::format("{}", fmt::join(displays, ", ")).c_str());
+        config_->setActiveViews(fmt::format("{}", fmt::join(active, ", ")).c_str());
+    }
+
+    void add_output_spaces() {
+        for (const auto& view : model_.views) {
+            for (const DisplayedView& shown : displayed_[view.name])
+                config_->addColorSpace(make_output_space(shown, shown.display->title));
+        }
+    }
+
+    void add_file_rules() {
+        const OCIO::FileRulesRcPtr rules = config_->getFileRules()->createEditableCopy();
+        std::size_t index = 0;
+        for (const auto& rule : model_.file_rules) {
+            if (rule.regex.empty()) {
+                rules->insertRule(index++, rule.name.c_str(), rule.space.c_str(), "*",
+                                  rule.extension.c_str());
+            } else {
+                rules->insertRule(index++, rule.name.c_str(), rule.space.c_str(),
+                                  rule.regex.c_str());
+            }
+        }
+        rules->setDefaultRuleColorSpace(model_.default_space.c_str());
+        config_->setFileRules(rules);
+    }
+
+    /// The tables, the config, and what describes them.
+    [[nodiscard]] std::vector<GeneratedFile> files(const std::string& profile) const {
+        std::vector<GeneratedFile> files = luts_.files();
+        std::string manifest = "path,content_hash\n";
+        for (const GeneratedFile& f : files)
+            manifest += f.path + "," + content_hash(f.contents) + "\n";
+        files.push_back({"probe.csv", probe_csv(model_, largest_error_)});
+        files.push_back({"README.md", readme(model_, profile, errors_)});
+        files.push_back({"MANIFEST.csv", manifest});
+        files.push_back({"config.ocio", text()});
+        return files;
+    }
+
+    [[nodiscard]] std::string text() const {
+        std::ostringstream yaml;
+        config_->serialize(yaml);
+        return yaml.str();
+    }
+
+  private:
+    [[nodiscard]] std::string interchange_space(const char* role) const {
+        return config_->getColorSpace(role)->getName();
+    }
+
+    void add_shared_view(const std::string& name, const std::string& transform,
+                         const std::string& space, const std::string& description) {
+        config_->addSharedView(name.c_str(), transform.c_str(), space.c_str(), "", "",
+                               description.c_str());
+        for (const Display* display : model_.displays)
+            config_->addDisplaySharedView(display->title.c_str(), name.c_str());
+    }
+
+    /// @return its largest error
+    double add_view_transform(const ConfigModel::View& view, const DisplayedView& shown,
+                              bool is_first) {
+        const View measured =
+            make_view(view.op, "lin_rec709", view.exposure_stops, shown.display->id);
+        ViewError error = measure_view(measured, probes_);
+        const Lowered forward = lower_to_ocio(shown.stages, {.primaries = view.op.op->working});
+        const OCIO::GroupTransformRcPtr own_back = way_back(view, shown);
+        OCIO::GroupTransformRcPtr back = own_back;
+        if (!back) {
+            back = OCIO::GroupTransform::Create();
+            for (int i = 0; i < forward.transform->getNumTransforms(); ++i)
+                back->appendTransform(forward.transform->getTransform(i));
+            back->setDirection(OCIO::TRANSFORM_DIR_INVERSE);
+        }
+        // OpenColorIO takes seconds to invert a cube: once for a view.
+        const bool is_diagnostic = view.op.op->is_diagnostic;
+        const bool is_measured = !is_diagnostic && (own_back || is_first);
+        if (is_measured) {
+            error.round_trip_lossless =
+                measure_round_trip(measured, back, OCIO::OPTIMIZATION_LOSSLESS, few_probes_);
+            error.round_trip =
+                measure_round_trip(measured, back, OCIO::OPTIMIZATION_DEFAULT, few_probes_);
+            error.has_way_back = is_way_back(error.round_trip_lossless);
+        }
+        errors_.emplace(view.name, error);
+        std::string text = fmt::format(
+            "{} Error against the double reference, {} code values, OCIO CPU: max {}, 99.9 % {}.",
+            view.description, shown.display->title, rounded_up(error.in_gamut.max),
+            rounded_up(error.in_gamut.p999));
+        if (!error.is_exact) {
+            const ViewError wide =
+                measure_view(make_view(view.op, "lin_ap1", view.exposure_stops, shown.display->id),
+                             wide_probes_);
+            text += fmt::format(
+                " A 3D table: mean {}, dE ITP at most {}; colors of all of AP1: max {}, 99.9 % {}, "
+                "mean {}.",
+                rounded_up(error.in_gamut.mean), rounded_up(error.delta_e),
+                rounded_up(wide.in_gamut.max), rounded_up(wide.in_gamut.p999),
+                rounded_up(wide.in_gamut.mean));
+        }
+        if (error.has_way_back) {
+            text += fmt::format(" And back: 99.9 % {} without loss, {} by default.",
+                                rounded_up(error.round_trip_lossless.p999),
+                                rounded_up(error.round_trip.p999));
+        } else if (is_measured || is_diagnostic) {
+            text += " There is no way back.";
+        }
+        OCIO::ViewTransformRcPtr vt = OCIO::ViewTransform::Create(OCIO::REFERENCE_SPACE_SCENE);
+        vt->setName(shown.transform.c_str());
+        vt->setDescription(text.c_str());
+        vt->setTransform(luts_.externalise(forward.transform, view.op.op->id, view.op.op->title,
+                                           forward.is_exact),
+                         OCIO::VIEWTRANSFORM_DIR_FROM_REFERENCE);
+        if (own_back) {
+            vt->setTransform(luts_.externalise(own_back, view.op.op->id + "_inverse",
+                                               view.op.op->title + ", inverse", true),
+                             OCIO::VIEWTRANSFORM_DIR_TO_REFERENCE);
+        }
+        config_->addViewTransform(vt);
+        return error.in_gamut.max;
+    }
+
+    const ConfigModel& model_;
+    OCIO::ConfigRcPtr config_;
+    LutFiles luts_;
+    std::map<std::string, std::vector<DisplayedView>> displayed_;
+    std::map<std::string, std::map<std::string, double>> largest_error_;  // of view, display
+    std::map<std::string, ViewError> errors_;                             // of a view's first form
+    ProbeSet probes_ = make_probes(find_input_space("lin_rec709"), {9, 40000});
+    ProbeSet wide_probes_ = make_probes(find_input_space("lin_ap1"), {9, 40000});
+    ProbeSet few_probes_ = make_probes(find_input_space("lin_rec709"), {3, 1000});
+};
+
 }  // namespace
 
 std::string config_space_name(std::string_view input_id) {
@@ -568,7 +800,6 @@ std::vector<GeneratedFile> make_config(const ConfigOptions& options) {
     if (options.profile != "2.0" && options.profile != "2.1")
         throw Error("config: profile is " + options.profile + "; expected 2.0 or 2.1");
     const ConfigModel model = make_config_model(options);
-    LutFiles luts;
     OCIO::ConfigRcPtr config = OCIO::Config::Create();
     config->setVersion(2, options.profile == "2.0" ? 0 : 1);
     config->setName(model.name.c_str());
@@ -579,181 +810,16 @@ std::vector<GeneratedFile> make_config(const ConfigOptions& options) {
     double luma[3] = {kRec709Weights[0], kRec709Weights[1], kRec709Weights[2]};
     config->setDefaultLumaCoefs(luma);
 
-    for (const auto& space : model.spaces)
-        config->addColorSpace(make_space(space, luts));
-    for (const auto& [role, space] : model.roles)
-        config->setRole(role.c_str(), space.c_str());
-
+    ConfigBuilder builder(model, config, kLutFolder);
+    builder.add_spaces();
     // First in the list: what libraries before 2.3.1 take as the default.
-    OCIO::ViewTransformRcPtr plain = OCIO::ViewTransform::Create(OCIO::REFERENCE_SPACE_SCENE);
-    plain->setName(kUntonemappedView);
-    plain->setDescription("Scene light shown as it is, not limited: 1 is display white.");
-    plain->setTransform(
-        lower_part(luts, {MatrixStage{rgb_to_xyz_d65(kAP0)}}, "", kUntonemappedView),
-        OCIO::VIEWTRANSFORM_DIR_FROM_REFERENCE);
-    config->addViewTransform(plain);
-    config->setDefaultViewTransformName(kUntonemappedView);
-
-    const ProbeSet probes = make_probes(find_input_space("lin_rec709"), {9, 40000});
-    // OpenColorIO inverts cubes slowly.
-    const ProbeSet few_probes = make_probes(find_input_space("lin_rec709"), {3, 1000});
-    std::map<std::string, ViewError> errors;
-    const ProbeSet wide_probes = make_probes(find_input_space("lin_ap1"), {9, 40000});
-    std::map<std::string, std::vector<DisplayedView>> displayed;
-    std::map<std::string, std::map<std::string, double>> largest_error;  // of view, display
-    for (const auto& view : model.views) {
-        displayed[view.name] = displayed_views(view, model.displays);
-        std::map<std::string, double> made;  // transform -> its largest error
-        for (const DisplayedView& shown : displayed[view.name]) {
-            if (const auto known = made.find(shown.transform); known != made.end()) {
-                largest_error[view.name][shown.display->title] = known->second;
-                continue;
-            }
-            const View measured =
-                make_view(view.op, "lin_rec709", view.exposure_stops, shown.display->id);
-            ViewError error = measure_view(measured, probes);
-            const Lowered forward = lower_to_ocio(shown.stages, {.primaries = view.op.op->working});
-            const OCIO::GroupTransformRcPtr own_back = way_back(view, shown);
-            OCIO::GroupTransformRcPtr back = own_back;
-            if (!back) {
-                back = OCIO::GroupTransform::Create();
-                for (int i = 0; i < forward.transform->getNumTransforms(); ++i)
-                    back->appendTransform(forward.transform->getTransform(i));
-                back->setDirection(OCIO::TRANSFORM_DIR_INVERSE);
-            }
-            // OpenColorIO takes seconds to invert a cube: once for a view.
-            const bool is_measured = !view.op.op->is_diagnostic && (own_back || made.empty());
-            if (is_measured) {
-                error.round_trip_lossless =
-                    measure_round_trip(measured, back, OCIO::OPTIMIZATION_LOSSLESS, few_probes);
-                error.round_trip =
-                    measure_round_trip(measured, back, OCIO::OPTIMIZATION_DEFAULT, few_probes);
-                error.has_way_back = is_way_back(error.round_trip_lossless);
-            }
-            made[shown.transform] = error.in_gamut.max;
-            largest_error[view.name][shown.display->title] = error.in_gamut.max;
-            errors.emplace(view.name, error);
-            std::string text = fmt::format(
-                "{} Error against the double reference, {} code values, OCIO CPU: max {}, 99.9 % "
-                "{}.",
-                view.description, shown.display->title, rounded_up(error.in_gamut.max),
-                rounded_up(error.in_gamut.p999));
-            if (!error.is_exact) {
-                const ViewError wide = measure_view(
-                    make_view(view.op, "lin_ap1", view.exposure_stops, shown.display->id),
-                    wide_probes);
-                text += fmt::format(
-                    " A 3D table: mean {}, dE ITP at most {}; colors of all of AP1: max {}, 99.9 % "
-                    "{}, mean {}.",
-                    rounded_up(error.in_gamut.mean), rounded_up(error.delta_e),
-                    rounded_up(wide.in_gamut.max), rounded_up(wide.in_gamut.p999),
-                    rounded_up(wide.in_gamut.mean));
-            }
-            if (error.has_way_back) {
-                text += fmt::format(" And back: 99.9 % {} without loss, {} by default.",
-                                    rounded_up(error.round_trip_lossless.p999),
-                                    rounded_up(error.round_trip.p999));
-            } else if (is_measured || view.op.op->is_diagnostic) {
-                text += " There is no way back.";
-            }
-            OCIO::ViewTransformRcPtr vt = OCIO::ViewTransform::Create(OCIO::REFERENCE_SPACE_SCENE);
-            vt->setName(shown.transform.c_str());
-            vt->setDescription(text.c_str());
-            vt->setTransform(luts.externalise(forward.transform, view.op.op->id, view.op.op->title,
-                                              forward.is_exact),
-                             OCIO::VIEWTRANSFORM_DIR_FROM_REFERENCE);
-            if (own_back) {
-                vt->setTransform(luts.externalise(own_back, view.op.op->id + "_inverse",
-                                                  view.op.op->title + ", inverse", true),
-                                 OCIO::VIEWTRANSFORM_DIR_TO_REFERENCE);
-            }
-            config->addViewTransform(vt);
-        }
-    }
-
-    for (const auto& look : model.looks) {
-        OCIO::LookRcPtr added = OCIO::Look::Create();
-        added->setName(look.name.c_str());
-        added->setProcessSpace(space_of(look.op->working).title.c_str());
-        added->setDescription(look.description.c_str());
-        added->setTransform(
-            lower_part(luts, look.stages, look.op->id + "_look", look.name, look.op->working));
-        config->addLook(added);
-    }
-
-    std::string active_displays;
-    for (const Display* display : model.displays) {
-        active_displays += (active_displays.empty() ? "" : ", ") + display->title;
-    }
-    std::vector<std::string> active_views;
-    const auto activate = [&](const std::string& name) {
-        if (std::find(active_views.begin(), active_views.end(), name) == active_views.end())
-            active_views.push_back(name);
-    };
-    const auto add_view = [&](const std::string& name, const std::string& transform,
-                              const std::string& space, const std::string& description) {
-        config->addSharedView(name.c_str(), transform.c_str(), space.c_str(), "", "",
-                              description.c_str());
-        for (const Display* display : model.displays) {
-            config->addDisplaySharedView(display->title.c_str(), name.c_str());
-        }
-    };
-    for (const auto& view : model.views) {
-        const std::vector<DisplayedView>& forms = displayed[view.name];
-        const bool is_shared = forms.size() == model.displays.size() &&
-                               std::all_of(forms.begin(), forms.end(), [&](const auto& shown) {
-                                   return shown.transform == view.name && shown.name == view.name;
-                               });
-        for (const DisplayedView& shown : forms)
-            activate(shown.name);
-        if (is_shared) {
-            add_view(view.name, view.name, OCIO::OCIO_VIEW_USE_DISPLAY_NAME, view.description);
-            continue;
-        }
-        for (const DisplayedView& shown : forms) {
-            config->addDisplayView(shown.display->title.c_str(), shown.name.c_str(),
-                                   shown.transform.c_str(), shown.display->title.c_str(), "", "",
-                                   view.description.c_str());
-        }
-    }
-    add_view(kUntonemappedView, kUntonemappedView, OCIO::OCIO_VIEW_USE_DISPLAY_NAME,
-             "Scene light shown as it is, not limited.");
-    add_view(kRawView, "", kDataSpace, "The numbers as they are.");
-    activate(kUntonemappedView);
-    activate(kRawView);
-    config->setActiveDisplays(active_displays.c_str());
-    config->setActiveViews(fmt::format("{}", fmt::join(active_views, ", ")).c_str());
-
-    for (const auto& view : model.views) {
-        for (const DisplayedView& shown : displayed[view.name])
-            config->addColorSpace(make_output_space(shown));
-    }
-
-    const OCIO::FileRulesRcPtr rules = config->getFileRules()->createEditableCopy();
-    std::size_t index = 0;
-    for (const auto& rule : model.file_rules) {
-        if (rule.regex.empty()) {
-            rules->insertRule(index++, rule.name.c_str(), rule.space.c_str(), "*",
-                              rule.extension.c_str());
-        } else {
-            rules->insertRule(index++, rule.name.c_str(), rule.space.c_str(), rule.regex.c_str());
-        }
-    }
-    rules->setDefaultRuleColorSpace(model.default_space.c_str());
-    config->setFileRules(rules);
-
-    std::ostringstream yaml;
-    config->serialize(yaml);
-
-    std::vector<GeneratedFile> files = luts.files();
-    std::string manifest = "path,content_hash\n";
-    for (const GeneratedFile& f : files)
-        manifest += f.path + "," + content_hash(f.contents) + "\n";
-    files.push_back({"probe.csv", probe_csv(model, largest_error)});
-    files.push_back({"README.md", readme(model, options.profile, errors)});
-    files.push_back({"MANIFEST.csv", manifest});
-    files.push_back({"config.ocio", yaml.str()});
-    return files;
+    builder.add_untonemapped();
+    builder.add_view_transforms();
+    builder.add_looks();
+    builder.add_views();
+    builder.add_output_spaces();
+    builder.add_file_rules();
+    return builder.files(options.profile);
 }
 
 }  // namespace tonewright

@@ -1,14 +1,52 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "cli/command.h"
 #include "tonewright/ocio.h"
 
 namespace tonewright {
 
+namespace {
+
+/// In place, when everything has been checked; else the config stays as it was.
+void extend(const std::string& path, const ConfigOptions& options) {
+    namespace fs = std::filesystem;
+    const ExtendedConfig extended = extend_config(path, options);
+    const fs::path folder = fs::absolute(path).parent_path();
+    std::vector<fs::path> written;
+    const fs::path trial = folder / (".tonewright-" + fs::path(path).filename().string());
+    std::vector<ExtendedView> views;
+    try {
+        for (const GeneratedFile& file : extended.files) {
+            const fs::path table = folder / file.path;
+            if (fs::exists(table)) continue;  // named by its contents
+            fs::create_directories(table.parent_path());
+            write_text_atomically(table.string(), file.contents);
+            written.push_back(table);
+        }
+        write_text_atomically(trial.string(), extended.text);
+        written.push_back(trial);
+        views = extended.check(trial.string());
+        fs::rename(trial, path);
+    } catch (...) {
+        std::error_code ignored;
+        for (const fs::path& file : written)
+            fs::remove(file, ignored);
+        throw;
+    }
+    fmt::print("{:<28} {:<40} {:>9} {:>9}\n", "display", "view", "max error", "99.9 %");
+    for (const ExtendedView& v : views)
+        fmt::print("{:<28} {:<40} {:>9.1e} {:>9.1e}\n", v.display, v.view, v.max, v.p999);
+}
+
+}  // namespace
+
 void add_config(CLI::App& program, int&) {
     struct Options {
         std::string folder;
+        std::string into;
         ConfigOptions config;
         std::vector<std::string> operators;
         std::vector<std::string> names;
@@ -16,8 +54,12 @@ void add_config(CLI::App& program, int&) {
     auto options = std::make_shared<Options>();
     CLI::App* command =
         program.add_subcommand("config", "an OpenColorIO config of operators, for any application");
-    command->add_option("-o", options->folder, "folder to write: config.ocio, luts/, probe.csv")
-        ->required();
+    auto* out = command->add_option("-o", options->folder,
+                                    "folder to write: config.ocio, luts/, probe.csv");
+    auto* into = command->add_option("--into", options->into,
+                                     "a config of yours to add to: views, looks and output spaces, "
+                                     "with their tables in tonewright/ beside it");
+    out->excludes(into);
     ConfigOptions& config = options->config;
     command->add_option("--profile", config.profile, "of OpenColorIO: 2.0 or 2.1")
         ->capture_default_str();
@@ -53,6 +95,7 @@ void add_config(CLI::App& program, int&) {
         "  tonewright config -o studio --working acescg --views AgX,aces_20 --displays "
         "srgb,rec1886 "
         "\\\n    --operator reinhard_extended:white=6 --name \"Studio Reinhard\"\n"
+        "  tonewright config --into studio.ocio --views AgX,hable\n"
         "  oiiotool --colorconfig ocio_config/config.ocio in.exr --ociodisplay sRGB Hable -o "
         "out.png");
     command->callback([options] {
@@ -64,6 +107,8 @@ void add_config(CLI::App& program, int&) {
         }
         for (std::size_t i = 0; i < options->operators.size(); ++i)
             wanted.custom.push_back({options->names[i], options->operators[i]});
+        if (!options->into.empty()) return extend(options->into, wanted);
+        if (options->folder.empty()) throw Error("config: -o is missing; expected -o or --into");
         wanted.working = find_input_space(wanted.working).id;
         require_writable_folder(options->folder);
         write_generated_files(options->folder, make_config(wanted), "config.ocio");

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstring>
 #include <map>
 #include <set>
 #include <sstream>
@@ -291,26 +292,27 @@ std::vector<DisplayedView> displayed_views(const ConfigModel::View& view,
 }
 
 /// "AgX - HDR 1000 nits" on "Rec.2100-PQ" -> "agx_hdr_1000_nits_rec2100_pq".
-std::string output_alias(const DisplayedView& shown) {
+std::string output_alias(const std::string& view, const std::string& display) {
     std::string alias = "out_";
-    for (std::size_t i = 0; i < shown.name.size(); ++i) {
-        const char c = shown.name[i];
-        const bool is_sign = i + 1 < shown.name.size() &&
-                             std::isdigit(static_cast<unsigned char>(shown.name[i + 1])) != 0;
+    for (std::size_t i = 0; i < view.size(); ++i) {
+        const char c = view[i];
+        const bool is_sign =
+            i + 1 < view.size() && std::isdigit(static_cast<unsigned char>(view[i + 1])) != 0;
         if (is_sign && c == '+') alias += "plus";
         if (is_sign && c == '-') alias += "minus";
         const bool is_word = std::isalnum(static_cast<unsigned char>(c)) != 0;
         if (is_word) alias += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
         if (!is_word && alias.back() != '_') alias += '_';
     }
-    return alias + "_" + shown.display->id;
+    return alias + "_" + display;
 }
 
 /// A view as a colour space: write nodes, textures and `--colorconvert` know no views.
 OCIO::ColorSpaceRcPtr make_output_space(const DisplayedView& shown, const std::string& display) {
     OCIO::ColorSpaceRcPtr cs = OCIO::ColorSpace::Create(OCIO::REFERENCE_SPACE_SCENE);
     cs->setName(("Output - " + shown.name + " - " + display).c_str());
-    cs->addAlias(output_alias(shown).c_str());
+    if (display == shown.display->title)
+        cs->addAlias(output_alias(shown.name, shown.display->id).c_str());
     cs->setFamily(("Output/" + display).c_str());
     cs->setDescription(
         ("The picture of the view " + shown.name + " on " + display + ", in its code values.")
@@ -565,9 +567,15 @@ std::string probe_csv(const ConfigModel& model,
 /// somebody's.
 class ConfigBuilder {
   public:
-    /// @param host  what is there already, with both interchange roles
-    ConfigBuilder(const ConfigModel& model, OCIO::ConfigRcPtr host, std::string lut_folder)
-        : model_(model), config_(std::move(host)), luts_(std::move(lut_folder)) {}
+    ConfigBuilder(const ConfigModel& model, OCIO::ConfigRcPtr config, std::string lut_folder)
+        : model_(model), config_(std::move(config)), luts_(std::move(lut_folder)) {}
+
+    /// The config is somebody's, with references of its own.
+    /// @param scene, display  what its interchange spaces are of its references
+    void set_references(OCIO::ConstColorSpaceRcPtr scene, OCIO::ConstColorSpaceRcPtr display) {
+        scene_ = std::move(scene);
+        display_ = std::move(display);
+    }
 
     void add_spaces() {
         for (const auto& space : model_.spaces)
@@ -606,16 +614,15 @@ class ConfigBuilder {
             added->setDescription(look.description.c_str());
             const OCIO::GroupTransformRcPtr transform =
                 lower_part(luts_, look.stages, look.op->id + "_look", look.name, look.op->working);
-            const InputSpace& space = space_of(look.op->working);
-            if (config_->getColorSpace(space.title.c_str())) {
-                added->setProcessSpace(space.title.c_str());
+            if (!scene_) {
+                added->setProcessSpace(space_of(look.op->working).title.c_str());
                 added->setTransform(transform);
             } else {
                 OCIO::GroupTransformRcPtr group = OCIO::GroupTransform::Create();
                 append(group, {MatrixStage{from_reference(look.op->working)}});
                 group->appendTransform(transform);
                 append(group, {MatrixStage{to_reference(look.op->working)}});
-                added->setProcessSpace(interchange_space("aces_interchange").c_str());
+                added->setProcessSpace(scene_->getName());
                 added->setTransform(group);
             }
             config_->addLook(added);
@@ -668,6 +675,43 @@ class ConfigBuilder {
         }
     }
 
+    /// On somebody's display, which shows what `display` does through its own space.
+    void add_views_to(const Display& display, const std::string& host_display,
+                      const std::string& host_space) {
+        std::string active = config_->getActiveViews();
+        for (const auto& view : model_.views) {
+            for (const DisplayedView& shown : displayed_[view.name]) {
+                if (shown.display != &display) continue;
+                config_->addDisplayView(host_display.c_str(), shown.name.c_str(),
+                                        shown.transform.c_str(), host_space.c_str(), "", "",
+                                        view.description.c_str());
+                // An empty list means all.
+                const std::string listed = ", " + active + ",";
+                if (!active.empty() && listed.find(", " + shown.name + ",") == std::string::npos)
+                    active += ", " + shown.name;
+                const OCIO::ColorSpaceRcPtr space = make_output_space(shown, host_display);
+                OCIO::GroupTransformRcPtr whole = OCIO::GroupTransform::Create();
+                append_conversion(whole, *scene_, OCIO::COLORSPACE_DIR_FROM_REFERENCE);
+                OCIO::DisplayViewTransformRcPtr through = OCIO::DisplayViewTransform::Create();
+                through->setSrc(scene_->getName());
+                through->setDisplay(host_display.c_str());
+                through->setView(shown.name.c_str());
+                whole->appendTransform(through);
+                space->setTransform(whole, OCIO::COLORSPACE_DIR_FROM_REFERENCE);
+                config_->addColorSpace(space);
+            }
+        }
+        config_->setActiveViews(active.c_str());
+    }
+
+    [[nodiscard]] const std::vector<DisplayedView>& displayed(const std::string& view) const {
+        return displayed_.at(view);
+    }
+    [[nodiscard]] double largest_error(const std::string& view, const Display& display) const {
+        return largest_error_.at(view).at(display.title);
+    }
+    [[nodiscard]] const std::vector<GeneratedFile>& tables() const { return luts_.files(); }
+
     void add_file_rules() {
         const OCIO::FileRulesRcPtr rules = config_->getFileRules()->createEditableCopy();
         std::size_t index = 0;
@@ -704,8 +748,42 @@ class ConfigBuilder {
     }
 
   private:
-    [[nodiscard]] std::string interchange_space(const char* role) const {
-        return config_->getColorSpace(role)->getName();
+    /// The config's scene reference -> what this is given: ACES2065-1 -> ... -> the config's
+    /// display reference, of what puts out CIE XYZ D65.
+    [[nodiscard]] OCIO::GroupTransformRcPtr between_references(
+        const OCIO::GroupTransformRcPtr& group) const {
+        if (!scene_) return group;
+        OCIO::GroupTransformRcPtr whole = OCIO::GroupTransform::Create();
+        append_conversion(whole, *scene_, OCIO::COLORSPACE_DIR_FROM_REFERENCE);
+        for (int i = 0; i < group->getNumTransforms(); ++i)
+            whole->appendTransform(group->getTransform(i));
+        append_conversion(whole, *display_, OCIO::COLORSPACE_DIR_TO_REFERENCE);
+        return whole;
+    }
+    /// The same the other way.
+    [[nodiscard]] OCIO::GroupTransformRcPtr back_between_references(
+        const OCIO::GroupTransformRcPtr& group) const {
+        if (!scene_) return group;
+        OCIO::GroupTransformRcPtr whole = OCIO::GroupTransform::Create();
+        append_conversion(whole, *display_, OCIO::COLORSPACE_DIR_FROM_REFERENCE);
+        for (int i = 0; i < group->getNumTransforms(); ++i)
+            whole->appendTransform(group->getTransform(i));
+        append_conversion(whole, *scene_, OCIO::COLORSPACE_DIR_TO_REFERENCE);
+        return whole;
+    }
+    static void append_conversion(OCIO::GroupTransformRcPtr& group, const OCIO::ColorSpace& space,
+                                  OCIO::ColorSpaceDirection direction) {
+        const auto other = direction == OCIO::COLORSPACE_DIR_FROM_REFERENCE
+                               ? OCIO::COLORSPACE_DIR_TO_REFERENCE
+                               : OCIO::COLORSPACE_DIR_FROM_REFERENCE;
+        if (const auto given = space.getTransform(direction)) {
+            group->appendTransform(given->createEditableCopy());
+        } else if (const auto inverse = space.getTransform(other)) {
+            const OCIO::TransformRcPtr copy = inverse->createEditableCopy();
+            copy->setDirection(OCIO::CombineTransformDirections(copy->getDirection(),
+                                                                OCIO::TRANSFORM_DIR_INVERSE));
+            group->appendTransform(copy);
+        }
     }
 
     void add_shared_view(const std::string& name, const std::string& transform,
@@ -767,13 +845,14 @@ class ConfigBuilder {
         OCIO::ViewTransformRcPtr vt = OCIO::ViewTransform::Create(OCIO::REFERENCE_SPACE_SCENE);
         vt->setName(shown.transform.c_str());
         vt->setDescription(text.c_str());
-        vt->setTransform(luts_.externalise(forward.transform, view.op.op->id, view.op.op->title,
-                                           forward.is_exact),
+        vt->setTransform(between_references(luts_.externalise(forward.transform, view.op.op->id,
+                                                              view.op.op->title, forward.is_exact)),
                          OCIO::VIEWTRANSFORM_DIR_FROM_REFERENCE);
         if (own_back) {
-            vt->setTransform(luts_.externalise(own_back, view.op.op->id + "_inverse",
-                                               view.op.op->title + ", inverse", true),
-                             OCIO::VIEWTRANSFORM_DIR_TO_REFERENCE);
+            vt->setTransform(
+                back_between_references(luts_.externalise(own_back, view.op.op->id + "_inverse",
+                                                          view.op.op->title + ", inverse", true)),
+                OCIO::VIEWTRANSFORM_DIR_TO_REFERENCE);
         }
         config_->addViewTransform(vt);
         return error.in_gamut.max;
@@ -781,6 +860,7 @@ class ConfigBuilder {
 
     const ConfigModel& model_;
     OCIO::ConfigRcPtr config_;
+    OCIO::ConstColorSpaceRcPtr scene_, display_;  // null: ours
     LutFiles luts_;
     std::map<std::string, std::vector<DisplayedView>> displayed_;
     std::map<std::string, std::map<std::string, double>> largest_error_;  // of view, display
@@ -820,6 +900,253 @@ std::vector<GeneratedFile> make_config(const ConfigOptions& options) {
     builder.add_output_spaces();
     builder.add_file_rules();
     return builder.files(options.profile);
+}
+
+namespace {
+
+/// A display of somebody's config that shows what one of ours does.
+struct HostDisplay {
+    std::string name;
+    std::string space;
+    const Display* ours;
+    double difference;  // of code values
+};
+
+std::vector<float> run_processor(const OCIO::ConstProcessorRcPtr& processor,
+                                 std::vector<float> rgb) {
+    OcioCpu(processor, OCIO::OPTIMIZATION_LOSSLESS).run_rgb(rgb.data(), rgb.data(), rgb.size() / 3);
+    return rgb;
+}
+
+/// How far the host's display space is from ours, for light that both can show.
+double display_difference(const OCIO::ConstConfigRcPtr& config, const std::string& space,
+                          const Display& ours) {
+    const std::vector<Vector3> light = {{1, 1, 1},          {0.18, 0.18, 0.18}, {0.9, 0.1, 0.02},
+                                        {0.05, 0.8, 0.1},   {0.1, 0.02, 0.7},   {0.5, 0.5, 0.01},
+                                        {0.002, 0.01, 0.05}};
+    const ReferenceEngine encode(ours.encode);
+    std::vector<float> xyz;
+    std::vector<double> codes;
+    for (const Vector3& rgb : light) {
+        for (const double x : multiply(rgb_to_xyz_d65(ours.primaries), rgb))
+            xyz.push_back(static_cast<float>(x));
+        for (const double x : encode(rgb))
+            codes.push_back(x);
+    }
+    const std::vector<float> shown =
+        run_processor(config->getProcessor("cie_xyz_d65_interchange", space.c_str()), xyz);
+    double largest = 0;
+    for (std::size_t i = 0; i < shown.size(); ++i)
+        largest = std::max(largest, std::fabs(static_cast<double>(shown[i]) - codes[i]));
+    return largest;
+}
+
+std::vector<HostDisplay> match_displays(const OCIO::ConstConfigRcPtr& config,
+                                        const std::vector<std::string>& wanted) {
+    std::vector<HostDisplay> matched;
+    std::vector<std::string> names;
+    for (int d = 0; d < config->getNumDisplays(); ++d) {
+        const std::string name = config->getDisplay(d);
+        names.push_back(name);
+        if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), name) == wanted.end())
+            continue;
+        for (int v = 0; v < config->getNumViews(name.c_str()); ++v) {
+            const char* view = config->getView(name.c_str(), v);
+            const char* transform = config->getDisplayViewTransformName(name.c_str(), view);
+            if (!transform || !*transform) continue;
+            std::string space = config->getDisplayViewColorSpaceName(name.c_str(), view);
+            if (space == OCIO::OCIO_VIEW_USE_DISPLAY_NAME) space = name;
+            const Display* nearest = nullptr;
+            double least = 1;
+            for (const Display& ours : all_displays()) {
+                const double difference = display_difference(config, space, ours);
+                if (difference >= least) continue;
+                least = difference;
+                nearest = &ours;
+            }
+            // OpenColorIO's own displays are up to 1e-4 from the standards.
+            if (nearest && least < 1e-3) matched.push_back({name, space, nearest, least});
+            break;
+        }
+    }
+    for (const std::string& name : wanted) {
+        if (std::find(names.begin(), names.end(), name) == names.end()) {
+            throw Error("config: display is " + name + "; expected " + join_choices(names) +
+                        did_you_mean(name, names));
+        }
+    }
+    return matched;
+}
+
+/// Every space there and back, every view of every display: what a config makes of some colors.
+std::map<std::string, std::vector<float>> pictures_of(const OCIO::ConstConfigRcPtr& config) {
+    const std::vector<float> colors = {0.18F, 0.18F,  0.18F, 1,    1,    1,     0.8F, 0.1F, 0.02F,
+                                       0.1F,  0.7F,   0.1F,  0.1F, 0.1F, 0.9F,  4,    2,    9,
+                                       0,     0.002F, 0.01F, 0,    0,    -0.1F, 0.5F, 0.3F, 0.2F};
+    std::map<std::string, std::vector<float>> pictures;
+    const auto add = [&](const std::string& name, const auto& make_processor_of) {
+        try {
+            pictures[name] = run_processor(make_processor_of(), colors);
+        } catch (const OCIO::Exception&) {
+            pictures[name] = {};  // it did not work before either
+        }
+    };
+    const int count =
+        config->getNumColorSpaces(OCIO::SEARCH_REFERENCE_SPACE_ALL, OCIO::COLORSPACE_ALL);
+    for (int i = 0; i < count; ++i) {
+        const std::string name = config->getColorSpaceNameByIndex(OCIO::SEARCH_REFERENCE_SPACE_ALL,
+                                                                  OCIO::COLORSPACE_ALL, i);
+        add("space " + name,
+            [&] { return config->getProcessor(name.c_str(), "aces_interchange"); });
+        add("to space " + name,
+            [&] { return config->getProcessor("aces_interchange", name.c_str()); });
+    }
+    for (int d = 0; d < config->getNumDisplays(); ++d) {
+        const std::string display = config->getDisplay(d);
+        for (int v = 0; v < config->getNumViews(display.c_str()); ++v) {
+            const std::string view = config->getView(display.c_str(), v);
+            add("view " + display + " / " + view, [&] {
+                return config->getProcessor("aces_interchange", display.c_str(), view.c_str(),
+                                            OCIO::TRANSFORM_DIR_FORWARD);
+            });
+        }
+    }
+    return pictures;
+}
+
+OCIO::ConfigRcPtr read_host(const std::string& path) {
+    try {
+        const OCIO::ConfigRcPtr config =
+            OCIO::Config::CreateFromFile(path.c_str())->createEditableCopy();
+        config->setProcessorCacheFlags(OCIO::PROCESSOR_CACHE_OFF);
+        return config;
+    } catch (const OCIO::Exception& e) {
+        throw FileError("read: " + path + ": " + e.what());
+    }
+}
+
+}  // namespace
+
+ExtendedConfig extend_config(const std::string& path, const ConfigOptions& options) {
+    const OCIO::ConfigRcPtr config = read_host(path);
+    for (const char* role : {"aces_interchange", "cie_xyz_d65_interchange"}) {
+        if (!config->hasRole(role)) {
+            throw Error(
+                "config: " + path + " has no role " + role +
+                "; expected both interchange roles: nothing else says what its numbers are");
+        }
+    }
+    const std::map<std::string, std::vector<float>> before = pictures_of(config);
+    const std::vector<HostDisplay> hosts = match_displays(config, options.displays);
+    if (hosts.empty()) {
+        throw Error(
+            "config: no display of " + path +
+            " is one of ours, shown through a view transform; expected one of sRGB, Display "
+            "P3, Rec.1886, Rec.2020, 2.2, PQ or HLG");
+    }
+    ConfigOptions chosen = options;
+    chosen.displays.clear();
+    for (const HostDisplay& host : hosts)
+        chosen.displays.push_back(host.ours->id);
+    const ConfigModel model = make_config_model(chosen);
+
+    // Nothing of theirs is replaced.
+    const auto refuse = [&](const std::string& what, const std::string& name) {
+        throw Error("config: " + path + " has " + what + " " + name +
+                    " already; expected another name (--operator ID --name NAME)");
+    };
+    for (const auto& look : model.looks) {
+        if (config->getLook(look.name.c_str())) refuse("a look", look.name);
+    }
+    for (const auto& view : model.views) {
+        for (const DisplayedView& shown : displayed_views(view, model.displays)) {
+            if (config->getViewTransform(shown.transform.c_str()))
+                refuse("a view transform", shown.transform);
+            for (const HostDisplay& host : hosts) {
+                if (host.ours != shown.display) continue;
+                for (int v = 0; v < config->getNumViews(host.name.c_str()); ++v) {
+                    if (shown.name == config->getView(host.name.c_str(), v))
+                        refuse("on the display " + host.name + " a view", shown.name);
+                }
+                const std::string space = "Output - " + shown.name + " - " + host.name;
+                if (config->getColorSpace(space.c_str())) refuse("a space", space);
+            }
+        }
+    }
+
+    constexpr const char* kFolder = "tonewright";
+    ConfigBuilder builder(model, config, kFolder);
+    builder.set_references(config->getColorSpace("aces_interchange"),
+                           config->getColorSpace("cie_xyz_d65_interchange"));
+    config->addSearchPath(kFolder);
+    builder.add_view_transforms();
+    builder.add_looks();
+    for (const HostDisplay& host : hosts)
+        builder.add_views_to(*host.ours, host.name, host.space);
+
+    ExtendedConfig result;
+    result.files = builder.tables();
+    result.text = builder.text();
+    result.check = [before, hosts, model, path, bounds = [&] {
+        std::map<std::string, double> all;
+        for (const auto& view : model.views) {
+            for (const DisplayedView& shown : builder.displayed(view.name))
+                all[view.name + shown.display->id] =
+                    builder.largest_error(view.name, *shown.display);
+        }
+        return all;
+    }()](const std::string& written) {
+        const OCIO::ConfigRcPtr made = read_host(written);
+        try {
+            made->validate();
+        } catch (const OCIO::Exception& e) {
+            throw Error("config: OpenColorIO refuses the result: " + std::string(e.what()));
+        }
+        const std::map<std::string, std::vector<float>> after = pictures_of(made);
+        for (const auto& [name, picture] : before) {
+            const auto it = after.find(name);
+            const bool is_same =
+                it != after.end() && it->second.size() == picture.size() &&
+                std::memcmp(it->second.data(), picture.data(), picture.size() * sizeof(float)) == 0;
+            if (!is_same) throw Error("config: the result changes " + name + " of " + path);
+        }
+        std::vector<ExtendedView> views;
+        const ProbeSet probes = make_probes(find_input_space("lin_ap0"), {5, 4000});
+        for (const auto& view : model.views) {
+            for (const HostDisplay& host : hosts) {
+                if (!view.is_on(*host.ours)) continue;
+                const View shown =
+                    make_view(view.op, "lin_ap0", view.exposure_stops, host.ours->id);
+                const std::string name = config_view_name(view.name, shown.op, *host.ours);
+                std::vector<float> in;
+                for (std::size_t i = 0; i < probes.size(); ++i) {
+                    if (probes.is_non_negative(i) && probes.kind[i] != ProbeKind::special)
+                        in.insert(in.end(), &probes.rgb[3 * i], &probes.rgb[3 * i] + 3);
+                }
+                std::vector<double> truth(in.size());
+                ReferenceEngine(build_view(shown)).run_rgb(in.data(), truth.data(), in.size() / 3);
+                const std::vector<float> codes =
+                    run_processor(made->getProcessor("aces_interchange", host.name.c_str(),
+                                                     name.c_str(), OCIO::TRANSFORM_DIR_FORWARD),
+                                  in);
+                std::vector<double> errors;
+                for (std::size_t i = 0; i < codes.size() / 3; ++i)
+                    errors.push_back(channel_error(&truth[3 * i], &codes[3 * i]));
+                const ErrorStats stats = summarise(errors);
+                views.push_back({host.name, name, stats.max, stats.p999});
+                // In all of AP0 cubes and cancelling matrices cost more than where they were
+                // measured: what is refused is another picture, not one that is less exact.
+                constexpr double kAnother = 0.02;
+                if (stats.mean > kAnother + bounds.at(view.name + host.ours->id)) {
+                    throw Error(fmt::format(
+                        "config: view {} on {} would be {:.2g} from the reference in the mean",
+                        name, host.name, stats.mean));
+                }
+            }
+        }
+        return views;
+    };
+    return result;
 }
 
 }  // namespace tonewright

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,34 @@ struct ConfigOptions {
 /// (over
 ///                63 bytes, twice the same).
 [[nodiscard]] std::vector<GeneratedFile> make_config(const ConfigOptions& options = {});
+
+/// One view that was added to somebody's config, and how far its code values are from the double
+/// reference, for light of all of AP0.
+struct ExtendedView {
+    std::string display;
+    std::string view;
+    double max = 0;
+    double p999 = 0;
+};
+
+struct ExtendedConfig {
+    /// Tables, by their paths beside the config.
+    std::vector<GeneratedFile> files;
+    /// The config.
+    std::string text;
+    /// Reads the config where it was written, its tables beside it: OpenColorIO takes it, every
+    /// space and view that was there before makes the same numbers, and the new views are the
+    /// operators. @throws Error  for what is not so.
+    std::function<std::vector<ExtendedView>(const std::string& path)> check;
+};
+
+/// Somebody's config with views, looks and output spaces of ours, on those of its displays that are
+/// one of ours by their numbers. Nothing of theirs is changed.
+/// @param options  views, displays (of the config), looks, custom, exposure_stops
+/// @throws FileError  for a config that cannot be read
+/// @throws Error  for a config without both interchange roles or such a display, for a name that is
+///                taken
+[[nodiscard]] ExtendedConfig extend_config(const std::string& path, const ConfigOptions& options);
 
 /// What the configs that make_config() writes are called inside.
 inline constexpr const char* kConfigName = "tonewright";

@@ -1,0 +1,218 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`tonewright config --into`: somebody's config with our views, looks and output spaces, and all of theirs as it was.
+
+    python3 tests/parity/test_into.py build/release/bin/tonewright
+
+The configs are small stand-ins: one built as the ACES configs are, one with references of its own. The last line is
+`N passed, M failed`.
+"""
+
+import argparse
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parent / "clients"))
+from pictures import Report, skip  # noqa: E402
+
+try:
+    import PyOpenColorIO as ocio
+except ImportError:
+    skip("PyOpenColorIO is not installed (Debian: python3-pyopencolorio)")
+
+# ACES2065-1 and CIE XYZ D65 are the references, displays and the rendering OpenColorIO's built-ins.
+ACES = """ocio_profile_version: 2.1
+environment: {}
+search_path: luts
+strictparsing: true
+roles: {aces_interchange: ACES2065-1, cie_xyz_d65_interchange: CIE-XYZ-D65, data: Raw, scene_linear: ACEScg}
+file_rules:
+  - !<Rule> {name: Default, colorspace: ACEScg}
+shared_views:
+  - !<View> {name: SDR Video, view_transform: SDR Video, display_colorspace: <USE_DISPLAY_NAME>}
+displays:
+  sRGB - Display:
+    - !<View> {name: Raw, colorspace: Raw}
+    - !<Views> [SDR Video]
+  P3-DCI - Display:
+    - !<View> {name: Raw, colorspace: Raw}
+    - !<Views> [SDR Video]
+  PQ:
+    - !<View> {name: SDR Video, view_transform: SDR Video, display_colorspace: Rec.2100-PQ}
+active_displays: [sRGB - Display, P3-DCI - Display, PQ]
+active_views: [SDR Video, Raw]
+view_transforms:
+  - !<ViewTransform>
+    name: SDR Video
+    from_scene_reference: !<BuiltinTransform> {style: ACES-OUTPUT - ACES2065-1_to_CIE-XYZ-D65 - SDR-VIDEO_1.0}
+display_colorspaces:
+  - !<ColorSpace> {name: CIE-XYZ-D65}
+  - !<ColorSpace>
+    name: sRGB - Display
+    from_display_reference: !<BuiltinTransform> {style: DISPLAY - CIE-XYZ-D65_to_sRGB}
+  - !<ColorSpace>
+    name: P3-DCI - Display
+    from_display_reference: !<BuiltinTransform> {style: DISPLAY - CIE-XYZ-D65_to_G2.6-P3-DCI-BFD}
+  - !<ColorSpace>
+    name: Rec.2100-PQ
+    from_display_reference: !<BuiltinTransform> {style: DISPLAY - CIE-XYZ-D65_to_REC.2100-PQ}
+colorspaces:
+  - !<ColorSpace> {name: ACES2065-1}
+  - !<ColorSpace>
+    name: ACEScg
+    to_scene_reference: !<BuiltinTransform> {style: ACEScg_to_ACES2065-1}
+  - !<ColorSpace> {name: Raw, isdata: true}
+"""
+# The scene reference is twice linear AP1 light, the display reference XYZ a third as large: nothing is where ours is.
+OWN = """ocio_profile_version: 2.1
+environment: {}
+strictparsing: true
+roles: {aces_interchange: aces, cie_xyz_d65_interchange: xyz, data: raw, scene_linear: working}
+file_rules:
+  - !<Rule> {name: Default, colorspace: working}
+displays:
+  Monitor:
+    - !<View> {name: Plain, view_transform: plain, display_colorspace: monitor}
+view_transforms:
+  - !<ViewTransform>
+    name: plain
+    from_scene_reference: !<GroupTransform>
+      children:
+        - !<MatrixTransform> {matrix: [0.5, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 1]}
+        - !<BuiltinTransform> {style: ACEScg_to_ACES2065-1}
+        - !<BuiltinTransform> {style: UTILITY - ACES-AP0_to_CIE-XYZ-D65_BFD}
+        - !<MatrixTransform> {matrix: [3, 0, 0, 0, 0, 3, 0, 0, 0, 0, 3, 0, 0, 0, 0, 1], direction: inverse}
+display_colorspaces:
+  - !<ColorSpace>
+    name: xyz
+    from_display_reference: !<MatrixTransform> {matrix: [3, 0, 0, 0, 0, 3, 0, 0, 0, 0, 3, 0, 0, 0, 0, 1]}
+  - !<ColorSpace>
+    name: monitor
+    from_display_reference: !<GroupTransform>
+      children:
+        - !<MatrixTransform> {matrix: [3, 0, 0, 0, 0, 3, 0, 0, 0, 0, 3, 0, 0, 0, 0, 1]}
+        - !<BuiltinTransform> {style: DISPLAY - CIE-XYZ-D65_to_sRGB}
+colorspaces:
+  - !<ColorSpace> {name: working}
+  - !<ColorSpace>
+    name: aces
+    from_scene_reference: !<GroupTransform>
+      children:
+        - !<MatrixTransform> {matrix: [0.5, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 1]}
+        - !<BuiltinTransform> {style: ACEScg_to_ACES2065-1}
+  - !<ColorSpace> {name: raw, isdata: true}
+"""
+# OpenColorIO's sRGB operation is 1e-5 from IEC 61966-2-1, its PQ 7e-5 near black; the rest is float32 in matrices.
+BOUND = 1e-4
+
+
+def numbers_of(path):
+    """What a config makes of some light: every space both ways, every view."""
+    config = ocio.Config.CreateFromFile(str(path))
+    config.setProcessorCacheFlags(ocio.PROCESSOR_CACHE_OFF)
+    light = np.random.default_rng(2).uniform(0, 4, (256, 3)).astype(np.float32)
+
+    def through(*arguments):
+        image = light.copy()
+        config.getProcessor(*arguments).getOptimizedCPUProcessor(ocio.OPTIMIZATION_LOSSLESS).applyRGB(image)
+        return image.tobytes()
+
+    found = {}
+    for space in config.getColorSpaces(ocio.SEARCH_REFERENCE_SPACE_ALL, ocio.COLORSPACE_ALL):
+        found[space.getName()] = [through(space.getName(), "aces_interchange"),
+                                  through("aces_interchange", space.getName())]
+    for display in config.getDisplays():
+        for view in config.getViews(display):
+            found[display, view] = through("aces_interchange", display, view, ocio.TRANSFORM_DIR_FORWARD)
+    return found
+
+
+def call(command, *arguments):
+    return subprocess.run([command, "config", *map(str, arguments)], capture_output=True, text=True, check=False)
+
+
+def check_picture(report, command, path, display, view, operator, option, space):
+    """A view of the result against `tonewright eval`, in double."""
+    config = ocio.Config.CreateFromFile(str(path))
+    light = np.exp2(np.random.default_rng(4).uniform(-8, 5, (500, 3))).astype(np.float32)
+    light = np.concatenate([light, [[0, 0, 0], [0.18, 0.18, 0.18], [9, 0, 0], [0, 5, 0], [0, 0, 20]]]).astype(np.float32)
+    lines = "".join(f"{r!r} {g!r} {b!r}\n" for r, g, b in light.tolist())
+    done = subprocess.run([command, "eval", *operator, "--input", "lin_ap1", "--display", option], input=lines,
+                          capture_output=True, text=True, check=True)
+    truth = np.array([[float(v) for v in re.split("[ ,]+", line.strip())] for line in done.stdout.splitlines()])
+    image = (light * space[1]).astype(np.float32)
+    config.getProcessor(space[0], display, view, ocio.TRANSFORM_DIR_FORWARD).getDefaultCPUProcessor().applyRGB(image)
+    report.compare(f"{path.parent.name}: {view} on {display}", image, truth, BOUND)
+    image = (light * space[1]).astype(np.float32)
+    name = f"Output - {view} - {display}"
+    config.getProcessor(space[0], name).getDefaultCPUProcessor().applyRGB(image)
+    report.compare(f"{path.parent.name}: {name}", image, truth, BOUND)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("command", type=Path)
+    command = parser.parse_args().command.resolve()
+    report = Report()
+    with tempfile.TemporaryDirectory(prefix="tonewright-") as name:
+        for kind, text, displays, space in (
+                ("aces", ACES, {"sRGB - Display": "srgb", "PQ": "rec2100_pq"}, ("ACEScg", 1)),
+                ("own", OWN, {"Monitor": "srgb"}, ("working", 2))):
+            folder = Path(name) / kind
+            folder.mkdir()
+            path = folder / "mine.ocio"
+            path.write_text(text)
+            before = numbers_of(path)
+            done = call(command, "--into", path, "--views", "AgX,hable", "--operator", "reinhard_extended:white=6",
+                        "--name", "Studio")
+            report.check(f"{kind}: --into", done.returncode == 0 and not done.stderr, done.stderr)
+            report.check(f"{kind}: the table of errors", all(d in done.stdout for d in displays), done.stdout)
+            after = numbers_of(path)
+            changed = [k for k in before if after.get(k) != before[k]]
+            report.check(f"{kind}: all of theirs makes the same numbers", not changed, changed)
+            report.check(f"{kind}: nothing is left behind", sorted(p.name for p in folder.iterdir())
+                         == ["mine.ocio", "tonewright"], list(folder.iterdir()))
+            for display, option in displays.items():
+                hdr = " - HDR 1000 nits" if option == "rec2100_pq" else ""
+                check_picture(report, command, path, display, "AgX" + hdr, ["agx_blender"], option, space)
+                check_picture(report, command, path, display, "Studio", ["reinhard_extended", "--set", "white=6"],
+                              option, space)
+            config = ocio.Config.CreateFromFile(str(path))
+            report.check(f"{kind}: looks", "AgX - Punchy" in list(config.getLookNames()), list(config.getLookNames()))
+            if shutil.which("ociocheck"):
+                checked = subprocess.run(["ociocheck", "--iconfig", path], capture_output=True, text=True, check=False)
+                report.check(f"{kind}: ociocheck", checked.returncode == 0, checked.stdout[-300:])
+
+            whole = {p: p.read_bytes() for p in folder.rglob("*") if p.is_file()}
+            done = call(command, "--into", path, "--views", "hable")
+            report.check(f"{kind}: a name that is taken", done.returncode == 2 and "Hable already" in done.stderr
+                         and done.stderr.count("\n") == 1, done.stderr)
+            report.check(f"{kind}: nothing has changed",
+                         whole == {p: p.read_bytes() for p in folder.rglob("*") if p.is_file()})
+            done = call(command, "--into", path, "--operator", "hable", "--name", "Hable Two", "--views", "reinhard",
+                        "--looks", "none")
+            report.check(f"{kind}: once more, with other names", done.returncode == 0, done.stderr)
+            moved = folder.parent / f"{kind} moved"
+            shutil.move(folder, moved)
+            report.check(f"{kind}: the folder can be moved", ("AgX" in {k[1] for k in numbers_of(moved / "mine.ocio")
+                                                                        if isinstance(k, tuple)}))
+        bare = Path(name) / "bare.ocio"
+        bare.write_text(ACES.replace("cie_xyz_d65_interchange: CIE-XYZ-D65, ", ""))
+        done = call(command, "--into", bare, "--views", "hable")
+        report.check("no interchange role", done.returncode == 2 and "cie_xyz_d65_interchange" in done.stderr, done.stderr)
+        done = call(command, "--into", Path(name) / "none.ocio")
+        report.check("no file", done.returncode == 3 and "none.ocio" in done.stderr, done.stderr)
+        done = call(command, "--into", bare, "-o", name)
+        report.check("--into and -o", done.returncode == 2, done.stderr)
+        done = call(command)
+        report.check("neither", done.returncode == 2 and "-o" in done.stderr, done.stderr)
+    return report.finish()
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "cli/archive.h"
 #include "cli/command.h"
 #include "tonewright/ocio.h"
 
@@ -47,6 +48,7 @@ void add_config(CLI::App& program, int&) {
     struct Options {
         std::string folder;
         std::string into;
+        std::string archive;
         ConfigOptions config;
         std::vector<std::string> operators;
         std::vector<std::string> names;
@@ -60,6 +62,11 @@ void add_config(CLI::App& program, int&) {
                                      "a config of yours to add to: views, looks and output spaces, "
                                      "with their tables in tonewright/ beside it");
     out->excludes(into);
+    command
+        ->add_option("--archive", options->archive,
+                     "file.ocioz to write, with or without -o: a config and its tables in one, for "
+                     "OpenColorIO 2.2 and newer")
+        ->excludes(into);
     ConfigOptions& config = options->config;
     command->add_option("--profile", config.profile, "of OpenColorIO: 2.0 or 2.1")
         ->capture_default_str();
@@ -95,6 +102,7 @@ void add_config(CLI::App& program, int&) {
         "  tonewright config -o studio --working acescg --views AgX,aces_20 --displays "
         "srgb,rec1886 "
         "\\\n    --operator reinhard_extended:white=6 --name \"Studio Reinhard\"\n"
+        "  tonewright config --archive tonewright.ocioz\n"
         "  tonewright config --into studio.ocio --views AgX,hable\n"
         "  oiiotool --colorconfig ocio_config/config.ocio in.exr --ociodisplay sRGB Hable -o "
         "out.png");
@@ -108,10 +116,27 @@ void add_config(CLI::App& program, int&) {
         for (std::size_t i = 0; i < options->operators.size(); ++i)
             wanted.custom.push_back({options->names[i], options->operators[i]});
         if (!options->into.empty()) return extend(options->into, wanted);
-        if (options->folder.empty()) throw Error("config: -o is missing; expected -o or --into");
+        if (options->folder.empty() && options->archive.empty())
+            throw Error("config: -o is missing; expected -o, --archive or --into");
         wanted.working = find_input_space(wanted.working).id;
-        require_writable_folder(options->folder);
-        write_generated_files(options->folder, make_config(wanted), "config.ocio");
+        const std::filesystem::path archive(options->archive);
+        if (!options->archive.empty() && archive.extension() != ".ocioz") {
+            throw Error("config: archive is " + options->archive +
+                        "; expected a name that ends in .ocioz: OpenColorIO knows it by that");
+        }
+        check_config_options(wanted);
+        if (!options->folder.empty()) require_writable_folder(options->folder);
+        if (!options->archive.empty())
+            require_writable_folder(std::filesystem::absolute(archive).parent_path().string());
+        const std::vector<GeneratedFile> files = make_config(wanted);
+        if (!options->folder.empty()) write_generated_files(options->folder, files, "config.ocio");
+        if (options->archive.empty()) return;
+        std::vector<GeneratedFile> packed;
+        for (const GeneratedFile& file : files) {
+            if (file.path == "config.ocio" || file.path.starts_with("luts/"))
+                packed.push_back(file);
+        }
+        write_text_atomically(options->archive, make_archive(packed));
     });
 }
 

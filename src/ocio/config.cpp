@@ -876,9 +876,14 @@ std::string config_space_name(std::string_view input_id) {
     return find_input_space(input_id).title;
 }
 
-std::vector<GeneratedFile> make_config(const ConfigOptions& options) {
+void check_config_options(const ConfigOptions& options) {
     if (options.profile != "2.0" && options.profile != "2.1")
         throw Error("config: profile is " + options.profile + "; expected 2.0 or 2.1");
+    (void)make_config_model(options);
+}
+
+std::vector<GeneratedFile> make_config(const ConfigOptions& options) {
+    check_config_options(options);
     const ConfigModel model = make_config_model(options);
     OCIO::ConfigRcPtr config = OCIO::Config::Create();
     config->setVersion(2, options.profile == "2.0" ? 0 : 1);

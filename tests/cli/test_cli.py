@@ -14,6 +14,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import zipfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -433,6 +434,19 @@ def check_config(report, command, scratch, folder):
                  and (scratch / "outside.txt").is_file(), sorted(set(again) ^ set(first)))
 
 
+def check_archive(report, command, scratch, folder):
+    """The same files in one, in the same bytes each time."""
+    path = scratch / "a.ocioz"
+    run(command, "config", "--archive", path, "--views", "hable")
+    first = path.read_bytes()
+    run(command, "config", "--archive", path, "-o", scratch / "folder", "--views", "hable")
+    report.check("config --archive: the same bytes", path.read_bytes() == first)
+    with zipfile.ZipFile(path) as archive:
+        inside = {n: archive.read(n) for n in archive.namelist()}
+    beside = {n: c for n, c in files_of(scratch / "folder").items() if n == "config.ocio" or n.startswith("luts/")}
+    report.check("config --archive: config.ocio and its tables", inside == beside, sorted(set(inside) ^ set(beside)))
+
+
 def check_verify(report, command, scratch, folder, picture):
     """Exit 1 when a form is beyond its bound: here a config whose table was made wrong."""
     folder = Path(shutil.copytree(folder, scratch / "config"))
@@ -547,7 +561,18 @@ def usage_errors(bad, picture):
         (["chart"], "-o"), (["chart", "-o", "out.exr", "--width", "10"], "10; 320"),
         (["chart", "-o", "out.exr", "--width", "2000000000", "--height", "2000000000"], "2000000000"),
         (["chart", "-o", "out.exr", "-d", "uint8"], "uint8; half or float"),
-        (["config"], "-o"), (["sheet", "-o", "out.png"], "pictures"), (["sheet", picture], "-o"),
+        (["config"], "-o"),
+        (["config", "-o", "new", "--profile", "3.0"], "profile; 2.1"),
+        (["config", "-o", "new", "--views", "AgY"], "AgY; did you mean AgX"),
+        (["config", "-o", "new", "--views", "hable:nix"], "nix"),
+        (["config", "-o", "new", "--looks", "AgX - Funky"], "AgX - Funky; AgX - Punchy"),
+        (["config", "-o", "new", "--displays", "crt"], "crt"), (["config", "-o", "new", "--working", "xyz"], "xyz"),
+        (["config", "-o", "new", "--operator", "hable"], "--name"),
+        (["config", "-o", "new", "--operator", "hable", "--name", "AgX"], "AgX"),
+        (["config", "-o", "new", "--operator", "hable", "--name", "n" * 64], "63 bytes"),
+        (["config", "-o", "new", "--operator", "hable:white=red", "--name", "Red"], "white; red"),
+        (["config", "-o", "new", "--exposure-views", "99"], "99"),
+        (["config", "--archive", "new.zip"], "new.zip; .ocioz"), (["sheet", "-o", "out.png"], "pictures"), (["sheet", picture], "-o"),
         (["sheet", picture, "-o", "out.png", "--columns", "0"], "--columns; 0"),
         (["sheet", picture, "-o", "out.png", "--cell-width", "1"], "--cell-width; 1"),
         (["verify", "hable", "--display", "srbg"], "did you mean srgb?"),
@@ -581,7 +606,7 @@ def file_errors(bad, picture, scratch):
         (["chart", "-o", "out.xyz"], "xyz"), (["sheet", "a=none.png", "-o", "out.png"], "none.png"),
         (["sheet", bad["half.png"], "-o", "out.png"], "half.png"),
         (["sheet", picture, "-o", "file/out.png"], "file"),
-        (["verify", "hable", "--config", "none"], "none/config.ocio"),
+        (["verify", "hable", "--config", "none"], "none"),
         (["verify", "hable", "--picture", "none.exr"], "none.exr"),
     ]
     return [(arguments, words, "") for arguments, words in cases]
@@ -677,6 +702,7 @@ def main():
         add(check_bake)
         add(check_verify, config, picture)
         add(check_config, config)
+        add(check_archive, config)
         add(check_chart, picture)
         add(check_sheet, picture)
         add(check_full_disks)

@@ -45,6 +45,9 @@ struct ConfigOptions {
 ///                63 bytes, twice the same).
 [[nodiscard]] std::vector<GeneratedFile> make_config(const ConfigOptions& options = {});
 
+/// What make_config() would throw for the options, before anything is computed or written.
+void check_config_options(const ConfigOptions& options);
+
 /// One view that was added to somebody's config, and how far its code values are from the double
 /// reference, for light of all of AP0.
 struct ExtendedView {

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tonewright/lut.h"
+
+namespace tonewright {
+
+/// The bytes of a ZIP archive of the files: with a config.ocio and its tables, what OpenColorIO 2.2
+/// and newer read as an .ocioz. The same bytes for the same files.
+[[nodiscard]] std::string make_archive(const std::vector<GeneratedFile>& files);
+
+}  // namespace tonewright

@@ -475,4 +475,6 @@ WORKING = {"aces_20": "ap1"}
 OUTPUT_PRIMARIES = {"aces_20": output_primaries}
 PEAK = {"aces_20": lambda peak=100.0, **_: peak / 100}
 FROM_DISPLAY = {"aces_20": {"peak": lambda display: min(max(display.peak, 100.0), 10000.0),
-                            "limit": lambda display: display.primaries}}
+                            # The standard's forms for SDR displays are of Rec.709 and P3.
+                            "limit": lambda display: "p3d65" if display.primaries == "rec2020" and not display.is_hdr
+                            else display.primaries}}

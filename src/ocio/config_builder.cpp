@@ -1,0 +1,545 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ocio/config_builder.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include "lut/numbers.h"
+#include "ocio/inverse.h"
+#include "tonewright/engine.h"
+
+namespace tonewright {
+namespace {
+
+OCIO::GroupTransformRcPtr lower_part(LutFiles& luts, const Pipeline& stages,
+                                     const std::string& stem, const std::string& what,
+                                     const Primaries& primaries = kRec709) {
+    const Lowered lowered = lower_to_ocio(stages, {.primaries = primaries});
+    return luts.externalise(lowered.transform, stem, what, lowered.is_exact);
+}
+
+/// The scene reference of our configs is AP0, the display reference XYZ D65.
+Matrix3 from_reference(const Primaries& p) { return rgb_to_rgb(kAP0, p); }
+Matrix3 to_reference(const Primaries& p) { return rgb_to_rgb(p, kAP0); }
+
+Pipeline joined(Pipeline a, const Pipeline& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+}
+
+/// sRGB's straight part goes on below 0; powers do not, and of PQ and HLG only light is shown.
+bool has_code_below_black(const Display& display) {
+    return !display.is_hdr && ReferenceEngine(display.encode)({-1, -1, -1})[0] != 0;
+}
+
+OCIO::ColorSpaceRcPtr make_space(const ConfigModel::Space& space, LutFiles& luts) {
+    using Kind = ConfigModel::SpaceKind;
+    const bool is_display = space.kind == Kind::display || space.kind == Kind::display_reference;
+    OCIO::ColorSpaceRcPtr cs = OCIO::ColorSpace::Create(is_display ? OCIO::REFERENCE_SPACE_DISPLAY
+                                                                   : OCIO::REFERENCE_SPACE_SCENE);
+    cs->setName(space.name.c_str());
+    for (const std::string& alias : space.aliases)
+        cs->addAlias(alias.c_str());
+    cs->setFamily(space.family.c_str());
+    cs->setDescription(space.description.c_str());
+    cs->setEncoding(space.encoding.c_str());
+    cs->setBitDepth(OCIO::BIT_DEPTH_F32);
+    for (const std::string& category : space.categories)
+        cs->addCategory(category.c_str());
+    cs->setIsData(space.kind == Kind::data);
+
+    const auto set = [&](const Pipeline& to, const Pipeline& from, const std::string& stem) {
+        if (!simplify(to).empty()) {
+            cs->setTransform(lower_part(luts, to, stem + "_decode", space.name + " to reference"),
+                             OCIO::COLORSPACE_DIR_TO_REFERENCE);
+        }
+        if (!simplify(from).empty()) {
+            cs->setTransform(lower_part(luts, from, stem + "_encode", "reference to " + space.name),
+                             OCIO::COLORSPACE_DIR_FROM_REFERENCE);
+        }
+    };
+    switch (space.kind) {
+        case Kind::scene_linear:
+            // One matrix; OCIO inverts it.
+            if (!simplify({MatrixStage{to_reference(*space.primaries)}}).empty()) {
+                cs->setTransform(
+                    lower_part(luts, {MatrixStage{to_reference(*space.primaries)}}, "", space.name),
+                    OCIO::COLORSPACE_DIR_TO_REFERENCE);
+            }
+            break;
+        case Kind::builtin: {
+            OCIO::BuiltinTransformRcPtr builtin = OCIO::BuiltinTransform::Create();
+            builtin->setStyle(space.style.c_str());
+            cs->setTransform(builtin, OCIO::COLORSPACE_DIR_TO_REFERENCE);
+            break;
+        }
+        case Kind::texture:
+            set(joined(space.display->decode, {MatrixStage{to_reference(*space.primaries)}}),
+                joined({MatrixStage{from_reference(*space.primaries)}}, space.display->encode),
+                space.display->id);
+            break;
+        case Kind::display: {
+            const Matrix3 to_xyz = rgb_to_xyz_d65(*space.primaries);
+            Pipeline from = {MatrixStage{inverse(to_xyz)}};
+            // Where the slope at black is infinite, tables are finest where light is limited: twice
+            // the display's largest leaves room for what an application does with its result.
+            if (!has_code_below_black(*space.display))
+                from.push_back(ClampStage{0, 2 * space.display->largest_light});
+            set(joined(space.display->decode, {MatrixStage{to_xyz}}),
+                joined(from, space.display->encode), space.display->id);
+            break;
+        }
+        case Kind::data:
+        case Kind::display_reference:
+            break;
+    }
+    return cs;
+}
+
+/// Scene reference -> display reference.
+///
+/// The matrix to the operator's primaries comes first and its clamp right behind: with an input
+/// space of the same primaries OCIO multiplies the two matrices to the identity, and the clamp is
+/// the first thing that a pixel meets, NaN and infinities included. A Range before the matrix would
+/// keep the matrices apart and cost 1e-6 by float32 cancellation.
+Pipeline view_stages(const ResolvedOperator& op, double exposure_stops, const DisplayLimit& limit) {
+    Pipeline stages = {
+        MatrixStage{scale(from_reference(op.op->working), std::exp2(exposure_stops))}};
+    for (const Pipeline& part : {op.build(), display_light_stages(op, limit)})
+        stages.insert(stages.end(), part.begin(), part.end());
+    stages.push_back(MatrixStage{rgb_to_xyz_d65(limit.primaries)});
+    return stages;
+}
+
+/// "AgX - HDR 1000 nits" on "Rec.2100-PQ" -> "agx_hdr_1000_nits_rec2100_pq".
+std::string output_alias(const std::string& view, const std::string& display) {
+    std::string alias = "out_";
+    for (std::size_t i = 0; i < view.size(); ++i) {
+        const char c = view[i];
+        const bool is_sign =
+            i + 1 < view.size() && std::isdigit(static_cast<unsigned char>(view[i + 1])) != 0;
+        if (is_sign && c == '+') alias += "plus";
+        if (is_sign && c == '-') alias += "minus";
+        const bool is_word = std::isalnum(static_cast<unsigned char>(c)) != 0;
+        if (is_word) alias += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+        if (!is_word && alias.back() != '_') alias += '_';
+    }
+    return alias + "_" + display;
+}
+
+/// A view as a colour space: write nodes, textures and `--colorconvert` know no views.
+OCIO::ColorSpaceRcPtr make_output_space(const DisplayedView& shown, const std::string& display) {
+    OCIO::ColorSpaceRcPtr cs = OCIO::ColorSpace::Create(OCIO::REFERENCE_SPACE_SCENE);
+    cs->setName(("Output - " + shown.name + " - " + display).c_str());
+    if (display == shown.display->title)
+        cs->addAlias(output_alias(shown.name, shown.display->id).c_str());
+    cs->setFamily(("Output/" + display).c_str());
+    cs->setDescription(
+        ("The picture of the view " + shown.name + " on " + display + ", in its code values.")
+            .c_str());
+    cs->setEncoding(shown.display->is_hdr ? "hdr-video" : "sdr-video");
+    cs->setBitDepth(OCIO::BIT_DEPTH_F32);
+    cs->addCategory("file-io");
+    OCIO::DisplayViewTransformRcPtr view = OCIO::DisplayViewTransform::Create();
+    view->setSrc(find_input_space("lin_ap0").title.c_str());
+    view->setDisplay(display.c_str());
+    view->setView(shown.name.c_str());
+    cs->setTransform(view, OCIO::COLORSPACE_DIR_FROM_REFERENCE);
+    return cs;
+}
+
+/// The space that is linear in these primaries.
+const InputSpace& space_of(const Primaries& primaries) {
+    for (const InputSpace& space : all_input_spaces()) {
+        if (space.primaries == primaries) return space;
+    }
+    throw Error("config: no space has the primaries " + std::string(primaries.name));
+}
+
+void append(OCIO::GroupTransformRcPtr& group, const Pipeline& stages) {
+    const Lowered lowered = lower_to_ocio(stages);  // nothing, of identities
+    for (int i = 0; i < lowered.transform->getNumTransforms(); ++i)
+        group->appendTransform(lowered.transform->getTransform(i));
+}
+
+/// Display reference -> scene reference, of what the view transform makes; null where OpenColorIO's
+/// own inversion of the view transform is as good: its tables and cubes, on the CPU.
+OCIO::GroupTransformRcPtr way_back(const ConfigModel::View& view, const DisplayedView& shown) {
+    const DisplayLimit limit = display_limit(shown.op, *shown.display);
+    const OCIO::GroupTransformRcPtr inverted = invert_light(shown.op, limit);
+    if (!inverted) return nullptr;
+    OCIO::GroupTransformRcPtr group = OCIO::GroupTransform::Create();
+    append(group, {MatrixStage{inverse(rgb_to_xyz_d65(limit.primaries))}});
+    for (int i = 0; i < inverted->getNumTransforms(); ++i)
+        group->appendTransform(inverted->getTransform(i));
+    append(
+        group,
+        {MatrixStage{scale(to_reference(shown.op.op->working), std::exp2(-view.exposure_stops))}});
+    return group;
+}
+
+/// How far code values of the view's own pictures are from themselves after the way back and the
+/// view once more, by the reference.
+ErrorStats measure_round_trip(const View& view, const OCIO::GroupTransformRcPtr& back,
+                              OCIO::OptimizationFlags flags, const ProbeSet& probes) {
+    const Display& display = find_display(view.display);
+    const ReferenceEngine engine(build_view(view));
+    OCIO::GroupTransformRcPtr whole = OCIO::GroupTransform::Create();
+    append(whole, joined(display.decode, {MatrixStage{rgb_to_xyz_d65(display.primaries)}}));
+    whole->appendTransform(back);
+    append(whole, {MatrixStage{rgb_to_rgb(kAP0, find_input_space(view.input).primaries)}});
+    std::vector<float> in;
+    for (std::size_t i = 0; i < probes.size(); ++i) {
+        if (!probes.is_non_negative(i) || probes.kind[i] == ProbeKind::special) continue;
+        in.insert(in.end(), &probes.rgb[3 * i], &probes.rgb[3 * i] + 3);
+    }
+    const std::size_t count = in.size() / 3;
+    std::vector<double> codes(in.size());
+    engine.run_rgb(in.data(), codes.data(), count);
+    const std::vector<float> given(codes.begin(), codes.end());
+    std::vector<float> scene(in.size());
+    Lowered lowered;
+    lowered.transform = whole;
+    OcioCpu(make_processor(lowered), flags).run_rgb(given.data(), scene.data(), count);
+    std::vector<double> again(in.size());
+    engine.run_rgb(scene.data(), again.data(), count);
+    std::vector<double> errors;
+    for (std::size_t i = 0; i < count; ++i) {
+        double error = 0;
+        for (std::size_t c = 0; c < 3; ++c)
+            error = std::max(error, std::fabs(again[3 * i + c] - codes[3 * i + c]));
+        errors.push_back(error);
+    }
+    return summarise(errors);
+}
+
+/// Beyond this, what comes back is another picture.
+bool is_way_back(const ErrorStats& lossless) { return lossless.mean <= 5e-3; }
+
+/// OCIO's CPU path of the view against the reference, for colors of the input space >= 0.
+ViewError measure_view(const View& view, const ProbeSet& probes) {
+    const Pipeline stages = build_view(view);
+    const Lowered lowered = lower_to_ocio(stages, {.primaries = view.op.op->working});
+    std::vector<double> truth(probes.rgb.size());
+    ReferenceEngine(stages).run_rgb(probes.rgb.data(), truth.data(), probes.size());
+    std::vector<float> shown(probes.rgb.size());
+    OcioCpu(make_processor(lowered)).run_rgb(probes.rgb.data(), shown.data(), probes.size());
+    std::vector<double> errors;
+    std::vector<double> a;
+    std::vector<double> b;
+    for (std::size_t i = 0; i < probes.size(); ++i) {
+        if (!probes.is_non_negative(i) || probes.kind[i] == ProbeKind::special) continue;
+        errors.push_back(channel_error(&truth[3 * i], &shown[3 * i]));
+        for (std::size_t c = 0; c < 3; ++c) {
+            a.push_back(truth[3 * i + c]);
+            b.push_back(static_cast<double>(shown[3 * i + c]));
+        }
+    }
+    ViewError result;
+    result.is_exact = lowered.is_exact;
+    result.in_gamut = summarise(errors);
+    result.delta_e = summarise(delta_e_itp(find_display(view.display), a, b)).max;
+    return result;
+}
+
+}  // namespace
+
+std::vector<DisplayedView> displayed_views(const ConfigModel::View& view,
+                                           const std::vector<const Display*>& displays) {
+    struct Form {
+        std::string name;
+        Pipeline stages;
+        std::array<Expr, 3> rgb;
+    };
+    std::vector<Form> forms;
+    std::vector<std::size_t> form_of;
+    std::vector<ResolvedOperator> op_of;
+    std::vector<const Display*> its_displays;
+    for (const Display* display : displays) {
+        if (!view.is_on(*display)) continue;
+        its_displays.push_back(display);
+        const ResolvedOperator op =
+            make_view(view.op, find_input_space("lin_ap0").id, 0, display->id).op;
+        op_of.push_back(op);
+        const DisplayLimit limit = display_limit(op, *display);
+        const Pipeline stages = view_stages(op, view.exposure_stops, limit);
+        const std::array<Expr, 3> rgb = compose(stages);
+        std::size_t i = 0;
+        while (i < forms.size() &&
+               !(same(forms[i].rgb[0], rgb[0]) && same(forms[i].rgb[1], rgb[1]) &&
+                 same(forms[i].rgb[2], rgb[2])))
+            ++i;
+        if (i == forms.size()) {
+            std::string where(limit.primaries.name);
+            if (limit.peak > 1) where += fmt::format(", {:g} nit", limit.peak * kReferenceWhite);
+            forms.push_back({view.name + " (" + where + ")", stages, rgb});
+        }
+        form_of.push_back(i);
+    }
+    std::vector<DisplayedView> shown;
+    for (std::size_t d = 0; d < its_displays.size(); ++d) {
+        const Form& form = forms[form_of[d]];
+        shown.push_back({forms.size() == 1 ? view.name : form.name, form.stages, its_displays[d],
+                         config_view_name(view.name, op_of[d], *its_displays[d]), op_of[d]});
+    }
+    return shown;
+}
+
+void ConfigBuilder::add_spaces() {
+    for (const auto& space : model_.spaces)
+        config_->addColorSpace(make_space(space, luts_));
+    for (const auto& [role, space] : model_.roles)
+        config_->setRole(role.c_str(), space.c_str());
+}
+
+void ConfigBuilder::add_untonemapped() {
+    OCIO::ViewTransformRcPtr plain = OCIO::ViewTransform::Create(OCIO::REFERENCE_SPACE_SCENE);
+    plain->setName(kUntonemappedView);
+    plain->setDescription("Scene light shown as it is, not limited: 1 is display white.");
+    plain->setTransform(
+        lower_part(luts_, {MatrixStage{rgb_to_xyz_d65(kAP0)}}, "", kUntonemappedView),
+        OCIO::VIEWTRANSFORM_DIR_FROM_REFERENCE);
+    config_->addViewTransform(plain);
+    config_->setDefaultViewTransformName(kUntonemappedView);
+}
+
+void ConfigBuilder::add_view_transforms() {
+    for (const auto& view : model_.views) {
+        displayed_[view.name] = displayed_views(view, model_.displays);
+        std::map<std::string, double> made;  // transform -> its largest error
+        for (const DisplayedView& shown : displayed_[view.name]) {
+            if (!made.contains(shown.transform))
+                made[shown.transform] = add_view_transform(view, shown, made.empty());
+            largest_errors_[view.name][shown.display->title] = made[shown.transform];
+        }
+    }
+}
+
+void ConfigBuilder::add_looks() {
+    for (const auto& look : model_.looks) {
+        OCIO::LookRcPtr added = OCIO::Look::Create();
+        added->setName(look.name.c_str());
+        added->setDescription(look.description.c_str());
+        const OCIO::GroupTransformRcPtr transform =
+            lower_part(luts_, look.stages, look.op->id + "_look", look.name, look.op->working);
+        if (!scene_) {
+            added->setProcessSpace(space_of(look.op->working).title.c_str());
+            added->setTransform(transform);
+        } else {
+            OCIO::GroupTransformRcPtr group = OCIO::GroupTransform::Create();
+            append(group, {MatrixStage{from_reference(look.op->working)}});
+            group->appendTransform(transform);
+            append(group, {MatrixStage{to_reference(look.op->working)}});
+            added->setProcessSpace(scene_->getName());
+            added->setTransform(group);
+        }
+        config_->addLook(added);
+    }
+}
+
+void ConfigBuilder::add_views() {
+    std::vector<std::string> active;
+    const auto activate = [&](const std::string& name) {
+        if (std::find(active.begin(), active.end(), name) == active.end()) active.push_back(name);
+    };
+    for (const auto& view : model_.views) {
+        const std::vector<DisplayedView>& forms = displayed_[view.name];
+        for (const DisplayedView& shown : forms)
+            activate(shown.name);
+        const bool is_shared = forms.size() == model_.displays.size() &&
+                               std::all_of(forms.begin(), forms.end(), [&](const auto& shown) {
+                                   return shown.transform == view.name && shown.name == view.name;
+                               });
+        if (is_shared) {
+            add_shared_view(view.name, view.name, OCIO::OCIO_VIEW_USE_DISPLAY_NAME,
+                            view.description);
+            continue;
+        }
+        for (const DisplayedView& shown : forms) {
+            config_->addDisplayView(shown.display->title.c_str(), shown.name.c_str(),
+                                    shown.transform.c_str(), shown.display->title.c_str(), "", "",
+                                    view.description.c_str());
+        }
+    }
+    add_shared_view(kUntonemappedView, kUntonemappedView, OCIO::OCIO_VIEW_USE_DISPLAY_NAME,
+                    "Scene light shown as it is, not limited.");
+    add_shared_view(kRawView, "", kDataSpace, "The numbers as they are.");
+    activate(kUntonemappedView);
+    activate(kRawView);
+    std::vector<std::string> displays;
+    for (const Display* display : model_.displays)
+        displays.push_back(display->title);
+    config_->setActiveDisplays(fmt::format("{}", fmt::join(displays, ", ")).c_str());
+    config_->setActiveViews(fmt::format("{}", fmt::join(active, ", ")).c_str());
+}
+
+void ConfigBuilder::add_output_spaces() {
+    for (const auto& view : model_.views) {
+        for (const DisplayedView& shown : displayed_[view.name])
+            config_->addColorSpace(make_output_space(shown, shown.display->title));
+    }
+}
+
+void ConfigBuilder::add_views_to(const Display& display, const std::string& host_display,
+                                 const std::string& host_space) {
+    std::string active = config_->getActiveViews();
+    for (const auto& view : model_.views) {
+        for (const DisplayedView& shown : displayed_[view.name]) {
+            if (shown.display != &display) continue;
+            config_->addDisplayView(host_display.c_str(), shown.name.c_str(),
+                                    shown.transform.c_str(), host_space.c_str(), "", "",
+                                    view.description.c_str());
+            // An empty list means all.
+            const std::string listed = ", " + active + ",";
+            if (!active.empty() && listed.find(", " + shown.name + ",") == std::string::npos)
+                active += ", " + shown.name;
+            const OCIO::ColorSpaceRcPtr space = make_output_space(shown, host_display);
+            OCIO::GroupTransformRcPtr whole = OCIO::GroupTransform::Create();
+            append_conversion(whole, *scene_, OCIO::COLORSPACE_DIR_FROM_REFERENCE);
+            OCIO::DisplayViewTransformRcPtr through = OCIO::DisplayViewTransform::Create();
+            through->setSrc(scene_->getName());
+            through->setDisplay(host_display.c_str());
+            through->setView(shown.name.c_str());
+            whole->appendTransform(through);
+            space->setTransform(whole, OCIO::COLORSPACE_DIR_FROM_REFERENCE);
+            config_->addColorSpace(space);
+        }
+    }
+    config_->setActiveViews(active.c_str());
+}
+
+void ConfigBuilder::add_file_rules() {
+    const OCIO::FileRulesRcPtr rules = config_->getFileRules()->createEditableCopy();
+    std::size_t index = 0;
+    for (const auto& rule : model_.file_rules) {
+        if (rule.regex.empty()) {
+            rules->insertRule(index++, rule.name.c_str(), rule.space.c_str(), "*",
+                              rule.extension.c_str());
+        } else {
+            rules->insertRule(index++, rule.name.c_str(), rule.space.c_str(), rule.regex.c_str());
+        }
+    }
+    rules->setDefaultRuleColorSpace(model_.default_space.c_str());
+    config_->setFileRules(rules);
+}
+
+std::string ConfigBuilder::text() const {
+    std::ostringstream yaml;
+    config_->serialize(yaml);
+    return yaml.str();
+}
+
+OCIO::GroupTransformRcPtr ConfigBuilder::between_references(
+    const OCIO::GroupTransformRcPtr& group) const {
+    if (!scene_) return group;
+    OCIO::GroupTransformRcPtr whole = OCIO::GroupTransform::Create();
+    append_conversion(whole, *scene_, OCIO::COLORSPACE_DIR_FROM_REFERENCE);
+    for (int i = 0; i < group->getNumTransforms(); ++i)
+        whole->appendTransform(group->getTransform(i));
+    append_conversion(whole, *display_, OCIO::COLORSPACE_DIR_TO_REFERENCE);
+    return whole;
+}
+
+OCIO::GroupTransformRcPtr ConfigBuilder::back_between_references(
+    const OCIO::GroupTransformRcPtr& group) const {
+    if (!scene_) return group;
+    OCIO::GroupTransformRcPtr whole = OCIO::GroupTransform::Create();
+    append_conversion(whole, *display_, OCIO::COLORSPACE_DIR_FROM_REFERENCE);
+    for (int i = 0; i < group->getNumTransforms(); ++i)
+        whole->appendTransform(group->getTransform(i));
+    append_conversion(whole, *scene_, OCIO::COLORSPACE_DIR_TO_REFERENCE);
+    return whole;
+}
+
+void ConfigBuilder::append_conversion(OCIO::GroupTransformRcPtr& group,
+                                      const OCIO::ColorSpace& space,
+                                      OCIO::ColorSpaceDirection direction) {
+    const auto other = direction == OCIO::COLORSPACE_DIR_FROM_REFERENCE
+                           ? OCIO::COLORSPACE_DIR_TO_REFERENCE
+                           : OCIO::COLORSPACE_DIR_FROM_REFERENCE;
+    if (const auto given = space.getTransform(direction)) {
+        group->appendTransform(given->createEditableCopy());
+    } else if (const auto inverse = space.getTransform(other)) {
+        const OCIO::TransformRcPtr copy = inverse->createEditableCopy();
+        copy->setDirection(
+            OCIO::CombineTransformDirections(copy->getDirection(), OCIO::TRANSFORM_DIR_INVERSE));
+        group->appendTransform(copy);
+    }
+}
+
+void ConfigBuilder::add_shared_view(const std::string& name, const std::string& transform,
+                                    const std::string& space, const std::string& description) {
+    config_->addSharedView(name.c_str(), transform.c_str(), space.c_str(), "", "",
+                           description.c_str());
+    for (const Display* display : model_.displays)
+        config_->addDisplaySharedView(display->title.c_str(), name.c_str());
+}
+
+double ConfigBuilder::add_view_transform(const ConfigModel::View& view, const DisplayedView& shown,
+                                         bool is_first) {
+    const View measured = make_view(view.op, "lin_rec709", view.exposure_stops, shown.display->id);
+    ViewError error = measure_view(measured, probes_);
+    const Lowered forward = lower_to_ocio(shown.stages, {.primaries = view.op.op->working});
+    const OCIO::GroupTransformRcPtr own_back = way_back(view, shown);
+    OCIO::GroupTransformRcPtr back = own_back;
+    if (!back) {
+        back = OCIO::GroupTransform::Create();
+        for (int i = 0; i < forward.transform->getNumTransforms(); ++i)
+            back->appendTransform(forward.transform->getTransform(i));
+        back->setDirection(OCIO::TRANSFORM_DIR_INVERSE);
+    }
+    // OpenColorIO takes seconds to invert a cube: once for a view.
+    const bool is_diagnostic = view.op.op->is_diagnostic;
+    const bool is_measured = !is_diagnostic && (own_back || is_first);
+    if (is_measured) {
+        error.round_trip_lossless =
+            measure_round_trip(measured, back, OCIO::OPTIMIZATION_LOSSLESS, few_probes_);
+        error.round_trip =
+            measure_round_trip(measured, back, OCIO::OPTIMIZATION_DEFAULT, few_probes_);
+        error.has_way_back = is_way_back(error.round_trip_lossless);
+    }
+    errors_.emplace(view.name, error);
+    std::string text = fmt::format(
+        "{} Error against the double reference, {} code values, OCIO CPU: max {}, 99.9 % {}.",
+        view.description, shown.display->title, rounded_up(error.in_gamut.max),
+        rounded_up(error.in_gamut.p999));
+    if (!error.is_exact) {
+        const ViewError wide = measure_view(
+            make_view(view.op, "lin_ap1", view.exposure_stops, shown.display->id), wide_probes_);
+        text += fmt::format(
+            " A 3D table: mean {}, dE ITP at most {}; colors of all of AP1: max {}, 99.9 % {}, "
+            "mean {}.",
+            rounded_up(error.in_gamut.mean), rounded_up(error.delta_e),
+            rounded_up(wide.in_gamut.max), rounded_up(wide.in_gamut.p999),
+            rounded_up(wide.in_gamut.mean));
+    }
+    if (error.has_way_back) {
+        text += fmt::format(" And back: 99.9 % {} without loss, {} by default.",
+                            rounded_up(error.round_trip_lossless.p999),
+                            rounded_up(error.round_trip.p999));
+    } else if (is_measured || is_diagnostic) {
+        text += " There is no way back.";
+    }
+    OCIO::ViewTransformRcPtr vt = OCIO::ViewTransform::Create(OCIO::REFERENCE_SPACE_SCENE);
+    vt->setName(shown.transform.c_str());
+    vt->setDescription(text.c_str());
+    vt->setTransform(between_references(luts_.externalise(forward.transform, view.op.op->id,
+                                                          view.op.op->title, forward.is_exact)),
+                     OCIO::VIEWTRANSFORM_DIR_FROM_REFERENCE);
+    if (own_back) {
+        vt->setTransform(
+            back_between_references(luts_.externalise(own_back, view.op.op->id + "_inverse",
+                                                      view.op.op->title + ", inverse", true)),
+            OCIO::VIEWTRANSFORM_DIR_TO_REFERENCE);
+    }
+    config_->addViewTransform(vt);
+    return error.in_gamut.max;
+}
+
+}  // namespace tonewright

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "engine/error_metric.h"
+#include "engine/probe.h"
+#include "ocio/lut_files.h"
+#include "ocio/model.h"
+
+namespace tonewright {
+
+/// The view transform that a view takes on a display.
+struct DisplayedView {
+    std::string transform;
+    Pipeline stages;
+    const Display* display;
+    /// What the view is called on the display.
+    std::string name;
+    ResolvedOperator op;
+};
+
+/// One view transform for all displays that it is the same for. "AgX", or where there are several,
+/// "AgX (P3-D65)", "AgX (Rec.2020, 1000 nit)".
+[[nodiscard]] std::vector<DisplayedView> displayed_views(
+    const ConfigModel::View& view, const std::vector<const Display*>& displays);
+
+/// How far a view is from the reference, and its way back from itself.
+struct ViewError {
+    ErrorStats in_gamut;
+    double delta_e = 0;
+    bool is_exact = true;
+    /// Of the way back without loss, and as applications have it: with OpenColorIO's default
+    /// optimisation, which inverts a cube by a table of 48^3, as its shaders always do.
+    ErrorStats round_trip_lossless;
+    ErrorStats round_trip;
+    bool has_way_back = false;
+};
+
+/// Makes the parts of a config from the model and adds them to an OCIO one: to a new one, or to
+/// somebody's.
+class ConfigBuilder {
+  public:
+    ConfigBuilder(const ConfigModel& model, OCIO::ConfigRcPtr config, std::string lut_folder)
+        : model_(model), config_(std::move(config)), luts_(std::move(lut_folder)) {}
+
+    /// The config is somebody's, with references of its own.
+    /// @param scene, display  what its interchange spaces are of its references
+    void set_references(OCIO::ConstColorSpaceRcPtr scene, OCIO::ConstColorSpaceRcPtr display) {
+        scene_ = std::move(scene);
+        display_ = std::move(display);
+    }
+
+    void add_spaces();
+    void add_untonemapped();
+    void add_view_transforms();
+    void add_looks();
+
+    /// The views of a new config: shared where they are the same on every display.
+    void add_views();
+    void add_output_spaces();
+
+    /// On somebody's display, which shows what `display` does through its own space.
+    void add_views_to(const Display& display, const std::string& host_display,
+                      const std::string& host_space);
+
+    void add_file_rules();
+
+    /// The config as YAML.
+    [[nodiscard]] std::string text() const;
+
+    [[nodiscard]] const std::vector<GeneratedFile>& tables() const { return luts_.files(); }
+    [[nodiscard]] const std::vector<DisplayedView>& displayed(const std::string& view) const {
+        return displayed_.at(view);
+    }
+    /// Largest code value error of each view on each display.
+    using LargestErrors = std::map<std::string, std::map<std::string, double>>;
+    [[nodiscard]] const LargestErrors& largest_errors() const { return largest_errors_; }
+    /// Of each view, on the first display.
+    [[nodiscard]] const std::map<std::string, ViewError>& errors() const { return errors_; }
+
+  private:
+    /// The config's scene reference -> what this is given: ACES2065-1 -> ... -> the config's
+    /// display reference, of what puts out CIE XYZ D65.
+    [[nodiscard]] OCIO::GroupTransformRcPtr between_references(
+        const OCIO::GroupTransformRcPtr& group) const;
+
+    /// The same the other way.
+    [[nodiscard]] OCIO::GroupTransformRcPtr back_between_references(
+        const OCIO::GroupTransformRcPtr& group) const;
+
+    static void append_conversion(OCIO::GroupTransformRcPtr& group, const OCIO::ColorSpace& space,
+                                  OCIO::ColorSpaceDirection direction);
+
+    void add_shared_view(const std::string& name, const std::string& transform,
+                         const std::string& space, const std::string& description);
+
+    /// @return its largest error
+    double add_view_transform(const ConfigModel::View& view, const DisplayedView& shown,
+                              bool is_first);
+
+    const ConfigModel& model_;
+    OCIO::ConfigRcPtr config_;
+    OCIO::ConstColorSpaceRcPtr scene_, display_;  // null: ours
+    LutFiles luts_;
+    std::map<std::string, std::vector<DisplayedView>> displayed_;
+    LargestErrors largest_errors_;
+    std::map<std::string, ViewError> errors_;
+    ProbeSet probes_ = make_probes(find_input_space("lin_rec709"), {9, 40000});
+    ProbeSet wide_probes_ = make_probes(find_input_space("lin_ap1"), {9, 40000});
+    ProbeSet few_probes_ = make_probes(find_input_space("lin_rec709"), {3, 1000});
+};
+
+}  // namespace tonewright

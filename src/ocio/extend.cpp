@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <OpenColorIO/OpenColorIO.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+
+#include "ocio/config_builder.h"
+#include "tonewright/engine.h"
+#include "tonewright/ocio.h"
+
+namespace tonewright {
+namespace {
+
+/// A display of somebody's config that shows what one of ours does.
+struct HostDisplay {
+    std::string name;
+    std::string space;
+    const Display* ours;
+    double difference;  // of code values
+};
+
+std::vector<float> run_processor(const OCIO::ConstProcessorRcPtr& processor,
+                                 std::vector<float> rgb) {
+    OcioCpu(processor, OCIO::OPTIMIZATION_LOSSLESS).run_rgb(rgb.data(), rgb.data(), rgb.size() / 3);
+    return rgb;
+}
+
+/// How far the host's display space is from ours, for light that both can show.
+double display_difference(const OCIO::ConstConfigRcPtr& config, const std::string& space,
+                          const Display& ours) {
+    const std::vector<Vector3> light = {{1, 1, 1},          {0.18, 0.18, 0.18}, {0.9, 0.1, 0.02},
+                                        {0.05, 0.8, 0.1},   {0.1, 0.02, 0.7},   {0.5, 0.5, 0.01},
+                                        {0.002, 0.01, 0.05}};
+    const ReferenceEngine encode(ours.encode);
+    std::vector<float> xyz;
+    std::vector<double> codes;
+    for (const Vector3& rgb : light) {
+        for (const double x : multiply(rgb_to_xyz_d65(ours.primaries), rgb))
+            xyz.push_back(static_cast<float>(x));
+        for (const double x : encode(rgb))
+            codes.push_back(x);
+    }
+    const std::vector<float> shown =
+        run_processor(config->getProcessor("cie_xyz_d65_interchange", space.c_str()), xyz);
+    double largest = 0;
+    for (std::size_t i = 0; i < shown.size(); ++i)
+        largest = std::max(largest, std::fabs(static_cast<double>(shown[i]) - codes[i]));
+    return largest;
+}
+
+std::vector<HostDisplay> match_displays(const OCIO::ConstConfigRcPtr& config,
+                                        const std::vector<std::string>& wanted) {
+    std::vector<HostDisplay> matched;
+    std::vector<std::string> names;
+    for (int d = 0; d < config->getNumDisplays(); ++d) {
+        const std::string name = config->getDisplay(d);
+        names.push_back(name);
+        if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), name) == wanted.end())
+            continue;
+        for (int v = 0; v < config->getNumViews(name.c_str()); ++v) {
+            const char* view = config->getView(name.c_str(), v);
+            const char* transform = config->getDisplayViewTransformName(name.c_str(), view);
+            if (!transform || !*transform) continue;
+            std::string space = config->getDisplayViewColorSpaceName(name.c_str(), view);
+            if (space == OCIO::OCIO_VIEW_USE_DISPLAY_NAME) space = name;
+            const Display* nearest = nullptr;
+            double least = 1;
+            for (const Display& ours : all_displays()) {
+                const double difference = display_difference(config, space, ours);
+                if (difference >= least) continue;
+                least = difference;
+                nearest = &ours;
+            }
+            // OpenColorIO's own displays are up to 1e-4 from the standards.
+            if (nearest && least < 1e-3) matched.push_back({name, space, nearest, least});
+            break;
+        }
+    }
+    for (const std::string& name : wanted) {
+        if (std::find(names.begin(), names.end(), name) == names.end()) {
+            throw Error("config: display is " + name + "; expected " + join_choices(names) +
+                        did_you_mean(name, names));
+        }
+    }
+    return matched;
+}
+
+/// Every space there and back, every view of every display: what a config makes of some colors.
+std::map<std::string, std::vector<float>> pictures_of(const OCIO::ConstConfigRcPtr& config) {
+    const std::vector<float> colors = {0.18F, 0.18F,  0.18F, 1,    1,    1,     0.8F, 0.1F, 0.02F,
+                                       0.1F,  0.7F,   0.1F,  0.1F, 0.1F, 0.9F,  4,    2,    9,
+                                       0,     0.002F, 0.01F, 0,    0,    -0.1F, 0.5F, 0.3F, 0.2F};
+    std::map<std::string, std::vector<float>> pictures;
+    const auto add = [&](const std::string& name, const auto& make_processor_of) {
+        try {
+            pictures[name] = run_processor(make_processor_of(), colors);
+        } catch (const OCIO::Exception&) {
+            pictures[name] = {};  // it did not work before either
+        }
+    };
+    const int count =
+        config->getNumColorSpaces(OCIO::SEARCH_REFERENCE_SPACE_ALL, OCIO::COLORSPACE_ALL);
+    for (int i = 0; i < count; ++i) {
+        const std::string name = config->getColorSpaceNameByIndex(OCIO::SEARCH_REFERENCE_SPACE_ALL,
+                                                                  OCIO::COLORSPACE_ALL, i);
+        add("space " + name,
+            [&] { return config->getProcessor(name.c_str(), "aces_interchange"); });
+        add("to space " + name,
+            [&] { return config->getProcessor("aces_interchange", name.c_str()); });
+    }
+    for (int d = 0; d < config->getNumDisplays(); ++d) {
+        const std::string display = config->getDisplay(d);
+        for (int v = 0; v < config->getNumViews(display.c_str()); ++v) {
+            const std::string view = config->getView(display.c_str(), v);
+            add("view " + display + " / " + view, [&] {
+                return config->getProcessor("aces_interchange", display.c_str(), view.c_str(),
+                                            OCIO::TRANSFORM_DIR_FORWARD);
+            });
+        }
+    }
+    return pictures;
+}
+
+OCIO::ConfigRcPtr read_host(const std::string& path) {
+    try {
+        const OCIO::ConfigRcPtr config =
+            OCIO::Config::CreateFromFile(path.c_str())->createEditableCopy();
+        config->setProcessorCacheFlags(OCIO::PROCESSOR_CACHE_OFF);
+        return config;
+    } catch (const OCIO::Exception& e) {
+        throw FileError("read: " + path + ": " + e.what());
+    }
+}
+
+}  // namespace
+
+ExtendedConfig extend_config(const std::string& path, const ConfigOptions& options) {
+    const OCIO::ConfigRcPtr config = read_host(path);
+    for (const char* role : {"aces_interchange", "cie_xyz_d65_interchange"}) {
+        if (!config->hasRole(role)) {
+            throw Error(
+                "config: " + path + " has no role " + role +
+                "; expected both interchange roles: nothing else says what its numbers are");
+        }
+    }
+    const std::map<std::string, std::vector<float>> before = pictures_of(config);
+    const std::vector<HostDisplay> hosts = match_displays(config, options.displays);
+    if (hosts.empty()) {
+        throw Error(
+            "config: no display of " + path +
+            " is one of ours, shown through a view transform; expected one of sRGB, Display "
+            "P3, Rec.1886, Rec.2020, 2.2, PQ or HLG");
+    }
+    ConfigOptions chosen = options;
+    chosen.displays.clear();
+    for (const HostDisplay& host : hosts)
+        chosen.displays.push_back(host.ours->id);
+    const ConfigModel model = make_config_model(chosen);
+
+    // Nothing of theirs is replaced.
+    const auto refuse = [&](const std::string& what, const std::string& name) {
+        throw Error("config: " + path + " has " + what + " " + name +
+                    " already; expected another name (--operator ID --name NAME)");
+    };
+    for (const auto& look : model.looks) {
+        if (config->getLook(look.name.c_str())) refuse("a look", look.name);
+    }
+    for (const auto& view : model.views) {
+        for (const DisplayedView& shown : displayed_views(view, model.displays)) {
+            if (config->getViewTransform(shown.transform.c_str()))
+                refuse("a view transform", shown.transform);
+            for (const HostDisplay& host : hosts) {
+                if (host.ours != shown.display) continue;
+                for (int v = 0; v < config->getNumViews(host.name.c_str()); ++v) {
+                    if (shown.name == config->getView(host.name.c_str(), v))
+                        refuse("on the display " + host.name + " a view", shown.name);
+                }
+                const std::string space = "Output - " + shown.name + " - " + host.name;
+                if (config->getColorSpace(space.c_str())) refuse("a space", space);
+            }
+        }
+    }
+
+    constexpr const char* kFolder = "tonewright";
+    ConfigBuilder builder(model, config, kFolder);
+    builder.set_references(config->getColorSpace("aces_interchange"),
+                           config->getColorSpace("cie_xyz_d65_interchange"));
+    config->addSearchPath(kFolder);
+    builder.add_view_transforms();
+    builder.add_looks();
+    for (const HostDisplay& host : hosts)
+        builder.add_views_to(*host.ours, host.name, host.space);
+
+    ExtendedConfig result;
+    result.files = builder.tables();
+    result.text = builder.text();
+    result.check = [before, hosts, model, path, bounds = [&] {
+        std::map<std::string, double> all;
+        for (const auto& view : model.views) {
+            for (const DisplayedView& shown : builder.displayed(view.name))
+                all[view.name + shown.display->id] =
+                    builder.largest_errors().at(view.name).at(shown.display->title);
+        }
+        return all;
+    }()](const std::string& written) {
+        const OCIO::ConfigRcPtr made = read_host(written);
+        try {
+            made->validate();
+        } catch (const OCIO::Exception& e) {
+            throw Error("config: OpenColorIO refuses the result: " + std::string(e.what()));
+        }
+        const std::map<std::string, std::vector<float>> after = pictures_of(made);
+        for (const auto& [name, picture] : before) {
+            const auto it = after.find(name);
+            const bool is_same =
+                it != after.end() && it->second.size() == picture.size() &&
+                std::memcmp(it->second.data(), picture.data(), picture.size() * sizeof(float)) == 0;
+            if (!is_same) throw Error("config: the result changes " + name + " of " + path);
+        }
+        std::vector<ExtendedView> views;
+        const ProbeSet probes = make_probes(find_input_space("lin_ap0"), {5, 4000});
+        for (const auto& view : model.views) {
+            for (const HostDisplay& host : hosts) {
+                if (!view.is_on(*host.ours)) continue;
+                const View shown =
+                    make_view(view.op, "lin_ap0", view.exposure_stops, host.ours->id);
+                const std::string name = config_view_name(view.name, shown.op, *host.ours);
+                std::vector<float> in;
+                for (std::size_t i = 0; i < probes.size(); ++i) {
+                    if (probes.is_non_negative(i) && probes.kind[i] != ProbeKind::special)
+                        in.insert(in.end(), &probes.rgb[3 * i], &probes.rgb[3 * i] + 3);
+                }
+                std::vector<double> truth(in.size());
+                ReferenceEngine(build_view(shown)).run_rgb(in.data(), truth.data(), in.size() / 3);
+                const std::vector<float> codes =
+                    run_processor(made->getProcessor("aces_interchange", host.name.c_str(),
+                                                     name.c_str(), OCIO::TRANSFORM_DIR_FORWARD),
+                                  in);
+                std::vector<double> errors;
+                for (std::size_t i = 0; i < codes.size() / 3; ++i)
+                    errors.push_back(channel_error(&truth[3 * i], &codes[3 * i]));
+                const ErrorStats stats = summarise(errors);
+                views.push_back({host.name, name, stats.max, stats.p999});
+                // In all of AP0 cubes and cancelling matrices cost more than where they were
+                // measured: what is refused is another picture, not one that is less exact.
+                constexpr double kAnother = 0.02;
+                if (stats.mean > kAnother + bounds.at(view.name + host.ours->id)) {
+                    throw Error(fmt::format(
+                        "config: view {} on {} would be {:.2g} from the reference in the mean",
+                        name, host.name, stats.mean));
+                }
+            }
+        }
+        return views;
+    };
+    return result;
+}
+
+}  // namespace tonewright

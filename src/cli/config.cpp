@@ -35,6 +35,8 @@ void extend(const std::string& path, const ConfigOptions& options) {
         std::error_code ignored;
         for (const fs::path& file : written)
             fs::remove(file, ignored);
+        if (!extended.files.empty())  // its folder, where nothing else is in it
+            fs::remove((folder / extended.files.front().path).parent_path(), ignored);
         throw;
     }
     fmt::print("{:<28} {:<40} {:>9} {:>9}\n", "display", "view", "max error", "99.9 %");
@@ -71,9 +73,10 @@ void add_config(CLI::App& program, int&) {
     command->add_option("--profile", config.profile, "of OpenColorIO: 2.0 or 2.1")
         ->capture_default_str();
     command
-        ->add_option("--views", config.views,
-                     "views (\"AgX Punchy\") or operators, comma separated, in order, or all; "
-                     "default: a dozen")
+        ->add_option(
+            "--views", config.views,
+            "views (\"AgX Punchy\") or operators, comma separated, in order, standard or all; "
+            "default: standard, a dozen, without the large HDR forms")
         ->delimiter(',');
     command->add_option("--displays", config.displays, "displays, comma separated; default: all")
         ->delimiter(',');

@@ -436,24 +436,14 @@ std::string ConfigBuilder::text() const {
 }
 
 OCIO::GroupTransformRcPtr ConfigBuilder::between_references(
-    const OCIO::GroupTransformRcPtr& group) const {
+    const OCIO::GroupTransformRcPtr& group, OCIO::TransformDirection direction) const {
     if (!scene_) return group;
+    const bool is_forward = direction == OCIO::TRANSFORM_DIR_FORWARD;
     OCIO::GroupTransformRcPtr whole = OCIO::GroupTransform::Create();
-    append_conversion(whole, *scene_, OCIO::COLORSPACE_DIR_FROM_REFERENCE);
+    append_conversion(whole, is_forward ? *scene_ : *display_, OCIO::COLORSPACE_DIR_FROM_REFERENCE);
     for (int i = 0; i < group->getNumTransforms(); ++i)
         whole->appendTransform(group->getTransform(i));
-    append_conversion(whole, *display_, OCIO::COLORSPACE_DIR_TO_REFERENCE);
-    return whole;
-}
-
-OCIO::GroupTransformRcPtr ConfigBuilder::back_between_references(
-    const OCIO::GroupTransformRcPtr& group) const {
-    if (!scene_) return group;
-    OCIO::GroupTransformRcPtr whole = OCIO::GroupTransform::Create();
-    append_conversion(whole, *display_, OCIO::COLORSPACE_DIR_FROM_REFERENCE);
-    for (int i = 0; i < group->getNumTransforms(); ++i)
-        whole->appendTransform(group->getTransform(i));
-    append_conversion(whole, *scene_, OCIO::COLORSPACE_DIR_TO_REFERENCE);
+    append_conversion(whole, is_forward ? *display_ : *scene_, OCIO::COLORSPACE_DIR_TO_REFERENCE);
     return whole;
 }
 
@@ -530,12 +520,14 @@ double ConfigBuilder::add_view_transform(const ConfigModel::View& view, const Di
     vt->setName(shown.transform.c_str());
     vt->setDescription(text.c_str());
     vt->setTransform(between_references(luts_.externalise(forward.transform, view.op.op->id,
-                                                          view.op.op->title, forward.is_exact)),
+                                                          view.op.op->title, forward.is_exact),
+                                        OCIO::TRANSFORM_DIR_FORWARD),
                      OCIO::VIEWTRANSFORM_DIR_FROM_REFERENCE);
     if (own_back) {
         vt->setTransform(
-            back_between_references(luts_.externalise(own_back, view.op.op->id + "_inverse",
-                                                      view.op.op->title + ", inverse", true)),
+            between_references(luts_.externalise(own_back, view.op.op->id + "_inverse",
+                                                 view.op.op->title + ", inverse", true),
+                               OCIO::TRANSFORM_DIR_INVERSE),
             OCIO::VIEWTRANSFORM_DIR_TO_REFERENCE);
     }
     config_->addViewTransform(vt);

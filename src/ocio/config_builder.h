@@ -82,14 +82,10 @@ class ConfigBuilder {
     [[nodiscard]] const std::map<std::string, ViewError>& errors() const { return errors_; }
 
   private:
-    /// The config's scene reference -> what this is given: ACES2065-1 -> ... -> the config's
-    /// display reference, of what puts out CIE XYZ D65.
+    /// Between the references of somebody's config what goes from ACES2065-1 to CIE XYZ D65, or,
+    /// inverse, the other way.
     [[nodiscard]] OCIO::GroupTransformRcPtr between_references(
-        const OCIO::GroupTransformRcPtr& group) const;
-
-    /// The same the other way.
-    [[nodiscard]] OCIO::GroupTransformRcPtr back_between_references(
-        const OCIO::GroupTransformRcPtr& group) const;
+        const OCIO::GroupTransformRcPtr& group, OCIO::TransformDirection direction) const;
 
     static void append_conversion(OCIO::GroupTransformRcPtr& group, const OCIO::ColorSpace& space,
                                   OCIO::ColorSpaceDirection direction);

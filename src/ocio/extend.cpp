@@ -19,7 +19,6 @@ struct HostDisplay {
     std::string name;
     std::string space;
     const Display* ours;
-    double difference;  // of code values
 };
 
 std::vector<float> run_processor(const OCIO::ConstProcessorRcPtr& processor,
@@ -75,7 +74,7 @@ std::vector<HostDisplay> match_displays(const OCIO::ConstConfigRcPtr& config,
                 nearest = &ours;
             }
             // OpenColorIO's own displays are up to 1e-4 from the standards.
-            if (nearest && least < 1e-3) matched.push_back({name, space, nearest, least});
+            if (nearest && least < 1e-3) matched.push_back({name, space, nearest});
             break;
         }
     }

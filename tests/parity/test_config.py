@@ -186,6 +186,8 @@ def check_files(report, folder):
     names = sorted(p.name for p in (folder / "luts").iterdir())
     odd = [n for n in names if not re.fullmatch(r"[a-z0-9_]+_[0-9a-f]{8}\.(clf|ctf)", n)]
     report.check(f"{len(names)} LUT files have plain ASCII names that end in a hash", names and not odd, odd)
+    bad = [n for n in names if re.search(r"\b(nan|inf)\b", (folder / "luts" / n).read_text(), re.I)]
+    report.check("no table has NaN or infinities", not bad, bad)
     text = (folder / "config.ocio").read_text()
     used = set(re.findall(r"src: (\w+\.c[lt]f)", text))
     report.check("the config names these files and no others", used == set(names), used ^ set(names))

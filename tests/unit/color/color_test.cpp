@@ -150,5 +150,15 @@ TEST(Transfer, AcescctIsS2016001) {
     }
 }
 
+TEST(Pq, DecodesCodesBeyondTheStandardAsItsLargest) {
+    // SMPTE ST 2084 ends at 10000 cd/m2, code 1; at 1.95 its formula divides by 0 and is no number
+    // beyond.
+    const Expr decode = pq_decode_nits(Expr::input());
+    for (const double code : {1.0, 1.5, 1.95, 2.0, 65504.0}) {
+        EXPECT_NEAR(evaluate(decode, code), 10000, 1e-6) << code;
+        EXPECT_NEAR(evaluate(decode, -code), -10000, 1e-6) << code;
+    }
+}
+
 }  // namespace
 }  // namespace tonewright

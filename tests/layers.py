@@ -31,6 +31,7 @@ THIRD_PARTY = {
     "OpenColorIO": ["ocio", "verify"],
     "OpenImageIO": ["image", "cli", "verify"],
     "EGL": ["ocio"],
+    "yaml-cpp": ["ocio"],
     "GL": ["ocio"],
     "CLI": ["cli"],
     "nlohmann": ["cli"],

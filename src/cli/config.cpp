@@ -70,8 +70,12 @@ void add_config(CLI::App& program, int&) {
                      "OpenColorIO 2.2 and newer")
         ->excludes(into);
     ConfigOptions& config = options->config;
-    command->add_option("--profile", config.profile, "of OpenColorIO: 2.0 or 2.1")
-        ->capture_default_str();
+    command
+        ->add_option("--profile", config.profiles,
+                     "of OpenColorIO: 2.0, 2.1 and 2.5, comma separated; the first is config.ocio "
+                     "(and --archive's), the others config-2.0.ocio and so on")
+        ->delimiter(',')
+        ->default_str("2.1,2.0,2.5");
     command
         ->add_option(
             "--views", config.views,

@@ -30,7 +30,8 @@ void append_number(std::string& text, float value) {
 void append_compact(std::string& text, float value) {
     const float magnitude = std::fabs(value);
     const int leading = magnitude > 0 ? static_cast<int>(std::floor(std::log10(magnitude))) : 0;
-    fmt::format_to(std::back_inserter(text), "{:.{}g}", magnitude == 0 ? 0.0F : value,
+    constexpr float kNothing = 1e-14F;
+    fmt::format_to(std::back_inserter(text), "{:.{}g}", magnitude < kNothing ? 0.0F : value,
                    std::clamp(9 + leading, 7, 9));
 }
 

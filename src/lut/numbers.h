@@ -12,7 +12,8 @@ void append_number(std::string& text, float value);
 void append_decimals(std::string& text, float value, int decimals);
 /// 8 decimals or 7 significant digits, whichever is finer, with an exponent where that is shorter:
 /// half a unit of the last place is below a tenth of what float32 operations leave of light in
-/// [0, 1] behind sRGB's curve, in two thirds of the space.
+/// [0, 1] behind sRGB's curve, in two thirds of the space. Below 1e-14 nothing is left but the
+/// rounding of doubles near 1: 0.
 void append_compact(std::string& text, float value);
 
 /// FNV-1a, 32 bits, as 8 hexadecimal digits: names LUT files by their contents, because OCIO caches

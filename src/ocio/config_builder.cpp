@@ -12,6 +12,7 @@
 
 #include "lut/numbers.h"
 #include "ocio/inverse.h"
+#include "ocio/profile_2_5.h"
 #include "tonewright/engine.h"
 
 namespace tonewright {
@@ -222,6 +223,12 @@ ErrorStats measure_round_trip(const View& view, const OCIO::GroupTransformRcPtr&
 /// Beyond this, what comes back is another picture.
 bool is_way_back(const ErrorStats& lossless) { return lossless.mean <= 5e-3; }
 
+std::string yaml_of(const OCIO::Config& config) {
+    std::ostringstream yaml;
+    config.serialize(yaml);
+    return yaml.str();
+}
+
 /// OCIO's CPU path of the view against the reference, for colors of the input space >= 0.
 ViewError measure_view(const View& view, const ProbeSet& probes) {
     const Pipeline stages = build_view(view);
@@ -372,11 +379,39 @@ void ConfigBuilder::add_views() {
     add_shared_view(kRawView, "", kDataSpace, "The numbers as they are.");
     activate(kUntonemappedView);
     activate(kRawView);
+    add_virtual_display();
     std::vector<std::string> displays;
     for (const Display* display : model_.displays)
         displays.push_back(display->title);
     config_->setActiveDisplays(fmt::format("{}", fmt::join(displays, ", ")).c_str());
     config_->setActiveViews(fmt::format("{}", fmt::join(active, ", ")).c_str());
+}
+
+/// What a host makes a display of when the system tells it a monitor's profile. The monitor's gamut
+/// is not known here: views are those of the first display that is not HDR.
+void ConfigBuilder::add_virtual_display() {
+    const auto is_shared = [&](const std::string& name) {
+        for (int i = 0; i < config_->getNumViews(OCIO::VIEW_SHARED, ""); ++i) {
+            if (name == config_->getView(OCIO::VIEW_SHARED, "", i)) return true;
+        }
+        return false;
+    };
+    for (const auto& view : model_.views) {
+        if (is_shared(view.name)) {
+            config_->addVirtualDisplaySharedView(view.name.c_str());
+            continue;
+        }
+        const std::vector<DisplayedView>& forms = displayed_[view.name];
+        const auto form = std::find_if(forms.begin(), forms.end(), [](const DisplayedView& shown) {
+            return !shown.display->is_hdr;
+        });
+        if (form == forms.end()) continue;
+        config_->addVirtualDisplayView(view.name.c_str(), form->transform.c_str(),
+                                       OCIO::OCIO_VIEW_USE_DISPLAY_NAME, "", "",
+                                       view.description.c_str());
+    }
+    config_->addVirtualDisplaySharedView(kUntonemappedView);
+    config_->addVirtualDisplaySharedView(kRawView);
 }
 
 void ConfigBuilder::add_output_spaces() {
@@ -429,10 +464,36 @@ void ConfigBuilder::add_file_rules() {
     config_->setFileRules(rules);
 }
 
-std::string ConfigBuilder::text() const {
-    std::ostringstream yaml;
-    config_->serialize(yaml);
-    return yaml.str();
+void ConfigBuilder::use_builtins(const OCIO::ConfigRcPtr& config) const {
+    for (const auto& view : model_.views) {
+        for (const DisplayedView& shown : displayed_.at(view.name)) {
+            const std::string style = shown.op.ocio_builtin();
+            if (style.empty() || !cubes_.contains(shown.transform)) continue;
+            const DisplayLimit limit = display_limit(shown.op, *shown.display);
+            const Matrix3 to_xyz = rgb_to_xyz_d65(limit.primaries);
+            OCIO::GroupTransformRcPtr group = OCIO::GroupTransform::Create();
+            append(group, {MatrixStage{scale(kIdentity3, std::exp2(view.exposure_stops))}});
+            group->appendTransform(builtin_of_profile_2_5(style));
+            append(group,
+                   {MatrixStage{inverse(to_xyz)}, ClampStage{0, limit.peak}, MatrixStage{to_xyz}});
+            OCIO::ViewTransformRcPtr vt = OCIO::ViewTransform::Create(OCIO::REFERENCE_SPACE_SCENE);
+            vt->setName(shown.transform.c_str());
+            vt->setDescription(
+                (view.description + " OpenColorIO's built-in transform " + style + ".").c_str());
+            vt->setTransform(group, OCIO::VIEWTRANSFORM_DIR_FROM_REFERENCE);
+            config->addViewTransform(vt);
+        }
+    }
+}
+
+std::string ConfigBuilder::text() const { return yaml_of(*config_); }
+
+std::string ConfigBuilder::text(const std::string& profile) const {
+    const OCIO::ConfigRcPtr config = config_->createEditableCopy();
+    config->setVersion(2, profile == "2.0" ? 0 : 1);
+    if (profile != "2.5") return yaml_of(*config);
+    use_builtins(config);
+    return to_profile_2_5(yaml_of(*config), model_, displayed_);
 }
 
 OCIO::GroupTransformRcPtr ConfigBuilder::between_references(
@@ -495,6 +556,7 @@ double ConfigBuilder::add_view_transform(const ConfigModel::View& view, const Di
         error.has_way_back = is_way_back(error.round_trip_lossless);
     }
     errors_.emplace(view.name, error);
+    if (!error.is_exact) cubes_.insert(shown.transform);
     std::string text = fmt::format(
         "{} Error against the double reference, {} code values, OCIO CPU: max {}, 99.9 % {}.",
         view.description, shown.display->title, rounded_up(error.in_gamut.max),
@@ -523,10 +585,10 @@ double ConfigBuilder::add_view_transform(const ConfigModel::View& view, const Di
                                                           view.op.op->title, forward.is_exact),
                                         OCIO::TRANSFORM_DIR_FORWARD),
                      OCIO::VIEWTRANSFORM_DIR_FROM_REFERENCE);
-    if (own_back) {
+    if (own_back && error.has_way_back) {
         vt->setTransform(
             between_references(luts_.externalise(own_back, view.op.op->id + "_inverse",
-                                                 view.op.op->title + ", inverse", true),
+                                                 view.op.op->title + ", inverse", false),
                                OCIO::TRANSFORM_DIR_INVERSE),
             OCIO::VIEWTRANSFORM_DIR_TO_REFERENCE);
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -68,8 +69,11 @@ class ConfigBuilder {
 
     void add_file_rules();
 
-    /// The config as YAML.
+    /// The config as YAML, of the profile that it has.
     [[nodiscard]] std::string text() const;
+    /// A new config as YAML.
+    /// @param profile  2.0, 2.1 or 2.5
+    [[nodiscard]] std::string text(const std::string& profile) const;
 
     [[nodiscard]] const std::vector<GeneratedFile>& tables() const { return luts_.files(); }
     [[nodiscard]] const std::vector<DisplayedView>& displayed(const std::string& view) const {
@@ -90,8 +94,13 @@ class ConfigBuilder {
     static void append_conversion(OCIO::GroupTransformRcPtr& group, const OCIO::ColorSpace& space,
                                   OCIO::ColorSpaceDirection direction);
 
+    void add_virtual_display();
+
     void add_shared_view(const std::string& name, const std::string& transform,
                          const std::string& space, const std::string& description);
+
+    /// Of OpenColorIO 2.4 and newer: its built-in transform where ours is a cube.
+    void use_builtins(const OCIO::ConfigRcPtr& config) const;
 
     /// @return its largest error
     double add_view_transform(const ConfigModel::View& view, const DisplayedView& shown,
@@ -104,6 +113,8 @@ class ConfigBuilder {
     std::map<std::string, std::vector<DisplayedView>> displayed_;
     LargestErrors largest_errors_;
     std::map<std::string, ViewError> errors_;
+    /// View transforms that are cubes.
+    std::set<std::string> cubes_;
     ProbeSet probes_ = make_probes(find_input_space("lin_rec709"), {9, 40000});
     ProbeSet wide_probes_ = make_probes(find_input_space("lin_ap1"), {9, 40000});
     ProbeSet few_probes_ = make_probes(find_input_space("lin_rec709"), {3, 1000});

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "ocio/inverse_cube.h"
 #include "tonewright/engine.h"
 
 namespace tonewright {
@@ -163,7 +164,13 @@ OCIO::GroupTransformRcPtr invert_light(const ResolvedOperator& op, const Display
     Pipeline forward = op.build();
     const Pipeline light = display_light_stages(op, limit);
     forward.insert(forward.end(), light.begin(), light.end());
-    return invert_stages(simplify(forward));
+    forward = simplify(forward);
+    if (auto group = invert_stages(forward)) return group;
+    if (!op.op->build_inverse) return nullptr;
+    Pipeline back = {MatrixStage{rgb_to_rgb(limit.primaries, op.output_primaries())}};
+    const Pipeline inverse = op.op->build_inverse(op.params);
+    back.insert(back.end(), inverse.begin(), inverse.end());
+    return lower_to_ocio(sampled_inverse(back, limit.peak)).transform;
 }
 
 }  // namespace tonewright

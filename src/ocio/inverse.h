@@ -10,8 +10,8 @@ namespace tonewright {
 /// the operator's working space: OpenColorIO's built-in transform, where the operator equals one;
 /// or matrices inverted, and every run of curves and clamps that treats channels apart as one table
 /// of its inverse, whose entries are at equal distances of light (a half-domain table, inverted,
-/// has few of them next to white).
-/// @return null where stages mix channels in another way.
+/// has few of them next to white); or a cube sampled from the operator's own inverse.
+/// @return null where there is none of these.
 [[nodiscard]] OCIO::GroupTransformRcPtr invert_light(const ResolvedOperator& op,
                                                      const DisplayLimit& limit);
 

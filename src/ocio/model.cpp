@@ -16,6 +16,7 @@ using Space = ConfigModel::Space;
 using SpaceKind = ConfigModel::SpaceKind;
 
 constexpr const char* kTextureSpace = "sRGB - Texture";
+constexpr const char* kVideoSpace = "Gamma 2.4 Rec.709 - Texture";
 
 struct StandardView {
     const char* id;
@@ -50,6 +51,7 @@ struct BuiltinSpace {
     const char* family;
     const char* description;
     const char* style;
+    const char* interop_id = "";
 };
 
 const std::vector<BuiltinSpace>& builtin_spaces() {
@@ -58,48 +60,57 @@ const std::vector<BuiltinSpace>& builtin_spaces() {
          {"acescct_ap1", "ACES - ACEScct"},
          "ACES",
          "Academy S-2016-001: AP1, log with a linear toe; for grading.",
-         "ACEScct_to_ACES2065-1"},
+         "ACEScct_to_ACES2065-1",
+         "ocio:acescct_ap1_scene"},
         {"ACEScc",
          {"acescc_ap1", "ACES - ACEScc"},
          "ACES",
          "Academy S-2014-003: AP1, pure log; for grading.",
-         "ACEScc_to_ACES2065-1"},
+         "ACEScc_to_ACES2065-1",
+         "ocio:acescc_ap1_scene"},
         {"ADX10",
          {"Input - ADX - ADX10"},
          "Input/Film",
          "Film scans of 10 bits, SMPTE ST 2065-3, with the Academy's unbuild.",
-         "ADX10_to_ACES2065-1"},
+         "ADX10_to_ACES2065-1",
+         "ocio:adx10_apd_scene"},
         {"ADX16",
          {"Input - ADX - ADX16"},
          "Input/Film",
          "Film scans of 16 bits, SMPTE ST 2065-3, with the Academy's unbuild.",
-         "ADX16_to_ACES2065-1"},
+         "ADX16_to_ACES2065-1",
+         "ocio:adx16_apd_scene"},
         {"ARRI LogC3 (EI800)",
          {"arri_logc3_ei800", "logc3ei800_alexawide",
           "Input - ARRI - V3 LogC (EI800) - Wide Gamut"},
          "Input/ARRI",
          "ARRI LogC3 of exposure index 800, ALEXA Wide Gamut.",
-         "ARRI_ALEXA-LOGC-EI800-AWG_to_ACES2065-1"},
+         "ARRI_ALEXA-LOGC-EI800-AWG_to_ACES2065-1",
+         "ocio:arrilogc3_awg3_scene"},
         {"CanonLog2 CinemaGamut D55",
          {"canonlog2_cgamut_d55", "Input - Canon - Canon-Log2 - Cinema Gamut (Daylight)"},
          "Input/Canon",
          "Canon Log 2, Cinema Gamut, daylight.",
-         "CANON_CLOG2-CGAMUT_to_ACES2065-1"},
+         "CANON_CLOG2-CGAMUT_to_ACES2065-1",
+         "ocio:canonlog2_cgamutd55_scene"},
         {"CanonLog3 CinemaGamut D55",
          {"canonlog3_cgamut_d55", "Input - Canon - Canon-Log3 - Cinema Gamut (Daylight)"},
          "Input/Canon",
          "Canon Log 3, Cinema Gamut, daylight.",
-         "CANON_CLOG3-CGAMUT_to_ACES2065-1"},
+         "CANON_CLOG3-CGAMUT_to_ACES2065-1",
+         "ocio:canonlog3_cgamutd55_scene"},
         {"V-Log V-Gamut",
          {"vlog_vgamut", "Input - Panasonic - V-Log - V-Gamut"},
          "Input/Panasonic",
          "Panasonic V-Log, V-Gamut.",
-         "PANASONIC_VLOG-VGAMUT_to_ACES2065-1"},
+         "PANASONIC_VLOG-VGAMUT_to_ACES2065-1",
+         "ocio:vlog_vgamut_scene"},
         {"Log3G10 REDWideGamutRGB",
          {"log3g10_rwg", "Input - RED - REDLog3G10 - REDWideGamutRGB"},
          "Input/RED",
          "RED Log3G10, REDWideGamutRGB.",
-         "RED_LOG3G10-RWG_to_ACES2065-1"},
+         "RED_LOG3G10-RWG_to_ACES2065-1",
+         "ocio:redlog3g10_rwg_scene"},
         {"REDLogFilm REDWideGamutRGB",
          {"redlogfilm_rwg"},
          "Input/RED",
@@ -109,22 +120,26 @@ const std::vector<BuiltinSpace>& builtin_spaces() {
          {"slog3_sgamut3", "Input - Sony - S-Log3 - S-Gamut3"},
          "Input/Sony",
          "Sony S-Log3, S-Gamut3.",
-         "SONY_SLOG3-SGAMUT3_to_ACES2065-1"},
+         "SONY_SLOG3-SGAMUT3_to_ACES2065-1",
+         "ocio:slog3_sgamut3_scene"},
         {"S-Log3 S-Gamut3.Cine",
          {"slog3_sgamut3cine", "Input - Sony - S-Log3 - S-Gamut3.Cine"},
          "Input/Sony",
          "Sony S-Log3, S-Gamut3.Cine.",
-         "SONY_SLOG3-SGAMUT3.CINE_to_ACES2065-1"},
+         "SONY_SLOG3-SGAMUT3.CINE_to_ACES2065-1",
+         "ocio:slog3_sgamut3cine_scene"},
         {"S-Log3 Venice S-Gamut3",
          {"slog3_sgamut3_venice", "Input - Sony - S-Log3 - Venice S-Gamut3"},
          "Input/Sony",
          "Sony VENICE, S-Log3, S-Gamut3.",
-         "SONY_SLOG3-SGAMUT3-VENICE_to_ACES2065-1"},
+         "SONY_SLOG3-SGAMUT3-VENICE_to_ACES2065-1",
+         "ocio:slog3_sgamut3venice_scene"},
         {"S-Log3 Venice S-Gamut3.Cine",
          {"slog3_sgamut3cine_venice", "Input - Sony - S-Log3 - Venice S-Gamut3.Cine"},
          "Input/Sony",
          "Sony VENICE, S-Log3, S-Gamut3.Cine.",
-         "SONY_SLOG3-SGAMUT3.CINE-VENICE_to_ACES2065-1"},
+         "SONY_SLOG3-SGAMUT3.CINE-VENICE_to_ACES2065-1",
+         "ocio:slog3_sgamut3cinevenice_scene"},
     };
     return spaces;
 }
@@ -135,37 +150,59 @@ struct TextureSpace {
     std::vector<std::string> aliases;
     const char* display;
     const Primaries* primaries;
+    const char* interop_id;
 };
 
 const std::vector<TextureSpace>& texture_spaces() {
     static const std::vector<TextureSpace> spaces = {
         {kTextureSpace,
-         {"srgb_tx", "srgb_rec709_scene", "Utility - sRGB - Texture",
-          "sRGB Encoded Rec.709 (sRGB)"},
+         {"srgb_tx", "Utility - sRGB - Texture", "sRGB Encoded Rec.709 (sRGB)"},
          "srgb",
-         &kRec709},
+         &kRec709,
+         "srgb_rec709_scene"},
         {"Gamma 2.2 Rec.709 - Texture",
-         {"g22_rec709_tx", "g22_rec709_scene", "Gamma 2.2 Encoded Rec.709"},
+         {"g22_rec709_tx", "Gamma 2.2 Encoded Rec.709"},
          "g22",
-         &kRec709},
-        {"Gamma 2.4 Rec.709 - Texture",
+         &kRec709,
+         "g22_rec709_scene"},
+        {kVideoSpace,
          {"g24_rec709_tx", "g24_rec709_scene", "Gamma 2.4 Encoded Rec.709"},
          "rec1886",
-         &kRec709},
+         &kRec709,
+         "ocio:g24_rec709_scene"},
         {"sRGB Encoded AP1 - Texture",
-         {"srgb_encoded_ap1_tx", "srgb_ap1_scene", "srgb_ap1"},
+         {"srgb_encoded_ap1_tx", "srgb_ap1"},
          "srgb",
-         &kAP1},
+         &kAP1,
+         "srgb_ap1_scene"},
         {"Gamma 2.2 AP1 - Texture",
-         {"g22_ap1_tx", "g22_ap1_scene", "Gamma 2.2 Encoded AP1"},
+         {"g22_ap1_tx", "Gamma 2.2 Encoded AP1"},
          "g22",
-         &kAP1},
+         &kAP1,
+         "g22_ap1_scene"},
         {"sRGB Encoded P3-D65 - Texture",
-         {"srgb_encoded_p3d65_tx", "srgb_p3d65_scene"},
+         {"srgb_encoded_p3d65_tx"},
          "srgb",
-         &kP3D65},
+         &kP3D65,
+         "srgb_p3d65_scene"},
     };
     return spaces;
+}
+
+/// Of the spaces that we have: Color Interop Forum, "Color Space Encodings for Texture Assets and
+/// CG Rendering", 2025, and its ids of displays.
+constexpr std::array<std::string_view, 12> kForumIds = {
+    "lin_ap0_scene",      "lin_ap1_scene",       "lin_rec709_scene",    "lin_rec2020_scene",
+    "lin_p3d65_scene",    "srgb_rec709_display", "srgb_p3d65_display",  "g24_rec709_display",
+    "g22_rec709_display", "pq_rec2020_display",  "hlg_rec2020_display", "pq_p3d65_display"};
+
+/// Of a linear space or a display: the one of its names that the forum has.
+template <class Item>
+std::string interop_id(const Item& item) {
+    for (const std::string& alias : item.aliases) {
+        if (std::find(kForumIds.begin(), kForumIds.end(), alias) != kForumIds.end()) return alias;
+    }
+    return "";
 }
 
 std::vector<std::pair<std::string, std::string>> role_table(const std::string& working) {
@@ -290,6 +327,8 @@ std::vector<ConfigModel::FileRule> make_file_rules(const std::string& working) {
     for (const char* extension :
          {"png", "jpg", "jpeg", "tif", "tiff", "tga", "bmp", "gif", "webp", "psd"})
         rules.push_back({extension, kTextureSpace, extension, ""});
+    for (const char* extension : {"mov", "mp4", "mxf", "mkv", "avi"})
+        rules.push_back({extension, kVideoSpace, extension, ""});
     return rules;
 }
 
@@ -487,7 +526,9 @@ ConfigModel make_config_model(const ConfigOptions& options) {
              "scene-linear",
              {"file-io", "working-space"},
              &space.primaries,
-             nullptr});
+             nullptr,
+             "",
+             interop_id(space)});
     }
     for (const BuiltinSpace& space : builtin_spaces()) {
         const bool is_working = std::string_view(space.family) == "ACES";
@@ -495,7 +536,7 @@ ConfigModel make_config_model(const ConfigOptions& options) {
                                 space.description, "log",
                                 is_working ? std::vector<std::string>{"file-io", "working-space"}
                                            : std::vector<std::string>{"file-io"},
-                                nullptr, nullptr, space.style});
+                                nullptr, nullptr, space.style, space.interop_id});
     }
     for (const TextureSpace& space : texture_spaces()) {
         const Display& display = find_display(space.display);
@@ -509,7 +550,9 @@ ConfigModel make_config_model(const ConfigOptions& options) {
                                 "sdr-video",
                                 {"file-io", "texture"},
                                 space.primaries,
-                                &display});
+                                &display,
+                                "",
+                                space.interop_id});
     }
     model.spaces.push_back({SpaceKind::data,
                             kDataSpace,
@@ -519,7 +562,9 @@ ConfigModel make_config_model(const ConfigOptions& options) {
                             "data",
                             {"file-io"},
                             nullptr,
-                            nullptr});
+                            nullptr,
+                            "",
+                            "data"});
     model.spaces.push_back({SpaceKind::display_reference,
                             "CIE-XYZ-D65",
                             {"cie_xyz_d65_display"},
@@ -528,7 +573,9 @@ ConfigModel make_config_model(const ConfigOptions& options) {
                             "display-linear",
                             {"file-io"},
                             nullptr,
-                            nullptr});
+                            nullptr,
+                            "",
+                            "ocio:lin_ciexyzd65_display"});
     // All of them, whichever displays are chosen: pictures come in their code values.
     for (const Display& display : all_displays()) {
         std::vector<std::string> aliases = {display.title + kDisplaySuffix};
@@ -544,7 +591,9 @@ ConfigModel make_config_model(const ConfigOptions& options) {
              display.is_hdr ? "hdr-video" : "sdr-video",
              {"file-io"},
              &display.primaries,
-             &display});
+             &display,
+             "",
+             interop_id(display)});
         if (options.displays.empty()) model.displays.push_back(&display);
     }
     for (const std::string& name : options.displays) {
@@ -558,6 +607,16 @@ ConfigModel make_config_model(const ConfigOptions& options) {
     model.default_space = find_input_space(options.working).title;
     model.roles = role_table(model.default_space);
     model.file_rules = make_file_rules(model.default_space);
+    for (Space& space : model.spaces) {
+        const auto has = [&](const std::string& id) {
+            return std::find(space.aliases.begin(), space.aliases.end(), id) != space.aliases.end();
+        };
+        const bool is_role =  // "data"
+            std::any_of(model.roles.begin(), model.roles.end(),
+                        [&](const auto& role) { return role.first == space.interop_id; });
+        if (!space.interop_id.empty() && !has(space.interop_id) && !is_role)
+            space.aliases.push_back(space.interop_id);
+    }
     check_names(model);
     return model;
 }

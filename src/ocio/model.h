@@ -10,7 +10,7 @@
 
 namespace tonewright {
 
-/// Everything that the config says, once, before any of it becomes an OCIO object: the profiles are
+/// Everything that the config says, once, before any of it becomes an OCIO object: all profiles are
 /// written from this.
 struct ConfigModel {
     enum class SpaceKind : unsigned char {
@@ -34,6 +34,9 @@ struct ConfigModel {
         const Primaries* primaries = nullptr;  // linear spaces, textures and displays
         const Display* display = nullptr;  // displays, and the display whose curve a texture has
         std::string style = {};            // of a builtin
+        /// Of the Color Interop Forum, "ocio:" before it where OpenColorIO's configs have one that
+        /// the forum does not; empty: neither has. An alias as well, for libraries before 2.5.
+        std::string interop_id = {};
     };
     struct View {
         std::string name;

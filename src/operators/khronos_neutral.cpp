@@ -52,6 +52,26 @@ Pipeline neutral(const Params& params, bool towards_white) {
                          .chroma = select(is_base, 1, rest * (n / q))}};
 }
 
+/// Back: light of the largest channel from value(p), the others by chroma(p), then the offset from
+/// the smallest: 6.25 x^2 = m below 0.04.
+Pipeline neutral_inverse(const Params& params) {
+    const double start = params.number("start_compression") - 0.04;
+    const double d = 1 - start;
+    const Expr x = Expr::input();
+    const Expr n = max(x, start);
+    // White is infinite light: the largest that half floats hold.
+    const Expr p = d * d / max(1 - n, d * d / 65504) - d + start;
+    const Expr is_base = less(x, start);
+    const Expr to_light = (params.number("desaturation") * (p - n) + 1) * (p / n);
+    return {limit_to_positive(),
+            HexconeStage{.offset = Expr(0),
+                         .value = select(is_base, x, p),
+                         .chroma = select(is_base, 1, to_light)},
+            HexconeStage{.offset = select(less(x, 0.04), x - sqrt(x / 6.25), -0.04),
+                         .value = x,
+                         .chroma = Expr(1)}};
+}
+
 Operator khronos() {
     Operator op;
     op.id = "khronos_neutral";
@@ -66,6 +86,7 @@ Operator khronos() {
     op.negatives = kNegativesClampAtZero;
     op.parameters = neutral_parameters();
     op.build = [](const Params& p) { return neutral(p, false); };
+    op.build_inverse = neutral_inverse;
     return op;
 }
 

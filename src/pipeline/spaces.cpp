@@ -76,7 +76,7 @@ Display hlg_display() {
     };
     return {.id = "rec2100_hlg",
             .title = "Rec.2100-HLG",
-            .aliases = {"rec2100_hlg_display"},
+            .aliases = {"rec2100_hlg_display", "hlg_rec2020_display"},
             .primaries = kRec2020,
             .encode = {MatrixStage{scale(kIdentity3, 1 / unit)},
                        luminance(hlg_inverse_ootf_luminance(x)),

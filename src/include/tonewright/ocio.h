@@ -11,8 +11,9 @@ namespace tonewright {
 
 /// What goes into a config.
 struct ConfigOptions {
-    /// Of the file: 2.0, or 2.1.
-    std::string profile = "2.1";
+    /// 2.0, 2.1 and 2.5: one file for each, with the same views. The first is `config.ocio`, the
+    /// others `config-2.0.ocio` and so on.
+    std::vector<std::string> profiles = {"2.1", "2.0", "2.5"};
     /// Names of views ("AgX", "AgX Punchy"), operators (`id`, `id:preset`) or `all`, in the order
     /// of the config; the first is what applications start with. Empty: the standard ones, without
     /// the HDR forms whose tables are largest.
@@ -34,8 +35,10 @@ struct ConfigOptions {
     std::vector<double> exposure_stops = {};
 };
 
-/// An OpenColorIO config: `config.ocio`, `luts/*.clf` named by their contents, `probe.csv`
-/// (expected code values for check_config.py), README.md, MANIFEST.csv.
+/// An OpenColorIO config: `config.ocio` and one file for every other profile, `luts/*.clf` named by
+/// their contents, `probe.csv` (expected code values for check_config.py), README.md, MANIFEST.csv.
+/// Profile 2.5 adds what that OpenColorIO knows: interop ids, the ids of ACES Metadata Files, and
+/// its own ACES 2.0 where the others have a cube.
 ///
 /// Scene reference ACES2065-1, display reference CIE XYZ D65. Every view of an operator is a view
 /// transform and a view of every display, and a colour space for hosts that know no views

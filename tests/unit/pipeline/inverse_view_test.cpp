@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "tonewright/engine.h"
@@ -60,6 +61,31 @@ TEST(InverseView, Aces20IsThatOfTheReferenceCollection) {
     }
 }
 
+// pbrNeutral.glsl by hand: less 0.04 below the start; n = 1 - 0.24^2/(p + 0.24 - 0.76) and
+// g = 1 - 1/(0.15 (p - n) + 1) above; x - 6.25 x^2 of a smallest channel below 0.08.
+const std::array<std::array<Vector3, 2>, 5> kNeutral = {{
+    {{{0.46, 0.16, 0.06}, {0.5, 0.2, 0.1}}},
+    {{{0.19, 0.04, 0.01}, {0.22, 0.07, 0.04}}},
+    {{{0.869090909091, 0.869090909091, 0.869090909091}, {1, 1, 1}}},
+    {{{0, 0, 0}, {0, 0, 0}}},
+    // p = 2.96, n = 0.976393443, 1 - g = 0.770680, chroma 0.254218
+    {{{0.976393442623, 0.264573640, 0.442528608}, {3, 0.2, 0.9}}},
+}};
+
+TEST(InverseView, OfKhronosNeutralIsTheSceneThatItShows) {
+    const View view =
+        make_view(resolve_operator("khronos_neutral"), "lin_rec709", 0, kNativeOutput);
+    for (const auto& [shown, scene] : kNeutral) {
+        const Vector3 back = ReferenceEngine(build_inverse_view(view))(shown);
+        // Nine decimals are given; next to white an error grows by (1 - n)^-2 0.24^2 = 103.
+        for (std::size_t c = 0; c < 3; ++c)
+            EXPECT_NEAR(back[c], scene[c], 2e-7) << shown[0] << " " << shown[1] << " " << shown[2];
+    }
+    // White is as bright as a half float can be, not infinite.
+    const Vector3 white = ReferenceEngine(build_inverse_view(view))({1, 1, 1});
+    EXPECT_NEAR(white[0], 65504, 1);
+}
+
 TEST(InverseView, LeadsBackFromEveryDisplay) {
     const Vector3 scene = {0.3, 0.2, 0.05};
     for (const Display& display : all_displays()) {
@@ -81,7 +107,7 @@ TEST(InverseView, OfAnOperatorWithoutOneIsAnErrorThatNamesThoseWith) {
         (void)build_inverse_view(view);
         FAIL() << "no error";
     } catch (const Error& e) {
-        EXPECT_STREQ(e.what(), "hable has no inverse; expected aces_20");
+        EXPECT_STREQ(e.what(), "hable has no inverse; expected aces_20 or khronos_neutral");
     }
 }
 

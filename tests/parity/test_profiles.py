@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The profiles of the OpenColorIO config: one config for every OpenColorIO.
+
+    python3 tests/parity/test_profiles.py ocio_config
+
+Takes the files that the PyOpenColorIO of this Python reads: with 2.1 config.ocio and config-2.0.ocio, with 2.5
+config-2.5.ocio too. Each must load and validate without a line in the log; names must be the same in all; and numbers
+must be probe.csv's. What config-2.5.ocio adds is looked at as YAML. The last line is `N passed, M failed`.
+"""
+
+import argparse
+import contextlib
+import re
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent / "clients"))
+sys.path.insert(0, str(Path(__file__).parents[2] / "python_check"))
+
+from pictures import Report, skip  # noqa: E402
+
+try:
+    import PyOpenColorIO as ocio
+except ImportError as error:
+    skip(str(error))
+
+import check_config  # noqa: E402
+
+FILES = {(2, 1): "config.ocio", (2, 0): "config-2.0.ocio", (2, 5): "config-2.5.ocio"}
+VERSION = tuple(int(n) for n in ocio.GetVersion().split(".")[:2])
+# OpenColorIO's ACES 2.0 is float32: 2.3e-5 from the double reference on random colours (tests/parity/test_builtins.py),
+# where one channel is near black and another bright; Rec.1886 and the pure powers are steeper there than sRGB.
+ACES_20 = 4e-5
+# Color Interop Forum and OpenColorIO's own configs: the spaces that have an id, by their names in this config.
+INTEROP_IDS = {"sRGB": "srgb_rec709_display", "Display P3": "srgb_p3d65_display", "Rec.1886": "g24_rec709_display",
+               "Gamma 2.2": "g22_rec709_display", "Rec.2100-PQ": "pq_rec2020_display",
+               "Rec.2100-HLG": "hlg_rec2020_display", "P3-D65 PQ": "pq_p3d65_display", "ACEScg": "lin_ap1_scene",
+               "ACES2065-1": "lin_ap0_scene", "Linear Rec.709": "lin_rec709_scene",
+               "Linear Rec.2020": "lin_rec2020_scene", "Linear P3-D65": "lin_p3d65_scene", "Non-Color": "data",
+               "sRGB - Texture": "srgb_rec709_scene", "ACEScct": "ocio:acescct_ap1_scene",
+               "ARRI LogC3 (EI800)": "ocio:arrilogc3_awg3_scene"}
+# SMPTE ST 2067-50: what an ACES Metadata File calls the transform of a view and its display.
+AMF = "urn:ampas:aces:transformId:"
+AMF_IDS = {("ACES 2.0", "sRGB"): AMF + "v2.0:Output.Academy.Rec709-D65_100nit_in_Rec709-D65_sRGB-Piecewise.a2.v1",
+           ("ACES 2.0", "Display P3"): AMF + "v2.0:Output.Academy.P3-D65_100nit_in_P3-D65_sRGB-Piecewise.a2.v1",
+           ("ACES 1.3", "Rec.1886"): AMF + "v1.5:ODT.Academy.Rec709_100nits_dim.a1.0.3",
+           ("ACES 1.3 - HDR 1000 nits", "Rec.2100-PQ"): AMF + "v1.5:RRTODT.Academy.Rec2020_1000nits_15nits_ST2084.a1.1.0"}
+
+
+@contextlib.contextmanager
+def logged():
+    """What OpenColorIO has to say."""
+    lines = []
+    ocio.SetLoggingFunction(lambda message: lines.append(message.strip()))
+    try:
+        yield lines
+    finally:
+        ocio.ResetToDefaultLoggingFunction()
+
+
+def names(config):
+    spaces = list(config.getColorSpaces(ocio.SEARCH_REFERENCE_SPACE_ALL, ocio.COLORSPACE_ALL))
+    return {"displays": list(config.getDisplays()), "views": {d: list(config.getViews(d)) for d in config.getDisplays()},
+            "spaces": sorted(s.getName() for s in spaces), "looks": list(config.getLookNames()),
+            "view transforms": list(config.getViewTransformNames()),
+            "virtual display": [list(config.getVirtualDisplayViews(kind))
+                                for kind in (ocio.VIEW_DISPLAY_DEFINED, ocio.VIEW_SHARED)],
+            "roles": dict(zip(config.getRoleNames(), (config.getColorSpace(r).getName() for r in config.getRoleNames())))}
+
+
+def check_numbers(report, name, config, probes, folder):
+    """Every view on every display, as applications compute it and without optimisation, against probe.csv."""
+    config.setWorkingDir(str(folder))
+    failed, largest = [], 0.0
+    for key, colours in probes.items():
+        line, ok = check_config.compare(ocio, config, key, colours)
+        if not ok:
+            failed.append(line)
+        if config.getMinorVersion() >= 4 and key[1] == "ACES 2.0":
+            processor = config.getProcessor(key[2], key[0], key[1], ocio.TRANSFORM_DIR_FORWARD)
+            error, _ = check_config.worst(processor.getDefaultCPUProcessor(), colours)
+            largest = max(largest, error)
+    report.check(f"{name}: {len(probes)} views on displays are the reference's", not failed and len(probes) >= 80,
+                 failed[:3])
+    if config.getMinorVersion() >= 4:
+        report.check(f"{name}: ACES 2.0 is OpenColorIO's own: {largest:.1e} from the reference, at most {ACES_20:g}",
+                     0 < largest <= ACES_20)
+
+
+def check_ids(report, config):
+    wrong = [(space, config.getColorSpace(space).getInteropID()) for space, id_ in INTEROP_IDS.items()
+             if config.getColorSpace(space).getInteropID() != id_]
+    report.check(f"{len(INTEROP_IDS)} interop ids", not wrong, wrong[:3])
+    missing = []
+    for (view, display), urn in AMF_IDS.items():
+        transform = config.getViewTransform(config.getDisplayViewTransformName(display, view))
+        for thing in (transform, config.getColorSpace(display)):
+            if urn not in thing.getInterchangeAttributes().get("amf_transform_ids", "").splitlines():
+                missing.append((view, display))
+    report.check("an output's AMF id is with its view transform and its display", not missing, missing)
+    ids = config.getColorSpace("ACEScct").getInterchangeAttributes().get("amf_transform_ids", "")
+    report.check("AMF ids of spaces", AMF + "v2.0:CSC.Academy.ACEScct_to_ACES.a2.v1" in ids.splitlines(), ids)
+
+
+def check_text(report, folder):
+    """Where the library cannot read 2.5: what is not in the other files is what 2.5 is for."""
+    old = (folder / "config.ocio").read_text()
+    older = (folder / "config-2.0.ocio").read_text()
+    report.check("config-2.0.ocio says the same", older == re.sub("^ocio_profile_version: 2.1", "ocio_profile_version: 2",
+                                                                 old), "it differs")
+    try:
+        import yaml
+    except ImportError:
+        print("skipped: config-2.5.ocio is not compared, PyYAML is not installed (Debian: python3-yaml)")
+        return
+
+    class Loader(yaml.SafeLoader):
+        """Tags are a part of what a config says."""
+
+    def tagged(loader, suffix, node):
+        if isinstance(node, yaml.MappingNode):
+            return (suffix, loader.construct_mapping(node, deep=True))
+        return (suffix, loader.construct_sequence(node, deep=True))
+
+    Loader.add_multi_constructor("", tagged)
+    a = yaml.load(old, Loader)
+    b = yaml.load((folder / "config-2.5.ocio").read_text(), Loader)
+    report.check("profile 2.5 says its version", str(b.pop("ocio_profile_version")) == "2.5")
+    a.pop("ocio_profile_version")
+    builtins, ids = [], 0
+    for part in ("colorspaces", "display_colorspaces", "view_transforms"):
+        for (_, new), (_, base) in zip(b[part], a[part]):
+            ids += "interop_id" in new
+            new.pop("interop_id", None)
+            new.pop("interchange", None)
+            if new != base:
+                builtins.append(new["name"])
+                new.clear()
+                new.update(base)
+    report.check("profile 2.5 adds ids", ids >= 30, ids)
+    report.check("profile 2.5 has the built-in ACES 2.0",
+                 builtins and all(name.startswith("ACES 2.0 (") for name in builtins), builtins)
+    report.check("the rest of profile 2.5 is the same", a == b, [key for key in a if a[key] != b.get(key)])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", type=Path)
+    args = parser.parse_args()
+    report = Report()
+    ocio.SetLoggingLevel(ocio.LOGGING_LEVEL_WARNING)
+    probes = check_config.read_probes(args.folder / "probe.csv")
+    said = {}
+    print(f"OpenColorIO {ocio.GetVersion()}")
+    for version, name in FILES.items():
+        if version > VERSION:
+            with logged():
+                try:
+                    ocio.Config.CreateFromFile(str(args.folder / name))
+                    refused = ""
+                except ocio.Exception as error:
+                    refused = str(error)
+            report.check(f"{name} is refused by its version", "version" in refused, refused)
+            continue
+        with logged() as lines:
+            config = ocio.Config.CreateFromFile(str(args.folder / name))
+            config.validate()
+        report.check(f"{name} loads and validates without a word", not lines, lines[:3])
+        report.check(f"{name} has its version", (config.getMajorVersion(), config.getMinorVersion()) == version)
+        said[name] = names(config)
+        with logged() as lines:
+            check_numbers(report, name, config, probes, args.folder)
+        report.check(f"{name} is used without a word", not lines, lines[:3])
+        if version == (2, 5):
+            check_ids(report, config)
+    first = said["config.ocio"]
+    differ = [(name, part) for name, others in said.items() for part in first if others[part] != first[part]]
+    report.check(f"the same names in {', '.join(said)}", not differ and len(said) > 1, differ)
+    check_text(report, args.folder)
+    return report.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -13,6 +13,7 @@
 #include "lut/numbers.h"
 #include "ocio/inverse.h"
 #include "ocio/profile_2_5.h"
+#include "ocio/read_config.h"
 #include "tonewright/engine.h"
 
 namespace tonewright {
@@ -489,7 +490,7 @@ void ConfigBuilder::use_builtins(const OCIO::ConfigRcPtr& config) const {
 std::string ConfigBuilder::text() const { return yaml_of(*config_); }
 
 std::string ConfigBuilder::text(const std::string& profile) const {
-    const OCIO::ConfigRcPtr config = config_->createEditableCopy();
+    const OCIO::ConfigRcPtr config = editable_copy(*config_);
     config->setVersion(2, profile == "2.0" ? 0 : 1);
     if (profile != "2.5") return yaml_of(*config);
     use_builtins(config);

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "ocio/config_builder.h"
+#include "ocio/read_config.h"
 #include "tonewright/engine.h"
 #include "tonewright/ocio.h"
 
@@ -123,21 +124,10 @@ std::map<std::string, std::vector<float>> pictures_of(const OCIO::ConstConfigRcP
     return pictures;
 }
 
-OCIO::ConfigRcPtr read_host(const std::string& path) {
-    try {
-        const OCIO::ConfigRcPtr config =
-            OCIO::Config::CreateFromFile(path.c_str())->createEditableCopy();
-        config->setProcessorCacheFlags(OCIO::PROCESSOR_CACHE_OFF);
-        return config;
-    } catch (const OCIO::Exception& e) {
-        throw FileError("read: " + path + ": " + e.what());
-    }
-}
-
 }  // namespace
 
 ExtendedConfig extend_config(const std::string& path, const ConfigOptions& options) {
-    const OCIO::ConfigRcPtr config = read_host(path);
+    const OCIO::ConfigRcPtr config = read_config(path);
     for (const char* role : {"aces_interchange", "cie_xyz_d65_interchange"}) {
         if (!config->hasRole(role)) {
             throw Error(
@@ -205,7 +195,7 @@ ExtendedConfig extend_config(const std::string& path, const ConfigOptions& optio
         }
         return all;
     }()](const std::string& written) {
-        const OCIO::ConfigRcPtr made = read_host(written);
+        const OCIO::ConfigRcPtr made = read_config(written);
         try {
             made->validate();
         } catch (const OCIO::Exception& e) {

@@ -17,6 +17,7 @@
 
 #include "ocio/gpu.h"
 #include "ocio/lower.h"
+#include "ocio/read_config.h"
 #include "tonewright/error.h"
 
 namespace tonewright {
@@ -59,16 +60,8 @@ void for_each_transform(const OCIO::ConstTransformRcPtr& transform,
 
 class Linter {
   public:
-    Linter(std::string path, bool with_gpu) : path_(std::move(path)), with_gpu_(with_gpu) {
-        try {
-            const OCIO::ConfigRcPtr config =
-                OCIO::Config::CreateFromFile(path_.c_str())->createEditableCopy();
-            config->setProcessorCacheFlags(OCIO::PROCESSOR_CACHE_OFF);
-            config_ = config;
-        } catch (const OCIO::Exception& e) {
-            throw FileError("read: " + path_ + ": " + e.what());
-        }
-    }
+    Linter(std::string path, bool with_gpu)
+        : path_(std::move(path)), with_gpu_(with_gpu), config_(read_config(path_)) {}
 
     std::vector<LintFinding> run() {
         check_whole();

@@ -14,6 +14,7 @@
 #include "engine/probe.h"
 #include "ocio/gpu.h"
 #include "ocio/lower.h"
+#include "ocio/read_config.h"
 #include "tonewright/engine.h"
 #include "tonewright/ocio.h"
 
@@ -44,15 +45,9 @@ class TemporaryConfig {
     std::string folder_;
 };
 
-OCIO::ConstConfigRcPtr read_config(const std::string& given) {
-    const std::string path = fs::is_directory(given) ? given + "/config.ocio" : given;
-    try {
-        OCIO::ConfigRcPtr config = OCIO::Config::CreateFromFile(path.c_str())->createEditableCopy();
-        config->setProcessorCacheFlags(OCIO::PROCESSOR_CACHE_OFF);
-        return config;
-    } catch (const OCIO::Exception& e) {
-        throw FileError("read: " + path + ": " + e.what());
-    }
+/// Of a folder: the one that it has for any application.
+std::string path_of_config(const std::string& given) {
+    return fs::is_directory(given) ? given + "/config.ocio" : given;
 }
 
 bool has_negative_coefficient(const Matrix3& m) {
@@ -351,7 +346,7 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
     // The views of a config, on its displays; of nobody else's: its AgX may be another.
     const bool is_of_config = options.operators.empty() && !options.config.empty();
     OCIO::ConstConfigRcPtr config;
-    if (!options.config.empty()) config = read_config(options.config);
+    if (!options.config.empty()) config = read_config(path_of_config(options.config));
     std::vector<OperatorVariant> variants;
     for (const std::string& name : options.operators) {
         if (name == "all") {
@@ -398,7 +393,7 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
         }
         if (wanted.empty()) wanted.push_back(views.front().op.op->id);
         fresh.emplace(wanted);
-        config = read_config(fresh->folder());
+        config = read_config(path_of_config(fresh->folder()));
     }
 
     std::vector<ParityRow> rows;

@@ -3,11 +3,13 @@
 
     python3 tests/parity/test_into.py build/release/bin/tonewright
 
-The configs are small stand-ins: one built as the ACES configs are, one with references of its own. The last line is
-`N passed, M failed`.
+The configs are small stand-ins: one built as the ACES configs are, one with references of its own; ocio_config/ of the
+working directory; and the ACES CG and Studio configs themselves where TONEWRIGHT_NEWER_OCIO runs an OpenColorIO that has
+them. The last line is `N passed, M failed`.
 """
 
 import argparse
+import os
 import re
 import shutil
 import subprocess
@@ -119,7 +121,10 @@ def numbers_of(path):
 
     def through(*arguments):
         image = light.copy()
-        config.getProcessor(*arguments).getOptimizedCPUProcessor(ocio.OPTIMIZATION_LOSSLESS).applyRGB(image)
+        try:
+            config.getProcessor(*arguments).getOptimizedCPUProcessor(ocio.OPTIMIZATION_LOSSLESS).applyRGB(image)
+        except ocio.Exception as error:  # such as no way back
+            return str(error)
         return image.tobytes()
 
     found = {}
@@ -152,6 +157,46 @@ def check_picture(report, command, path, display, view, operator, option, space)
     name = f"Output - {view} - {display}"
     config.getProcessor(space[0], name).getDefaultCPUProcessor().applyRGB(image)
     report.compare(f"{path.parent.name}: {name}", image, truth, BOUND)
+
+
+def check_theirs(report, command, folder, path, views):
+    """A config that people have: into it, and nothing of theirs is changed."""
+    before = numbers_of(path)
+    done = call(command, "--into", path, "--views", "AgX,hable", "--looks", "none", *views)
+    errors = [line for line in done.stderr.splitlines() if "Warning" not in line]  # of their config
+    report.check(f"{folder}: --into", done.returncode == 0 and not errors, done.stderr)
+    after = numbers_of(path)
+    changed = [k for k in before if after.get(k) != before[k]]
+    report.check(f"{folder}: all {len(before)} of theirs make the same numbers", not changed, changed)
+    report.check(f"{folder}: has {len(after) - len(before)} more", len(after) > len(before))
+
+
+def check_published(report, command, root):
+    """The ACES CG and Studio configs of profile 2.1, which OpenColorIO 2.2 and newer have built in, and our own."""
+    own = root / "ours"
+    shutil.copytree("ocio_config", own)
+    before = numbers_of(own / "config.ocio")
+    done = call(command, "--into", own / "config.ocio", "--operator", "hable", "--name", "Mine", "--views", "reinhard",
+                "--looks", "none")
+    report.check("ours: --into", done.returncode == 0 and not done.stderr, done.stderr)
+    after = numbers_of(own / "config.ocio")
+    report.check(f"ours: all {len(before)} make the same numbers", all(after.get(k) == before[k] for k in before))
+    newer = os.environ.get("TONEWRIGHT_NEWER_OCIO")
+    if not newer:
+        print("skipped: the ACES CG and Studio configs, TONEWRIGHT_NEWER_OCIO is not set")
+        return
+    for name in ("cg-config-v1.0.0_aces-v1.3_ocio-v2.1", "studio-config-v1.0.0_aces-v1.3_ocio-v2.1"):
+        folder = root / name
+        folder.mkdir()
+        path = folder / "config.ocio"
+        write = f"import PyOpenColorIO as o; print(o.Config.CreateFromBuiltinConfig({name!r}).serialize())"
+        path.write_text(subprocess.run([newer, "python3", "-c", write], capture_output=True, text=True, check=True).stdout)
+        check_theirs(report, command, name, path, ["--operator", "reinhard_extended:white=6", "--name", "Studio"])
+        read = f"import PyOpenColorIO as o; c = o.Config.CreateFromFile({str(path)!r}); c.validate(); " \
+            "[c.getProcessor('ACEScg', d, v, o.TRANSFORM_DIR_FORWARD).getDefaultCPUProcessor() " \
+            "for d in c.getDisplays() for v in c.getViews(d)]; print('loaded')"
+        done = subprocess.run([newer, "python3", "-c", read], capture_output=True, text=True, check=False)
+        report.check(f"{name}: the newer OpenColorIO takes the result", done.stdout.strip() == "loaded", done.stderr[-300:])
 
 
 def main():
@@ -201,6 +246,7 @@ def main():
             shutil.move(folder, moved)
             report.check(f"{kind}: the folder can be moved", ("AgX" in {k[1] for k in numbers_of(moved / "mine.ocio")
                                                                         if isinstance(k, tuple)}))
+        check_published(report, command, Path(name))
         bare = Path(name) / "bare.ocio"
         bare.write_text(ACES.replace("cie_xyz_d65_interchange: CIE-XYZ-D65, ", ""))
         done = call(command, "--into", bare, "--views", "hable")

@@ -62,6 +62,7 @@ def names(config):
     spaces = list(config.getColorSpaces(ocio.SEARCH_REFERENCE_SPACE_ALL, ocio.COLORSPACE_ALL))
     return {"displays": list(config.getDisplays()), "views": {d: list(config.getViews(d)) for d in config.getDisplays()},
             "spaces": sorted(s.getName() for s in spaces), "looks": list(config.getLookNames()),
+            "default view transform": config.getDefaultViewTransformName(),
             "view transforms": list(config.getViewTransformNames()),
             "virtual display": [list(config.getVirtualDisplayViews(kind))
                                 for kind in (ocio.VIEW_DISPLAY_DEFINED, ocio.VIEW_SHARED)],
@@ -175,6 +176,8 @@ def main():
             check_ids(report, config)
     first = said["config.ocio"]
     differ = [(name, part) for name, others in said.items() for part in first if others[part] != first[part]]
+    report.check("scene light is converted to a display as it is",
+                 said["config.ocio"]["default view transform"] == "Un-tone-mapped")
     report.check(f"the same names in {', '.join(said)}", not differ and len(said) > 1, differ)
     check_text(report, args.folder)
     return report.finish()

@@ -16,7 +16,7 @@ BELOW = {
     "engine": ["operators", "pipeline", "color", "expr"],
     "lut": ["engine", "operators", "pipeline", "color", "expr"],
     "ocio": ["lut", "engine", "operators", "pipeline", "color", "expr"],
-    "image": ["engine", "operators", "pipeline", "color", "expr"],
+    "image": ["lut", "engine", "operators", "pipeline", "color", "expr"],
     "verify": ["image", "ocio", "lut", "engine", "operators", "pipeline", "color", "expr"],
     "cli": ["verify", "image", "ocio", "lut", "engine", "operators", "pipeline", "color", "expr"],
 }

@@ -3,6 +3,8 @@
 
 #include "cli/command.h"
 #include "engine/error_metric.h"
+#include "image/lut_picture.h"
+#include "tonewright/image.h"
 #include "tonewright/lut.h"
 
 namespace tonewright {
@@ -15,30 +17,65 @@ struct Options : ViewOptions {
     std::optional<int> size;
     bool one = false;
     bool three = false;
+    std::optional<int> bits;
+    std::string host;
     std::string all;
-    bool input_was_given = false;
 };
 
-void bake_one(Options& options) {
+OIIO::TypeDesc pixel_type(int bits) {
+    if (bits == 8) return OIIO::TypeDesc::UINT8;
+    return bits == 16 ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::FLOAT;
+}
+
+/// What the host expects, where the user has not said otherwise.
+void take_from_host(Options& options, const CLI::App& command) {
+    if (options.host.empty()) return;
+    const LutHost& host = find_lut_host(options.host);
+    const auto is_given = [&](const char* option) { return command.count(option) > 0; };
+    if (!is_given("--format"))
+        options.format = lut_format_names()[static_cast<std::size_t>(host.format)];
+    if (!is_given("--input-encoding")) options.encoding = host.encoding;
+    if (!is_given("--display")) options.display = host.display;
+    if (!is_given("--size") && !options.one) options.size = host.size;
+    if (!is_given("--depth") && !is_given("--format")) options.bits = host.bits;
+    if (!options.one) options.three = true;
+}
+
+void bake_one(Options& options, const CLI::App& command) {
     if (options.op.empty())
         throw Error("bake: operator is missing; expected an id of `tonewright list`, or --all DIR");
     if (options.file.empty()) throw Error("bake: -o is missing; expected the file to write");
+    take_from_host(options, command);
     LutRequest request;
     request.format = parse_lut_format(options.format);
     request.encoding = parse_input_encoding(options.encoding);
-    if (!options.input_was_given) options.input = request.encoding.default_input;
+    if (command.count("--input") == 0) options.input = request.encoding.default_input;
     request.view = options.view();
     request.size = options.size;
+    request.bits = options.bits;
     if (options.one) request.dimension = LutDimension::one;
     if (options.three) request.dimension = LutDimension::three;
-    const Lut lut = sample_lut(request);
-    const LutError error = measure_lut(lut, request);
-    write_text_atomically(options.file, write_lut(lut, request, error));
+    Lut lut = sample_lut(request);
+    quantise(lut, request);
+    const bool is_trilinear =
+        !options.host.empty() && find_lut_host(options.host).interpolation.starts_with("trilinear");
+    const LutError error = measure_lut(lut, request, is_trilinear);
+    const bool is_picture = is_picture_format(request.format);
+    if (is_picture) {
+        write_image_atomically(make_lut_picture(lut, request.format), options.file,
+                               pixel_type(request.bits.value_or(16)));
+    } else {
+        write_text_atomically(options.file, write_lut(lut, request, error));
+    }
     fmt::print(stderr, "{}: {}D, {} in ({}), error max {}, 99.9 % {}, mean {} ({} interpolation)\n",
                options.file, lut.dimension,
                lut.is_half_domain ? "scene-linear" : request.encoding.id, request.view.input,
                rounded_up(error.max), rounded_up(error.p999), rounded_up(error.mean),
                error.interpolation);
+    if (!options.host.empty()) {
+        const LutHost& host = find_lut_host(options.host);
+        fmt::print(stderr, "{}: {}\n", host.title, host.steps);
+    }
 }
 
 }  // namespace
@@ -49,17 +86,26 @@ void add_bake(CLI::App& program, int&) {
     command->add_option("operator", options->op, "operator, or operator:preset");
     add_view_options(*command, *options);
     command->add_option("-o", options->file, "file to write");
-    command->add_option("--format", options->format, "cube, clf, spi1d or spi3d")
+    command->add_option("--for", options->host,
+                        "application that reads it (`tonewright list --hosts`): format, size, "
+                        "input and output are then what it expects, unless given");
+    command
+        ->add_option("--format", options->format,
+                     "cube, clf, spi1d, spi3d, csp, 3dl; hald, strip (pictures); raw")
         ->capture_default_str();
     command
         ->add_option("--input-encoding", options->encoding,
-                     "what goes in: acescct (AP1 primaries unless --input says otherwise), "
-                     "log2[:LO:HI] (stops from 0.18, "
-                     "default -10:6.5), linear[:LO:HI] (1D only)")
+                     "what goes in: acescct, logc3, logc4, slog3, davinci, unity_logc, unreal_log, "
+                     "srgb (each of its own primaries unless --input says otherwise), pq[:WHITE] "
+                     "(scene-linear 1 at WHITE cd/m2), log2[:LO:HI] (stops from 0.18, default "
+                     "-10:6.5), linear[:LO:HI] (1D only)")
         ->capture_default_str();
     command->add_option(
         "--size", options->size,
-        "grid points a side (17..129, default 33), or entries in 1D (default 4096)");
+        "grid points a side (17..129, default 33; hald 64, strip 32), or entries in 1D (default "
+        "4096)");
+    command->add_option("--depth", options->bits,
+                        "bits of a number: 8, 16 or 32 (float) in pictures, 10, 12 or 16 in 3dl");
     CLI::Option* one = command->add_flag(
         "--1d", options->one, "a 1D table; the view must be per channel in its own space");
     command->add_flag("--3d", options->three, "a cube even where a 1D table would do")
@@ -69,8 +115,9 @@ void add_bake(CLI::App& program, int&) {
         "1D or 3D follows from the view where neither is asked for. The file says what goes in, "
         "what comes\n"
         "out and how far it is from the exact operator.\n"
-        "Example:\n  tonewright bake agx_sobotka --format cube --size 33 --input-encoding acescct "
-        "-o agx.cube");
+        "Examples:\n  tonewright bake agx_blender --for resolve -o agx.cube\n"
+        "  tonewright bake agx_sobotka --format cube --size 33 --input-encoding acescct -o "
+        "agx.cube");
     command->callback([options, command] {
         if (!options->all.empty()) {
             if (!options->op.empty())
@@ -78,8 +125,7 @@ void add_bake(CLI::App& program, int&) {
             write_generated_files(options->all, make_shipped_luts(), "MANIFEST.csv");
             return;
         }
-        options->input_was_given = command->count("--input") > 0;
-        bake_one(*options);
+        bake_one(*options, *command);
     });
 }
 

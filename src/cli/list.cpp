@@ -239,12 +239,55 @@ std::string operator_section(const Operator& op, std::string_view after_characte
     return text + "\n";
 }
 
+std::string format_of(const LutHost& host) {
+    std::string text =
+        fmt::format("{} {}", lut_format_names()[static_cast<std::size_t>(host.format)], host.size);
+    if (host.bits) text += fmt::format(", {} bit", *host.bits);
+    return text;
+}
+
+std::string output_of(const LutHost& host) {
+    return host.display == kLinearOutput ? "display-linear Rec.709"
+                                         : find_display(host.display).title;
+}
+
+void print_hosts() {
+    fmt::print("applications (tonewright bake OPERATOR --for HOST -o FILE)\n");
+    for (const LutHost& host : all_lut_hosts()) {
+        fmt::print(
+            "\n  {}: {}\n      {}; {} in, {} out; between the nodes {}\n      {}\n      {}\n",
+            host.id, host.title, format_of(host), parse_input_encoding(host.encoding).title,
+            output_of(host), host.interpolation, host.steps,
+            host.tested.empty() ? "format checked, application not run"
+                                : "tested with " + host.tested);
+    }
+}
+
+Json hosts_to_json() {
+    Json all = Json::array();
+    for (const LutHost& host : all_lut_hosts()) {
+        all.push_back({{"id", host.id},
+                       {"title", host.title},
+                       {"format", lut_format_names()[static_cast<std::size_t>(host.format)]},
+                       {"size", host.size},
+                       {"bits", host.bits ? Json(*host.bits) : Json()},
+                       {"input_encoding", host.encoding},
+                       {"input", parse_input_encoding(host.encoding).default_input},
+                       {"display", host.display},
+                       {"interpolation", host.interpolation},
+                       {"steps", host.steps},
+                       {"tested", host.tested}});
+    }
+    return all;
+}
+
 void add_list(CLI::App& program, int&) {
     struct Options {
         std::string op;
         bool json = false;
         bool markdown = false;
         bool views = false;
+        bool hosts = false;
         std::string catalogue;
     };
     auto options = std::make_shared<Options>();
@@ -261,12 +304,19 @@ void add_list(CLI::App& program, int&) {
                 "each operator's id and its view in the config, with a tab between: for scripts")
             ->excludes(json)
             ->excludes(markdown);
+    CLI::Option* hosts =
+        command
+            ->add_flag("--hosts", options->hosts,
+                       "applications that read LUTs, what each expects, and what to do there")
+            ->excludes(markdown)
+            ->excludes(views);
     command
         ->add_option("--catalogue", options->catalogue,
                      "write operators.md and curves/, every operator with a plot, into this folder")
         ->excludes(json)
         ->excludes(markdown)
-        ->excludes(views);
+        ->excludes(views)
+        ->excludes(hosts);
     command->footer("Example:\n  tonewright list hable --json");
     command->callback([options] {
         if (!options->catalogue.empty()) {
@@ -274,6 +324,14 @@ void add_list(CLI::App& program, int&) {
                 throw Error("list: operator is " + options->op +
                             "; expected none with --catalogue");
             write_catalogue(options->catalogue);
+        } else if (options->hosts) {
+            if (!options->op.empty())
+                throw Error("list: operator is " + options->op + "; expected none with --hosts");
+            if (options->json) {
+                fmt::print("{}\n", hosts_to_json().dump(2));
+            } else {
+                print_hosts();
+            }
         } else if (!options->op.empty()) {
             const Operator& op = find_operator(options->op);
             if (options->json) {

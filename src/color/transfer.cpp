@@ -95,4 +95,91 @@ Expr acescct_decode(const Expr& code) {
                   exp2(code * 17.52 - 9.72));
 }
 
+namespace {
+Expr log10(const Expr& x) { return log2(x) * std::log10(2.0); }
+Expr exp10(const Expr& x) { return exp2(x * std::log2(10.0)); }
+
+struct LogC {
+    double cut, a, b, c, d, e, f;
+};
+constexpr LogC kLogC3 = {0.010591, 5.555556, 0.052272, 0.247190, 0.385537, 5.367655, 0.092809};
+constexpr LogC kUnityLogC = {0.011361, 5.555556, 0.047996, 0.244161, 0.386036, 5.301883, 0.092819};
+
+struct LogC4 {
+    double a = (std::exp2(18) - 16) / 117.45;
+    double b = (1023.0 - 95) / 1023;
+    double c = 95.0 / 1023;
+    double s = 7 * std::log(2) * std::exp2(7 - 14 * c / b) / (a * b);
+    double t = (std::exp2(14 * (-c / b) + 6) - 64) / a;
+};
+
+constexpr double kSLog3Cut = 0.01125000;
+constexpr double kSLog3Knee = 171.2102946929;
+
+constexpr double kDaVinciA = 0.0075;
+constexpr double kDaVinciB = 7.0;
+constexpr double kDaVinciC = 0.07329248;
+constexpr double kDaVinciM = 10.44426855;
+constexpr double kDaVinciLinearCut = 0.00262409;
+constexpr double kDaVinciLogCut = 0.02740668;
+
+double unreal_log_black() { return std::exp2(-444.0 / 1023 * 14) * 0.18; }
+}  // namespace
+
+Expr arri_logc3_encode(const Expr& linear) {
+    return select(less_equal(linear, kLogC3.cut), kLogC3.e * linear + kLogC3.f,
+                  kLogC3.c * log10(kLogC3.a * max(linear, kLogC3.cut) + kLogC3.b) + kLogC3.d);
+}
+
+Expr arri_logc3_decode(const Expr& code) {
+    return select(less_equal(code, kLogC3.e * kLogC3.cut + kLogC3.f), (code - kLogC3.f) / kLogC3.e,
+                  (exp10((code - kLogC3.d) / kLogC3.c) - kLogC3.b) / kLogC3.a);
+}
+
+Expr arri_logc4_encode(const Expr& linear) {
+    const LogC4 p;
+    return select(less(linear, p.t), (linear - p.t) / p.s,
+                  (log2(p.a * max(linear, p.t) + 64) - 6) / 14 * p.b + p.c);
+}
+
+Expr arri_logc4_decode(const Expr& code) {
+    const LogC4 p;
+    return select(less(code, 0), code * p.s + p.t,
+                  (exp2(14 * ((code - p.c) / p.b) + 6) - 64) / p.a);
+}
+
+Expr sony_slog3_encode(const Expr& linear) {
+    return select(less(linear, kSLog3Cut), (linear * (kSLog3Knee - 95) / kSLog3Cut + 95) / 1023,
+                  (420 + log10((max(linear, kSLog3Cut) + 0.01) / (0.18 + 0.01)) * 261.5) / 1023);
+}
+
+Expr sony_slog3_decode(const Expr& code) {
+    return select(less(code, kSLog3Knee / 1023), (code * 1023 - 95) * kSLog3Cut / (kSLog3Knee - 95),
+                  exp10((code * 1023 - 420) / 261.5) * (0.18 + 0.01) - 0.01);
+}
+
+Expr davinci_intermediate_encode(const Expr& linear) {
+    return select(less_equal(linear, kDaVinciLinearCut), linear * kDaVinciM,
+                  (log2(max(linear, kDaVinciLinearCut) + kDaVinciA) + kDaVinciB) * kDaVinciC);
+}
+
+Expr davinci_intermediate_decode(const Expr& code) {
+    return select(less_equal(code, kDaVinciLogCut), code / kDaVinciM,
+                  exp2(code / kDaVinciC - kDaVinciB) - kDaVinciA);
+}
+
+Expr unity_logc_encode(const Expr& linear) {
+    return kUnityLogC.c * log10(max(kUnityLogC.a * linear + kUnityLogC.b, 1e-10)) + kUnityLogC.d;
+}
+
+Expr unity_logc_decode(const Expr& code) {
+    return (exp10((code - kUnityLogC.d) / kUnityLogC.c) - kUnityLogC.b) / kUnityLogC.a;
+}
+
+Expr unreal_log_encode(const Expr& linear) {
+    return log2(max(linear, unreal_log_black()) / 0.18) / 14 + 444.0 / 1023;
+}
+
+Expr unreal_log_decode(const Expr& code) { return exp2((code - 444.0 / 1023) * 14) * 0.18; }
+
 }  // namespace tonewright

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <array>
 #include <charconv>
 #include <cmath>
 
@@ -8,6 +9,36 @@
 
 namespace tonewright {
 namespace {
+
+/// An encoding without parameters, and the primaries of the light that it is of.
+struct FixedEncoding {
+    const char* id;
+    const char* title;
+    Expr (*encode)(const Expr&);
+    Expr (*decode)(const Expr&);
+    const char* input;
+};
+
+constexpr std::array<FixedEncoding, 8> kFixedEncodings = {{
+    {"acescct", "ACEScct (Academy S-2016-001: AP1 primaries, log with a linear toe)",
+     acescct_encode, acescct_decode, "lin_ap1"},
+    {"logc3", "ARRI LogC3 (EI 800)", arri_logc3_encode, arri_logc3_decode, "lin_awg3"},
+    {"logc4", "ARRI LogC4", arri_logc4_encode, arri_logc4_decode, "lin_awg4"},
+    {"slog3", "Sony S-Log3", sony_slog3_encode, sony_slog3_decode, "lin_sgamut3"},
+    {"davinci", "DaVinci Intermediate", davinci_intermediate_encode, davinci_intermediate_decode,
+     "lin_davinci_wg"},
+    {"unity_logc", "Unity LogC (ALEXA's of EI 1000)", unity_logc_encode, unity_logc_decode,
+     "lin_rec709"},
+    {"unreal_log", "Unreal Engine's log (14 stops, 0.18 at 444/1023)", unreal_log_encode,
+     unreal_log_decode, "lin_rec709"},
+    {"srgb", "sRGB (IEC 61966-2-1): a display's own range, nothing above white", srgb_encode,
+     srgb_decode, "lin_rec709"},
+}};
+
+bool parse_number(std::string_view s, double& value) {
+    const auto r = std::from_chars(s.data(), s.data() + s.size(), value);
+    return r.ec == std::errc() && r.ptr == s.data() + s.size() && std::isfinite(value);
+}
 
 struct Range {
     double lo;
@@ -19,13 +50,9 @@ Range parse_range(std::string_view text, std::string_view name, Range fallback) 
     if (text == name) return fallback;
     std::string_view rest = text.substr(name.size() + 1);
     const std::size_t colon = rest.find(':');
-    const auto number = [&](std::string_view s, double& value) {
-        const auto r = std::from_chars(s.data(), s.data() + s.size(), value);
-        return r.ec == std::errc() && r.ptr == s.data() + s.size() && std::isfinite(value);
-    };
     Range range{};
-    if (colon == std::string_view::npos || !number(rest.substr(0, colon), range.lo) ||
-        !number(rest.substr(colon + 1), range.hi) || !(range.lo < range.hi)) {
+    if (colon == std::string_view::npos || !parse_number(rest.substr(0, colon), range.lo) ||
+        !parse_number(rest.substr(colon + 1), range.hi) || !(range.lo < range.hi)) {
         throw Error("bake: input encoding is " + std::string(text) + "; expected " +
                     std::string(name) + ":LO:HI with numbers LO < HI");
     }
@@ -34,18 +61,44 @@ Range parse_range(std::string_view text, std::string_view name, Range fallback) 
 
 }  // namespace
 
+std::vector<std::string> input_encoding_names() {
+    std::vector<std::string> names;
+    for (const FixedEncoding& fixed : kFixedEncodings)
+        names.emplace_back(fixed.id);
+    for (const char* name : {"pq", "log2", "linear"})
+        names.emplace_back(name);
+    return names;
+}
+
 InputEncoding parse_input_encoding(std::string_view text) {
     const Expr x = Expr::input();
     const std::string_view name = text.substr(0, text.find(':'));
     InputEncoding e;
-    if (text == "acescct") {
-        e.id = "acescct";
-        e.title = "ACEScct (Academy S-2016-001: AP1 primaries, log with a linear toe)";
-        e.encode = acescct_encode(x);
-        e.decode = acescct_decode(x);
-        e.default_input = "lin_ap1";
+    for (const FixedEncoding& fixed : kFixedEncodings) {
+        if (text != fixed.id) continue;
+        e.id = fixed.id;
+        e.title = fixed.title;
+        e.encode = fixed.encode(x);
+        e.decode = fixed.decode(x);
+        e.default_input = fixed.input;
         e.scene_lo = evaluate(e.decode, 0.0);
         e.scene_hi = evaluate(e.decode, 1.0);
+        return e;
+    }
+    if (name == "pq") {
+        double white = kReferenceWhite;
+        if (text != name &&
+            (!parse_number(text.substr(name.size() + 1), white) || !(white > 0) || white > 10000)) {
+            throw Error("bake: input encoding is " + std::string(text) +
+                        "; expected pq:WHITE with what scene-linear 1 is, in (0, 10000] cd/m2");
+        }
+        e.id = fmt::format("pq:{}", shortest(white));
+        e.title = fmt::format("PQ (SMPTE ST 2084), scene-linear 1 at {} cd/m2", shortest(white));
+        e.encode = pq_encode_nits(x * white);
+        e.decode = pq_decode_nits(x) / white;
+        e.default_input = "lin_rec2020";
+        e.scene_lo = 0;
+        e.scene_hi = 10000 / white;
         return e;
     }
     if (name == "log2") {
@@ -76,12 +129,18 @@ InputEncoding parse_input_encoding(std::string_view text) {
         e.is_linear = true;
         return e;
     }
-    const std::vector<std::string> names = {"acescct", "log2", "linear"};
+    const std::vector<std::string> names = input_encoding_names();
     throw Error("bake: input encoding is " + std::string(text) + "; expected " +
                 join_choices(names) + did_you_mean(name, names));
 }
 
-std::vector<std::string> lut_format_names() { return {"cube", "clf", "spi1d", "spi3d"}; }
+std::vector<std::string> lut_format_names() {
+    return {"cube", "clf", "spi1d", "spi3d", "csp", "3dl", "hald", "strip", "raw"};
+}
+
+bool is_picture_format(LutFormat format) {
+    return format == LutFormat::hald || format == LutFormat::strip;
+}
 
 LutFormat parse_lut_format(std::string_view text) {
     const std::vector<std::string> names = lut_format_names();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "lut/half_domain.h"
@@ -19,6 +20,54 @@ Pipeline table_pipeline(const LutRequest& request) {
     const Pipeline view = build_view(request.view);
     stages.insert(stages.end(), view.begin(), view.end());
     return stages;
+}
+
+struct FormatTraits {
+    const char* name;
+    bool has_1d;
+    bool has_3d;
+    int default_size;  // of a cube
+    int smallest;
+    int largest;
+    std::array<int, 3> bits;  // the first is the default; 0: none
+};
+
+/// In the order of LutFormat.
+constexpr std::array<FormatTraits, 9> kFormats = {{
+    {"cube", true, true, kDefaultCubeSize, 17, 129, {32, 0, 0}},
+    {"clf", true, true, kDefaultCubeSize, 17, 129, {32, 0, 0}},
+    {"spi1d", true, false, 0, 0, 0, {32, 0, 0}},
+    {"spi3d", false, true, kDefaultCubeSize, 17, 129, {32, 0, 0}},
+    {"csp", false, true, kDefaultCubeSize, 17, 129, {32, 0, 0}},
+    // Autodesk's readers know 17, 33 and 65.
+    {"3dl", false, true, kDefaultCubeSize, 17, 65, {12, 10, 16}},
+    // Level 8.
+    {"hald", false, true, 64, 16, 144, {16, 8, 32}},
+    {"strip", false, true, 32, 2, 64, {16, 8, 32}},
+    {"raw", false, true, kDefaultCubeSize, 2, 129, {32, 0, 0}},
+}};
+
+const FormatTraits& traits_of(LutFormat format) {
+    return kFormats[static_cast<std::size_t>(format)];
+}
+
+bool is_square(int n) {
+    const int root = static_cast<int>(std::lround(std::sqrt(n)));
+    return root * root == n;
+}
+
+int bits_of(const LutRequest& request) {
+    return request.bits.value_or(traits_of(request.format).bits.front());
+}
+
+void check_bits(const LutRequest& request, const FormatTraits& traits) {
+    std::vector<std::string> known;
+    for (const int bits : traits.bits) {
+        if (bits == bits_of(request)) return;
+        if (bits != 0) known.push_back(std::to_string(bits));
+    }
+    throw Error("bake: depth is " + std::to_string(bits_of(request)) + "; expected " +
+                join_choices(known) + " for " + traits.name);
 }
 
 int checked_size(const LutRequest& request, int fallback, int lo, int hi) {
@@ -51,22 +100,25 @@ Lut sample_half_curve(const LutRequest& request) {
 
 Lut sample_lut(const LutRequest& request) {
     const bool per_channel = is_per_channel(build_view(request.view));
-    bool one = request.dimension == LutDimension::one ||
-               (request.dimension == LutDimension::automatic && per_channel);
-    if (request.format == LutFormat::spi1d) one = true;
-    if (request.format == LutFormat::spi3d) one = false;
-    if (request.format == LutFormat::spi1d && request.dimension == LutDimension::three) {
-        throw Error("bake: format is spi1d; expected a 3D format (cube, clf, spi3d) with --3d");
+    const FormatTraits& traits = traits_of(request.format);
+    if (request.dimension == LutDimension::three && !traits.has_3d) {
+        throw Error(std::string("bake: format is ") + traits.name +
+                    "; expected a 3D format (cube, clf, spi3d) with --3d");
     }
-    if (request.format == LutFormat::spi3d && request.dimension == LutDimension::one) {
-        throw Error("bake: format is spi3d; expected a 1D format (cube, clf, spi1d) with --1d");
+    if (request.dimension == LutDimension::one && !traits.has_1d) {
+        throw Error(std::string("bake: format is ") + traits.name +
+                    "; expected a 1D format (cube, clf, spi1d) with --1d");
     }
+    const bool one =
+        traits.has_1d && (!traits.has_3d || request.dimension == LutDimension::one ||
+                          (request.dimension == LutDimension::automatic && per_channel));
+    check_bits(request, traits);
     if (one && !per_channel) {
         throw Error(at_most_one_dimension(request) + "; expected a 3D table");
     }
     if (!one && request.encoding.is_linear) {
         throw Error("bake: input encoding is " + request.encoding.id +
-                    "; expected acescct or log2 for a 3D table" +
+                    "; expected another for a 3D table, such as acescct or log2" +
                     " (a cube of linear light clips at its end and bands in the shadows)");
     }
     if (one && request.format == LutFormat::clf && request.encoding.is_linear) {
@@ -80,7 +132,11 @@ Lut sample_lut(const LutRequest& request) {
     lut.dimension = one ? 1 : 3;
     lut.channels = one ? 1 : 3;
     lut.size = one ? checked_size(request, kDefaultCurveSize, 2, kHalfCount)
-                   : checked_size(request, kDefaultCubeSize, 17, 129);
+                   : checked_size(request, traits.default_size, traits.smallest, traits.largest);
+    if (request.format == LutFormat::hald && !is_square(lut.size)) {
+        throw Error("bake: size is " + std::to_string(lut.size) +
+                    "; expected a square for a Hald CLUT: 16, 25, 36, 49, 64, 81, 100, 121 or 144");
+    }
     const auto n = static_cast<std::size_t>(lut.size);
     std::vector<double> axis(n);
     for (std::size_t i = 0; i < n; ++i)
@@ -105,6 +161,14 @@ Lut sample_lut(const LutRequest& request) {
         }
     }
     return lut;
+}
+
+void quantise(Lut& lut, const LutRequest& request) {
+    const int bits = bits_of(request);
+    if (bits == 32) return;
+    const float largest = std::exp2(static_cast<float>(bits)) - 1;
+    for (float& v : lut.values)
+        v = std::round(std::clamp(v, 0.0F, 1.0F) * largest) / largest;
 }
 
 }  // namespace tonewright

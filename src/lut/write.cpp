@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "engine/error_metric.h"
 #include "lut/clf.h"
@@ -25,7 +27,13 @@ std::vector<std::string> header_lines(const Lut& lut, const LutRequest& r, const
                          ? ", exposure " + shortest(r.view.exposure_stops) + " stops"
                          : ""));
     lines.push_back("Source: " + op.source);
-    if (lut.is_half_domain) {
+    if (r.format == LutFormat::csp) {
+        lines.push_back(fmt::format(
+            "Input: scene-linear {}, {:.6g} to {:.6g}; the prelut makes {} of it. Readers resample "
+            "it: up to 1.3e-3 more near black",
+            find_input_space(r.view.input).title, r.encoding.scene_lo, r.encoding.scene_hi,
+            r.encoding.title));
+    } else if (lut.is_half_domain) {
         lines.push_back("Input: scene-linear " + find_input_space(r.view.input).title +
                         ", every half float (half-domain table)");
     } else {
@@ -118,6 +126,63 @@ std::string write_spi3d(const Lut& lut) {
     return text;
 }
 
+/// cineSpace: a prelut from scene-linear to the encoding, then the cube. Readers resample a prelut
+/// of few points, and to as many of equal distances in light: 4096, of equal distances in code.
+std::string write_csp(const Lut& lut, const LutRequest& r, const LutError& e) {
+    std::string text = "CSPLUTV100\n3D\n\nBEGIN METADATA\n" + title_of(r) + "\n";
+    for (const std::string& line : header_lines(lut, r, e))
+        text += line + "\n";
+    text += "END METADATA\n\n";
+    constexpr int kPoints = 4096;
+    std::string from;
+    std::string to;
+    for (int i = 0; i < kPoints; ++i) {
+        const double code = i / (kPoints - 1.0);
+        append_number(from, static_cast<float>(evaluate(r.encoding.decode, code)));
+        append_number(to, static_cast<float>(code));
+        from += i + 1 < kPoints ? ' ' : '\n';
+        to += i + 1 < kPoints ? ' ' : '\n';
+    }
+    for (int c = 0; c < 3; ++c)
+        text += std::to_string(kPoints) + "\n" + from + to;
+    text += fmt::format("\n{0} {0} {0}\n", lut.size);
+    return text + triplets(lut);
+}
+
+/// Autodesk Flame and Lustre: input of 10 bits, blue fastest.
+std::string write_3dl(const Lut& lut, const LutRequest& r) {
+    const auto n = static_cast<std::size_t>(lut.size);
+    const int bits = r.bits.value_or(12);
+    const double largest = std::exp2(bits) - 1;
+    const int mesh = static_cast<int>(std::lround(std::log2(n - 1)));
+    std::string text = fmt::format("3DMESH\nMesh {} {}\n", mesh, bits);
+    for (std::size_t i = 0; i < n; ++i)
+        text +=
+            fmt::format("{}{}", i ? " " : "",
+                        std::lround(1023.0 * static_cast<double>(i) / static_cast<double>(n - 1)));
+    text += '\n';
+    for (std::size_t red = 0; red < n; ++red) {
+        for (std::size_t g = 0; g < n; ++g) {
+            for (std::size_t b = 0; b < n; ++b) {
+                for (std::size_t c = 0; c < 3; ++c) {
+                    const double v =
+                        static_cast<double>(lut.values[3 * ((b * n + g) * n + red) + c]);
+                    text += fmt::format("{}{}", c ? " " : "",
+                                        std::lround(std::clamp(v, 0.0, 1.0) * largest));
+                }
+                text += '\n';
+            }
+        }
+    }
+    return text + fmt::format("\nLUT8\ngamma 1.0\n");
+}
+
+std::string write_raw(const Lut& lut) {
+    std::string bytes(lut.values.size() * sizeof(float), '\0');
+    std::memcpy(bytes.data(), lut.values.data(), bytes.size());
+    return bytes;
+}
+
 std::string write_clf_file(const Lut& lut, const LutRequest& r, const LutError& e) {
     const auto n = static_cast<std::size_t>(lut.size);
     std::vector<float> blue_fastest;
@@ -154,6 +219,15 @@ std::string write_lut(const Lut& lut, const LutRequest& request, const LutError&
             return write_spi1d(lut, request);
         case LutFormat::spi3d:
             return write_spi3d(lut);
+        case LutFormat::csp:
+            return write_csp(lut, request, error);
+        case LutFormat::threedl:
+            return write_3dl(lut, request);
+        case LutFormat::raw:
+            return write_raw(lut);
+        case LutFormat::hald:
+        case LutFormat::strip:
+            break;
     }
     return {};
 }

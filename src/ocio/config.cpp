@@ -189,6 +189,8 @@ std::vector<GeneratedFile> make_config(const ConfigOptions& options) {
     config->setSearchPath(kLutFolder);
     config->setStrictParsingEnabled(true);
     config->setEnvironmentMode(OCIO::ENV_ENVIRONMENT_LOAD_PREDEFINED);
+    // Not for pictures; some hosts start with the first space of the list.
+    config->setInactiveColorSpaces("CIE-XYZ-D65");
     double luma[3] = {kRec709Weights[0], kRec709Weights[1], kRec709Weights[2]};
     config->setDefaultLumaCoefs(luma);
 

@@ -117,6 +117,15 @@ const std::vector<InputSpace>& all_input_spaces() {
          {"lin_p3d65_scene", "lin_displayp3", "Utility - Linear - P3-D65"},
          kP3D65},
         {"lin_egamut", "Linear FilmLight E-Gamut", {"Linear E-Gamut", "lin_egamut_scene"}, kEGamut},
+        {"lin_awg3", "Linear ARRI Wide Gamut 3", {"lin_arri_wide_gamut_3"}, kArriWideGamut3, true},
+        {"lin_awg4", "Linear ARRI Wide Gamut 4", {"lin_arri_wide_gamut_4"}, kArriWideGamut4, true},
+        {"lin_sgamut3", "Linear S-Gamut3", {}, kSGamut3, true},
+        {"lin_sgamut3cine", "Linear S-Gamut3.Cine", {}, kSGamut3Cine, true},
+        {"lin_davinci_wg",
+         "Linear DaVinci WideGamut",
+         {"lin_davinci_widegamut"},
+         kDaVinciWideGamut,
+         true},
     };
     return spaces;
 }

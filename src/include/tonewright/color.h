@@ -57,6 +57,21 @@ inline constexpr Primaries kAP1 = {
 inline constexpr Primaries kEGamut = {
     "FilmLight E-Gamut", {0.8, 0.3177}, {0.18, 0.9}, {0.065, -0.0805}, kD65};
 
+/// ARRI, "ALEXA Log C Curve, Usage in VFX", 2017: Wide Gamut 3.
+inline constexpr Primaries kArriWideGamut3 = {
+    "ARRI Wide Gamut 3", {0.6840, 0.3130}, {0.2210, 0.8480}, {0.0861, -0.1020}, kD65};
+/// ARRI, "LogC4 Logarithmic Color Space, Specification", 2022: Wide Gamut 4.
+inline constexpr Primaries kArriWideGamut4 = {
+    "ARRI Wide Gamut 4", {0.7347, 0.2653}, {0.1424, 0.8576}, {0.0991, -0.0308}, kD65};
+/// Sony, "Technical Summary for S-Gamut3.Cine/S-Log3 and S-Gamut3/S-Log3".
+inline constexpr Primaries kSGamut3 = {
+    "S-Gamut3", {0.730, 0.280}, {0.140, 0.855}, {0.100, -0.050}, kD65};
+inline constexpr Primaries kSGamut3Cine = {
+    "S-Gamut3.Cine", {0.766, 0.275}, {0.225, 0.800}, {0.089, -0.087}, kD65};
+/// Blackmagic Design, "DaVinci Resolve 17 Wide Gamut Intermediate", 2021.
+inline constexpr Primaries kDaVinciWideGamut = {
+    "DaVinci Wide Gamut", {0.8000, 0.3130}, {0.1682, 0.9877}, {0.0790, -0.1155}, kD65};
+
 /// XYZ of a chromaticity with Y = 1.
 [[nodiscard]] Vector3 xyz_of(Chromaticity xy) noexcept;
 
@@ -117,5 +132,29 @@ inline constexpr Vector3 kRec709Weights = {0.2126, 0.7152, 0.0722};
 [[nodiscard]] Expr acescct_encode(const Expr& linear);
 /// Its inverse; the clamp at 65504 of the standard is not in it.
 [[nodiscard]] Expr acescct_decode(const Expr& code);
+
+// Scene-linear light -> log code value of cameras and grading systems, and back. Below their toes
+// they go on straight.
+
+/// ARRI LogC3 of exposure index 800, scene exposure: "ALEXA Log C Curve, Usage in VFX", 2017.
+[[nodiscard]] Expr arri_logc3_encode(const Expr& linear);
+[[nodiscard]] Expr arri_logc3_decode(const Expr& code);
+/// "LogC4 Logarithmic Color Space, Specification", 2022.
+[[nodiscard]] Expr arri_logc4_encode(const Expr& linear);
+[[nodiscard]] Expr arri_logc4_decode(const Expr& code);
+/// Sony, "Technical Summary for S-Gamut3.Cine/S-Log3 and S-Gamut3/S-Log3".
+[[nodiscard]] Expr sony_slog3_encode(const Expr& linear);
+[[nodiscard]] Expr sony_slog3_decode(const Expr& code);
+/// Blackmagic Design, "DaVinci Resolve 17 Wide Gamut Intermediate", 2021.
+[[nodiscard]] Expr davinci_intermediate_encode(const Expr& linear);
+[[nodiscard]] Expr davinci_intermediate_decode(const Expr& code);
+/// Unity's LogC, ALEXA's of EI 1000 without its toe: core render pipeline, Color.hlsl,
+/// LinearToLogC.
+[[nodiscard]] Expr unity_logc_encode(const Expr& linear);
+[[nodiscard]] Expr unity_logc_decode(const Expr& code);
+/// Unreal Engine, TonemapCommon.ush, LinToLog: 14 stops, grey 0.18 at code 444 of 1023. Clamped at
+/// code 0.
+[[nodiscard]] Expr unreal_log_encode(const Expr& linear);
+[[nodiscard]] Expr unreal_log_decode(const Expr& code);
 
 }  // namespace tonewright

@@ -26,15 +26,25 @@ struct InputEncoding {
     std::string default_input = "lin_rec709";
 };
 
-/// `acescct`; `log2[:LO:HI]` = log2 of scene-linear over 0.18, LO..HI stops (default -10:6.5);
+/// `acescct`, `logc3` (ARRI, EI 800), `logc4`, `slog3` (Sony), `davinci` (DaVinci Intermediate),
+/// `unity_logc`, `unreal_log`, `srgb`; `pq[:WHITE]` = SMPTE ST 2084, scene-linear 1 at WHITE cd/m2
+/// (default 100); `log2[:LO:HI]` = log2 of scene-linear over 0.18, LO..HI stops (default -10:6.5);
 /// `linear[:LO:HI]` = scene-linear (default 0:1).
-/// @throws Error  unknown name; ends that are no numbers or not LO < HI.
+/// @throws Error  unknown name; parameters that are no numbers or out of range.
 [[nodiscard]] InputEncoding parse_input_encoding(std::string_view text);
+/// Without parameters.
+[[nodiscard]] std::vector<std::string> input_encoding_names();
 
-enum class LutFormat : unsigned char { cube, clf, spi1d, spi3d };
+/// `cube` (Adobe and Resolve), `clf` (Academy S-2014-006), `spi1d`, `spi3d` (Sony Imageworks),
+/// `csp` (cineSpace: scene-linear in, its prelut encodes), `3dl` (Autodesk: integers), `hald` (a
+/// Hald CLUT picture), `strip` (a picture of n slices of n x n side by side), `raw` (float32,
+/// little-endian, RGB triplets, red fastest).
+enum class LutFormat : unsigned char { cube, clf, spi1d, spi3d, csp, threedl, hald, strip, raw };
 /// @throws Error with the nearest name.
 [[nodiscard]] LutFormat parse_lut_format(std::string_view text);
 [[nodiscard]] std::vector<std::string> lut_format_names();
+/// A picture's layout, not a file of its own kind: OpenImageIO writes it.
+[[nodiscard]] bool is_picture_format(LutFormat format);
 
 enum class LutDimension : unsigned char { automatic, one, three };
 
@@ -44,9 +54,33 @@ struct LutRequest {
     InputEncoding encoding;
     LutFormat format = LutFormat::cube;
     LutDimension dimension = LutDimension::automatic;
-    /// Entries of a 1D table (2..65536), or grid points a side of a cube (17..129).
+    /// Entries of a 1D table (2..65536), or grid points a side of a cube (17..129; `hald`: a square
+    /// of 16..144, `strip`: 2..64).
     std::optional<int> size;
+    /// Of integers: 8 or 16 in pictures, 10, 12 or 16 in `3dl`. 32: float.
+    std::optional<int> bits;
 };
+
+/// An application that reads a LUT, and what it expects.
+struct LutHost {
+    std::string id;     // resolve
+    std::string title;  // "DaVinci Resolve"
+    LutFormat format;
+    int size;  // grid points a side
+    std::string encoding;
+    /// Id of the display whose code values come out, or `linear`.
+    std::string display;
+    std::optional<int> bits;
+    /// What the application does between the nodes.
+    std::string interpolation;
+    /// What a user does with the file.
+    std::string steps;
+    /// Empty: the format was checked, the application not run.
+    std::string tested;
+};
+[[nodiscard]] const std::vector<LutHost>& all_lut_hosts();
+/// @throws Error with the nearest name.
+[[nodiscard]] const LutHost& find_lut_host(std::string_view id);
 
 /// A baked table. 1D: `size` entries of `channels` values. 3D: size^3 RGB triplets, red fastest.
 /// Half-domain: 65536 entries in the order of the half floats' bit patterns.
@@ -82,8 +116,12 @@ struct LutError {
 [[nodiscard]] LutError measure_lut(const Lut& lut, const LutRequest& request,
                                    bool trilinear = false);
 
-/// The text of the file: what it is, what goes in, what comes out, the measured error; then numbers
-/// with 9 significant digits (enough for every float), never in exponent notation.
+/// The table as its format holds it: rounded to the integers of LutRequest::bits.
+void quantise(Lut& lut, const LutRequest& request);
+
+/// The contents of the file: what it is, what goes in, what comes out, the measured error; then
+/// numbers with 9 significant digits (enough for every float), never in exponent notation. Of no
+/// picture.
 [[nodiscard]] std::string write_lut(const Lut& lut, const LutRequest& request,
                                     const LutError& error);
 

@@ -15,6 +15,9 @@ struct InputSpace {
     std::string title;  // as the OCIO config names it: "Linear Rec.709"
     std::vector<std::string> aliases;
     Primaries primaries;
+    /// A camera's, for LUTs of its log. The config has the log itself, OpenColorIO's, which adapts
+    /// white in another way.
+    bool is_camera = false;
 };
 
 /// A display: its primaries and how light becomes code values. Light 1 is the peak of an SDR

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Shared by the test scripts: pictures as NumPy arrays, the programs, the report, the codes of LUTs.
+"""Shared by the test scripts: pictures as NumPy arrays, programs, the report, the codes of displays and LUTs.
 
 Pixels travel through uncompressed float EXR, which is a header, a table and rows of numbers: oiiotool turns any
 picture into one, ffmpeg and tonewright read and write it, and every float survives, NaN and negatives included.
 """
 
+import contextlib
 import os
 import shutil
 import struct
@@ -38,13 +39,20 @@ class Report:
 
     def bound(self, what, error, bound, detail=""):
         ok = bool(error <= bound)
-        return self.check(f"{what:72s} max {error:8.2g}  bound {bound:8.2g}  {error / bound:6.2f} x", ok, detail)
+        times = error / bound if bound else error
+        return self.check(f"{what:72s} max {error:8.2g}  bound {bound:8.2g}  {times:6.2f} x", ok, detail)
 
-    def compare(self, what, actual, expected, bound):
-        """Arrays of colours; a failure prints the worst one."""
+    def compare(self, what, actual, expected, bound, light=None):
+        """Arrays of colours; a failure prints the worst one.
+
+        light: the light of a code value, see LIGHT: near black, where codes are steep, the errors of light count.
+        """
         if actual.shape != expected.shape:
             return self.check(what, False, f"shape is {actual.shape}, expected {expected.shape}")
         difference = np.abs(actual.astype(float) - expected)
+        if light:
+            of_light = np.abs(light(actual.astype(float)) - light(expected.astype(float)))
+            difference = np.minimum(difference, SRGB_SLOPE * of_light)
         error = difference.max(initial=0)
         if error <= bound:
             return self.bound(what, error, bound)
@@ -79,6 +87,25 @@ def run(*arguments, folder=None, stdin=None):
     if done.returncode:
         raise RuntimeError(f"exit {done.returncode}: {' '.join(arguments)}: {(done.stderr or done.stdout).strip()}")
     return done.stdout
+
+
+@contextlib.contextmanager
+def screen(size="640x480"):
+    """An X server without a screen, and its number as DISPLAY; None where there is no such server."""
+    if not shutil.which("Xvfb"):
+        yield None
+        return
+    reading, writing = os.pipe()
+    server = subprocess.Popen(["Xvfb", "-displayfd", str(writing), "-screen", "0", f"{size}x24"],
+                              pass_fds=[writing], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    os.close(writing)
+    try:
+        with os.fdopen(reading) as number:
+            display = number.readline().strip()
+        yield f":{display}" if display else None
+    finally:
+        server.terminate()
+        server.wait()
 
 
 def evaluate(command, rgb, *arguments):
@@ -176,6 +203,10 @@ def read_exr(path):
 
 def read_planes(path, scratch):
     """Planes of any picture that OpenImageIO reads; integers become 0..1. No colour conversion takes place."""
+    try:
+        return read_exr(path)  # oiiotool takes 0.2 s to write the same once more
+    except ValueError:
+        pass
     plain = Path(scratch) / (Path(path).name + ".plain.exr")
     run("oiiotool", path, "-d", "float", "--compression", "none", "-o", plain)
     planes = read_exr(plain)
@@ -192,9 +223,53 @@ def read_rgb(path, scratch):
     return stack(read_planes(path, scratch))
 
 
+def nearest_of_bytes(shown, expected):
+    """Of the numbers that 8 bits stand for, the nearest to the expected: what is left beside the rounding."""
+    if shown.shape != expected.shape:
+        return shown
+    half = 0.5 / 255
+    return np.clip(expected, shown.astype(float) - half, shown.astype(float) + half)
+
+
 def unstack(rgb, names="RGB"):
     return {name: rgb[..., i] for i, name in enumerate(names)}
 
+
+# --------------------------------------------------------------------------------------------------
+# Codes of displays
+
+SRGB_SLOPE = 12.92  # the steepest that sRGB is: so much of a code is an error of light, at most
+
+
+def pq_light(code):
+    """SMPTE ST 2084: 1 is 100 cd/m2."""
+    root = np.maximum(code, 0) ** (32 / 2523)
+    return 100 * (np.maximum(root - 107 / 128, 0) / (2413 / 128 - 2392 / 128 * root)) ** (16384 / 2610)
+
+
+def pq_code(light):
+    power = (np.maximum(light, 0) / 100) ** (2610 / 16384)
+    return ((107 / 128 + 2413 / 128 * power) / (1 + 2392 / 128 * power)) ** (2523 / 32)
+
+
+HLG_A = 0.17883277
+HLG_B, HLG_C = 1 - 4 * HLG_A, 0.5 - HLG_A * np.log(4 * HLG_A)
+
+
+def hlg_light(code):
+    """The inverse OETF of ITU-R BT.2100: light of the scene, 1 at code 1."""
+    return np.where(code <= 0.5, code**2 / 3, (np.exp((code - HLG_C) / HLG_A) + HLG_B) / 12)
+
+
+def hlg_code(light):
+    bright = HLG_A * np.log(np.maximum(12 * light - HLG_B, 1e-9)) + HLG_C
+    return np.where(light <= 1 / 12, np.sqrt(3 * np.maximum(light, 0)), bright)
+
+
+# By the names that `--display` takes: those that are infinitely steep, or nearly, at black.
+LIGHT = {"rec1886": lambda code: np.maximum(code, 0) ** 2.4, "rec2020": lambda code: np.maximum(code, 0) ** 2.4,
+         "g22": lambda code: np.maximum(code, 0) ** 2.2, "rec2100_pq": pq_light, "p3d65_pq": pq_light,
+         "rec2100_hlg": hlg_light}
 
 # --------------------------------------------------------------------------------------------------
 # Codes that lookup tables take

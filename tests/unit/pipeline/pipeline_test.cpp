@@ -1268,10 +1268,12 @@ TEST(View, UnknownNamesGetTheNearest) {
     };
     EXPECT_EQ(view_error("lin_rec708", 0, "srgb"),
               "input space is lin_rec708; expected lin_rec709, lin_ap1, lin_ap0, lin_rec2020, "
-              "lin_p3d65 or lin_egamut; did you mean lin_rec709?");
+              "lin_p3d65, lin_egamut, lin_awg3, lin_awg4, lin_sgamut3, lin_sgamut3cine or "
+              "lin_davinci_wg; did you mean lin_rec709?");
     EXPECT_EQ(view_error("bayer", 0, "srgb"),
               "input space is bayer; expected lin_rec709, lin_ap1, lin_ap0, lin_rec2020, "
-              "lin_p3d65 or lin_egamut");
+              "lin_p3d65, lin_egamut, lin_awg3, lin_awg4, lin_sgamut3, lin_sgamut3cine or "
+              "lin_davinci_wg");
     EXPECT_EQ(view_error("lin_rec709", 0, "srbg"),
               "display is srbg; expected srgb, display_p3, rec1886, rec2020, g22, rec2100_pq, "
               "rec2100_hlg, p3d65_pq, linear or native; did you mean srgb?");

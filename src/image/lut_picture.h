@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <OpenImageIO/imagebuf.h>
+
+#include "tonewright/lut.h"
+
+namespace tonewright {
+
+/// A cube as a picture of its nodes. `hald`: n = level^2 points a side in a square of level^3
+/// pixels a side, red fastest, then green, then blue, line by line. `strip`: n pictures of n x n
+/// side by side, blue from one to the next, red to the right, green downwards.
+/// @throws Error  for another format.
+[[nodiscard]] OIIO::ImageBuf make_lut_picture(const Lut& lut, LutFormat format);
+
+}  // namespace tonewright

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What applications expect of a LUT. Sources: their manuals, as far as nothing else stands beside
+// an entry.
+#include "tonewright/lut.h"
+
+namespace tonewright {
+
+const std::vector<LutHost>& all_lut_hosts() {
+    static const std::vector<LutHost> hosts = {
+        {"resolve",
+         "DaVinci Resolve",
+         LutFormat::cube,
+         33,
+         "davinci",
+         "rec1886",
+         {},
+         "trilinear, tetrahedral by choice",
+         "Project Settings > Color Management > Open LUT Folder, copy, Update Lists; in a node of "
+         "a "
+         "timeline in DaVinci WG/Intermediate: LUTs, the file",
+         ""},
+        {"nuke",
+         "Nuke",
+         LutFormat::cube,
+         33,
+         "acescct",
+         "srgb",
+         {},
+         "trilinear",
+         "OCIOFileTransform or Vectorfield with the file, behind a conversion to ACEScct",
+         ""},
+        {"ffmpeg",
+         "ffmpeg",
+         LutFormat::cube,
+         33,
+         "pq",
+         "rec1886",
+         {},
+         "tetrahedral",
+         "ffmpeg -i hdr10.mkv -vf zscale=matrix=gbr,format=gbrp16le,"
+         "lut3d=FILE:interp=tetrahedral -pix_fmt gbrp16le out.mkv: PQ, Rec.2020, in RGB",
+         "5.1"},
+        {"premiere",
+         "Premiere Pro",
+         LutFormat::cube,
+         33,
+         "logc3",
+         "rec1886",
+         {},
+         "tetrahedral",
+         "Lumetri Color > Basic Correction > Input LUT > Browse, on a clip in ARRI LogC3",
+         ""},
+        {"photoshop",
+         "Photoshop",
+         LutFormat::cube,
+         33,
+         "srgb",
+         "srgb",
+         {},
+         "tetrahedral",
+         "Layer > New Adjustment Layer > Color Lookup > Load 3D LUT, in a document in sRGB",
+         ""},
+        {"affinity",
+         "Affinity Photo",
+         LutFormat::cube,
+         33,
+         "srgb",
+         "srgb",
+         {},
+         "trilinear",
+         "Layer > New Adjustment Layer > LUT Adjustment > Load LUT, in a document in sRGB",
+         ""},
+        {"unreal", "Unreal Engine", LutFormat::strip, 16, "srgb", "srgb", 8, "trilinear",
+         "import as texture, Mip Gen Settings NoMipmaps, Texture Group ColorLookupTable; Post "
+         "Process Volume > Color Grading > Misc > Color Grading LUT: works on what is shown",
+         ""},
+        {"unity",
+         "Unity HDRP",
+         LutFormat::cube,
+         33,
+         "unity_logc",
+         "linear",
+         {},
+         "trilinear",
+         "import the .cube; Volume > Tonemapping > Mode External > Lookup Texture",
+         ""},
+        {"unity_urp", "Unity URP", LutFormat::strip, 32, "srgb", "srgb", 8, "trilinear",
+         "import as texture without sRGB, mip maps and compression; Volume > Color Lookup > Lookup "
+         "Texture: works on what is shown",
+         ""},
+        {"godot", "Godot", LutFormat::strip, 32, "srgb", "srgb", 8, "trilinear",
+         "import as Texture3D with 32 horizontal slices; Environment > Adjustments > Color "
+         "Correction: works on what is shown",
+         ""},
+        {"obs",
+         "OBS Studio",
+         LutFormat::cube,
+         33,
+         "srgb",
+         "srgb",
+         {},
+         "tetrahedral",
+         "Filters > + > Apply LUT > Path",
+         ""},
+        {"mpv",
+         "mpv",
+         LutFormat::cube,
+         33,
+         "pq",
+         "srgb",
+         {},
+         "trilinear",
+         "mpv --vo=gpu-next --image-lut=FILE --image-lut-type=native --target-trc=srgb "
+         "--target-prim=bt.709 hdr10.mkv",
+         ""},
+        {"gmic",
+         "G'MIC, GIMP with G'MIC",
+         LutFormat::cube,
+         33,
+         "srgb",
+         "srgb",
+         {},
+         "trilinear",
+         "gmic in.tif FILE div[1] 255 'fill[0]' 'I(#1,R/255*32,G/255*32,B/255*32,1,0)*255' keep[0] "
+         "-o out.tif; in GIMP: Filters > G'MIC-Qt > Colors > Apply External CLUT",
+         ""},
+        {"darktable",
+         "darktable",
+         LutFormat::cube,
+         33,
+         "srgb",
+         "srgb",
+         {},
+         "tetrahedral",
+         "preferences > processing > 3D LUT root folder; module LUT 3D, application color space "
+         "sRGB",
+         ""},
+        {"rawtherapee", "RawTherapee", LutFormat::hald, 64, "srgb", "srgb", 16, "trilinear",
+         "Preferences > Image Processing > HaldCLUT directory; Color > Film Simulation", ""},
+        {"imagemagick", "ImageMagick, GraphicsMagick", LutFormat::hald, 64, "srgb", "srgb", 16,
+         "trilinear", "convert in.png FILE -hald-clut out.png", ""},
+        {"flame", "Flame, Lustre", LutFormat::threedl, 33, "acescct", "rec1886", 12, "trilinear",
+         "LUT Editor > Import, on a picture in ACEScct", ""},
+        {"ocio",
+         "OpenColorIO",
+         LutFormat::clf,
+         33,
+         "acescct",
+         "srgb",
+         {},
+         "tetrahedral",
+         "FileTransform with the file and interpolation tetrahedral, behind ACEScct; the config "
+         "has "
+         "no such step",
+         "2.1.2"},
+        {"threejs",
+         "three.js",
+         LutFormat::cube,
+         33,
+         "srgb",
+         "srgb",
+         {},
+         "trilinear",
+         "LUTCubeLoader, then LUTPass behind OutputPass: works on what is shown",
+         ""},
+    };
+    return hosts;
+}
+
+const LutHost& find_lut_host(std::string_view id) {
+    std::vector<std::string> ids;
+    for (const LutHost& host : all_lut_hosts()) {
+        if (host.id == id) return host;
+        ids.push_back(host.id);
+    }
+    throw Error("bake: host is " + std::string(id) + "; expected " + join_choices(ids) +
+                did_you_mean(id, ids));
+}
+
+}  // namespace tonewright

@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`tonewright bake --for HOST`: every application's file has the right numbers in the right places.
+
+    python3 tests/parity/test_luts.py build/release/bin/tonewright
+
+Each file is read by another program than wrote it (OpenColorIO, OpenImageIO, NumPy for raw floats) and compared, node by
+node, with `tonewright eval` of the light that the node stands for; what light that is comes from the formulas of the
+encodings' makers, written down here once more. The last line is `N passed, M failed`.
+"""
+
+import argparse
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parent / "clients"))
+from pictures import Report, acescct_decode, evaluate, need_program, pq_light, read_rgb, run, skip  # noqa: E402
+
+try:
+    import PyOpenColorIO as ocio
+except ImportError:
+    skip("PyOpenColorIO is not installed (Debian: python3-pyopencolorio)")
+
+# A view whose picture of every colour is another one, so that no axis can be taken for another.
+OPERATOR = ("agx_blender", "--look", "punchy")
+# Half a unit of the last of 9 digits, in float32.
+EXACT = 1e-7
+# OpenColorIO's tetrahedra, in float32, at the nodes themselves.
+READ = 2e-6
+
+
+def logc3(code):
+    """ARRI, "ALEXA Log C Curve, Usage in VFX", EI 800."""
+    return np.where(code > 5.367655 * 0.010591 + 0.092809, (10 ** ((code - 0.385537) / 0.247190) - 0.052272) / 5.555556,
+                    (code - 0.092809) / 5.367655)
+
+
+def davinci(code):
+    """"DaVinci Resolve 17 Wide Gamut Intermediate"."""
+    return np.where(code <= 0.02740668, code / 10.44426855, 2 ** (code / 0.07329248 - 7) - 0.0075)
+
+
+def unity_logc(code):
+    """Color.hlsl: LogCToLinear."""
+    return (10 ** ((code - 0.386036) / 0.244161) - 0.047996) / 5.555556
+
+
+def srgb(code):
+    """IEC 61966-2-1."""
+    return np.where(code <= 0.04045, code / 12.92, ((code + 0.055) / 1.055) ** 2.4)
+
+
+# encoding of `list --hosts` -> (code -> scene-linear light, the space that it is in)
+ENCODINGS = {"acescct": (acescct_decode, "lin_ap1"), "logc3": (logc3, "lin_awg3"), "davinci": (davinci, "lin_davinci_wg"),
+             "unity_logc": (unity_logc, "lin_rec709"), "srgb": (srgb, "lin_rec709"), "pq": (pq_light, "lin_rec2020")}
+
+
+def nodes_of(size):
+    """Codes of the nodes, red fastest."""
+    axis = np.arange(size) / (size - 1)
+    b, g, r = np.meshgrid(axis, axis, axis, indexing="ij")
+    return np.stack([r, g, b], axis=-1).reshape(-1, 3)
+
+
+def through_ocio(path, rgb):
+    """What OpenColorIO makes of the file, in tetrahedra."""
+    config = ocio.Config.CreateRaw()
+    config.setProcessorCacheFlags(ocio.PROCESSOR_CACHE_OFF)
+    transform = ocio.FileTransform(str(path), interpolation=ocio.INTERP_TETRAHEDRAL)
+    image = np.ascontiguousarray(rgb, np.float32)
+    config.getProcessor(transform).getOptimizedCPUProcessor(ocio.OPTIMIZATION_LOSSLESS).applyRGB(image)
+    return image
+
+
+def nodes_in_picture(path, layout, size, scratch):
+    """The nodes of a Hald CLUT or a strip, red fastest."""
+    picture = read_rgb(path, scratch)
+    if layout == "hald":
+        return picture.reshape(-1, 3)
+    # Row g, slice b, column r.
+    return picture.reshape(size, size, size, 3).transpose(1, 0, 2, 3).reshape(-1, 3)
+
+
+def expected_of(command, codes, encoding, display):
+    decode, space = ENCODINGS[encoding]
+    return evaluate(command, decode(codes), *OPERATOR, "--input", space, "--display", display)
+
+
+def check_host(report, command, host, folder):
+    is_picture = host["format"] in ("hald", "strip")
+    path = folder / f"{host['id']}.{'png' if is_picture else host['format']}"
+    run(command, "bake", *OPERATOR, "--for", host["id"], "-o", path)
+    size, codes = host["size"], nodes_of(host["size"])
+    # All nodes of a large one are a quarter of a million lines: every 29th, which meets all of all axes.
+    step = 29 if size > 33 else 1
+    truth = expected_of(command, codes[::step], host["input_encoding"], host["display"])
+    if host["bits"]:
+        truth = np.clip(truth, 0, 1)
+        bound = 0.5 / (2 ** host["bits"] - 1) + EXACT  # rounded once
+    else:
+        bound = EXACT if is_picture else READ
+    if is_picture:
+        shown = nodes_in_picture(path, host["format"], size, folder)
+        report.check(f"{host['id']}: {size}^3 nodes", len(shown) == size ** 3, len(shown))
+        shown = shown[::step]
+    else:
+        shown = through_ocio(path, codes[::step])
+        # A 3dl's own input has 10 bits, which the nodes of 33 are not on.
+        bound += READ if host["format"] == "3dl" else 0
+    report.compare(f"{host['id']}: {host['format']} {size}, {host['input_encoding']} to {host['display']}",
+                   np.asarray(shown), truth, bound)
+    if host["format"] == "cube":
+        lines = path.read_text().splitlines()
+        numbers = [line for line in lines if line and line[0] in "-0123456789"]
+        words = [line.split()[0] for line in lines if line and line[0].isalpha()]
+        report.check(f"{host['id']}: the file is what Adobe's specification says",
+                     words == ["TITLE", "LUT_3D_SIZE", "DOMAIN_MIN", "DOMAIN_MAX"] and len(numbers) == size ** 3
+                     and all("e" not in n for n in numbers) and len(lines[0]) < 250, words)
+
+
+def check_formats(report, command, folder):
+    """What no host takes by default."""
+    codes = nodes_of(17)
+    truth = expected_of(command, codes, "acescct", "srgb")
+    path = folder / "x.raw"
+    run(command, "bake", *OPERATOR, "--format", "raw", "--size", 17, "--3d", "-o", path)
+    report.compare("raw: float32, red fastest", np.fromfile(path, "<f4").reshape(-1, 3), truth, EXACT)
+    path = folder / "x.csp"
+    run(command, "bake", *OPERATOR, "--format", "csp", "--size", 17, "-o", path)
+    # Its readers resample the prelut to 65536 equal steps of light: 3.4e-3 up to 222.9, where steps at black are some
+    # stops. From mid grey on they are less than a fiftieth of a stop.
+    light = acescct_decode(codes)
+    shown, bright = through_ocio(path, light), (light >= 0.18).all(axis=1)
+    report.compare("csp: scene-linear in, from mid grey on", shown[bright], truth[bright], 2e-5)
+    report.compare("csp: all light", shown, truth, 2e-3)
+    path = folder / "x.exr"
+    run(command, "bake", *OPERATOR, "--format", "strip", "--size", 16, "--depth", 32, "-o", path)
+    report.compare("strip: float", nodes_in_picture(path, "strip", 16, folder),
+                   expected_of(command, nodes_of(16), "acescct", "srgb"), EXACT)
+    for bits in (10, 12, 16):
+        path = folder / f"x{bits}.3dl"
+        run(command, "bake", *OPERATOR, "--format", "3dl", "--size", 17, "--depth", bits, "-o", path)
+        report.compare(f"3dl: {bits} bits", through_ocio(path, codes), truth, 0.5 / (2 ** bits - 1) + READ)
+
+
+def check_errors(report, command, folder):
+    """One line that names what is wrong, exit status 2, and no file."""
+    path = folder / "none.cube"
+    for arguments, words in ((["--for", "reslove"], "host is reslove; did you mean resolve?"),
+                             (["--format", "3dl", "--depth", "8"], "depth is 8; expected 12, 10 or 16 for 3dl"),
+                             (["--format", "cube", "--depth", "16"], "depth is 16; expected 32 for cube"),
+                             (["--format", "hald", "--size", "33"], "size is 33; a square"),
+                             (["--format", "strip", "--size", "65"], "size is 65; [2, 64]"),
+                             (["--format", "3dl", "--1d"], "format is 3dl; a 1D format"),
+                             (["--for", "resolve", "--input-encoding", "linear"], "linear; another for a 3D table")):
+        done = subprocess.run([command, "bake", "hable", *arguments, "-o", path], capture_output=True, text=True,
+                              check=False)
+        report.check(f"bake hable {' '.join(arguments)}: {words}",
+                     done.returncode == 2 and done.stderr.count("\n") == 1 and not path.exists()
+                     and all(word in done.stderr for word in words.split("; ")), done.stderr)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("command", type=Path)
+    command = parser.parse_args().command.resolve()
+    need_program("oiiotool", "openimageio-tools")
+    report = Report()
+    hosts = json.loads(run(command, "list", "--hosts", "--json"))
+    report.check("hosts", len(hosts) >= 19, len(hosts))
+    with tempfile.TemporaryDirectory(prefix="tonewright-") as name:
+        for host in hosts:
+            check_host(report, command, host, Path(name))
+        check_formats(report, command, Path(name))
+        check_errors(report, command, Path(name))
+    return report.finish()
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

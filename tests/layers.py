@@ -24,7 +24,7 @@ BELOW = {
 PUBLIC = {
     "error": "expr", "expr": "expr", "color": "color", "pipeline": "pipeline", "view": "pipeline",
     "engine": "engine", "lut": "lut", "ocio": "ocio", "image": "image", "verify": "verify",
-    "lint": "verify",
+    "lint": "verify", "lut_match": "verify",
 }
 THIRD_PARTY = {
     "hwy": ["engine"],

@@ -10,6 +10,7 @@
 #include "cli/command.h"
 #include "tonewright/image.h"
 #include "tonewright/lint.h"
+#include "tonewright/lut_match.h"
 
 namespace tonewright {
 namespace {
@@ -51,12 +52,46 @@ void print_lint(const std::vector<LintFinding>& findings) {
                count[LintFinding::Level::warning], count[LintFinding::Level::note]);
 }
 
+/// What a lookup table is. Nearer than a hundredth in the mean it is that operator; what is left is
+/// between its nodes.
+void print_matches(const std::string& path, const std::vector<LutMatch>& matches, bool as_json) {
+    if (as_json) {
+        nlohmann::ordered_json all = nlohmann::ordered_json::array();
+        for (const LutMatch& m : matches) {
+            all.push_back({{"operator", m.op},
+                           {"input_encoding", m.encoding},
+                           {"input", m.input},
+                           {"display", m.display},
+                           {"max", m.max},
+                           {"p999", m.p999},
+                           {"mean", m.mean}});
+        }
+        fmt::print("{}\n", all.dump(2));
+        return;
+    }
+    constexpr double kSame = 1e-2;
+    const LutMatch& best = matches.front();
+    if (best.mean <= kSame) {
+        fmt::print("{} is {} with {} input ({}) and {} output, max error {:.2g}\n\n", path, best.op,
+                   best.encoding, best.input, best.display, best.max);
+    } else {
+        fmt::print("{} is none of these; the nearest:\n\n", path);
+    }
+    fmt::print("{:<32} {:<24} {:<16} {:<12} {:>8} {:>8} {:>8}\n", "operator", "input encoding",
+               "input", "output", "max", "99.9 %", "mean");
+    for (const LutMatch& m : matches) {
+        fmt::print("{:<32} {:<24} {:<16} {:<12} {:>8.1e} {:>8.1e} {:>8.1e}\n", m.op, m.encoding,
+                   m.input, m.display, m.max, m.p999, m.mean);
+    }
+}
+
 }  // namespace
 
 void add_verify(CLI::App& program, int& exit_code) {
     struct Options {
         VerifyOptions verify;
         std::string picture;
+        std::string lut;
         bool json = false;
         bool quick = false;
         bool no_gpu = false;
@@ -76,6 +111,9 @@ void add_verify(CLI::App& program, int& exit_code) {
     command->add_option("--config", options->verify.config,
                         "a config to check, or its folder: any, ours or not; default: a fresh one");
     command->add_option("--picture", options->picture, "picture whose pixels join the probes");
+    command->add_option("--lut", options->lut,
+                        "a LUT, ours or not, of any format that OpenColorIO reads: which of the "
+                        "operators it is, with which input encoding, and how far from it");
     command->add_flag("--quick", options->quick,
                       "gamut lattices of 9 instead of 33 points a side (of a config 17)");
     command->add_flag("--no-gpu", options->no_gpu, "leave OCIO's GPU path out");
@@ -86,9 +124,15 @@ void add_verify(CLI::App& program, int& exit_code) {
         "signs included. beyond f32: where an error is beyond the bound, how far it exceeds what "
         "float32\n"
         "rounding before a cancelling matrix has to cost. Exit code 1 when a bound is exceeded.\n"
-        "Example:\n  tonewright verify hable --display display_p3");
+        "Examples:\n  tonewright verify hable --display display_p3\n"
+        "  tonewright verify --lut somebodys_agx.cube agx_sobotka agx_blender");
     command->callback([options, &exit_code] {
         VerifyOptions& verify_options = options->verify;
+        if (!options->lut.empty()) {
+            print_matches(options->lut, match_lut(options->lut, verify_options.operators),
+                          options->json);
+            return;
+        }
         verify_options.with_gpu = !options->no_gpu;
         if (options->quick) verify_options.lattice_edge = 9;
         nlohmann::ordered_json lint = nlohmann::ordered_json::array();

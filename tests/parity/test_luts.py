@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`tonewright bake --for HOST`: every application's file has the right numbers in the right places.
+"""`tonewright bake --for HOST`: every application's file has the right numbers in the right places; `verify --lut`.
 
     python3 tests/parity/test_luts.py build/release/bin/tonewright
 
@@ -147,6 +147,33 @@ def check_formats(report, command, folder):
         report.compare(f"3dl: {bits} bits", through_ocio(path, codes), truth, 0.5 / (2 ** bits - 1) + READ)
 
 
+def check_match(report, command, folder):
+    """`verify --lut` tells what a file is, by what it does; also of a file whose text says nothing of it."""
+    for op, arguments, expected in (
+            ("agx_sobotka", ["--3d", "--input-encoding", "log2"], ("log2:-10:6.5", "lin_rec709", "srgb")),
+            ("hable", ["--3d", "--input-encoding", "slog3", "--display", "rec1886"], ("slog3", "lin_sgamut3", "rec1886")),
+            ("khronos_neutral", ["--for", "unity"], ("unity_logc", "lin_rec709", "linear")),
+            ("reinhard", ["--format", "csp"], ("scene-linear", "lin_ap1", "srgb"))):
+        path = folder / f"{op}.{'csp' if 'csp' in arguments else 'cube'}"
+        run(command, "bake", op, *arguments, "-o", path)
+        lines = path.read_text().splitlines()
+        path.write_text("\n".join(line for line in lines if not line.startswith(("#", "TITLE"))) + "\n")
+        found = json.loads(run(command, "verify", "--json", "--lut", path, "hable", "agx_sobotka", "khronos_neutral",
+                               "reinhard"))
+        best = found[0]
+        report.check(f"verify --lut: {op}, {expected}",
+                     (best["operator"], best["input_encoding"], best["input"], best["display"]) == (op, *expected),
+                     found[:2])
+        report.check("verify --lut: the nearest come first", [m["mean"] for m in found] == sorted(m["mean"] for m in found)
+                     and best["mean"] < 1e-2 < found[-1]["mean"], found)
+    broken = folder / "broken.cube"
+    for text in ("", "LUT_3D_SIZE 2\n0 0 0\n", "LUT_3D_SIZE 2\n" + "0 0 x\n" * 8, "LUT_3D_SIZE 100000\n0 0 0\n"):
+        broken.write_text(text)
+        done = subprocess.run([command, "verify", "--lut", broken], capture_output=True, text=True, check=False)
+        report.check(f"verify --lut of {text[:22]!r}", done.returncode == 3 and done.stderr.count("\n") == 1
+                     and "broken.cube" in done.stderr, done.stderr)
+
+
 def check_errors(report, command, folder):
     """One line that names what is wrong, exit status 2, and no file."""
     path = folder / "none.cube"
@@ -176,6 +203,7 @@ def main():
         for host in hosts:
             check_host(report, command, host, Path(name))
         check_formats(report, command, Path(name))
+        check_match(report, command, Path(name))
         check_errors(report, command, Path(name))
     return report.finish()
 

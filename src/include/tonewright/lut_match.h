@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace tonewright {
+
+/// How near a LUT is to an operator, if it is fed and shown like this.
+struct LutMatch {
+    std::string op;        // label: id, preset and what is set
+    std::string encoding;  // of parse_input_encoding(), or "scene-linear": it has a shaper
+    std::string input;     // space that the encoded light is in
+    std::string display;   // whose code values come out, or "linear"
+    /// Differences of what comes out, over what can go in.
+    double max = 0;
+    double p999 = 0;
+    double mean = 0;
+};
+
+/// What a lookup table does, by what it does: every file that OpenColorIO reads (.cube, .clf, .ctf,
+/// .spi1d, .spi3d, .csp, .3dl, .lut, ...), with tetrahedral interpolation, against operators with
+/// every input encoding, in its own primaries and in Rec.709, and on SDR displays.
+/// @param operators  `id`, `id:preset`; empty: all, with their defaults
+/// @param count      how many, the nearest first
+/// @throws FileError  for a file that is missing or cannot be read, with OpenColorIO's reason
+/// @throws Error      for an unknown operator
+[[nodiscard]] std::vector<LutMatch> match_lut(const std::string& path,
+                                              const std::vector<std::string>& operators,
+                                              std::size_t count = 5);
+
+}  // namespace tonewright

@@ -18,6 +18,8 @@ struct Options : ViewOptions {
     bool one = false;
     bool three = false;
     std::optional<int> bits;
+    std::optional<double> max_error;
+    std::string nodes = "auto";
     std::string host;
     std::string all;
 };
@@ -36,7 +38,7 @@ void take_from_host(Options& options, const CLI::App& command) {
         options.format = lut_format_names()[static_cast<std::size_t>(host.format)];
     if (!is_given("--input-encoding")) options.encoding = host.encoding;
     if (!is_given("--display")) options.display = host.display;
-    if (!is_given("--size") && !options.one) options.size = host.size;
+    if (!is_given("--size") && !is_given("--max-error") && !options.one) options.size = host.size;
     if (!is_given("--depth") && !is_given("--format")) options.bits = host.bits;
     if (!options.one) options.three = true;
 }
@@ -55,11 +57,15 @@ void bake_one(Options& options, const CLI::App& command) {
     request.bits = options.bits;
     if (options.one) request.dimension = LutDimension::one;
     if (options.three) request.dimension = LutDimension::three;
-    Lut lut = sample_lut(request);
-    quantise(lut, request);
     const bool is_trilinear =
         !options.host.empty() && find_lut_host(options.host).interpolation.starts_with("trilinear");
-    const LutError error = measure_lut(lut, request, is_trilinear);
+    LutNodes nodes = LutNodes::automatic;
+    if (options.nodes == "sampled") nodes = LutNodes::sampled;
+    if (options.nodes == "fitted") nodes = LutNodes::fitted;
+    const BakedLut baked = bake_lut(request, nodes, is_trilinear, options.max_error);
+    const Lut& lut = baked.lut;
+    const LutError& error = baked.error;
+    request.size = lut.size;
     const bool is_picture = is_picture_format(request.format);
     if (is_picture) {
         write_image_atomically(make_lut_picture(lut, request.format), options.file,
@@ -67,11 +73,13 @@ void bake_one(Options& options, const CLI::App& command) {
     } else {
         write_text_atomically(options.file, write_lut(lut, request, error));
     }
-    fmt::print(stderr, "{}: {}D, {} in ({}), error max {}, 99.9 % {}, mean {} ({} interpolation)\n",
-               options.file, lut.dimension,
-               lut.is_half_domain ? "scene-linear" : request.encoding.id, request.view.input,
-               rounded_up(error.max), rounded_up(error.p999), rounded_up(error.mean),
-               error.interpolation);
+    fmt::print(
+        stderr,
+        "{}: {}D, {} {}, {} in ({}), error max {}, 99.9 % {}, mean {} ({} interpolation{})\n",
+        options.file, lut.dimension, lut.size, lut.dimension == 3 ? "a side" : "entries",
+        lut.is_half_domain ? "scene-linear" : request.encoding.id, request.view.input,
+        rounded_up(error.max), rounded_up(error.p999), rounded_up(error.mean), error.interpolation,
+        baked.is_fitted ? ", fitted nodes" : "");
     if (!options.host.empty()) {
         const LutHost& host = find_lut_host(options.host);
         fmt::print(stderr, "{}: {}\n", host.title, host.steps);
@@ -104,6 +112,14 @@ void add_bake(CLI::App& program, int&) {
         "--size", options->size,
         "grid points a side (17..129, default 33; hald 64, strip 32), or entries in 1D (default "
         "4096)");
+    command->add_option("--max-error", options->max_error,
+                        "the smallest cube whose largest error is at most this, in code values");
+    command
+        ->add_option("--nodes", options->nodes,
+                     "values at the nodes: sampled, fitted (least error between them), or auto: "
+                     "the nearer one")
+        ->check(CLI::IsMember({"auto", "sampled", "fitted"}))
+        ->capture_default_str();
     command->add_option("--depth", options->bits,
                         "bits of a number: 8, 16 or 32 (float) in pictures, 10, 12 or 16 in 3dl");
     CLI::Option* one = command->add_flag(

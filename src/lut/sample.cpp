@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "lut/fit.h"
 #include "lut/half_domain.h"
 #include "tonewright/engine.h"
 #include "tonewright/lut.h"
@@ -158,6 +159,32 @@ Lut sample_lut(const LutRequest& request) {
     for (std::size_t i = 0; i < count; ++i) {
         for (std::size_t c = 0; c < static_cast<std::size_t>(lut.channels); ++c) {
             lut.values.push_back(static_cast<float>(plane[c][i]));
+        }
+    }
+    return lut;
+}
+
+Lut fit_lut(const LutRequest& request, const Lut& sampled) {
+    CubeProblem problem;
+    problem.edge = sampled.size;
+    problem.axis = {request.encoding.encode, request.encoding.decode, request.encoding.scene_hi};
+    problem.pipeline = build_view(request.view);
+    problem.primaries = find_input_space(request.view.input).primaries;
+    problem.lo = 0;
+    problem.hi = 1;
+    if (request.view.display == kLinearOutput || request.view.display == kNativeOutput)
+        problem.hi = kInfinity;
+    const std::vector<double> nodes = fit_cube(problem);
+    const auto n = static_cast<std::size_t>(sampled.size);
+    Lut lut = sampled;
+    for (std::size_t i = 0; i < n * n * n; ++i) {
+        const std::size_t r = i % n;
+        const std::size_t g = i / n % n;
+        const std::size_t b = i / (n * n);
+        for (std::size_t c = 0; c < 3; ++c) {
+            // What the view cannot show, a table of it should not hold.
+            lut.values[3 * i + c] = static_cast<float>(
+                std::clamp(nodes[3 * ((r * n + g) * n + b) + c], problem.lo, problem.hi));
         }
     }
     return lut;

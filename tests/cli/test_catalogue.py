@@ -4,7 +4,8 @@
     python3 tests/cli/test_catalogue.py build/release/bin/tonewright
 
 Plots are read back from their SVG files and held to `tonewright eval`, to formulas written here, and distances between
-dialects to a recomputation in NumPy: probes, code values and dE ITP. The last line is `N passed, M failed`.
+dialects to a recomputation in NumPy: probes, code values and dE ITP. The committed catalogue is the one that is
+written here, as tests/parity/test_artifacts.py has it. The last line is `N passed, M failed`.
 """
 
 import argparse
@@ -19,8 +20,9 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import Report, evaluate, run  # noqa: E402
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity"))
+from test_artifacts import compare_folder, page_differs  # noqa: E402
+from pictures import PROJECT, Report, evaluate, run  # noqa: E402
 
 SVG = "{http://www.w3.org/2000/svg}"
 MID_GREY = 0.18
@@ -425,6 +427,17 @@ def check_distances(report, command, page, group, a, b):
                      0.5 * digit + 1e-3 * value)
 
 
+def check_committed(report, folder):
+    """The files of docs/ are what the command writes; `./run artifacts` writes them anew."""
+    committed = PROJECT / "docs"
+    if not (committed / "curves").is_dir():
+        print("skipped: docs/curves is not in the source folder; `./run artifacts` writes it")
+        return
+    compare_folder(report, committed / "curves", folder / "curves")
+    difference = page_differs(*((path / "operators.md").read_text() for path in (committed, folder)))
+    report.check("docs/operators.md", difference is None, difference)
+
+
 def check_errors(report, command, scratch):
     (scratch / "file").write_text("")
     for code, arguments, words in ((2, ["--catalogue", scratch / "new", "hable"], "operator is hable"),
@@ -463,6 +476,8 @@ def main():
         run(command, "list", "--catalogue", folder)
         report.check("a plot of an operator that is gone is removed, nothing else", not (curves / "old.svg").exists()
                      and (curves / "own.txt").exists() and (folder / "own.md").exists())
+        (curves / "own.txt").unlink()
+        check_committed(report, folder)
         page = check_page(report, folder, operators, groups)
         check_files(report, folder, operators, groups)
         check_formulas(report, folder)

@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent / "clients"))
-from pictures import Report, acescct_decode, evaluate, need_program, pq_light, read_rgb, run, skip  # noqa: E402
+from pictures import Report, acescct_decode, evaluate, log2_decode, need_program, pq_light, read_rgb, run, skip  # noqa: E402
 
 try:
     import PyOpenColorIO as ocio
@@ -93,7 +93,7 @@ def expected_of(command, codes, encoding, display):
 def check_host(report, command, host, folder):
     is_picture = host["format"] in ("hald", "strip")
     path = folder / f"{host['id']}.{'png' if is_picture else host['format']}"
-    run(command, "bake", *OPERATOR, "--for", host["id"], "-o", path)
+    run(command, "bake", *OPERATOR, "--nodes", "sampled", "--for", host["id"], "-o", path)
     size, codes = host["size"], nodes_of(host["size"])
     # All nodes of a large one are a quarter of a million lines: every 29th, which meets all of all axes.
     step = 29 if size > 33 else 1
@@ -127,10 +127,10 @@ def check_formats(report, command, folder):
     codes = nodes_of(17)
     truth = expected_of(command, codes, "acescct", "srgb")
     path = folder / "x.raw"
-    run(command, "bake", *OPERATOR, "--format", "raw", "--size", 17, "--3d", "-o", path)
+    run(command, "bake", *OPERATOR, "--nodes", "sampled", "--format", "raw", "--size", 17, "--3d", "-o", path)
     report.compare("raw: float32, red fastest", np.fromfile(path, "<f4").reshape(-1, 3), truth, EXACT)
     path = folder / "x.csp"
-    run(command, "bake", *OPERATOR, "--format", "csp", "--size", 17, "-o", path)
+    run(command, "bake", *OPERATOR, "--nodes", "sampled", "--format", "csp", "--size", 17, "-o", path)
     # Its readers resample the prelut to 65536 equal steps of light: 3.4e-3 up to 222.9, where steps at black are some
     # stops. From mid grey on they are less than a fiftieth of a stop.
     light = acescct_decode(codes)
@@ -138,13 +138,37 @@ def check_formats(report, command, folder):
     report.compare("csp: scene-linear in, from mid grey on", shown[bright], truth[bright], 2e-5)
     report.compare("csp: all light", shown, truth, 2e-3)
     path = folder / "x.exr"
-    run(command, "bake", *OPERATOR, "--format", "strip", "--size", 16, "--depth", 32, "-o", path)
+    run(command, "bake", *OPERATOR, "--nodes", "sampled", "--format", "strip", "--size", 16, "--depth", 32, "-o", path)
     report.compare("strip: float", nodes_in_picture(path, "strip", 16, folder),
                    expected_of(command, nodes_of(16), "acescct", "srgb"), EXACT)
     for bits in (10, 12, 16):
         path = folder / f"x{bits}.3dl"
-        run(command, "bake", *OPERATOR, "--format", "3dl", "--size", 17, "--depth", bits, "-o", path)
+        run(command, "bake", *OPERATOR, "--nodes", "sampled", "--format", "3dl", "--size", 17, "--depth", bits, "-o", path)
         report.compare(f"3dl: {bits} bits", through_ocio(path, codes), truth, 0.5 / (2 ** bits - 1) + READ)
+
+
+def check_fit(report, command, folder):
+    """A fitted cube is nearer between its nodes, by OpenColorIO's interpolation of colours it was not fitted to; and
+    --max-error takes the smallest size that keeps to it."""
+    codes = np.random.default_rng(8).uniform(0, 1, (20000, 3)).astype(np.float32).astype(float)
+    truth = expected_of(command, codes, "unity_logc", "linear")
+    means = {}
+    for nodes in ("sampled", "fitted", "auto"):
+        path = folder / f"{nodes}.cube"
+        run(command, "bake", *OPERATOR, "--for", "unity", "--nodes", nodes, "-o", path)
+        means[nodes] = np.abs(through_ocio(path, codes) - truth).max(axis=1).mean()
+    report.check(f"fitted nodes: mean error {means['fitted']:.1e}, sampled {means['sampled']:.1e}",
+                 means["fitted"] < 0.9 * means["sampled"] and means["auto"] == means["fitted"], means)
+    codes, sizes = codes[:4000], []
+    truth = evaluate(command, log2_decode(codes), "agx_sobotka")
+    for wanted in (0.02, 0.002):
+        path = folder / f"{wanted}.cube"
+        run(command, "bake", "agx_sobotka", "--3d", "--input-encoding", "log2", "--max-error", wanted, "-o", path)
+        lines = path.read_text().splitlines()
+        sizes.append(int(next(line for line in lines if line.startswith("LUT_3D_SIZE")).split()[1]))
+        error = np.abs(through_ocio(path, codes) - truth).max()
+        report.check(f"--max-error {wanted} takes {sizes[-1]} points: {error:.2g}", error <= wanted, error)
+    report.check("--max-error takes no more points than it has to", sizes[0] < sizes[1] < 65, sizes)
 
 
 def check_match(report, command, folder):
@@ -182,6 +206,8 @@ def check_errors(report, command, folder):
                              (["--format", "cube", "--depth", "16"], "depth is 16; expected 32 for cube"),
                              (["--format", "hald", "--size", "33"], "size is 33; a square"),
                              (["--format", "strip", "--size", "65"], "size is 65; [2, 64]"),
+                             (["--size", "33", "--max-error", "0.1"], "size is 33; none with --max-error"),
+                             (["--format", "strip", "--max-error", "1e-9"], "max error is 1e-09; at least"),
                              (["--format", "3dl", "--1d"], "format is 3dl; a 1D format"),
                              (["--for", "resolve", "--input-encoding", "linear"], "linear; another for a 3D table")):
         done = subprocess.run([command, "bake", "hable", *arguments, "-o", path], capture_output=True, text=True,
@@ -203,6 +229,7 @@ def main():
         for host in hosts:
             check_host(report, command, host, Path(name))
         check_formats(report, command, Path(name))
+        check_fit(report, command, Path(name))
         check_match(report, command, Path(name))
         check_errors(report, command, Path(name))
     return report.finish()

@@ -107,6 +107,11 @@ struct LutError {
 ///                dimension.
 [[nodiscard]] Lut sample_lut(const LutRequest& request);
 
+/// A cube as sample_lut() makes it, with nodes that are chosen for the least error between them,
+/// for colors of pictures and beyond. It can be nearer or not: measure both.
+/// @param sampled  its sampled form
+[[nodiscard]] Lut fit_lut(const LutRequest& request, const Lut& sampled);
+
 /// Table output for scene-linear input that the encoding holds; `rgb` is table input in [0, 1] (for
 /// a half-domain table: scene-linear). Linear in 1D; in 3D tetrahedral, or trilinear when asked.
 [[nodiscard]] Vector3 interpolate(const Lut& lut, const Vector3& rgb, bool trilinear = false);
@@ -115,6 +120,24 @@ struct LutError {
 /// table inputs.
 [[nodiscard]] LutError measure_lut(const Lut& lut, const LutRequest& request,
                                    bool trilinear = false);
+
+/// Which values the nodes of a cube have: sampled, fitted, or of these the one that is nearer in
+/// the mean and in the 99.9th percentile.
+enum class LutNodes : unsigned char { automatic, sampled, fitted };
+
+struct BakedLut {
+    Lut lut;
+    LutError error;
+    bool is_fitted = false;
+};
+
+/// A table as its format holds it, and how far it is from the view.
+/// @param trilinear  what its reader does in a cube
+/// @param max_error  the smallest cube whose largest error is at most this, in place of a size
+/// @throws Error  as sample_lut(); with a size and a max_error; where no size meets it
+[[nodiscard]] BakedLut bake_lut(const LutRequest& request, LutNodes nodes = LutNodes::automatic,
+                                bool trilinear = false,
+                                std::optional<double> max_error = std::nullopt);
 
 /// The table as its format holds it: rounded to the integers of LutRequest::bits.
 void quantise(Lut& lut, const LutRequest& request);

@@ -120,6 +120,11 @@ def views(command):
     return [tuple(line.split("\t")) for line in run(command, "list", "--views").splitlines()]
 
 
+def files_of(folder):
+    """{path in it: bytes} of every file of a folder."""
+    return {str(p.relative_to(folder)): p.read_bytes() for p in sorted(folder.rglob("*")) if p.is_file()}
+
+
 def shared_picture(name):
     """A picture of the project's collection of real HDR pictures, or None: it is not part of the sources.
 

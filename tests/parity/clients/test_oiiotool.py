@@ -36,36 +36,63 @@ def bound_of(config, view):
     return max(EXACT, BETWEEN_PROBES * float(rows[0][4]) + 1e-6)
 
 
-def through_oiiotool(config, picture, display, view, out):
-    """The command that users type. No `from=`: the picture's own space is found by the name that OIIO gives it.
+def through_oiiotool(config, picture, scratch, *conversions):
+    """[pixels] of `oiiotool PICTURE CONVERSION -o`, for many conversions: one process, which reads the config once.
 
-    --ch R,G,B first: oiiotool converts colour that is multiplied by alpha as if it were not, and OIIO changes channels
-    behind alpha (0.5 + 10 v).
+    No `from=`: the picture's own space is found by the name that OIIO gives it. --ch R,G,B first: oiiotool converts
+    colour that is multiplied by alpha as if it were not, and OIIO changes channels behind alpha (0.5 + 10 v).
     """
-    run("oiiotool", picture, "--ch", "R,G,B", "--colorconfig", config, "--ociodisplay", display, view,
-        "-d", "float", "--compression", "none", "-o", out)
-    return stack(read_exr(out))
+    with tempfile.TemporaryDirectory(dir=scratch) as folder:
+        outs = [f"{folder}/{number}.exr" for number in range(len(conversions))]
+        run("oiiotool", "--colorconfig", config, "-d", "float", "--compression", "none", picture, "--ch", "R,G,B",
+            *(word for words, out in zip(conversions, outs) for word in ("--dup", *words, "-o", out, "--pop")))
+        return [stack(read_exr(out)) for out in outs]
 
 
-def through_apply(command, picture, operator, out, *options):
-    run(command, "apply", picture, out, "--operator", operator, "--statistics", "defaults", "-d", "float", *options)
-    return read_rgb(out, Path(out).parent)
+def through_apply(command, picture, scratch, operator, *options):
+    with tempfile.TemporaryDirectory(dir=scratch) as folder:
+        out = Path(folder) / "out.exr"
+        run(command, "apply", picture, out, "--operator", operator, "--statistics", "defaults", "-d", "float", *options)
+        return read_rgb(out, folder)
 
 
-def compare_views(report, command, config, picture, scratch, jobs, what=""):
-    """Each of jobs, (operator, view, display option, display name); as many at a time as there are cores."""
+def compare_views(report, command, config, path, parts, scratch, jobs):
+    """Each of jobs, (operator, view, display option, display name), of a picture.
 
-    def both(job):
-        operator, view, option, display = job
-        out = scratch / f"{picture.stem}.{operator}.{option}"
-        shown = through_oiiotool(config, picture, display, view, f"{out}.oiiotool.exr")
-        # --no-unpremult: what oiiotool does, see above.
-        return shown, through_apply(command, picture, operator, f"{out}.apply.exr", "--no-unpremult",
-                                    "--display", option)
+    parts are the checks: (name, its pixels in the picture: a slice of them all, and the shape that they have).
+    """
 
+    def both(jobs):
+        shown = through_oiiotool(config, path, scratch,
+                                 *(("--ociodisplay", display, view) for _, view, _, display in jobs))
+        for (operator, view, option, _), colours in zip(jobs, shown):
+            # --no-unpremult: what oiiotool does, see above.
+            applied = through_apply(command, path, scratch, operator, "--no-unpremult", "--display", option)
+            for name, where, shape in parts:
+                report.compare(f"{name} {option} {operator}", colours.reshape(-1, 3)[where].reshape(shape),
+                               applied.reshape(-1, 3)[where].reshape(shape), bound_of(config, view))
+
+    # Eight views a process: what it reads for all of them is then little, and so is what lies on the disk.
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        for (operator, view, option, _), (shown, applied) in zip(jobs, pool.map(both, jobs)):
-            report.compare(f"{what or picture.name} {option} {operator}", shown, applied, bound_of(config, view))
+        list(pool.map(both, (jobs[i:i + 8] for i in range(0, len(jobs), 8))))
+
+
+def whole(path, scratch):
+    """The picture as one part."""
+    return [(path.name, slice(None), read_rgb(path, scratch).shape)]
+
+
+def join(pictures, path, scratch):
+    """Writes the pixels of all pictures into one, so that they are read once; returns its parts."""
+    pixels, parts, start = [], [], 0
+    for picture in pictures:
+        rgb = read_rgb(picture, scratch)
+        pixels.append(rgb.reshape(-1, 3))
+        parts.append((picture.name, slice(start, start + len(pixels[-1])), rgb.shape))
+        start += len(pixels[-1])
+    pixels.append(np.zeros((-start % 1024, 3), np.float32))
+    write_exr(path, unstack(np.concatenate(pixels).reshape(-1, 1024, 3)))
+    return parts
 
 
 def check_alpha(report, command, config, picture, scratch):
@@ -79,17 +106,17 @@ def check_alpha(report, command, config, picture, scratch):
     report.compare(f"{picture.name} with alpha", stack(shown, "RGBA"), stack(applied, "RGBA"), EXACT)
 
 
-def check_output_spaces(report, command, config, picture, scratch):
+def check_output_spaces(report, config, picture, scratch):
     """What write nodes and `--colorconvert` have instead of views: the same pixels, and back."""
-    for view in ("AgX", "ACES 2.0", "Reinhard Extended"):
-        shown = through_oiiotool(config, picture, "sRGB", view, scratch / "view.exr")
-        run("oiiotool", picture, "--ch", "R,G,B", "--colorconfig", config, "--colorconvert", "Linear Rec.709",
-            f"Output - {view} - sRGB", "-d", "float", "--compression", "none", "-o", scratch / "space.exr")
-        report.compare(f"--colorconvert to Output - {view} - sRGB", stack(read_exr(scratch / "space.exr")), shown, 0)
-    run("oiiotool", scratch / "space.exr", "--colorconfig", config, "--colorconvert", "out_reinhard_extended_srgb",
-        "lin_rec709", "--colorconvert", "lin_rec709", "out_reinhard_extended_srgb", "-d", "float", "--compression",
-        "none", "-o", scratch / "again.exr")
-    report.compare("and back, and there again", stack(read_exr(scratch / "again.exr")), shown, EXACT)
+    names = ("AgX", "ACES 2.0", "Reinhard Extended")
+    spaces = [("--colorconvert", "Linear Rec.709", f"Output - {view} - sRGB") for view in names]
+    again = (*spaces[-1], "--colorconvert", "out_reinhard_extended_srgb", "lin_rec709",
+             "--colorconvert", "lin_rec709", "out_reinhard_extended_srgb")
+    *shown, there = through_oiiotool(config, picture, scratch, *(("--ociodisplay", "sRGB", view) for view in names),
+                                     *spaces, again)
+    for view, displayed, converted in zip(names, shown, shown[len(names):]):
+        report.compare(f"--colorconvert to Output - {view} - sRGB", converted, displayed, 0)
+    report.compare("and back, and there again", there, shown[len(names) - 1], EXACT)
 
 
 def check_negatives(report, command, config, scratch):
@@ -100,8 +127,8 @@ def check_negatives(report, command, config, scratch):
     rgb[0, 0], rgb[0, 1], rgb[0, 2] = (np.nan, 0.18, 1), (np.inf, 0.18, -np.inf), (0.18, np.nan, np.inf)
     write_exr(scratch / "special.exr", unstack(rgb))
     for operator, view in (("hable", "Hable"), ("agx_sobotka", "AgX Sobotka")):
-        shown = through_oiiotool(config, scratch / "special.exr", "sRGB", view, scratch / "s.exr")
-        applied = through_apply(command, scratch / "special.exr", operator, scratch / "a.exr")
+        shown, = through_oiiotool(config, scratch / "special.exr", scratch, ("--ociodisplay", "sRGB", view))
+        applied = through_apply(command, scratch / "special.exr", scratch, operator)
         report.compare(f"negatives, NaN, infinities {operator}", shown, applied, EXACT)
 
 
@@ -115,23 +142,28 @@ def main():
     report = Report()
     with tempfile.TemporaryDirectory(prefix="tonewright-") as folder:
         scratch = Path(folder)
-        # Every operator, without the looks of each: oiiotool reads the whole config for every picture.
-        run(command, "config", "-o", scratch / "config", "--views", ",".join(operator for operator, _ in views(command)),
-            "--displays", "srgb,display_p3,rec2100_pq,rec2100_hlg,p3d65_pq")
-        config = scratch / "config" / "config.ocio"
-        chart = scratch / "chart.exr"
-        run(command, "chart", "-o", chart, "--width", 768, "--height", 432)
+        # Every operator on one display, a few on others: a config makes a cube of ACES 2.0 for each gamut, in 10 s.
         jobs = [(operator, view, "srgb", "sRGB") for operator, view in views(command)]
         extra = [("agx_sobotka", "AgX Sobotka", "display_p3", "Display P3"),
-                 ("aces_13", "ACES 1.3 - HDR 1000 nits", "rec2100_pq", "Rec.2100-PQ"), ("hable", "Hable", "p3d65_pq", "P3-D65 PQ"),
+                 ("aces_13", "ACES 1.3 - HDR 1000 nits", "rec2100_pq", "Rec.2100-PQ"),
+                 ("hable", "Hable", "p3d65_pq", "P3-D65 PQ"),
                  ("uchimura", "Gran Turismo - HDR 1000 nits", "rec2100_hlg", "Rec.2100-HLG")]
-        compare_views(report, command, config, chart, scratch, jobs + extra)
-        for name in ("memorial.hdr", "Desk.exr"):
-            picture = shared_picture(name)
-            if picture:
-                compare_views(report, command, config, picture, scratch, jobs)
+        run(command, "config", "-o", scratch / "config", "--views", ",".join(operator for operator, *_ in jobs),
+            "--displays", "srgb", "--looks", "none")
+        run(command, "config", "-o", scratch / "displays", "--views", ",".join(operator for operator, *_ in extra),
+            "--displays", "srgb,display_p3,rec2100_pq,rec2100_hlg,p3d65_pq")
+        config, displays = (scratch / folder / "config.ocio" for folder in ("config", "displays"))
+        chart, joined = scratch / "chart.exr", scratch / "joined.exr"
+        run(command, "chart", "-o", chart, "--width", 768, "--height", 432)
+        pictures = list(filter(None, map(shared_picture, ("memorial.hdr", "Desk.exr"))))
+        parts = join([chart, *pictures], joined, scratch)
+        compare_views(report, command, config, joined, parts, scratch, jobs)
+        compare_views(report, command, displays, chart, whole(chart, scratch), scratch, extra)
+        for picture in pictures:  # the files themselves: a space of their own, halfs, alpha
+            compare_views(report, command, displays, picture, whole(picture, scratch), scratch, [
+                ("hable", "Hable", "display_p3", "Display P3")])
         check_negatives(report, command, config, scratch)
-        check_output_spaces(report, command, config, chart, scratch)
+        check_output_spaces(report, config, chart, scratch)
 
         alpha = np.linspace(0, 1, 256, dtype=np.float32).reshape(16, 16)
         ramp = alpha[..., None] * np.array([0.18, 1, 6], np.float32)

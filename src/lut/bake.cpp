@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "engine/error_metric.h"
+#include "lut/numbers.h"
+#include "tonewright/lut.h"
+
+namespace tonewright {
+namespace {
+
+BakedLut measured(Lut lut, const LutRequest& request, bool trilinear, bool is_fitted) {
+    quantise(lut, request);
+    const LutError error = measure_lut(lut, request, trilinear);
+    return {std::move(lut), error, is_fitted};
+}
+
+BakedLut bake_size(const LutRequest& request, LutNodes nodes, bool trilinear) {
+    const Lut sampled = sample_lut(request);
+    if (sampled.dimension == 1) return measured(sampled, request, trilinear, false);
+    if (nodes == LutNodes::sampled) return measured(sampled, request, trilinear, false);
+    BakedLut fitted = measured(fit_lut(request, sampled), request, trilinear, true);
+    if (nodes == LutNodes::fitted) return fitted;
+    BakedLut plain = measured(sampled, request, trilinear, false);
+    const bool is_nearer =
+        fitted.error.mean <= plain.error.mean && fitted.error.p999 <= plain.error.p999;
+    return is_nearer ? fitted : plain;
+}
+
+/// Sizes that are worth trying, of which each format takes those it has.
+std::vector<int> sizes_of(LutFormat format) {
+    if (format == LutFormat::hald) return {16, 25, 36, 49, 64, 81, 100, 121, 144};
+    if (format == LutFormat::strip) return {16, 32, 64};
+    if (format == LutFormat::threedl) return {17, 33, 65};
+    return {17, 25, 33, 49, 65, 97, 129};
+}
+
+}  // namespace
+
+BakedLut bake_lut(const LutRequest& request, LutNodes nodes, bool trilinear,
+                  std::optional<double> max_error) {
+    if (!max_error) return bake_size(request, nodes, trilinear);
+    if (request.size) {
+        throw Error("bake: size is " + std::to_string(*request.size) +
+                    "; expected none with --max-error, which chooses it");
+    }
+    if (!(*max_error > 0))
+        throw Error("bake: max error is " + shortest(*max_error) + "; expected above 0");
+    LutRequest sized = request;
+    BakedLut baked;
+    for (const int size : sizes_of(request.format)) {
+        sized.size = size;
+        baked = bake_size(sized, nodes, trilinear);
+        if (baked.lut.dimension == 1) {
+            sized.size.reset();
+            baked = bake_size(sized, nodes, trilinear);
+        }
+        if (baked.error.max <= *max_error) return baked;
+        if (baked.lut.dimension == 1) break;
+    }
+    throw Error(fmt::format("bake: max error is {}; expected at least {}, which {} {} has",
+                            shortest(*max_error), rounded_up(baked.error.max),
+                            lut_format_names()[static_cast<std::size_t>(request.format)],
+                            baked.lut.size));
+}
+
+}  // namespace tonewright

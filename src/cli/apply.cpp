@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/command.h"
+#include "cli/picture_input.h"
 #include "tonewright/image.h"
 
 namespace tonewright {

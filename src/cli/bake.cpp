@@ -2,9 +2,8 @@
 #include <fmt/format.h>
 
 #include "cli/command.h"
+#include "cli/picture_output.h"
 #include "engine/error_metric.h"
-#include "image/lut_picture.h"
-#include "tonewright/image.h"
 #include "tonewright/lut.h"
 
 namespace tonewright {
@@ -23,11 +22,6 @@ struct Options : ViewOptions {
     std::string host;
     std::string all;
 };
-
-OIIO::TypeDesc pixel_type(int bits) {
-    if (bits == 8) return OIIO::TypeDesc::UINT8;
-    return bits == 16 ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::FLOAT;
-}
 
 /// What the host expects, where the user has not said otherwise.
 void take_from_host(Options& options, const CLI::App& command) {
@@ -68,8 +62,7 @@ void bake_one(Options& options, const CLI::App& command) {
     request.size = lut.size;
     const bool is_picture = is_picture_format(request.format);
     if (is_picture) {
-        write_image_atomically(make_lut_picture(lut, request.format), options.file,
-                               pixel_type(request.bits.value_or(16)));
+        write_lut_picture(lut, request.format, options.file, request.bits.value_or(16));
     } else {
         write_text_atomically(options.file, write_lut(lut, request, error));
     }

@@ -1,13 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/command.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
-#include <cstdio>
-
-#include "tonewright/image.h"
-
 namespace tonewright {
 
 Settings ViewOptions::settings() const {
@@ -25,37 +18,6 @@ Settings ViewOptions::settings() const {
 View ViewOptions::view() const {
     return make_view(resolve_operator(op, settings(), look), input, exposure, display,
                      reference_white);
-}
-
-namespace {
-
-/// Standard error leads nowhere while it lives. For a program with one thread of its own.
-class QuietStderr {
-  public:
-    QuietStderr() : saved_(::dup(STDERR_FILENO)) {
-        std::fflush(stderr);
-        const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
-        if (saved_ >= 0 && nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
-        if (nowhere >= 0) ::close(nowhere);
-    }
-    ~QuietStderr() {
-        std::fflush(stderr);
-        if (saved_ < 0) return;
-        ::dup2(saved_, STDERR_FILENO);
-        ::close(saved_);
-    }
-    QuietStderr(const QuietStderr&) = delete;
-    QuietStderr& operator=(const QuietStderr&) = delete;
-
-  private:
-    int saved_;
-};
-
-}  // namespace
-
-OIIO::ImageBuf read_picture(const std::string& path) {
-    const QuietStderr quiet;
-    return read_image(path);
 }
 
 void add_view_options(CLI::App& command, ViewOptions& options) {

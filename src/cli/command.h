@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <OpenImageIO/imagebuf.h>
-
 #include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
@@ -32,10 +30,6 @@ struct ViewOptions {
 
 /// --set, --look, --exposure, --input, --display, --reference-white.
 void add_view_options(CLI::App& command, ViewOptions& options);
-
-/// read_image() with the terminal kept clean: libraries below OpenImageIO (libpng, libtiff) print
-/// their complaints themselves, and the error that comes back says the same in our one line.
-[[nodiscard]] OIIO::ImageBuf read_picture(const std::string& path);
 
 /// Each subcommand lives in its own file and puts itself under the program.
 void add_list(CLI::App& program, int& exit_code);

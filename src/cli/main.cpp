@@ -1,79 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cstdio>
-#include <exception>
-#include <system_error>
-
+//
+// The whole program: every command. front.cpp starts it for those that read or write pictures.
 #include "cli/command.h"
-
-namespace {
-
-/// One line on stderr, whatever the library's message looked like.
-int report(const std::string& message, int exit_code) {
-    std::string line = message;
-    while (!line.empty() && (line.back() == '\n' || line.back() == ' '))
-        line.pop_back();
-    for (char& c : line) {
-        if (c == '\n' || c == '\r') c = ' ';
-    }
-    fmt::print(stderr, "tonewright: {}\n", line);
-    return exit_code;
-}
-
-}  // namespace
+#include "cli/program.h"
 
 int main(int argc, char** argv) {
     using namespace tonewright;  // NOLINT(google-build-using-namespace): this is its program
-    CLI::App program("Tone mapping operators: one definition, the same picture everywhere.",
-                     "tonewright");
-    program.set_version_flag("--version", TONEWRIGHT_VERSION);
-    program.require_subcommand(1);
-    program.footer(
-        "Examples:\n"
-        "  tonewright list                                       operators, displays, spaces\n"
-        "  tonewright apply in.exr out.png --operator agx_sobotka\n"
-        "  tonewright config -o ocio_config                      the OpenColorIO config\n"
-        "  echo 0.18 0.18 0.18 | tonewright eval hable\n"
-        "Exit codes: 0 ok, 1 a check failed, 2 wrong usage, 3 a file could not be read or "
-        "written.");
-    int exit_code = kOk;
-    add_list(program, exit_code);
-    add_eval(program, exit_code);
-    add_apply(program, exit_code);
-    add_bake(program, exit_code);
-    add_config(program, exit_code);
-    add_verify(program, exit_code);
-    add_chart(program, exit_code);
-    add_sheet(program, exit_code);
-    try {
-        // CLI11 would only say that a subcommand is required.
-        const std::vector<std::string> flags = {"-h", "--help", "--version"};
-        const std::string first = argc > 1 ? argv[1] : flags[0];
-        std::vector<std::string> names;
-        for (const CLI::App* command : program.get_subcommands([](CLI::App*) { return true; })) {
-            names.push_back(command->get_name());
-        }
-        if (std::find(names.begin(), names.end(), first) == names.end() &&
-            std::find(flags.begin(), flags.end(), first) == flags.end()) {
-            throw Error("command is " + first + "; expected " + join_choices(names) +
-                        did_you_mean(first, names));
-        }
-        program.parse(argc, argv);
-        if (std::fflush(stdout) != 0) return report("write: standard output: cannot write", kFile);
-    } catch (const std::system_error& e) {  // what printing throws
-        return report("write: standard output: " + e.code().message(), kFile);
-    } catch (const CLI::Success& e) {
-        return program.exit(e);  // --help, --version
-    } catch (const CLI::ParseError& e) {
-        return report(e.what(), kUsage);
-    } catch (const FileError& e) {
-        return report(e.what(), kFile);
-    } catch (const Error& e) {
-        return report(e.what(), kUsage);
-    } catch (const std::exception& e) {
-        return report(e.what(), kCheckFailed);
-    }
-    return exit_code;
+    return run_program(
+        argc, argv,
+        {add_list, add_eval, add_apply, add_bake, add_config, add_verify, add_chart, add_sheet});
 }

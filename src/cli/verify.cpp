@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command.h"
+#include "cli/picture_input.h"
 #include "tonewright/image.h"
 #include "tonewright/lint.h"
 #include "tonewright/lut_match.h"

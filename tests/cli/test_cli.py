@@ -648,6 +648,16 @@ def check_full_disks(report, command, scratch):
                  and done.stderr.count(b"\n") == 1, f"exit {done.returncode}: {done.stderr.decode()}")
 
 
+def check_start(report, command):
+    """Commands without pictures start without OpenImageIO and its 250 libraries, a fifth of a second."""
+    if not shutil.which("ldd"):
+        print("skipped: start, ldd is not here")
+        return
+    libraries = subprocess.run(["ldd", command], capture_output=True, text=True, check=True).stdout
+    report.check("eval starts without OpenImageIO", "libOpenColorIO" in libraries and "OpenImageIO" not in libraries,
+                 libraries)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("command", type=Path)
@@ -680,7 +690,7 @@ def main():
         add(check_chart, picture)
         add(check_sheet, picture)
         add(check_full_disks)
-        for check in (check_help, check_list, check_eval_text, check_engines):
+        for check in (check_start, check_help, check_list, check_eval_text, check_engines):
             add(check, in_folder=False)
         errors = [(USAGE, *case) for case in usage_errors(bad, picture)]
         errors += [(FILE, *case) for case in file_errors(bad, picture, scratch)]

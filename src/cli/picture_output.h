@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "tonewright/lut.h"
+
+namespace tonewright {
+
+/// A table as a picture file. @see make_lut_picture
+/// @param bits  8, 16 or 32 (float)
+void write_lut_picture(const Lut& lut, LutFormat format, const std::string& path, int bits);
+
+}  // namespace tonewright

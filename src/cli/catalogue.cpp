@@ -203,7 +203,8 @@ struct Dialect {
     std::string help;
     View view;
     /// Of the probes; interleaved RGB.
-    std::vector<double> codes;
+    std::vector<double> codes = {};
+    std::vector<double> ictcp = {};
 };
 
 struct DialectGroup {
@@ -356,8 +357,8 @@ Distance distance_of(const DialectGroup& group, std::size_t a, std::size_t b) {
     std::vector<double> worst(x.size() / 3);
     for (std::size_t i = 0; i < x.size(); ++i)
         worst[i / 3] = std::max(worst[i / 3], 255 * std::fabs(x[i] - y[i]));
-    const Display& display = find_display("srgb");
-    return {a, b, summarise(worst), summarise(delta_e_itp(display, x, y))};
+    return {a, b, summarise(worst),
+            summarise(delta_e_itp(group.dialects[a].ictcp, group.dialects[b].ictcp))};
 }
 
 /// Every pair of the group.
@@ -366,6 +367,7 @@ std::vector<Distance> distances_of(DialectGroup& group, const std::vector<float>
         d.codes.resize(probes.size());
         ReferenceEngine(build_view(d.view))
             .run_rgb(probes.data(), d.codes.data(), probes.size() / 3);
+        d.ictcp = ictcp_of_codes(find_display("srgb"), d.codes);
     }
     std::vector<Distance> all;
     for (std::size_t a = 0; a < group.dialects.size(); ++a) {
@@ -383,7 +385,7 @@ std::vector<Distance> distances_of(DialectGroup& group, const std::vector<float>
     for (std::thread& t : threads)
         t.join();
     for (Dialect& d : group.dialects)
-        d.codes = {};
+        d.codes = d.ictcp = {};
     return all;
 }
 
@@ -651,6 +653,7 @@ std::vector<GeneratedFile> make_catalogue() {
 void write_catalogue(const std::string& folder) {
     // The manifest of the plots is beside them: a folder of documents has other files too.
     const std::string plots = "curves/";
+    require_writable_folder(folder + "/curves");
     std::vector<GeneratedFile> curves;
     std::string page;
     for (GeneratedFile& file : make_catalogue()) {

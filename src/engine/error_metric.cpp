@@ -62,31 +62,37 @@ Pipeline ictcp_of(const Display& display, double unit_nits) {
 
 }  // namespace
 
-std::vector<double> delta_e_itp(const Display& display, std::span<const double> code_a,
-                                std::span<const double> code_b, double unit_nits) {
-    const ReferenceEngine to_ictcp(ictcp_of(display, unit_nits));
-    const std::size_t count = code_a.size() / 3;
-    const auto planes = [&](std::span<const double> code) {
-        std::array<std::vector<double>, 3> p;
-        for (std::size_t c = 0; c < 3; ++c) {
-            p[c].resize(count);
-            for (std::size_t i = 0; i < count; ++i)
-                p[c][i] = code[3 * i + c];
-        }
-        to_ictcp.run({p[0].data(), p[1].data(), p[2].data()},
-                     {p[0].data(), p[1].data(), p[2].data()}, count);
-        return p;
-    };
-    const auto a = planes(code_a);
-    const auto b = planes(code_b);
+std::vector<double> ictcp_of_codes(const Display& display, std::span<const double> code,
+                                   double unit_nits) {
+    const std::size_t count = code.size() / 3;
+    std::vector<double> ictcp(code.size());
+    for (std::size_t c = 0; c < 3; ++c) {
+        for (std::size_t i = 0; i < count; ++i)
+            ictcp[c * count + i] = code[3 * i + c];
+    }
+    const std::array<double*, 3> planes = {ictcp.data(), ictcp.data() + count,
+                                           ictcp.data() + 2 * count};
+    ReferenceEngine(ictcp_of(display, unit_nits))
+        .run({planes[0], planes[1], planes[2]}, planes, count);
+    return ictcp;
+}
+
+std::vector<double> delta_e_itp(std::span<const double> ictcp_a, std::span<const double> ictcp_b) {
+    const std::size_t count = ictcp_a.size() / 3;
     std::vector<double> difference(count);
     for (std::size_t i = 0; i < count; ++i) {
-        const double intensity = a[0][i] - b[0][i];
-        const double t = 0.5 * (a[1][i] - b[1][i]);  // BT.2124: T is half of Ct
-        const double p = a[2][i] - b[2][i];
+        const double intensity = ictcp_a[i] - ictcp_b[i];
+        const double t = 0.5 * (ictcp_a[count + i] - ictcp_b[count + i]);  // BT.2124: T is half Ct
+        const double p = ictcp_a[2 * count + i] - ictcp_b[2 * count + i];
         difference[i] = 720 * std::sqrt(intensity * intensity + t * t + p * p);
     }
     return difference;
+}
+
+std::vector<double> delta_e_itp(const Display& display, std::span<const double> code_a,
+                                std::span<const double> code_b, double unit_nits) {
+    return delta_e_itp(ictcp_of_codes(display, code_a, unit_nits),
+                       ictcp_of_codes(display, code_b, unit_nits));
 }
 
 std::string rounded_up(double value) {

@@ -34,6 +34,12 @@ struct ErrorStats {
                                               std::span<const double> code_a,
                                               std::span<const double> code_b,
                                               double unit_nits = kReferenceWhite);
+/// The same in two steps, where one side is compared with many: I of all colors, then Ct, then Cp.
+[[nodiscard]] std::vector<double> ictcp_of_codes(const Display& display,
+                                                 std::span<const double> code,
+                                                 double unit_nits = kReferenceWhite);
+[[nodiscard]] std::vector<double> delta_e_itp(std::span<const double> ictcp_a,
+                                              std::span<const double> ictcp_b);
 
 /// Two significant digits, rounded up, so that what is printed is never less than what was
 /// measured.

@@ -28,12 +28,16 @@ void take_from_host(Options& options, const CLI::App& command) {
     if (options.host.empty()) return;
     const LutHost& host = find_lut_host(options.host);
     const auto is_given = [&](const char* option) { return command.count(option) > 0; };
-    if (!is_given("--format"))
-        options.format = lut_format_names()[static_cast<std::size_t>(host.format)];
     if (!is_given("--input-encoding")) options.encoding = host.encoding;
     if (!is_given("--display")) options.display = host.display;
+    if (is_given("--format")) return;  // another file than the host's own
+    options.format = name_of(host.format);
+    if (is_given("--max-error") && host.format == LutFormat::strip) {
+        throw Error("bake: max error is given for " + host.id + "; expected none, its size is " +
+                    std::to_string(host.size));
+    }
     if (!is_given("--size") && !is_given("--max-error") && !options.one) options.size = host.size;
-    if (!is_given("--depth") && !is_given("--format")) options.bits = host.bits;
+    if (!is_given("--depth")) options.bits = host.bits;
     if (!options.one) options.three = true;
 }
 
@@ -56,11 +60,12 @@ void bake_one(Options& options, const CLI::App& command) {
     LutNodes nodes = LutNodes::automatic;
     if (options.nodes == "sampled") nodes = LutNodes::sampled;
     if (options.nodes == "fitted") nodes = LutNodes::fitted;
+    const bool is_picture = is_picture_format(request.format);
+    if (is_picture) require_lut_picture(options.file, request.bits.value_or(16));
     const BakedLut baked = bake_lut(request, nodes, is_trilinear, options.max_error);
     const Lut& lut = baked.lut;
     const LutError& error = baked.error;
     request.size = lut.size;
-    const bool is_picture = is_picture_format(request.format);
     if (is_picture) {
         write_lut_picture(lut, request.format, options.file, request.bits.value_or(16));
     } else {
@@ -103,10 +108,12 @@ void add_bake(CLI::App& program, int&) {
         ->capture_default_str();
     command->add_option(
         "--size", options->size,
-        "grid points a side (17..129, default 33; hald 64, strip 32), or entries in 1D (default "
-        "4096)");
-    command->add_option("--max-error", options->max_error,
-                        "the smallest cube whose largest error is at most this, in code values");
+        "grid points a side (17..129, default 33; 3dl 17, 33, 65; hald a square of 16..144, "
+        "default 64; strip 2..64, default 32; raw 2..129), or entries in 1D (default 4096)");
+    command->add_option(
+        "--max-error", options->max_error,
+        "instead of a size: the smallest of 17, 25, 33, 49, 65, 97 and 129 points a "
+        "side whose largest error is at most this, in code values");
     command
         ->add_option("--nodes", options->nodes,
                      "values at the nodes: sampled, fitted (least error between them), or auto: "
@@ -121,9 +128,9 @@ void add_bake(CLI::App& program, int&) {
         ->excludes(one);
     command->add_option("--all", options->all, "write the shipped set into this folder");
     command->footer(
-        "1D or 3D follows from the view where neither is asked for. The file says what goes in, "
-        "what comes\n"
-        "out and how far it is from the exact operator.\n"
+        "1D or 3D follows from the view where neither is asked for. Files that have room for text "
+        "say what\n"
+        "goes in, what comes out and how far it is from the exact operator.\n"
         "Examples:\n  tonewright bake agx_blender --for resolve -o agx.cube\n"
         "  tonewright bake agx_sobotka --format cube --size 33 --input-encoding acescct -o "
         "agx.cube");

@@ -75,7 +75,8 @@ void add_config(CLI::App& program, int&) {
                      "of OpenColorIO: 2.0, 2.1 and 2.5, comma separated; the first is config.ocio "
                      "(and --archive's), the others config-2.0.ocio and so on")
         ->delimiter(',')
-        ->default_str("2.1,2.0,2.5");
+        ->default_str("2.1,2.0,2.5")
+        ->excludes(into);
     command
         ->add_option(
             "--views", config.views,
@@ -111,8 +112,8 @@ void add_config(CLI::App& program, int&) {
         "\\\n    --operator reinhard_extended:white=6 --name \"Studio Reinhard\"\n"
         "  tonewright config --archive tonewright.ocioz\n"
         "  tonewright config --into studio.ocio --views AgX,hable\n"
-        "  oiiotool --colorconfig ocio_config/config.ocio in.exr --ociodisplay sRGB Hable -o "
-        "out.png");
+        "  oiiotool --colorconfig ocio_config/config.ocio in.exr --ociodisplay sRGB Hable \\\n"
+        "    --iscolorspace sRGB -o out.png");
     command->callback([options] {
         ConfigOptions& wanted = options->config;
         if (options->operators.size() != options->names.size()) {

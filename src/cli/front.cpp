@@ -26,17 +26,21 @@ constexpr const char* kWholeProgram = "tonewright-pictures";
 [[noreturn]] void become_whole_program() {
     namespace fs = std::filesystem;
     std::error_code error;
-    const fs::path own = fs::read_symlink("/proc/self/exe", error).parent_path();
-    for (const fs::path& folder : {own, own.parent_path() / "libexec" / "tonewright"}) {
+    const fs::path self = fs::read_symlink("/proc/self/exe", error);
+    if (error) throw FileError("start: /proc/self/exe: " + error.message());
+    const fs::path own = self.parent_path();
+    std::string why;
+    for (const fs::path& folder : {own, own.parent_path() / TONEWRIGHT_LIBEXEC}) {
         const std::string path = (folder / kWholeProgram).string();
-        if (fs::exists(path, error)) ::execv(path.c_str(), arguments);
+        ::execv(path.c_str(), arguments);
+        why += fmt::format("{}{}: {}", why.empty() ? "" : "; ", path, std::strerror(errno));
     }
-    throw FileError(fmt::format(
-        "start: {}: it is not beside the program, nor in ../libexec/tonewright", kWholeProgram));
+    throw FileError("start: " + why);
 }
 
 }  // namespace
 
+void require_lut_picture(const std::string&, int) { become_whole_program(); }
 void write_lut_picture(const Lut&, LutFormat, const std::string&, int) { become_whole_program(); }
 
 }  // namespace tonewright

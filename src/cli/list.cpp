@@ -240,8 +240,7 @@ std::string operator_section(const Operator& op, std::string_view after_characte
 }
 
 std::string format_of(const LutHost& host) {
-    std::string text =
-        fmt::format("{} {}", lut_format_names()[static_cast<std::size_t>(host.format)], host.size);
+    std::string text = fmt::format("{} {}", name_of(host.format), host.size);
     if (host.bits) text += fmt::format(", {} bit", *host.bits);
     return text;
 }
@@ -268,7 +267,7 @@ Json hosts_to_json() {
     for (const LutHost& host : all_lut_hosts()) {
         all.push_back({{"id", host.id},
                        {"title", host.title},
-                       {"format", lut_format_names()[static_cast<std::size_t>(host.format)]},
+                       {"format", name_of(host.format)},
                        {"size", host.size},
                        {"bits", host.bits ? Json(*host.bits) : Json()},
                        {"input_encoding", host.encoding},

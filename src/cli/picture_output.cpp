@@ -1,10 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/picture_output.h"
 
+#include <fmt/format.h>
+
+#include <cctype>
+#include <filesystem>
+
 #include "image/lut_picture.h"
 #include "tonewright/image.h"
 
 namespace tonewright {
+
+void require_lut_picture(const std::string& path, int bits) {
+    std::string extension = std::filesystem::path(path).extension().string();
+    for (char& c : extension)
+        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    const bool is_tiff = extension == ".tif" || extension == ".tiff";
+    const bool is_held = is_tiff || (bits == 32 ? extension == ".exr" : extension == ".png");
+    if (!is_held) {
+        throw Error(fmt::format("bake: file is {}; expected {} or .tif for {} bits", path,
+                                bits == 32 ? ".exr" : ".png", bits));
+    }
+}
 
 void write_lut_picture(const Lut& lut, LutFormat format, const std::string& path, int bits) {
     OIIO::TypeDesc type = OIIO::TypeDesc::FLOAT;

@@ -7,6 +7,11 @@
 
 namespace tonewright {
 
+/// Before anything is computed for a picture.
+/// @throws Error  for a file type that does not hold the numbers as they are: lossy, or of other
+///                depths.
+void require_lut_picture(const std::string& path, int bits);
+
 /// A table as a picture file. @see make_lut_picture
 /// @param bits  8, 16 or 32 (float)
 void write_lut_picture(const Lut& lut, LutFormat format, const std::string& path, int bits);

@@ -112,13 +112,17 @@ void add_verify(CLI::App& program, int& exit_code) {
     command->add_option("--config", options->verify.config,
                         "a config to check, or its folder: any, ours or not; default: a fresh one");
     command->add_option("--picture", options->picture, "picture whose pixels join the probes");
-    command->add_option("--lut", options->lut,
-                        "a LUT, ours or not, of any format that OpenColorIO reads: which of the "
-                        "operators it is, with which input encoding, and how far from it");
     command->add_flag("--quick", options->quick,
                       "gamut lattices of 9 instead of 33 points a side (of a config 17)");
     command->add_flag("--no-gpu", options->no_gpu, "leave OCIO's GPU path out");
     command->add_flag("--json", options->json, "for programs");
+    CLI::Option* lut = command->add_option(
+        "--lut", options->lut,
+        "a LUT, ours or not, of any format that OpenColorIO reads: which of the operators it is, "
+        "with which input encoding, and how far from it; nothing is held to a bound");
+    for (const char* other :
+         {"--display", "--input", "--config", "--picture", "--quick", "--no-gpu"})
+        lut->excludes(command->get_option(other));
     command->footer(
         "max, 99.9 % and mean: errors of display code values over probes >= 0; max all: negatives "
         "and mixed\n"

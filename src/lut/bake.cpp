@@ -9,20 +9,21 @@ namespace tonewright {
 namespace {
 
 BakedLut measured(Lut lut, const LutRequest& request, bool trilinear, bool is_fitted) {
-    quantise(lut, request);
+    quantize(lut, request);
     const LutError error = measure_lut(lut, request, trilinear);
     return {std::move(lut), error, is_fitted};
 }
 
-BakedLut bake_size(const LutRequest& request, LutNodes nodes, bool trilinear) {
+BakedLut bake_size(const LutRequest& request, LutNodes nodes, bool trilinear, bool by_max) {
     const Lut sampled = sample_lut(request);
-    if (sampled.dimension == 1) return measured(sampled, request, trilinear, false);
-    if (nodes == LutNodes::sampled) return measured(sampled, request, trilinear, false);
+    if (sampled.dimension == 1 || nodes == LutNodes::sampled)
+        return measured(sampled, request, trilinear, false);
     BakedLut fitted = measured(fit_lut(request, sampled), request, trilinear, true);
     if (nodes == LutNodes::fitted) return fitted;
     BakedLut plain = measured(sampled, request, trilinear, false);
     const bool is_nearer =
-        fitted.error.mean <= plain.error.mean && fitted.error.p999 <= plain.error.p999;
+        by_max ? fitted.error.max < plain.error.max
+               : fitted.error.mean <= plain.error.mean && fitted.error.p999 <= plain.error.p999;
     return is_nearer ? fitted : plain;
 }
 
@@ -38,29 +39,27 @@ std::vector<int> sizes_of(LutFormat format) {
 
 BakedLut bake_lut(const LutRequest& request, LutNodes nodes, bool trilinear,
                   std::optional<double> max_error) {
-    if (!max_error) return bake_size(request, nodes, trilinear);
+    if (!max_error) return bake_size(request, nodes, trilinear, false);
     if (request.size) {
         throw Error("bake: size is " + std::to_string(*request.size) +
                     "; expected none with --max-error, which chooses it");
     }
     if (!(*max_error > 0))
         throw Error("bake: max error is " + shortest(*max_error) + "; expected above 0");
-    LutRequest sized = request;
-    BakedLut baked;
-    for (const int size : sizes_of(request.format)) {
-        sized.size = size;
-        baked = bake_size(sized, nodes, trilinear);
-        if (baked.lut.dimension == 1) {
-            sized.size.reset();
-            baked = bake_size(sized, nodes, trilinear);
+    // A 1D table has as many entries as it needs.
+    BakedLut baked = bake_size(request, nodes, trilinear, true);
+    if (baked.lut.dimension == 1 && baked.error.max <= *max_error) return baked;
+    if (baked.lut.dimension == 3) {
+        LutRequest sized = request;
+        for (const int size : sizes_of(request.format)) {
+            sized.size = size;
+            baked = bake_size(sized, nodes, trilinear, true);
+            if (baked.error.max <= *max_error) return baked;
         }
-        if (baked.error.max <= *max_error) return baked;
-        if (baked.lut.dimension == 1) break;
     }
     throw Error(fmt::format("bake: max error is {}; expected at least {}, which {} {} has",
                             shortest(*max_error), rounded_up(baked.error.max),
-                            lut_format_names()[static_cast<std::size_t>(request.format)],
-                            baked.lut.size));
+                            name_of(request.format), baked.lut.size));
 }
 
 }  // namespace tonewright

@@ -138,6 +138,10 @@ std::vector<std::string> lut_format_names() {
     return {"cube", "clf", "spi1d", "spi3d", "csp", "3dl", "hald", "strip", "raw"};
 }
 
+std::string name_of(LutFormat format) {
+    return lut_format_names()[static_cast<std::size_t>(format)];
+}
+
 bool is_picture_format(LutFormat format) {
     return format == LutFormat::hald || format == LutFormat::strip;
 }

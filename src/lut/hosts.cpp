@@ -78,16 +78,14 @@ const std::vector<LutHost>& all_lut_hosts() {
         {"unity",
          "Unity HDRP",
          LutFormat::cube,
-         33,
+         32,
          "unity_logc",
          "linear",
          {},
          "trilinear",
-         "import the .cube; Volume > Tonemapping > Mode External > Lookup Texture",
-         ""},
-        {"unity_urp", "Unity URP", LutFormat::strip, 32, "srgb", "srgb", 8, "trilinear",
-         "import as texture without sRGB, mip maps and compression; Volume > Color Lookup > Lookup "
-         "Texture: works on what is shown",
+         "import the .cube; Volume > Tonemapping > Mode External > Lookup Texture. Its size must "
+         "be "
+         "the HDRP Asset's Grading LUT Size, 32 unless changed: --size",
          ""},
         {"godot", "Godot", LutFormat::strip, 32, "srgb", "srgb", 8, "trilinear",
          "import as Texture3D with 32 horizontal slices; Environment > Adjustments > Color "
@@ -111,7 +109,7 @@ const std::vector<LutHost>& all_lut_hosts() {
          "srgb",
          {},
          "trilinear",
-         "mpv --vo=gpu-next --image-lut=FILE --image-lut-type=native --target-trc=srgb "
+         "mpv --vo=gpu-next --lut=FILE --lut-type=conversion --target-trc=srgb "
          "--target-prim=bt.709 hdr10.mkv",
          ""},
         {"gmic",

@@ -144,7 +144,8 @@ LutError measure_lut(const Lut& lut, const LutRequest& request, bool trilinear) 
             interpolate(lut, {code[3 * i], code[3 * i + 1], code[3 * i + 2]}, trilinear);
         double worst = 0;
         for (std::size_t c = 0; c < 3; ++c) {
-            worst = std::max(worst, std::fabs(out[c] - truth[3 * i + c]));
+            const double difference = std::fabs(out[c] - truth[3 * i + c]);
+            worst = std::max(worst, std::isnan(difference) ? kInfinity : difference);
             shown.push_back(out[c]);
             wanted.push_back(truth[3 * i + c]);
         }

@@ -64,8 +64,9 @@ int bits_of(const LutRequest& request) {
 void check_bits(const LutRequest& request, const FormatTraits& traits) {
     std::vector<std::string> known;
     for (const int bits : traits.bits) {
+        if (bits == 0) continue;
         if (bits == bits_of(request)) return;
-        if (bits != 0) known.push_back(std::to_string(bits));
+        known.push_back(std::to_string(bits));
     }
     throw Error("bake: depth is " + std::to_string(bits_of(request)) + "; expected " +
                 join_choices(known) + " for " + traits.name);
@@ -103,8 +104,9 @@ Lut sample_lut(const LutRequest& request) {
     const bool per_channel = is_per_channel(build_view(request.view));
     const FormatTraits& traits = traits_of(request.format);
     if (request.dimension == LutDimension::three && !traits.has_3d) {
-        throw Error(std::string("bake: format is ") + traits.name +
-                    "; expected a 3D format (cube, clf, spi3d) with --3d");
+        throw Error(
+            std::string("bake: format is ") + traits.name +
+            "; expected a 3D format (cube, clf, spi3d, csp, 3dl, hald, strip, raw) with --3d");
     }
     if (request.dimension == LutDimension::one && !traits.has_1d) {
         throw Error(std::string("bake: format is ") + traits.name +
@@ -114,6 +116,13 @@ Lut sample_lut(const LutRequest& request) {
         traits.has_1d && (!traits.has_3d || request.dimension == LutDimension::one ||
                           (request.dimension == LutDimension::automatic && per_channel));
     check_bits(request, traits);
+    // Readers resample the prelut to 65536 equal steps of light: up to ACEScct's 222.9 they are
+    // short enough.
+    constexpr double kBrightestPrelut = 223;
+    if (request.format == LutFormat::csp && request.encoding.scene_hi > kBrightestPrelut) {
+        throw Error("bake: input encoding is " + request.encoding.id + ", up to " +
+                    shortest(request.encoding.scene_hi) + "; expected up to 223 for csp");
+    }
     if (one && !per_channel) {
         throw Error(at_most_one_dimension(request) + "; expected a 3D table");
     }
@@ -134,6 +143,11 @@ Lut sample_lut(const LutRequest& request) {
     lut.channels = one ? 1 : 3;
     lut.size = one ? checked_size(request, kDefaultCurveSize, 2, kHalfCount)
                    : checked_size(request, traits.default_size, traits.smallest, traits.largest);
+    if (!one && request.format == LutFormat::threedl && lut.size != 17 && lut.size != 33 &&
+        lut.size != 65) {
+        throw Error("bake: size is " + std::to_string(lut.size) +
+                    "; expected 17, 33 or 65 for 3dl");
+    }
     if (request.format == LutFormat::hald && !is_square(lut.size)) {
         throw Error("bake: size is " + std::to_string(lut.size) +
                     "; expected a square for a Hald CLUT: 16, 25, 36, 49, 64, 81, 100, 121 or 144");
@@ -165,15 +179,18 @@ Lut sample_lut(const LutRequest& request) {
 }
 
 Lut fit_lut(const LutRequest& request, const Lut& sampled) {
+    if (sampled.dimension != 3)
+        throw Error("bake: a 1D table has no nodes to fit; expected a cube");
     CubeProblem problem;
     problem.edge = sampled.size;
     problem.axis = {request.encoding.encode, request.encoding.decode, request.encoding.scene_hi};
     problem.pipeline = build_view(request.view);
     problem.primaries = find_input_space(request.view.input).primaries;
-    problem.lo = 0;
-    problem.hi = 1;
-    if (request.view.display == kLinearOutput || request.view.display == kNativeOutput)
-        problem.hi = kInfinity;
+    // What the view cannot show, a table of it should not hold.
+    const auto [lowest, highest] =
+        std::minmax_element(sampled.values.begin(), sampled.values.end());
+    problem.lo = static_cast<double>(*lowest);
+    problem.hi = static_cast<double>(*highest);
     const std::vector<double> nodes = fit_cube(problem);
     const auto n = static_cast<std::size_t>(sampled.size);
     Lut lut = sampled;
@@ -182,7 +199,6 @@ Lut fit_lut(const LutRequest& request, const Lut& sampled) {
         const std::size_t g = i / n % n;
         const std::size_t b = i / (n * n);
         for (std::size_t c = 0; c < 3; ++c) {
-            // What the view cannot show, a table of it should not hold.
             lut.values[3 * i + c] = static_cast<float>(
                 std::clamp(nodes[3 * ((r * n + g) * n + b) + c], problem.lo, problem.hi));
         }
@@ -190,7 +206,7 @@ Lut fit_lut(const LutRequest& request, const Lut& sampled) {
     return lut;
 }
 
-void quantise(Lut& lut, const LutRequest& request) {
+void quantize(Lut& lut, const LutRequest& request) {
     const int bits = bits_of(request);
     if (bits == 32) return;
     const float largest = std::exp2(static_cast<float>(bits)) - 1;

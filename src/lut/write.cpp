@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 
@@ -178,6 +179,7 @@ std::string write_3dl(const Lut& lut, const LutRequest& r) {
 }
 
 std::string write_raw(const Lut& lut) {
+    static_assert(std::endian::native == std::endian::little, "raw is little-endian");
     std::string bytes(lut.values.size() * sizeof(float), '\0');
     std::memcpy(bytes.data(), lut.values.data(), bytes.size());
     return bytes;

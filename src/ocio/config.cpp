@@ -175,6 +175,10 @@ void check_config_options(const ConfigOptions& options) {
         if (!profiles.insert(profile).second)
             throw Error("config: profile " + profile + " is there twice; expected it once");
     }
+    if (find_input_space(options.working).is_camera) {
+        throw Error("config: working space is " + options.working +
+                    "; expected one of the config: lin_rec709, lin_ap1, ...");
+    }
     if (profiles.empty()) throw Error("config: no profile; expected 2.0, 2.1 or 2.5");
     (void)make_config_model(options);
 }

@@ -102,8 +102,9 @@ std::string to_profile_2_5(const std::string& yaml, const ConfigModel& model,
                               : amf_ids_of_space(space.name));
     }
     std::map<std::string, std::set<std::string>> ids;
-    for (const auto& [view, forms] : displayed) {
-        for (const DisplayedView& shown : forms) {
+    for (const auto& view : model.views) {
+        if (view.exposure_stops != 0) continue;  // not the Academy's
+        for (const DisplayedView& shown : displayed.at(view.name)) {
             const std::string style = shown.op.ocio_builtin();
             if (style.empty()) continue;
             for (const std::string& id : amf_ids_of_output(style, shown.display->id))

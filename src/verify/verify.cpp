@@ -363,6 +363,10 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
     }
     if (displays.empty()) displays = {"srgb"};
     const InputSpace& input = find_input_space(options.input);
+    if (input.is_camera) {
+        throw Error("verify: input is " + input.id +
+                    "; expected a space of the config, which has the cameras' logs only");
+    }
     std::vector<View> views;
     for (const OperatorVariant& v : variants) {
         for (const std::string& display : displays) {

@@ -128,6 +128,15 @@ def check_text(report, folder):
     b = yaml.load((folder / "config-2.5.ocio").read_text(), Loader)
     report.check("profile 2.5 says its version", str(b.pop("ocio_profile_version")) == "2.5")
     a.pop("ocio_profile_version")
+    spaces = {space["name"]: space for part in ("colorspaces", "display_colorspaces") for _, space in b[part]}
+    wrong = [name for name, id_ in INTEROP_IDS.items() if spaces[name].get("interop_id") != id_]
+    report.check(f"profile 2.5 has {len(INTEROP_IDS)} interop ids", not wrong, wrong)
+    transforms = {transform["name"]: transform for _, transform in b["view_transforms"]}
+    shown = {(view["name"], display): view["view_transform"] for display, views in b["displays"].items()
+             for kind, view in views if kind == "View"}
+    missing = [key for key, urn in AMF_IDS.items() for thing in (transforms[shown[key]], spaces[key[1]])
+               if urn not in thing["interchange"]["amf_transform_ids"].splitlines()]
+    report.check("profile 2.5 has the AMF ids of outputs", not missing, missing)
     builtins, ids = [], 0
     for part in ("colorspaces", "display_colorspaces", "view_transforms"):
         for (_, new), (_, base) in zip(b[part], a[part]):

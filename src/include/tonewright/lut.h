@@ -43,6 +43,7 @@ enum class LutFormat : unsigned char { cube, clf, spi1d, spi3d, csp, threedl, ha
 /// @throws Error with the nearest name.
 [[nodiscard]] LutFormat parse_lut_format(std::string_view text);
 [[nodiscard]] std::vector<std::string> lut_format_names();
+[[nodiscard]] std::string name_of(LutFormat format);
 /// A picture's layout, not a file of its own kind: OpenImageIO writes it.
 [[nodiscard]] bool is_picture_format(LutFormat format);
 
@@ -54,8 +55,8 @@ struct LutRequest {
     InputEncoding encoding;
     LutFormat format = LutFormat::cube;
     LutDimension dimension = LutDimension::automatic;
-    /// Entries of a 1D table (2..65536), or grid points a side of a cube (17..129; `hald`: a square
-    /// of 16..144, `strip`: 2..64).
+    /// Entries of a 1D table (2..65536), or grid points a side of a cube (17..129; `3dl`: 17, 33 or
+    /// 65; `hald`: a square of 16..144; `strip`: 2..64; `raw`: 2..129).
     std::optional<int> size;
     /// Of integers: 8 or 16 in pictures, 10, 12 or 16 in `3dl`. 32: float.
     std::optional<int> bits;
@@ -110,6 +111,7 @@ struct LutError {
 /// A cube as sample_lut() makes it, with nodes that are chosen for the least error between them,
 /// for colors of pictures and beyond. It can be nearer or not: measure both.
 /// @param sampled  its sampled form
+/// @throws Error  for a 1D table.
 [[nodiscard]] Lut fit_lut(const LutRequest& request, const Lut& sampled);
 
 /// Table output for scene-linear input that the encoding holds; `rgb` is table input in [0, 1] (for
@@ -133,14 +135,16 @@ struct BakedLut {
 
 /// A table as its format holds it, and how far it is from the view.
 /// @param trilinear  what its reader does in a cube
-/// @param max_error  the smallest cube whose largest error is at most this, in place of a size
+/// @param max_error  instead of a size: the smallest cube, of 17, 25, 33, 49, 65, 97 and 129 points
+///                   a side (or what the format has of such), whose largest error is at most this,
+///                   in code values (of `linear` and `native`: in the operator's numbers)
 /// @throws Error  as sample_lut(); with a size and a max_error; where no size meets it
 [[nodiscard]] BakedLut bake_lut(const LutRequest& request, LutNodes nodes = LutNodes::automatic,
                                 bool trilinear = false,
                                 std::optional<double> max_error = std::nullopt);
 
 /// The table as its format holds it: rounded to the integers of LutRequest::bits.
-void quantise(Lut& lut, const LutRequest& request);
+void quantize(Lut& lut, const LutRequest& request);
 
 /// The contents of the file: what it is, what goes in, what comes out, the measured error; then
 /// numbers with 9 significant digits (enough for every float), never in exponent notation. Of no

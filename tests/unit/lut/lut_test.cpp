@@ -287,9 +287,13 @@ TEST(LutFormatName, RoundTrips) {
     EXPECT_EQ(parse_lut_format("clf"), LutFormat::clf);
     EXPECT_EQ(parse_lut_format("spi1d"), LutFormat::spi1d);
     EXPECT_EQ(parse_lut_format("spi3d"), LutFormat::spi3d);
-    EXPECT_EQ(lut_format_names().size(), 4U);
+    EXPECT_EQ(parse_lut_format("raw"), LutFormat::raw);
+    EXPECT_EQ(lut_format_names().size(), 9U);
+    for (const std::string& name : lut_format_names())
+        EXPECT_EQ(name_of(parse_lut_format(name)), name);
     EXPECT_EQ(error_of([] { (void)parse_lut_format("cub"); }),
-              "bake: format is cub; expected cube, clf, spi1d or spi3d; did you mean cube?");
+              "bake: format is cub; expected cube, clf, spi1d, spi3d, csp, 3dl, hald, strip or "
+              "raw; did you mean cube?");
 }
 
 // ---------------------------------------------------------------------------------------------
@@ -617,11 +621,10 @@ TEST(SampleLut, TakesSizesOf17To129) {
 TEST(SampleLut, RefusesWhatAHostWouldShowWrong) {
     const auto error = [](const LutRequest& r) { return error_of([&] { (void)sample_lut(r); }); };
     LutRequest r = request_for("agx_sobotka", "linear");
-    EXPECT_EQ(
-        error(r).rfind("bake: input encoding is linear:0:1; expected acescct or log2 for a 3D "
-                       "table",
-                       0),
-        0U)
+    EXPECT_EQ(error(r).rfind("bake: input encoding is linear:0:1; expected another for a 3D "
+                             "table",
+                             0),
+              0U)
         << error(r);
     r = request_for("agx_sobotka", "log2");
     r.dimension = LutDimension::one;
@@ -631,7 +634,10 @@ TEST(SampleLut, RefusesWhatAHostWouldShowWrong) {
               0U);
     r = request_for("hable", "log2", LutFormat::spi1d);
     r.dimension = LutDimension::three;
-    EXPECT_EQ(error(r), "bake: format is spi1d; expected a 3D format (cube, clf, spi3d) with --3d");
+    EXPECT_EQ(error(r),
+              "bake: format is spi1d; expected a 3D format (cube, clf, spi3d, csp, 3dl, hald, "
+              "strip, raw) "
+              "with --3d");
     r = request_for("hable", "log2", LutFormat::spi3d);
     r.dimension = LutDimension::one;
     EXPECT_EQ(error(r), "bake: format is spi3d; expected a 1D format (cube, clf, spi1d) with --1d");

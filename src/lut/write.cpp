@@ -127,6 +127,22 @@ std::string write_spi3d(const Lut& lut) {
     return text;
 }
 
+/// The nodes of a cube in the order of CLF and 3dl.
+std::vector<float> blue_fastest(const Lut& lut) {
+    const auto n = static_cast<std::size_t>(lut.size);
+    std::vector<float> values;
+    values.reserve(lut.values.size());
+    for (std::size_t r = 0; r < n; ++r) {
+        for (std::size_t g = 0; g < n; ++g) {
+            for (std::size_t b = 0; b < n; ++b) {
+                const float* node = &lut.values[3 * ((b * n + g) * n + r)];
+                values.insert(values.end(), node, node + 3);
+            }
+        }
+    }
+    return values;
+}
+
 /// cineSpace: a prelut from scene-linear to the encoding, then the cube. Readers resample a prelut
 /// of few points, and to as many of equal distances in light: 4096, of equal distances in code.
 std::string write_csp(const Lut& lut, const LutRequest& r, const LutError& e) {
@@ -162,20 +178,12 @@ std::string write_3dl(const Lut& lut, const LutRequest& r) {
             fmt::format("{}{}", i ? " " : "",
                         std::lround(1023.0 * static_cast<double>(i) / static_cast<double>(n - 1)));
     text += '\n';
-    for (std::size_t red = 0; red < n; ++red) {
-        for (std::size_t g = 0; g < n; ++g) {
-            for (std::size_t b = 0; b < n; ++b) {
-                for (std::size_t c = 0; c < 3; ++c) {
-                    const double v =
-                        static_cast<double>(lut.values[3 * ((b * n + g) * n + red) + c]);
-                    text += fmt::format("{}{}", c ? " " : "",
-                                        std::lround(std::clamp(v, 0.0, 1.0) * largest));
-                }
-                text += '\n';
-            }
-        }
+    const std::vector<float> nodes = blue_fastest(lut);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const double v = std::clamp(static_cast<double>(nodes[i]), 0.0, 1.0);
+        text += fmt::format("{}{}", std::lround(v * largest), (i + 1) % 3 == 0 ? '\n' : ' ');
     }
-    return text + fmt::format("\nLUT8\ngamma 1.0\n");
+    return text + "\nLUT8\ngamma 1.0\n";
 }
 
 std::string write_raw(const Lut& lut) {
@@ -186,26 +194,13 @@ std::string write_raw(const Lut& lut) {
 }
 
 std::string write_clf_file(const Lut& lut, const LutRequest& r, const LutError& e) {
-    const auto n = static_cast<std::size_t>(lut.size);
-    std::vector<float> blue_fastest;
-    if (lut.dimension == 3) {
-        blue_fastest.reserve(lut.values.size());
-        for (std::size_t red = 0; red < n; ++red) {
-            for (std::size_t g = 0; g < n; ++g) {
-                for (std::size_t b = 0; b < n; ++b) {
-                    for (std::size_t c = 0; c < 3; ++c) {
-                        blue_fastest.push_back(lut.values[3 * ((b * n + g) * n + red) + c]);
-                    }
-                }
-            }
-        }
-    }
+    const std::vector<float> nodes = lut.dimension == 3 ? blue_fastest(lut) : lut.values;
     ClfTable table;
     table.dimension = lut.dimension;
     table.size = lut.size;
     table.channels = lut.channels;
     table.is_half_domain = lut.is_half_domain;
-    table.values = lut.dimension == 3 ? &blue_fastest : &lut.values;
+    table.values = &nodes;
     return write_clf(table, title_of(r), header_lines(lut, r, e));
 }
 

@@ -33,6 +33,7 @@ THIRD_PARTY = {
     "EGL": ["ocio"],
     "yaml-cpp": ["ocio"],
     "GL": ["ocio"],
+    "xbyak": ["engine"],
     "CLI": ["cli"],
     "nlohmann": ["cli"],
     "fmt": ["lut", "ocio", "image", "verify", "cli"],

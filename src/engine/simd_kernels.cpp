@@ -19,6 +19,7 @@
 #define HWY_DISABLED_TARGETS HWY_SSSE3
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 
+#include "engine/machine_code.h"
 #include "engine/simd_math-inl.h"
 #include "hwy/highway.h"
 
@@ -752,7 +753,7 @@ HWY_INLINE bool are_interleaved(const std::array<T*, 3>& plane, std::ptrdiff_t s
     return (stride == 3 || stride == 4) && plane[1] == plane[0] + 1 && plane[2] == plane[0] + 2;
 }
 
-HWY_NOINLINE void load_tile(const Code& code, unsigned char* registers,
+HWY_NOINLINE void load_tile(const TilePorts& ports, unsigned char* registers,
                             const std::array<const float*, 3>& in, std::ptrdiff_t stride,
                             std::size_t count, std::size_t padded) {
     const DF d;
@@ -761,8 +762,8 @@ HWY_NOINLINE void load_tile(const Code& code, unsigned char* registers,
     alignas(kVectorBytes) float unused[kMaxTile];
     std::array<float*, 3> out;
     for (std::size_t c = 0; c < 3; ++c) {
-        out[c] = code.reads_input[c] ? reinterpret_cast<float*>(registers + code.input_offset[c])
-                                     : unused;
+        out[c] = ports.reads_input[c] ? reinterpret_cast<float*>(registers + ports.input_offset[c])
+                                      : unused;
     }
     std::size_t done = 0;
     const auto store = [&](Vec<DF> r, Vec<DF> g, Vec<DF> b) HWY_ATTR {
@@ -809,13 +810,14 @@ HWY_NOINLINE void load_tile(const Code& code, unsigned char* registers,
     }
 }
 
-HWY_NOINLINE void store_tile(const Code& code, const Frame& frame, const std::array<float*, 3>& out,
-                             std::ptrdiff_t stride, std::size_t count) {
+HWY_NOINLINE void store_tile(const TilePorts& ports, const Frame& frame,
+                             const std::array<float*, 3>& out, std::ptrdiff_t stride,
+                             std::size_t count) {
     const DF d;
     const std::size_t lanes = hn::Lanes(d);
-    const std::array<Source, 3> value = {Source(frame, code.output[0]),
-                                         Source(frame, code.output[1]),
-                                         Source(frame, code.output[2])};
+    const std::array<Source, 3> value = {Source(frame, ports.output[0]),
+                                         Source(frame, ports.output[1]),
+                                         Source(frame, ports.output[2])};
     std::size_t done = 0;
     if (stride == 1) {
         for (; done + lanes <= count; done += lanes) {
@@ -858,8 +860,71 @@ HWY_NOINLINE void store_tile(const Code& code, const Frame& frame, const std::ar
     }
 }
 
+#if HWY_TARGET <= HWY_AVX3
+
+/// One part after the other over each tile, with what runs over the whole tile between them.
+void run_parts(const Code& code, PixelLayout layout, unsigned char* tile, const float* in,
+               float* out, std::size_t count) {
+    const VectorProgram& program = code.machine->program();
+    const Frame frame{tile, reinterpret_cast<const unsigned char*>(code.constants.data()), count};
+    for (std::size_t part = 0; part <= program.tile_steps.size(); ++part) {
+        code.machine->run(part, layout, tile, in, out, count / kLaneMultiple);
+        if (part == program.tile_steps.size()) return;
+        for (const Instruction& step : program.tile_steps[part])
+            run_instruction(frame, code, step);
+    }
+}
+
+void run_machine(const Code& code, const std::array<const float*, 3>& in, std::ptrdiff_t in_stride,
+                 const std::array<float*, 3>& out, std::ptrdiff_t out_stride, std::size_t count) {
+    alignas(kVectorBytes) unsigned char tile[kRegisterFileBytes];
+    const VectorProgram& program = code.machine->program();
+    if (in_stride == out_stride && are_interleaved(in, in_stride) &&
+        are_interleaved(out, out_stride)) {
+        const PixelLayout layout = in_stride == 3 ? PixelLayout::rgb : PixelLayout::rgba;
+        const auto stride = static_cast<std::size_t>(in_stride);
+        // What follows the last pixel's three channels is not ours to read: the last pixels are
+        // copied, and so are those that fill no block.
+        const std::size_t whole =
+            (stride == 4 && count > 0 ? count - 1 : count) / kLaneMultiple * kLaneMultiple;
+        // Without a step over a tile nothing is kept in it.
+        const std::size_t step = program.tile_steps.empty() ? HWY_MAX(whole, 1) : program.tile;
+        for (std::size_t begin = 0; begin < whole; begin += step) {
+            run_parts(code, layout, tile, in[0] + begin * stride, out[0] + begin * stride,
+                      HWY_MIN(step, whole - begin));
+        }
+        if (whole == count) return;
+        alignas(kVectorBytes) float pixels[4 * kLaneMultiple] = {};
+        const std::size_t rest = (count - whole) * stride - (stride - 3);
+        std::memcpy(pixels, in[0] + whole * stride, rest * sizeof(float));
+        run_parts(code, layout, tile, pixels, pixels, kLaneMultiple);
+        for (std::size_t i = 0; i < (count - whole) * stride; i += stride)
+            std::memcpy(out[0] + whole * stride + i, pixels + i, 3 * sizeof(float));
+        return;
+    }
+    for (std::size_t begin = 0; begin < count; begin += program.tile) {
+        const std::size_t n = HWY_MIN(program.tile, count - begin);
+        const std::size_t padded = (n + kLaneMultiple - 1) / kLaneMultiple * kLaneMultiple;
+        const auto at = static_cast<std::ptrdiff_t>(begin);
+        load_tile(program, tile,
+                  {in[0] + at * in_stride, in[1] + at * in_stride, in[2] + at * in_stride},
+                  in_stride, n, padded);
+        run_parts(code, PixelLayout::planes, tile, nullptr, nullptr, padded);
+        const Frame frame{tile, reinterpret_cast<const unsigned char*>(code.constants.data()),
+                          padded};
+        store_tile(program, frame,
+                   {out[0] + at * out_stride, out[1] + at * out_stride, out[2] + at * out_stride},
+                   out_stride, n);
+    }
+}
+
+#endif
+
 void run(const Code& code, const std::array<const float*, 3>& in, std::ptrdiff_t in_stride,
          const std::array<float*, 3>& out, std::ptrdiff_t out_stride, std::size_t count) {
+#if HWY_TARGET <= HWY_AVX3
+    if (code.machine) return run_machine(code, in, in_stride, out, out_stride, count);
+#endif
     alignas(kVectorBytes) unsigned char registers[kRegisterFileBytes];
     const auto* constants = reinterpret_cast<const unsigned char*>(code.constants.data());
     for (std::size_t begin = 0; begin < count; begin += code.tile) {

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -119,20 +120,33 @@ struct alignas(kVectorBytes) ConstantVector {
     std::array<unsigned char, kVectorBytes> bytes;
 };
 
-struct Code {
+/// Where a program's tile has the pixels.
+struct TilePorts {
+    /// Float registers of the three input channels; a channel that is not read has none.
+    std::array<std::uint32_t, 3> input_offset{};
+    std::array<bool, 3> reads_input{};
+    /// Never wide.
+    std::array<Operand, 3> output;
+};
+
+class MachineCode;
+
+struct Code : TilePorts {
     std::vector<Instruction> instructions;
     std::vector<ConstantVector> constants;
     std::vector<SampledTable> tables;
     std::vector<PositionedTables> positioned;
     std::vector<SampledLattice> lattices;
     std::vector<CompiledCurve> curves;
-    /// Float registers of the three input channels; a channel that is not read has none.
-    std::array<std::uint32_t, 3> input_offset{};
-    std::array<bool, 3> reads_input{};
-    /// Never wide.
-    std::array<Operand, 3> output;
     /// Pixels per tile: a multiple of kLaneMultiple, such that the registers fit into the file.
     std::size_t tile = 0;
+    /// The same for a processor with AVX-512, where it could be made. Refers to the lattices: a
+    /// program is moved, not copied.
+    std::shared_ptr<const MachineCode> machine;
+
+    Code() = default;
+    Code(Code&&) = default;
+    Code& operator=(Code&&) = default;
 };
 
 /// Runs the code over `count` pixels, with the best instruction set that is not switched off.

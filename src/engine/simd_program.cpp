@@ -8,6 +8,7 @@
 #include <map>
 
 #include "engine/curve_folding.h"
+#include "engine/machine_code.h"
 #include "engine/precision.h"
 #include "engine/tape.h"
 #include "tonewright/engine.h"
@@ -434,6 +435,7 @@ class Assembler {
         code.positioned = std::move(positioned_);
         code.lattices = std::move(lattices_);
         code.curves = std::move(curves_);
+        if (has_fast_curves()) code.machine = MachineCode::make(code);
         return code;
     }
 

@@ -1,0 +1,747 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/machine_code.h"
+
+#if defined(TONEWRIGHT_HAVE_XBYAK) && defined(__x86_64__) && !defined(_WIN32)
+
+#include <xbyak/xbyak.h>
+#include <xbyak/xbyak_util.h>
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
+namespace tonewright::simd {
+namespace {
+
+constexpr std::int32_t kNone = VectorOperand::kNone;
+constexpr int kRegisters = 32;
+constexpr int kFirstMask = 1;  // k0 means "no mask"
+constexpr int kLastMask = 5;
+/// Blocks of pixels that a turn of the loop computes side by side. Three gained nothing: registers
+/// run out.
+constexpr int kInterleaved = 2;
+/// How far ahead pixels are fetched by code that runs over all of them at once, in bytes: 512 to
+/// 4096 were equally fast, a third faster than without.
+constexpr int kFetchAhead = 1024;
+
+/// On the stack, of what keep_index keeps: four lines for each of the blocks.
+constexpr int kKeptBytes = 4 * 64 * 4;
+/// Encodings of comparisons (ordered, quiet).
+constexpr std::uint8_t kEqual = 0x00;
+constexpr std::uint8_t kLess = 0x11;
+constexpr std::uint8_t kLessEqual = 0x12;
+constexpr std::uint8_t kGreaterEqual = 0x1D;
+constexpr std::uint8_t kGreater = 0x1E;
+
+struct NoMaskLeft {};
+
+/// Of a part among those of a program.
+enum class Place : std::uint8_t { only, first, later };
+
+/// Straight-line code in a loop over blocks of 16 pixels. Registers are given as the code is
+/// written; where none is free, the value that is needed latest goes to the stack (Belady).
+class Generator : public Xbyak::CodeGenerator {
+  public:
+    Generator() : CodeGenerator(Xbyak::DEFAULT_MAX_CODE_SIZE, Xbyak::AutoGrow) {}
+
+    /// Where the function begins.
+    /// @param place  of the part among the parts of a program with tiles of `tile` pixels
+    std::size_t write(const VectorCode& code, const unsigned char* pool, PixelLayout layout,
+                      Place place, std::size_t tile, int interleaved_blocks) {
+        layout_ = layout;
+        const int tile_bytes = static_cast<int>(tile) / 16 * pixel_bytes();
+        const bool has_pixels = layout != PixelLayout::planes;
+        fetch_ahead_ = !has_pixels             ? 0
+                       : place == Place::only  ? kFetchAhead
+                       : place == Place::first ? tile_bytes
+                                               : 0;
+        // The last part writes this tile's pixels when the first is long done.
+        claim_ahead_ = place == Place::only ? kFetchAhead : 0;
+        slot_count_ = 0;
+        align(32);
+        const std::size_t entry = getSize();
+        push(rbp);
+        push(rbx);
+        mov(rbx, rsp);
+        mov(rbp, rsp);
+        and_(rbp, -64);
+        lea(rsp, ptr[rbp - kKeptBytes]);
+        mov(r9d, std::numeric_limits<std::int32_t>::max());
+        const std::size_t frame = getSize() - sizeof(std::int32_t);
+        sub(rsp, r9);
+        mov(rax, reinterpret_cast<std::size_t>(pool));
+        mov(r9d, 0x7777);
+        kmovw(k7, r9d);
+        xor_(r8, r8);
+        if (interleaved_blocks > 1)
+            write_loop(interleaved(code, interleaved_blocks), interleaved_blocks);
+        write_loop(code, 1);
+        mov(rsp, rbx);
+        pop(rbx);
+        pop(rbp);
+        vzeroupper();
+        ret();
+        rewrite(frame, static_cast<std::uint64_t>(slot_count_) * kVectorBytes,
+                sizeof(std::int32_t));
+        return entry;
+    }
+
+  private:
+    struct State {
+        int reg = -1;  // zmm or, of a mask, k
+        bool is_mask = false;
+        int slot = -1;  // on the stack
+        std::vector<std::size_t> uses;
+        std::size_t next = 0;  // of the uses
+    };
+
+    /// While there are as many blocks.
+    void write_loop(const VectorCode& code, int blocks) {
+        begin(code);
+        Xbyak::Label loop, end;
+        sub(rcx, blocks);
+        jl(end, T_NEAR);
+        align(32);
+        L(loop);
+        if (fetch_ahead_ > 0) fetch(blocks);
+        for (position_ = 0; position_ < code.instructions.size(); ++position_) {
+            write(code.instructions[position_]);
+            free_slots_.insert(free_slots_.end(), dropped_slots_.begin(), dropped_slots_.end());
+            dropped_slots_.clear();
+        }
+        add(r8, 64 * blocks);
+        if (layout_ != PixelLayout::planes) {
+            add(rsi, pixel_bytes() * blocks);
+            add(rdx, pixel_bytes() * blocks);
+        }
+        sub(rcx, blocks);
+        jge(loop, T_NEAR);
+        L(end);
+        add(rcx, blocks);
+    }
+
+    /// Pixels that are read soon, and the lines where pixels will be written: the processor does
+    /// not foresee them early enough, for there is much to do between two reads.
+    void fetch(int blocks) {
+        for (int at = 0; at < pixel_bytes() * blocks; at += 64) {
+            prefetcht0(ptr[rsi + fetch_ahead_ + at]);
+            prefetchw(ptr[rdx + claim_ahead_ + at]);
+        }
+    }
+
+    /// Of a block.
+    [[nodiscard]] int pixel_bytes() const { return layout_ == PixelLayout::rgb ? 3 * 64 : 4 * 64; }
+
+    // --- registers -------------------------------------------------------------------------------
+
+    void begin(const VectorCode& code) {
+        state_.assign(static_cast<std::size_t>(code.value_count), {});
+        holder_.fill(kNone);
+        is_locked_.fill(false);
+        mask_holder_.fill(kNone);
+        free_slots_.clear();
+        for (int slot = 0; slot < slot_count_; ++slot)
+            free_slots_.push_back(slot);
+        for (std::size_t i = 0; i < code.instructions.size(); ++i) {
+            const VectorInstruction& step = code.instructions[i];
+            for (const VectorOperand& operand : step.in) {
+                if (operand.is_value()) state(operand.value).uses.push_back(i);
+            }
+            if (step.mask != kNone) state(step.mask).uses.push_back(i);
+        }
+    }
+
+    State& state(std::int32_t value) { return state_[static_cast<std::size_t>(value)]; }
+    [[nodiscard]] std::size_t next_use(std::int32_t value) {
+        const State& s = state(value);
+        return s.next < s.uses.size() ? s.uses[s.next] : std::numeric_limits<std::size_t>::max();
+    }
+
+    Xbyak::Address slot_of(int slot) { return ptr[rsp + slot * static_cast<int>(kVectorBytes)]; }
+
+    /// A register that holds nothing, not locked.
+    int take() {
+        int best = -1;
+        std::size_t latest = 0;
+        for (int r = 0; r < kRegisters; ++r) {
+            const auto i = static_cast<std::size_t>(r);
+            if (is_locked_[i]) continue;
+            if (holder_[i] == kNone) {
+                is_locked_[i] = true;
+                return r;
+            }
+            const std::size_t use = next_use(holder_[i]);
+            if (best < 0 || use > latest) {
+                best = r;
+                latest = use;
+            }
+        }
+        State& s = state(holder_[static_cast<std::size_t>(best)]);
+        if (s.slot < 0) {
+            if (free_slots_.empty()) {
+                s.slot = slot_count_++;
+            } else {
+                s.slot = free_slots_.back();
+                free_slots_.pop_back();
+            }
+            vmovaps(slot_of(s.slot), Xbyak::Zmm(best));
+        }
+        s.reg = -1;
+        holder_[static_cast<std::size_t>(best)] = kNone;
+        is_locked_[static_cast<std::size_t>(best)] = true;
+        return best;
+    }
+
+    /// The operand in a register, which stays its own until the instruction is written.
+    Xbyak::Zmm in_register(const VectorOperand& operand, bool wide) {
+        if (operand.is_constant()) {
+            const Xbyak::Zmm r(take());
+            if (wide) {
+                vbroadcastsd(r, ptr[rax + operand.pool]);
+            } else {
+                vbroadcastss(r, ptr[rax + operand.pool]);
+            }
+            return r;
+        }
+        State& s = state(operand.value);
+        if (s.reg < 0) {
+            s.reg = take();
+            holder_[static_cast<std::size_t>(s.reg)] = operand.value;
+            vmovaps(Xbyak::Zmm(s.reg), slot_of(s.slot));
+        }
+        is_locked_[static_cast<std::size_t>(s.reg)] = true;
+        return Xbyak::Zmm(s.reg);
+    }
+    [[nodiscard]] bool is_in_memory(const VectorOperand& operand) {
+        return operand.is_constant() || state(operand.value).reg < 0;
+    }
+    /// An operand that is in memory, as the last operand of an instruction.
+    Xbyak::Address in_memory(const VectorOperand& operand) {
+        if (operand.is_constant()) return ptr_b[rax + operand.pool];
+        return slot_of(state(operand.value).slot);
+    }
+
+    /// Counts the uses of this instruction; what is not used any more leaves its register.
+    void release(const VectorInstruction& step) {
+        is_locked_.fill(false);
+        for (const VectorOperand& operand : step.in) {
+            if (operand.is_value()) drop(operand.value);
+        }
+        if (step.mask != kNone) drop(step.mask);
+    }
+    void drop(std::int32_t value) {
+        State& s = state(value);
+        while (s.next < s.uses.size() && s.uses[s.next] <= position_)
+            ++s.next;
+        if (s.next < s.uses.size()) return;
+        if (s.reg >= 0) {
+            const auto r = static_cast<std::size_t>(s.reg);
+            (s.is_mask ? mask_holder_[r] : holder_[r]) = kNone;
+            s.reg = -1;
+        }
+        if (s.slot >= 0) {
+            // This instruction may read it yet, and spill another value before it does.
+            dropped_slots_.push_back(s.slot);
+            s.slot = -1;
+        }
+    }
+    [[nodiscard]] bool dies(const VectorOperand& operand) {
+        if (!operand.is_value()) return false;
+        const State& s = state(operand.value);
+        return s.uses.back() <= position_;
+    }
+
+    void define(std::int32_t value, int reg) {
+        state(value).reg = reg;
+        holder_[static_cast<std::size_t>(reg)] = value;
+        if (state(value).uses.empty()) {  // nobody reads it
+            holder_[static_cast<std::size_t>(reg)] = kNone;
+            state(value).reg = -1;
+        }
+        is_locked_.fill(false);
+    }
+    /// For the result, when the operands have been read: may be the register of one of them.
+    Xbyak::Zmm result_after(const VectorInstruction& step) {
+        release(step);
+        const int r = take();
+        define(step.result, r);
+        return Xbyak::Zmm(r);
+    }
+    /// For a result that is written before all operands are read.
+    Xbyak::Zmm result_apart(const VectorInstruction& step) {
+        const int r = take();
+        release(step);
+        define(step.result, r);
+        return Xbyak::Zmm(r);
+    }
+    /// A register with a copy of `from`: its own, where nobody else needs it.
+    Xbyak::Zmm result_over(const VectorInstruction& step, const VectorOperand& operand,
+                           const Xbyak::Zmm& from) {
+        if (operand.is_constant() || dies(operand)) {  // a constant's copy is ours
+            release(step);
+            define(step.result, from.getIdx());
+            return from;
+        }
+        const int r = take();
+        vmovaps(Xbyak::Zmm(r), from);
+        release(step);
+        define(step.result, r);
+        return Xbyak::Zmm(r);
+    }
+
+    Xbyak::Opmask mask(std::int32_t value) { return Xbyak::Opmask(state(value).reg); }
+    Xbyak::Opmask new_mask(const VectorInstruction& step) {
+        release(step);
+        for (int k = kFirstMask; k <= kLastMask; ++k) {
+            if (mask_holder_[static_cast<std::size_t>(k)] != kNone) continue;
+            if (!state(step.result).uses.empty()) {
+                mask_holder_[static_cast<std::size_t>(k)] = step.result;
+                state(step.result).reg = k;
+                state(step.result).is_mask = true;
+            }
+            return Xbyak::Opmask(k);
+        }
+        throw NoMaskLeft();
+    }
+
+    // --- instructions ----------------------------------------------------------------------------
+
+    /// op(result, a, b), b from memory where it is there.
+    template <class F>
+    void binary(const VectorInstruction& step, F op, bool commutes = false) {
+        VectorOperand a = step.in[0];
+        VectorOperand b = step.in[1];
+        if (commutes && is_in_memory(a) && !is_in_memory(b)) std::swap(a, b);
+        const Xbyak::Zmm ra = in_register(a, step.wide);
+        if (is_in_memory(b)) {
+            const Xbyak::Address mb = in_memory(b);
+            op(result_after(step), ra, mb);
+        } else {
+            const Xbyak::Zmm rb = in_register(b, step.wide);
+            op(result_after(step), ra, rb);
+        }
+    }
+    template <class F>
+    void unary(const VectorInstruction& step, F op) {
+        if (is_in_memory(step.in[0])) {
+            const Xbyak::Address m = in_memory(step.in[0]);
+            op(result_after(step), m);
+        } else {
+            const Xbyak::Zmm r = in_register(step.in[0], step.wide);
+            op(result_after(step), r);
+        }
+    }
+
+    /// @param over_a  a := a*b + c; `over_c`: c := a*b + c. Of the last operand, memory.
+    template <class A, class B, class C>
+    void fused(const VectorInstruction& step, A over_a, B over_a_c_first, C over_c) {
+        VectorOperand a = step.in[0];
+        VectorOperand b = step.in[1];
+        const VectorOperand c = step.in[2];
+        if (is_in_memory(a) && !is_in_memory(b)) std::swap(a, b);
+        const Xbyak::Zmm ra = in_register(a, step.wide);
+        if (is_in_memory(c)) {
+            // a := a*b + [c]
+            const Xbyak::Zmm rb = in_register(b, step.wide);
+            if (!is_in_memory(c)) return fused(step, over_a, over_a_c_first, over_c);
+            const Xbyak::Address mc = in_memory(c);
+            if (!dies(a) && !a.is_constant() && dies(b)) {
+                over_a(result_over(step, b, rb), ra, mc);
+            } else {
+                over_a(result_over(step, a, ra), rb, mc);
+            }
+            return;
+        }
+        const Xbyak::Zmm rc = in_register(c, step.wide);
+        if (is_in_memory(b)) {
+            const Xbyak::Address mb = in_memory(b);
+            if (dies(c) || (!dies(a) && !a.is_constant())) {
+                over_c(result_over(step, c, rc), ra, mb);
+            } else {
+                over_a_c_first(result_over(step, a, ra), rc, mb);  // a := a*[b] + c
+            }
+            return;
+        }
+        const Xbyak::Zmm rb = in_register(b, step.wide);
+        if (dies(c) || (!dies(a) && !dies(b))) {
+            over_c(result_over(step, c, rc), ra, rb);
+        } else if (dies(a)) {
+            over_a(result_over(step, a, ra), rb, rc);
+        } else {
+            over_a(result_over(step, b, rb), ra, rc);
+        }
+    }
+
+    void compare(const VectorInstruction& step, std::uint8_t predicate, std::uint8_t swapped) {
+        VectorOperand a = step.in[0];
+        VectorOperand b = step.in[1];
+        if (is_in_memory(a) && !is_in_memory(b)) {
+            std::swap(a, b);
+            predicate = swapped;
+        }
+        const Xbyak::Zmm ra = in_register(a, step.wide);
+        const auto write = [&](const Xbyak::Operand& vb) {
+            const Xbyak::Opmask k = new_mask(step);
+            if (step.wide) {
+                vcmppd(k, ra, vb, predicate);
+            } else {
+                vcmpps(k, ra, vb, predicate);
+            }
+        };
+        if (is_in_memory(b)) return write(in_memory(b));
+        write(in_register(b, step.wide));
+    }
+
+    Xbyak::Address plane(const VectorInstruction& step) {
+        if (step.wide) {
+            return ptr[rdi + r8 * 2 + static_cast<int>(step.offset) +
+                       64 * (step.immediate + 2 * step.block)];
+        }
+        return ptr[rdi + r8 + static_cast<int>(step.offset) + 64 * step.block];
+    }
+    Xbyak::Address pixels(const Xbyak::Reg64& base, const VectorInstruction& step) {
+        return ptr[base + 64 * step.immediate + pixel_bytes() * step.block];
+    }
+    /// The stack's first lines, behind those of the spilled values.
+    Xbyak::Address kept_index(const VectorInstruction& step, int number, int pixel) {
+        return ptr[rbp - kKeptBytes + 64 * (number + 4 * step.block) + 4 * pixel];
+    }
+    Xbyak::Address table(std::uint32_t offset) { return ptr[rax + static_cast<int>(offset)]; }
+
+    void write(const VectorInstruction& step) {
+        using Z = Xbyak::Zmm;
+        using O = Xbyak::Operand;
+        const bool wide = step.wide;
+        switch (step.op) {
+            case VectorOp::add:
+                return binary(
+                    step, [&](Z r, Z a, const O& b) { wide ? vaddpd(r, a, b) : vaddps(r, a, b); },
+                    true);
+            case VectorOp::subtract:
+                return binary(
+                    step, [&](Z r, Z a, const O& b) { wide ? vsubpd(r, a, b) : vsubps(r, a, b); });
+            case VectorOp::multiply:
+                return binary(
+                    step, [&](Z r, Z a, const O& b) { wide ? vmulpd(r, a, b) : vmulps(r, a, b); },
+                    true);
+            case VectorOp::divide:
+                return binary(
+                    step, [&](Z r, Z a, const O& b) { wide ? vdivpd(r, a, b) : vdivps(r, a, b); });
+            case VectorOp::minimum:
+                return binary(
+                    step, [&](Z r, Z a, const O& b) { wide ? vminpd(r, a, b) : vminps(r, a, b); });
+            case VectorOp::maximum:
+                return binary(
+                    step, [&](Z r, Z a, const O& b) { wide ? vmaxpd(r, a, b) : vmaxps(r, a, b); });
+            case VectorOp::scale:
+                return binary(step, [&](Z r, Z a, const O& b) {
+                    wide ? vscalefpd(r, a, b) : vscalefps(r, a, b);
+                });
+            case VectorOp::bit_and:
+                return binary(
+                    step, [&](Z r, Z a, const O& b) { wide ? vpandq(r, a, b) : vpandd(r, a, b); },
+                    true);
+            case VectorOp::bit_or:
+                return binary(
+                    step, [&](Z r, Z a, const O& b) { wide ? vporq(r, a, b) : vpord(r, a, b); },
+                    true);
+            case VectorOp::bit_xor:
+                return binary(
+                    step, [&](Z r, Z a, const O& b) { wide ? vpxorq(r, a, b) : vpxord(r, a, b); },
+                    true);
+            case VectorOp::integer_or:
+                return binary(
+                    step, [&](Z r, Z a, const O& b) { vpord(r, a, b); }, true);
+            case VectorOp::integer_subtract:
+                return binary(step, [&](Z r, Z a, const O& b) { vpsubd(r, a, b); });
+            case VectorOp::multiply_add:
+                return fused(
+                    step,
+                    [&](Z a, Z b, const O& c) {
+                        wide ? vfmadd213pd(a, b, c) : vfmadd213ps(a, b, c);
+                    },
+                    [&](Z a, Z c, const O& b) {
+                        wide ? vfmadd132pd(a, c, b) : vfmadd132ps(a, c, b);
+                    },
+                    [&](Z c, Z a, const O& b) {
+                        wide ? vfmadd231pd(c, a, b) : vfmadd231ps(c, a, b);
+                    });
+            case VectorOp::multiply_subtract:
+                return fused(
+                    step,
+                    [&](Z a, Z b, const O& c) {
+                        wide ? vfmsub213pd(a, b, c) : vfmsub213ps(a, b, c);
+                    },
+                    [&](Z a, Z c, const O& b) {
+                        wide ? vfmsub132pd(a, c, b) : vfmsub132ps(a, c, b);
+                    },
+                    [&](Z c, Z a, const O& b) {
+                        wide ? vfmsub231pd(c, a, b) : vfmsub231ps(c, a, b);
+                    });
+            case VectorOp::subtract_product:
+                return fused(
+                    step,
+                    [&](Z a, Z b, const O& c) {
+                        wide ? vfnmadd213pd(a, b, c) : vfnmadd213ps(a, b, c);
+                    },
+                    [&](Z a, Z c, const O& b) {
+                        wide ? vfnmadd132pd(a, c, b) : vfnmadd132ps(a, c, b);
+                    },
+                    [&](Z c, Z a, const O& b) {
+                        wide ? vfnmadd231pd(c, a, b) : vfnmadd231ps(c, a, b);
+                    });
+            case VectorOp::square_root:
+                return unary(step, [&](Z r, const O& a) { wide ? vsqrtpd(r, a) : vsqrtps(r, a); });
+            case VectorOp::round:
+            case VectorOp::floor: {
+                const std::uint8_t mode = step.op == VectorOp::round ? 8 : 9;
+                return unary(step, [&](Z r, const O& a) {
+                    wide ? vrndscalepd(r, a, mode) : vrndscaleps(r, a, mode);
+                });
+            }
+            case VectorOp::exponent:
+                return unary(step,
+                             [&](Z r, const O& a) { wide ? vgetexppd(r, a) : vgetexpps(r, a); });
+            case VectorOp::mantissa:  // [3/4, 3/2), sign 0
+                return unary(step, [&](Z r, const O& a) {
+                    wide ? vgetmantpd(r, a, 7) : vgetmantps(r, a, 7);
+                });
+            case VectorOp::shift_right:
+                return unary(step, [&](Z r, const O& a) { vpsrad(r, a, step.immediate); });
+            case VectorOp::promote_low: {
+                const Z a = in_register(step.in[0], false);
+                return vcvtps2pd(result_after(step), Xbyak::Ymm(a.getIdx()));
+            }
+            case VectorOp::promote_high: {
+                const Z a = in_register(step.in[0], false);
+                const Z r = result_after(step);
+                vextractf64x4(Xbyak::Ymm(r.getIdx()), a, 1);
+                return vcvtps2pd(r, Xbyak::Ymm(r.getIdx()));
+            }
+            case VectorOp::demote: {
+                const Z low = in_register(step.in[0], true);
+                const Z high = in_register(step.in[1], true);
+                const Xbyak::Ymm upper(take());
+                vcvtpd2ps(upper, high);
+                release(step);
+                is_locked_[static_cast<std::size_t>(upper.getIdx())] = true;
+                const Z r(take());
+                vcvtpd2ps(Xbyak::Ymm(r.getIdx()), low);
+                vinsertf64x4(r, r, upper, 1);
+                return define(step.result, r.getIdx());
+            }
+            case VectorOp::equal:
+                return compare(step, kEqual, kEqual);
+            case VectorOp::less:
+                return compare(step, kLess, kGreater);
+            case VectorOp::less_equal:
+                return compare(step, kLessEqual, kGreaterEqual);
+            case VectorOp::greater:
+                return compare(step, kGreater, kLess);
+            case VectorOp::greater_equal:
+                return compare(step, kGreaterEqual, kLessEqual);
+            case VectorOp::has_bit: {
+                const Z a = in_register(step.in[0], false);
+                const Xbyak::Address b = in_memory(step.in[1]);
+                return vptestmd(new_mask(step), a, b);
+            }
+            case VectorOp::is_minus: {
+                const Z a = in_register(step.in[0], wide);
+                const Xbyak::Opmask k = new_mask(step);
+                return wide ? vpmovq2m(k, a) : vpmovd2m(k, a);
+            }
+            case VectorOp::blend: {
+                const Xbyak::Opmask k = mask(step.mask);
+                const Z no = in_register(step.in[1], wide);
+                const auto write = [&](const O& yes) {
+                    const Z r = result_after(step);
+                    wide ? vblendmpd(r | k, no, yes) : vblendmps(r | k, no, yes);
+                };
+                if (is_in_memory(step.in[0])) return write(in_memory(step.in[0]));
+                return write(in_register(step.in[0], wide));
+            }
+            case VectorOp::zero_unless: {
+                const Xbyak::Opmask k = mask(step.mask);
+                if (step.in[0].is_constant()) {
+                    const Z r = result_after(step);
+                    const Xbyak::Address number = ptr[rax + step.in[0].pool];
+                    return wide ? vbroadcastsd(r | k | Xbyak::util::T_z, number)
+                                : vbroadcastss(r | k | Xbyak::util::T_z, number);
+                }
+                const Z a = in_register(step.in[0], wide);
+                const Z r = result_after(step);
+                return wide ? vmovapd(r | k | Xbyak::util::T_z, a)
+                            : vmovaps(r | k | Xbyak::util::T_z, a);
+            }
+            case VectorOp::integer_add_where: {
+                const Xbyak::Opmask k = mask(step.mask);
+                const Z a = in_register(step.in[0], false);
+                const Xbyak::Address b = in_memory(step.in[1]);
+                const Z r = result_over(step, step.in[0], a);
+                return vpaddd(r | k, r, b);
+            }
+            case VectorOp::shift_left:
+                return unary(step, [&](Z r, const O& a) { vpslld(r, a, step.immediate); });
+            case VectorOp::to_index: {
+                const Z a = in_register(step.in[0], wide);
+                if (!wide) return vcvttps2dq(result_after(step), a);
+                return vcvttpd2dq(Xbyak::Ymm(result_after(step).getIdx()), a);
+            }
+            case VectorOp::pick_16: {
+                const Z index = in_register(step.in[0], false);
+                return vpermps(result_after(step), index, table(step.offset));
+            }
+            case VectorOp::pick_32: {
+                const Z index = in_register(step.in[0], false);
+                const Z r = result_apart(step);
+                vmovaps(r, table(step.offset));
+                return vpermt2ps(r, index, table(step.offset + 64));
+            }
+            case VectorOp::gather: {
+                const Z index = in_register(step.in[0], false);
+                const Z r = result_apart(step);
+                kxnorw(k6, k6, k6);
+                vpxord(r, r, r);
+                return vgatherdpd(
+                    r | k6,
+                    ptr[rax + Xbyak::Ymm(index.getIdx()) * 8 + static_cast<int>(step.offset)]);
+            }
+            case VectorOp::keep_index: {
+                const Z a = in_register(step.in[0], false);
+                vmovdqa32(kept_index(step, step.immediate, 0), a);
+                return release(step);
+            }
+            case VectorOp::nodes: {
+                const Z r = result_apart(step);
+                mov(r10, reinterpret_cast<std::size_t>(step.address));
+                for (int pixel = 0; pixel < 4; ++pixel) {
+                    const Xbyak::Reg64 at = pixel % 2 == 0 ? r9 : r11;
+                    mov(at.cvt32(),
+                        kept_index(step, step.immediate % 4, 4 * (step.immediate / 4) + pixel));
+                    if (pixel == 0) {
+                        vmovaps(Xbyak::Xmm(r.getIdx()), ptr[r10 + at]);
+                    } else {
+                        vinsertf32x4(r, r, ptr[r10 + at], static_cast<std::uint8_t>(pixel));
+                    }
+                }
+                return;
+            }
+            case VectorOp::spread: {
+                const Z a = in_register(step.in[0], false);
+                const Z r = result_apart(step);
+                vmovaps(r, table(step.offset));
+                return vpermps(r, r, a);
+            }
+            case VectorOp::load_plane:
+                return vmovaps(result_after(step), plane(step));
+            case VectorOp::store_plane: {
+                const Z a = in_register(step.in[0], wide);
+                vmovaps(plane(step), a);
+                return release(step);
+            }
+            case VectorOp::load_pixels:
+                return vmovups(result_after(step), pixels(rsi, step));
+            case VectorOp::store_pixels: {
+                const Z a = in_register(step.in[0], false);
+                vmovups(pixels(rdx, step), a);
+                return release(step);
+            }
+            case VectorOp::store_colors: {
+                const Z a = in_register(step.in[0], false);
+                vmovups(pixels(rdx, step) | k7, a);
+                return release(step);
+            }
+            case VectorOp::shuffle: {
+                const Z a = in_register(step.in[0], false);
+                const Z b = in_register(step.in[1], false);
+                const Z r = result_apart(step);
+                vmovaps(r, table(step.offset));
+                return vpermi2ps(r, a, b);
+            }
+            case VectorOp::quarters: {
+                const Z a = in_register(step.in[0], false);
+                const Z b = in_register(step.in[1], false);
+                return vshuff64x2(result_after(step), a, b, step.immediate);
+            }
+        }
+    }
+
+    std::vector<State> state_;
+    std::array<std::int32_t, kRegisters> holder_{};
+    std::array<bool, kRegisters> is_locked_{};
+    std::array<std::int32_t, 8> mask_holder_{};
+    std::vector<int> free_slots_, dropped_slots_;
+    int slot_count_ = 0;
+    PixelLayout layout_ = PixelLayout::planes;
+    int fetch_ahead_ = 0;  // in bytes
+    int claim_ahead_ = 0;
+    std::size_t position_ = 0;
+};
+
+/// The code and what it reads.
+class Assembled final : public MachineCode {
+  public:
+    Assembled(const Code& code, int interleaved_blocks) : MachineCode(translate(code)) {
+        pool_.resize(program_.pool.size() / kVectorBytes + 2);
+        std::memcpy(pool_.data(), program_.pool.data(), program_.pool.size());
+        const auto* pool = reinterpret_cast<const unsigned char*>(pool_.data());
+        std::array<std::vector<std::size_t>, 3> entry;
+        for (std::size_t layout = 0; layout < 3; ++layout) {
+            std::vector<VectorCode>& parts = program_.parts[layout];
+            for (std::size_t part = 0; part < parts.size(); ++part) {
+                const Place place = part > 0            ? Place::later
+                                    : parts.size() == 1 ? Place::only
+                                                        : Place::first;
+                entry[layout].push_back(generator_.write(parts[part], pool,
+                                                         static_cast<PixelLayout>(layout), place,
+                                                         program_.tile, interleaved_blocks));
+            }
+            parts.clear();  // they are machine code now
+        }
+        generator_.ready(Xbyak::CodeArray::PROTECT_RE);
+        for (std::size_t layout = 0; layout < 3; ++layout) {
+            for (const std::size_t at : entry[layout])
+                function_[layout].push_back(reinterpret_cast<Function>(
+                    reinterpret_cast<std::uintptr_t>(generator_.getCode()) + at));
+        }
+    }
+
+  private:
+    std::vector<ConstantVector> pool_;
+    Generator generator_;
+};
+
+}  // namespace
+
+bool MachineCode::is_built_in() noexcept { return true; }
+
+std::shared_ptr<const MachineCode> MachineCode::make(const Code& code) {
+    using Xbyak::util::Cpu;
+    static const Cpu cpu;
+    if (!cpu.has(Cpu::tAVX512F) || !cpu.has(Cpu::tAVX512DQ)) return nullptr;
+    // Side by side, blocks need more mask registers than there are when each needs three.
+    for (int blocks = kInterleaved; blocks > 0; --blocks) {
+        try {
+            return std::make_shared<const Assembled>(code, blocks);
+        } catch (const NoMaskLeft&) {
+            continue;
+        } catch (const Xbyak::Error&) {
+            return nullptr;  // no memory that can be executed
+        }
+    }
+    return nullptr;
+}
+
+}  // namespace tonewright::simd
+
+#else
+
+namespace tonewright::simd {
+
+bool MachineCode::is_built_in() noexcept { return false; }
+
+std::shared_ptr<const MachineCode> MachineCode::make(const Code& /*code*/) { return nullptr; }
+
+}  // namespace tonewright::simd
+
+#endif

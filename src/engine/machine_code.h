@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include "engine/vector_code.h"
+
+namespace tonewright::simd {
+
+/// A float program as code of the processor that runs now: values stay in registers, where the
+/// interpreter writes each to the first-level cache and reads it back. Computes the same bits.
+class MachineCode {
+  public:
+    /// Nothing where the processor has no AVX-512, the system gives no memory that can be executed,
+    /// or the build has no assembler: then the interpreter runs, slower.
+    [[nodiscard]] static std::shared_ptr<const MachineCode> make(const Code& code);
+
+    /// False where the build had no assembler.
+    [[nodiscard]] static bool is_built_in() noexcept;
+
+    MachineCode(const MachineCode&) = delete;
+    MachineCode& operator=(const MachineCode&) = delete;
+    virtual ~MachineCode() = default;
+
+    [[nodiscard]] const VectorProgram& program() const noexcept { return program_; }
+
+    /// Runs one part over `blocks` times 16 pixels.
+    /// @param tile     values that come from other parts or go there, and pixels in planes
+    /// @param in, out  of the first and the last part with interleaved pixels. May be the same.
+    void run(std::size_t part, PixelLayout layout, unsigned char* tile, const float* in, float* out,
+             std::size_t blocks) const noexcept {
+        function_[static_cast<std::size_t>(layout)][part](tile, in, out, blocks);
+    }
+
+  protected:
+    explicit MachineCode(VectorProgram program) : program_(std::move(program)) {}
+
+    using Function = void (*)(unsigned char*, const float*, float*, std::size_t);
+    VectorProgram program_;
+    std::array<std::vector<Function>, 3> function_;  // by layout, by part
+};
+
+}  // namespace tonewright::simd

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// A float program (simd_kernels.h) as instructions of one AVX-512 processor over values in
+// registers, 16 pixels at a time. Nothing here knows the processor's encoding: machine_code.cpp
+// does.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "engine/simd_kernels.h"
+
+namespace tonewright::simd {
+
+/// What a vector instruction does. Floats are 16 to a vector, doubles 8.
+enum class VectorOp : std::uint8_t {
+    add,
+    subtract,
+    multiply,
+    divide,
+    multiply_add,       // a*b + c
+    multiply_subtract,  // a*b - c
+    subtract_product,   // c - a*b
+    minimum,            // a < b ? a : b, as the processor has it
+    maximum,            // a > b ? a : b
+    square_root,
+    bit_and,
+    bit_or,
+    bit_xor,
+    round,     // to the nearest whole number
+    floor,     //
+    exponent,  // floor(log2 |a|)
+    mantissa,  // a / 2^exponent, in [3/4, 3/2)
+    scale,     // a * 2^b
+    // Between floats and pairs of vectors of doubles
+    promote_low,
+    promote_high,
+    demote,  // (low, high) -> floats
+    // Masks
+    equal,
+    less,
+    less_equal,
+    greater,
+    greater_equal,
+    has_bit,   // integer a & b != 0
+    is_minus,  // the sign bit of a
+    blend,     // mask ? a : b
+    zero_unless,
+    // Whole numbers
+    shift_right,  // of the bits of a, by `immediate`
+    integer_subtract,
+    integer_or,
+    integer_add_where,  // mask ? a + b : a
+    to_index,           // from floats, or from doubles to half a vector
+    shift_left,         // as shift_right
+    // Tables
+    pick_16,  // the element of 16 floats at `offset` that a says
+    pick_32,
+    gather,      // of the doubles at `offset`, that of number a
+    keep_index,  // the whole numbers a, on the stack, number `immediate`
+    nodes,       // four floats each for four pixels, at `address` + 4 times what keep_index kept:
+                 // `immediate` says which index, and times 4, which pixels
+    // Memory
+    load_plane,
+    store_plane,
+    load_pixels,   // the vector number `immediate` of 16 pixels
+    store_pixels,  //
+    store_colors,  // only the first three of each four floats
+    shuffle,       // of the 32 floats of a, b: those that 16 numbers at `offset` say
+    spread,        // the floats of a that 16 numbers at `offset` say
+    quarters,      // two quarters of a, two of b
+};
+
+/// A value in a register, or a number in the pool.
+struct VectorOperand {
+    static constexpr std::int32_t kNone = -1;
+    std::int32_t value = kNone;
+    std::int32_t pool = kNone;  // in bytes
+
+    [[nodiscard]] bool is_value() const { return value != kNone; }
+    [[nodiscard]] bool is_constant() const { return pool != kNone; }
+};
+
+struct VectorInstruction {
+    VectorOp op = VectorOp::add;
+    bool wide = false;  // doubles
+    std::uint8_t immediate = 0;
+    std::uint8_t block = 0;         // of 16 pixels, of those that one turn of the loop computes
+    std::uint32_t offset = 0;       // in the pool, or in the tile: bytes
+    const void* address = nullptr;  // of a lattice's nodes
+    std::int32_t result = VectorOperand::kNone;  // a mask, of a comparison
+    std::int32_t mask = VectorOperand::kNone;
+    std::array<VectorOperand, 3> in;
+};
+
+[[nodiscard]] constexpr bool makes_mask(VectorOp op) {
+    return op >= VectorOp::equal && op <= VectorOp::is_minus;
+}
+
+/// How pixels lie in memory, for the code that reads or writes them.
+enum class PixelLayout : std::uint8_t {
+    planes,  // in the tile
+    rgb,
+    rgba,  // what is in the fourth channel is not touched
+};
+
+/// A part of the program without a step that runs over a whole tile.
+struct VectorCode {
+    std::vector<VectorInstruction> instructions;
+    std::int32_t value_count = 0;
+};
+
+/// The same for `blocks` blocks of pixels at a time, one instruction of each after the other: a
+/// processor that waits for a result has the next block's instruction to begin with.
+[[nodiscard]] VectorCode interleaved(const VectorCode& code, int blocks);
+
+/// The program as such parts and, between them, what runs over a whole tile: lattices, positioned
+/// tables, sines.
+struct VectorProgram : TilePorts {
+    /// By the layout of the pixels: part k runs before tile step k. Only the first and the last
+    /// differ.
+    std::array<std::vector<VectorCode>, 3> parts;
+    std::vector<std::vector<Instruction>> tile_steps;  // behind each part but the last
+    std::vector<unsigned char> pool;                   // constants and tables; to be aligned to 64
+    std::size_t tile = 0;                              // in pixels
+};
+
+/// @param code  owns the lattices that the result refers to
+[[nodiscard]] VectorProgram translate(const Code& code);
+
+}  // namespace tonewright::simd

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Machine code against the interpreter of the same program, which simd_test.cpp holds to the
+// reference: the same bits, for every operator, every layout of pixels and every count.
+#include "engine/machine_code.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "engine/probe.h"
+#include "engine/simd_program.h"
+#include "tonewright/engine.h"
+#include "tonewright/view.h"
+
+namespace tonewright {
+namespace {
+
+/// Why there is no machine code here, or nothing.
+const char* missing() {
+    if (!simd::MachineCode::is_built_in()) return "built without xbyak";
+    if (!simd::has_fast_curves()) return "this processor has no AVX-512";
+    return nullptr;
+}
+
+/// Every number that a float can be, and light.
+std::vector<float> floats(std::size_t count) {
+    ProbeRandom random(7);
+    std::vector<float> result(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        if (i % 3 == 0) {
+            const auto bits = static_cast<std::uint32_t>(random.uniform(0, 4294967295.0));
+            std::memcpy(&result[i], &bits, sizeof bits);
+        } else {
+            result[i] = static_cast<float>(std::exp2(random.uniform(-14, 12)) *
+                                           (random.uniform(0, 1) < 0.1 ? -1 : 1));
+        }
+    }
+    return result;
+}
+
+/// Pixels `stride` floats apart; planes where it is 1. What lies around them stays as it is.
+std::vector<float> run(const simd::Code& code, const std::vector<float>& in, std::ptrdiff_t stride,
+                       std::size_t count) {
+    std::vector<float> out(in.size(), -7.0F);
+    const std::size_t step = stride == 1 ? in.size() / 3 : 1;
+    simd::run(code, {in.data(), in.data() + step, in.data() + 2 * step}, stride,
+              {out.data(), out.data() + step, out.data() + 2 * step}, stride, count);
+    return out;
+}
+
+void expect_same_bits(simd::Code& code, const std::string& name) {
+    static const std::vector<float> in = floats(4 * 1200);
+    for (const std::ptrdiff_t stride : {1, 3, 4}) {
+        for (const std::size_t count : {0, 1, 15, 16, 17, 31, 32, 33, 47, 256, 1199}) {
+            const std::shared_ptr<const simd::MachineCode> machine = code.machine;
+            const std::vector<float> got = run(code, in, stride, count);
+            code.machine = nullptr;
+            const std::vector<float> expected = run(code, in, stride, count);
+            code.machine = machine;
+            for (std::size_t i = 0; i < in.size(); ++i) {
+                ASSERT_EQ(std::memcmp(&got[i], &expected[i], sizeof(float)), 0)
+                    << name << ", stride " << stride << ", " << count << " pixels, float " << i
+                    << ": machine code " << got[i] << ", interpreter " << expected[i];
+            }
+        }
+    }
+}
+
+TEST(MachineCode, ComputesTheInterpretersBits) {
+    if (const char* reason = missing()) GTEST_SKIP() << reason;
+    for (const Operator& op : all_operators()) {
+        for (const char* display : {"srgb", "linear"}) {
+            simd::Code code =
+                simd::compile(build_view(make_view(resolve_operator(op.id), "lin_ap1", 1, display)),
+                              op.bounds.simd_goal);
+            ASSERT_TRUE(code.machine) << op.id;
+            expect_same_bits(code, op.id + ", " + display);
+            if (HasFatalFailure()) return;
+        }
+    }
+}
+
+/// What no operator of the catalogue makes of its own.
+TEST(MachineCode, ComputesEveryOperation) {
+    if (const char* reason = missing()) GTEST_SKIP() << reason;
+    const Expr r = Expr::input(0);
+    const Expr g = Expr::input(1);
+    const Expr b = Expr::input(2);
+    const std::vector<std::array<Expr, 3>> programs = {
+        {{pow(abs(r), g), pow(r, Expr(3) + b * 0), pow(abs(r), Expr(5.5))}},
+        {{sin(r), cos(g), atan2(r, b)}},
+        {{exp2(min(r, Expr(20))), log2(abs(g)), sqrt(abs(b))}},
+        {{select(less(r, g), b, r), select(less_equal(r, g), Expr(1), b),
+          select(equal(floor(r), r), g, Expr(2))}},
+        {{less(r, g), less_equal(g, r) + equal(r, b), -r}},
+        {{Expr(0.25), r, g / b}},
+        {{select(less(r, Expr(0.5)) * less(g, Expr(0.5)), b, g), r - g * b, g * b - r}},
+    };
+    for (std::size_t i = 0; i < programs.size(); ++i) {
+        const Map3Stage stage{.f = programs[i]};
+        for (const double max_error : {1e-6, 1e-12}) {  // the second computes in double
+            simd::Code code = simd::compile(Pipeline{stage}, max_error, false);
+            ASSERT_TRUE(code.machine) << i;
+            expect_same_bits(code, "program " + std::to_string(i));
+            if (HasFatalFailure()) return;
+        }
+    }
+}
+
+TEST(MachineCode, WritesInPlaceAndBetweenLayouts) {
+    if (const char* reason = missing()) GTEST_SKIP() << reason;
+    simd::Code code = simd::compile(
+        build_view(make_view(resolve_operator("agx_blender"), "lin_rec709", 0, "srgb")));
+    ASSERT_TRUE(code.machine);
+    const std::vector<float> in = floats(4 * 999);
+    const std::vector<float> expected = run(code, in, 4, 999);
+    std::vector<float> pixels = in;
+    simd::run(code, {pixels.data(), pixels.data() + 1, pixels.data() + 2}, 4,
+              {pixels.data(), pixels.data() + 1, pixels.data() + 2}, 4, 999);
+    std::vector<float> packed(3 * 999);
+    simd::run(code, {in.data(), in.data() + 1, in.data() + 2}, 4,
+              {packed.data(), packed.data() + 1, packed.data() + 2}, 3, 999);
+    for (std::size_t i = 0; i < 999; ++i) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            EXPECT_EQ(pixels[4 * i + c], expected[4 * i + c]) << i;
+            EXPECT_EQ(packed[3 * i + c], expected[4 * i + c]) << i;
+        }
+        EXPECT_EQ(std::memcmp(&pixels[4 * i + 3], &in[4 * i + 3], sizeof(float)), 0) << i;
+    }
+}
+
+}  // namespace
+}  // namespace tonewright

@@ -437,7 +437,7 @@ CubeAxis choose_log_axis(const CubeProblem& problem, double top) {
     smaller.edge = std::min(problem.edge, 33);
     double least = kInfinity;
     double best = 0;
-    for (const double share : {0.0, 0.25, 0.1875, 0.125, 0.078125}) {
+    for (const double share : {0.0, 0.25, 0.1875, 0.125, 0.078125, 0.046875}) {
         smaller.axis = make_log_axis(top, smaller.edge, share);
         const double error = Fit(smaller, {.samples_per_node = 1}).error_of_sampled();
         if (error < least) best = share;

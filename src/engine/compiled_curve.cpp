@@ -406,6 +406,14 @@ double CompiledCurve::slope(double x) const noexcept {
     return y * static_cast<double>(scale[s]);
 }
 
+void CompiledCurve::make_rows() noexcept {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        rows[i] = {scale[i], offset[i], coefficient[0][i], rest[i]};
+        for (std::size_t k = 1; k < coefficient.size(); ++k)
+            rows[i][3 + k] = coefficient[k][i];
+    }
+}
+
 int CompiledCurve::cost() const noexcept {
     const int of_cells = cells == 0 ? 4 * std::bit_width(static_cast<unsigned>(segments)) - 4
                                     : 2 * (cells <= 32 ? 1 : 3);
@@ -468,6 +476,7 @@ std::optional<CompiledCurve> compile_curve(const std::function<double(double)>& 
                 too_low = degree;
             }
         }
+        best->make_rows();
         return best;
     }
     return std::nullopt;

@@ -59,11 +59,17 @@ struct CompiledCurve {
     alignas(64) std::array<std::array<float, kMaxSegments>, kMaxDegree + 1> coefficient{};
     /// What is missing in the first coefficients; of a precise curve.
     alignas(64) std::array<float, kMaxSegments> rest{};
+    /// The same by segment, for processors that read four neighbours faster than four numbers
+    /// apart: scale, offset, the first coefficient, the rest of it, the other coefficients.
+    alignas(64) std::array<std::array<float, 16>, kMaxSegments> rows{};
 
     /// Takes and gives doubles. x and the first coefficient count with all their digits, and only
     /// the change within a segment is computed in float.
     bool is_precise = false;
     CurveTolerance tolerance;
+
+    /// Fills `rows` from the others.
+    void make_rows() noexcept;
 
     /// As the kernels compute it: in float with fused multiply-adds.
     [[nodiscard]] double operator()(double x) const noexcept;

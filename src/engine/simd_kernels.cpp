@@ -311,6 +311,28 @@ HWY_INLINE Vec<DF> load_narrow(DF d, const Source& source, std::size_t i) {
 #endif
 }
 
+/// The curve's degree as a constant.
+template <class F>
+HWY_INLINE void with_degree(const CompiledCurve& curve, F run) {
+    static_assert(CompiledCurve::kMinDegree == 3 && CompiledCurve::kMaxDegree == 9);
+    switch (curve.degree) {
+        case 3:
+            return run(std::integral_constant<int, 3>());
+        case 4:
+            return run(std::integral_constant<int, 4>());
+        case 5:
+            return run(std::integral_constant<int, 5>());
+        case 6:
+            return run(std::integral_constant<int, 6>());
+        case 7:
+            return run(std::integral_constant<int, 7>());
+        case 8:
+            return run(std::integral_constant<int, 8>());
+        default:
+            return run(std::integral_constant<int, 9>());
+    }
+}
+
 #if HWY_TARGET <= HWY_AVX3
 
 /// 16, 32 or 64 numbers, and those of them that a vector of indices picks.
@@ -462,26 +484,11 @@ HWY_INLINE void run_curve(const Frame& frame, const Instruction& step, const Com
 
 template <int kCells, int kSegments>
 HWY_INLINE void run_curve(const Frame& frame, const Instruction& step, const CompiledCurve& curve) {
-    switch (curve.degree) {
-        case 3:
-            return run_curve<kCells, kSegments, 3>(frame, step, curve);
-        case 4:
-            return run_curve<kCells, kSegments, 4>(frame, step, curve);
-        case 5:
-            return run_curve<kCells, kSegments, 5>(frame, step, curve);
-        case 6:
-            return run_curve<kCells, kSegments, 6>(frame, step, curve);
-        case 7:
-            return run_curve<kCells, kSegments, 7>(frame, step, curve);
-        case 8:
-            return run_curve<kCells, kSegments, 8>(frame, step, curve);
-        default:
-            return run_curve<kCells, kSegments, 9>(frame, step, curve);
-    }
+    with_degree(curve, [&](auto degree)
+                           HWY_ATTR { run_curve<kCells, kSegments, degree>(frame, step, curve); });
 }
 
 HWY_NOINLINE void curve(const Frame& frame, const Instruction& step, const CompiledCurve& curve) {
-    static_assert(CompiledCurve::kMinDegree == 3 && CompiledCurve::kMaxDegree == 9);
     if (curve.cells == 0) {
         if (curve.segments <= 16) return run_curve<0, 16>(frame, step, curve);
         if (curve.segments <= 32) return run_curve<0, 32>(frame, step, curve);
@@ -497,11 +504,127 @@ HWY_NOINLINE void curve(const Frame& frame, const Instruction& step, const Compi
     return run_curve<64, 64>(frame, step, curve);
 }
 
-bool has_fast_curves() { return true; }
+double curve_cost() { return 1; }
+bool runs_machine_code() { return true; }
+
+#elif HWY_TARGET <= HWY_AVX2
+
+using DI = hn::RebindToSigned<DF>;
+
+HWY_INLINE Vec<DI> segment_of(const CompiledCurve& curve, Vec<DF> x) {
+    const DF d;
+    const DI di;
+    const auto threshold = [&curve, d](Vec<DI> at)
+                               HWY_ATTR { return hn::GatherIndex(d, curve.threshold.data(), at); };
+    if (curve.cells == 0) {
+        auto index = hn::Zero(di);
+        for (int bit = curve.segments / 2; bit > 0; bit /= 2) {
+            const auto next = hn::Or(index, hn::Set(di, bit));
+            const auto is_there = hn::RebindMask(di, hn::Ge(x, threshold(next)));
+            index = hn::IfThenElse(is_there, next, index);
+        }
+        return index;
+    }
+    const auto bits = hn::BitCast(di, hn::Max(x, hn::Set(d, curve.cell_floor)));
+    const auto cell = hn::Sub(hn::ShiftRightSame(bits, curve.shift),
+                              hn::Set(di, static_cast<std::int32_t>(curve.first_cell)));
+    const auto is_behind = hn::RebindMask(di, hn::Ge(x, threshold(cell)));
+    return hn::Sub(hn::GatherIndex(di, curve.segment.data(), cell), hn::VecFromMask(di, is_behind));
+}
+
+/// Four numbers in a row for each of eight pixels, as four vectors: twice as fast as gathers.
+HWY_INLINE void load_rows(const float* numbers, const std::int32_t* at, Vec<DF>* result) {
+    __m256 row[4];
+    for (int p = 0; p < 4; ++p) {
+        row[p] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_load_ps(numbers + at[p])),
+                                      _mm_load_ps(numbers + at[p + 4]), 1);
+    }
+    const __m256 low01 = _mm256_unpacklo_ps(row[0], row[1]);
+    const __m256 high01 = _mm256_unpackhi_ps(row[0], row[1]);
+    const __m256 low23 = _mm256_unpacklo_ps(row[2], row[3]);
+    const __m256 high23 = _mm256_unpackhi_ps(row[2], row[3]);
+    result[0].raw = _mm256_shuffle_ps(low01, low23, 0x44);
+    result[1].raw = _mm256_shuffle_ps(low01, low23, 0xEE);
+    result[2].raw = _mm256_shuffle_ps(high01, high23, 0x44);
+    result[3].raw = _mm256_shuffle_ps(high01, high23, 0xEE);
+}
+
+template <int kDegree, bool kIsPrecise>
+HWY_NOINLINE void run_curve(const Frame& frame, const Instruction& step,
+                            const CompiledCurve& curve) {
+    const DF d;
+    const DD dd;
+    const hn::Half<DF> half;
+    const auto lo = hn::Set(d, curve.lo);
+    const auto hi = hn::Set(d, curve.hi);
+    const auto promote = [dd, half](Vec<DF> x, bool is_upper) HWY_ATTR {
+        return hn::PromoteTo(dd, is_upper ? hn::UpperHalf(half, x) : hn::LowerHalf(half, x));
+    };
+    // NaN is not above lo.
+    const auto finished = [&curve](auto tag, auto y, auto is_above) HWY_ATTR {
+        using T = hn::TFromD<decltype(tag)>;
+        const auto number = [tag](auto k) HWY_ATTR { return hn::Set(tag, static_cast<T>(k)); };
+        const auto limited = hn::Min(hn::Max(y, number(curve.least)), number(curve.most));
+        return hn::IfThenElse(is_above, limited, number(curve.at_lo));
+    };
+    alignas(kVectorBytes) std::int32_t at[kLaneMultiple];
+    const Source source(frame, step.in[0]);
+    for (std::size_t i = 0; i < frame.count; i += hn::Lanes(d)) {
+        const auto given = load_narrow(d, source, i);
+        const auto x = hn::Min(hn::Max(given, lo), hi);
+        hn::Store(hn::ShiftLeft<4>(segment_of(curve, x)), DI(), at);
+        Vec<DF> number[4];
+        load_rows(curve.rows[0].data(), at, number);
+        const auto scale = number[0];
+        const auto first = number[2];
+        const auto rest_of_first = number[3];
+        auto t = hn::MulAdd(x, scale, number[1]);
+        if (kIsPrecise && source.wide) {
+            const auto rest = hn::Combine(
+                d,
+                hn::DemoteTo(half,
+                             hn::Sub(source.load(dd, i + hn::Lanes(dd)), promote(given, true))),
+                hn::DemoteTo(half, hn::Sub(source.load(dd, i), promote(given, false))));
+            t = hn::MulAdd(hn::IfThenElseZero(hn::Eq(given, x), rest), scale, t);
+        }
+        // Four coefficients at a time: registers are few.
+        auto y = hn::Zero(d);
+        for (int k = (kDegree - 1) / 4 * 4 + 1; k >= 1; k -= 4) {
+            load_rows(curve.rows[0].data() + 3 + k, at, number);
+            for (int j = HWY_MIN(3, kDegree - k); j >= 0; --j)
+                y = k + j == kDegree ? number[j] : hn::MulAdd(y, t, number[j]);
+        }
+        if constexpr (kIsPrecise) {
+            const auto change = hn::MulAdd(y, t, rest_of_first);
+            const auto at_lo = hn::Set(dd, static_cast<double>(curve.lo));
+            for (int upper = 0; upper < 2; ++upper) {
+                const auto sum = hn::Add(promote(first, upper > 0), promote(change, upper > 0));
+                store_wide(frame, step.out, i + (upper > 0 ? hn::Lanes(dd) : 0),
+                           finished(dd, sum, hn::Gt(promote(x, upper > 0), at_lo)));
+            }
+        } else {
+            hn::Store(finished(d, hn::MulAdd(y, t, first), hn::Gt(x, lo)), d,
+                      reinterpret_cast<float*>(frame.registers + step.out.offset) + i);
+        }
+    }
+}
+
+template <int kDegree>
+HWY_INLINE void run_curve(const Frame& frame, const Instruction& step, const CompiledCurve& curve) {
+    if (curve.is_precise) return run_curve<kDegree, true>(frame, step, curve);
+    run_curve<kDegree, false>(frame, step, curve);
+}
+
+HWY_NOINLINE void curve(const Frame& frame, const Instruction& step, const CompiledCurve& curve) {
+    with_degree(curve, [&](auto degree) HWY_ATTR { run_curve<degree>(frame, step, curve); });
+}
+
+double curve_cost() { return 1.5; }
+bool runs_machine_code() { return false; }
 
 #else
 
-// An engine made for AVX-512 computes the same here, slowly; one made for this instruction set has
+// An engine made for another instruction set computes the same here, slowly; one made for this has
 // no compiled curves.
 HWY_NOINLINE void curve(const Frame& frame, const Instruction& step, const CompiledCurve& curve) {
     for (std::size_t i = 0; i < frame.count; ++i) {
@@ -515,7 +638,8 @@ HWY_NOINLINE void curve(const Frame& frame, const Instruction& step, const Compi
     }
 }
 
-bool has_fast_curves() { return false; }
+double curve_cost() { return 0; }
+bool runs_machine_code() { return false; }
 
 #endif
 
@@ -953,7 +1077,8 @@ namespace tonewright::simd {
 namespace {
 
 HWY_EXPORT(run);
-HWY_EXPORT(has_fast_curves);
+HWY_EXPORT(curve_cost);
+HWY_EXPORT(runs_machine_code);
 
 /// Highway's bits of the targets compiled in that the machine has, best (lowest bit) first.
 const std::vector<std::int64_t>& targets() {
@@ -969,7 +1094,9 @@ void run(const Code& code, const std::array<const float*, 3>& in, std::ptrdiff_t
     HWY_DYNAMIC_DISPATCH(run)(code, in, in_stride, out, out_stride, count);
 }
 
-bool has_fast_curves() { return HWY_DYNAMIC_DISPATCH(has_fast_curves)(); }
+double curve_cost() { return HWY_DYNAMIC_DISPATCH(curve_cost)(); }
+
+bool runs_machine_code() { return HWY_DYNAMIC_DISPATCH(runs_machine_code)(); }
 
 const std::vector<std::string>& target_names() {
     static const std::vector<std::string> names = [] {

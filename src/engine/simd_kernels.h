@@ -153,9 +153,11 @@ struct Code : TilePorts {
 void run(const Code& code, const std::array<const float*, 3>& in, std::ptrdiff_t in_stride,
          const std::array<float*, 3>& out, std::ptrdiff_t out_stride, std::size_t count) noexcept;
 
-/// True when the instruction set that runs now has permutes over whole tables, so that compiled
-/// curves pay.
-[[nodiscard]] bool has_fast_curves();
+/// What a compiled curve costs on the instruction set that runs now, beside what is said of it
+/// (CompiledCurve::cost()), in instructions of the program; 0 where none pays.
+[[nodiscard]] double curve_cost();
+/// True when that is the one that machine code is made for.
+[[nodiscard]] bool runs_machine_code();
 /// Instruction sets compiled in that this machine has, best first.
 const std::vector<std::string>& target_names();
 /// @param index  into target_names(), or -1 for the best.

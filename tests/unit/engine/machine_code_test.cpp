@@ -22,7 +22,7 @@ namespace {
 /// Why there is no machine code here, or nothing.
 const char* missing() {
     if (!simd::MachineCode::is_built_in()) return "built without xbyak";
-    if (!simd::has_fast_curves()) return "this processor has no AVX-512";
+    if (!simd::runs_machine_code()) return "this processor has no AVX-512";
     return nullptr;
 }
 

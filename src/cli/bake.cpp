@@ -17,6 +17,7 @@ struct Options : ViewOptions {
     bool one = false;
     bool three = false;
     std::optional<int> bits;
+    std::optional<int> decimals;
     std::optional<double> max_error;
     std::string nodes = "auto";
     std::string host;
@@ -53,16 +54,16 @@ void bake_one(Options& options, const CLI::App& command) {
     request.view = options.view();
     request.size = options.size;
     request.bits = options.bits;
+    request.decimals = options.decimals;
     if (options.one) request.dimension = LutDimension::one;
     if (options.three) request.dimension = LutDimension::three;
-    const bool is_trilinear =
-        !options.host.empty() && find_lut_host(options.host).interpolation.starts_with("trilinear");
+    const bool trilinear = !options.host.empty() && is_trilinear(find_lut_host(options.host));
     LutNodes nodes = LutNodes::automatic;
     if (options.nodes == "sampled") nodes = LutNodes::sampled;
     if (options.nodes == "fitted") nodes = LutNodes::fitted;
     const bool is_picture = is_picture_format(request.format);
     if (is_picture) require_lut_picture(options.file, request.bits.value_or(16));
-    const BakedLut baked = bake_lut(request, nodes, is_trilinear, options.max_error);
+    const BakedLut baked = bake_lut(request, nodes, trilinear, options.max_error);
     const Lut& lut = baked.lut;
     const LutError& error = baked.error;
     request.size = lut.size;
@@ -122,6 +123,9 @@ void add_bake(CLI::App& program, int&) {
         ->capture_default_str();
     command->add_option("--depth", options->bits,
                         "bits of a number: 8, 16 or 32 (float) in pictures, 10, 12 or 16 in 3dl");
+    command->add_option("--decimals", options->decimals,
+                        "of the numbers in a cube, 3..9 (default: as many as a float has); 4 are "
+                        "finer than its error between the nodes");
     CLI::Option* one = command->add_flag(
         "--1d", options->one, "a 1D table; the view must be per channel in its own space");
     command->add_flag("--3d", options->three, "a cube even where a 1D table would do")
@@ -138,7 +142,7 @@ void add_bake(CLI::App& program, int&) {
         if (!options->all.empty()) {
             if (!options->op.empty())
                 throw Error("bake: operator is " + options->op + "; expected none with --all");
-            write_generated_files(options->all, make_shipped_luts(), "MANIFEST.csv");
+            write_shipped_luts(options->all);
             return;
         }
         bake_one(*options, *command);

@@ -60,6 +60,9 @@ struct LutRequest {
     std::optional<int> size;
     /// Of integers: 8 or 16 in pictures, 10, 12 or 16 in `3dl`. 32: float.
     std::optional<int> bits;
+    /// Of the numbers in a `cube`, [3, 9]; where none is given, as many as a float has. Four are
+    /// finer than what any cube is off between its nodes, in half the space.
+    std::optional<int> decimals;
 };
 
 /// An application that reads a LUT, and what it expects.
@@ -123,6 +126,14 @@ struct LutError {
 [[nodiscard]] LutError measure_lut(const Lut& lut, const LutRequest& request,
                                    bool trilinear = false);
 
+/// A cube between its nodes, in both ways that applications interpolate.
+struct LutErrors {
+    LutError tetrahedral;
+    LutError trilinear;
+};
+/// measure_lut() twice, in not much more time than once.
+[[nodiscard]] LutErrors measure_cube(const Lut& lut, const LutRequest& request);
+
 /// Which values the nodes of a cube have: sampled, fitted, or of these the one that is nearer in
 /// the mean and in the 99.9th percentile.
 enum class LutNodes : unsigned char { automatic, sampled, fitted };
@@ -143,7 +154,8 @@ struct BakedLut {
                                 bool trilinear = false,
                                 std::optional<double> max_error = std::nullopt);
 
-/// The table as its format holds it: rounded to the integers of LutRequest::bits.
+/// The table as its format holds it: rounded to the integers of LutRequest::bits, or to
+/// LutRequest::decimals.
 void quantize(Lut& lut, const LutRequest& request);
 
 /// The contents of the file: what it is, what goes in, what comes out, the measured error; then
@@ -158,9 +170,41 @@ struct GeneratedFile {
     std::string contents;
 };
 
-/// The set of `bake --all`: for every operator a 33^3 ACEScct cube and, where it is per channel, a
-/// 1D table, with README.md and MANIFEST.csv. The same bytes on every run.
-[[nodiscard]] std::vector<GeneratedFile> make_shipped_luts();
+/// Why and for whom a LUT is in the set of `bake --all`: all LUTs of one application.
+struct LutShelf {
+    const LutHost* host = nullptr;
+    /// Applications that the same files suit.
+    std::string also;
+    std::vector<std::string> operators;
+    /// Instead of the host's, where fewer are enough.
+    std::optional<int> size;
+    LutNodes nodes = LutNodes::sampled;
+};
+[[nodiscard]] const std::vector<LutShelf>& lut_shelves();
+
+/// A LUT of the set.
+struct ShippedLut {
+    const LutShelf* shelf = nullptr;
+    LutRequest request;
+    /// In the set's folder: `resolve/agx_blender_davinci_to_rec1886.cube`.
+    std::string path;
+    /// What the chart looks like through it.
+    std::string thumbnail;
+    Lut lut;
+    bool is_fitted = false;
+    LutErrors errors;
+    /// The file. Empty for a picture, which OpenImageIO writes.
+    std::string contents;
+};
+
+/// True where the application interpolates in cubes, not in tetrahedra, unless told otherwise.
+[[nodiscard]] bool is_trilinear(const LutHost& host);
+
+/// All of them, in the order of the shelves. The same on every run, whatever the number of threads.
+[[nodiscard]] std::vector<ShippedLut> bake_shipped_luts();
+
+/// README.md and MANIFEST.csv, of LUTs that all have their contents.
+[[nodiscard]] std::vector<GeneratedFile> describe_shipped_luts(const std::vector<ShippedLut>& luts);
 
 /// Writes to a temporary name beside the target, syncs, renames: a failed run leaves the old file.
 /// @throws FileError  naming the path and the reason.

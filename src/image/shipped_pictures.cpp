@@ -92,9 +92,9 @@ std::vector<GeneratedFile> make_shipped_files(std::vector<ShippedLut>& luts) {
     std::vector<GeneratedFile> files;
     for (ShippedLut& lut : luts) {
         if (is_picture_format(lut.request.format)) {
-            lut.contents = encode_png(
-                make_lut_picture(lut.lut, lut.request.format),
-                lut.request.bits == 8 ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::UINT16);
+            lut.contents =
+                encode_png(make_lut_picture(lut.lut, lut.request.format),
+                           lut.request.bits == 8 ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::UINT16);
         }
         files.push_back({lut.path, lut.contents});
         files.push_back(

@@ -96,16 +96,7 @@ Vector3 interpolate(const Lut& lut, const Vector3& rgb, bool trilinear) {
     return out;
 }
 
-namespace {
-
-/// What a table is measured on: the colors that its encoding holds.
-struct LutProbes {
-    std::vector<double> code;   // table input
-    std::vector<double> truth;  // what the view shows
-    [[nodiscard]] std::size_t size() const { return code.size() / 3; }
-};
-
-LutProbes make_lut_probes(const LutRequest& request, bool is_half_domain) {
+LutError measure_lut(const Lut& lut, const LutRequest& request, bool trilinear) {
     const InputSpace& space = find_input_space(request.view.input);
     ProbeSet probes = make_probes(space, {17, 50000});
     // And table inputs over the whole cube: the corners that no scene colour of the set reaches.
@@ -122,43 +113,41 @@ LutProbes make_lut_probes(const LutRequest& request, bool is_half_domain) {
     for (std::size_t i = 0; i < kRandomCount; ++i) {
         probes.add(inputs[0][i], inputs[1][i], inputs[2][i], ProbeKind::random);
     }
-    std::vector<float> inside;
+    // Table input as a client has it: float, of the float colour.
+    std::vector<double> code(probes.rgb.size());
+    {
+        const ReferenceEngine encode({curve_stage(request.encoding.encode)});
+        if (lut.is_half_domain) {
+            std::copy(probes.rgb.begin(), probes.rgb.end(), code.begin());
+        } else {
+            encode.run_rgb(probes.rgb.data(), code.data(), probes.size());
+        }
+    }
+    const ReferenceEngine engine(build_view(request.view));
+    std::vector<double> truth(probes.rgb.size());
+    engine.run_rgb(probes.rgb.data(), truth.data(), probes.size());
+
+    std::vector<double> errors;
+    std::vector<double> shown;
+    std::vector<double> wanted;
     for (std::size_t i = 0; i < probes.size(); ++i) {
         if (probes.kind[i] == ProbeKind::special) continue;
         const float* v = &probes.rgb[3 * i];
-        const bool is_held = is_half_domain || std::all_of(v, v + 3, [&](float x) {
-            return static_cast<double>(x) >= request.encoding.scene_lo &&
-                   static_cast<double>(x) <= request.encoding.scene_hi;
-        });
-        if (is_held) inside.insert(inside.end(), v, v + 3);
-    }
-    LutProbes result;
-    result.truth.resize(inside.size());
-    ReferenceEngine(build_view(request.view))
-        .run_rgb(inside.data(), result.truth.data(), inside.size() / 3);
-    // Table input as a client has it: of the float colour.
-    if (is_half_domain) {
-        result.code.assign(inside.begin(), inside.end());
-    } else {
-        result.code.resize(inside.size());
-        ReferenceEngine({curve_stage(request.encoding.encode)})
-            .run_rgb(inside.data(), result.code.data(), inside.size() / 3);
-    }
-    return result;
-}
-
-LutError measure(const Lut& lut, const LutRequest& request, const LutProbes& probes,
-                 bool trilinear) {
-    std::vector<double> errors;
-    std::vector<double> shown;
-    for (std::size_t i = 0; i < probes.size(); ++i) {
-        const double* code = &probes.code[3 * i];
-        const Vector3 out = interpolate(lut, {code[0], code[1], code[2]}, trilinear);
+        bool inside = true;
+        for (std::size_t c = 0; c < 3; ++c) {
+            const auto x = static_cast<double>(v[c]);
+            inside = inside && (lut.is_half_domain ||
+                                (x >= request.encoding.scene_lo && x <= request.encoding.scene_hi));
+        }
+        if (!inside) continue;
+        const Vector3 out =
+            interpolate(lut, {code[3 * i], code[3 * i + 1], code[3 * i + 2]}, trilinear);
         double worst = 0;
         for (std::size_t c = 0; c < 3; ++c) {
-            const double difference = std::fabs(out[c] - probes.truth[3 * i + c]);
+            const double difference = std::fabs(out[c] - truth[3 * i + c]);
             worst = std::max(worst, std::isnan(difference) ? kInfinity : difference);
             shown.push_back(out[c]);
+            wanted.push_back(truth[3 * i + c]);
         }
         errors.push_back(worst);
     }
@@ -170,20 +159,9 @@ LutError measure(const Lut& lut, const LutRequest& request, const LutProbes& pro
     result.interpolation = lut.dimension == 1 ? "linear" : trilinear ? "trilinear" : "tetrahedral";
     if (request.view.display != kLinearOutput && request.view.display != kNativeOutput) {
         result.delta_e_max =
-            summarise(delta_e_itp(find_display(request.view.display), shown, probes.truth)).max;
+            summarise(delta_e_itp(find_display(request.view.display), shown, wanted)).max;
     }
     return result;
-}
-
-}  // namespace
-
-LutError measure_lut(const Lut& lut, const LutRequest& request, bool trilinear) {
-    return measure(lut, request, make_lut_probes(request, lut.is_half_domain), trilinear);
-}
-
-LutErrors measure_cube(const Lut& lut, const LutRequest& request) {
-    const LutProbes probes = make_lut_probes(request, false);
-    return {measure(lut, request, probes, false), measure(lut, request, probes, true)};
 }
 
 }  // namespace tonewright

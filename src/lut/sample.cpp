@@ -121,8 +121,7 @@ Lut sample_lut(const LutRequest& request) {
                     "; expected none for " + traits.name + ", only cube has them");
     }
     if (request.decimals && (*request.decimals < 3 || *request.decimals > 9)) {
-        throw Error("bake: decimals is " + std::to_string(*request.decimals) +
-                    "; expected [3, 9]");
+        throw Error("bake: decimals is " + std::to_string(*request.decimals) + "; expected [3, 9]");
     }
     // Readers resample the prelut to 65536 equal steps of light: up to ACEScct's 222.9 they are
     // short enough.
@@ -216,6 +215,7 @@ Lut fit_lut(const LutRequest& request, const Lut& sampled) {
 
 void quantize(Lut& lut, const LutRequest& request) {
     if (request.decimals) {
+        lut.decimals = request.decimals;
         const double unit = std::pow(10.0, *request.decimals);
         for (float& v : lut.values)
             v = static_cast<float>(std::round(static_cast<double>(v) * unit) / unit);

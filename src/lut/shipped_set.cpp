@@ -14,9 +14,13 @@ namespace {
 
 /// What people ask for by name. A LUT of any other operator is one `tonewright bake` away.
 const std::vector<std::string> kOperators = {
-    "agx_blender", "agx_sobotka", "aces_13", "aces_20",         "aces_hill",
-    "aces_narkowicz", "gt7",      "hable",   "khronos_neutral", "reinhard_extended",
+    "agx_blender",    "agx_sobotka", "aces_13", "aces_20",         "aces_hill",
+    "aces_narkowicz", "gt7",         "hable",   "khronos_neutral", "reinhard_extended",
 };
+/// Of these the ones for pictures in a wide gamut: curves on each channel of Rec.709 clip most of
+/// it.
+const std::vector<std::string> kForWideGamuts = {"agx_blender", "agx_sobotka", "aces_13", "aces_20",
+                                                 "khronos_neutral"};
 
 /// Of the numbers in cubes.
 constexpr int kDecimals = 4;
@@ -30,15 +34,13 @@ ShippedLut plan(const LutShelf& shelf, const std::string& id) {
     planned.shelf = &shelf;
     LutRequest& request = planned.request;
     request.encoding = parse_input_encoding(host.encoding);
-    request.view =
-        make_view(resolve_operator(id), request.encoding.default_input, 0, host.display);
+    request.view = make_view(resolve_operator(id), request.encoding.default_input, 0, host.display);
     request.format = host.format;
     request.dimension = LutDimension::three;
     request.size = shelf.size.value_or(host.size);
     request.bits = host.bits;
     if (host.format == LutFormat::cube) request.decimals = kDecimals;
-    const std::string stem =
-        fmt::format("{}_{}_to_{}", id, name_part(host.encoding), host.display);
+    const std::string stem = fmt::format("{}_{}_to_{}", id, name_part(host.encoding), host.display);
     planned.path = fmt::format("{}/{}.{}", host.id, stem,
                                is_picture_format(host.format) ? "png" : name_of(host.format));
     planned.thumbnail = fmt::format("{}/thumbnails/{}.png", host.id, stem);
@@ -47,16 +49,18 @@ ShippedLut plan(const LutShelf& shelf, const std::string& id) {
 
 void bake(ShippedLut& planned) {
     const bool trilinear = is_trilinear(*planned.shelf->host);
-    BakedLut baked = bake_lut(planned.request, planned.shelf->nodes, trilinear);
+    BakedLut baked = bake_lut(planned.request, LutNodes::automatic, trilinear);
     planned.lut = std::move(baked.lut);
     planned.is_fitted = baked.is_fitted;
-    planned.errors = measure_cube(planned.lut, planned.request);
+    const LutError other = measure_lut(planned.lut, planned.request, !trilinear);
+    planned.tetrahedral = trilinear ? other : baked.error;
+    planned.trilinear = trilinear ? baked.error : other;
     if (!is_picture_format(planned.request.format))
         planned.contents = write_lut(planned.lut, planned.request, baked.error);
 }
 
 const LutError& error_at_host(const ShippedLut& lut) {
-    return is_trilinear(*lut.shelf->host) ? lut.errors.trilinear : lut.errors.tetrahedral;
+    return is_trilinear(*lut.shelf->host) ? lut.trilinear : lut.tetrahedral;
 }
 
 std::string csv_field(const std::string& text) {
@@ -80,14 +84,14 @@ std::string manifest(const std::vector<ShippedLut>& luts) {
         "content_hash\n";
     for (const ShippedLut& lut : luts) {
         const LutRequest& r = lut.request;
-        text += fmt::format(
-            "{},{},{},{},{},{:.9g},{:.9g},{},{},{},{},{},{},{},{},{},{}\n", lut.path,
-            csv_field(r.view.op.label), lut.shelf->host->id, r.view.input, r.encoding.id,
-            r.encoding.scene_lo, r.encoding.scene_hi, r.view.display, name_of(r.format),
-            lut.lut.size, r.bits ? std::to_string(*r.bits) : "",
-            r.decimals ? std::to_string(*r.decimals) : "", lut.is_fitted ? "fitted" : "sampled",
-            error_at_host(lut).interpolation, error_fields(lut.errors.tetrahedral),
-            error_fields(lut.errors.trilinear), content_hash(lut.contents));
+        text += fmt::format("{},{},{},{},{},{:.9g},{:.9g},{},{},{},{},{},{},{},{},{},{}\n",
+                            lut.path, csv_field(r.view.op.label), lut.shelf->host->id, r.view.input,
+                            r.encoding.id, r.encoding.scene_lo, r.encoding.scene_hi, r.view.display,
+                            name_of(r.format), lut.lut.size, r.bits ? std::to_string(*r.bits) : "",
+                            r.decimals ? std::to_string(*r.decimals) : "",
+                            lut.is_fitted ? "fitted" : "sampled", error_at_host(lut).interpolation,
+                            error_fields(lut.tetrahedral), error_fields(lut.trilinear),
+                            content_hash(lut.contents));
     }
     return text;
 }
@@ -141,13 +145,12 @@ std::string section(const LutShelf& shelf, const std::vector<ShippedLut>& luts) 
         const LutError& error = error_at_host(lut);
         if (is_first) {
             text += fmt::format(
-                "Each file: `tonewright bake OPERATOR --for {} --size {}{}{} -o FILE`; {}, {} "
+                "Each file: `tonewright bake OPERATOR --for {} --size {}{} -o FILE`; {}, {} "
                 "interpolation, {:+.1f} stops from 0.18 at input 1.\n\n"
                 "| operator | file | input | output | max error | 99.9 % | mean | |\n"
                 "|---|---|---|---|---|---|---|---|\n",
-                host.id, lut.lut.size, shelf.nodes == LutNodes::sampled ? " --nodes sampled" : "",
-                r.decimals ? fmt::format(" --decimals {}", *r.decimals) : "", size_text(lut),
-                error.interpolation, std::log2(r.encoding.scene_hi / 0.18));
+                host.id, lut.lut.size, r.decimals ? fmt::format(" --decimals {}", *r.decimals) : "",
+                size_text(lut), error.interpolation, std::log2(r.encoding.scene_hi / 0.18));
         }
         is_first = false;
         text += fmt::format("| {} | [{}]({}) | {} | {} | {} | {} | {} | ![{}]({}) |\n",
@@ -195,31 +198,26 @@ std::string readme(const std::vector<ShippedLut>& luts) {
 bool is_trilinear(const LutHost& host) { return host.interpolation.starts_with("trilinear"); }
 
 const std::vector<LutShelf>& lut_shelves() {
-    // Fitted nodes are no nearer for encodings of wide gamuts, where the kinks of clipping decide.
-    // Of what takes sRGB, 17 points are as near as 33: there is light up to white only.
+    // What takes sRGB is for pictures of 8 bits: 17 points are half a code of these off in the
+    // mean.
     static const std::vector<LutShelf> shelves = {
-        {&find_lut_host("resolve"), "", kOperators, {}, LutNodes::sampled},
+        {&find_lut_host("resolve"), "", kOperators, {}},
         {&find_lut_host("nuke"),
-         "every application whose picture is in ACEScct: After Effects, Houdini, Flame, Baselight",
-         kOperators,
-         {},
-         LutNodes::sampled},
+         "every application whose picture is in ACEScct: After Effects, Houdini, Flame, Baselight. "
+         "Where it has OpenColorIO, the [config](../ocio_config/README.md) is nearer",
+         kForWideGamuts,
+         {}},
         {&find_lut_host("premiere"),
          "every editor, with footage of an ARRI camera in LogC3",
-         kOperators,
-         {},
-         LutNodes::sampled},
-        {&find_lut_host("ffmpeg"), "mpv, with HDR10 video", kOperators, {}, LutNodes::sampled},
-        {&find_lut_host("unity"), "", kOperators, {}, LutNodes::sampled},
-        {&find_lut_host("unreal"), "", kOperators, {}, LutNodes::sampled},
-        {&find_lut_host("godot"), "", kOperators, {}, LutNodes::sampled},
+         kForWideGamuts,
+         {}},
+        {&find_lut_host("ffmpeg"), "mpv, with HDR10 video", kForWideGamuts, {}},
+        {&find_lut_host("unity"), "", kOperators, {}},
+        {&find_lut_host("unreal"), "", kOperators, {}},
+        {&find_lut_host("godot"), "", kOperators, {}},
         {&find_lut_host("photoshop"),
-         "Affinity Photo, OBS Studio, darktable, G'MIC, GIMP, three.js",
-         kOperators,
-         17,
-         LutNodes::sampled},
-        {&find_lut_host("imagemagick"), "GraphicsMagick, RawTherapee", kOperators, 36,
-         LutNodes::sampled},
+         "Affinity Photo, OBS Studio, darktable, G'MIC, GIMP, three.js", kOperators, 17},
+        {&find_lut_host("imagemagick"), "GraphicsMagick, RawTherapee", kOperators, 36},
     };
     return shelves;
 }

@@ -56,28 +56,27 @@ std::vector<std::string> header_lines(const Lut& lut, const LutRequest& r, const
         const Display& display = find_display(r.view.display);
         lines.push_back("Output: " + display.title + " code values (" + display.source + ")");
     }
-    lines.push_back(
-        fmt::format("Error against the double-precision operator, {} interpolation, inside the "
-                    "input range: max {}, 99.9 % {}, mean {}",
-                    e.interpolation, three_digits_up(e.max), three_digits_up(e.p999),
-                    three_digits_up(e.mean)));
+    lines.push_back(fmt::format(
+        "Error against the double-precision operator, {} interpolation, inside the "
+        "input range: max {}, 99.9 % {}, mean {}",
+        e.interpolation, three_digits_up(e.max), three_digits_up(e.p999), three_digits_up(e.mean)));
     if (e.delta_e_max > 0)
         lines.push_back("Largest colour difference: dE_ITP " + rounded_up(e.delta_e_max));
     return lines;
 }
 
-void append_value(std::string& text, float value, const LutRequest& r) {
-    if (r.decimals) {
-        append_decimals(text, value, *r.decimals);
+void append_value(std::string& text, const Lut& lut, float value) {
+    if (lut.decimals) {
+        append_decimals(text, value, *lut.decimals);
     } else {
         append_number(text, value);
     }
 }
 
-std::string triplets(const Lut& lut, const LutRequest& r) {
+std::string triplets(const Lut& lut) {
     std::string text;
     for (std::size_t i = 0; i < lut.values.size(); ++i) {
-        append_value(text, lut.values[i], r);
+        append_value(text, lut, lut.values[i]);
         text += (i + 1) % 3 == 0 ? '\n' : ' ';
     }
     return text;
@@ -89,7 +88,7 @@ std::string write_cube(const Lut& lut, const LutRequest& r, const LutError& e) {
         text += "# " + line + "\n";
     if (lut.dimension == 3) {
         text += fmt::format("LUT_3D_SIZE {}\nDOMAIN_MIN 0 0 0\nDOMAIN_MAX 1 1 1\n", lut.size);
-        return text + triplets(lut, r);
+        return text + triplets(lut);
     }
     // Only a linear table has another domain: hosts disagree about every other one.
     const std::string lo = shortest(r.encoding.is_linear ? r.encoding.scene_lo : 0);
@@ -98,7 +97,7 @@ std::string write_cube(const Lut& lut, const LutRequest& r, const LutError& e) {
                         lut.size, lo, hi);
     for (const float v : lut.values) {
         std::string number;
-        append_value(number, v, r);
+        append_value(number, lut, v);
         text += number + " " + number + " " + number + "\n";
     }
     return text;
@@ -172,7 +171,7 @@ std::string write_csp(const Lut& lut, const LutRequest& r, const LutError& e) {
     for (int c = 0; c < 3; ++c)
         text += std::to_string(kPoints) + "\n" + from + to;
     text += fmt::format("\n{0} {0} {0}\n", lut.size);
-    return text + triplets(lut, r);
+    return text + triplets(lut);
 }
 
 /// Autodesk Flame and Lustre: input of 10 bits, blue fastest.

@@ -94,6 +94,8 @@ struct Lut {
     int channels = 3;
     bool is_half_domain = false;
     std::vector<float> values;
+    /// That the values were rounded to. @see LutRequest::decimals
+    std::optional<int> decimals = {};
 };
 
 /// Distance of a table, interpolated as its readers do, from the double reference; display code
@@ -125,14 +127,6 @@ struct LutError {
 /// table inputs.
 [[nodiscard]] LutError measure_lut(const Lut& lut, const LutRequest& request,
                                    bool trilinear = false);
-
-/// A cube between its nodes, in both ways that applications interpolate.
-struct LutErrors {
-    LutError tetrahedral;
-    LutError trilinear;
-};
-/// measure_lut() twice, in not much more time than once.
-[[nodiscard]] LutErrors measure_cube(const Lut& lut, const LutRequest& request);
 
 /// Which values the nodes of a cube have: sampled, fitted, or of these the one that is nearer in
 /// the mean and in the 99.9th percentile.
@@ -170,7 +164,7 @@ struct GeneratedFile {
     std::string contents;
 };
 
-/// Why and for whom a LUT is in the set of `bake --all`: all LUTs of one application.
+/// Of the set of `bake --all`: the LUTs of one application.
 struct LutShelf {
     const LutHost* host = nullptr;
     /// Applications that the same files suit.
@@ -178,7 +172,6 @@ struct LutShelf {
     std::vector<std::string> operators;
     /// Instead of the host's, where fewer are enough.
     std::optional<int> size;
-    LutNodes nodes = LutNodes::sampled;
 };
 [[nodiscard]] const std::vector<LutShelf>& lut_shelves();
 
@@ -192,7 +185,8 @@ struct ShippedLut {
     std::string thumbnail;
     Lut lut;
     bool is_fitted = false;
-    LutErrors errors;
+    LutError tetrahedral;
+    LutError trilinear;
     /// The file. Empty for a picture, which OpenImageIO writes.
     std::string contents;
 };

@@ -16,6 +16,8 @@ import numpy as np
 
 from pictures import Report, evaluate, log2_decode, need_program, read_rgb, run, unstack, write_exr
 
+from lut_tables import hald_cube, read_cube  # python_check/, which pictures.py puts on the path
+
 # AgX as Sobotka has it, of log2 light: every channel of its picture depends on all three in another way, so no channel
 # or axis can be taken for another; and its cube of 33 is 1.4e-3 from it, so little that the operator is seen.
 OPERATOR = "agx_sobotka"
@@ -33,68 +35,6 @@ def bake(command, path, *arguments):
     if done.returncode:
         raise RuntimeError(f"bake {' '.join(map(str, arguments))}: {done.stderr.strip()}")
     return float(re.search(r"error max ([^,]+),", done.stderr)[1])
-
-
-# --------------------------------------------------------------------------------------------------
-# Files, and what is between their nodes, in float64
-
-
-def read_cube(path):
-    """(table, error): (n, 3) for a 1D file, (blue, green, red, 3) for a cube; error is what its comments state."""
-    lines = path.read_text().splitlines()
-    keys = {line.split()[0]: line.split()[1:] for line in lines if re.match("[A-Z]", line)}
-    for key, expected in (("DOMAIN_MIN", 0), ("DOMAIN_MAX", 1)):
-        if any(float(v) != expected for v in keys.get(key, [])):
-            raise ValueError(f"{path.name}: {key} is {keys[key]}; programs agree about no other domain than 0..1")
-    table = np.array([line.split() for line in lines if re.match("[-0-9.]", line)], float)
-    if "LUT_3D_SIZE" in keys:
-        n = int(keys["LUT_3D_SIZE"][0])
-        table = table.reshape(n, n, n, 3)
-    error = float(re.search(r"^# Error .* max ([^,]+),", "\n".join(lines), re.M).group(1))
-    return table, error
-
-
-def read_hald(path, scratch):
-    """The nodes of a Hald CLUT as (blue, green, red, 3)."""
-    nodes = read_rgb(path, scratch).astype(float).reshape(-1, 3)
-    n = round(len(nodes) ** (1 / 3))
-    return nodes.reshape(n, n, n, 3)
-
-
-def cell_of(table, code):
-    """(the node below, the place in its cell in 0..1) of (n, 3) codes, red first."""
-    at = np.clip(code, 0, 1) * (len(table) - 1)
-    corner = np.minimum(at.astype(int), len(table) - 2)
-    return corner, at - corner
-
-
-def tetrahedral(table, code):
-    """A cube at (n, 3) codes: the six tetrahedra are the six orders of the fractions, largest first."""
-    corner, fraction = cell_of(table, code)
-    order = np.argsort(-fraction, axis=1, kind="stable")
-    sorted_fraction = np.take_along_axis(fraction, order, axis=1)
-    weights = -np.diff(sorted_fraction, axis=1, prepend=1, append=0)
-    out = np.zeros((len(code), 3))
-    for step in range(4):
-        if step:
-            corner[np.arange(len(code)), order[:, step - 1]] += 1
-        out += weights[:, step, None] * table[corner[:, 2], corner[:, 1], corner[:, 0]]
-    return out
-
-
-def trilinear(table, code):
-    corner, fraction = cell_of(table, code)
-    out = np.zeros((len(code), 3))
-    for step in np.ndindex(2, 2, 2):
-        weight = np.where(step, fraction, 1 - fraction).prod(axis=1)
-        r, g, b = (corner + step).T
-        out += weight[:, None] * table[b, g, r]
-    return out
-
-
-def linear(table, code):
-    n = len(table)
-    return np.stack([np.interp(code[:, c], np.arange(n) / (n - 1), table[:, c]) for c in range(3)], axis=1)
 
 
 # --------------------------------------------------------------------------------------------------
@@ -152,7 +92,7 @@ class LutTest:
     def hald(self, host):
         """(path, table, stated error) of a Hald CLUT."""
         path, stated = self.bake(host, f"{host}.png", "--size", 36)
-        return path, read_hald(path, self.scratch), stated
+        return path, hald_cube(read_rgb(path, self.scratch)), stated
 
     def picture(self, name, depth="uint16"):
         path = self.scratch / name
@@ -185,8 +125,11 @@ Client = collections.namedtuple("Client", "title program package version")
 
 def version_of(client):
     """`G'MIC 2.9.4`, by what the program says of itself."""
-    done = subprocess.run(client.version.split(), capture_output=True, text=True, check=False)
-    number = re.search(r"\d+(\.\d+)+(-\d+)?", done.stdout + done.stderr)
+    try:
+        done = subprocess.run(client.version.split(), capture_output=True, text=True, check=False)
+        number = re.search(r"\d+(\.\d+)+", done.stdout + done.stderr)
+    except FileNotFoundError:
+        number = None
     return f"{client.title} {number[0] if number else '(unknown version)'}"
 
 

@@ -10,7 +10,8 @@ Float EXR in and out; the module works in linear Rec.709, so that its numbers ar
 import re
 import struct
 
-from lut_client import Client, lut_test, tetrahedral, trilinear
+from lut_client import Client, lut_test
+from lut_tables import tetrahedral, trilinear
 from pictures import read_rgb, run
 
 # Its working profile is Rec.2020: to it and back costs 6e-5 of the codes, as the first check shows, times the steepest

@@ -8,20 +8,18 @@ Real pictures join the test chart where they are found, see pictures.shared_pict
 `N passed, M failed`.
 """
 
-import sys
-
 import numpy as np
 
-from lut_client import (BITS16, FLOAT32, HEIGHT, WIDTH, Client, linear, lut_test, read_cube,
-                        read_hald, tetrahedral, trilinear)
-from pictures import (PROJECT, acescct_decode, acescct_encode, evaluate, log2_decode, log2_encode, read_exr, read_rgb,
-                      run, shared_picture, skip, stack, unstack, write_exr)
-
-sys.path.insert(0, str(PROJECT / "python_check"))
-import operators  # noqa: E402  (matrices from the chromaticities, a second opinion on the program's)
+from lut_client import BITS16, FLOAT32, HEIGHT, WIDTH, Client, lut_test
+from lut_encodings import acescct_decode, acescct_encode
+from lut_tables import hald_cube, linear, read_cube, stated_errors, tetrahedral, trilinear
+from operators import rgb_to_rgb  # from the chromaticities, a second opinion on the program's
+from pictures import (evaluate, log2_decode, log2_encode, read_exr, read_rgb, run, shared_picture, skip, stack, unstack,
+                      write_exr)
 
 # Colours compared with the operator; `eval` reads text, a million lines would take longer than they tell.
 SAMPLES = 20000
+
 
 def through_ffmpeg(codes, filter_, scratch):
     """Codes (height, width, 3) through a filter. ffmpeg runs in the folder: its filter syntax cannot quote any path."""
@@ -63,11 +61,11 @@ def check_modes(test):
         shown = through_ffmpeg(test.codes, f"lut3d={cube.name}:interp={name}", test.scratch)
         test.compare(f"lut3d, .cube 33, {name}, float", shown, interpolate(table, test.flat), stated, FLOAT32, False)
         path, stated = test.bake(host, "hald.exr", "--format", "hald", "--size", 36, "--depth", 32)
-        table = read_hald(path, test.scratch)
+        table = hald_cube(read_rgb(path, test.scratch))
         shown = through_haldclut(test, test.picture("codes.exr"), path, name, "gbrpf32le")
         test.compare(f"haldclut of 36, {name}, float", shown, interpolate(table, test.flat), stated, FLOAT32, False)
         path, stated = test.bake(host, "hald.png", "--format", "hald", "--size", 36, "--depth", 16)
-        table = read_hald(path, test.scratch)
+        table = hald_cube(read_rgb(path, test.scratch))
         shown = through_haldclut(test, test.picture("codes.png"), path, name, "rgb48le")
         test.compare(f"haldclut of 36, {name}, 16 bits", shown, interpolate(table, test.flat), stated, BITS16)
 
@@ -79,16 +77,18 @@ def main(test):
     run(command, "chart", "-o", scratch / "chart.exr", "--width", 768, "--height", 432)
     memorial = shared_picture("memorial.hdr")
     pictures = [scratch / "chart.exr"] + ([memorial] if memorial else [])
-    to_ap1 = operators.rgb_to_rgb("rec709", "ap1").T
+    to_ap1 = rgb_to_rgb("rec709", "ap1").T
 
     run(command, "bake", "agx_sobotka", "--format", "cube", "--size", 33, "--input-encoding", "acescct",
         "-o", scratch / "agx.cube")
-    cube, stated = read_cube(scratch / "agx.cube")
+    cube, lines = read_cube(scratch / "agx.cube")
+    stated = stated_errors(lines)["tetrahedral"][0]
     test.report.bound("agx.cube: entries, as 33^3", abs(cube.size - 3 * 33**3), 0.5)
     # Uniform random codes reach every cell of the cube, and -0.1 and 1.1 what is outside.
     random = np.random.default_rng(1).uniform(-0.1, 1.1, (128, 128, 3))
     run(command, "bake", "hable", "--format", "cube", "--input-encoding", "log2", "-o", scratch / "hable.cube")
-    curve, curve_stated = read_cube(scratch / "hable.cube")
+    curve, lines = read_cube(scratch / "hable.cube")
+    curve_stated = stated_errors(lines)["linear"][0]
     for name, rgb in [(p.name, read_rgb(p, scratch).astype(float)) for p in pictures] + [("random", None)]:
         codes = (random if rgb is None else acescct_encode(rgb @ to_ap1)).astype(np.float32)
         graded = through_ffmpeg(codes, "lut3d=agx.cube:interp=tetrahedral", scratch)

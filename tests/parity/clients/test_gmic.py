@@ -7,7 +7,8 @@ As `list --hosts` says: G'MIC's own `map_clut` takes v n / 256 for the place of 
 the layout of Unreal, Unity and Godot, whose programs are not here. The last line is `N passed, M failed`.
 """
 
-from lut_client import FLOAT32, Client, lut_test, trilinear
+from lut_client import FLOAT32, Client, lut_test
+from lut_tables import strip_cube, trilinear
 from pictures import read_rgb, run
 
 STRIP = 32
@@ -31,9 +32,9 @@ def main(test):
     shown = through_gmic(test, codes, hald, "div[1]", 65535, "resize[1]", "36,36,36,3,-1", size=36)
     test.compare("Hald CLUT of 36, 16 bits", shown, trilinear(table, test.flat), stated, FLOAT32)
     path, stated = test.bake("godot", "strip.png", "--depth", 16)
-    rows = read_rgb(path, test.scratch).astype(float).reshape(STRIP, STRIP, STRIP, 3)  # green, blue, red
+    table = strip_cube(read_rgb(path, test.scratch))
     shown = through_gmic(test, codes, path, "div[1]", 65535, "split[1]", f"x,{STRIP}", "append[1--1]", "z", size=STRIP)
-    test.compare("strip of 32, 16 bits", shown, trilinear(rows.transpose(1, 0, 2, 3), test.flat), stated, FLOAT32)
+    test.compare("strip of 32, 16 bits", shown, trilinear(table, test.flat), stated, FLOAT32)
 
 
 if __name__ == "__main__":

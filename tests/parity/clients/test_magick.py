@@ -6,7 +6,8 @@
 Both interpolate in cubes, on 16 bits. The last line is `N passed, M failed`.
 """
 
-from lut_client import BITS16, Client, lut_test, trilinear
+from lut_client import BITS16, Client, lut_test
+from lut_tables import trilinear
 from pictures import read_rgb, run
 
 

@@ -10,7 +10,8 @@ interpolates in cubes. The last line is `N passed, M failed`.
 import os
 import subprocess
 
-from lut_client import Client, lut_test, trilinear
+from lut_client import Client, lut_test
+from lut_tables import trilinear
 from pictures import read_rgb, screen, skip
 
 # The rounding of the screenshot, half a code of 16 bits, and the shader's float32.

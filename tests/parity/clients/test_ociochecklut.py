@@ -12,8 +12,9 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 
-from lut_client import FLOAT32, ENCODING, OPERATOR, Client, lut_test, tetrahedral
-from pictures import evaluate, log2_decode, run, screen
+from lut_client import FLOAT32, OPERATOR, Client, lut_test
+from lut_tables import read_cube, tetrahedral
+from pictures import evaluate, log2_decode, screen
 
 # It prints seven digits.
 PRINTED = FLOAT32 + 1e-6
@@ -37,13 +38,11 @@ def main(test):
     test.flat = np.concatenate([test.flat[::len(test.flat) // COUNT], [[-0.25, 0.5, 1.5], [1, 1, 1], [0, 0, 0]]])
     test.truth = evaluate(test.command, log2_decode(np.clip(test.flat, 0, 1)), OPERATOR)
     for extension in ("cube", "clf", "spi3d"):
-        lut, cube = test.scratch / f"lut.{extension}", test.scratch / "lut.cube"
-        run(test.command, "bake", OPERATOR, "--3d", "--format", extension, "--input-encoding", ENCODING,
-            "--nodes", "sampled", "-o", lut)
-        if extension == "cube":
-            _, table, stated = test.cube("ocio")
-        predicted = tetrahedral(table, test.flat)
-        test.compare(f".{extension} 33", through_ociochecklut(lut, test.flat), predicted, stated, PRINTED, clips=False)
+        lut, stated = test.bake("ocio", f"lut.{extension}", "--format", extension)
+        if extension == "cube":  # the numbers of all
+            cube, table = lut, read_cube(lut)[0]
+        test.compare(f".{extension} 33", through_ociochecklut(lut, test.flat), tetrahedral(table, test.flat), stated,
+                     PRINTED, clips=False)
     with screen() as display:
         if not display:
             print("skipped: the GPU path (no X server without a screen: Xvfb; Debian: xvfb)")
@@ -56,5 +55,5 @@ def main(test):
 
 
 if __name__ == "__main__":
-    raise SystemExit(lut_test(__doc__, main, Client("ociochecklut", "ociochecklut", "opencolorio-tools",
-                                                    "ociochecklut --help")))
+    raise SystemExit(lut_test(__doc__, main, Client(
+        "ociochecklut, OpenColorIO", "ociochecklut", "opencolorio-tools", "pkg-config --modversion OpenColorIO")))

@@ -9,7 +9,8 @@ TIFF of 16 bits in sRGB, in and out. The last line is `N passed, M failed`.
 import os
 import subprocess
 
-from lut_client import Client, lut_test, trilinear
+from lut_client import Client, lut_test
+from lut_tables import trilinear
 from pictures import read_rgb
 
 # Its pipeline is not made for numbers: without a LUT, colours come out 1.1e-3 off at most (it decodes sRGB by a table,

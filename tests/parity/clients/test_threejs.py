@@ -13,7 +13,8 @@ from pathlib import Path
 
 import numpy as np
 
-from lut_client import FLOAT32, HEIGHT, WIDTH, Client, lut_test, trilinear
+from lut_client import FLOAT32, HEIGHT, WIDTH, Client, lut_test
+from lut_tables import trilinear
 from pictures import run, skip
 
 PACKAGES = ["three@0.187.0", "playwright-core@1.65.1"]

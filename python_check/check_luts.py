@@ -3,9 +3,9 @@
 
     python3 python_check/check_luts.py build/release/bin/tonewright luts
 
-Light, its encoding, the interpolation and the operator are NumPy's: lut_encodings.py, lut_tables.py, operators/. The light is
-the probe set as src/engine/probe.h describes it, drawn anew. Some of it goes through `tonewright eval` as well. Pictures
-are read by oiiotool. The last line is `N passed, M failed`.
+Light, its encoding, the interpolation and the operator are NumPy's: lut_encodings.py, lut_tables.py, operators/. The
+light is the probe set as src/engine/probe.h describes it, drawn anew. Some of it goes through `tonewright eval` as well.
+Pictures are read by oiiotool. The last line is `N passed, M failed`.
 """
 
 import argparse
@@ -105,8 +105,8 @@ def check_luts(report, command, folder, rows, scratch):
     some = np.random.default_rng(2).choice(len(light), 200, replace=False)
     said = evaluate(command, light[some], name, "--input", first["input_space"], "--display", first["output"],
                     "--digits", 17)
-    report.compare(f"{name}, {first['input_space']} to {first['output']}, by eval and by NumPy", said, truth[some], SAME,
-                   LIGHT.get(first["output"]))
+    report.compare(f"{name}, {first['input_space']} to {first['output']}, by eval and by NumPy", said, truth[some],
+                   SAME, LIGHT.get(first["output"]))
     codes = encoding.encode(light)
     for row in rows:
         table, stated = read_table(folder / row["path"], row["format"], scratch)

@@ -124,8 +124,8 @@ void add_bake(CLI::App& program, int&) {
     command->add_option("--depth", options->bits,
                         "bits of a number: 8, 16 or 32 (float) in pictures, 10, 12 or 16 in 3dl");
     command->add_option("--decimals", options->decimals,
-                        "of the numbers in a cube, 3..9 (default: as many as a float has); 4 are "
-                        "finer than its error between the nodes");
+                        "of the numbers in a cube, 3..9 (default: as many as a float has); 4 round "
+                        "by 5e-5, less than most cubes are off between their nodes");
     CLI::Option* one = command->add_flag(
         "--1d", options->one, "a 1D table; the view must be per channel in its own space");
     command->add_flag("--3d", options->three, "a cube even where a 1D table would do")

@@ -60,8 +60,9 @@ struct LutRequest {
     std::optional<int> size;
     /// Of integers: 8 or 16 in pictures, 10, 12 or 16 in `3dl`. 32: float.
     std::optional<int> bits;
-    /// Of the numbers in a `cube`, [3, 9]; where none is given, as many as a float has. Four are
-    /// finer than what any cube is off between its nodes, in half the space.
+    /// Of the numbers in a `cube`, [3, 9]; where none is given, as many as a float has. Four round
+    /// by 5e-5 at most, less than cubes of 33 points are off between their nodes, in half the
+    /// space.
     std::optional<int> decimals;
 };
 

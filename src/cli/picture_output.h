@@ -16,4 +16,7 @@ void require_lut_picture(const std::string& path, int bits);
 /// @param bits  8, 16 or 32 (float)
 void write_lut_picture(const Lut& lut, LutFormat format, const std::string& path, int bits);
 
+/// A table from a picture file. @see read_lut_picture
+[[nodiscard]] Lut load_lut_picture(const std::string& path);
+
 }  // namespace tonewright

@@ -18,6 +18,7 @@ struct Options : ViewOptions {
     bool three = false;
     std::optional<int> bits;
     int icc_version = 2;
+    std::optional<int> decimals;
     std::optional<double> max_error;
     std::string nodes = "auto";
     std::string host;
@@ -57,16 +58,16 @@ void bake_one(Options& options, const CLI::App& command) {
     request.icc_version = options.icc_version;
     if (command.count("--icc-version") > 0 && request.format != LutFormat::icc)
         throw Error("bake: ICC version is given for " + options.format + "; expected icc");
+    request.decimals = options.decimals;
     if (options.one) request.dimension = LutDimension::one;
     if (options.three) request.dimension = LutDimension::three;
-    const bool is_trilinear =
-        !options.host.empty() && find_lut_host(options.host).interpolation.starts_with("trilinear");
+    const bool trilinear = !options.host.empty() && is_trilinear(find_lut_host(options.host));
     LutNodes nodes = LutNodes::automatic;
     if (options.nodes == "sampled") nodes = LutNodes::sampled;
     if (options.nodes == "fitted") nodes = LutNodes::fitted;
     const bool is_picture = is_picture_format(request.format);
     if (is_picture) require_lut_picture(options.file, request.bits.value_or(16));
-    const BakedLut baked = bake_lut(request, nodes, is_trilinear, options.max_error);
+    const BakedLut baked = bake_lut(request, nodes, trilinear, options.max_error);
     const Lut& lut = baked.lut;
     const LutError& error = baked.error;
     request.size = lut.size;
@@ -135,6 +136,9 @@ void add_bake(CLI::App& program, int&) {
     command->add_option("--icc-version", options->icc_version, "of a device link")
         ->check(CLI::IsMember({2, 4}))
         ->capture_default_str();
+    command->add_option("--decimals", options->decimals,
+                        "of the numbers in a cube, 3..9 (default: as many as a float has); 4 are "
+                        "finer than its error between the nodes");
     CLI::Option* one = command->add_flag(
         "--1d", options->one, "a 1D table; the view must be per channel in its own space");
     command->add_flag("--3d", options->three, "a cube even where a 1D table would do")
@@ -151,7 +155,7 @@ void add_bake(CLI::App& program, int&) {
         if (!options->all.empty()) {
             if (!options->op.empty())
                 throw Error("bake: operator is " + options->op + "; expected none with --all");
-            write_generated_files(options->all, make_shipped_luts(), "MANIFEST.csv");
+            write_shipped_luts(options->all);
             return;
         }
         bake_one(*options, *command);

@@ -8,6 +8,7 @@
 
 #include "cli/picture_input.h"
 #include "image/lut_picture.h"
+#include "image/shipped_pictures.h"
 #include "tonewright/image.h"
 
 namespace tonewright {
@@ -22,6 +23,15 @@ void require_lut_picture(const std::string& path, int bits) {
         throw Error(fmt::format("bake: file is {}; expected {} or .tif for {} bits", path,
                                 bits == 32 ? ".exr" : ".png", bits));
     }
+}
+
+void write_shipped_luts(const std::string& folder) {
+    require_writable_folder(folder);
+    std::vector<ShippedLut> luts = bake_shipped_luts();
+    std::vector<GeneratedFile> files = make_shipped_files(luts);
+    const std::vector<GeneratedFile> about = describe_shipped_luts(luts);
+    files.insert(files.end(), about.begin(), about.end());
+    write_generated_files(folder, files, "MANIFEST.csv");
 }
 
 void write_lut_picture(const Lut& lut, LutFormat format, const std::string& path, int bits) {

@@ -19,6 +19,10 @@ void append_decimals(std::string& text, float value, int decimals);
 /// rounding of doubles near 1: 0.
 void append_compact(std::string& text, float value);
 
+/// Three significant digits, rounded up: what is printed is never less than what was measured, and
+/// at most 1 % more.
+[[nodiscard]] std::string three_digits_up(double value);
+
 /// FNV-1a, 32 bits, as 8 hexadecimal digits: names LUT files by their contents, because OCIO caches
 /// files by name.
 [[nodiscard]] std::string content_hash(const std::string& contents);

@@ -121,6 +121,13 @@ Lut sample_lut(const LutRequest& request) {
         traits.has_1d && (!traits.has_3d || request.dimension == LutDimension::one ||
                           (request.dimension == LutDimension::automatic && per_channel));
     check_bits(request, traits);
+    if (request.decimals && request.format != LutFormat::cube) {
+        throw Error("bake: decimals is " + std::to_string(*request.decimals) +
+                    "; expected none for " + traits.name + ", only cube has them");
+    }
+    if (request.decimals && (*request.decimals < 3 || *request.decimals > 9)) {
+        throw Error("bake: decimals is " + std::to_string(*request.decimals) + "; expected [3, 9]");
+    }
     // Readers have 65536 equal steps of light at most: up to ACEScct's 222.9 they are short enough.
     constexpr double kBrightestShaper = 223;
     if (has_shaper(request.format) && request.encoding.scene_hi > kBrightestShaper) {
@@ -215,6 +222,12 @@ Lut fit_lut(const LutRequest& request, const Lut& sampled) {
 }
 
 void quantize(Lut& lut, const LutRequest& request) {
+    if (request.decimals) {
+        lut.decimals = request.decimals;
+        const double unit = std::pow(10.0, *request.decimals);
+        for (float& v : lut.values)
+            v = static_cast<float>(std::round(static_cast<double>(v) * unit) / unit);
+    }
     const int bits = bits_of(request);
     if (bits == 32) return;
     const float largest = std::exp2(static_cast<float>(bits)) - 1;

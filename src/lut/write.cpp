@@ -22,15 +22,15 @@ std::string title_of(const LutRequest& r) {
 
 /// How exact it is, for one interpolation.
 void add_error_lines(std::vector<std::string>& lines, const LutError& e) {
-    lines.push_back(
-        fmt::format("Error against the double-precision operator, {} interpolation, inside the "
-                    "input range: max {}, 99.9 % {}, mean {}",
-                    e.interpolation, rounded_up(e.max), rounded_up(e.p999), rounded_up(e.mean)));
+    lines.push_back(fmt::format(
+        "Error against the double-precision operator, {} interpolation, inside the "
+        "input range: max {}, 99.9 % {}, mean {}",
+        e.interpolation, three_digits_up(e.max), three_digits_up(e.p999), three_digits_up(e.mean)));
     if (e.delta_e_max > 0) {
         lines.push_back(fmt::format(
             "Color difference dE_ITP (ITU-R BT.2124), {} interpolation: max {}, 99.9 % {}, mean {}",
-            e.interpolation, rounded_up(e.delta_e_max), rounded_up(e.delta_e_p999),
-            rounded_up(e.delta_e_mean)));
+            e.interpolation, three_digits_up(e.delta_e_max), three_digits_up(e.delta_e_p999),
+            three_digits_up(e.delta_e_mean)));
     }
 }
 
@@ -92,10 +92,18 @@ std::vector<std::string> header_lines(const Lut& lut, const LutRequest& r, const
 
 using Lines = std::vector<std::string>;
 
+void append_value(std::string& text, const Lut& lut, float value) {
+    if (lut.decimals) {
+        append_decimals(text, value, *lut.decimals);
+    } else {
+        append_number(text, value);
+    }
+}
+
 std::string triplets(const Lut& lut) {
     std::string text;
     for (std::size_t i = 0; i < lut.values.size(); ++i) {
-        append_number(text, lut.values[i]);
+        append_value(text, lut, lut.values[i]);
         text += (i + 1) % 3 == 0 ? '\n' : ' ';
     }
     return text;
@@ -116,7 +124,7 @@ std::string write_cube(const Lut& lut, const LutRequest& r, const Lines& header)
                         lut.size, lo, hi);
     for (const float v : lut.values) {
         std::string number;
-        append_number(number, v);
+        append_value(number, lut, v);
         text += number + " " + number + " " + number + "\n";
     }
     return text;

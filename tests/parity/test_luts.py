@@ -19,7 +19,9 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent / "clients"))
-from pictures import Report, acescct_decode, evaluate, log2_decode, need_program, pq_light, read_rgb, run, skip  # noqa: E402
+from pictures import Report, evaluate, log2_decode, need_program, pq_light, read_rgb, run, skip  # noqa: E402
+from lut_encodings import acescct_decode, davinci_decode, srgb_decode, unity_logc_decode  # noqa: E402
+from lut_encodings import logc3_decode as logc3  # noqa: E402
 
 try:
     import PyOpenColorIO as ocio
@@ -33,31 +35,9 @@ EXACT = 1e-7
 # OpenColorIO's tetrahedra, in float32, at the nodes themselves.
 READ = 2e-6
 
-
-def logc3(code):
-    """ARRI, "ALEXA Log C Curve, Usage in VFX", EI 800."""
-    return np.where(code > 5.367655 * 0.010591 + 0.092809, (10 ** ((code - 0.385537) / 0.247190) - 0.052272) / 5.555556,
-                    (code - 0.092809) / 5.367655)
-
-
-def davinci(code):
-    """"DaVinci Resolve 17 Wide Gamut Intermediate"."""
-    return np.where(code <= 0.02740668, code / 10.44426855, 2 ** (code / 0.07329248 - 7) - 0.0075)
-
-
-def unity_logc(code):
-    """Color.hlsl: LogCToLinear."""
-    return (10 ** ((code - 0.386036) / 0.244161) - 0.047996) / 5.555556
-
-
-def srgb(code):
-    """IEC 61966-2-1."""
-    return np.where(code <= 0.04045, code / 12.92, ((code + 0.055) / 1.055) ** 2.4)
-
-
 # encoding of `list --hosts` -> (code -> scene-linear light, the space that it is in)
-ENCODINGS = {"acescct": (acescct_decode, "lin_ap1"), "logc3": (logc3, "lin_awg3"), "davinci": (davinci, "lin_davinci_wg"),
-             "unity_logc": (unity_logc, "lin_rec709"), "srgb": (srgb, "lin_rec709"), "pq": (pq_light, "lin_rec2020")}
+ENCODINGS = {"acescct": (acescct_decode, "lin_ap1"), "logc3": (logc3, "lin_awg3"), "davinci": (davinci_decode, "lin_davinci_wg"),
+             "unity_logc": (unity_logc_decode, "lin_rec709"), "srgb": (srgb_decode, "lin_rec709"), "pq": (pq_light, "lin_rec2020")}
 
 
 def nodes_of(size):
@@ -166,7 +146,7 @@ def check_formats(report, command, folder):
     run(command, "bake", "gt7", "--3d", "--display", "linear", "--input-encoding", "unity_logc", "--nodes", "fitted",
         "--size", 17, "-o", path)
     lowest = through_ocio(path, codes).min()
-    wanted = evaluate(command, unity_logc(codes), "gt7", "--display", "linear").min()
+    wanted = evaluate(command, unity_logc_decode(codes), "gt7", "--display", "linear").min()
     report.check(f"fitted nodes keep what is below 0 in linear output: {lowest:.2g} of {wanted:.2g}",
                  wanted - 1e-6 <= lowest <= wanted / 2 < 0, (lowest, wanted))
     path = folder / "x.exr"

@@ -80,6 +80,9 @@ struct LutRequest {
     std::optional<int> bits;
     /// Of the ICC's specification: 2 (more programs read it) or 4.
     int icc_version = 2;
+    /// Of the numbers in a `cube`, [3, 9]; where none is given, as many as a float has. Four are
+    /// finer than what any cube is off between its nodes, in half the space.
+    std::optional<int> decimals;
 };
 
 /// An application that reads a LUT, and what it expects.
@@ -111,6 +114,8 @@ struct Lut {
     int channels = 3;
     bool is_half_domain = false;
     std::vector<float> values;
+    /// That the values were rounded to. @see LutRequest::decimals
+    std::optional<int> decimals = {};
 };
 
 /// Distance of a table, interpolated as its readers do, from the double reference; display code
@@ -188,7 +193,8 @@ struct BakedLut {
                                 bool trilinear = false,
                                 std::optional<double> max_error = std::nullopt);
 
-/// The table as its format holds it: rounded to the integers of LutRequest::bits.
+/// The table as its format holds it: rounded to the integers of LutRequest::bits, or to
+/// LutRequest::decimals.
 void quantize(Lut& lut, const LutRequest& request);
 
 /// The contents of the file: what it is, what goes in, what clips, what comes out, the measured
@@ -205,9 +211,41 @@ struct GeneratedFile {
     std::string contents;
 };
 
-/// The set of `bake --all`: for every operator a 33^3 ACEScct cube and, where it is per channel, a
-/// 1D table, with README.md and MANIFEST.csv. The same bytes on every run.
-[[nodiscard]] std::vector<GeneratedFile> make_shipped_luts();
+/// Of the set of `bake --all`: the LUTs of one application.
+struct LutShelf {
+    const LutHost* host = nullptr;
+    /// Applications that the same files suit.
+    std::string also;
+    std::vector<std::string> operators;
+    /// Instead of the host's, where fewer are enough.
+    std::optional<int> size;
+};
+[[nodiscard]] const std::vector<LutShelf>& lut_shelves();
+
+/// A LUT of the set.
+struct ShippedLut {
+    const LutShelf* shelf = nullptr;
+    LutRequest request;
+    /// In the set's folder: `resolve/agx_blender_davinci_to_rec1886.cube`.
+    std::string path;
+    /// What the chart looks like through it.
+    std::string thumbnail;
+    Lut lut;
+    bool is_fitted = false;
+    LutError tetrahedral;
+    LutError trilinear;
+    /// The file. Empty for a picture, which OpenImageIO writes.
+    std::string contents;
+};
+
+/// True where the application interpolates in cubes, not in tetrahedra, unless told otherwise.
+[[nodiscard]] bool is_trilinear(const LutHost& host);
+
+/// All of them, in the order of the shelves. The same on every run, whatever the number of threads.
+[[nodiscard]] std::vector<ShippedLut> bake_shipped_luts();
+
+/// README.md and MANIFEST.csv, of LUTs that all have their contents.
+[[nodiscard]] std::vector<GeneratedFile> describe_shipped_luts(const std::vector<ShippedLut>& luts);
 
 /// Writes to a temporary name beside the target, syncs, renames: a failed run leaves the old file.
 /// @throws FileError  naming the path and the reason.

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -14,6 +13,7 @@
 
 #include "lut/icc.h"
 #include "lut/lut_text.h"
+#include "lut/raw.h"
 #include "ocio/lower.h"
 
 namespace tonewright {
@@ -173,29 +173,6 @@ LutInterpolation parse_lut_interpolation(std::string_view text) {
     }
     throw Error("interpolation is " + std::string(text) + "; expected " + join_choices(names) +
                 did_you_mean(text, names));
-}
-
-Lut parse_raw_lut(const std::string& path, std::string_view bytes) {
-    constexpr std::size_t kNode = 3 * sizeof(float);
-    const int n = static_cast<int>(
-        std::lround(std::cbrt(static_cast<double>(bytes.size()) / static_cast<double>(kNode))));
-    const auto edge = static_cast<std::size_t>(n);
-    if (n < 2 || n > 129 || edge * edge * edge * kNode != bytes.size()) {
-        throw FileError(fmt::format(
-            "read: {}: has {} bytes; expected 12 for each of N x N x N nodes, N in [2, 129]", path,
-            bytes.size()));
-    }
-    Lut lut;
-    lut.size = n;
-    lut.values.resize(bytes.size() / sizeof(float));
-    std::memcpy(lut.values.data(), bytes.data(), bytes.size());
-    for (std::size_t i = 0; i < lut.values.size(); ++i) {
-        if (!std::isfinite(lut.values[i])) {
-            throw FileError(fmt::format("read: {}: number {} is {}; expected a finite number", path,
-                                        i + 1, lut.values[i]));
-        }
-    }
-    return lut;
 }
 
 struct LutFile::Form {

@@ -45,9 +45,4 @@ class LutFile {
     std::unique_ptr<const Form> form_;
 };
 
-/// Raw floats: RGB triplets, little-endian, red fastest, of a cube of 2 to 129 points a side.
-/// @param path  for errors
-/// @throws FileError  another number of bytes; NaN and infinities.
-[[nodiscard]] Lut parse_raw_lut(const std::string& path, std::string_view bytes);
-
 }  // namespace tonewright

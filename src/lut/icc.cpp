@@ -13,6 +13,8 @@
 #include <new>
 #include <type_traits>
 
+#include "lut/printable.h"
+
 namespace tonewright {
 namespace {
 
@@ -135,11 +137,12 @@ void check_table(const std::string& path, std::string_view bytes) {
         refuse("expected an ICC profile");
     if (bytes.substr(kClass, 4) != "link")
         refuse(fmt::format("profile class is \"{}\"; expected \"link\", a device link",
-                           bytes.substr(kClass, 4)));
+                           printable(bytes.substr(kClass, 4))));
     for (const std::size_t space : {kSpace, kConnectionSpace}) {
         if (bytes.substr(space, 4) != "RGB ")
             refuse(fmt::format("{} is \"{}\"; expected \"RGB \"",
-                               space == kSpace ? "input" : "output", bytes.substr(space, 4)));
+                               space == kSpace ? "input" : "output",
+                               printable(bytes.substr(space, 4))));
     }
     if (big_endian(bytes, 0, 4) > bytes.size()) {
         refuse(fmt::format("declares {} bytes; the file has {}", big_endian(bytes, 0, 4),
@@ -176,7 +179,7 @@ void check_table(const std::string& path, std::string_view bytes) {
             width = big_endian(tag, at + 16, 1);
         }
     } else {
-        refuse(fmt::format("A2B0 is of type \"{}\"; expected mft1, mft2 or mAB", type));
+        refuse(fmt::format("A2B0 is of type \"{}\"; expected mft1, mft2 or mAB", printable(type)));
     }
     const std::size_t nodes = grid[0] * grid[1] * grid[2];
     if (std::min({grid[0], grid[1], grid[2]}) < 2 || nodes * 3 * width > tag.size()) {
@@ -199,8 +202,9 @@ DeviceLink::DeviceLink(const std::string& path, std::string_view bytes) {
     }
     if (!profile->pipeline || cmsPipelineInputChannels(profile->pipeline) != 3 ||
         cmsPipelineOutputChannels(profile->pipeline) != 3) {
-        throw FileError("read: " + path + ": " +
-                        (profile->message.empty() ? "damaged ICC profile" : profile->message));
+        throw FileError(
+            "read: " + path + ": " +
+            (profile->message.empty() ? "damaged ICC profile" : printable(profile->message, 300)));
     }
     profile_ = std::move(profile);
 }

@@ -17,6 +17,7 @@
 #include <limits>
 #include <optional>
 
+#include "lut/printable.h"
 #include "tonewright/error.h"
 
 namespace tonewright {
@@ -36,16 +37,6 @@ std::string lower(std::string_view text) {
 }
 
 constexpr std::string_view kBlank = " \t\r\v\f";
-
-/// As it can be shown in a message of one line.
-std::string shown(std::string_view text) {
-    constexpr std::size_t kLongest = 60;
-    std::string result(text.substr(0, kLongest));
-    for (char& c : result) {
-        if (c < ' ' || c > '~') c = '?';
-    }
-    return result + (text.size() > kLongest ? "..." : "");
-}
 
 /// The whole text; infinite beyond double, 0 below it.
 std::optional<double> parse_number(std::string_view text) {
@@ -118,12 +109,12 @@ class Text {
     }
     /// "line 3: 0 0 x; expected three numbers".
     [[noreturn]] void refuse(const std::string& expected) const {
-        fail(shown(line_) + "; expected " + expected);
+        fail(printable(line_) + "; expected " + expected);
     }
     /// "line 2: LUT_3D_SIZE is 1000; expected [2, 129]".
     [[noreturn]] void refuse(std::string_view name, std::string_view value,
                              const std::string& expected) const {
-        fail(fmt::format("{} is {}; expected {}", shown(name), shown(value), expected));
+        fail(fmt::format("{} is {}; expected {}", printable(name), printable(value), expected));
     }
     [[noreturn]] void end_early(std::size_t found, std::size_t expected) const {
         fail(fmt::format("ends after {} rows; expected {}", found, expected));
@@ -576,7 +567,7 @@ class ClfText {
                 continue;
             }
             if (text_.substr(at_, 2) == "<!")
-                fail(shown(text_.substr(at_, 12)) + "; expected no document type or entities");
+                fail(printable(text_.substr(at_, 12)) + "; expected no document type or entities");
             const std::size_t close = text_.find('>', at_);
             if (close == std::string_view::npos) fail("ends inside a tag; expected >");
             const std::string_view tag = text_.substr(at_ + 1, close - at_ - 1);
@@ -659,7 +650,7 @@ class ClfText {
         return count;
     }
     [[noreturn]] void refuse(std::string_view dim, const std::string& expected) const {
-        fail("dim is " + shown(dim) + "; expected " + expected);
+        fail("dim is " + printable(dim) + "; expected " + expected);
     }
 
     void check_array(std::size_t expected, bool is_half_domain) {
@@ -681,10 +672,10 @@ class ClfText {
     }
     void check_number(std::string_view text, bool is_half_domain) const {
         const std::optional<double> value = parse_number(text);
-        if (!value) fail("number is " + shown(text) + "; expected a number");
+        if (!value) fail("number is " + printable(text) + "; expected a number");
         // Of a half-domain table some entries are those of infinities and of no number.
         if (!is_float(*value) && !is_half_domain)
-            fail("number is " + shown(text) + "; expected a finite number");
+            fail("number is " + printable(text) + "; expected a finite number");
     }
 
     const std::string& path_;

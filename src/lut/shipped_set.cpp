@@ -148,7 +148,7 @@ std::string section(const LutShelf& shelf, const std::vector<ShippedLut>& luts) 
             text += fmt::format(
                 "Each file: `tonewright bake OPERATOR --for {} --size {}{} -o FILE`; {}, {} "
                 "interpolation, {:+.1f} stops from 0.18 at input 1.\n\n"
-                "| operator | file | input | output | max error | 99.9 % | mean | |\n"
+                "| operator | file | input | output | max error | 99.9 % | mean | picture |\n"
                 "|---|---|---|---|---|---|---|---|\n",
                 host.id, lut.lut.size, r.decimals ? fmt::format(" --decimals {}", *r.decimals) : "",
                 size_text(lut), error.interpolation, std::log2(r.encoding.scene_hi / 0.18));

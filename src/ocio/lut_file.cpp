@@ -13,6 +13,7 @@
 
 #include "lut/icc.h"
 #include "lut/lut_text.h"
+#include "lut/printable.h"
 #include "lut/raw.h"
 #include "ocio/lower.h"
 
@@ -73,9 +74,7 @@ std::string reason_of(const OCIO::Exception& e, const std::string& path) {
         if (const std::size_t at = what.find(own); at != std::string::npos)
             what.erase(at, own.size());
     }
-    std::replace_if(
-        what.begin(), what.end(), [](char c) { return c < ' ' || c > '~'; }, ' ');
-    return what;
+    return printable(what, 400);
 }
 
 /// Whatever the files say.

@@ -26,7 +26,10 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import Report, acescct_encode, read_exr, run, stack, unstack, write_exr  # noqa: E402
+from pictures import Report, read_exr, run, stack, unstack, write_exr  # noqa: E402
+
+from lut_encodings import acescct_encode  # noqa: E402  (python_check/, which pictures.py puts on the path)
+from lut_tables import linear, tetrahedral, trilinear  # noqa: E402
 
 GIGABYTE = 1 << 30
 SIZE = 3  # points a side, of most cubes here
@@ -45,29 +48,8 @@ def cube_of(size):
     return np.round(rgb, 4)
 
 
-def interpolate(cube, colors, trilinear=False):
-    n = len(cube)
-    at = np.clip(colors, 0, 1) * (n - 1)
-    corner = np.minimum(at.astype(int), n - 2)
-    f = at - corner
-    if trilinear:
-        out = 0
-        for i in range(8):
-            step = np.array([i & 1, i >> 1 & 1, i >> 2 & 1])
-            weight = np.where(step, f, 1 - f).prod(axis=1)
-            r, g, b = (corner + step).T
-            out = out + weight[:, None] * cube[b, g, r]
-        return out
-    # From the near corner to the far one along the axes, largest fraction first.
-    order = np.argsort(-f, axis=1, kind="stable")
-    falling = np.take_along_axis(f, order, axis=1)
-    weights = -np.diff(falling, axis=1, prepend=1, append=0)
-    out = np.zeros((len(colors), 3))
-    for step in range(4):
-        if step:
-            corner[np.arange(len(colors)), order[:, step - 1]] += 1
-        out += weights[:, step, None] * cube[corner[:, 2], corner[:, 1], corner[:, 0]]
-    return out
+def interpolate(cube, colors, is_trilinear=False):
+    return (trilinear if is_trilinear else tetrahedral)(cube, colors)
 
 
 CUBE = cube_of(SIZE)
@@ -120,13 +102,13 @@ GOOD = {
 }
 
 
-def expected_of(name, colors, trilinear=False):
+def expected_of(name, colors, is_trilinear=False):
     stem, extension = name.split(".")
-    curve = np.stack([np.interp(np.clip(colors[:, c], 0, 1), np.linspace(0, 1, 9), CURVE) for c in range(3)], axis=1)
+    curve = linear(TRIPLES, np.clip(colors, 0, 1))
     if "1d" in stem or stem == "curve":
         return curve
     cube = CUBE_3DL if extension == "3dl" else CUBE
-    return interpolate(cube, curve if stem == "both" else colors, trilinear)
+    return interpolate(cube, curve if stem == "both" else colors, is_trilinear)
 
 
 # --------------------------------------------------------------------------------------------------

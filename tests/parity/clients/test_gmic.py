@@ -4,7 +4,7 @@
     python3 tests/parity/clients/test_gmic.py build/release/bin/tonewright
 
 As `list --hosts` says: G'MIC's own `map_clut` takes v n / 256 for the place of v, so that no table fits. The strip has
-the layout of Unreal, Unity and Godot, whose programs are not here. The last line is `N passed, M failed`.
+the layout of Unreal and Godot, whose programs are not here. The last line is `N passed, M failed`.
 """
 
 from lut_client import FLOAT32, Client, lut_test

@@ -3,9 +3,9 @@
 
     python3 python_check/check_luts.py build/release/bin/tonewright luts
 
-Light, its encoding, the interpolation and the operator are NumPy's: lut_encodings.py, lut_tables.py, operators/. The light is
-the probe set as src/engine/probe.h describes it, drawn anew. Some of it goes through `tonewright eval` as well. Pictures
-are read by oiiotool. The last line is `N passed, M failed`.
+Light, its encoding, the interpolation and the operator are NumPy's: lut_encodings.py, lut_tables.py, operators/. The
+light is the probe set as src/engine/probe.h describes it, drawn anew. Some of it goes through `tonewright eval` as well.
+Pictures are read by oiiotool. The last line is `N passed, M failed`.
 """
 
 import argparse
@@ -19,15 +19,16 @@ from pathlib import Path
 import numpy as np
 
 import operators
-from lut_encodings import ENCODINGS
+from lut_encodings import ENCODINGS, srgb_decode
 from lut_tables import hald_cube, read_cube, stated_errors, strip_cube, tetrahedral, trilinear
+from operators.pq import pq_encode
 from operators.spaces import PRIMARIES, rgb_to_rgb
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "parity" / "clients"))
 from pictures import LIGHT, Report, evaluate, need_program, read_rgb  # noqa: E402
 
 # What is printed is rounded up to three digits: 1 % at most. The rest is for colours that another order of arithmetic
-# puts on the other side of an end of the encoding.
+# puts on the other side of an end of the encoding, or another compiler's order of near-black channels.
 REPRODUCED = 0.02
 # Errors that are less are of the numbers' own decimals.
 NOTHING = 1e-7
@@ -64,7 +65,9 @@ def probes(encoding, count=50000, edge=17):
     colors = 2 ** random.uniform(-16, 12, 3 * count).reshape(-1, 3)
     tenth = np.arange(0, count, 10)
     colors[tenth, tenth // 10 % 3] = 0
-    parts += [colors, 2 ** random.uniform(-148, -10, 3 * (count // 20)).reshape(-1, 3)]
+    # Drawn as arguments of a function, which GCC evaluates from the last on.
+    near_black = 2 ** random.uniform(-148, -10, 3 * (count // 20)).reshape(-1, 3)[:, ::-1]
+    parts += [colors, near_black]
     signed = 2 ** random.uniform(-12, 12, 3 * (count // 5)).reshape(-1, 3)
     at = np.arange(len(signed))
     signed[at, at % 3] *= -1
@@ -75,6 +78,19 @@ def probes(encoding, count=50000, edge=17):
     return light[((light >= lo) & (light <= hi)).all(axis=1)]
 
 
+# ITU-R BT.2100-2: linear Rec.2020 to LMS, its PQ to ICtCp.
+REC2020_TO_LMS = np.array([[1688, 2146, 262], [683, 2951, 462], [99, 309, 3688]]) / 4096
+LMS_TO_ICTCP = np.array([[2048, 2048, 0], [6610, -13613, 7003], [17933, -17390, -543]]) / 4096
+# Codes of a display to light, 1 at 100 cd/m2.
+LIGHT_OF = {"srgb": srgb_decode, "rec1886": lambda code: np.maximum(code, 0) ** 2.4}
+
+
+def itp(codes, display):
+    """I, T and P of ITU-R BT.2124, times 720, of Rec.709 codes."""
+    light = LIGHT_OF[display](codes) @ rgb_to_rgb(PRIMARIES["rec709"], PRIMARIES["rec2020"]).T
+    return 720 * (pq_encode(100 * (light @ REC2020_TO_LMS.T)) @ LMS_TO_ICTCP.T * [1, 0.5, 1])
+
+
 def read_table(path, form, scratch):
     """(table, {interpolation: errors} of its text)."""
     if form == "cube":
@@ -83,10 +99,10 @@ def read_table(path, form, scratch):
     return (hald_cube if form == "hald" else strip_cube)(read_rgb(path, scratch)), {}
 
 
-def figures(difference):
-    """max, 99.9 %, mean of the largest channel."""
-    worst = np.sort(np.abs(difference).max(axis=1))
-    return worst[-1], worst[int(np.ceil(0.999 * len(worst))) - 1], worst.mean()
+def figures(errors):
+    """max, 99.9 %, mean."""
+    errors = np.sort(errors)
+    return errors[-1], errors[int(0.999 * (len(errors) - 1))], errors.mean()
 
 
 def check_figures(report, what, stated, found):
@@ -105,15 +121,21 @@ def check_luts(report, command, folder, rows, scratch):
     some = np.random.default_rng(2).choice(len(light), 200, replace=False)
     said = evaluate(command, light[some], name, "--input", first["input_space"], "--display", first["output"],
                     "--digits", 17)
-    report.compare(f"{name}, {first['input_space']} to {first['output']}, by eval and by NumPy", said, truth[some], SAME,
-                   LIGHT.get(first["output"]))
-    codes = encoding.encode(light)
+    report.compare(f"{name}, {first['input_space']} to {first['output']}, by eval and by NumPy", said, truth[some],
+                   SAME, LIGHT.get(first["output"]))
+    codes, seen = encoding.encode(light), itp(truth, first["output"]) if first["output"] in LIGHT_OF else None
     for row in rows:
         table, stated = read_table(folder / row["path"], row["format"], scratch)
-        found = {how: figures(interpolate(table, codes) - truth) for how, interpolate in INTERPOLATIONS.items()}
-        for how, three in found.items():
+        found = {}
+        for how, interpolate in INTERPOLATIONS.items():
+            shown = interpolate(table, codes)
+            found[how] = figures(np.abs(shown - truth).max(axis=1))
             in_manifest = [float(row[f"{how}_{figure}"]) for figure in ("max", "p999", "mean")]
-            check_figures(report, f"{row['path']}, {how}, MANIFEST", in_manifest, three)
+            check_figures(report, f"{row['path']}, {how}, MANIFEST", in_manifest, found[how])
+            if seen is not None:
+                colors = figures(np.sqrt(((itp(shown, first["output"]) - seen) ** 2).sum(axis=1)))
+                in_manifest = [float(row[f"{how}_{figure}_dE_ITP"]) for figure in ("max", "p999", "mean")]
+                check_figures(report, f"{row['path']}, {how}, MANIFEST, dE ITP", in_manifest, colors)
         for how, three in stated.items():
             check_figures(report, f"{row['path']}, {how}, header", three, found[how])
         if row["format"] == "cube":

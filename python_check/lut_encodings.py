@@ -29,7 +29,8 @@ def acescct_encode(light):
 
 
 def acescct_decode(code):
-    return np.where(code <= 0.155251141552511, (code - 0.0729055341958355) / 10.5402377416545, 2.0 ** (code * 17.52 - 9.72))
+    toe = (code - 0.0729055341958355) / 10.5402377416545
+    return np.where(code <= 0.155251141552511, toe, 2.0 ** (code * 17.52 - 9.72))
 
 
 # ARRI, "ALEXA Log C Curve, Usage in VFX", EI 800: a, b, c, d, e, f and the cut.

@@ -232,11 +232,12 @@ def compare_folder(report, committed, fresh):
 
 def compare_pictures(report, committed, fresh, scratch):
     """The PNGs of both folders, number by number; one process makes floats of all."""
-    paths = sorted(p.relative_to(committed) for p in committed.rglob("*.png") if (fresh / p.relative_to(committed)).is_file())
-    words = []
+    paths = sorted(p.relative_to(committed) for p in committed.rglob("*.png"))
+    paths, words = [path for path in paths if (fresh / path).is_file()], []
     for number, path in enumerate(paths):
         for side, folder in (("old", committed), ("new", fresh)):
-            words += [folder / path, "-d", "float", "--compression", "none", "-o", scratch / f"{number}.{side}.exr", "--pop"]
+            words += [folder / path, "-d", "float", "--compression", "none", "-o", scratch / f"{number}.{side}.exr",
+                      "--pop"]
     run("oiiotool", *words)
     for number, path in enumerate(paths):
         old, new = (stack(read_exr(scratch / f"{number}.{side}.exr")) for side in ("old", "new"))

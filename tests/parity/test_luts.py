@@ -36,8 +36,9 @@ EXACT = 1e-7
 READ = 2e-6
 
 # encoding of `list --hosts` -> (code -> scene-linear light, the space that it is in)
-ENCODINGS = {"acescct": (acescct_decode, "lin_ap1"), "logc3": (logc3, "lin_awg3"), "davinci": (davinci_decode, "lin_davinci_wg"),
-             "unity_logc": (unity_logc_decode, "lin_rec709"), "srgb": (srgb_decode, "lin_rec709"), "pq": (pq_light, "lin_rec2020")}
+ENCODINGS = {"acescct": (acescct_decode, "lin_ap1"), "logc3": (logc3, "lin_awg3"),
+             "davinci": (davinci_decode, "lin_davinci_wg"), "unity_logc": (unity_logc_decode, "lin_rec709"),
+             "srgb": (srgb_decode, "lin_rec709"), "pq": (pq_light, "lin_rec2020")}
 
 
 def nodes_of(size):

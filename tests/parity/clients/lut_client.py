@@ -56,7 +56,7 @@ def codes():
 
 
 def write_picture(path, rgb, depth="uint16"):
-    """A picture of codes, through oiiotool: which is told that they are sRGB, or a PNG would say that they are linear."""
+    """A picture of codes, through oiiotool, which is told that they are sRGB: or a PNG would say that they are linear."""
     plain = path.with_name(path.name + ".exr")
     write_exr(plain, unstack(rgb))
     if path.suffix != ".exr":
@@ -81,8 +81,8 @@ class LutTest:
         """(path, stated error) of the operator's LUT for an application, of log2 codes: as `list --hosts` has it for
         the rest, with the error of the application's own interpolation."""
         path = self.scratch / name
-        return path, bake(self.command, path, OPERATOR, "--for", host, "--input-encoding", ENCODING, "--display", "srgb",
-                          "--nodes", "sampled", *arguments)
+        return path, bake(self.command, path, OPERATOR, "--for", host, "--input-encoding", ENCODING,
+                          "--display", "srgb", "--nodes", "sampled", *arguments)
 
     def cube(self, host, size=33):
         """(path, table, stated error) of a .cube."""

@@ -50,8 +50,9 @@ def through_darktable(test, codes, cube, interpolation):
     out.unlink(missing_ok=True)  # it would write beside it
     said = run("darktable-cli", codes, sidecar, out, "--hq", "true", "--apply-custom-presets", "false",
                "--icc-type", "LIN_REC709", "--core", "--configdir", test.scratch / "config", "--library", ":memory:",
-               "--conf", f"plugins/darkroom/lut3d/def_path={test.scratch}", "--conf", "plugins/imageio/format/exr/bpp=32",
-               "--conf", "plugins/darkroom/workflow=none", "--conf", "plugins/darkroom/chromatic-adaptation=legacy",
+               "--conf", f"plugins/darkroom/lut3d/def_path={test.scratch}",
+               "--conf", "plugins/imageio/format/exr/bpp=32", "--conf", "plugins/darkroom/workflow=none",
+               "--conf", "plugins/darkroom/chromatic-adaptation=legacy",
                "--disable-opencl")
     if not out.is_file():
         raise RuntimeError(f"darktable-cli wrote no picture: {said}")
@@ -71,4 +72,5 @@ def main(test):
 
 
 if __name__ == "__main__":
-    raise SystemExit(lut_test(__doc__, main, Client("darktable", "darktable-cli", "darktable", "darktable-cli --version")))
+    raise SystemExit(lut_test(__doc__, main, Client("darktable", "darktable-cli", "darktable",
+                                                    "darktable-cli --version")))

@@ -24,7 +24,8 @@ def main(test):
     hald, table, stated = test.hald("imagemagick")
     for name in ("codes.tif", "codes.png"):  # a PNG says what its numbers are: its reader may act on that
         shown = through_magick(test, hald, test.picture(name))
-        test.compare(f"Hald CLUT of 36, 16 bits, {name[-3:].upper()}", shown, trilinear(table, test.flat), stated, BITS16)
+        test.compare(f"Hald CLUT of 36, 16 bits, {name[-3:].upper()}", shown, trilinear(table, test.flat), stated,
+                     BITS16)
 
 
 if __name__ == "__main__":

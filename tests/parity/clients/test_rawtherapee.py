@@ -45,10 +45,11 @@ def through_rawtherapee(test, codes, hald):
 
 def main(test):
     codes = test.picture("codes.tif")
-    test.report.compare("without a LUT: the picture itself", through_rawtherapee(test, codes, None), test.codes, PIPELINE)
+    plain = through_rawtherapee(test, codes, None)
+    test.report.compare("without a LUT: the picture itself", plain, test.codes, PIPELINE)
     hald, table, stated = test.hald("rawtherapee")
-    test.compare("Hald CLUT of 36, 16 bits", through_rawtherapee(test, codes, hald), trilinear(table, test.flat), stated,
-                 PIPELINE)
+    shown = through_rawtherapee(test, codes, hald)
+    test.compare("Hald CLUT of 36, 16 bits", shown, trilinear(table, test.flat), stated, PIPELINE)
 
 
 if __name__ == "__main__":

@@ -17,6 +17,7 @@ struct Options : ViewOptions {
     bool one = false;
     bool three = false;
     std::optional<int> bits;
+    int icc_version = 2;
     std::optional<int> decimals;
     std::optional<double> max_error;
     std::string nodes = "auto";
@@ -54,6 +55,9 @@ void bake_one(Options& options, const CLI::App& command) {
     request.view = options.view();
     request.size = options.size;
     request.bits = options.bits;
+    request.icc_version = options.icc_version;
+    if (command.count("--icc-version") > 0 && request.format != LutFormat::icc)
+        throw Error("bake: ICC version is given for " + options.format + "; expected icc");
     request.decimals = options.decimals;
     if (options.one) request.dimension = LutDimension::one;
     if (options.three) request.dimension = LutDimension::three;
@@ -70,7 +74,7 @@ void bake_one(Options& options, const CLI::App& command) {
     if (is_picture) {
         write_lut_picture(lut, request.format, options.file, request.bits.value_or(16));
     } else {
-        write_text_atomically(options.file, write_lut(lut, request, error));
+        write_text_atomically(options.file, write_lut(lut, request, error, baked.other_error));
     }
     fmt::print(
         stderr,
@@ -79,6 +83,11 @@ void bake_one(Options& options, const CLI::App& command) {
         lut.is_half_domain ? "scene-linear" : request.encoding.id, request.view.input,
         rounded_up(error.max), rounded_up(error.p999), rounded_up(error.mean), error.interpolation,
         baked.is_fitted ? ", fitted nodes" : "");
+    const std::string clipped = to_string(measure_clipping(request, lut));
+    if (!clipped.empty()) {
+        fmt::print(stderr, "{}: clips what {} would show {}\n", options.file, request.view.op.label,
+                   clipped);
+    }
     if (!options.host.empty()) {
         const LutHost& host = find_lut_host(options.host);
         fmt::print(stderr, "{}: {}\n", host.title, host.steps);
@@ -98,7 +107,8 @@ void add_bake(CLI::App& program, int&) {
                         "input and output are then what it expects, unless given");
     command
         ->add_option("--format", options->format,
-                     "cube, clf, spi1d, spi3d, csp, 3dl; hald, strip (pictures); raw")
+                     "cube, clf, ctf, spi1d, spi3d, csp, resolve_cube (1D and 3D tables), 3dl, lut "
+                     "(Houdini), icc (device link); hald, strip (pictures); raw")
         ->capture_default_str();
     command
         ->add_option("--input-encoding", options->encoding,
@@ -123,6 +133,9 @@ void add_bake(CLI::App& program, int&) {
         ->capture_default_str();
     command->add_option("--depth", options->bits,
                         "bits of a number: 8, 16 or 32 (float) in pictures, 10, 12 or 16 in 3dl");
+    command->add_option("--icc-version", options->icc_version, "of a device link")
+        ->check(CLI::IsMember({2, 4}))
+        ->capture_default_str();
     command->add_option("--decimals", options->decimals,
                         "of the numbers in a cube, 3..9 (default: as many as a float has); 4 round "
                         "by 5e-5, less than most cubes are off between their nodes");

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <filesystem>
 
+#include "cli/picture_input.h"
 #include "image/lut_picture.h"
 #include "image/shipped_pictures.h"
 #include "tonewright/image.h"
@@ -38,6 +39,11 @@ void write_lut_picture(const Lut& lut, LutFormat format, const std::string& path
     if (bits == 8) type = OIIO::TypeDesc::UINT8;
     if (bits == 16) type = OIIO::TypeDesc::UINT16;
     write_image_atomically(make_lut_picture(lut, format), path, type);
+}
+
+Lut load_lut_picture(const std::string& path) {
+    const QuietStderr quiet;
+    return read_lut_picture(path);
 }
 
 }  // namespace tonewright

@@ -19,4 +19,7 @@ void write_shipped_luts(const std::string& folder);
 /// @param bits  8, 16 or 32 (float)
 void write_lut_picture(const Lut& lut, LutFormat format, const std::string& path, int bits);
 
+/// A table from a picture file. @see read_lut_picture
+[[nodiscard]] Lut load_lut_picture(const std::string& path);
+
 }  // namespace tonewright

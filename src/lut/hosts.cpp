@@ -142,6 +142,23 @@ const std::vector<LutHost>& all_lut_hosts() {
          "ImageMagick 6.9.11, GraphicsMagick 1.3.40"},
         {"flame", "Flame, Lustre", LutFormat::threedl, 33, "acescct", "rec1886", 12, "trilinear",
          "LUT Editor > Import, on a picture in ACEScct", ""},
+        {"houdini",
+         "Houdini",
+         LutFormat::houdini,
+         64,
+         "acescct",
+         "srgb",
+         {},
+         "trilinear",
+         "in a compositing network: Lookup COP > LUT File, behind a conversion to ACEScct; MPlay, "
+         "the same: LUT button > Load LUT",
+         ""},
+        {"icc", "ICC device link: Photoshop, ImageMagick, LittleCMS", LutFormat::icc, 33, "srgb",
+         "srgb", 16, "tetrahedral",
+         "Photoshop, on a picture in sRGB: Layer > New Adjustment Layer > Color Lookup > Device "
+         "Link > Load; convert in.png -profile FILE +profile '*' out.png; tificc -l FILE -c 0 -w "
+         "16 in.tif out.tif",
+         "LittleCMS 2.14 and ImageMagick 6.9.11, 16 bits"},
         {"ocio",
          "OpenColorIO",
          LutFormat::clf,

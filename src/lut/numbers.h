@@ -5,6 +5,9 @@
 
 namespace tonewright {
 
+/// Of the 1D table before a cube: as many as readers take, or make of a prelut.
+inline constexpr int kShaperSteps = 65536;
+
 /// Appends a float with 9 significant digits (enough to read back the same float), in fixed
 /// notation: several hosts do not read exponents. Trailing zeros are left out.
 void append_number(std::string& text, float value);

@@ -53,11 +53,10 @@ void bake(ShippedLut& planned) {
     BakedLut baked = bake_lut(planned.request, LutNodes::automatic, trilinear);
     planned.lut = std::move(baked.lut);
     planned.is_fitted = baked.is_fitted;
-    const LutError other = measure_lut(planned.lut, planned.request, !trilinear);
-    planned.tetrahedral = trilinear ? other : baked.error;
-    planned.trilinear = trilinear ? baked.error : other;
+    planned.tetrahedral = trilinear ? baked.other_error.value() : baked.error;
+    planned.trilinear = trilinear ? baked.error : baked.other_error.value();
     if (!is_picture_format(planned.request.format))
-        planned.contents = write_lut(planned.lut, planned.request, baked.error);
+        planned.contents = write_lut(planned.lut, planned.request, baked.error, baked.other_error);
 }
 
 const LutError& error_at_host(const ShippedLut& lut) {
@@ -73,16 +72,18 @@ std::string csv_field(const std::string& text) {
 }
 
 std::string error_fields(const LutError& error) {
-    return fmt::format("{},{},{},{}", three_digits_up(error.max), three_digits_up(error.p999),
-                       three_digits_up(error.mean), three_digits_up(error.delta_e_max));
+    return fmt::format("{},{},{},{},{},{}", three_digits_up(error.max), three_digits_up(error.p999),
+                       three_digits_up(error.mean), three_digits_up(error.delta_e_max),
+                       three_digits_up(error.delta_e_p999), three_digits_up(error.delta_e_mean));
 }
 
 std::string manifest(const std::vector<ShippedLut>& luts) {
     std::string text =
         "path,operator,host,input_space,input_encoding,scene_lo,scene_hi,output,format,size,depth,"
         "decimals,nodes,host_interpolation,tetrahedral_max,tetrahedral_p999,tetrahedral_mean,"
-        "tetrahedral_max_dE_ITP,trilinear_max,trilinear_p999,trilinear_mean,trilinear_max_dE_ITP,"
-        "content_hash\n";
+        "tetrahedral_max_dE_ITP,tetrahedral_p999_dE_ITP,tetrahedral_mean_dE_ITP,trilinear_max,"
+        "trilinear_p999,trilinear_mean,trilinear_max_dE_ITP,trilinear_p999_dE_ITP,"
+        "trilinear_mean_dE_ITP,content_hash\n";
     for (const ShippedLut& lut : luts) {
         const LutRequest& r = lut.request;
         text += fmt::format("{},{},{},{},{},{:.9g},{:.9g},{},{},{},{},{},{},{},{},{},{}\n",

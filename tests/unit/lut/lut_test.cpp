@@ -995,8 +995,8 @@ TEST(DeviceLink, IsWhatItWasMadeOf) {
             const Vector3 expected =
                 interpolate(lut, {static_cast<double>(in[0]), static_cast<double>(in[1]),
                                   static_cast<double>(in[2])});
-            // LittleCMS works in 16 bits: half a step of the input, twice as steep here, and half of
-            // the output.
+            // LittleCMS works in 16 bits: half a step of the input, twice as steep here, and half
+            // of the output.
             for (std::size_t c = 0; c < 3; ++c)
                 EXPECT_NEAR(static_cast<double>(out[c]), expected[c], 2.5e-5);
         }

@@ -24,7 +24,7 @@ BELOW = {
 PUBLIC = {
     "error": "expr", "expr": "expr", "color": "color", "pipeline": "pipeline", "view": "pipeline",
     "engine": "engine", "lut": "lut", "ocio": "ocio", "image": "image", "verify": "verify",
-    "lint": "verify", "lut_match": "verify",
+    "lint": "verify", "lut_match": "verify", "lut_file": "ocio",
 }
 THIRD_PARTY = {
     "hwy": ["engine"],
@@ -32,6 +32,7 @@ THIRD_PARTY = {
     "OpenImageIO": ["image", "cli", "verify"],
     "EGL": ["ocio"],
     "yaml-cpp": ["ocio"],
+    "lcms2.h": ["lut"],
     "GL": ["ocio"],
     "xbyak": ["engine"],
     "CLI": ["cli"],

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/command.h"
+#include "cli/lut_input.h"
 #include "cli/picture_input.h"
+#include "tonewright/engine.h"
 #include "tonewright/image.h"
 
 namespace tonewright {
@@ -14,25 +16,58 @@ TonemapOptions::Statistics parse_statistics(const std::string& text) {
                 did_you_mean(text, names));
 }
 
+struct Options : ViewOptions {
+    std::string in;
+    std::string out;
+    std::string type;
+    std::string statistics = "picture";
+    int threads = 0;
+    bool unpremult = false;
+    bool no_unpremult = false;
+    LutOptions lut;
+
+    [[nodiscard]] TonemapOptions::Unpremult alpha() const {
+        if (unpremult) return TonemapOptions::Unpremult::yes;
+        if (no_unpremult) return TonemapOptions::Unpremult::no;
+        return TonemapOptions::Unpremult::automatic;
+    }
+    [[nodiscard]] OIIO::TypeDesc pixel_type() const {
+        return type.empty() ? OIIO::TypeDesc(OIIO::TypeUnknown) : parse_pixel_type(type);
+    }
+};
+
+void apply_lut(const Options& options, const CLI::App& command) {
+    const Pipeline before = before_lut(command, options.lut, options);
+    const LutFile lut = open_lut(options.lut.file, options.lut.interpolation);
+    const SimdEngine encode(before);
+    const OIIO::TypeDesc type = options.pixel_type();
+    const OIIO::ImageBuf source = read_picture(options.in);
+    OIIO::ImageBuf result;
+    const auto map = [&](const float* in, float* out, std::size_t count) {
+        if (before.empty()) {
+            lut.run_rgb(in, out, count);
+            return;
+        }
+        std::vector<float> code(3 * count);
+        encode.run_rgb(in, code.data(), count);
+        lut.run_rgb(code.data(), out, count);
+    };
+    if (!map_colors(result, source, map, options.alpha(), {}, options.threads))
+        throw Error("apply: " + options.in + ": " + result.geterror());
+    write_image_atomically(result, options.out, type);
+}
+
 }  // namespace
 
 void add_apply(CLI::App& program, int&) {
-    struct Options : ViewOptions {
-        std::string in;
-        std::string out;
-        std::string type;
-        std::string statistics = "picture";
-        int threads = 0;
-        bool unpremult = false;
-        bool no_unpremult = false;
-    };
     auto options = std::make_shared<Options>();
     CLI::App* command = program.add_subcommand("apply", "tone map a picture");
     command->add_option("in", options->in, "picture, any format that OpenImageIO reads")
         ->required();
     command->add_option("out", options->out, "picture to write; the extension says the format")
         ->required();
-    command->add_option("--operator", options->op, "operator, or operator:preset")->required();
+    CLI::Option* op =
+        command->add_option("--operator", options->op, "operator, or operator:preset");
     add_view_options(*command, *options);
     command->add_option("-d", options->type,
                         "pixel type of the output: uint8, uint16, half or float");
@@ -49,9 +84,21 @@ void add_apply(CLI::App& program, int&) {
         "divide color by alpha before, multiply after; default: as the picture says");
     command->add_flag("--no-unpremult", options->no_unpremult, "take color as it is")
         ->excludes(yes);
+    add_lut_options(*command, options->lut, op,
+                    {"--set", "--look", "--display", "--reference-white", "--statistics"});
     command->footer(
-        "Example:\n  tonewright apply render.exr out.png --operator hable --exposure 1 -d uint8");
-    command->callback([options] {
+        "Examples:\n  tonewright apply render.exr out.png --operator hable --exposure 1 -d uint8\n"
+        "  tonewright apply render.exr out.png --lut agx.cube --input-encoding acescct -d uint8");
+    command->callback([options, command] {
+        if (!options->lut.file.empty()) {
+            apply_lut(*options, *command);
+            return;
+        }
+        if (options->op.empty()) {
+            throw Error(
+                "apply: operator is missing; expected --operator with an id of `tonewright list`, "
+                "or --lut FILE");
+        }
         TonemapOptions tonemap;
         tonemap.op = options->op;
         tonemap.settings = options->settings();
@@ -60,12 +107,10 @@ void add_apply(CLI::App& program, int&) {
         tonemap.input = options->input;
         tonemap.display = options->display;
         tonemap.reference_white = options->reference_white;
-        if (options->unpremult) tonemap.unpremult = TonemapOptions::Unpremult::yes;
-        if (options->no_unpremult) tonemap.unpremult = TonemapOptions::Unpremult::no;
+        tonemap.unpremult = options->alpha();
         tonemap.statistics = parse_statistics(options->statistics);
         const Tonemapper tonemapper(tonemap);  // a wrong name is told before a large file is read
-        const OIIO::TypeDesc type = options->type.empty() ? OIIO::TypeDesc(OIIO::TypeUnknown)
-                                                          : parse_pixel_type(options->type);
+        const OIIO::TypeDesc type = options->pixel_type();
         const OIIO::ImageBuf source = read_picture(options->in);
         OIIO::ImageBuf result;
         if (!tonemapper(result, source, {}, options->threads)) {

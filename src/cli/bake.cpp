@@ -17,6 +17,8 @@ struct Options : ViewOptions {
     bool one = false;
     bool three = false;
     std::optional<int> bits;
+    int icc_version = 2;
+    std::optional<int> decimals;
     std::optional<double> max_error;
     std::string nodes = "auto";
     std::string host;
@@ -53,23 +55,26 @@ void bake_one(Options& options, const CLI::App& command) {
     request.view = options.view();
     request.size = options.size;
     request.bits = options.bits;
+    request.icc_version = options.icc_version;
+    if (command.count("--icc-version") > 0 && request.format != LutFormat::icc)
+        throw Error("bake: ICC version is given for " + options.format + "; expected icc");
+    request.decimals = options.decimals;
     if (options.one) request.dimension = LutDimension::one;
     if (options.three) request.dimension = LutDimension::three;
-    const bool is_trilinear =
-        !options.host.empty() && find_lut_host(options.host).interpolation.starts_with("trilinear");
+    const bool trilinear = !options.host.empty() && is_trilinear(find_lut_host(options.host));
     LutNodes nodes = LutNodes::automatic;
     if (options.nodes == "sampled") nodes = LutNodes::sampled;
     if (options.nodes == "fitted") nodes = LutNodes::fitted;
     const bool is_picture = is_picture_format(request.format);
     if (is_picture) require_lut_picture(options.file, request.bits.value_or(16));
-    const BakedLut baked = bake_lut(request, nodes, is_trilinear, options.max_error);
+    const BakedLut baked = bake_lut(request, nodes, trilinear, options.max_error);
     const Lut& lut = baked.lut;
     const LutError& error = baked.error;
     request.size = lut.size;
     if (is_picture) {
         write_lut_picture(lut, request.format, options.file, request.bits.value_or(16));
     } else {
-        write_text_atomically(options.file, write_lut(lut, request, error));
+        write_text_atomically(options.file, write_lut(lut, request, error, baked.other_error));
     }
     fmt::print(
         stderr,
@@ -78,6 +83,11 @@ void bake_one(Options& options, const CLI::App& command) {
         lut.is_half_domain ? "scene-linear" : request.encoding.id, request.view.input,
         rounded_up(error.max), rounded_up(error.p999), rounded_up(error.mean), error.interpolation,
         baked.is_fitted ? ", fitted nodes" : "");
+    const std::string clipped = to_string(measure_clipping(request, lut));
+    if (!clipped.empty()) {
+        fmt::print(stderr, "{}: clips what {} would show {}\n", options.file, request.view.op.label,
+                   clipped);
+    }
     if (!options.host.empty()) {
         const LutHost& host = find_lut_host(options.host);
         fmt::print(stderr, "{}: {}\n", host.title, host.steps);
@@ -97,7 +107,8 @@ void add_bake(CLI::App& program, int&) {
                         "input and output are then what it expects, unless given");
     command
         ->add_option("--format", options->format,
-                     "cube, clf, spi1d, spi3d, csp, 3dl; hald, strip (pictures); raw")
+                     "cube, clf, ctf, spi1d, spi3d, csp, resolve_cube (1D and 3D tables), 3dl, lut "
+                     "(Houdini), icc (device link); hald, strip (pictures); raw")
         ->capture_default_str();
     command
         ->add_option("--input-encoding", options->encoding,
@@ -122,6 +133,12 @@ void add_bake(CLI::App& program, int&) {
         ->capture_default_str();
     command->add_option("--depth", options->bits,
                         "bits of a number: 8, 16 or 32 (float) in pictures, 10, 12 or 16 in 3dl");
+    command->add_option("--icc-version", options->icc_version, "of a device link")
+        ->check(CLI::IsMember({2, 4}))
+        ->capture_default_str();
+    command->add_option("--decimals", options->decimals,
+                        "of the numbers in a cube, 3..9 (default: as many as a float has); 4 round "
+                        "by 5e-5, less than most cubes are off between their nodes");
     CLI::Option* one = command->add_flag(
         "--1d", options->one, "a 1D table; the view must be per channel in its own space");
     command->add_flag("--3d", options->three, "a cube even where a 1D table would do")
@@ -138,7 +155,7 @@ void add_bake(CLI::App& program, int&) {
         if (!options->all.empty()) {
             if (!options->op.empty())
                 throw Error("bake: operator is " + options->op + "; expected none with --all");
-            write_generated_files(options->all, make_shipped_luts(), "MANIFEST.csv");
+            write_shipped_luts(options->all);
             return;
         }
         bake_one(*options, *command);

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "cli/command.h"
+#include "cli/lut_input.h"
 #include "ocio/gpu.h"
 #include "ocio/lower.h"
 #include "tonewright/engine.h"
@@ -71,6 +72,30 @@ void print(double r, double g, double b, int digits) {
     fmt::print("{:.{}g} {:.{}g} {:.{}g}\n", r, digits, g, digits, b, digits);
 }
 
+/// Standard input as triplets.
+std::vector<double> read_triplets() {
+    std::cin.sync_with_stdio(false);
+    const std::string text{std::istreambuf_iterator<char>(std::cin), {}};
+    return parse_triplets(text);
+}
+
+void eval_lut(const LutFile& lut, const Pipeline& before, int digits) {
+    const std::vector<double> values = read_triplets();
+    const std::size_t count = values.size() / 3;
+    std::vector<float> code(values.begin(), values.end());
+    if (!before.empty()) {
+        std::vector<double> encoded(values.size());
+        ReferenceEngine(before).run_rgb(code.data(), encoded.data(), count);
+        code.assign(encoded.begin(), encoded.end());
+    }
+    std::vector<float> shown(code.size());
+    lut.run_rgb(code.data(), shown.data(), count);
+    for (std::size_t i = 0; i < shown.size(); i += 3) {
+        print(static_cast<double>(shown[i]), static_cast<double>(shown[i + 1]),
+              static_cast<double>(shown[i + 2]), digits);
+    }
+}
+
 }  // namespace
 
 void add_eval(CLI::App& program, int&) {
@@ -78,11 +103,12 @@ void add_eval(CLI::App& program, int&) {
         std::string engine = "reference";
         int digits = 9;
         bool inverse = false;
+        LutOptions lut;
     };
     auto options = std::make_shared<Options>();
     CLI::App* command =
         program.add_subcommand("eval", "RGB triplets on stdin -> RGB triplets on stdout");
-    command->add_option("operator", options->op, "operator, or operator:preset")->required();
+    CLI::Option* op = command->add_option("operator", options->op, "operator, or operator:preset");
     add_view_options(*command, *options);
     command->add_option("--engine", options->engine, "reference (double), simd, ocio or ocio-gpu")
         ->capture_default_str();
@@ -93,13 +119,26 @@ void add_eval(CLI::App& program, int&) {
         "--inverse", options->inverse,
         "from what the display shows back to scene-linear; for operators that have an "
         "inverse");
+    add_lut_options(*command, options->lut, op,
+                    {"--set", "--look", "--display", "--reference-white", "--engine", "--inverse"});
     command->footer(
         "One colour a line: r g b or r,g,b; nan and inf are numbers; # begins a comment.\n"
         "The engines other than reference take the numbers as floats. There is no picture: "
         "parameters\nthat `apply` takes from it have their defaults.\n"
-        "Example:\n  printf '0.18 0.18 0.18\\n4,2,0.5\\n' | tonewright eval agx_sobotka --display "
-        "srgb");
-    command->callback([options] {
+        "Examples:\n  printf '0.18 0.18 0.18\\n4,2,0.5\\n' | tonewright eval agx_sobotka --display "
+        "srgb\n"
+        "  echo 0.18 0.18 0.18 | tonewright eval --lut agx.cube --input-encoding acescct");
+    command->callback([options, command] {
+        if (!options->lut.file.empty()) {
+            const Pipeline before = before_lut(*command, options->lut, *options);
+            eval_lut(open_lut(options->lut.file, options->lut.interpolation), before,
+                     options->digits);
+            return;
+        }
+        if (options->op.empty()) {
+            throw Error(
+                "eval: operator is missing; expected an id of `tonewright list`, or --lut FILE");
+        }
         const std::vector<std::string> engines = {"reference", "simd", "ocio", "ocio-gpu"};
         if (std::find(engines.begin(), engines.end(), options->engine) == engines.end()) {
             throw Error("eval: engine is " + options->engine + "; expected " +
@@ -107,9 +146,7 @@ void add_eval(CLI::App& program, int&) {
         }
         const View view = options->view();
         const Pipeline pipeline = options->inverse ? build_inverse_view(view) : build_view(view);
-        std::cin.sync_with_stdio(false);
-        const std::string text{std::istreambuf_iterator<char>(std::cin), {}};
-        const std::vector<double> values = parse_triplets(text);
+        const std::vector<double> values = read_triplets();
         const std::size_t count = values.size() / 3;
         if (options->engine == "reference") {
             const ReferenceEngine engine(pipeline);

@@ -6,7 +6,9 @@
 #include <cctype>
 #include <filesystem>
 
+#include "cli/picture_input.h"
 #include "image/lut_picture.h"
+#include "image/shipped_pictures.h"
 #include "tonewright/image.h"
 
 namespace tonewright {
@@ -23,11 +25,25 @@ void require_lut_picture(const std::string& path, int bits) {
     }
 }
 
+void write_shipped_luts(const std::string& folder) {
+    require_writable_folder(folder);
+    std::vector<ShippedLut> luts = bake_shipped_luts();
+    std::vector<GeneratedFile> files = make_shipped_files(luts);
+    const std::vector<GeneratedFile> about = describe_shipped_luts(luts);
+    files.insert(files.end(), about.begin(), about.end());
+    write_generated_files(folder, files, "MANIFEST.csv");
+}
+
 void write_lut_picture(const Lut& lut, LutFormat format, const std::string& path, int bits) {
     OIIO::TypeDesc type = OIIO::TypeDesc::FLOAT;
     if (bits == 8) type = OIIO::TypeDesc::UINT8;
     if (bits == 16) type = OIIO::TypeDesc::UINT16;
     write_image_atomically(make_lut_picture(lut, format), path, type);
+}
+
+Lut load_lut_picture(const std::string& path) {
+    const QuietStderr quiet;
+    return read_lut_picture(path);
 }
 
 }  // namespace tonewright

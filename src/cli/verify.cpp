@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command.h"
+#include "cli/lut_input.h"
 #include "cli/picture_input.h"
 #include "tonewright/image.h"
 #include "tonewright/lint.h"
@@ -118,7 +119,7 @@ void add_verify(CLI::App& program, int& exit_code) {
     command->add_flag("--json", options->json, "for programs");
     CLI::Option* lut = command->add_option(
         "--lut", options->lut,
-        "a LUT, ours or not, of any format that OpenColorIO reads: which of the operators it is, "
+        "a LUT, ours or not, of any format of `apply --lut`: which of the operators it is, "
         "with which input encoding, and how far from it; nothing is held to a bound");
     for (const char* other :
          {"--display", "--input", "--config", "--picture", "--quick", "--no-gpu"})
@@ -134,7 +135,7 @@ void add_verify(CLI::App& program, int& exit_code) {
     command->callback([options, &exit_code] {
         VerifyOptions& verify_options = options->verify;
         if (!options->lut.empty()) {
-            print_matches(options->lut, match_lut(options->lut, verify_options.operators),
+            print_matches(options->lut, match_lut(open_lut(options->lut), verify_options.operators),
                           options->json);
             return;
         }

@@ -41,7 +41,7 @@ Claim claim_of(const View& view) {
 
 }  // namespace
 
-void tag_as_result_of(const View& view, OIIO::ImageSpec& spec) {
+void tag_as_unknown(OIIO::ImageSpec& spec) {
     // Regular expressions, letters' case apart. Each of these described the source; where a writer
     // prefers one of them to oiio:ColorSpace (DPX does), the file would lie. oiio:Gamma repeats the
     // name "GammaX.Y", is deprecated, and makes OIIO's TGA writer divide by a power of alpha.
@@ -72,6 +72,10 @@ void tag_as_result_of(const View& view, OIIO::ImageSpec& spec) {
          }) {
         spec.erase_attribute(stale);
     }
+}
+
+void tag_as_result_of(const View& view, OIIO::ImageSpec& spec) {
+    tag_as_unknown(spec);
     const Claim claim = claim_of(view);
     if (!claim.color_space.empty()) spec.attribute("oiio:ColorSpace", claim.color_space);
     if (claim.primaries == kRec709) return;  // what OpenEXR files without the attribute have

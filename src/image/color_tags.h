@@ -11,5 +11,7 @@ namespace tonewright {
 /// `chromaticities` where they are not those of Rec.709, and removes whatever described the
 /// source's colors.
 void tag_as_result_of(const View& view, OIIO::ImageSpec& spec);
+/// Removes it, and says nothing: nobody knows what the colors are now.
+void tag_as_unknown(OIIO::ImageSpec& spec);
 
 }  // namespace tonewright

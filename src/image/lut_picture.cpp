@@ -1,9 +1,86 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/lut_picture.h"
 
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "tonewright/image.h"
+
 namespace tonewright {
+namespace {
+
+/// The node that a pixel holds, of a cube of n points a side; red fastest.
+std::size_t node_of(LutFormat format, int n, int width, int x, int y) {
+    return static_cast<std::size_t>(format == LutFormat::hald ? y * width + x
+                                                              : (x / n * n + y) * n + x % n);
+}
+
+constexpr int kLargestLevel = 16;
+constexpr int kLargestStrip = 64;
+
+struct Layout {
+    LutFormat format;
+    int n;
+};
+
+Layout layout_of(const std::string& path, int width, int height) {
+    for (int level = 2; level <= kLargestLevel && width == height; ++level) {
+        if (level * level * level == width) return {LutFormat::hald, level * level};
+    }
+    if (height >= 2 && height <= kLargestStrip && width == height * height)
+        return {LutFormat::strip, height};
+    throw FileError(fmt::format(
+        "read: {}: has {} x {} pixels; expected L^3 x L^3 with L in [2, {}], a Hald CLUT, or N*N x "
+        "N with N in [2, {}], a strip",
+        path, width, height, kLargestLevel, kLargestStrip));
+}
+
+}  // namespace
+
+Lut read_lut_picture(const std::string& path) {
+    if (const auto in = OIIO::ImageInput::open(path)) {
+        // Before there is room for its pixels.
+        (void)layout_of(path, in->spec().width, in->spec().height);
+    } else {
+        (void)OIIO::geterror();  // read_image() says what is wrong
+    }
+    const OIIO::ImageBuf picture = read_image(path);
+    const OIIO::ImageSpec& spec = picture.spec();
+    const Layout layout = layout_of(path, spec.width, spec.height);
+    if (spec.nchannels < 3 || spec.nchannels > 4) {
+        throw FileError(fmt::format("read: {}: has {} channels; expected 3", path, spec.nchannels));
+    }
+    Lut lut;
+    lut.size = layout.n;
+    lut.values.resize(3 * static_cast<std::size_t>(spec.width) *
+                      static_cast<std::size_t>(spec.height));
+    for (int y = 0; y < spec.height; ++y) {
+        for (int x = 0; x < spec.width; ++x) {
+            std::array<float, 4> pixel = {0, 0, 0, 1};
+            picture.getpixel(spec.x + x, spec.y + y, pixel.data(), spec.nchannels);
+            if (pixel[3] != 1) {
+                throw FileError(fmt::format("read: {}: pixel {}, {} has alpha {}; expected 1", path,
+                                            x, y, pixel[3]));
+            }
+            for (std::size_t c = 0; c < 3; ++c) {
+                if (!std::isfinite(pixel[c])) {
+                    throw FileError(
+                        fmt::format("read: {}: pixel {}, {} is {}; expected finite numbers", path,
+                                    x, y, pixel[c]));
+                }
+            }
+            std::copy_n(
+                pixel.begin(), 3,
+                lut.values.begin() + static_cast<std::ptrdiff_t>(
+                                         3 * node_of(layout.format, layout.n, spec.width, x, y)));
+        }
+    }
+    return lut;
+}
 
 OIIO::ImageBuf make_lut_picture(const Lut& lut, LutFormat format) {
     if (!is_picture_format(format)) throw Error("lut: format is no picture");
@@ -17,9 +94,7 @@ OIIO::ImageBuf make_lut_picture(const Lut& lut, LutFormat format) {
     OIIO::ImageBuf picture(spec);
     for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
-            const int node =
-                format == LutFormat::hald ? y * width + x : (x / n * n + y) * n + x % n;
-            picture.setpixel(x, y, &lut.values[3 * static_cast<std::size_t>(node)]);
+            picture.setpixel(x, y, &lut.values[3 * node_of(format, n, width, x, y)]);
         }
     }
     return picture;

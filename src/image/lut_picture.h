@@ -13,4 +13,9 @@ namespace tonewright {
 /// @throws Error  for another format.
 [[nodiscard]] OIIO::ImageBuf make_lut_picture(const Lut& lut, LutFormat format);
 
+/// The cube of such a picture: its size tells which of the two it is.
+/// @throws FileError  missing, truncated, of another size (before its pixels are read), with alpha
+///                    below 1, NaN or infinities.
+[[nodiscard]] Lut read_lut_picture(const std::string& path);
+
 }  // namespace tonewright

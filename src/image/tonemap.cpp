@@ -17,6 +17,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <new>
 #include <optional>
 
@@ -76,6 +77,24 @@ bool depends_on_picture(const TonemapOptions& options) {
            settings_for_picture(options.op, options.settings, {}).size() > options.settings.size();
 }
 
+/// Planar colors with strides, as SimdEngine::run() has them. In and out may be the same.
+using PlanarMap = std::function<void(const std::array<const float*, 3>& in,
+                                     std::ptrdiff_t in_stride, const std::array<float*, 3>& out,
+                                     std::ptrdiff_t out_stride, std::size_t count)>;
+
+/// What is done to a picture.
+struct PictureMap {
+    PlanarMap run;
+    /// A grey picture stays one.
+    bool keeps_grey = false;
+    /// In messages.
+    std::string label;
+    TonemapOptions::Unpremult unpremult = TonemapOptions::Unpremult::automatic;
+};
+
+/// Runs it; the metadata is still that of the source. @throws Error
+void run_picture(const PictureMap& with, ImageBuf& dst, const ImageBuf& src, ROI roi, int nthreads);
+
 /// What a picture is run through.
 struct Prepared {
     explicit Prepared(View v)
@@ -110,8 +129,8 @@ namespace {
 class RowRunner {
   public:
     /// @throws std::bad_alloc
-    RowRunner(const SimdEngine& engine, const ChannelPlan& plan, ImageBuf& dst, const ImageBuf& src)
-        : engine_(engine),
+    RowRunner(const PlanarMap& map, const ChannelPlan& plan, ImageBuf& dst, const ImageBuf& src)
+        : map_(map),
           plan_(plan),
           dst_(dst),
           src_(src),
@@ -157,7 +176,7 @@ class RowRunner {
         return true;
     }
 
-    void run_span(const SpanSource& source, std::byte* to, std::size_t n) noexcept {
+    void run_span(const SpanSource& source, std::byte* to, std::size_t n) {
         const std::ptrdiff_t to_stride = dst_.pixel_stride();
         if (!run_in_place_of_floats(source, to, to_stride, n)) {
             const std::array<float*, 3> rgb = {planes_.data(), planes_.data() + kSpan,
@@ -165,7 +184,7 @@ class RowRunner {
             load_color(source, rgb, n);
             const float* alpha = load_alpha(source, n);
             if (alpha) divide(rgb, alpha, n);
-            engine_.run({rgb[0], rgb[1], rgb[2]}, 1, rgb, 1, n);
+            map_({rgb[0], rgb[1], rgb[2]}, 1, rgb, 1, n);
             if (alpha) multiply(rgb, alpha, n);
             store_color(rgb, to, to_stride, n);
         }
@@ -175,7 +194,7 @@ class RowRunner {
 
     /// Float to float without alpha needs no scratch: the engine reads and writes the pictures.
     bool run_in_place_of_floats(const SpanSource& source, std::byte* to, std::ptrdiff_t to_stride,
-                                std::size_t n) noexcept {
+                                std::size_t n) {
         constexpr std::ptrdiff_t kFloat = sizeof(float);
         const auto aligned = [](const std::byte* p) {
             return reinterpret_cast<std::uintptr_t>(p) % alignof(float) == 0;
@@ -188,8 +207,8 @@ class RowRunner {
         }
         const auto* in = reinterpret_cast<const float*>(source.pixels);
         auto* out = reinterpret_cast<float*>(to);
-        engine_.run({in, in + 1, in + 2}, source.stride / kFloat, {out, out + 1, out + 2},
-                    to_stride / kFloat, n);
+        map_({in, in + 1, in + 2}, source.stride / kFloat, {out, out + 1, out + 2},
+             to_stride / kFloat, n);
         return true;
     }
 
@@ -263,7 +282,7 @@ class RowRunner {
         }
     }
 
-    const SimdEngine& engine_;
+    const PlanarMap& map_;
     const ChannelPlan& plan_;
     ImageBuf& dst_;
     const ImageBuf& src_;
@@ -277,23 +296,8 @@ class RowRunner {
     std::vector<double> wide_;   // copied channels whose type changes; double holds every type
 };
 
-}  // namespace
-
-void Tonemapper::State::run(ImageBuf& dst, const ImageBuf& src, ROI roi, int nthreads) const {
-    check_source(src);
-    if (prepared) {
-        run(*prepared, dst, src, roi, nthreads);
-        return;
-    }
-    // Of the whole picture, whatever the region: its parts must fit together.
-    const SceneStatistics statistics =
-        measure_scene(src, options.input, options.unpremult, {}, nthreads);
-    const Settings settings = settings_for_picture(options.op, options.settings, statistics);
-    run(Prepared(view_of(options, settings)), dst, src, roi, nthreads);
-}
-
-void Tonemapper::State::run(const Prepared& with, ImageBuf& dst, const ImageBuf& src, ROI roi,
-                            int nthreads) const {
+void run_picture(const PictureMap& with, ImageBuf& dst, const ImageBuf& src, ROI roi,
+                 int nthreads) {
     const ImageSpec& source = src.spec();
     if (dst.deep()) fail("destination is deep; expected flat pixels (oiiotool --flatten)");
     if (dst.initialized()) check_pixel_type("destination", dst.spec().format);
@@ -317,10 +321,10 @@ void Tonemapper::State::run(const Prepared& with, ImageBuf& dst, const ImageBuf&
     if (dst.initialized() && !plan.grey_result && dst.nchannels() < 3) {
         fail(fmt::format("destination has {}; expected 3 or more: {}",
                          dst.nchannels() == 1 ? "1 channel" : "2 channels",
-                         plan.grey_source ? with.view.op.label + " shows this grey picture in color"
+                         plan.grey_source ? with.label + " shows this grey picture in color"
                                           : std::string("the picture is in color")));
     }
-    if (layout.alpha >= 0 && divides_by_alpha(source, options.unpremult)) plan.alpha = layout.alpha;
+    if (layout.alpha >= 0 && divides_by_alpha(source, with.unpremult)) plan.alpha = layout.alpha;
 
     const bool widens = plan.grey_source && !plan.grey_result;
     ImageSpec fresh = result_spec(source, widens);
@@ -342,7 +346,7 @@ void Tonemapper::State::run(const Prepared& with, ImageBuf& dst, const ImageBuf&
         OIIO::ImageBufAlgo::parallel_image(roi, OIIO::paropt(nthreads), [&](ROI part) {
             // No exception may leave a thread of OIIO's pool.
             try {
-                if (!RowRunner(with.engine, plan, dst, src).run(part)) unreadable = true;
+                if (!RowRunner(with.run, plan, dst, src).run(part)) unreadable = true;
             } catch (const std::bad_alloc&) {
                 out_of_memory = true;
             }
@@ -350,6 +354,31 @@ void Tonemapper::State::run(const Prepared& with, ImageBuf& dst, const ImageBuf&
         if (out_of_memory) throw std::bad_alloc();
         check_was_read(src, !unreadable);
     }
+}
+
+}  // namespace
+
+void Tonemapper::State::run(ImageBuf& dst, const ImageBuf& src, ROI roi, int nthreads) const {
+    check_source(src);
+    if (prepared) {
+        run(*prepared, dst, src, roi, nthreads);
+        return;
+    }
+    // Of the whole picture, whatever the region: its parts must fit together.
+    const SceneStatistics statistics =
+        measure_scene(src, options.input, options.unpremult, {}, nthreads);
+    const Settings settings = settings_for_picture(options.op, options.settings, statistics);
+    run(Prepared(view_of(options, settings)), dst, src, roi, nthreads);
+}
+
+void Tonemapper::State::run(const Prepared& with, ImageBuf& dst, const ImageBuf& src, ROI roi,
+                            int nthreads) const {
+    const PlanarMap engine = [&](const auto& in, std::ptrdiff_t in_stride, const auto& out,
+                                 std::ptrdiff_t out_stride, std::size_t count) {
+        with.engine.run(in, in_stride, out, out_stride, count);
+    };
+    run_picture({engine, with.keeps_grey, with.view.op.label, options.unpremult}, dst, src, roi,
+                nthreads);
     tag_as_result_of(with.view, dst.specmod());
 }
 
@@ -380,6 +409,34 @@ bool tonemap(ImageBuf& dst, const ImageBuf& src, const TonemapOptions& options, 
         return false;
     }
     return (*tonemapper)(dst, src, roi, nthreads);
+}
+
+bool map_colors(ImageBuf& dst, const ImageBuf& src,
+                const std::function<void(const float*, float*, std::size_t)>& map,
+                TonemapOptions::Unpremult unpremult, ROI roi, int nthreads) noexcept {
+    const PlanarMap planar = [&](const auto& in, std::ptrdiff_t in_stride, const auto& out,
+                                 std::ptrdiff_t out_stride, std::size_t count) {
+        std::array<float, 3 * kSpan> from{};
+        std::array<float, 3 * kSpan> to{};
+        for (std::size_t i = 0; i < count; ++i) {
+            for (std::size_t c = 0; c < 3; ++c)
+                from[3 * i + c] = in[c][static_cast<std::ptrdiff_t>(i) * in_stride];
+        }
+        map(from.data(), to.data(), count);
+        for (std::size_t i = 0; i < count; ++i) {
+            for (std::size_t c = 0; c < 3; ++c)
+                out[c][static_cast<std::ptrdiff_t>(i) * out_stride] = to[3 * i + c];
+        }
+    };
+    try {
+        check_source(src);
+        run_picture({planar, false, "the LUT", unpremult}, dst, src, roi, nthreads);
+        tag_as_unknown(dst.specmod());
+        return true;
+    } catch (const std::exception& e) {
+        dst.errorfmt("{}", e.what());
+        return false;
+    }
 }
 
 ImageBuf tonemap(const ImageBuf& src, const TonemapOptions& options, ROI roi,

@@ -11,7 +11,13 @@ namespace {
 BakedLut measured(Lut lut, const LutRequest& request, bool trilinear, bool is_fitted) {
     quantize(lut, request);
     const LutError error = measure_lut(lut, request, trilinear);
-    return {std::move(lut), error, is_fitted};
+    return {std::move(lut), error, {}, is_fitted};
+}
+
+/// With what the other interpolation makes of it.
+BakedLut complete(BakedLut baked, const LutRequest& request, bool trilinear) {
+    if (baked.lut.dimension == 3) baked.other_error = measure_lut(baked.lut, request, !trilinear);
+    return baked;
 }
 
 BakedLut bake_size(const LutRequest& request, LutNodes nodes, bool trilinear, bool by_max) {
@@ -39,7 +45,8 @@ std::vector<int> sizes_of(LutFormat format) {
 
 BakedLut bake_lut(const LutRequest& request, LutNodes nodes, bool trilinear,
                   std::optional<double> max_error) {
-    if (!max_error) return bake_size(request, nodes, trilinear, false);
+    if (!max_error)
+        return complete(bake_size(request, nodes, trilinear, false), request, trilinear);
     if (request.size) {
         throw Error("bake: size is " + std::to_string(*request.size) +
                     "; expected none with --max-error, which chooses it");
@@ -54,7 +61,7 @@ BakedLut bake_lut(const LutRequest& request, LutNodes nodes, bool trilinear,
         for (const int size : sizes_of(request.format)) {
             sized.size = size;
             baked = bake_size(sized, nodes, trilinear, true);
-            if (baked.error.max <= *max_error) return baked;
+            if (baked.error.max <= *max_error) return complete(std::move(baked), sized, trilinear);
         }
     }
     throw Error(fmt::format("bake: max error is {}; expected at least {}, which {} {} has",

@@ -7,9 +7,11 @@
 
 namespace tonewright {
 
-const char* file_extension(const ClfTable& table) {
-    return table.is_hue_preserving ? ".ctf" : ".clf";
-}
+namespace {
+bool is_ctf(const ClfTable& table) { return table.is_ctf || table.is_hue_preserving; }
+}  // namespace
+
+const char* file_extension(const ClfTable& table) { return is_ctf(table) ? ".ctf" : ".clf"; }
 
 std::string write_clf(const ClfTable& table, const std::string& name,
                       const std::vector<std::string>& description) {
@@ -37,9 +39,9 @@ std::string write_clf(const ClfTable& table, const std::string& name,
     const char* depth = table.numbers == ClfTable::Numbers::codes ? "16i" : "32f";
     std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
     // A file has the version of one format only.
-    text += fmt::format("<ProcessList id=\"tonewright-{}\" name=\"{}\" {}>\n",
-                        content_hash(numbers), xml_escape(name),
-                        table.is_hue_preserving ? "version=\"1.4\"" : "compCLFversion=\"3\"");
+    text +=
+        fmt::format("<ProcessList id=\"tonewright-{}\" name=\"{}\" {}>\n", content_hash(numbers),
+                    xml_escape(name), is_ctf(table) ? "version=\"1.4\"" : "compCLFversion=\"3\"");
     for (const std::string& line : description) {
         text += "    <Description>" + xml_escape(line) + "</Description>\n";
     }

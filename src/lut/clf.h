@@ -16,6 +16,8 @@ struct ClfTable {
     /// 1D: the largest and the smallest channel are looked up, the middle one keeps its place
     /// between them. Autodesk's CTF has it (hueAdjust "dw3"), CLF has not: the file is a .ctf.
     bool is_hue_preserving = false;
+    /// A .ctf all the same.
+    bool is_ctf = false;
     /// 1D: entry by entry. 3D: RGB triplets, BLUE fastest, as CLF has them.
     const std::vector<float>* values = nullptr;
     /// How its numbers are written.

@@ -135,7 +135,8 @@ InputEncoding parse_input_encoding(std::string_view text) {
 }
 
 std::vector<std::string> lut_format_names() {
-    return {"cube", "clf", "spi1d", "spi3d", "csp", "3dl", "hald", "strip", "raw"};
+    return {"cube", "clf", "ctf", "spi1d", "spi3d", "csp", "resolve_cube",
+            "3dl",  "lut", "icc", "hald",  "strip", "raw"};
 }
 
 std::string name_of(LutFormat format) {
@@ -144,6 +145,10 @@ std::string name_of(LutFormat format) {
 
 bool is_picture_format(LutFormat format) {
     return format == LutFormat::hald || format == LutFormat::strip;
+}
+
+bool has_shaper(LutFormat format) {
+    return format == LutFormat::csp || format == LutFormat::resolve_cube;
 }
 
 LutFormat parse_lut_format(std::string_view text) {

@@ -5,11 +5,11 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <future>
 #include <numbers>
 #include <thread>
 
 #include "engine/probe.h"
+#include "lut/parallel.h"
 #include "tonewright/engine.h"
 
 // With weights that interpolate linearly inside each of a cell's six tetrahedra, the normal matrix
@@ -49,21 +49,6 @@ struct Sample {
     std::array<float, 3> weight;  // of the second, the third and the far corner
     std::array<float, 3> code;
 };
-
-/// Runs f(0) ... f(count - 1) on threads; what they throw is thrown.
-template <class F>
-void in_parallel(std::size_t count, unsigned thread_count, const F& f) {
-    const auto run = [&](std::size_t first) {
-        for (std::size_t i = first; i < count; i += thread_count)
-            f(i);
-    };
-    std::vector<std::future<void>> others;
-    for (std::size_t first = 1; first < std::min<std::size_t>(thread_count, count); ++first)
-        others.push_back(std::async(std::launch::async, run, first));
-    run(0);
-    for (std::future<void>& other : others)
-        other.get();
-}
 
 class Fit {
   public:

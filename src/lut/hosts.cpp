@@ -40,7 +40,7 @@ const std::vector<LutHost>& all_lut_hosts() {
          "tetrahedral",
          "ffmpeg -i hdr10.mkv -vf zscale=matrix=gbr,format=gbrp16le,"
          "lut3d=FILE:interp=tetrahedral -pix_fmt gbrp16le out.mkv: PQ, Rec.2020, in RGB",
-         "5.1"},
+         "ffmpeg 5.1"},
         {"premiere",
          "Premiere Pro",
          LutFormat::cube,
@@ -111,7 +111,7 @@ const std::vector<LutHost>& all_lut_hosts() {
          "trilinear",
          "mpv --vo=gpu-next --lut=FILE --lut-type=conversion --target-trc=srgb "
          "--target-prim=bt.709 hdr10.mkv",
-         ""},
+         "mpv 0.35.1"},
         {"gmic",
          "G'MIC, GIMP with G'MIC",
          LutFormat::cube,
@@ -122,7 +122,7 @@ const std::vector<LutHost>& all_lut_hosts() {
          "trilinear",
          "gmic in.tif FILE div[1] 255 'fill[0]' 'I(#1,R/255*32,G/255*32,B/255*32,1,0)*255' keep[0] "
          "-o out.tif; in GIMP: Filters > G'MIC-Qt > Colors > Apply External CLUT",
-         ""},
+         "G'MIC 2.9.4"},
         {"darktable",
          "darktable",
          LutFormat::cube,
@@ -133,13 +133,32 @@ const std::vector<LutHost>& all_lut_hosts() {
          "tetrahedral",
          "preferences > processing > 3D LUT root folder; module LUT 3D, application color space "
          "sRGB",
-         ""},
+         "darktable 4.2.1"},
         {"rawtherapee", "RawTherapee", LutFormat::hald, 64, "srgb", "srgb", 16, "trilinear",
-         "Preferences > Image Processing > HaldCLUT directory; Color > Film Simulation", ""},
+         "Preferences > Image Processing > HaldCLUT directory; Color > Film Simulation",
+         "RawTherapee 5.9"},
         {"imagemagick", "ImageMagick, GraphicsMagick", LutFormat::hald, 64, "srgb", "srgb", 16,
-         "trilinear", "convert in.png FILE -hald-clut out.png", ""},
+         "trilinear", "convert in.png FILE -hald-clut out.png",
+         "ImageMagick 6.9.11, GraphicsMagick 1.3.40"},
         {"flame", "Flame, Lustre", LutFormat::threedl, 33, "acescct", "rec1886", 12, "trilinear",
          "LUT Editor > Import, on a picture in ACEScct", ""},
+        {"houdini",
+         "Houdini",
+         LutFormat::houdini,
+         64,
+         "acescct",
+         "srgb",
+         {},
+         "trilinear",
+         "in a compositing network: Lookup COP > LUT File, behind a conversion to ACEScct; MPlay, "
+         "the same: LUT button > Load LUT",
+         ""},
+        {"icc", "ICC device link: Photoshop, ImageMagick, LittleCMS", LutFormat::icc, 33, "srgb",
+         "srgb", 16, "tetrahedral",
+         "Photoshop, on a picture in sRGB: Layer > New Adjustment Layer > Color Lookup > Device "
+         "Link > Load; convert in.png -profile FILE +profile '*' out.png; tificc -l FILE -c 0 -w "
+         "16 in.tif out.tif",
+         "LittleCMS 2.14 and ImageMagick 6.9.11, 16 bits"},
         {"ocio",
          "OpenColorIO",
          LutFormat::clf,
@@ -151,7 +170,7 @@ const std::vector<LutHost>& all_lut_hosts() {
          "FileTransform with the file and interpolation tetrahedral, behind ACEScct; the config "
          "has "
          "no such step",
-         "2.1.2"},
+         "OpenColorIO 2.1.2"},
         {"threejs",
          "three.js",
          LutFormat::cube,
@@ -160,8 +179,9 @@ const std::vector<LutHost>& all_lut_hosts() {
          "srgb",
          {},
          "trilinear",
-         "LUTCubeLoader, then LUTPass behind OutputPass: works on what is shown",
-         ""},
+         "new LUTCubeLoader().setType(FloatType), which by itself cuts numbers off to 8 bits; then "
+         "LUTPass behind OutputPass: works on what is shown",
+         "three.js r187 in Chromium 156"},
     };
     return hosts;
 }

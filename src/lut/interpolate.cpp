@@ -6,6 +6,7 @@
 #include "engine/error_metric.h"
 #include "engine/probe.h"
 #include "lut/half_domain.h"
+#include "lut/numbers.h"
 #include "tonewright/engine.h"
 #include "tonewright/lut.h"
 
@@ -43,6 +44,20 @@ double interpolate_1d(const Lut& lut, double x, std::size_t channel) {
     const double a = static_cast<double>(lut.values[i * channels + channel]);
     const double b = static_cast<double>(lut.values[(i + 1) * channels + channel]);
     return a + t * (b - a);
+}
+
+/// What the table before a cube makes of light: straight lines between equal steps.
+void run_shaper(const InputEncoding& encoding, const std::vector<float>& light,
+                std::vector<double>& code) {
+    std::vector<float> steps;
+    const double lo = encoding.scene_lo;
+    const double span = encoding.scene_hi - lo;
+    for (int i = 0; i < kShaperSteps; ++i)
+        steps.push_back(
+            static_cast<float>(evaluate(encoding.encode, lo + span * i / (kShaperSteps - 1.0))));
+    const Lut shaper = {1, kShaperSteps, 1, false, std::move(steps)};
+    for (std::size_t i = 0; i < light.size(); ++i)
+        code[i] = interpolate_1d(shaper, (static_cast<double>(light[i]) - lo) / span, 0);
 }
 
 }  // namespace
@@ -119,6 +134,8 @@ LutError measure_lut(const Lut& lut, const LutRequest& request, bool trilinear) 
         const ReferenceEngine encode({curve_stage(request.encoding.encode)});
         if (lut.is_half_domain) {
             std::copy(probes.rgb.begin(), probes.rgb.end(), code.begin());
+        } else if (has_shaper(request.format)) {
+            run_shaper(request.encoding, probes.rgb, code);
         } else {
             encode.run_rgb(probes.rgb.data(), code.data(), probes.size());
         }
@@ -158,8 +175,11 @@ LutError measure_lut(const Lut& lut, const LutRequest& request, bool trilinear) 
     result.mean = stats.mean;
     result.interpolation = lut.dimension == 1 ? "linear" : trilinear ? "trilinear" : "tetrahedral";
     if (request.view.display != kLinearOutput && request.view.display != kNativeOutput) {
-        result.delta_e_max =
-            summarise(delta_e_itp(find_display(request.view.display), shown, wanted)).max;
+        const ErrorStats seen =
+            summarise(delta_e_itp(find_display(request.view.display), shown, wanted));
+        result.delta_e_max = seen.max;
+        result.delta_e_p999 = seen.p999;
+        result.delta_e_mean = seen.mean;
     }
     return result;
 }

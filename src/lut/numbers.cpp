@@ -35,6 +35,13 @@ void append_compact(std::string& text, float value) {
                    std::clamp(9 + leading, 7, 9));
 }
 
+std::string three_digits_up(double value) {
+    if (!(value > 0) || !std::isfinite(value)) return fmt::format("{}", value);
+    const double unit = std::pow(10.0, std::floor(std::log10(value)) - 2);
+    // The small subtraction keeps 1.23e-7, which is not a double, from becoming 1.24e-7.
+    return fmt::format("{:.2e}", std::ceil(value / unit - 1e-9) * unit);
+}
+
 std::string content_hash(const std::string& contents) {
     std::uint32_t hash = 2166136261U;
     for (const char c : contents) {

@@ -5,6 +5,9 @@
 
 namespace tonewright {
 
+/// Of the 1D table before a cube: as many as readers take, or make of a prelut.
+inline constexpr int kShaperSteps = 65536;
+
 /// Appends a float with 9 significant digits (enough to read back the same float), in fixed
 /// notation: several hosts do not read exponents. Trailing zeros are left out.
 void append_number(std::string& text, float value);
@@ -15,6 +18,10 @@ void append_decimals(std::string& text, float value, int decimals);
 /// [0, 1] behind sRGB's curve, in two thirds of the space. Below 1e-14 nothing is left but the
 /// rounding of doubles near 1: 0.
 void append_compact(std::string& text, float value);
+
+/// Three significant digits, rounded up: what is printed is never less than what was measured, and
+/// at most 1 % more.
+[[nodiscard]] std::string three_digits_up(double value);
 
 /// FNV-1a, 32 bits, as 8 hexadecimal digits: names LUT files by their contents, because OCIO caches
 /// files by name.

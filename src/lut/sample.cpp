@@ -34,14 +34,18 @@ struct FormatTraits {
 };
 
 /// In the order of LutFormat.
-constexpr std::array<FormatTraits, 9> kFormats = {{
+constexpr std::array<FormatTraits, 13> kFormats = {{
     {"cube", true, true, kDefaultCubeSize, 17, 129, {32, 0, 0}},
     {"clf", true, true, kDefaultCubeSize, 17, 129, {32, 0, 0}},
+    {"ctf", true, true, kDefaultCubeSize, 17, 129, {32, 0, 0}},
     {"spi1d", true, false, 0, 0, 0, {32, 0, 0}},
     {"spi3d", false, true, kDefaultCubeSize, 17, 129, {32, 0, 0}},
     {"csp", false, true, kDefaultCubeSize, 17, 129, {32, 0, 0}},
+    {"resolve_cube", false, true, kDefaultCubeSize, 17, 129, {32, 0, 0}},
     // Autodesk's readers know 17, 33 and 65.
     {"3dl", false, true, kDefaultCubeSize, 17, 65, {12, 10, 16}},
+    {"lut", false, true, kDefaultCubeSize, 17, 129, {32, 0, 0}},
+    {"icc", false, true, kDefaultCubeSize, 17, 129, {16, 0, 0}},
     // Level 8.
     {"hald", false, true, 64, 16, 144, {16, 8, 32}},
     {"strip", false, true, 32, 2, 64, {16, 8, 32}},
@@ -104,24 +108,32 @@ Lut sample_lut(const LutRequest& request) {
     const bool per_channel = is_per_channel(build_view(request.view));
     const FormatTraits& traits = traits_of(request.format);
     if (request.dimension == LutDimension::three && !traits.has_3d) {
-        throw Error(
-            std::string("bake: format is ") + traits.name +
-            "; expected a 3D format (cube, clf, spi3d, csp, 3dl, hald, strip, raw) with --3d");
+        throw Error(std::string("bake: format is ") + traits.name +
+                    "; expected a 3D format (cube, clf, ctf, spi3d, csp, resolve_cube, 3dl, lut, "
+                    "icc, hald, "
+                    "strip, raw) with --3d");
     }
     if (request.dimension == LutDimension::one && !traits.has_1d) {
         throw Error(std::string("bake: format is ") + traits.name +
-                    "; expected a 1D format (cube, clf, spi1d) with --1d");
+                    "; expected a 1D format (cube, clf, ctf, spi1d) with --1d");
     }
     const bool one =
         traits.has_1d && (!traits.has_3d || request.dimension == LutDimension::one ||
                           (request.dimension == LutDimension::automatic && per_channel));
     check_bits(request, traits);
-    // Readers resample the prelut to 65536 equal steps of light: up to ACEScct's 222.9 they are
-    // short enough.
-    constexpr double kBrightestPrelut = 223;
-    if (request.format == LutFormat::csp && request.encoding.scene_hi > kBrightestPrelut) {
+    if (request.decimals && request.format != LutFormat::cube) {
+        throw Error("bake: decimals is " + std::to_string(*request.decimals) +
+                    "; expected none for " + traits.name + ", only cube has them");
+    }
+    if (request.decimals && (*request.decimals < 3 || *request.decimals > 9)) {
+        throw Error("bake: decimals is " + std::to_string(*request.decimals) + "; expected [3, 9]");
+    }
+    // Readers have 65536 equal steps of light at most: up to ACEScct's 222.9 they are short enough.
+    constexpr double kBrightestShaper = 223;
+    if (has_shaper(request.format) && request.encoding.scene_hi > kBrightestShaper) {
         throw Error("bake: input encoding is " + request.encoding.id + ", up to " +
-                    shortest(request.encoding.scene_hi) + "; expected up to 223 for csp");
+                    shortest(request.encoding.scene_hi) + "; expected up to 223 for " +
+                    traits.name);
     }
     if (one && !per_channel) {
         throw Error(at_most_one_dimension(request) + "; expected a 3D table");
@@ -131,10 +143,13 @@ Lut sample_lut(const LutRequest& request) {
                     "; expected another for a 3D table, such as acescct or log2" +
                     " (a cube of linear light clips at its end and bands in the shadows)");
     }
-    if (one && request.format == LutFormat::clf && request.encoding.is_linear) {
+    const bool has_half_domain =
+        request.format == LutFormat::clf || request.format == LutFormat::ctf;
+    if (one && has_half_domain && request.encoding.is_linear) {
         if (request.size)
             throw Error("bake: size is " + std::to_string(*request.size) +
-                        "; expected none, a half-domain CLF has 65536 entries");
+                        "; expected none, a half-domain " + std::string(traits.name) +
+                        " has 65536 entries");
         return sample_half_curve(request);
     }
 
@@ -207,6 +222,12 @@ Lut fit_lut(const LutRequest& request, const Lut& sampled) {
 }
 
 void quantize(Lut& lut, const LutRequest& request) {
+    if (request.decimals) {
+        lut.decimals = request.decimals;
+        const double unit = std::pow(10.0, *request.decimals);
+        for (float& v : lut.values)
+            v = static_cast<float>(std::round(static_cast<double>(v) * unit) / unit);
+    }
     const int bits = bits_of(request);
     if (bits == 32) return;
     const float largest = std::exp2(static_cast<float>(bits)) - 1;

@@ -1,33 +1,67 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
+#include <cmath>
+#include <thread>
 
 #include "engine/error_metric.h"
 #include "lut/numbers.h"
+#include "lut/parallel.h"
 #include "tonewright/lut.h"
 
 namespace tonewright {
 namespace {
 
-/// What people ask for by name. A LUT of any other operator is one `tonewright bake` away; all of
-/// them would be some 60 MB.
-constexpr std::array kShipped = {
-    "aces_hill",       "aces_narkowicz", "agx_godot", "agx_minimal",
-    "agx_sobotka",     "agx_threejs",    "gt7",       "hable",
-    "khronos_neutral", "lottes",         "reinhard",  "reinhard_extended",
-    "reinhard_jodie",  "uchimura",       "unreal",
+/// What people ask for by name. A LUT of any other operator is one `tonewright bake` away.
+const std::vector<std::string> kOperators = {
+    "agx_blender",    "agx_sobotka", "aces_13", "aces_20",         "aces_hill",
+    "aces_narkowicz", "gt7",         "hable",   "khronos_neutral", "reinhard_extended",
 };
+/// Of these the ones for pictures in a wide gamut: curves on each channel of Rec.709 clip most of
+/// it.
+const std::vector<std::string> kForWideGamuts = {"agx_blender", "agx_sobotka", "aces_13", "aces_20",
+                                                 "khronos_neutral"};
 
-struct Row {
-    std::string path;
-    const Operator* op;
-    LutRequest request;
-    Lut lut;
-    LutError error;
-    LutError trilinear;
-    std::string hash;
-};
+/// Of the numbers in cubes.
+constexpr int kDecimals = 4;
+
+/// An identifier of an encoding as part of a file's name: without parameters.
+std::string name_part(const std::string& id) { return id.substr(0, id.find(':')); }
+
+ShippedLut plan(const LutShelf& shelf, const std::string& id) {
+    const LutHost& host = *shelf.host;
+    ShippedLut planned;
+    planned.shelf = &shelf;
+    LutRequest& request = planned.request;
+    request.encoding = parse_input_encoding(host.encoding);
+    request.view = make_view(resolve_operator(id), request.encoding.default_input, 0, host.display);
+    request.format = host.format;
+    request.dimension = LutDimension::three;
+    request.size = shelf.size.value_or(host.size);
+    request.bits = host.bits;
+    if (host.format == LutFormat::cube) request.decimals = kDecimals;
+    const std::string stem = fmt::format("{}_{}_to_{}", id, name_part(host.encoding), host.display);
+    planned.path = fmt::format("{}/{}.{}", host.id, stem,
+                               is_picture_format(host.format) ? "png" : name_of(host.format));
+    planned.thumbnail = fmt::format("{}/thumbnails/{}.png", host.id, stem);
+    return planned;
+}
+
+void bake(ShippedLut& planned) {
+    const bool trilinear = is_trilinear(*planned.shelf->host);
+    BakedLut baked = bake_lut(planned.request, LutNodes::automatic, trilinear);
+    planned.lut = std::move(baked.lut);
+    planned.is_fitted = baked.is_fitted;
+    planned.tetrahedral = trilinear ? baked.other_error.value() : baked.error;
+    planned.trilinear = trilinear ? baked.error : baked.other_error.value();
+    if (!is_picture_format(planned.request.format))
+        planned.contents = write_lut(planned.lut, planned.request, baked.error, baked.other_error);
+}
+
+const LutError& error_at_host(const ShippedLut& lut) {
+    return is_trilinear(*lut.shelf->host) ? lut.trilinear : lut.tetrahedral;
+}
 
 std::string csv_field(const std::string& text) {
     if (text.find_first_of(",\"") == std::string::npos) return text;
@@ -37,92 +71,172 @@ std::string csv_field(const std::string& text) {
     return out + "\"";
 }
 
-std::string manifest(const std::vector<Row>& rows) {
+std::string error_fields(const LutError& error) {
+    return fmt::format("{},{},{},{},{},{}", three_digits_up(error.max), three_digits_up(error.p999),
+                       three_digits_up(error.mean), three_digits_up(error.delta_e_max),
+                       three_digits_up(error.delta_e_p999), three_digits_up(error.delta_e_mean));
+}
+
+std::string manifest(const std::vector<ShippedLut>& luts) {
     std::string text =
-        "path,operator,input_space,input_encoding,scene_lo,scene_hi,output,dimension,size,"
-        "interpolation,max_error,p999_error,mean_error,max_dE_ITP,trilinear_max_error,content_"
-        "hash\n";
-    for (const Row& row : rows) {
-        text += fmt::format("{},{},{},{},{:.9g},{:.9g},{},{}D,{},{},{},{},{},{},{},{}\n", row.path,
-                            csv_field(row.request.view.op.label), row.request.view.input,
-                            row.request.encoding.id, row.request.encoding.scene_lo,
-                            row.request.encoding.scene_hi, row.request.view.display,
-                            row.lut.dimension, row.lut.size, row.error.interpolation,
-                            rounded_up(row.error.max), rounded_up(row.error.p999),
-                            rounded_up(row.error.mean), rounded_up(row.error.delta_e_max),
-                            row.lut.dimension == 3 ? rounded_up(row.trilinear.max) : "", row.hash);
+        "path,operator,host,input_space,input_encoding,scene_lo,scene_hi,output,format,size,depth,"
+        "decimals,nodes,host_interpolation,tetrahedral_max,tetrahedral_p999,tetrahedral_mean,"
+        "tetrahedral_max_dE_ITP,tetrahedral_p999_dE_ITP,tetrahedral_mean_dE_ITP,trilinear_max,"
+        "trilinear_p999,trilinear_mean,trilinear_max_dE_ITP,trilinear_p999_dE_ITP,"
+        "trilinear_mean_dE_ITP,content_hash\n";
+    for (const ShippedLut& lut : luts) {
+        const LutRequest& r = lut.request;
+        text += fmt::format("{},{},{},{},{},{:.9g},{:.9g},{},{},{},{},{},{},{},{},{},{}\n",
+                            lut.path, csv_field(r.view.op.label), lut.shelf->host->id, r.view.input,
+                            r.encoding.id, r.encoding.scene_lo, r.encoding.scene_hi, r.view.display,
+                            name_of(r.format), lut.lut.size, r.bits ? std::to_string(*r.bits) : "",
+                            r.decimals ? std::to_string(*r.decimals) : "",
+                            lut.is_fitted ? "fitted" : "sampled", error_at_host(lut).interpolation,
+                            error_fields(lut.tetrahedral), error_fields(lut.trilinear),
+                            content_hash(lut.contents));
     }
     return text;
 }
 
-std::string readme(const std::vector<Row>& rows) {
+std::string output_title(const LutRequest& request) {
+    return request.view.display == kLinearOutput ? "display-linear Rec.709"
+                                                 : find_display(request.view.display).title;
+}
+
+std::string size_text(const ShippedLut& lut) {
+    const int n = lut.lut.size;
+    if (lut.request.format == LutFormat::strip) return fmt::format("{} x {} pixels", n * n, n);
+    return fmt::format("{0} x {0} x {0} points", n);
+}
+
+/// Operators down, applications across.
+std::string overview(const std::vector<ShippedLut>& luts) {
+    std::string head = "| operator |";
+    std::string rule = "|---|";
+    for (const LutShelf& shelf : lut_shelves()) {
+        head += fmt::format(" [{0}](#{1}) |", shelf.host->title, shelf.host->id);
+        rule += "---|";
+    }
+    std::string text = head + "\n" + rule + "\n";
+    for (const std::string& id : kOperators) {
+        text += "| " + find_operator(id).title + " |";
+        for (const LutShelf& shelf : lut_shelves()) {
+            const auto found = std::find_if(luts.begin(), luts.end(), [&](const ShippedLut& lut) {
+                return lut.shelf == &shelf && lut.request.view.op.op->id == id;
+            });
+            text += found == luts.end()
+                        ? " |"
+                        : fmt::format(" [![{}]({})]({}) |", id, found->thumbnail, found->path);
+        }
+        text += "\n";
+    }
+    return text;
+}
+
+std::string section(const LutShelf& shelf, const std::vector<ShippedLut>& luts) {
+    const LutHost& host = *shelf.host;
+    std::string text = fmt::format("\n<a id=\"{}\"></a>\n## {}\n\n", host.id, host.title);
+    if (!shelf.also.empty()) text += "Also for " + shelf.also + ".\n\n";
+    text += fmt::format("{}. {}\n\n", host.steps,
+                        host.tested.empty() ? "(Format checked, application not run.)"
+                                            : "(Tested with " + host.tested + ".)");
+    bool is_first = true;
+    for (const ShippedLut& lut : luts) {
+        if (lut.shelf != &shelf) continue;
+        const LutRequest& r = lut.request;
+        const LutError& error = error_at_host(lut);
+        if (is_first) {
+            text += fmt::format(
+                "Each file: `tonewright bake OPERATOR --for {} --size {}{} -o FILE`; {}, {} "
+                "interpolation, {:+.1f} stops from 0.18 at input 1.\n\n"
+                "| operator | file | input | output | max error | 99.9 % | mean | picture |\n"
+                "|---|---|---|---|---|---|---|---|\n",
+                host.id, lut.lut.size, r.decimals ? fmt::format(" --decimals {}", *r.decimals) : "",
+                size_text(lut), error.interpolation, std::log2(r.encoding.scene_hi / 0.18));
+        }
+        is_first = false;
+        text += fmt::format("| {} | [{}]({}) | {} | {} | {} | {} | {} | ![{}]({}) |\n",
+                            r.view.op.op->title, lut.path.substr(lut.path.find('/') + 1), lut.path,
+                            r.encoding.title, output_title(r), rounded_up(error.max),
+                            rounded_up(error.p999), rounded_up(error.mean), r.view.op.op->id,
+                            lut.thumbnail);
+    }
+    return text;
+}
+
+std::string readme(const std::vector<ShippedLut>& luts) {
     std::string text =
         "# LUTs\n\n"
-        "Generated by `tonewright bake --all luts`; do not edit. `MANIFEST.csv` has the figures of "
-        "every\n"
-        "file. These are the operators most asked for; `tonewright bake` makes the LUT of any "
-        "other, and any\n"
-        "other parameters, size, input or display: `tonewright bake drago --set bias=0.8 --format "
-        "cube -o drago.cube`.\n\n"
-        "* **`*_acescct_to_srgb_33.cube`** takes *ACEScct* (AP1 primaries) and gives sRGB code "
-        "values: set the\n"
-        "  timeline or the node before it to ACEScct. Use tetrahedral interpolation.\n"
-        "* **`*_log2_to_srgb.cube`** takes log2 of scene-linear *Rec.709* over 0.18, from -10 to "
-        "+6.5 stops, and\n"
-        "  gives sRGB code values: 1D for operators that work on each channel alone, else a cube "
-        "of 33 points.\n\n"
-        "Never feed a cube linear light: it clips at 1. Errors are in sRGB code values (1 code of "
-        "8 bits is\n"
-        "0.0039), against the double-precision operator, over everything that the input encoding "
-        "can hold. The\n"
-        "maxima of the ACEScct cubes are the most saturated colours of AP1, which Rec.709 "
-        "operators clip: the\n"
-        "kink falls between grid points. Pictures live near the mean. Where you can choose, take "
-        "the log2 file,\n"
-        "or the OpenColorIO config, which has a cube for one view only.\n\n"
-        "| operator | file | input | output | max error | 99.9 % | mean "
-        "|\n|---|---|---|---|---|---|---|\n";
-    for (const Row& row : rows) {
-        text += fmt::format("| {} | [{}]({}) | {} | {} | {} | {} | {} |\n", row.op->title, row.path,
-                            row.path, row.request.encoding.id,
-                            find_display(row.request.view.display).title, rounded_up(row.error.max),
-                            rounded_up(row.error.p999), rounded_up(row.error.mean));
-    }
+        "Click the picture in your application's column. Any other operator, look, parameter, "
+        "size, input or\n"
+        "display is one `tonewright bake` away ([docs/luts.md](../docs/luts.md), `tonewright list "
+        "--hosts`).\n\n";
+    text += overview(luts);
+    text +=
+        "\nThe pictures are the test chart (`tonewright chart`) through that file, as its "
+        "application\n"
+        "interpolates. A file takes what its name says before `_to_`, and nothing else: give it "
+        "linear light\n"
+        "and it clips at 1. Files that take sRGB work on a picture that is shown already, which "
+        "has no light\n"
+        "above white; they are for applications that can do no other.\n\n"
+        "Errors are in code values (1 code of 8 bits is 0.0039), for Unity in light, against the "
+        "double-precision\n"
+        "operator, over everything that the input encoding can hold. The maxima are the most "
+        "saturated colours\n"
+        "of the camera's or working gamut, which operators made for Rec.709 clip: the kink falls "
+        "between the\n"
+        "points. Pictures live near the mean. `MANIFEST.csv` has the figures of both "
+        "interpolations, tetrahedral\n"
+        "and trilinear, and the colour differences. Generated by `tonewright bake --all luts`; do "
+        "not edit.\n";
+    for (const LutShelf& shelf : lut_shelves())
+        text += section(shelf, luts);
     return text;
 }
 
 }  // namespace
 
-std::vector<GeneratedFile> make_shipped_luts() {
-    std::vector<Row> rows;
-    std::vector<GeneratedFile> files;
-    const auto add = [&](const Operator& op, const char* encoding, LutDimension dimension,
-                         std::optional<int> size, const std::string& name) {
-        Row row;
-        row.op = &op;
-        row.request.encoding = parse_input_encoding(encoding);
-        row.request.view =
-            make_view(resolve_operator(op.id), row.request.encoding.default_input, 0, "srgb");
-        row.request.dimension = dimension;
-        row.request.size = size;
-        row.lut = sample_lut(row.request);
-        row.error = measure_lut(row.lut, row.request);
-        if (row.lut.dimension == 3) row.trilinear = measure_lut(row.lut, row.request, true);
-        row.path = op.id + "/" + name;
-        std::string contents = write_lut(row.lut, row.request, row.error);
-        row.hash = content_hash(contents);
-        files.push_back({row.path, std::move(contents)});
-        row.lut.values.clear();
-        rows.push_back(std::move(row));
+bool is_trilinear(const LutHost& host) { return host.interpolation.starts_with("trilinear"); }
+
+const std::vector<LutShelf>& lut_shelves() {
+    // What takes sRGB is for pictures of 8 bits: 17 points are half a code of these off in the
+    // mean.
+    static const std::vector<LutShelf> shelves = {
+        {&find_lut_host("resolve"), "", kOperators, {}},
+        {&find_lut_host("nuke"),
+         "every application whose picture is in ACEScct: After Effects, Houdini, Flame, Baselight. "
+         "Where it has OpenColorIO, the [config](../ocio_config/README.md) is nearer",
+         kForWideGamuts,
+         {}},
+        {&find_lut_host("premiere"),
+         "every editor, with footage of an ARRI camera in LogC3",
+         kForWideGamuts,
+         {}},
+        {&find_lut_host("ffmpeg"), "mpv, with HDR10 video", kForWideGamuts, {}},
+        {&find_lut_host("unity"), "", kOperators, {}},
+        {&find_lut_host("unreal"), "", kOperators, {}},
+        {&find_lut_host("godot"), "", kOperators, {}},
+        {&find_lut_host("photoshop"),
+         "Affinity Photo, OBS Studio, darktable, G'MIC, GIMP, three.js", kOperators, 17},
+        {&find_lut_host("imagemagick"), "GraphicsMagick, RawTherapee", kOperators, 36},
     };
-    for (const char* id : kShipped) {
-        const Operator& op = find_operator(id);
-        add(op, "acescct", LutDimension::three, 33, op.id + "_acescct_to_srgb_33.cube");
-        add(op, "log2", LutDimension::automatic, std::nullopt, op.id + "_log2_to_srgb.cube");
+    return shelves;
+}
+
+std::vector<ShippedLut> bake_shipped_luts() {
+    std::vector<ShippedLut> luts;
+    for (const LutShelf& shelf : lut_shelves()) {
+        for (const std::string& id : shelf.operators)
+            luts.push_back(plan(shelf, id));
     }
-    files.push_back({"README.md", readme(rows)});
-    files.push_back({"MANIFEST.csv", manifest(rows)});
-    return files;
+    in_parallel(luts.size(), std::max(1U, std::thread::hardware_concurrency()),
+                [&](std::size_t i) { bake(luts[i]); });
+    return luts;
+}
+
+std::vector<GeneratedFile> describe_shipped_luts(const std::vector<ShippedLut>& luts) {
+    return {{"README.md", readme(luts)}, {"MANIFEST.csv", manifest(luts)}};
 }
 
 }  // namespace tonewright

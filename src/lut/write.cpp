@@ -8,6 +8,7 @@
 
 #include "engine/error_metric.h"
 #include "lut/clf.h"
+#include "lut/icc.h"
 #include "lut/numbers.h"
 #include "tonewright/lut.h"
 
@@ -19,8 +20,29 @@ std::string title_of(const LutRequest& r) {
                        r.view.display);
 }
 
+/// How exact it is, for one interpolation.
+void add_error_lines(std::vector<std::string>& lines, const LutError& e) {
+    lines.push_back(fmt::format(
+        "Error against the double-precision operator, {} interpolation, inside the "
+        "input range: max {}, 99.9 % {}, mean {}",
+        e.interpolation, three_digits_up(e.max), three_digits_up(e.p999), three_digits_up(e.mean)));
+    if (e.delta_e_max > 0) {
+        lines.push_back(fmt::format(
+            "Color difference dE_ITP (ITU-R BT.2124), {} interpolation: max {}, 99.9 % {}, mean {}",
+            e.interpolation, three_digits_up(e.delta_e_max), three_digits_up(e.delta_e_p999),
+            three_digits_up(e.delta_e_mean)));
+    }
+}
+
+/// Of the numbers, not of the file.
+std::string hash_of(const Lut& lut) {
+    return content_hash(
+        {reinterpret_cast<const char*>(lut.values.data()), lut.values.size() * sizeof(float)});
+}
+
 /// What it is, what goes in, what comes out, how exact it is.
-std::vector<std::string> header_lines(const Lut& lut, const LutRequest& r, const LutError& e) {
+std::vector<std::string> header_lines(const Lut& lut, const LutRequest& r, const LutError& e,
+                                      const std::optional<LutError>& other) {
     const Operator& op = *r.view.op.op;
     std::vector<std::string> lines;
     lines.push_back("Tonewright: " + op.title + ", " + r.view.op.label +
@@ -28,12 +50,12 @@ std::vector<std::string> header_lines(const Lut& lut, const LutRequest& r, const
                          ? ", exposure " + shortest(r.view.exposure_stops) + " stops"
                          : ""));
     lines.push_back("Source: " + op.source);
-    if (r.format == LutFormat::csp) {
+    if (has_shaper(r.format)) {
         lines.push_back(fmt::format(
-            "Input: scene-linear {}, {:.6g} to {:.6g}; the prelut makes {} of it. Readers resample "
-            "it: up to 1.3e-3 more near black",
+            "Input: scene-linear {}, {:.6g} to {:.6g} ({:+.2f} stops from 0.18); the table before "
+            "the cube makes {} of it",
             find_input_space(r.view.input).title, r.encoding.scene_lo, r.encoding.scene_hi,
-            r.encoding.title));
+            std::log2(r.encoding.scene_hi / 0.18), r.encoding.title));
     } else if (lut.is_half_domain) {
         lines.push_back("Input: scene-linear " + find_input_space(r.view.input).title +
                         ", every half float (half-domain table)");
@@ -41,9 +63,14 @@ std::vector<std::string> header_lines(const Lut& lut, const LutRequest& r, const
         lines.push_back(fmt::format("Input: {}, of scene-linear {}", r.encoding.title,
                                     find_input_space(r.view.input).title));
         lines.push_back(fmt::format(
-            "Input 0 is scene-linear {:.6g}, 1 is {:.6g} ({:+.2f} stops from 0.18); beyond, it "
-            "clips",
+            "Input 0 is scene-linear {:.6g}, 1 is {:.6g} ({:+.2f} stops from 0.18)",
             r.encoding.scene_lo, r.encoding.scene_hi, std::log2(r.encoding.scene_hi / 0.18)));
+    }
+    if (!lut.is_half_domain) {
+        const std::string clipped = to_string(measure_clipping(r, lut));
+        lines.push_back(clipped.empty()
+                            ? "Clips nothing that would show (within one code of 10 bits)"
+                            : "Clips what would show " + clipped);
     }
     if (r.view.display == kNativeOutput) {
         lines.push_back(
@@ -56,27 +83,35 @@ std::vector<std::string> header_lines(const Lut& lut, const LutRequest& r, const
         const Display& display = find_display(r.view.display);
         lines.push_back("Output: " + display.title + " code values (" + display.source + ")");
     }
-    lines.push_back(
-        fmt::format("Error against the double-precision operator, {} interpolation, inside the "
-                    "input range: max {}, 99.9 % {}, mean {}",
-                    e.interpolation, rounded_up(e.max), rounded_up(e.p999), rounded_up(e.mean)));
-    if (e.delta_e_max > 0)
-        lines.push_back("Largest colour difference: dE_ITP " + rounded_up(e.delta_e_max));
+    add_error_lines(lines, e);
+    if (other) add_error_lines(lines, *other);
+    lines.push_back(fmt::format("{}, size {}, numbers {}", lut.dimension == 3 ? "Cube" : "Table",
+                                lut.size, hash_of(lut)));
     return lines;
+}
+
+using Lines = std::vector<std::string>;
+
+void append_value(std::string& text, const Lut& lut, float value) {
+    if (lut.decimals) {
+        append_decimals(text, value, *lut.decimals);
+    } else {
+        append_number(text, value);
+    }
 }
 
 std::string triplets(const Lut& lut) {
     std::string text;
     for (std::size_t i = 0; i < lut.values.size(); ++i) {
-        append_number(text, lut.values[i]);
+        append_value(text, lut, lut.values[i]);
         text += (i + 1) % 3 == 0 ? '\n' : ' ';
     }
     return text;
 }
 
-std::string write_cube(const Lut& lut, const LutRequest& r, const LutError& e) {
+std::string write_cube(const Lut& lut, const LutRequest& r, const Lines& header) {
     std::string text = "TITLE \"" + title_of(r) + "\"\n";
-    for (const std::string& line : header_lines(lut, r, e))
+    for (const std::string& line : header)
         text += "# " + line + "\n";
     if (lut.dimension == 3) {
         text += fmt::format("LUT_3D_SIZE {}\nDOMAIN_MIN 0 0 0\nDOMAIN_MAX 1 1 1\n", lut.size);
@@ -89,7 +124,7 @@ std::string write_cube(const Lut& lut, const LutRequest& r, const LutError& e) {
                         lut.size, lo, hi);
     for (const float v : lut.values) {
         std::string number;
-        append_number(number, v);
+        append_value(number, lut, v);
         text += number + " " + number + " " + number + "\n";
     }
     return text;
@@ -145,9 +180,9 @@ std::vector<float> blue_fastest(const Lut& lut) {
 
 /// cineSpace: a prelut from scene-linear to the encoding, then the cube. Readers resample a prelut
 /// of few points, and to as many of equal distances in light: 4096, of equal distances in code.
-std::string write_csp(const Lut& lut, const LutRequest& r, const LutError& e) {
+std::string write_csp(const Lut& lut, const LutRequest& r, const Lines& header) {
     std::string text = "CSPLUTV100\n3D\n\nBEGIN METADATA\n" + title_of(r) + "\n";
-    for (const std::string& line : header_lines(lut, r, e))
+    for (const std::string& line : header)
         text += line + "\n";
     text += "END METADATA\n\n";
     constexpr int kPoints = 4096;
@@ -164,6 +199,36 @@ std::string write_csp(const Lut& lut, const LutRequest& r, const LutError& e) {
         text += std::to_string(kPoints) + "\n" + from + to;
     text += fmt::format("\n{0} {0} {0}\n", lut.size);
     return text + triplets(lut);
+}
+
+/// DaVinci Resolve: equal steps of light, encoded, and then the cube.
+/// OpenColorIO reads it, but with no TITLE.
+std::string write_resolve_cube(const Lut& lut, const LutRequest& r, const Lines& header) {
+    std::string text;
+    for (const std::string& line : header)
+        text += "# " + line + "\n";
+    const double lo = r.encoding.scene_lo;
+    const double hi = r.encoding.scene_hi;
+    text += fmt::format(
+        "LUT_1D_SIZE {}\nLUT_1D_INPUT_RANGE {:.9f} {:.9f}\nLUT_3D_SIZE {}\nLUT_3D_INPUT_RANGE 0 "
+        "1\n",
+        kShaperSteps, lo, hi, lut.size);
+    for (int i = 0; i < kShaperSteps; ++i) {
+        const double light = lo + (hi - lo) * i / (kShaperSteps - 1.0);
+        std::string number;
+        append_number(number, static_cast<float>(evaluate(r.encoding.encode, light)));
+        text += number + " " + number + " " + number + "\n";
+    }
+    return text + triplets(lut);
+}
+
+/// Houdini, version 2: a cube, red fastest.
+std::string write_houdini(const Lut& lut) {
+    return fmt::format(
+               "Version\t\t2\nFormat\t\tany\nType\t\t3D\nFrom\t\t0 1\nTo\t\t0 1\n"
+               "Black\t\t0\nWhite\t\t1\nLength\t\t{}\nLUT:\n {{\n",
+               lut.size) +
+           triplets(lut) + " }\n";
 }
 
 /// Autodesk Flame and Lustre: input of 10 bits, blue fastest.
@@ -193,7 +258,7 @@ std::string write_raw(const Lut& lut) {
     return bytes;
 }
 
-std::string write_clf_file(const Lut& lut, const LutRequest& r, const LutError& e) {
+std::string write_clf_file(const Lut& lut, const LutRequest& r, const Lines& header) {
     const std::vector<float> nodes = lut.dimension == 3 ? blue_fastest(lut) : lut.values;
     ClfTable table;
     table.dimension = lut.dimension;
@@ -201,25 +266,36 @@ std::string write_clf_file(const Lut& lut, const LutRequest& r, const LutError& 
     table.channels = lut.channels;
     table.is_half_domain = lut.is_half_domain;
     table.values = &nodes;
-    return write_clf(table, title_of(r), header_lines(lut, r, e));
+    table.is_ctf = r.format == LutFormat::ctf;
+    return write_clf(table, title_of(r), header);
 }
 
 }  // namespace
 
-std::string write_lut(const Lut& lut, const LutRequest& request, const LutError& error) {
+std::string write_lut(const Lut& lut, const LutRequest& request, const LutError& error,
+                      const std::optional<LutError>& other_error) {
+    const auto header = [&] { return header_lines(lut, request, error, other_error); };
     switch (request.format) {
         case LutFormat::cube:
-            return write_cube(lut, request, error);
+            return write_cube(lut, request, header());
         case LutFormat::clf:
-            return write_clf_file(lut, request, error);
+        case LutFormat::ctf:
+            return write_clf_file(lut, request, header());
         case LutFormat::spi1d:
             return write_spi1d(lut, request);
         case LutFormat::spi3d:
             return write_spi3d(lut);
         case LutFormat::csp:
-            return write_csp(lut, request, error);
+            return write_csp(lut, request, header());
+        case LutFormat::resolve_cube:
+            return write_resolve_cube(lut, request, header());
         case LutFormat::threedl:
             return write_3dl(lut, request);
+        case LutFormat::houdini:
+            return write_houdini(lut);
+        case LutFormat::icc:
+            return write_icc(blue_fastest(lut), lut.size, request.icc_version, title_of(request),
+                             header());
         case LutFormat::raw:
             return write_raw(lut);
         case LutFormat::hald:

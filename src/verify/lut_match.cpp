@@ -7,7 +7,6 @@
 
 #include "engine/error_metric.h"
 #include "engine/probe.h"
-#include "ocio/lower.h"
 #include "tonewright/engine.h"
 #include "tonewright/lut.h"
 #include "tonewright/ocio.h"
@@ -54,36 +53,10 @@ std::vector<float> probes_of(bool is_linear, std::size_t count) {
     return in;
 }
 
-class ClientTable {
-  public:
-    explicit ClientTable(const std::string& path) {
-        const OCIO::FileTransformRcPtr file = OCIO::FileTransform::Create();
-        file->setSrc(path.c_str());
-        file->setInterpolation(OCIO::INTERP_TETRAHEDRAL);
-        Lowered lowered;
-        lowered.transform = OCIO::GroupTransform::Create();
-        lowered.transform->appendTransform(file);
-        try {
-            processor_ = make_processor(lowered);
-        } catch (const OCIO::Exception& e) {
-            const std::string what = e.what();
-            throw FileError("read: " + path + ": " + what.substr(0, what.find('\n')));
-        }
-    }
-    [[nodiscard]] std::vector<float> run(const std::vector<float>& in) const {
-        std::vector<float> out(in.size());
-        OcioCpu(processor_, OCIO::OPTIMIZATION_LOSSLESS)
-            .run_rgb(in.data(), out.data(), in.size() / 3);
-        return out;
-    }
-
-  private:
-    OCIO::ConstProcessorRcPtr processor_;
-};
-
-void measure(Candidate& candidate, const ClientTable& table, std::size_t count) {
+void measure(Candidate& candidate, const LutFile& table, std::size_t count) {
     const std::vector<float> in = probes_of(candidate.match.encoding == kSceneLinear, count);
-    const std::vector<float> shown = table.run(in);
+    std::vector<float> shown(in.size());
+    table.run_rgb(in.data(), shown.data(), count);
     std::vector<double> truth(in.size());
     ReferenceEngine(candidate.stages).run_rgb(in.data(), truth.data(), count);
     std::vector<double> errors;
@@ -117,9 +90,8 @@ void add_candidates(const ResolvedOperator& op, std::vector<Candidate>& all) {
 
 }  // namespace
 
-std::vector<LutMatch> match_lut(const std::string& path, const std::vector<std::string>& operators,
+std::vector<LutMatch> match_lut(const LutFile& table, const std::vector<std::string>& operators,
                                 std::size_t count) {
-    const ClientTable table(path);
     std::vector<ResolvedOperator> chosen;
     for (const std::string& text : operators)
         chosen.push_back(parse_operator(text));

@@ -12,6 +12,7 @@ and the config take a minute each. The last line is `N passed, M failed`.
 import argparse
 import csv
 import re
+import shutil
 import sys
 import tempfile
 from pathlib import Path
@@ -19,7 +20,7 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent / "clients"))
-from pictures import Report, files_of, run, skip  # noqa: E402
+from pictures import Report, files_of, read_exr, run, skip, stack  # noqa: E402
 
 try:
     import PyOpenColorIO as ocio
@@ -29,8 +30,9 @@ except ImportError:
 # Tables hold floats of double results: one libm's last digit can move a float by a unit (6e-8 of it), and where the
 # operator subtracts (Hable's toe), by some more. Relative above 1: decoding curves go on to 65504 and its powers.
 TABLE = 2e-6
-# The config's cubes are written with five decimals; a last digit of libm can decide how the fifth is rounded.
-CUBE_FIVE_DECIMALS = 1.1e-5
+# The config's cubes are written with five decimals, the shipped ones with four; a last digit of libm can decide how the
+# last is rounded. In pictures of 8 bits, how a number is.
+CUBE_FIVE_DECIMALS, CUBE_FOUR_DECIMALS, BYTE = 1.1e-5, 1.1e-4, 1.01 / 255
 # Nine digits of double results, of code values.
 PROBE = 1e-9
 # Figures in texts are measured errors, two digits, rounded up; those of exact forms are float rounding.
@@ -209,8 +211,12 @@ def compare_folder(report, committed, fresh):
         if name == "config.ocio":
             compare_config(report, what, old[name], new[name])
             continue
+        if name.endswith(".png"):
+            continue
         texts = old[name].read_text(), new[name].read_text()
-        if name.endswith((".cube", ".clf", ".ctf")):
+        if name.endswith(".cube"):
+            compare_table(report, what, *texts, CUBE_FOUR_DECIMALS)
+        elif name.endswith((".clf", ".ctf")):
             compare_table(report, what, *texts, CUBE_FIVE_DECIMALS if "_cube" in name else TABLE)
         elif name == "probe.csv":
             compare_csv(report, what, *texts, (PROBE, PROBE))
@@ -222,6 +228,21 @@ def compare_folder(report, committed, fresh):
         else:
             difference = figures_differ(*texts)
             report.check(what, difference is None, difference)
+
+
+def compare_pictures(report, committed, fresh, scratch):
+    """The PNGs of both folders, number by number; one process makes floats of all."""
+    paths = sorted(p.relative_to(committed) for p in committed.rglob("*.png"))
+    paths, words = [path for path in paths if (fresh / path).is_file()], []
+    for number, path in enumerate(paths):
+        for side, folder in (("old", committed), ("new", fresh)):
+            words += [folder / path, "-d", "float", "--compression", "none", "-o", scratch / f"{number}.{side}.exr",
+                      "--pop"]
+    run("oiiotool", *words)
+    for number, path in enumerate(paths):
+        old, new = (stack(read_exr(scratch / f"{number}.{side}.exr")) for side in ("old", "new"))
+        depth = (fresh / path).read_bytes()[24]  # of its header
+        report.compare(f"{committed.name}/{path}", old, new, BYTE if depth == 8 else CUBE_FOUR_DECIMALS)
 
 
 def check_config_again(report, command, folder):
@@ -258,6 +279,10 @@ def main():
         scratch = Path(folder)
         run(command, "bake", "--all", scratch / "luts")
         compare_folder(report, source / "luts", scratch / "luts")
+        if shutil.which("oiiotool"):
+            compare_pictures(report, source / "luts", scratch / "luts", scratch)
+        else:
+            print("skipped: the PNGs of luts (oiiotool is not installed; Debian: openimageio-tools)")
         run(command, "config", "-o", scratch / "ocio_config")
         compare_folder(report, source / "ocio_config", scratch / "ocio_config")
         check_config_again(report, command, scratch / "ocio_config")

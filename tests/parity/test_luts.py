@@ -10,6 +10,7 @@ encodings' makers, written down here once more. The last line is `N passed, M fa
 
 import argparse
 import json
+import re
 import subprocess
 import sys
 import tempfile
@@ -18,7 +19,9 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent / "clients"))
-from pictures import Report, acescct_decode, evaluate, log2_decode, need_program, pq_light, read_rgb, run, skip  # noqa: E402
+from pictures import Report, evaluate, log2_decode, need_program, pq_light, read_rgb, run, skip  # noqa: E402
+from lut_encodings import acescct_decode, davinci_decode, srgb_decode, unity_logc_decode  # noqa: E402
+from lut_encodings import logc3_decode as logc3  # noqa: E402
 
 try:
     import PyOpenColorIO as ocio
@@ -32,31 +35,10 @@ EXACT = 1e-7
 # OpenColorIO's tetrahedra, in float32, at the nodes themselves.
 READ = 2e-6
 
-
-def logc3(code):
-    """ARRI, "ALEXA Log C Curve, Usage in VFX", EI 800."""
-    return np.where(code > 5.367655 * 0.010591 + 0.092809, (10 ** ((code - 0.385537) / 0.247190) - 0.052272) / 5.555556,
-                    (code - 0.092809) / 5.367655)
-
-
-def davinci(code):
-    """"DaVinci Resolve 17 Wide Gamut Intermediate"."""
-    return np.where(code <= 0.02740668, code / 10.44426855, 2 ** (code / 0.07329248 - 7) - 0.0075)
-
-
-def unity_logc(code):
-    """Color.hlsl: LogCToLinear."""
-    return (10 ** ((code - 0.386036) / 0.244161) - 0.047996) / 5.555556
-
-
-def srgb(code):
-    """IEC 61966-2-1."""
-    return np.where(code <= 0.04045, code / 12.92, ((code + 0.055) / 1.055) ** 2.4)
-
-
 # encoding of `list --hosts` -> (code -> scene-linear light, the space that it is in)
-ENCODINGS = {"acescct": (acescct_decode, "lin_ap1"), "logc3": (logc3, "lin_awg3"), "davinci": (davinci, "lin_davinci_wg"),
-             "unity_logc": (unity_logc, "lin_rec709"), "srgb": (srgb, "lin_rec709"), "pq": (pq_light, "lin_rec2020")}
+ENCODINGS = {"acescct": (acescct_decode, "lin_ap1"), "logc3": (logc3, "lin_awg3"),
+             "davinci": (davinci_decode, "lin_davinci_wg"), "unity_logc": (unity_logc_decode, "lin_rec709"),
+             "srgb": (srgb_decode, "lin_rec709"), "pq": (pq_light, "lin_rec2020")}
 
 
 def nodes_of(size):
@@ -91,6 +73,8 @@ def expected_of(command, codes, encoding, display):
 
 
 def check_host(report, command, host, folder):
+    if host["format"] == "icc":
+        return  # clients/test_tificc.py
     is_picture = host["format"] in ("hald", "strip")
     path = folder / f"{host['id']}.{'png' if is_picture else host['format']}"
     run(command, "bake", *OPERATOR, "--nodes", "sampled", "--for", host["id"], "-o", path)
@@ -144,11 +128,26 @@ def check_formats(report, command, folder):
     shown, bright = through_ocio(path, light), (light >= 0.18).all(axis=1)
     report.compare("csp: LogC3, from mid grey on", shown[bright],
                    expected_of(command, codes[bright], "logc3", "srgb"), 2e-5)
+    path = folder / "shaper.cube"
+    run(command, "bake", *OPERATOR, "--nodes", "sampled", "--format", "resolve_cube", "--size", 17, "--input-encoding",
+        "logc3", "-o", path)
+    shown = through_ocio(path, light)
+    report.compare("resolve_cube: LogC3, from mid grey on", shown[bright],
+                   expected_of(command, codes[bright], "logc3", "srgb"), 2e-5)
+    report.compare("resolve_cube: all light", shown, expected_of(command, codes, "logc3", "srgb"), 2e-3)
+    # What the header says of it has the table before the cube in it: colors between the nodes, by OpenColorIO.
+    light = np.random.default_rng(4).uniform(-0.017, 1, (20000, 3)).astype(np.float32).astype(float) ** 3
+    error = np.abs(through_ocio(path, light) - evaluate(command, light, *OPERATOR, "--input", "lin_awg3")).max()
+    stated = float(re.search(r"tetrahedral.* max ([-0-9.e]+),", path.read_text(errors="replace")[:4000]).group(1))
+    report.check(f"resolve_cube: error {error:.2g}, stated {stated:.2g}", error <= stated, (error, stated))
+    path = folder / "x.ctf"
+    run(command, "bake", *OPERATOR, "--nodes", "sampled", "--format", "ctf", "--size", 17, "-o", path)
+    report.compare("ctf", through_ocio(path, codes), truth, READ)
     path = folder / "linear.cube"
     run(command, "bake", "gt7", "--3d", "--display", "linear", "--input-encoding", "unity_logc", "--nodes", "fitted",
         "--size", 17, "-o", path)
     lowest = through_ocio(path, codes).min()
-    wanted = evaluate(command, unity_logc(codes), "gt7", "--display", "linear").min()
+    wanted = evaluate(command, unity_logc_decode(codes), "gt7", "--display", "linear").min()
     report.check(f"fitted nodes keep what is below 0 in linear output: {lowest:.2g} of {wanted:.2g}",
                  wanted - 1e-6 <= lowest <= wanted / 2 < 0, (lowest, wanted))
     path = folder / "x.exr"
@@ -227,6 +226,11 @@ def check_errors(report, command, folder):
                              (["--size", "33", "--max-error", "0.1"], "size is 33; none with --max-error"),
                              (["--format", "strip", "--max-error", "1e-9"], "max error is 1e-09; at least"),
                              (["--depth", "0"], "depth is 0; expected 32 for cube"),
+                             (["--format", "icc", "--depth", "8"], "depth is 8; expected 16 for icc"),
+                             (["--format", "icc", "--icc-version", "3"], "--icc-version; 3"),
+                             (["--icc-version", "4"], "ICC version is given for cube; expected icc"),
+                             (["--format", "lut", "--1d"], "format is lut; a 1D format"),
+                             (["--format", "resolve_cube", "--input-encoding", "pq:10"], "pq:10; up to 223"),
                              (["--format", "3dl", "--size", "20"], "size is 20; 17, 33 or 65"),
                              (["--format", "csp", "--input-encoding", "log2:-10:15"], "log2:-10:15; up to 223"),
                              (["--for", "unreal"], "none.cube; .png or .tif for 8 bits"),

@@ -4,6 +4,7 @@
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imageio.h>
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -140,6 +141,18 @@ bool tonemap(OIIO::ImageBuf& dst, const OIIO::ImageBuf& src, const TonemapOption
 /// Returns the result as a new float image; on failure one with has_error().
 [[nodiscard]] OIIO::ImageBuf tonemap(const OIIO::ImageBuf& src, const TonemapOptions& options,
                                      OIIO::ROI roi = {}, int nthreads = 0) noexcept;
+
+/// Runs the colors of a picture through a function, such as a LUT of lut_file.h: channels, alpha,
+/// pixel types, regions and threads as in tonemap(). A grey picture becomes one in color. `dst`
+/// makes no claim about its colors.
+///
+/// @param map  interleaved RGB, `count` colors from `in` to `out`, which are not the same memory;
+///             called from several threads at once. May throw only what bad_alloc is.
+/// @returns    false when something is wrong; then `dst` has the error.
+bool map_colors(OIIO::ImageBuf& dst, const OIIO::ImageBuf& src,
+                const std::function<void(const float* in, float* out, std::size_t count)>& map,
+                TonemapOptions::Unpremult unpremult = TonemapOptions::Unpremult::automatic,
+                OIIO::ROI roi = {}, int nthreads = 0) noexcept;
 
 // ---------------------------------------------------------------------------------------------
 // Files

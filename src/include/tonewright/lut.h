@@ -35,17 +35,35 @@ struct InputEncoding {
 /// Without parameters.
 [[nodiscard]] std::vector<std::string> input_encoding_names();
 
-/// `cube` (Adobe and Resolve), `clf` (Academy S-2014-006), `spi1d`, `spi3d` (Sony Imageworks),
-/// `csp` (cineSpace: scene-linear in, its prelut encodes), `3dl` (Autodesk: integers), `hald` (a
-/// Hald CLUT picture), `strip` (a picture of n slices of n x n side by side), `raw` (float32,
-/// little-endian, RGB triplets, red fastest).
-enum class LutFormat : unsigned char { cube, clf, spi1d, spi3d, csp, threedl, hald, strip, raw };
+/// `cube` (Adobe and Resolve), `clf` (Academy S-2014-006), `ctf` (Autodesk's form of it), `spi1d`,
+/// `spi3d` (Sony Imageworks), `csp` (cineSpace: scene-linear in, its prelut encodes),
+/// `resolve_cube` (a .cube with a 1D table before the 3D one: scene-linear in), `3dl` (Autodesk:
+/// integers), `lut` (Houdini), `icc` (ICC device link), `hald` (a Hald CLUT picture), `strip` (a
+/// picture of n slices of n x n side by side), `raw` (float32, little-endian, RGB triplets, red
+/// fastest).
+enum class LutFormat : unsigned char {
+    cube,
+    clf,
+    ctf,
+    spi1d,
+    spi3d,
+    csp,
+    resolve_cube,
+    threedl,
+    houdini,
+    icc,
+    hald,
+    strip,
+    raw
+};
 /// @throws Error with the nearest name.
 [[nodiscard]] LutFormat parse_lut_format(std::string_view text);
 [[nodiscard]] std::vector<std::string> lut_format_names();
 [[nodiscard]] std::string name_of(LutFormat format);
 /// A picture's layout, not a file of its own kind: OpenImageIO writes it.
 [[nodiscard]] bool is_picture_format(LutFormat format);
+/// Scene-linear goes in, and a 1D table before the cube encodes it.
+[[nodiscard]] bool has_shaper(LutFormat format);
 
 enum class LutDimension : unsigned char { automatic, one, three };
 
@@ -58,8 +76,14 @@ struct LutRequest {
     /// Entries of a 1D table (2..65536), or grid points a side of a cube (17..129; `3dl`: 17, 33 or
     /// 65; `hald`: a square of 16..144; `strip`: 2..64; `raw`: 2..129).
     std::optional<int> size;
-    /// Of integers: 8 or 16 in pictures, 10, 12 or 16 in `3dl`. 32: float.
+    /// Of integers: 8 or 16 in pictures, 10, 12 or 16 in `3dl`, 16 in `icc`. 32: float.
     std::optional<int> bits;
+    /// Of the ICC's specification: 2 (more programs read it) or 4.
+    int icc_version = 2;
+    /// Of the numbers in a `cube`, [3, 9]; where none is given, as many as a float has. Four round
+    /// by 5e-5 at most, less than cubes of 33 points are off between their nodes, in half the
+    /// space.
+    std::optional<int> decimals;
 };
 
 /// An application that reads a LUT, and what it expects.
@@ -91,6 +115,8 @@ struct Lut {
     int channels = 3;
     bool is_half_domain = false;
     std::vector<float> values;
+    /// That the values were rounded to. @see LutRequest::decimals
+    std::optional<int> decimals = {};
 };
 
 /// Distance of a table, interpolated as its readers do, from the double reference; display code
@@ -99,7 +125,10 @@ struct LutError {
     double max = 0;
     double p999 = 0;
     double mean = 0;
-    double delta_e_max = 0;  // dE_ITP (ITU-R BT.2124), 0 where there is no display
+    /// dE_ITP (ITU-R BT.2124), 0 where there is no display.
+    double delta_e_max = 0;
+    double delta_e_p999 = 0;
+    double delta_e_mean = 0;
     std::string interpolation;
 };
 
@@ -119,9 +148,29 @@ struct LutError {
 [[nodiscard]] Vector3 interpolate(const Lut& lut, const Vector3& rgb, bool trilinear = false);
 
 /// Measured on the standard probe set, as far as it lies inside the encoding's range, and on random
-/// table inputs.
+/// table inputs; behind a shaper as its readers resample it.
 [[nodiscard]] LutError measure_lut(const Lut& lut, const LutRequest& request,
                                    bool trilinear = false);
+
+/// Light beyond the ends of an encoding that the operator would still show as something else than
+/// the light at the end: by more than one code of 10 bits (of `linear` and `native`: more than
+/// 1/1023), on greys, and above also on the six saturated colors of Rec.709.
+struct ClippedStops {
+    /// Stops from 0.18: where the encoding ends, and the last stop at which it shows.
+    double end = 0;
+    double last = 0;
+    /// The largest difference.
+    double error = 0;
+};
+struct LutClipping {
+    std::optional<ClippedStops> below;
+    std::optional<ClippedStops> above;
+};
+/// Of a half-domain table: nothing.
+[[nodiscard]] LutClipping measure_clipping(const LutRequest& request, const Lut& lut);
+/// "from +6.5 to +9.2 stops, by up to 0.031; below -10 stops, down to -12.1, by up to 0.002"; empty
+/// where nothing is.
+[[nodiscard]] std::string to_string(const LutClipping& clipping);
 
 /// Which values the nodes of a cube have: sampled, fitted, or of these the one that is nearer in
 /// the mean and in the 99.9th percentile.
@@ -130,6 +179,8 @@ enum class LutNodes : unsigned char { automatic, sampled, fitted };
 struct BakedLut {
     Lut lut;
     LutError error;
+    /// Of a cube: with the other interpolation.
+    std::optional<LutError> other_error;
     bool is_fitted = false;
 };
 
@@ -143,14 +194,17 @@ struct BakedLut {
                                 bool trilinear = false,
                                 std::optional<double> max_error = std::nullopt);
 
-/// The table as its format holds it: rounded to the integers of LutRequest::bits.
+/// The table as its format holds it: rounded to the integers of LutRequest::bits, or to
+/// LutRequest::decimals.
 void quantize(Lut& lut, const LutRequest& request);
 
-/// The contents of the file: what it is, what goes in, what comes out, the measured error; then
-/// numbers with 9 significant digits (enough for every float), never in exponent notation. Of no
-/// picture.
+/// The contents of the file: what it is, what goes in, what clips, what comes out, the measured
+/// errors and a hash of the numbers; then numbers with 9 significant digits (enough for every
+/// float), never in exponent notation. Of no picture.
+/// @param other_error  of a cube: with the other interpolation
 [[nodiscard]] std::string write_lut(const Lut& lut, const LutRequest& request,
-                                    const LutError& error);
+                                    const LutError& error,
+                                    const std::optional<LutError>& other_error = std::nullopt);
 
 /// One file of a generated set.
 struct GeneratedFile {
@@ -158,9 +212,41 @@ struct GeneratedFile {
     std::string contents;
 };
 
-/// The set of `bake --all`: for every operator a 33^3 ACEScct cube and, where it is per channel, a
-/// 1D table, with README.md and MANIFEST.csv. The same bytes on every run.
-[[nodiscard]] std::vector<GeneratedFile> make_shipped_luts();
+/// Of the set of `bake --all`: the LUTs of one application.
+struct LutShelf {
+    const LutHost* host = nullptr;
+    /// Applications that the same files suit.
+    std::string also;
+    std::vector<std::string> operators;
+    /// Instead of the host's, where fewer are enough.
+    std::optional<int> size;
+};
+[[nodiscard]] const std::vector<LutShelf>& lut_shelves();
+
+/// A LUT of the set.
+struct ShippedLut {
+    const LutShelf* shelf = nullptr;
+    LutRequest request;
+    /// In the set's folder: `resolve/agx_blender_davinci_to_rec1886.cube`.
+    std::string path;
+    /// What the chart looks like through it.
+    std::string thumbnail;
+    Lut lut;
+    bool is_fitted = false;
+    LutError tetrahedral;
+    LutError trilinear;
+    /// The file. Empty for a picture, which OpenImageIO writes.
+    std::string contents;
+};
+
+/// True where the application interpolates in cubes, not in tetrahedra, unless told otherwise.
+[[nodiscard]] bool is_trilinear(const LutHost& host);
+
+/// All of them, in the order of the shelves. The same on every run, whatever the number of threads.
+[[nodiscard]] std::vector<ShippedLut> bake_shipped_luts();
+
+/// README.md and MANIFEST.csv, of LUTs that all have their contents.
+[[nodiscard]] std::vector<GeneratedFile> describe_shipped_luts(const std::vector<ShippedLut>& luts);
 
 /// Writes to a temporary name beside the target, syncs, renames: a failed run leaves the old file.
 /// @throws FileError  naming the path and the reason.

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "tonewright/lut_file.h"
+
 namespace tonewright {
 
 /// How near a LUT is to an operator, if it is fed and shown like this.
@@ -18,14 +20,12 @@ struct LutMatch {
     double mean = 0;
 };
 
-/// What a lookup table does, by what it does: every file that OpenColorIO reads (.cube, .clf, .ctf,
-/// .spi1d, .spi3d, .csp, .3dl, .lut, ...), with tetrahedral interpolation, against operators with
-/// every input encoding, in its own primaries and in Rec.709, and on SDR displays.
+/// Which operator a lookup table is, by what it does: against operators with every input encoding,
+/// in its own primaries and in Rec.709, and on SDR displays.
 /// @param operators  `id`, `id:preset`; empty: all, with their defaults
 /// @param count      how many, the nearest first
-/// @throws FileError  for a file that is missing or cannot be read, with OpenColorIO's reason
-/// @throws Error      for an unknown operator
-[[nodiscard]] std::vector<LutMatch> match_lut(const std::string& path,
+/// @throws Error  for an unknown operator
+[[nodiscard]] std::vector<LutMatch> match_lut(const LutFile& lut,
                                               const std::vector<std::string>& operators,
                                               std::size_t count = 5);
 

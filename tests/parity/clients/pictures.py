@@ -18,6 +18,8 @@ import numpy as np
 
 SKIPPED = 77  # exit status that ctest counts as skipped
 PROJECT = Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(PROJECT / "python_check"))
+from lut_encodings import acescct_decode, acescct_encode  # noqa: E402, F401  (with the other codes below)
 
 # --------------------------------------------------------------------------------------------------
 # Report
@@ -278,20 +280,6 @@ LIGHT = {"rec1886": lambda code: np.maximum(code, 0) ** 2.4, "rec2020": lambda c
 
 # --------------------------------------------------------------------------------------------------
 # Codes that lookup tables take
-
-# ACEScct, Academy S-2016-001: log2 with a linear toe; 0.0078125 = 2^-7 is where they meet.
-CCT_SLOPE, CCT_OFFSET, CCT_CUT = 10.5402377416545, 0.0729055341958355, 0.0078125
-
-
-def acescct_encode(light):
-    curve = (np.log2(np.maximum(light, CCT_CUT)) + 9.72) / 17.52
-    return np.where(light <= CCT_CUT, CCT_SLOPE * light + CCT_OFFSET, curve)
-
-
-def acescct_decode(code):
-    cut = CCT_SLOPE * CCT_CUT + CCT_OFFSET
-    return np.where(code <= cut, (code - CCT_OFFSET) / CCT_SLOPE, 2.0 ** (code * 17.52 - 9.72))
-
 
 def log2_encode(light, low=-10, high=6.5):
     """Stops from 0.18, as `--input-encoding log2` counts them."""

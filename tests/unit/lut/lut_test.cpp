@@ -21,6 +21,7 @@
 #include "engine/probe.h"
 #include "lut/clf.h"
 #include "lut/half_domain.h"
+#include "lut/icc.h"
 #include "lut/numbers.h"
 #include "tonewright/engine.h"
 
@@ -288,12 +289,12 @@ TEST(LutFormatName, RoundTrips) {
     EXPECT_EQ(parse_lut_format("spi1d"), LutFormat::spi1d);
     EXPECT_EQ(parse_lut_format("spi3d"), LutFormat::spi3d);
     EXPECT_EQ(parse_lut_format("raw"), LutFormat::raw);
-    EXPECT_EQ(lut_format_names().size(), 9U);
+    EXPECT_EQ(lut_format_names().size(), 13U);
     for (const std::string& name : lut_format_names())
         EXPECT_EQ(name_of(parse_lut_format(name)), name);
     EXPECT_EQ(error_of([] { (void)parse_lut_format("cub"); }),
-              "bake: format is cub; expected cube, clf, spi1d, spi3d, csp, 3dl, hald, strip or "
-              "raw; did you mean cube?");
+              "bake: format is cub; expected cube, clf, ctf, spi1d, spi3d, csp, resolve_cube, 3dl, "
+              "lut, icc, hald, strip or raw; did you mean cube?");
 }
 
 // ---------------------------------------------------------------------------------------------
@@ -635,12 +636,12 @@ TEST(SampleLut, RefusesWhatAHostWouldShowWrong) {
     r = request_for("hable", "log2", LutFormat::spi1d);
     r.dimension = LutDimension::three;
     EXPECT_EQ(error(r),
-              "bake: format is spi1d; expected a 3D format (cube, clf, spi3d, csp, 3dl, hald, "
-              "strip, raw) "
-              "with --3d");
+              "bake: format is spi1d; expected a 3D format (cube, clf, ctf, spi3d, csp, "
+              "resolve_cube, 3dl, lut, icc, hald, strip, raw) with --3d");
     r = request_for("hable", "log2", LutFormat::spi3d);
     r.dimension = LutDimension::one;
-    EXPECT_EQ(error(r), "bake: format is spi3d; expected a 1D format (cube, clf, spi1d) with --1d");
+    EXPECT_EQ(error(r),
+              "bake: format is spi3d; expected a 1D format (cube, clf, ctf, spi1d) with --1d");
     for (const int size : {-1, 0, 16, 130}) {
         EXPECT_EQ(error(request_for("agx_sobotka", "log2", LutFormat::cube, size)),
                   "bake: size is " + std::to_string(size) + "; expected [17, 129]");
@@ -650,7 +651,7 @@ TEST(SampleLut, RefusesWhatAHostWouldShowWrong) {
                   "bake: size is " + std::to_string(size) + "; expected [2, 65536]");
     }
     EXPECT_EQ(error(request_for("hable", "linear", LutFormat::clf, 4096)),
-              "bake: size is 4096; expected none, a half-domain CLF has 65536 entries");
+              "bake: size is 4096; expected none, a half-domain clf has 65536 entries");
 }
 
 // ---------------------------------------------------------------------------------------------
@@ -857,7 +858,10 @@ TEST(WriteLut, CubeReadsBackBitForBit) {
     error.mean = 0.000789;
     error.delta_e_max = 3.21;
     error.interpolation = "tetrahedral";
-    const CubeFile cube = parse_cube(write_lut(lut, r, error));
+    LutError trilinear = error;
+    trilinear.max = 0.0234;
+    trilinear.interpolation = "trilinear";
+    const CubeFile cube = parse_cube(write_lut(lut, r, error, trilinear));
     EXPECT_EQ(cube.dimension, 3);
     EXPECT_EQ(cube.size, 17);
     EXPECT_EQ(cube.title.front(), '"');
@@ -869,7 +873,9 @@ TEST(WriteLut, CubeReadsBackBitForBit) {
         header += comment + "\n";
     for (const char* what :
          {"AgX (Sobotka)", "Source: ", "ACEScct", "ACEScg", "sRGB", "max 1.3e-02", "99.9 % 4.6e-03",
-          "mean 7.9e-04", "dE_ITP 3.3e+00", "tetrahedral", "222.861"}) {
+          "mean 7.9e-04", "dE_ITP (ITU-R BT.2124), tetrahedral", "max 3.3e+00", "222.861",
+          "trilinear interpolation, inside the input range: max 2.4e-02", "Clips nothing",
+          "Cube, size 17, numbers "}) {
         EXPECT_NE(header.find(what), std::string::npos) << what << " is not in\n" << header;
     }
 }
@@ -937,6 +943,66 @@ TEST(WriteLut, Spi3dNamesItsNodes) {
     EXPECT_EQ(nodes.size(), 17U * 17 * 17);
 }
 
+/// Of 0.72, as IEC 61966-2-1 has it.
+const double kCodeAtTwoStops = 1.055 * std::pow(0.72, 1 / 2.4) - 0.055;
+
+TEST(Clipping, SaysWhichStops) {
+    // Shows light up to 1, that is 2.474 stops above 0.18.
+    const auto clipping = [](const char* op, const char* encoding) {
+        const LutRequest r = request_for(op, encoding);
+        return measure_clipping(r, sample_lut(r));
+    };
+    const LutClipping two = clipping("clamp", "log2:-16:2");
+    ASSERT_TRUE(two.above);
+    EXPECT_NEAR(two.above->end, 2, 1e-12);
+    EXPECT_NEAR(two.above->error, 1 - kCodeAtTwoStops, 1e-12);
+    EXPECT_FALSE(two.below);
+    EXPECT_FALSE(clipping("clamp", "log2:-16:3").above);
+    EXPECT_EQ(to_string(clipping("clamp", "log2:-16:3")), "");
+    // 12.92 * 0.18 * 2^-8 is 9.1e-3; what is below 1/1023 of it is not seen as such: all of it is
+    // off, down to black.
+    const LutClipping eight = clipping("clamp", "log2:-8:3");
+    ASSERT_TRUE(eight.below);
+    EXPECT_NEAR(eight.below->end, -8, 1e-12);
+    EXPECT_NEAR(eight.below->error, 12.92 * 0.18 / 256, 1e-4);
+    EXPECT_EQ(to_string(eight).rfind("below -8.00 stops, down to -", 0), 0U) << to_string(eight);
+    // ACEScct goes to 0.
+    EXPECT_FALSE(clipping("clamp", "acescct").below);
+    // Never reaches its white: at 10.27 stops it has some hundredths to go.
+    const LutClipping reinhard = clipping("reinhard", "acescct");
+    ASSERT_TRUE(reinhard.above);
+    EXPECT_GT(reinhard.above->last, 12);
+}
+
+TEST(DeviceLink, IsWhatItWasMadeOf) {
+    for (const int version : {2, 4}) {
+        LutRequest r = request_for("agx_sobotka", "log2", LutFormat::icc, 17);
+        r.icc_version = version;
+        Lut lut = sample_lut(r);
+        quantize(lut, r);
+        const std::string bytes = write_lut(lut, r, {});
+        EXPECT_EQ(bytes, write_lut(lut, r, {})) << "the same on every run";
+        EXPECT_EQ(bytes[8], version);
+        EXPECT_EQ(bytes.substr(12, 12), "linkRGB RGB ");
+        EXPECT_EQ(bytes.substr(36, 4), "acsp");
+        const DeviceLink link("x.icc", bytes);
+        for (const Vector3& v : table_inputs(2000)) {
+            std::array<float, 3> in{};
+            std::array<float, 3> out{};
+            for (std::size_t c = 0; c < 3; ++c)
+                in[c] = static_cast<float>(v[c]);
+            link.run_rgb(in.data(), out.data(), 1);
+            const Vector3 expected =
+                interpolate(lut, {static_cast<double>(in[0]), static_cast<double>(in[1]),
+                                  static_cast<double>(in[2])});
+            // LittleCMS works in 16 bits: half a step of the input, twice as steep here, and half
+            // of the output.
+            for (std::size_t c = 0; c < 3; ++c)
+                EXPECT_NEAR(static_cast<double>(out[c]), expected[c], 2.5e-5);
+        }
+    }
+}
+
 // ---------------------------------------------------------------------------------------------
 // OCIO reads what we write
 
@@ -971,6 +1037,9 @@ const FileCase kFileCases[] = {
     {"half.clf", "hable", "linear", LutFormat::clf, 0},
     {"curve.spi1d", "hable", "log2", LutFormat::spi1d, 4096},
     {"cube.spi3d", "agx_sobotka", "acescct", LutFormat::spi3d, 33},
+    {"cube.ctf", "agx_sobotka", "acescct", LutFormat::ctf, 17},
+    {"half.ctf", "hable", "linear", LutFormat::ctf, 0},
+    {"cube.lut", "agx_sobotka", "acescct", LutFormat::houdini, 33},
 };
 
 class LutFile : public ::testing::TestWithParam<FileCase> {};

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tonewright/lut.h"
+
+namespace tonewright {
+
+/// What stands between the nodes of a cube. 1D tables are linear. Automatic: what the file says
+/// (CLF and CTF can), else tetrahedral.
+enum class LutInterpolation : unsigned char { automatic, tetrahedral, trilinear };
+/// @throws Error with the nearest name.
+[[nodiscard]] LutInterpolation parse_lut_interpolation(std::string_view text);
+
+/// A LUT of any format and of anybody's, ready to run.
+///
+/// OpenColorIO runs what it reads (.cube, .clf, .ctf, .spi1d, .spi3d, .csp, .3dl, .lut, .itx, .cub,
+/// .vf, .m3d, .mga, .spimtx, .cc, .ccc, .cdl), LittleCMS an ICC device link (.icc, .icm), and our
+/// own interpolation raw floats (.raw: the cube's size follows from the file's) and tables from
+/// elsewhere, such as the pictures of read_lut_picture().
+class LutFile {
+  public:
+    /// Nothing is taken from the file before it has been looked through: sizes, numbers of rows,
+    /// numbers.
+    /// @throws FileError  missing, malformed, of unknown format, or of a size that its reader has
+    ///                    not; with path, line where there are lines, and reason.
+    /// @throws Error      trilinear for an ICC device link.
+    explicit LutFile(const std::string& path,
+                     LutInterpolation interpolation = LutInterpolation::automatic);
+    explicit LutFile(Lut table, LutInterpolation interpolation = LutInterpolation::automatic);
+    ~LutFile();
+    LutFile(LutFile&&) noexcept;
+    LutFile& operator=(LutFile&&) noexcept;
+
+    /// Interleaved RGB; safe to use from several threads at once.
+    void run_rgb(const float* in, float* out, std::size_t count) const;
+
+  private:
+    struct Form;
+    std::unique_ptr<const Form> form_;
+};
+
+}  // namespace tonewright

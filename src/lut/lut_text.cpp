@@ -1,0 +1,768 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Formats: Adobe, "Cube LUT Specification 1.0" (2013); Blackmagic Design, DaVinci Resolve's own
+// .cube; Academy S-2014-006 (CLF); SideFX, HDK, "Lookup Tables"; Rising Sun Research, cineSpace;
+// the others as OpenColorIO has them.
+#include "lut/lut_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <optional>
+
+#include "lut/printable.h"
+#include "tonewright/error.h"
+
+namespace tonewright {
+namespace {
+
+/// What OpenColorIO takes.
+constexpr int kLargestCube = 129;
+constexpr int kLargestTable = 1048576;
+/// Of lines in formats that OpenColorIO reads line by line into a buffer of 4096.
+constexpr std::size_t kLongestLine = 4000;
+
+std::string lower(std::string_view text) {
+    std::string result(text);
+    for (char& c : result)
+        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return result;
+}
+
+constexpr std::string_view kBlank = " \t\r\v\f";
+
+/// The whole text; infinite beyond double, 0 below it.
+std::optional<double> parse_number(std::string_view text) {
+    if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1);
+    double value = 0;
+    const auto r = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (text.empty() || r.ptr != text.data() + text.size()) return std::nullopt;
+    if (r.ec == std::errc::result_out_of_range) {
+        const std::size_t e = text.find_first_of("eE");
+        const bool is_tiny = e != std::string_view::npos && text.substr(e + 1, 1) == "-";
+        return is_tiny ? 0.0 : HUGE_VAL;
+    }
+    return r.ec == std::errc() ? std::optional(value) : std::nullopt;
+}
+
+bool is_float(double value) {
+    return std::fabs(value) <= static_cast<double>(std::numeric_limits<float>::max());
+}
+
+/// The file, word by word or line by line.
+class Text {
+  public:
+    Text(const std::string& path, std::string_view text) : path_(path), rest_(text) {}
+
+    /// @return false at the end
+    bool next_line() {
+        if (rest_.empty()) return false;
+        ++number_;
+        const std::size_t end = rest_.find('\n');
+        line_ = rest_.substr(0, end);
+        rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+        if (line_.find('\0') != std::string_view::npos)
+            fail("holds bytes that are no text; expected a text file");
+        words_ = line_;
+        return true;
+    }
+    /// The next word of the line; empty at its end.
+    std::string_view word() {
+        const std::size_t begin = words_.find_first_not_of(kBlank);
+        if (begin == std::string_view::npos) return {};
+        words_.remove_prefix(begin);
+        const std::string_view result = words_.substr(0, words_.find_first_of(kBlank));
+        words_.remove_prefix(result.size());
+        return result;
+    }
+    /// Before any of its words is taken.
+    void rewind() { words_ = line_; }
+    /// The first line that has a word, and no comment; its words are all to come.
+    bool next_filled(bool has_comments = true) {
+        while (next_line()) {
+            const std::string_view first = word();
+            rewind();
+            if (!first.empty() && !(has_comments && first.front() == '#')) return true;
+        }
+        return false;
+    }
+    /// What OpenColorIO reads into a buffer of its own.
+    void check_length() const {
+        if (line_.size() > kLongestLine)
+            fail(fmt::format("is {} characters long; expected up to {}", line_.size(),
+                             kLongestLine));
+    }
+    [[nodiscard]] std::string_view line() const { return line_; }
+
+    [[nodiscard]] int line_number() const { return number_; }
+
+    [[noreturn]] void fail(const std::string& reason) const { fail_at(number_, reason); }
+    [[noreturn]] void fail_at(int line, const std::string& reason) const {
+        throw FileError(fmt::format("read: {}: line {}: {}", path_, std::max(line, 1), reason));
+    }
+    /// "line 3: 0 0 x; expected three numbers".
+    [[noreturn]] void refuse(const std::string& expected) const {
+        fail(printable(line_) + "; expected " + expected);
+    }
+    /// "line 2: LUT_3D_SIZE is 1000; expected [2, 129]".
+    [[noreturn]] void refuse(std::string_view name, std::string_view value,
+                             const std::string& expected) const {
+        fail(fmt::format("{} is {}; expected {}", printable(name), printable(value), expected));
+    }
+    [[noreturn]] void end_early(std::size_t found, std::size_t expected) const {
+        fail(fmt::format("ends after {} rows; expected {}", found, expected));
+    }
+
+    double number(std::string_view name, std::string_view text) const {
+        const std::optional<double> value = parse_number(text);
+        if (!value) refuse(name, text, "a number");
+        if (!is_float(*value)) refuse(name, text, "a finite number");
+        return *value;
+    }
+    int size(std::string_view name, std::string_view text, int lo, int hi) const {
+        int value = 0;
+        const auto r = std::from_chars(text.data(), text.data() + text.size(), value);
+        const std::string expected = fmt::format("[{}, {}]", lo, hi);
+        if (r.ptr != text.data() + text.size() || r.ec != std::errc() || value < lo || value > hi)
+            refuse(name, text, expected);
+        return value;
+    }
+    /// The rest of the line: so many finite numbers.
+    std::array<float, 3> numbers(int count) {
+        static constexpr std::array<const char*, 4> kNames = {"no", "one", "two", "three"};
+        const std::string expected = fmt::format(
+            "{} number{}", kNames[static_cast<std::size_t>(count)], count == 1 ? "" : "s");
+        std::array<float, 3> values{};
+        for (int i = 0; i < count; ++i) {
+            const std::string_view text = word();
+            if (text.empty()) refuse(expected);
+            values[static_cast<std::size_t>(i)] = static_cast<float>(number("number", text));
+        }
+        if (!word().empty()) refuse(expected);
+        return values;
+    }
+
+  private:
+    const std::string& path_;
+    std::string_view rest_;
+    std::string_view line_;
+    std::string_view words_;
+    int number_ = 0;
+};
+
+/// Rows of three numbers, as many as declared.
+class Rows {
+  public:
+    void expect(std::size_t count) { expected_ += count; }
+    [[nodiscard]] std::size_t found() const { return found_; }
+    std::array<float, 3> add(Text& text) {
+        if (expected_ == 0) text.refuse("a size before the first row");
+        const std::array<float, 3> row = text.numbers(3);
+        if (++found_ > expected_)
+            text.fail(fmt::format("is row {}; expected {}", found_, expected_));
+        return row;
+    }
+    void finish(const Text& text) const {
+        if (expected_ == 0) text.fail("ends without a size; expected LUT_1D_SIZE or LUT_3D_SIZE");
+        if (found_ < expected_) text.end_early(found_, expected_);
+    }
+
+  private:
+    std::size_t expected_ = 0;
+    std::size_t found_ = 0;
+};
+
+std::size_t cubed(int n) {
+    const auto edge = static_cast<std::size_t>(n);
+    return edge * edge * edge;
+}
+
+bool begins_number(std::string_view word) {
+    return std::isdigit(static_cast<unsigned char>(word.front())) || word.front() == '-' ||
+           word.front() == '+' || word.front() == '.' || lower(word) == "nan" ||
+           lower(word) == "inf";
+}
+
+CubeText read_cube(Text& text) {
+    CubeText result;
+    Rows rows;
+    std::vector<std::string> seen;
+    std::array<double, 3> lo = {0, 0, 0};
+    std::array<double, 3> hi = {1, 1, 1};
+    int domain_line = 0;
+    const auto has = [&](std::string_view key) {
+        return std::find(seen.begin(), seen.end(), key) != seen.end();
+    };
+    while (text.next_filled()) {
+        const std::string_view first = text.word();
+        if (begins_number(first)) {
+            text.rewind();
+            const std::array<float, 3> row = rows.add(text);
+            const bool is_of_table = rows.found() <= static_cast<std::size_t>(result.table.size);
+            std::vector<float>& values = is_of_table ? result.table.rows : result.cube.rows;
+            values.insert(values.end(), row.begin(), row.end());
+            continue;
+        }
+        const std::string key = lower(first);
+        if (rows.found() > 0) text.refuse("three numbers");
+        if (key == "title") continue;
+        if (has(key)) text.fail(std::string(first) + " stands here twice; expected once");
+        if (key == "lut_1d_size") {
+            result.table.size = text.size(first, text.word(), 2, kLargestTable);
+            rows.expect(static_cast<std::size_t>(result.table.size));
+        } else if (key == "lut_3d_size") {
+            result.cube.size = text.size(first, text.word(), 2, kLargestCube);
+            rows.expect(cubed(result.cube.size));
+        } else if (key == "domain_min" || key == "domain_max") {
+            for (double& v : key == "domain_min" ? lo : hi)
+                v = text.number(first, text.word());
+            domain_line = text.line_number();
+        } else if (key == "lut_1d_input_range" || key == "lut_3d_input_range") {
+            CubeText::Table& table = key == "lut_1d_input_range" ? result.table : result.cube;
+            table.lo.fill(text.number(first, text.word()));
+            table.hi.fill(text.number(first, text.word()));
+            if (!(table.lo[0] < table.hi[0])) text.refuse("the first number below the second");
+        } else {
+            text.refuse("keyword", first,
+                        "TITLE, LUT_1D_SIZE, LUT_3D_SIZE, DOMAIN_MIN, DOMAIN_MAX, "
+                        "LUT_1D_INPUT_RANGE, LUT_3D_INPUT_RANGE or three numbers");
+        }
+        if (!text.word().empty()) text.refuse("no more on this line");
+        seen.push_back(key);
+        const bool is_adobe = has("domain_min") || has("domain_max");
+        if (is_adobe && (has("lut_1d_input_range") || has("lut_3d_input_range")))
+            text.refuse("DOMAIN_MIN and DOMAIN_MAX, or input ranges, not both");
+        if (is_adobe && has("lut_1d_size") && has("lut_3d_size"))
+            text.refuse("input ranges where there are two tables");
+    }
+    for (std::size_t c = 0; c < 3; ++c) {
+        if (!(lo[c] < hi[c])) text.fail_at(domain_line, "DOMAIN_MIN is not below DOMAIN_MAX");
+    }
+    if (domain_line > 0) {
+        CubeText::Table& table = result.cube.size > 0 ? result.cube : result.table;
+        table.lo = lo;
+        table.hi = hi;
+    }
+    rows.finish(text);
+    return result;
+}
+
+void check_cube(Text& text) { (void)read_cube(text); }
+
+/// Iridas .itx: a cube without a domain.
+void check_itx(Text& text) {
+    Rows rows;
+    while (text.next_filled()) {
+        const std::string_view first = text.word();
+        if (begins_number(first)) {
+            text.rewind();
+            rows.add(text);
+        } else if (lower(first) == "lut_3d_size" && rows.found() == 0) {
+            rows.expect(cubed(text.size(first, text.word(), 2, kLargestCube)));
+        } else {
+            text.refuse("LUT_3D_SIZE or three numbers");
+        }
+    }
+    rows.finish(text);
+}
+
+void check_spi1d(Text& text) {
+    std::optional<int> length;
+    std::optional<int> components;
+    bool has_version = false;
+    bool is_open = false;
+    while (!is_open && text.next_filled()) {
+        text.check_length();
+        const std::string_view key = text.word();
+        if (key == "Version") {
+            has_version = text.size(key, text.word(), 1, 1) == 1;
+        } else if (key == "From") {
+            const double from = text.number(key, text.word());
+            const double to = text.number(key, text.word());
+            if (!(from < to)) text.refuse("the first number below the second");
+        } else if (key == "Length") {
+            length = text.size(key, text.word(), 2, kLargestTable);
+        } else if (key == "Components") {
+            components = text.size(key, text.word(), 1, 3);
+        } else if (key == "{") {
+            is_open = true;
+        } else {
+            text.refuse("keyword", key, "Version, From, Length, Components or {");
+        }
+    }
+    if (!has_version) text.fail("has no Version before it; expected Version 1");
+    if (!length) text.fail("has no Length before it; expected Length and a number");
+    if (!components) text.fail("has no Components before it; expected Components 1 or 3");
+    if (!is_open) text.fail("ends without {");
+    const auto expected = static_cast<std::size_t>(*length);
+    std::size_t found = 0;
+    while (text.next_filled(false)) {
+        text.check_length();
+        if (text.word() == "}") {
+            if (found < expected) text.end_early(found, expected);
+            return;
+        }
+        text.rewind();
+        text.numbers(*components);
+        if (++found > expected) text.fail(fmt::format("is row {}; expected {}", found, expected));
+    }
+    if (found < expected) text.end_early(found, expected);
+    text.fail("ends without }");
+}
+
+void check_spi3d(Text& text) {
+    if (!text.next_line() || !lower(text.line()).starts_with("spilut")) text.refuse("SPILUT 1.0");
+    if (!text.next_line()) text.fail("ends here; expected 3 3");
+    text.numbers(2);
+    if (!text.next_line()) text.fail("ends here; expected three sizes");
+    int n = 0;
+    for (int c = 0; c < 3; ++c) {
+        const int size = text.size("size", text.word(), 2, kLargestCube);
+        if (c > 0 && size != n) text.refuse("three equal sizes");
+        n = size;
+    }
+    if (!text.word().empty()) text.refuse("three sizes");
+    std::vector<bool> is_there(cubed(n));
+    std::size_t found = 0;
+    while (text.next_filled()) {
+        text.check_length();
+        std::size_t node = 0;
+        for (int c = 0; c < 3; ++c) {
+            node = node * static_cast<std::size_t>(n) +
+                   static_cast<std::size_t>(text.size("index", text.word(), 0, n - 1));
+        }
+        text.numbers(3);
+        if (is_there[node]) text.refuse("every node once");
+        is_there[node] = true;
+        ++found;
+    }
+    if (found < is_there.size()) text.end_early(found, is_there.size());
+}
+
+/// cineSpace: three preluts, then the table.
+void check_csp(Text& text) {
+    const auto next = [&](const char* expected) {
+        if (!text.next_filled(false)) text.fail(fmt::format("ends here; expected {}", expected));
+    };
+    const auto only = [&](const char* expected) {
+        if (!text.word().empty()) text.refuse(expected);
+    };
+    next("CSPLUTV100");
+    if (lower(text.word()) != "csplutv100") text.refuse("CSPLUTV100");
+    next("1D or 3D");
+    const std::string kind = lower(text.word());
+    if (kind != "1d" && kind != "3d") text.refuse("1D or 3D");
+    next("a prelut");
+    if (lower(text.line()).starts_with("begin metadata")) {
+        do {
+            if (!text.next_line()) text.fail("ends here; expected END METADATA");
+        } while (!lower(text.line()).starts_with("end metadata"));
+        next("a prelut");
+    }
+    for (int c = 0; c < 3; ++c) {
+        if (c > 0) next("a prelut");
+        const int points = text.size("prelut's size", text.word(), 0, kLargestTable);
+        only("one size");
+        if (points < 2) continue;
+        double last = -INFINITY;
+        for (const bool is_input : {true, false}) {
+            next("the numbers of a prelut");
+            int found = 0;
+            for (std::string_view word = text.word(); !word.empty(); word = text.word()) {
+                const double value = text.number("number", word);
+                if (is_input && !(value > last)) text.fail("the prelut's input does not rise");
+                last = value;
+                if (++found > points) break;
+            }
+            if (found != points)
+                text.fail(fmt::format("has {} {} numbers; expected {}",
+                                      found > points ? "more than" : "only",
+                                      found > points ? points : found, points));
+        }
+    }
+    next("the table's size");
+    Rows rows;
+    if (kind == "1d") {
+        rows.expect(static_cast<std::size_t>(text.size("size", text.word(), 2, kLargestTable)));
+    } else {
+        int n = 0;
+        for (int c = 0; c < 3; ++c) {
+            const int size = text.size("size", text.word(), 2, kLargestCube);
+            if (c > 0 && size != n) text.refuse("three equal sizes");
+            n = size;
+        }
+        rows.expect(cubed(n));
+    }
+    only("the table's size");
+    while (text.next_filled(false))
+        rows.add(text);
+    rows.finish(text);
+}
+
+/// Autodesk: rows of whole numbers, and a line of more than three of them, where the nodes are.
+void check_3dl(Text& text) {
+    std::size_t rows = 0;
+    bool has_mesh = false;
+    while (text.next_filled()) {
+        text.check_length();
+        std::size_t count = 0;
+        const std::string_view first = text.word();
+        if (!begins_number(first) || lower(first) == "3dmesh") {
+            // "3DMESH", "Mesh 5 12", "LUT8", "gamma 1.0"
+            const std::string key = lower(first);
+            if (key != "3dmesh" && key != "mesh" && key != "gamma" && !key.starts_with("lut"))
+                text.refuse("keyword", first, "3DMESH, Mesh, gamma, LUT8 or three numbers");
+            continue;
+        }
+        constexpr int kLargest = 131071;  // 16 bits, twice as much as there is
+        for (std::string_view word = first; !word.empty(); word = text.word()) {
+            (void)text.size("number", word, -kLargest, kLargest);
+            ++count;
+        }
+        if (count > 3) {
+            if (has_mesh || rows > 0) text.refuse("three numbers");
+            has_mesh = true;
+        } else {
+            if (count != 3) text.refuse("three numbers");
+            if (++rows > cubed(kLargestCube))
+                text.fail(fmt::format("is row {}; expected up to {}", rows, cubed(kLargestCube)));
+        }
+    }
+    const int n = static_cast<int>(std::lround(std::cbrt(static_cast<double>(rows))));
+    if (n < 2 || cubed(n) != rows)
+        text.fail(fmt::format("ends after {} rows; expected the cube of a number", rows));
+}
+
+/// Houdini, and Discreet's 1D tables, which have the same extension.
+void check_lut(Text& text) {
+    std::string type;
+    std::vector<int> length;
+    std::vector<std::string> keys;
+    bool is_open = false;
+    while (!is_open && text.next_filled()) {
+        const std::string_view first = text.word();
+        const std::string key = lower(first);
+        if (key == "lut:" && keys.empty()) {
+            const std::string_view count = text.word();
+            if (count.empty()) text.refuse("Version, Format, Type ... before it");
+            // Discreet: "LUT: 3 1024", then a number a line.
+            const int tables = text.size("number of tables", count, 1, 4);
+            const int entries = text.size("length", text.word(), 2, 65536);
+            const auto expected =
+                static_cast<std::size_t>(tables) * static_cast<std::size_t>(entries);
+            std::size_t found = 0;
+            while (text.next_filled()) {
+                text.numbers(1);
+                if (++found > expected)
+                    text.fail(fmt::format("is row {}; expected {}", found, expected));
+            }
+            if (found < expected) text.end_early(found, expected);
+            return;
+        }
+        if (key == "lut:") {
+            is_open = true;
+            break;
+        }
+        if (key == "version" || key == "format" || key == "sampling") {
+            if (text.word().empty()) text.refuse("a value");
+        } else if (key == "type") {
+            type = lower(text.word());
+            if (type != "3d" && type != "3d+1d" && type != "c")
+                text.refuse(first, type, "3D, 3D+1D or C");
+        } else if (key == "from" || key == "to") {
+            text.numbers(2);
+        } else if (key == "black" || key == "white") {
+            text.numbers(1);
+        } else if (key == "length") {
+            for (std::string_view word = text.word(); !word.empty(); word = text.word()) {
+                if (length.size() == 2) text.refuse("one size or two");
+                length.push_back(text.size(first, word, 2, kLargestTable));
+            }
+            if (length.empty()) text.refuse("one size or two");
+        } else {
+            text.refuse("keyword", first,
+                        "Version, Format, Type, From, To, Black, White, Length or LUT:");
+        }
+        keys.push_back(key);
+    }
+    for (const char* key :
+         {"version", "format", "type", "from", "to", "black", "white", "length"}) {
+        if (std::find(keys.begin(), keys.end(), key) == keys.end())
+            text.fail(fmt::format("has no {} before it", key));
+    }
+    if (!is_open) text.fail("ends without LUT:");
+    const bool is_cube = type != "c";
+    if (is_cube && length[0] > kLargestCube)
+        text.fail(fmt::format("Length is {}; expected [2, {}]", length[0], kLargestCube));
+    if ((type == "3d+1d") != (length.size() == 2))
+        text.fail("Length has not the sizes that Type needs");
+    // Blocks: "Pre {", "3D {" or "{", "RGB {"; numbers; "}".
+    std::string block;
+    std::size_t found = 0;
+    std::size_t expected = 0;
+    std::vector<std::string> blocks;
+    std::string name;
+    while (text.next_filled(false)) {
+        for (std::string_view word = text.word(); !word.empty(); word = text.word()) {
+            if (word == "{") {
+                if (!block.empty()) text.refuse("} before {");
+                block = name.empty() ? "3d" : name;
+                name.clear();
+                if (block != (is_cube ? "3d" : "rgb") && !(block == "pre" && length.size() == 2))
+                    text.refuse("block", block, is_cube ? "3D or Pre" : "RGB");
+                expected = block == "3d"    ? 3 * cubed(length[0])
+                           : block == "pre" ? static_cast<std::size_t>(length[1])
+                                            : static_cast<std::size_t>(length[0]);
+                found = 0;
+            } else if (word == "}") {
+                if (block.empty()) text.refuse("{ before }");
+                if (found != expected)
+                    text.fail(fmt::format("ends block {} after {} numbers; expected {}", block,
+                                          found, expected));
+                blocks.push_back(block);
+                block.clear();
+            } else if (block.empty()) {
+                if (!name.empty()) text.refuse("{");
+                name = lower(word);
+            } else {
+                (void)text.number("number", word);
+                if (++found > expected)
+                    text.fail(fmt::format("is number {} of block {}; expected {}", found, block,
+                                          expected));
+            }
+        }
+    }
+    if (!block.empty() || !name.empty()) text.fail("ends inside a block; expected }");
+    for (const std::string& needed :
+         is_cube ? std::vector<std::string>{"3d"} : std::vector<std::string>{"rgb"}) {
+        if (std::find(blocks.begin(), blocks.end(), needed) == blocks.end())
+            text.fail("ends without block " + needed);
+    }
+    if (length.size() == 2 && std::find(blocks.begin(), blocks.end(), "pre") == blocks.end())
+        text.fail("ends without block pre");
+}
+
+/// CLF and CTF: the arrays; OpenColorIO names the line of all else.
+class ClfText {
+  public:
+    ClfText(const std::string& path, std::string_view text) : path_(path), text_(text) {}
+
+    void check() {
+        std::string parent;
+        bool is_half_domain = false;
+        bool has_list = false;
+        while (at_ < text_.size()) {
+            const std::size_t open = text_.find('<', at_);
+            if (open == std::string_view::npos) break;
+            advance(open);
+            if (text_.substr(at_, 4) == "<!--") {
+                skip_past("-->");
+                continue;
+            }
+            if (text_.substr(at_, 2) == "<!")
+                fail(printable(text_.substr(at_, 12)) + "; expected no document type or entities");
+            const std::size_t close = text_.find('>', at_);
+            if (close == std::string_view::npos) fail("ends inside a tag; expected >");
+            const std::string_view tag = text_.substr(at_ + 1, close - at_ - 1);
+            const std::string_view name = tag.substr(0, tag.find_first_of(" \t\r\n/"));
+            has_list = has_list || name == "ProcessList";
+            if (name == "LUT1D" || name == "LUT3D" || name == "Matrix") {
+                parent = name;
+                is_half_domain = tag.find("halfDomain") != std::string_view::npos;
+            }
+            if (name == "Array") {
+                const std::size_t count = declared(tag, parent);
+                advance(close + 1);
+                check_array(count, is_half_domain);
+            } else {
+                advance(close + 1);
+            }
+        }
+        if (!has_list) {
+            advance(text_.size());
+            fail("ends without a ProcessList");
+        }
+    }
+
+  private:
+    [[noreturn]] void fail(const std::string& reason) const {
+        throw FileError(fmt::format("read: {}: line {}: {}", path_, line_, reason));
+    }
+    void advance(std::size_t to) {
+        line_ +=
+            static_cast<int>(std::count(text_.begin() + static_cast<std::ptrdiff_t>(at_),
+                                        text_.begin() + static_cast<std::ptrdiff_t>(to), '\n'));
+        at_ = to;
+    }
+    void skip_past(std::string_view what) {
+        const std::size_t end = text_.find(what, at_);
+        if (end == std::string_view::npos)
+            fail(fmt::format("opens what never closes; expected {}", what));
+        advance(end + what.size());
+    }
+
+    /// How many numbers an Array says that it has.
+    [[nodiscard]] std::size_t declared(std::string_view tag, const std::string& parent) const {
+        const std::size_t at = tag.find("dim");
+        const std::size_t open = at == std::string_view::npos ? at : tag.find_first_of("\"'", at);
+        const std::size_t end =
+            open == std::string_view::npos ? open : tag.find(tag[open], open + 1);
+        if (end == std::string_view::npos) fail("Array has no dim; expected dim=\"...\"");
+        const std::string_view dim = tag.substr(open + 1, end - open - 1);
+        std::vector<int> sizes;
+        for (std::size_t i = 0; i < dim.size();) {
+            if (std::isspace(static_cast<unsigned char>(dim[i]))) {
+                ++i;
+                continue;
+            }
+            int value = 0;
+            const auto r = std::from_chars(dim.data() + i, dim.data() + dim.size(), value);
+            if (r.ec != std::errc() || value < 1 || sizes.size() == 4)
+                refuse(dim, "up to four whole numbers");
+            sizes.push_back(value);
+            i = static_cast<std::size_t>(r.ptr - dim.data());
+        }
+        std::size_t count = 1;
+        for (const int size : sizes) {
+            if (size > kLargestTable) refuse(dim, fmt::format("up to {}", kLargestTable));
+            count *= static_cast<std::size_t>(size);
+        }
+        if (parent == "LUT3D") {
+            const bool is_cube = sizes.size() == 4 && sizes[0] == sizes[1] &&
+                                 sizes[0] == sizes[2] && sizes[3] == 3 && sizes[0] >= 2 &&
+                                 sizes[0] <= kLargestCube;
+            if (!is_cube) refuse(dim, fmt::format("N N N 3 with N in [2, {}]", kLargestCube));
+        } else if (parent == "LUT1D") {
+            if (sizes.size() != 2 || sizes[0] < 2 || (sizes[1] != 1 && sizes[1] != 3))
+                refuse(dim, fmt::format("N 1 or N 3 with N in [2, {}]", kLargestTable));
+        } else if (sizes.size() < 2 || sizes.size() > 3 || sizes[0] > 4 || sizes[1] > 5) {
+            refuse(dim, "a matrix's, such as 3 3");
+        } else {
+            count = static_cast<std::size_t>(sizes[0]) * static_cast<std::size_t>(sizes[1]);
+        }
+        return count;
+    }
+    [[noreturn]] void refuse(std::string_view dim, const std::string& expected) const {
+        fail("dim is " + printable(dim) + "; expected " + expected);
+    }
+
+    void check_array(std::size_t expected, bool is_half_domain) {
+        std::size_t found = 0;
+        while (at_ < text_.size() && text_[at_] != '<') {
+            if (text_[at_] == '\n') ++line_;
+            if (std::isspace(static_cast<unsigned char>(text_[at_]))) {
+                ++at_;
+                continue;
+            }
+            const std::size_t end = std::min(text_.find_first_of(" \t\r\n<,", at_), text_.size());
+            check_number(text_.substr(at_, end - at_), is_half_domain);
+            at_ = end;
+            if (++found > expected)
+                fail(fmt::format("is number {} of the Array; expected {}", found, expected));
+        }
+        if (found != expected)
+            fail(fmt::format("ends the Array after {} numbers; expected {}", found, expected));
+    }
+    void check_number(std::string_view text, bool is_half_domain) const {
+        const std::optional<double> value = parse_number(text);
+        if (!value) fail("number is " + printable(text) + "; expected a number");
+        // Of a half-domain table some entries are those of infinities and of no number.
+        if (!is_float(*value) && !is_half_domain)
+            fail("number is " + printable(text) + "; expected a finite number");
+    }
+
+    const std::string& path_;
+    std::string_view text_;
+    std::size_t at_ = 0;
+    int line_ = 1;
+};
+
+/// Formats that OpenColorIO reads and nothing here writes: sizes that it would make room for.
+void check_declared_sizes(Text& text) {
+    while (text.next_line()) {
+        std::string key = lower(text.word());
+        if (key == "#") key = lower(text.word());
+        const bool is_size = key == "grid_size" || key == "width" || key == "cubelength";
+        const bool is_length = key == "lutlength" || key == "in" || key == "out";
+        if (!is_size && !is_length) continue;
+        for (std::string_view word = text.word(); !word.empty(); word = text.word())
+            (void)text.size(key, word, 1, is_size ? kLargestCube : kLargestTable);
+    }
+}
+
+Text begin(const std::string& path, std::string_view text) {
+    Text lines(path, text);
+    if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) lines.fail("is empty");
+    if (text.starts_with("\xEF\xBB\xBF"))
+        lines.fail("begins with a byte order mark; expected plain text");
+    return lines;
+}
+
+struct Format {
+    const char* extension;
+    void (*check)(Text& text);
+};
+
+/// What OpenColorIO 2.1 reads; without a function: XML.
+constexpr Format kFormats[] = {
+    {".cube", check_cube},
+    {".clf", nullptr},
+    {".ctf", nullptr},
+    {".spi1d", check_spi1d},
+    {".spi3d", check_spi3d},
+    {".csp", check_csp},
+    {".3dl", check_3dl},
+    {".lut", check_lut},
+    {".itx", check_itx},
+    {".cub", check_declared_sizes},
+    {".vf", check_declared_sizes},
+    {".m3d", check_declared_sizes},
+    {".mga", check_declared_sizes},
+    {".spimtx", check_declared_sizes},
+    {".cc", check_declared_sizes},
+    {".ccc", check_declared_sizes},
+    {".cdl", check_declared_sizes},
+};
+
+}  // namespace
+
+const std::vector<std::string>& lut_text_extensions() {
+    static const std::vector<std::string> extensions = [] {
+        std::vector<std::string> all;
+        for (const Format& format : kFormats)
+            all.emplace_back(format.extension);
+        return all;
+    }();
+    return extensions;
+}
+
+void check_lut_text(const std::string& path, std::string_view text) {
+    const std::string extension = lower(std::filesystem::path(path).extension().string());
+    for (const Format& format : kFormats) {
+        if (extension != format.extension) continue;
+        Text lines = begin(path, text);
+        if (format.check) {
+            format.check(lines);
+        } else {
+            ClfText(path, text).check();
+        }
+        return;
+    }
+    throw FileError(fmt::format("read: {}: extension is {}; expected {}", path,
+                                extension.empty() ? "missing" : extension,
+                                join_choices(lut_text_extensions())));
+}
+
+CubeText parse_cube(const std::string& path, std::string_view text) {
+    Text lines = begin(path, text);
+    return read_cube(lines);
+}
+
+}  // namespace tonewright

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tonewright/lut_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+
+#include "lut/icc.h"
+#include "lut/lut_text.h"
+#include "lut/printable.h"
+#include "lut/raw.h"
+#include "ocio/lower.h"
+
+namespace tonewright {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The text of a cube of 129 has some 80 million characters.
+constexpr std::uintmax_t kLargestFile = 128U << 20U;
+
+std::string extension_of(const std::string& path) {
+    std::string extension = fs::path(path).extension().string();
+    for (char& c : extension)
+        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return extension;
+}
+
+bool is_device_link(const std::string& extension) {
+    return extension == ".icc" || extension == ".icm";
+}
+
+void check_extension(const std::string& path) {
+    const std::string extension = extension_of(path);
+    std::vector<std::string> known = lut_text_extensions();
+    known.insert(known.end(), {".icc", ".icm", ".raw"});
+    if (std::find(known.begin(), known.end(), extension) != known.end()) return;
+    known.emplace_back("a picture's");
+    throw FileError(fmt::format("read: {}: extension is {}; expected {}", path,
+                                extension.empty() ? "missing" : extension, join_choices(known)));
+}
+
+std::string read_bytes(const std::string& path) {
+    const auto fail = [&](const std::string& reason) {
+        throw FileError("read: " + path + ": " + reason);
+    };
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (status.type() == fs::file_type::not_found) fail("No such file or directory");
+    if (status.type() != fs::file_type::regular) fail("is not a file");
+    const std::uintmax_t size = fs::file_size(path, error);
+    if (error) fail(error.message());
+    if (size > kLargestFile)
+        fail(fmt::format("has {} bytes; expected up to {}", size, kLargestFile));
+    std::ifstream file(path, std::ios::binary);
+    std::string bytes(static_cast<std::size_t>(size), '\0');
+    if (!file.read(bytes.data(), static_cast<std::streamsize>(size))) fail(std::strerror(errno));
+    return bytes;
+}
+
+/// What OpenColorIO says about the file, without its search for a format; in one line.
+std::string reason_of(const OCIO::Exception& e, const std::string& path) {
+    std::string what = e.what();
+    constexpr std::string_view kFound = "' failed with: ";
+    if (const std::size_t at = what.rfind(kFound); at != std::string::npos)
+        what.erase(0, at + kFound.size());
+    for (const std::string& own : {path + ": ", "(" + path + "). ", "(" + path + ") "}) {
+        if (const std::size_t at = what.find(own); at != std::string::npos)
+            what.erase(at, own.size());
+    }
+    return printable(what, 400);
+}
+
+/// Whatever the files say.
+void set_interpolation(const OCIO::GroupTransformRcPtr& group, OCIO::Interpolation interpolation) {
+    for (int i = 0; i < group->getNumTransforms(); ++i) {
+        const OCIO::TransformRcPtr transform = group->getTransform(i);
+        if (const auto cube = OCIO_DYNAMIC_POINTER_CAST<OCIO::Lut3DTransform>(transform)) {
+            cube->setInterpolation(interpolation);
+        } else if (const auto inner = OCIO_DYNAMIC_POINTER_CAST<OCIO::GroupTransform>(transform)) {
+            set_interpolation(inner, interpolation);
+        }
+    }
+}
+
+/// A range as [0, 1].
+OCIO::TransformRcPtr scale_range(const CubeText::Table& table) {
+    const OCIO::MatrixTransformRcPtr matrix = OCIO::MatrixTransform::Create();
+    std::array<double, 16> m{};
+    std::array<double, 4> offset{};
+    for (std::size_t c = 0; c < 3; ++c) {
+        m[5 * c] = 1 / (table.hi[c] - table.lo[c]);
+        offset[c] = -table.lo[c] / (table.hi[c] - table.lo[c]);
+    }
+    m[15] = 1;
+    matrix->setMatrix(m.data());
+    matrix->setOffset(offset.data());
+    return matrix;
+}
+
+OCIO::GroupTransformRcPtr group_of(const CubeText& file) {
+    const OCIO::GroupTransformRcPtr group = OCIO::GroupTransform::Create();
+    if (const auto n = static_cast<unsigned long>(file.table.size); n > 0) {
+        const OCIO::Lut1DTransformRcPtr table = OCIO::Lut1DTransform::Create();
+        table->setLength(n);
+        table->setInterpolation(OCIO::INTERP_LINEAR);
+        const float* row = file.table.rows.data();
+        for (unsigned long i = 0; i < n; ++i, row += 3)
+            table->setValue(i, row[0], row[1], row[2]);
+        group->appendTransform(scale_range(file.table));
+        group->appendTransform(table);
+    }
+    if (const auto n = static_cast<unsigned long>(file.cube.size); n > 0) {
+        const OCIO::Lut3DTransformRcPtr cube = OCIO::Lut3DTransform::Create();
+        cube->setGridSize(n);
+        cube->setInterpolation(OCIO::INTERP_TETRAHEDRAL);
+        const float* row = file.cube.rows.data();
+        for (unsigned long b = 0; b < n; ++b) {
+            for (unsigned long g = 0; g < n; ++g) {
+                for (unsigned long r = 0; r < n; ++r, row += 3)
+                    cube->setValue(r, g, b, row[0], row[1], row[2]);
+            }
+        }
+        group->appendTransform(scale_range(file.cube));
+        group->appendTransform(cube);
+    }
+    return group;
+}
+
+OCIO::GroupTransformRcPtr group_of(const std::string& path) {
+    const OCIO::FileTransformRcPtr file = OCIO::FileTransform::Create();
+    file->setSrc(path.c_str());
+    // Tetrahedral for a cube, linear for a 1D table, and no warning for either.
+    file->setInterpolation(OCIO::INTERP_BEST);
+    const OCIO::GroupTransformRcPtr group = OCIO::GroupTransform::Create();
+    group->appendTransform(file);
+    return group;
+}
+
+OcioCpu make_cpu(const std::string& path, const OCIO::GroupTransformRcPtr& group,
+                 LutInterpolation interpolation) {
+    Lowered lowered;
+    lowered.transform = group;
+    try {
+        OCIO::ClearAllCaches();  // a file that was written anew is read anew
+        OCIO::ConstProcessorRcPtr processor = make_processor(lowered);
+        if (interpolation != LutInterpolation::automatic) {
+            lowered.transform = processor->createGroupTransform();
+            set_interpolation(lowered.transform, interpolation == LutInterpolation::trilinear
+                                                     ? OCIO::INTERP_LINEAR
+                                                     : OCIO::INTERP_TETRAHEDRAL);
+            processor = make_processor(lowered);
+        }
+        return {processor, OCIO::OPTIMIZATION_LOSSLESS};
+    } catch (const OCIO::Exception& e) {
+        throw FileError("read: " + path + ": " + reason_of(e, path));
+    }
+}
+
+}  // namespace
+
+LutInterpolation parse_lut_interpolation(std::string_view text) {
+    const std::vector<std::string> names = {"auto", "tetrahedral", "trilinear"};
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        if (text == names[i]) return static_cast<LutInterpolation>(i);
+    }
+    throw Error("interpolation is " + std::string(text) + "; expected " + join_choices(names) +
+                did_you_mean(text, names));
+}
+
+struct LutFile::Form {
+    std::optional<OcioCpu> ocio;
+    std::optional<DeviceLink> link;
+    std::optional<Lut> table;
+    bool is_trilinear = false;
+};
+
+LutFile::LutFile(const std::string& path, LutInterpolation interpolation) {
+    auto form = std::make_unique<Form>();
+    form->is_trilinear = interpolation == LutInterpolation::trilinear;
+    const std::string extension = extension_of(path);
+    check_extension(path);
+    const std::string bytes = read_bytes(path);
+    if (is_device_link(extension)) {
+        if (form->is_trilinear) {
+            throw Error("interpolation is trilinear; expected tetrahedral for " + path +
+                        ", an ICC device link");
+        }
+        form->link.emplace(path, bytes);
+    } else if (extension == ".raw") {
+        form->table = parse_raw_lut(path, bytes);
+    } else {
+        OCIO::GroupTransformRcPtr group;
+        if (extension == ".cube") {
+            group = group_of(parse_cube(path, bytes));
+        } else {
+            check_lut_text(path, bytes);
+            group = group_of(path);
+        }
+        form->ocio.emplace(make_cpu(path, group, interpolation));
+    }
+    form_ = std::move(form);
+}
+
+LutFile::LutFile(Lut table, LutInterpolation interpolation) {
+    auto form = std::make_unique<Form>();
+    form->is_trilinear = interpolation == LutInterpolation::trilinear;
+    form->table = std::move(table);
+    form_ = std::move(form);
+}
+LutFile::~LutFile() = default;
+LutFile::LutFile(LutFile&&) noexcept = default;
+LutFile& LutFile::operator=(LutFile&&) noexcept = default;
+
+void LutFile::run_rgb(const float* in, float* out, std::size_t count) const {
+    if (form_->ocio) {
+        form_->ocio->run_rgb(in, out, count);
+    } else if (form_->link) {
+        form_->link->run_rgb(in, out, count);
+    } else {
+        for (std::size_t i = 0; i < 3 * count; i += 3) {
+            const Vector3 shown =
+                interpolate(*form_->table,
+                            {static_cast<double>(in[i]), static_cast<double>(in[i + 1]),
+                             static_cast<double>(in[i + 2])},
+                            form_->is_trilinear);
+            for (std::size_t c = 0; c < 3; ++c)
+                out[i + c] = static_cast<float>(shown[c]);
+        }
+    }
+}
+
+}  // namespace tonewright

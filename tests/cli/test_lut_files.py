@@ -1,0 +1,626 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Reading LUTs: what is about is taken as it is, what is malformed is refused with file, line and reason; and
+`eval --lut`, `apply --lut` do what the numbers in the file say.
+
+    python3 tests/cli/test_lut_files.py build/release/bin/tonewright
+
+Every file is written here, from the formats' specifications: small tables, in as many formats as are read. The corpus of
+malformed ones is made of them by a list of mutations, the same on every run. Each is given to `tonewright eval --lut` with
+1 GB of address space: no crash, exit status 3, one line with the file's name and a reason, and the line's number where the
+file has lines. What comes out of the good ones is compared with NumPy's interpolation of the same numbers. The last line
+is `N passed, M failed`.
+"""
+
+import argparse
+import os
+import re
+import resource
+import struct
+import subprocess
+import sys
+import tempfile
+import zlib
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
+from pictures import Report, read_exr, run, stack, unstack, write_exr  # noqa: E402
+
+from lut_encodings import acescct_encode  # noqa: E402  (python_check/, which pictures.py puts on the path)
+from lut_tables import linear, tetrahedral, trilinear  # noqa: E402
+
+GIGABYTE = 1 << 30
+SIZE = 3  # points a side, of most cubes here
+COLORS = np.random.default_rng(5).uniform(-0.1, 1.1, (64, 3)).astype(np.float32).astype(float)
+
+
+# --------------------------------------------------------------------------------------------------
+# Tables, and what they do
+
+
+def cube_of(size):
+    """(blue, green, red, 3): every axis and every channel different, and not straight between the nodes."""
+    axis = np.linspace(0, 1, size)
+    b, g, r = np.meshgrid(axis, axis, axis, indexing="ij")
+    rgb = np.stack([r ** 2 * 0.7 + 0.2 * g, g ** 3 * 0.6 + 0.3 * b, np.sqrt(b) * 0.5 + 0.1 * r * g + 0.05], axis=-1)
+    return np.round(rgb, 4)
+
+
+def interpolate(cube, colors, is_trilinear=False):
+    return (trilinear if is_trilinear else tetrahedral)(cube, colors)
+
+
+CUBE = cube_of(SIZE)
+CURVE = np.round(np.linspace(0, 1, 9) ** 2 * 0.8 + 0.1, 4)
+
+
+def rows(table):
+    return "".join(f"{r:.6g} {g:.6g} {b:.6g}\n" for r, g, b in table.reshape(-1, 3))
+
+
+def column(table):
+    return "".join(f"{v:.6g}\n" for v in table)
+
+
+BLUE_FASTEST = CUBE.transpose(2, 1, 0, 3)
+# Of 3dl, whose line of nodes is told by having more than three numbers.
+CUBE_3DL = np.round(cube_of(5) * 4095) / 4095
+CODES_12 = np.round(CUBE_3DL.transpose(2, 1, 0, 3) * 4095).astype(int)
+TRIPLES = np.repeat(CURVE[:, None], 3, axis=1)
+
+# A file of every format of text; the sizes stand for themselves in the mutations below.
+GOOD = {
+    "adobe.cube": f'TITLE "x"\n# comment\nLUT_3D_SIZE {SIZE}\nDOMAIN_MIN 0 0 0\nDOMAIN_MAX 1 1 1\n' + rows(CUBE),
+    "adobe1d.cube": "LUT_1D_SIZE 9\n" + rows(TRIPLES),
+    "resolve.cube": f"LUT_3D_SIZE {SIZE}\nLUT_3D_INPUT_RANGE 0 1\n" + rows(CUBE),
+    "both.cube": f"LUT_1D_SIZE 9\nLUT_1D_INPUT_RANGE 0 1\nLUT_3D_SIZE {SIZE}\nLUT_3D_INPUT_RANGE 0 1\n" + rows(TRIPLES)
+                 + rows(CUBE),
+    "curve.spi1d": "Version 1\nFrom 0 1\nLength 9\nComponents 1\n{\n" + column(CURVE) + "}\n",
+    "cube.spi3d": f"SPILUT 1.0\n3 3\n{SIZE} {SIZE} {SIZE}\n" + "".join(
+        f"{r} {g} {b} {' '.join(f'{v:.6g}' for v in CUBE[b, g, r])}\n" for r in range(SIZE) for g in range(SIZE)
+        for b in range(SIZE)),
+    "cube.csp": "CSPLUTV100\n3D\n\nBEGIN METADATA\nx\nEND METADATA\n\n" + "2\n0 1\n0 1\n" * 3 + f"\n{SIZE} {SIZE} {SIZE}\n"
+                + rows(CUBE),
+    "curve.csp": "CSPLUTV100\n1D\n\n" + "2\n0 1\n0 1\n" * 3 + "\n9\n" + rows(TRIPLES),
+    "cube.3dl": "3DMESH\nMesh 2 12\n0 256 512 767 1023\n" + "".join(f"{r} {g} {b}\n" for r, g, b in CODES_12.reshape(-1, 3))
+                + "\nLUT8\ngamma 1.0\n",
+    "cube.lut": f"Version 2\nFormat any\nType 3D\nFrom 0 1\nTo 0 1\nBlack 0\nWhite 1\nLength {SIZE}\nLUT:\n {{\n"
+                + rows(CUBE) + " }\n",
+    "both.lut": f"Version 3\nFormat any\nType 3D+1D\nFrom 0 1\nTo 0 1\nBlack 0\nWhite 1\nLength {SIZE} 9\nLUT:\nPre {{\n"
+                + column(CURVE) + "}\n3D {\n" + rows(CUBE) + "}\n",
+    "cube.clf": '<?xml version="1.0" encoding="UTF-8"?>\n<ProcessList compCLFversion="3" id="x">\n<LUT3D inBitDepth="32f" '
+                f'outBitDepth="32f" interpolation="tetrahedral">\n<Array dim="{SIZE} {SIZE} {SIZE} 3">\n'
+                + rows(BLUE_FASTEST) + "</Array>\n</LUT3D>\n</ProcessList>\n",
+    "curve.clf": '<?xml version="1.0" encoding="UTF-8"?>\n<ProcessList compCLFversion="3" id="x">\n<LUT1D inBitDepth="32f" '
+                 'outBitDepth="32f">\n<Array dim="9 1">\n' + column(CURVE) + "</Array>\n</LUT1D>\n</ProcessList>\n",
+    "cube.ctf": '<?xml version="1.0" encoding="UTF-8"?>\n<ProcessList version="1.4" id="x">\n<LUT3D inBitDepth="32f" '
+                f'outBitDepth="32f">\n<Array dim="{SIZE} {SIZE} {SIZE} 3">\n' + rows(BLUE_FASTEST)
+                + "</Array>\n</LUT3D>\n</ProcessList>\n",
+    "cube.itx": f"LUT_3D_SIZE {SIZE}\n" + rows(CUBE),
+}
+
+
+def expected_of(name, colors, is_trilinear=False):
+    stem, extension = name.split(".")
+    curve = linear(TRIPLES, np.clip(colors, 0, 1))
+    if "1d" in stem or stem == "curve":
+        return curve
+    cube = CUBE_3DL if extension == "3dl" else CUBE
+    return interpolate(cube, curve if stem == "both" else colors, is_trilinear)
+
+
+# --------------------------------------------------------------------------------------------------
+# Pictures and binary files
+
+
+def png(pixels, bits=16):
+    height, width, channels = pixels.shape
+    data = np.round(pixels * (2 ** bits - 1)).astype(">u2" if bits == 16 else "u1")
+    raw = b"".join(b"\0" + line.tobytes() for line in data)
+
+    def chunk(kind, body):
+        return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
+
+    header = struct.pack(">IIBBBBB", width, height, bits, 2 if channels == 3 else 6, 0, 0, 0)
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(raw)) + chunk(b"IEND", b"")
+
+
+LEVEL = 2  # of the Hald CLUT: a cube of 4
+HALD = cube_of(LEVEL ** 2)
+HALD_PIXELS = HALD.reshape(LEVEL ** 3, LEVEL ** 3, 3)
+STRIP_PIXELS = CUBE.transpose(1, 0, 2, 3).reshape(SIZE, SIZE * SIZE, 3)
+RAW = CUBE.astype("<f4").tobytes()
+
+
+# --------------------------------------------------------------------------------------------------
+# The corpus
+
+
+def row_lines(text):
+    """Indices of the lines that are rows of the table; the last ones of the longest run of lines of numbers alone."""
+    lines = text.split("\n")
+    number = re.compile(r"^\s*[-+.0-9][-+.0-9e ]*$")
+    runs, run_ = [], []
+    for i, line in enumerate(lines):
+        if number.match(line):
+            run_.append(i)
+        elif run_:
+            runs.append(run_)
+            run_ = []
+    runs.append(run_)
+    return max(runs, key=len)
+
+
+def with_row(text, change, at=-2):
+    """One row of the table changed."""
+    lines = text.split("\n")
+    index = row_lines(text)[at]
+    lines[index] = change(lines[index])
+    return "\n".join(line for line in lines if line is not None)
+
+
+def last_number(replacement):
+    return lambda row: re.sub(r"\S+$", replacement, row)
+
+
+ROWS = {
+    "a row is missing": lambda row: None,
+    "a row stands twice": lambda row: row + "\n" + row,
+    "a row lacks a number": lambda row: re.sub(r"\s*\S+$", "", row),
+    "a row has one more number": lambda row: row + " 0.5",
+    "nan": last_number("nan"),
+    "inf": last_number("inf"),
+    "minus inf": last_number("-inf"),
+    "too large for a float": last_number("1e60"),
+    "too large for a double": last_number("1e999"),
+    "a word": last_number("x"),
+    "a decimal comma": last_number("0,5"),
+    "hexadecimal": last_number("0x10"),
+    "letters behind a number": last_number("0.5f"),
+    "two signs": last_number("+-1"),
+    "a lone point": last_number("."),
+    "a word before": lambda row: "x " + row,
+    "a row of letters": lambda row: "hello world",
+    "a row as long as a book": lambda row: row + " 1" * 50000,
+}
+
+# Declared sizes: with the text that declares it; {} is the size.
+SIZES = {
+    "adobe.cube": (f"LUT_3D_SIZE {SIZE}", "LUT_3D_SIZE {}"),
+    "adobe1d.cube": ("LUT_1D_SIZE 9", "LUT_1D_SIZE {}"),
+    "resolve.cube": (f"LUT_3D_SIZE {SIZE}", "LUT_3D_SIZE {}"),
+    "both.cube": ("LUT_1D_SIZE 9", "LUT_1D_SIZE {}"),
+    "curve.spi1d": ("Length 9", "Length {}"),
+    "cube.spi3d": (f"{SIZE} {SIZE} {SIZE}", "{0} {0} {0}"),
+    "cube.csp": (f"{SIZE} {SIZE} {SIZE}", "{0} {0} {0}"),
+    "curve.csp": ("\n9\n", "\n{}\n"),
+    "cube.lut": (f"Length {SIZE}", "Length {}"),
+    "both.lut": (f"Length {SIZE} 9", f"Length {SIZE} {{}}"),
+    "cube.clf": (f"{SIZE} {SIZE} {SIZE} 3", "{0} {0} {0} 3"),
+    "curve.clf": ("9 1", "{} 1"),
+    "cube.ctf": (f"{SIZE} {SIZE} {SIZE} 3", "{0} {0} {0} 3"),
+    "cube.itx": (f"LUT_3D_SIZE {SIZE}", "LUT_3D_SIZE {}"),
+}
+# 1500 a side are 40 GB of floats, 950 are 10 GB.
+DECLARED = ["0", "1", "-1", "2", "4", "950", "1500", "100000", "2147483647", "2147483648", "99999999999999999999", "x", "3.5",
+            "nan", ""]
+
+
+def text_corpus():
+    """(name, what is wrong, bytes)"""
+    for name, text in GOOD.items():
+        for what, change in ROWS.items():
+            # Whole numbers are what is allowed there.
+            yield name, what, with_row(text, change).encode()
+        lines = text.split("\n")
+        # All but the last of these lines, so that the file ends within.
+        half = "\n".join(lines[:row_lines(text)[len(row_lines(text)) // 2]])
+        yield name, "it ends after half of its rows", half.encode()
+        yield name, "it ends before the first row", "\n".join(lines[:row_lines(text)[0]]).encode()
+        yield name, "it is empty", b""
+        yield name, "it is blank", b"\n \r\n\t\n"
+        yield name, "it is UTF-16", text.encode("utf-16")
+        yield name, "it has a byte order mark", b"\xef\xbb\xbf" + text.encode()
+        yield name, "it has a NUL", with_row(text, lambda row: row + "\0").encode()
+        yield name, "it is a PNG", png(HALD_PIXELS)
+        yield name, "it is another format", b"<html><body>404 Not Found</body></html>\n"
+        yield name, "it is zeros", bytes(4096)
+        if name in SIZES:
+            declared, template = SIZES[name]
+            for size in DECLARED:
+                yield name, f"declared size {size}", text.replace(declared, template.format(size), 1).encode()
+    for name, what, old, new in (
+            ("adobe.cube", "two sizes", f"LUT_3D_SIZE {SIZE}", f"LUT_3D_SIZE {SIZE}\nLUT_3D_SIZE {SIZE}"),
+            ("adobe.cube", "no size", f"LUT_3D_SIZE {SIZE}\n", ""),
+            ("adobe.cube", "an unknown keyword", "DOMAIN_MIN", "LUT_IN_VIDEO_RANGE\nDOMAIN_MIN"),
+            ("adobe.cube", "a keyword cut short", "DOMAIN_MAX", "DOMAIN_M"),
+            ("adobe.cube", "DOMAIN_MIN of two numbers", "DOMAIN_MIN 0 0 0", "DOMAIN_MIN 0 0"),
+            ("adobe.cube", "DOMAIN_MAX of letters", "DOMAIN_MAX 1 1 1", "DOMAIN_MAX 1 1 a"),
+            ("adobe.cube", "an empty domain", "DOMAIN_MAX 1 1 1", "DOMAIN_MAX 1 0 1"),
+            ("adobe.cube", "NaN as domain", "DOMAIN_MAX 1 1 1", "DOMAIN_MAX nan nan nan"),
+            ("adobe.cube", "two kinds of domain", "DOMAIN_MIN 0 0 0", "LUT_3D_INPUT_RANGE 0 1\nDOMAIN_MIN 0 0 0"),
+            ("adobe.cube", "a 2D table", f"LUT_3D_SIZE {SIZE}", "LUT_2D_SIZE 3"),
+            ("resolve.cube", "an empty range", "INPUT_RANGE 0 1", "INPUT_RANGE 1 1"),
+            ("both.cube", "a domain beside two tables", "LUT_1D_INPUT_RANGE 0 1", "DOMAIN_MIN 0 0 0"),
+            ("curve.spi1d", "no version", "Version 1\n", ""),
+            ("curve.spi1d", "version 2", "Version 1", "Version 2"),
+            ("curve.spi1d", "no length", "Length 9\n", ""),
+            ("curve.spi1d", "no components", "Components 1\n", ""),
+            ("curve.spi1d", "9 components", "Components 1", "Components 9"),
+            ("curve.spi1d", "an empty range", "From 0 1", "From 1 0"),
+            ("curve.spi1d", "no end", "}\n", ""),
+            ("curve.spi1d", "no beginning", "{\n", ""),
+            ("cube.spi3d", "an index beyond the cube", "2 2 2 ", "2 2 3 "),
+            ("cube.spi3d", "a negative index", "2 2 2 ", "2 2 -1 "),
+            ("cube.spi3d", "a node that stands twice", "2 2 2 ", "2 2 1 "),
+            ("cube.spi3d", "unequal sizes", "3 3 3\n", "3 3 4\n"),
+            ("cube.csp", "metadata without end", "END METADATA", "END"),
+            ("cube.csp", "2D", "\n3D\n", "\n2D\n"),
+            ("cube.csp", "a prelut of fewer numbers", "2\n0 1\n0 1\n", "3\n0 1\n0 1\n"),
+            ("cube.csp", "a prelut of more numbers", "2\n0 1\n0 1\n", "2\n0 0.5 1\n0 1\n"),
+            ("cube.csp", "a prelut that falls", "2\n0 1\n0 1\n", "2\n1 0\n0 1\n"),
+            ("cube.csp", "a prelut with NaN", "2\n0 1\n0 1\n", "2\n0 nan\n0 1\n"),
+            ("cube.csp", "a prelut of ten milliards", "2\n0 1\n0 1\n", "9999999999\n0 1\n0 1\n"),
+            ("cube.csp", "unequal sizes", "\n3 3 3\n", "\n3 3 4\n"),
+            ("cube.3dl", "a number of no depth", "0 256 512", "0 256 99999999"),
+            ("cube.3dl", "an unknown keyword", "LUT8", "hello"),
+            ("cube.lut", "an unknown type", "Type 3D", "Type RGBA"),
+            ("cube.lut", "no type", "Type 3D\n", ""),
+            ("cube.lut", "no From", "From 0 1\n", ""),
+            ("cube.lut", "no end", " }\n", ""),
+            ("cube.lut", "no table", "LUT:\n", ""),
+            ("cube.lut", "an unknown block", "LUT:\n {", "LUT:\n abc {"),
+            ("both.lut", "one size", f"Length {SIZE} 9", f"Length {SIZE}"),
+            ("both.lut", "no prelut", "Pre {", "3D {"),
+            ("cube.clf", "unequal sizes", f'"{SIZE} {SIZE} {SIZE} 3"', f'"{SIZE} {SIZE} 4 3"'),
+            ("cube.clf", "four channels", f"{SIZE} {SIZE} {SIZE} 3", f"{SIZE} {SIZE} {SIZE} 4"),
+            ("cube.clf", "no dim", f' dim="{SIZE} {SIZE} {SIZE} 3"', ""),
+            ("cube.clf", "a tag that does not close", "</Array>", "</Array"),
+            ("cube.clf", "a tag that closes twice", "</LUT3D>", "</LUT3D></LUT3D>"),
+            ("cube.clf", "no version", ' compCLFversion="3"', ""),
+            ("cube.clf", "an unknown depth", 'inBitDepth="32f"', 'inBitDepth="7z"'),
+            ("cube.clf", "a comment without end", "<LUT3D", "<!-- <LUT3D"),
+            ("cube.clf", "entities", "<ProcessList", '<!DOCTYPE x [<!ENTITY a "aaaaaaaaaa">]>\n<ProcessList'),
+            ("cube.clf", "another document", "ProcessList", "List"),
+            ("cube.ctf", "another document", "ProcessList", "List")):
+        if old not in GOOD[name]:
+            raise ValueError(f"{name}: {what}")
+        yield name, what, GOOD[name].replace(old, new).encode()
+
+
+def binary_corpus(command, folder):
+    """The same, of files without lines."""
+    for extra in (-1, 1, 12, -12):
+        yield "cube.raw", f"{extra:+d} bytes", RAW[:extra] if extra < 0 else RAW + bytes(extra)
+    yield "cube.raw", "it is empty", b""
+    yield "cube.raw", "one node", RAW[:12]
+    for number in (np.nan, np.inf, -np.inf):
+        values = CUBE.astype("<f4").copy()
+        values[1, 2, 0, 1] = number
+        yield "cube.raw", f"{number} in it", values.tobytes()
+    yield "cube.raw", "130 points a side", 130 ** 3 * bytes(12)
+    for version in (2, 4):
+        path = folder / f"good{version}.icc"
+        run(command, "bake", "hable", "--format", "icc", "--icc-version", version, "--size", 17, "--nodes", "sampled", "-o", path)
+        good = path.read_bytes()
+        name = f"v{version}.icc"
+        for keep in (0, 1, 100, 128, 131, 140, 200, len(good) // 2, len(good) - 1, len(good) - 4000):
+            yield name, f"{keep} of {len(good)} bytes", good[:keep]
+        for what, old, new in (("no signature", b"acsp", b"acsq"), ("a display's profile", b"link", b"mntr"),
+                               ("CMYK in", b"RGB RGB ", b"CMYKRGB "), ("Lab out", b"RGB RGB ", b"RGB Lab "),
+                               ("no A2B0", b"A2B0", b"A2B9"), ("an unknown type", b"mft2" if version == 2 else b"mAB ", b"abcd")):
+            if old not in good:
+                raise ValueError(what)
+            yield name, what, good.replace(old, new)
+        at = good.index(b"mft2" if version == 2 else b"mAB ", 200)
+        channels = good[:at + 8] + bytes([15, 15]) + good[at + 10:]
+        yield name, "15 channels", channels
+        # The size of the grid: a byte of the tag, or bytes of its CLUT.
+        grid = at + 10 if version == 2 else at + int.from_bytes(good[at + 24:at + 28], "big")
+        for points in (0, 255):
+            yield name, f"{points} points a side", good[:grid] + bytes([points] * (1 if version == 2 else 3)) + good[
+                grid + (1 if version == 2 else 3):]
+        yield name, "a table of tags without end", good[:128] + b"\xff\xff\xff\xff" + good[132:]
+        yield name, "a tag beyond the file", good.replace(b"A2B0" + good[good.index(b"A2B0") + 4:][:8],
+                                                          b"A2B0\x7f\xff\xff\xff\x00\x00\x10\x00", 1)
+    picture = png(HALD_PIXELS)
+    for keep in (0, 8, 20, 33, len(picture) // 2, len(picture) - 20):
+        yield "hald.png", f"{keep} of {len(picture)} bytes", picture[:keep]
+    yield "hald.png", "it is no picture", b"hello\n"
+    yield "hald.png", "a wrong checksum", picture[:50] + b"\xff\xff" + picture[52:]
+    yield "odd.png", "of no layout", png(np.zeros((5, 7, 3)))
+    yield "odd.png", "9 x 9", png(np.zeros((9, 9, 3)))
+    yield "odd.png", "too large a strip", png(np.zeros((65, 65 * 65, 3)), 8)
+    yield "odd.png", "alpha below 1", png(np.full((8, 8, 4), 0.5))
+    yield "huge.png", "a header of 100000 x 100000", picture[:16] + struct.pack(">II", 100000, 100000) + picture[24:]
+    yield "nan.exr", "NaN", ("exr", np.nan)
+    yield "inf.exr", "infinity", ("exr", np.inf)
+
+
+def limited():
+    resource.setrlimit(resource.RLIMIT_AS, (GIGABYTE, GIGABYTE))
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+
+def peak_of(arguments, stdin):
+    """(status, stdout, stderr, bytes of memory)"""
+    with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err, tempfile.TemporaryFile() as into:
+        into.write(stdin.encode())
+        into.seek(0)
+        process = subprocess.Popen([str(a) for a in arguments], stdin=into, stdout=out, stderr=err, preexec_fn=limited)
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        out.seek(0)
+        err.seek(0)
+        return process.returncode, out.read().decode(), err.read().decode(errors="replace"), usage.ru_maxrss * 1024
+
+
+def refuse(command, folder, index, case):
+    """None, or what is wrong with how a malformed file is refused."""
+    name, what, contents = case
+    path = folder / f"{index}_{name}"
+    if isinstance(contents, tuple):
+        pixels = HALD_PIXELS.copy()
+        pixels[3, 4, 1] = contents[1]
+        write_exr(path, unstack(pixels))
+    else:
+        path.write_bytes(contents)
+    status, out, err, peak = peak_of([command, "eval", "--lut", path], "0.1 0.2 0.3\n")
+    path.unlink()
+    has_lines = name.rsplit(".", 1)[1] not in ("raw", "icc", "png", "exr")
+    reason = err.split(path.name, 1)[-1].strip(": \n")
+    if status != 3 or out or err.count("\n") != 1 or not err.startswith("tonewright: ") or path.name not in err or len(reason) < 8:
+        return f"{name}, {what}: exit {status}: {(out + err).strip()[:300]}"
+    if has_lines and not re.search(r"(?i)\bline \(?\d+", err):
+        return f"{name}, {what}: no line: {err.strip()}"
+    if not err.isascii() or max(len(line) for line in err.split("\n")) > 600:
+        return f"{name}, {what}: {err[:600]!r}"
+    return f"{name}, {what}: {peak / 2 ** 20:.0f} MB" if peak > GIGABYTE else None
+
+
+def check_corpus(report, command, folder):
+    cases = list(text_corpus()) + list(binary_corpus(command, folder))
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        faults = list(pool.map(lambda c: refuse(command, folder, *c), enumerate(cases)))
+    kinds = {}
+    for (name, _, _), fault in zip(cases, faults):
+        kinds.setdefault(name, []).append(fault)
+    for name, found in kinds.items():
+        bad = [fault for fault in found if fault]
+        report.check(f"{name}: {len(found)} malformed files are refused, each in one line", not bad, "\n     ".join(bad))
+    report.check(f"{len(cases)} malformed files", len(cases) >= 200, len(cases))
+
+
+def check_noise(report, command, folder):
+    """Bytes changed by chance: the file may still be one. No crash, no great memory, one line or a result."""
+    random = np.random.default_rng(11)
+    run(command, "bake", "hable", "--format", "icc", "--size", 17, "--nodes", "sampled", "-o", folder / "good.icc")
+    files = {name: text.encode() for name, text in GOOD.items()} | {
+        "cube.raw": RAW, "link.icc": (folder / "good.icc").read_bytes(), "hald.png": png(HALD_PIXELS)}
+    jobs = []
+    for name, good in files.items():
+        for _ in range(2 if name == "hald.png" else 8):
+            noisy = bytearray(good)
+            for at in random.integers(0, min(len(good), 4000), 6):
+                noisy[at] = random.integers(0, 256)
+            jobs.append((name, bytes(noisy)))
+
+    def one(job):
+        index, (name, contents) = job
+        path = folder / f"noise{index}_{name}"
+        path.write_bytes(contents)
+        status, out, err, peak = peak_of([command, "eval", "--lut", path], "0.1 0.2 0.3\n")
+        path.unlink()
+        ok = (status == 0 and len(out.split()) == 3) or (status == 3 and err.count("\n") == 1 and path.name in err)
+        return None if ok and peak <= GIGABYTE else f"{name}: exit {status}, {peak / 2 ** 20:.0f} MB: {(out + err)[:300]!r}"
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        bad = [fault for fault in pool.map(one, enumerate(jobs)) if fault]
+    report.check(f"{len(jobs)} files with six bytes changed by chance", not bad, "\n     ".join(bad))
+
+
+def check_paths(report, command, folder):
+    """What is no file at all, or too large a one."""
+    (folder / "folder.cube").mkdir()
+    os.mkfifo(folder / "pipe.cube")
+    with open(folder / "ten_gigabytes.cube", "wb") as file:
+        file.truncate(10 << 30)
+    (folder / "table.txt").write_text(GOOD["adobe.cube"])
+    (folder / "noextension").write_text(GOOD["adobe.cube"])
+    for name, words in (("missing.cube", "No such file"), ("folder.cube", "is not a file"), ("pipe.cube", "is not a file"),
+                        ("ten_gigabytes.cube", "10737418240 bytes; expected up to 134217728"), ("missing.png", "No such file"),
+                        ("missing.icc", "No such file"), ("table.txt", "extension is .txt; expected .cube"),
+                        ("noextension", "extension is missing")):
+        for arguments in (["eval", "--lut", folder / name], ["verify", "--lut", folder / name],
+                          ["apply", folder / "in.exr", folder / "out.exr", "--lut", folder / name]):
+            status, out, err, _ = peak_of([command, *arguments], "")
+            report.check(f"{arguments[0]} --lut {name}: {words}",
+                         status == 3 and not out and err.count("\n") == 1 and name in err and words in err, (status, err))
+    (folder / "ten_gigabytes.cube").unlink()
+
+
+# --------------------------------------------------------------------------------------------------
+# What LUTs do
+
+
+def evaluate_lut(command, path, colors, *arguments):
+    text = "".join(f"{r!r} {g!r} {b!r}\n" for r, g, b in colors.tolist())
+    return np.array(run(command, "eval", "--lut", path, *arguments, stdin=text).split(), float).reshape(-1, 3)
+
+
+# OpenColorIO and LittleCMS work in float32.
+FLOAT32 = 2e-6
+
+
+def check_eval(report, command, folder):
+    own = GOOD["cube.clf"].replace("tetrahedral", "trilinear")
+    (folder / "own.clf").write_text(own)
+    report.compare("eval --lut: a CLF's own interpolation", evaluate_lut(command, folder / "own.clf", COLORS),
+                   interpolate(CUBE, COLORS, True), FLOAT32)
+    report.compare("eval --lut: another than a CLF's own",
+                   evaluate_lut(command, folder / "own.clf", COLORS, "--interpolation", "tetrahedral"),
+                   interpolate(CUBE, COLORS), FLOAT32)
+    for name, text in GOOD.items():
+        path = folder / name
+        path.write_text(text)
+        for arguments in ([], ["--interpolation", "trilinear"]):
+            # A prelut is resampled to 65536 steps.
+            report.compare(f"eval --lut {name} {' '.join(arguments)}", evaluate_lut(command, path, COLORS, *arguments),
+                           expected_of(name, COLORS, bool(arguments)), FLOAT32)
+    (folder / "cube.raw").write_bytes(RAW)
+    (folder / "hald.png").write_bytes(png(HALD_PIXELS))
+    (folder / "strip.png").write_bytes(png(STRIP_PIXELS))
+    write_exr(folder / "hald.exr", unstack(HALD_PIXELS))
+    for name, cube, depth in (("cube.raw", CUBE, 0), ("hald.png", HALD, 65535), ("strip.png", CUBE, 65535), ("hald.exr", HALD, 0)):
+        rounded = np.round(cube * depth) / depth if depth else cube.astype(np.float32).astype(float)
+        for arguments in ([], ["--interpolation", "trilinear"]):
+            # Our own interpolator works in double; numbers are printed from floats.
+            report.compare(f"eval --lut {name} {' '.join(arguments)}",
+                           evaluate_lut(command, folder / name, COLORS, *arguments),
+                           interpolate(rounded, COLORS, bool(arguments)), 1e-7)
+    for version in (2, 4):
+        path = folder / "link.icc"
+        run(command, "bake", "agx_sobotka", "--format", "icc", "--icc-version", version, "--size", 17, "--nodes", "sampled",
+            "--input-encoding", "log2", "-o", path)
+        run(command, "bake", "agx_sobotka", "--format", "raw", "--3d", "--size", 17, "--nodes", "sampled", "--input-encoding",
+            "log2", "-o", folder / "link.raw")
+        # LittleCMS works in 16 bits: half a step of the input, twice as steep here, and half of the output.
+        nodes = np.round(np.clip(np.fromfile(folder / "link.raw", "<f4").reshape(17, 17, 17, 3), 0, 1) * 65535.0) / 65535
+        report.compare(f"eval --lut of an ICC device link, version {version}", evaluate_lut(command, path, COLORS),
+                       interpolate(nodes, COLORS), 2.5e-5)
+    special = np.array([[np.nan, 0.5, 0.5], [np.inf, 0.5, 0.5], [-np.inf, 0.5, 0.5], [-1, 2, 0.5]])
+    clamped = np.array([[0, 0.5, 0.5], [1, 0.5, 0.5], [0, 0.5, 0.5], [0, 1, 0.5]])
+    for name, bound in (("adobe.cube", FLOAT32), ("cube.raw", 1e-7), ("link.icc", 1e-7)):
+        report.compare(f"eval --lut {name}: NaN and what is beyond 0 and 1", evaluate_lut(command, folder / name, special),
+                       evaluate_lut(command, folder / name, clamped), bound)
+
+
+def check_encoding(report, command, folder):
+    """--input-encoding: light of --input, in the encoding's own primaries."""
+    path = folder / "adobe.cube"
+    path.write_text(GOOD["adobe.cube"])
+    light = np.random.default_rng(6).uniform(0, 4, (64, 3)).astype(np.float32).astype(float)
+    code = acescct_encode(light)
+    report.compare("eval --lut --input-encoding acescct --input lin_ap1",
+                   evaluate_lut(command, path, light, "--input-encoding", "acescct", "--input", "lin_ap1"),
+                   interpolate(CUBE, code), 1e-5)
+    report.compare("eval --lut --input-encoding acescct --input lin_rec709 --lut-space lin_rec709 --exposure -1",
+                   evaluate_lut(command, path, light, "--input-encoding", "acescct", "--lut-space", "lin_rec709",
+                                "--exposure=-1"), interpolate(CUBE, acescct_encode(light / 2)), 1e-5)
+    # The Academy's matrix from Rec.709 (D65) to AP1, with Bradford adaptation; TB-2014-004's chromaticities.
+    to_ap1 = np.array([[0.6131, 0.3395, 0.0474], [0.0702, 0.9164, 0.0134], [0.0206, 0.1096, 0.8698]])
+    report.compare("eval --lut --input-encoding acescct: Rec.709 light becomes AP1",
+                   evaluate_lut(command, path, light, "--input-encoding", "acescct"),
+                   interpolate(CUBE, acescct_encode(light @ to_ap1.T)), 1e-4)
+
+
+def check_apply(report, command, folder):
+    """Pictures: pixel types, grey, alpha, and the same as eval."""
+    path = folder / "adobe.cube"
+    path.write_text(GOOD["adobe.cube"])
+    colors = COLORS.reshape(8, 8, 3)
+    write_exr(folder / "in.exr", unstack(colors))
+    for name in ("adobe.cube", "cube.raw", "hald.png", "both.lut", "link.icc"):
+        run(command, "apply", folder / "in.exr", folder / "out.exr", "--lut", folder / name, "-d", "float")
+        report.compare(f"apply --lut {name}: as eval", stack(read_exr(folder / "out.exr")).reshape(-1, 3),
+                       evaluate_lut(command, folder / name, COLORS), FLOAT32)
+    run(command, "apply", folder / "in.exr", folder / "out.exr", "--lut", path, "-d", "float", "--interpolation", "trilinear",
+        "--input-encoding", "acescct", "--input", "lin_ap1", "--exposure", 1, "--threads", 2)
+    report.compare("apply --lut with all options", stack(read_exr(folder / "out.exr")).reshape(-1, 3),
+                   interpolate(CUBE, acescct_encode(2 * COLORS), True), 1e-5)
+    # A grey picture becomes one in color: the LUT is not neutral.
+    write_exr(folder / "grey.exr", {"Y": colors[..., 0]})
+    run(command, "apply", folder / "grey.exr", folder / "out.exr", "--lut", path, "-d", "float")
+    report.compare("apply --lut: a grey picture", stack(read_exr(folder / "out.exr")).reshape(-1, 3),
+                   interpolate(CUBE, np.repeat(COLORS[:, :1], 3, axis=1)), FLOAT32)
+    alpha = np.random.default_rng(7).uniform(0.2, 1, (8, 8))
+    write_exr(folder / "alpha.exr", unstack(colors * alpha[..., None]) | {"A": alpha})
+    run(command, "apply", folder / "alpha.exr", folder / "out.exr", "--lut", path, "-d", "float")
+    out = read_exr(folder / "out.exr")
+    report.compare("apply --lut: color that is multiplied by alpha", stack(out).reshape(-1, 3),
+                   interpolate(CUBE, COLORS) * alpha.reshape(-1, 1), FLOAT32)
+    report.check("apply --lut: alpha stays", np.array_equal(out["A"], alpha.astype(np.float32)))
+
+
+def check_wild(report, command, folder):
+    """Spellings that are about mean the same."""
+    cube = GOOD["adobe.cube"]
+    body = rows(CUBE)
+    wild = {
+        "CRLF": cube.replace("\n", "\r\n"),
+        "comments and empty lines before the rows": cube.replace("DOMAIN_MIN", "\n# one\n\n#two\nDOMAIN_MIN"),
+        "no TITLE": cube.split("\n", 1)[1],
+        "lower case": cube.replace("LUT_3D_SIZE", "lut_3d_size").replace("DOMAIN", "domain"),
+        "no domain": f"LUT_3D_SIZE {SIZE}\n" + body,
+        "LUT_3D_INPUT_RANGE": f"LUT_3D_SIZE {SIZE}\nLUT_3D_INPUT_RANGE 0.0 1.0\n" + body,
+        "TITLE and LUT_3D_INPUT_RANGE": f'TITLE "x"\nLUT_3D_SIZE {SIZE}\nLUT_3D_INPUT_RANGE 0 1\n' + body,
+        "LUT_3D_INPUT_RANGE first": f"LUT_3D_INPUT_RANGE 0 1\nLUT_3D_SIZE {SIZE}\n" + body,
+        "exponents": cube.replace("0.05\n", "5e-2\n"),
+        "tabs and spaces": cube.replace(" ", "\t  "),
+        "no newline at the end": cube.rstrip("\n"),
+        "empty lines at the end": cube + "\n\n \n",
+        "a size with a comment's line before": "#LUT_3D_SIZE 99\n" + cube,
+    }
+    truth = interpolate(CUBE, COLORS)
+    for what, text in wild.items():
+        path = folder / "wild.cube"
+        path.write_bytes(text.encode())
+        report.compare(f".cube: {what}", evaluate_lut(command, path, COLORS), truth, FLOAT32)
+    path.write_text(cube.replace("DOMAIN_MAX 1 1 1", "DOMAIN_MAX 2 4 8"))
+    report.compare(".cube: DOMAIN_MAX 2 4 8", evaluate_lut(command, path, COLORS * [2, 4, 8]), truth, FLOAT32)
+    path.write_text(GOOD["resolve.cube"].replace("INPUT_RANGE 0 1", "INPUT_RANGE -1 3"))
+    report.compare(".cube: LUT_3D_INPUT_RANGE -1 3", evaluate_lut(command, path, COLORS * 4 - 1), truth, FLOAT32)
+    for name in GOOD:
+        path = folder / f"crlf_{name}"
+        path.write_bytes(GOOD[name].replace("\n", "\r\n").encode())
+        report.compare(f"CRLF: {name}", evaluate_lut(command, path, COLORS), expected_of(name, COLORS), FLOAT32)
+
+
+def check_usage(report, command, folder):
+    path = folder / "adobe.cube"
+    for arguments, words in ((["--interpolation", "cubic"], "interpolation is cubic; auto, tetrahedral or trilinear"),
+                             (["--input-encoding", "acescc"], "acescc; did you mean acescct?"),
+                             (["--input", "lin_ap1"], "--input is given; --input-encoding"),
+                             (["--exposure", "1"], "--exposure is given; --input-encoding"),
+                             (["--lut-space", "lin_ap1"], "--lut-space is given; --input-encoding"),
+                             (["--input-encoding", "srgb", "--lut-space", "nowhere"], "nowhere"),
+                             (["--input-encoding", "srgb", "--exposure", "99"], "exposure is 99; [-64, 64]"),
+                             (["--display", "srgb"], "excludes; --display"),
+                             (["--set", "white=2"], "excludes; --set")):
+        for before in (["eval"], ["apply", folder / "in.exr", folder / "none.exr"]):
+            status, out, err, _ = peak_of([command, *before, "--lut", path, *arguments], "")
+            report.check(f"{before[0]} --lut {' '.join(arguments)}: {words}",
+                         status == 2 and not out and err.count("\n") == 1 and all(w in err for w in words.split("; "))
+                         and not (folder / "none.exr").exists(), err)
+    for arguments, words in ((["eval", "hable", "--lut", path], "excludes; operator"),
+                             (["eval"], "operator is missing; --lut FILE"),
+                             (["eval", "hable", "--interpolation", "trilinear"], "--interpolation requires --lut"),
+                             (["eval", "--lut", folder / "link.icc", "--interpolation", "trilinear"], "tetrahedral; link.icc"),
+                             (["apply", folder / "in.exr", folder / "none.exr"], "operator is missing; --lut FILE")):
+        status, out, err, _ = peak_of([command, *arguments], "")
+        report.check(f"{' '.join(Path(a).name for a in map(str, arguments))}: {words}",
+                     status == 2 and not out and err.count("\n") == 1 and all(w in err for w in words.split("; ")), err)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("command", type=Path)
+    command = parser.parse_args().command.resolve()
+    report = Report()
+    with tempfile.TemporaryDirectory(prefix="tonewright-") as name:
+        folder = Path(name)
+        check_eval(report, command, folder)
+        check_encoding(report, command, folder)
+        check_apply(report, command, folder)
+        check_wild(report, command, folder)
+        check_usage(report, command, folder)
+        check_paths(report, command, folder)
+        check_corpus(report, command, folder)
+        check_noise(report, command, folder)
+    return report.finish()
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

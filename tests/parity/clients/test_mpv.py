@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: Apache-2.0
+"""mpv's gpu-next (libplacebo) with LUTs of `tonewright bake`, against the file and against the operator.
+
+    python3 tests/parity/clients/test_mpv.py build/release/bin/tonewright
+
+On Mesa's software renderer and a screen that nobody sees; a script of mpv's takes a screenshot of 16 bits. libplacebo
+interpolates in cubes. The last line is `N passed, M failed`.
+"""
+
+import os
+import subprocess
+
+from lut_client import Client, lut_test
+from lut_tables import trilinear
+from pictures import read_rgb, screen, skip
+
+# The rounding of the screenshot, half a code of 16 bits, and the shader's float32.
+SCREENSHOT = 1.6e-5
+# The window has to be there before there is anything to take: `vo-configured` says when.
+SCRIPT = """
+mp.observe_property("vo-configured", "bool", function(_, there)
+    if not there then return end
+    mp.add_timeout(0.5, function()
+        mp.commandv("screenshot-to-file", os.getenv("SHOT"), "video")
+        mp.command("quit")
+    end)
+end)
+"""
+
+
+def through_mpv(test, display, lut, codes, *options):
+    script, out = test.scratch / "shot.lua", test.scratch / "shot.png"
+    script.write_text(SCRIPT)
+    out.unlink(missing_ok=True)
+    arguments = ["mpv", "--no-config", "--vo=gpu-next", "--gpu-api=opengl", "--gpu-sw=yes", "--target-trc=srgb",
+                 "--target-prim=bt.709", "--dither-depth=no", "--deband=no", "--screenshot-high-bit-depth=yes",
+                 "--screenshot-format=png", f"--script={script}", "--pause", *options, codes]
+    done = subprocess.run([str(a) for a in arguments], capture_output=True, text=True, check=False, timeout=120,
+                          env={**os.environ, "DISPLAY": display, "SHOT": str(out), "LIBGL_ALWAYS_SOFTWARE": "1"})
+    if not out.is_file():
+        if "OpenGL" in done.stdout + done.stderr:
+            skip(f"mpv finds no OpenGL ({done.stdout.strip().splitlines()[-1]})")
+        raise RuntimeError(f"mpv took no screenshot: {done.stdout}{done.stderr}")
+    return read_rgb(out, test.scratch)
+
+
+def main(test):
+    codes = test.picture("codes.png")
+    with screen() as display:
+        if not display:
+            skip("no X server without a screen (Xvfb; Debian: xvfb)")
+        plain = through_mpv(test, display, None, codes)
+        test.report.compare("without a LUT: the picture itself", plain, test.codes, SCREENSHOT)
+        for size in (33, 65):
+            cube, table, stated = test.cube("mpv", size)
+            shown = through_mpv(test, display, cube, codes, f"--image-lut={cube}", "--image-lut-type=native")
+            test.compare(f".cube {size}, --image-lut", shown, trilinear(table, test.flat), stated, SCREENSHOT)
+
+
+if __name__ == "__main__":
+    raise SystemExit(lut_test(__doc__, main, Client("mpv", "mpv", "mpv", "mpv --version")))

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: Apache-2.0
+"""ICC device links of `tonewright bake` through LittleCMS (tificc) or ImageMagick, against the file and the operator.
+
+    python3 tests/parity/clients/test_tificc.py build/release/bin/tonewright tificc|convert
+
+Both interpolate in tetrahedra, on 16 bits; so does `tonewright eval --lut`. The last line is `N passed, M failed`.
+"""
+
+import numpy as np
+
+from lut_client import BITS16, Client, lut_test
+from lut_tables import tetrahedral
+from pictures import evaluate, read_rgb, run
+
+
+def through_link(test, link, codes):
+    out = test.scratch / "out.tif"
+    if test.client.program == "tificc":
+        # Without -c 0 it resamples the cube.
+        run("tificc", "-l", link, "-c", 0, "-w", 16, codes, out)
+    else:
+        run("convert", codes, "-profile", link, "-depth", 16, "+profile", "*", out)
+    return read_rgb(out, test.scratch)
+
+
+def main(test):
+    _, table, _ = test.cube("nuke")
+    table = np.round(np.clip(table, 0, 1) * 65535) / 65535  # the nodes of the link have 16 bits
+    expected = tetrahedral(table, test.flat)
+    codes = test.picture("codes.tif")
+    for version in (2, 4):
+        link, stated = test.bake("icc", f"v{version}.icc", "--icc-version", version)
+        test.compare(f"device link of 33, version {version}, 16 bits", through_link(test, link, codes), expected, stated, BITS16)
+        some = test.flat[::17]
+        test.report.compare(f"eval --lut: device link, version {version}", evaluate(test.command, some, "--lut", link),
+                            expected[::17], BITS16)
+
+
+if __name__ == "__main__":
+    raise SystemExit(lut_test(__doc__, main, Client("LittleCMS's tificc", "tificc", "liblcms2-utils", "tificc"),
+                              Client("ImageMagick", "convert", "imagemagick", "convert -version")))

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "lut/numbers.h"
+#include "tonewright/lut.h"
+
+namespace tonewright {
+namespace {
+
+LutRequest hable_cube(std::optional<int> decimals) {
+    LutRequest request;
+    request.encoding = parse_input_encoding("log2");
+    request.view = make_view(resolve_operator("hable"), "lin_rec709", 0, "srgb");
+    request.dimension = LutDimension::three;
+    request.size = 17;
+    request.decimals = decimals;
+    return request;
+}
+
+TEST(ShippedSet, ItsShelvesAreApplicationsWithOperatorsThatThereAre) {
+    std::set<std::string> hosts;
+    std::set<std::string> operators;
+    for (const LutShelf& shelf : lut_shelves()) {
+        EXPECT_TRUE(hosts.insert(shelf.host->id).second) << shelf.host->id;
+        EXPECT_FALSE(shelf.operators.empty());
+        for (const std::string& id : shelf.operators)
+            operators.insert(find_operator(id).id);
+    }
+    EXPECT_EQ(operators.size(), 10U);
+    EXPECT_GE(hosts.size(), 9U);
+}
+
+TEST(ShippedSet, FiguresHaveThreeDigitsAndAreNeverLessThanMeasured) {
+    EXPECT_EQ(three_digits_up(0), "0");
+    EXPECT_EQ(three_digits_up(0.00123), "1.23e-03");
+    EXPECT_EQ(three_digits_up(0.0012301), "1.24e-03");
+    EXPECT_EQ(three_digits_up(9.991), "1.00e+01");
+    EXPECT_EQ(three_digits_up(1.23e-7), "1.23e-07");
+}
+
+TEST(ShippedSet, DecimalsOfACubeAreThoseOfItsNumbers) {
+    const LutRequest request = hable_cube(4);
+    Lut lut = sample_lut(request);
+    const Lut exact = lut;
+    quantize(lut, request);
+    for (std::size_t i = 0; i < lut.values.size(); ++i)
+        EXPECT_NEAR(lut.values[i], exact.values[i], 0.5e-4F + 1e-7F);
+    const std::string text = write_lut(lut, request, measure_lut(lut, request));
+    const std::size_t numbers = text.find("DOMAIN_MAX 1 1 1\n") + 17;
+    std::size_t longest = 0;
+    for (std::size_t begin = numbers; begin < text.size();) {
+        const std::size_t end = text.find_first_of(" \n", begin);
+        longest = std::max(longest, end - begin);
+        begin = end + 1;
+    }
+    EXPECT_EQ(longest, 6U);  // 0.1234
+}
+
+TEST(ShippedSet, DecimalsAreRefusedWhereTheyMeanNothing) {
+    const auto message = [](const LutRequest& request) {
+        try {
+            (void)sample_lut(request);
+        } catch (const Error& e) {
+            return std::string(e.what());
+        }
+        return std::string();
+    };
+    EXPECT_EQ(message(hable_cube(2)), "bake: decimals is 2; expected [3, 9]");
+    LutRequest clf = hable_cube(4);
+    clf.format = LutFormat::clf;
+    EXPECT_EQ(message(clf), "bake: decimals is 4; expected none for clf, only cube has them");
+}
+
+}  // namespace
+}  // namespace tonewright

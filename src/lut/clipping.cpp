@@ -18,6 +18,10 @@ constexpr int kStepsPerStop = 16;
 
 double stops_of(double light) { return std::log2(light / kMidGrey); }
 
+/// Where half floats end.
+double brightest() { return stops_of(kHalfMax); }
+double darkest() { return stops_of(0x1p-24); }
+
 /// How much the picture of a color changes when its light is kept inside [lo, hi].
 double change(const ReferenceEngine& engine, const Vector3& rgb, double lo, double hi) {
     Vector3 kept = rgb;
@@ -47,10 +51,9 @@ LutClipping measure_clipping(const LutRequest& request, const Lut& lut) {
         side->last = is_above ? std::max(side->last, stops) : std::min(side->last, stops);
         side->error = std::max(side->error, error);
     };
-    const double brightest = stops_of(kHalfMax);
     for (int i = 0;; ++i) {
         const double stops = stops_of(hi) + static_cast<double>(i) / kStepsPerStop;
-        if (!(stops <= brightest)) break;
+        if (!(stops <= brightest())) break;
         for (unsigned mask = 1; mask < 8; ++mask) {
             const double light = kMidGrey * std::exp2(stops);
             const Vector3 rec709 = {mask & 1 ? light : 0, mask & 2 ? light : 0,
@@ -63,11 +66,9 @@ LutClipping measure_clipping(const LutRequest& request, const Lut& lut) {
             note(clipping.above, stops_of(hi), stops, change(engine, rgb, -kInfinity, hi), true);
         }
     }
-    // Half floats end at 2^-24.
-    const double darkest = stops_of(0x1p-24);
     for (int i = 0; lo > 0; ++i) {
         const double stops = stops_of(lo) - static_cast<double>(i) / kStepsPerStop;
-        if (!(stops >= darkest)) break;
+        if (!(stops >= darkest())) break;
         const double light = kMidGrey * std::exp2(stops);
         note(clipping.below, stops_of(lo), stops,
              change(engine, {light, light, light}, lo, kInfinity), false);
@@ -76,15 +77,21 @@ LutClipping measure_clipping(const LutRequest& request, const Lut& lut) {
 }
 
 std::string to_string(const LutClipping& clipping) {
+    constexpr double kStep = 1.0 / kStepsPerStop;
     std::string text;
     if (clipping.above) {
-        text += fmt::format("above {:+.2f} stops from 0.18, up to {:+.2f}, by up to {}",
-                            clipping.above->end, clipping.above->last,
-                            rounded_up(clipping.above->error));
+        const std::string last = clipping.above->last > brightest() - kStep
+                                     ? "without end"
+                                     : fmt::format("up to {:+.2f}", clipping.above->last);
+        text += fmt::format("above {:+.2f} stops from 0.18, {}, by up to {}", clipping.above->end,
+                            last, rounded_up(clipping.above->error));
     }
     if (clipping.below) {
-        text += fmt::format("{}below {:+.2f} stops, down to {:+.2f}, by up to {}",
-                            text.empty() ? "" : "; ", clipping.below->end, clipping.below->last,
+        const std::string last = clipping.below->last < darkest() + kStep
+                                     ? "down to black"
+                                     : fmt::format("down to {:+.2f}", clipping.below->last);
+        text += fmt::format("{}below {:+.2f} stops{}, {}, by up to {}", text.empty() ? "" : "; ",
+                            clipping.below->end, text.empty() ? " from 0.18" : "", last,
                             rounded_up(clipping.below->error));
     }
     return text;

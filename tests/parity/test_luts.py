@@ -189,6 +189,41 @@ def check_fit(report, command, folder):
         report.check(f"25 {nodes} points are too few for 0.002: {error:.2g}", error > 0.002, error)
 
 
+def check_clipping(report, command, folder):
+    """`bake` says which stops an encoding clips, of what the operator would show: by eval, on greys."""
+    ends = [(name, 0, float(ENCODINGS[name][0](np.array(1.0))))
+            for name in ("acescct", "logc3", "davinci", "unity_logc", "srgb", "pq")]
+    ends += [(f"log2:{low}:{high}", 0.18 * 2.0 ** low, 0.18 * 2.0 ** high) for low, high in ((-10, 6.5), (-4, 2), (-20, 18))]
+    for encoding, low, high in ends:
+        # Per channel and of Rec.709: a saturated color clips as a grey does.
+        done = subprocess.run([command, "bake", "hable", "--3d", "--size", "17", "--nodes", "sampled", "--input", "lin_rec709",
+                               "--input-encoding", encoding, "-o", folder / "clip.cube"], capture_output=True, text=True,
+                              check=True)
+        above = re.search(r"above \+?([-.0-9]+) stops from 0.18, (?:up to \+([.0-9]+)|without end), by up to ([-.0-9e]+)", done.stderr)
+        below = re.search(r"below \+?([-.0-9]+) stops(?: from 0.18)?, down to (?:([-+.0-9]+)|black), by up to ([-.0-9e]+)", done.stderr)
+        for side, said, end, beyond in (("above", above, high, high * 2.0 ** np.arange(0, 18.5, 1 / 16)),
+                                        ("below", below, low, low * 2.0 ** -np.arange(0, 24, 1 / 16))):
+            light = np.minimum(beyond, 65504)
+            light = light[light >= 2.0 ** -24]
+            grey = evaluate(command, np.repeat(np.append(light, end)[:, None], 3, axis=1), "hable")[:, 0]
+            difference = np.abs(grey[:-1] - grey[-1])
+            seen = difference > 1 / 1023
+            if not seen.any():
+                report.check(f"clipping, {encoding}: nothing {side}", said is None, done.stderr)
+                continue
+            wanted = np.log2(end / 0.18), np.log2(light[seen][-1] / 0.18), difference.max()
+            # The ends of half floats are as good as none.
+            last = np.log2((65504 if side == "above" else 2.0 ** -24) / 0.18)
+            found = [last if number is None else float(number) for number in said.groups()] if said else [np.nan] * 3
+            # Stops have two decimals and steps of 1/16; the difference two digits, rounded up.
+            report.check(f"clipping, {encoding}: {side} {wanted[0]:.2f} to {wanted[1]:.2f}, {wanted[2]:.2g}",
+                         abs(found[0] - wanted[0]) < 0.006 and abs(found[1] - wanted[1]) < 1 / 16 + 0.006
+                         and wanted[2] * 0.98 <= found[2] <= wanted[2] * 1.1, done.stderr)
+            text = (folder / "clip.cube").read_text()
+            report.check(f"clipping, {encoding}: the file says so, too", f"{side} {said[1] if side == 'below' else '+' + said[1]} "
+                         "stops" in text[:2000] if said else False, text[:1500])
+
+
 def check_match(report, command, folder):
     """`verify --lut` tells what a file is, by what it does; also of a file whose text says nothing of it."""
     for op, arguments, expected in (
@@ -260,6 +295,7 @@ def main():
             check_host(report, command, host, Path(name))
         check_formats(report, command, Path(name))
         check_fit(report, command, Path(name))
+        check_clipping(report, command, Path(name))
         check_match(report, command, Path(name))
         check_errors(report, command, Path(name))
     return report.finish()

@@ -37,5 +37,5 @@ def main(test):
 
 
 if __name__ == "__main__":
-    raise SystemExit(lut_test(__doc__, main, Client("LittleCMS's tificc", "tificc", "liblcms2-utils", "tificc"),
+    raise SystemExit(lut_test(__doc__, main, Client("LittleCMS 2.14, tificc", "tificc", "liblcms2-utils", "tificc"),
                               Client("ImageMagick", "convert", "imagemagick", "convert -version")))

@@ -62,8 +62,8 @@ std::string readme(const ConfigModel& model, const std::vector<std::string>& pro
             fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} |\n", view.name, view.op.op->title,
                         e.is_exact ? "exact chain" : "65^3 cube", rounded_up(e.in_gamut.max),
                         rounded_up(e.in_gamut.p999), rounded_up(e.in_gamut.mean),
-                        e.has_way_back ? rounded_up(e.round_trip_lossless.p999) : "none",
-                        e.has_way_back ? rounded_up(e.round_trip.p999) : "none");
+                        e.back.exists ? rounded_up(e.back.lossless.p999) : "none",
+                        e.back.exists ? rounded_up(e.back.by_default.p999) : "none");
     }
     text += fmt::format(
         "\nErrors: sRGB code values (1 code of 10 bits is 0.00098) of OpenColorIO {}'s CPU path "

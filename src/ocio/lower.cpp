@@ -268,8 +268,12 @@ class Lowering {
                            return Vector3{nodes[3 * i], nodes[3 * i + 1], nodes[3 * i + 2]};
                        }),
              std::to_string(edge) + "^3 lattice");
+        // Powers of two: lattices of about the same numbers share the tables behind them.
         const auto [lo, hi] = std::minmax_element(nodes.begin(), nodes.end());
-        domain_ = {*lo, *hi};
+        const auto outwards = [](double x) {
+            return x > 0 ? std::exp2(std::ceil(std::log2(x))) : 0.0;
+        };
+        domain_ = {-outwards(-*lo), outwards(*hi)};
     }
 
     /// @param behind  what limits the result: outside of it the cube may hold anything
@@ -652,13 +656,13 @@ void Lowering::hexcone(const HexconeStage& stage) {
     const std::vector<float> hue = table_of(0, 1, same_number);
     int luts = 0;
     const auto lut = [&](const std::vector<float>& s, const std::vector<float>& v) {
-        result_.transform->appendTransform(make_half_lut({hue, s, v}));
+        result_.transform->appendTransform(make_half_lut({s, v, hue}));
         ++luts;
     };
     // What saturation and value become of themselves and each other.
     const auto mix = [&](double ss, double sv, double vs, double vv, double s_offset = 0) {
-        const OCIO::MatrixTransformRcPtr m = make_matrix({{{1, 0, 0}, {0, ss, sv}, {0, vs, vv}}});
-        m->setOffset(std::array{0.0, s_offset, 0.0, 0.0}.data());
+        const OCIO::MatrixTransformRcPtr m = make_matrix({{{ss, sv, 0}, {vs, vv, 0}, {0, 0, 1}}});
+        m->setOffset(std::array{s_offset, 0.0, 0.0, 0.0}.data());
         result_.transform->appendTransform(m);
     };
     constexpr double kUnseen = 48;  // stops below 1 of what has no effect
@@ -669,6 +673,10 @@ void Lowering::hexcone(const HexconeStage& stage) {
         table_of(0, kHalfMax, [&](double x) { return columns.stops.of(x); });
 
     emit(make_fixed(OCIO::FIXED_FUNCTION_RGB_TO_HSV, OCIO::TRANSFORM_DIR_FORWARD), "HSV");
+    // Saturation, value, hue: where OpenColorIO 2.1 inverts a falling half-domain table, it makes 0
+    // of all that is negative in the third channel. Hue is not.
+    const Matrix3 hue_last = {{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}}};
+    result_.transform->appendTransform(make_matrix(hue_last));
     if (stage.offset.is_constant(0)) {
         // (saturation, p) -> stops -> (stops of saturation, n). One table from p to n would be
         // coarser.
@@ -711,6 +719,7 @@ void Lowering::hexcone(const HexconeStage& stage) {
                      return stops < kAllLost - 0.5 ? std::exp2(-std::max(stops, 0.0)) : 0;
                  }),
         to_table(columns.value));
+    result_.transform->appendTransform(make_matrix(inverse(hue_last)));
     note(std::to_string(luts) + " half LUTs with matrices between");
     emit(make_fixed(OCIO::FIXED_FUNCTION_RGB_TO_HSV, OCIO::TRANSFORM_DIR_INVERSE), "HSV inverse");
     domain_ = {};

@@ -153,6 +153,25 @@ OCIO::GroupTransformRcPtr invert_stages(const Pipeline& stages) {
     return group;
 }
 
+/// Every transform inverted by OpenColorIO, of an operator that shows no light as white; else null:
+/// it does that by itself.
+OCIO::GroupTransformRcPtr invert_lowered(const Pipeline& forward, double peak) {
+    const Vector3 brightest = ReferenceEngine(forward)({kHalfMax, kHalfMax, kHalfMax});
+    if (!(*std::max_element(brightest.begin(), brightest.end()) < peak)) return nullptr;
+    // Next to white, where light grows without end, tables over half floats have no entries, and
+    // what is interpolated there is far too bright.
+    const double last = peak * (1 - 0x1p-11);
+    OCIO::GroupTransformRcPtr group = lower_to_ocio({ClampStage{0, last}}).transform;
+    const OCIO::GroupTransformRcPtr lowered = lower_to_ocio(forward).transform;
+    for (int i = lowered->getNumTransforms() - 1; i >= 0; --i) {
+        const OCIO::TransformRcPtr part = lowered->getTransform(i)->createEditableCopy();
+        part->setDirection(
+            OCIO::CombineTransformDirections(part->getDirection(), OCIO::TRANSFORM_DIR_INVERSE));
+        group->appendTransform(part);
+    }
+    return group;
+}
+
 /// True where a cube stands for it, or a part of it.
 bool needs_cube(const Pipeline& stages) {
     return std::any_of(stages.begin(), stages.end(), [](const Stage& stage) {
@@ -188,7 +207,8 @@ OCIO::GroupTransformRcPtr invert_light(const ResolvedOperator& op, const Display
     forward.insert(forward.end(), light.begin(), light.end());
     forward = simplify(forward);
     if (auto group = invert_stages(forward)) return group;
-    if (op.op->is_diagnostic || !needs_cube(forward)) return nullptr;
+    if (op.op->is_diagnostic) return nullptr;
+    if (!needs_cube(forward)) return invert_lowered(forward, limit.peak);
     // Of the operator's own gamut, so that displays of other gamuts have the same table.
     const Primaries primaries = op.output_primaries();
     Pipeline back = {MatrixStage{rgb_to_rgb(limit.primaries, primaries)}};

@@ -14,10 +14,12 @@ namespace tonewright {
 ///   apart as one table of its inverse, whose entries are at equal distances of light (a
 ///   half-domain table, inverted, has few of them next to white);
 /// - where the operator is a cube: one that is sampled from the operator's own inverse, or fitted
-///   for the round trip.
+///   for the round trip;
+/// - every transform of the view inverted by OpenColorIO, with light limited to the last half float
+///   below white, where only infinite light is white.
 ///
-/// @return null where there is none of these: what many lights are shown as one in (a diagnostic
-///         view), and chains of tables and fixed functions that OpenColorIO inverts exactly.
+/// @return null where there is none of these: of a diagnostic view, in which many lights are shown
+///         as one, and where OpenColorIO's inversion of the view needs nothing of ours.
 [[nodiscard]] OCIO::GroupTransformRcPtr invert_light(const ResolvedOperator& op,
                                                      const DisplayLimit& limit);
 

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ocio/lower.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -273,7 +276,8 @@ class Lowering {
         const auto outwards = [](double x) {
             return x > 0 ? std::exp2(std::ceil(std::log2(x))) : 0.0;
         };
-        domain_ = {-outwards(-*lo), outwards(*hi)};
+        const double largest = outwards(std::max(-*lo, *hi));
+        domain_ = {*lo < 0 ? -largest : 0, largest};
     }
 
     /// @param behind  what limits the result: outside of it the cube may hold anything
@@ -443,10 +447,25 @@ std::vector<float> to_table(const Column& column) {
     return table;
 }
 
+/// The table, which is asked for nothing outside [lo, hi] and holds the values at the ends there:
+/// as short numbers, for smaller files. The next half float on either side is interpolated with.
+std::vector<float> with_short_ends(std::vector<float> table, double lo, double hi) {
+    const Column& x = halves();
+    const auto is_outside = [&](unsigned bits) { return x[bits] < lo || x[bits] > hi; };
+    for (unsigned bits = 1; bits < kHalfCount; ++bits) {
+        const bool is_next =
+            !is_outside(bits - 1) || (bits + 1 < kHalfCount && !is_outside(bits + 1));
+        if (is_outside(bits) && !is_next && bits != 0x8000)
+            table[bits] = std::strtof(fmt::format("{:.3g}", table[bits]).c_str(), nullptr);
+    }
+    return table;
+}
+
 /// A table of f, which is asked for nothing outside [lo, hi]: there the value at the end is held.
 template <class F>
 std::vector<float> table_of(double lo, double hi, const F& f) {
-    return to_table(map(halves(), [&](double x) { return f(std::clamp(x, lo, hi)); }));
+    return with_short_ends(
+        to_table(map(halves(), [&](double x) { return f(std::clamp(x, lo, hi)); })), lo, hi);
 }
 
 /// Light in stops below `unit`: positive where it is darker. Below the smallest half float, where a
@@ -532,7 +551,7 @@ AddedFunction add_function(const Column& h, double lo, double hi, double margin)
         n[bits] =
             result.sign * (result.k * std::clamp(value[bits], lo - kStop, hi + kStop) + h[bits]);
     }
-    result.forward = to_table(n);
+    result.forward = with_short_ends(to_table(n), lo - kStop, hi + kStop);
 
     // The inverse of what the table holds, its float roundings included.
     std::vector<std::pair<double, double>> pairs;

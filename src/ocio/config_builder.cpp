@@ -140,7 +140,7 @@ std::string output_alias(const std::string& view, const std::string& display) {
 OCIO::ColorSpaceRcPtr make_output_space(const DisplayedView& shown, const std::string& display,
                                         const std::string& way_back) {
     OCIO::ColorSpaceRcPtr cs = OCIO::ColorSpace::Create(OCIO::REFERENCE_SPACE_SCENE);
-    cs->setName(("Output - " + shown.name + " - " + display).c_str());
+    cs->setName(output_space_name(shown.name, display).c_str());
     if (display == shown.display->title)
         cs->addAlias(output_alias(shown.name, shown.display->id).c_str());
     cs->setFamily(("Output/" + display).c_str());

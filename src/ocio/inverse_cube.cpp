@@ -108,7 +108,11 @@ Pipeline fitted_inverse(const Pipeline& forward, const Primaries& primaries, dou
             problem.forward = {curve_stage(light_of(x)), ClampStage{0, kBrightest}};
             problem.forward.insert(problem.forward.end(), forward.begin(), forward.end());
             problem.primaries = primaries;
-            return fit_inverse_cube(problem);
+            std::vector<double> nodes = fit_inverse_cube(problem);
+            // Where no picture leads to: light beyond the brightest is not asked for.
+            for (double& code : nodes)
+                code = std::clamp(code, -1.0, 1.0);
+            return nodes;
         };
         entry = entries.insert(
             entries.end(),

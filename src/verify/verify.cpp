@@ -124,6 +124,14 @@ Bounds bounds_of(const Pipeline& pipeline, const Lowered& lowered, bool is_hdr,
     return b;
 }
 
+/// Of a code value, or of light in units in which sRGB's slope at black turns it into code values,
+/// whichever is less: a display with a pure power has an infinite slope there, where light too
+/// faint to see is many code values.
+double visible_error(double code, double light) {
+    constexpr double kSrgbSlopeAtBlack = 12.92;
+    return std::min(code, kSrgbSlopeAtBlack * light);
+}
+
 class Comparison {
   public:
     Comparison(const View& view, const ProbeSet& probes)
@@ -187,11 +195,8 @@ class Comparison {
         return std::min({v[0], v[1], v[2]}) >= 0;
     }
 
-    /// Worst channel's error less what is allowed for it. Of a code value, or of light in units in
-    /// which sRGB's slope at black turns it into code values, whichever is less: a display with a
-    /// pure power has an infinite slope there, where light too faint to see is many code values.
+    /// Worst channel's error less what is allowed for it.
     [[nodiscard]] double excess(std::size_t i, const float* shown, const Vector3& allowed) const {
-        constexpr double kSrgbSlopeAtBlack = 12.92;
         double worst = 0;
         const Vector3 true_light = decode_({truth_[3 * i], truth_[3 * i + 1], truth_[3 * i + 2]});
         const Vector3 shown_light =
@@ -201,7 +206,7 @@ class Comparison {
             const double code = static_cast<double>(shown[c]);
             const double truth = truth_[3 * i + c];
             const double light = std::fabs(shown_light[c] - true_light[c]);
-            const double error = std::min(std::fabs(code - truth), kSrgbSlopeAtBlack * light);
+            const double error = visible_error(std::fabs(code - truth), light);
             if (std::isnan(code)) return kInfinity;
             worst = std::max(worst, error - allowed[c]);
         }
@@ -245,6 +250,75 @@ class Comparison {
     std::vector<RoundingPoint> rounding_points_;
 };
 
+/// The way back of a view: how far the code values that it makes are from themselves after it and
+/// the view once more, by the reference.
+class RoundTrip {
+  public:
+    RoundTrip(const View& view, const ProbeSet& probes)
+        : engine_(build_view(view)), decode_(find_display(view.display).decode) {
+        // Light that is shown, a fifth of it: two more passes through every form.
+        constexpr std::size_t kOneOf = 5;
+        for (std::size_t i = 0; i < probes.size(); i += kOneOf) {
+            if (!probes.is_non_negative(i) || probes.kind[i] == ProbeKind::special) continue;
+            codes_.insert(codes_.end(), &probes.rgb[3 * i], &probes.rgb[3 * i] + 3);
+        }
+        const std::vector<double> codes = show(codes_);
+        codes_.assign(codes.begin(), codes.end());
+    }
+
+    /// @param run  code values -> scene light, of so many pixels
+    template <class Run>
+    void measure(const Run& run, ParityRow& row) const {
+        std::vector<float> scene(codes_.size());
+        run(codes_.data(), scene.data(), codes_.size() / 3);
+        const std::vector<double> again = show(scene);
+        std::vector<double> errors;
+        for (std::size_t i = 0; i < codes_.size(); i += 3) {
+            const Vector3 before = {static_cast<double>(codes_[i]),
+                                    static_cast<double>(codes_[i + 1]),
+                                    static_cast<double>(codes_[i + 2])};
+            const Vector3 after = {again[i], again[i + 1], again[i + 2]};
+            const Vector3 light_before = decode_(before);
+            const Vector3 light_after = decode_(after);
+            double worst = 0;
+            for (std::size_t c = 0; c < 3; ++c) {
+                worst = std::max(worst, visible_error(std::fabs(after[c] - before[c]),
+                                                      std::fabs(light_after[c] - light_before[c])));
+                row.is_total = row.is_total && std::isfinite(scene[i + c]);
+            }
+            errors.push_back(worst);
+        }
+        const ErrorStats stats = summarise(errors);
+        row.max = row.max_all = stats.max;
+        row.p999 = stats.p999;
+        row.mean = stats.mean;
+        row.max_beyond_rounding = stats.p999;
+        row.is_ok = row.is_total && stats.p999 <= row.bound;
+    }
+
+  private:
+    [[nodiscard]] std::vector<double> show(const std::vector<float>& scene) const {
+        std::vector<double> codes(scene.size());
+        engine_.run_rgb(scene.data(), codes.data(), scene.size() / 3);
+        return codes;
+    }
+
+    ReferenceEngine engine_;
+    ReferenceEngine decode_;
+    std::vector<float> codes_;
+};
+
+/// What the way back's structure allows to 99.9 % of the colors, in code values.
+double round_trip_bound(const OCIO::ConstProcessorRcPtr& back) {
+    const OCIO::GroupTransformRcPtr group = back->createGroupTransform();
+    double bound = 1;
+    for (int i = 0; i < group->getNumTransforms(); ++i) {
+        const OCIO::TransformRcPtr part = group->getTransform(i);
+        (void)part;
+    }
+    return bound;
+}
+
 /// OpenColorIO's built-in transform that the view's operator equals, on its display; null where
 /// there is none, or this OpenColorIO has it not.
 OCIO::ConstProcessorRcPtr builtin_processor(const View& view) {
@@ -265,6 +339,43 @@ OCIO::ConstProcessorRcPtr builtin_processor(const View& view) {
     whole.transform->appendTransform(builtin);
     whole.transform->appendTransform(lower_to_ocio(behind).transform);
     return make_processor(whole);
+}
+
+/// Rows of the way back from the config's output space, in the forms that applications have it.
+template <class Add>
+void add_way_back(const OCIO::ConstConfigRcPtr& config, const View& view, const std::string& space,
+                  const ProbeSet& probes, bool with_gpu, const Add& add) {
+    if (!config->getColorSpace(space.c_str())) return;
+    ParityRow row;
+    row.op = view.op.label;
+    row.display = view.display;
+    if (view.op.op->is_diagnostic) {
+        row.form = "and back";
+        row.note = "none: many colors are shown as one";
+        add(row);
+        return;
+    }
+    const OCIO::ConstProcessorRcPtr back =
+        config->getProcessor(space.c_str(), config_space_name(view.input).c_str());
+    row.bound = round_trip_bound(back);
+    row.lowering = "config: " + space;
+    const RoundTrip trip(view, probes);
+    const auto measure = [&](const std::string& form, const auto& run) {
+        ParityRow measured = row;
+        measured.form = form;
+        trip.measure(run, measured);
+        add(measured);
+    };
+    for (const bool is_default : {false, true}) {
+        const OcioCpu cpu(back,
+                          is_default ? OCIO::OPTIMIZATION_DEFAULT : OCIO::OPTIMIZATION_LOSSLESS);
+        measure(is_default ? "back cpu default" : "back cpu lossless",
+                [&](const float* in, float* out, std::size_t n) { cpu.run_rgb(in, out, n); });
+    }
+    if (!with_gpu || !OcioGpu::unavailable_reason().empty()) return;
+    const OcioGpu gpu(back);
+    measure("back gpu",
+            [&](const float* in, float* out, std::size_t n) { gpu.run_rgb(in, out, n); });
 }
 
 double rounded_to_half(double x) {
@@ -475,6 +586,15 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
                     .run_rgb(probes.rgb.data(), shown.data(), probes.size());
             });
             rows.back().note = "a model of Blender's viewport";
+        }
+        if (is_of_config) {
+            const std::string space = output_space_name(
+                config_view_name(view_name(view.op), view.op, find_display(view.display)),
+                find_display(view.display).title);
+            add_way_back(config, view, space, probes, options.with_gpu, [&](const ParityRow& row) {
+                rows.push_back(row);
+                if (on_row) on_row(rows.back());
+            });
         }
         if (!options.with_gpu) continue;
         if (const std::string reason = OcioGpu::unavailable_reason(); !reason.empty()) {

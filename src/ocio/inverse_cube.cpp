@@ -105,7 +105,7 @@ Pipeline fitted_inverse(const Pipeline& forward, const Primaries& primaries, dou
             problem.place = place;
             problem.code = peak <= 1 ? srgb_encode(x) : place;
             problem.before = {ClampStage{0, kBrightest}, curve_stage(code_of(x))};
-            problem.forward = {curve_stage(light_of(x)), ClampStage{0, kBrightest}};
+            problem.forward = {ClampStage{0, 1}, curve_stage(light_of(x))};
             problem.forward.insert(problem.forward.end(), forward.begin(), forward.end());
             problem.primaries = primaries;
             std::vector<double> nodes = fit_inverse_cube(problem);
@@ -118,8 +118,8 @@ Pipeline fitted_inverse(const Pipeline& forward, const Primaries& primaries, dou
             entries.end(),
             {composed, primaries, peak, std::make_shared<const Lattice>(kFittedEdge, make_nodes)});
     }
-    return {ClampStage{0, peak}, LatticeStage{place, entry->cube}, curve_stage(light_of(x)),
-            ClampStage{0, kBrightest}};
+    return {ClampStage{0, peak}, LatticeStage{place, entry->cube}, ClampStage{0, 1},
+            curve_stage(light_of(x))};
 }
 
 }  // namespace tonewright

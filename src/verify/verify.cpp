@@ -308,13 +308,20 @@ class RoundTrip {
     std::vector<float> codes_;
 };
 
-/// What the way back's structure allows to 99.9 % of the colors, in code values.
+/// What the structure of a way back allows to 99.9 % of the colors, in code values.
 double round_trip_bound(const OCIO::ConstProcessorRcPtr& back) {
+    // Inverse tables of 16384 entries; a curve that is steep next to white has few of them there.
+    double bound = 1e-3;
     const OCIO::GroupTransformRcPtr group = back->createGroupTransform();
-    double bound = 1;
     for (int i = 0; i < group->getNumTransforms(); ++i) {
         const OCIO::TransformRcPtr part = group->getTransform(i);
-        (void)part;
+        if (const auto f = OCIO_DYNAMIC_POINTER_CAST<OCIO::FixedFunctionTransform>(part)) {
+            // Tables that OpenColorIO inverts, by default over half floats, in HSV; the ACES
+            // functions bring back what they have clipped in their own way.
+            bound = std::max(bound, f->getStyle() == OCIO::FIXED_FUNCTION_RGB_TO_HSV ? 3e-3 : 2e-2);
+        }
+        // An inverse that mixes channels, in 33 or 37 nodes a side.
+        if (OCIO_DYNAMIC_POINTER_CAST<OCIO::Lut3DTransform>(part)) bound = std::max(bound, 2.5e-2);
     }
     return bound;
 }

@@ -72,10 +72,11 @@ std::string readme(const ConfigModel& model, const std::vector<std::string>& pro
         "`python_check/check_config.py`\n"
         "measures the same in the application that you run it in, against `probe.csv`. And back: "
         "how far code\n"
-        "values are from themselves after `Output - VIEW - sRGB` to the scene and the view again. "
-        "By default\n"
-        "OpenColorIO inverts a cube by a coarse table (48^3; always on the GPU), without loss "
-        "exactly.\n",
+        "values that the view makes are from themselves after `Output - VIEW - sRGB` to the scene "
+        "and the view\n"
+        "again; by default is what applications and the GPU do. Every space's description has its "
+        "own figures.\n"
+        "False Color has no way back: it shows many colors as one, and OpenColorIO refuses it.\n",
         OCIO::GetVersion());
     return text;
 }

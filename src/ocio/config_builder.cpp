@@ -14,6 +14,7 @@
 #include "ocio/inverse.h"
 #include "ocio/profile_2_5.h"
 #include "ocio/read_config.h"
+#include "ocio/round_trip.h"
 #include "tonewright/engine.h"
 
 namespace tonewright {
@@ -188,46 +189,30 @@ OCIO::GroupTransformRcPtr way_back(const ConfigModel::View& view, const Displaye
     return group;
 }
 
-/// How far code values of the view's own pictures are from themselves after the way back and the
-/// view once more, by the reference.
+/// @param back  display reference -> scene reference
 ErrorStats measure_round_trip(const View& view, const OCIO::GroupTransformRcPtr& back,
                               OCIO::OptimizationFlags flags, const ProbeSet& probes) {
     const Display& display = find_display(view.display);
-    const ReferenceEngine engine(build_view(view));
-    OCIO::GroupTransformRcPtr whole = OCIO::GroupTransform::Create();
-    append(whole, joined(display.decode, {MatrixStage{rgb_to_xyz_d65(display.primaries)}}));
-    whole->appendTransform(back);
-    append(whole, {MatrixStage{rgb_to_rgb(kAP0, find_input_space(view.input).primaries)}});
-    std::vector<float> in;
-    for (std::size_t i = 0; i < probes.size(); ++i) {
-        if (!probes.is_non_negative(i) || probes.kind[i] == ProbeKind::special) continue;
-        in.insert(in.end(), &probes.rgb[3 * i], &probes.rgb[3 * i] + 3);
-    }
-    const std::size_t count = in.size() / 3;
-    std::vector<double> codes(in.size());
-    engine.run_rgb(in.data(), codes.data(), count);
-    const std::vector<float> given(codes.begin(), codes.end());
-    std::vector<float> scene(in.size());
-    Lowered lowered;
-    lowered.transform = whole;
-    OcioCpu(make_processor(lowered), flags).run_rgb(given.data(), scene.data(), count);
-    std::vector<double> again(in.size());
-    engine.run_rgb(scene.data(), again.data(), count);
-    std::vector<double> errors;
-    for (std::size_t i = 0; i < count; ++i) {
-        double error = 0;
-        for (std::size_t c = 0; c < 3; ++c)
-            error = std::max(error, std::fabs(again[3 * i + c] - codes[3 * i + c]));
-        errors.push_back(error);
-    }
-    return summarise(errors);
+    Lowered whole;
+    whole.transform = OCIO::GroupTransform::Create();
+    append(whole.transform,
+           joined(display.decode, {MatrixStage{rgb_to_xyz_d65(display.primaries)}}));
+    whole.transform->appendTransform(back);
+    append(whole.transform,
+           {MatrixStage{rgb_to_rgb(kAP0, find_input_space(view.input).primaries)}});
+    const OcioCpu cpu(make_processor(whole), flags);
+    return RoundTrip(view, probes)
+        .measure([&](const float* in, float* out, std::size_t n) { cpu.run_rgb(in, out, n); })
+        .errors;
 }
 
 /// Beyond this, what comes back is another picture.
-bool is_way_back(const ErrorStats& lossless) { return lossless.mean <= 5e-3; }
+bool is_way_back(const ErrorStats& lossless) {
+    return lossless.mean <= 5e-3 && lossless.p999 <= 3.5e-2;
+}
 
 /// For descriptions: what comes back, and how near.
-std::string describe(const RoundTrip& back, bool is_diagnostic) {
+std::string describe(const WayBackError& back, bool is_diagnostic) {
     if (is_diagnostic) return " There is no way back: many colors of a scene are shown as one.";
     if (!back.is_measured) return "";
     if (!back.exists) return " There is no way back.";
@@ -570,7 +555,7 @@ double ConfigBuilder::add_view_transform(const ConfigModel::View& view, const Di
     const bool is_diagnostic = view.op.op->is_diagnostic;
     // OpenColorIO takes seconds to invert a cube: once for a view, and of few colors.
     const bool is_slow = !own_back && !forward.is_exact;
-    RoundTrip& round_trip = error.back;
+    WayBackError& round_trip = error.back;
     round_trip.is_measured = !is_diagnostic && (is_first || !is_slow);
     if (round_trip.is_measured) {
         const ProbeSet& probes = is_slow ? few_probes_ : probes_;

@@ -30,7 +30,7 @@ struct DisplayedView {
 
 /// How far code values that a view makes are from themselves after the way back to the scene and
 /// the view again.
-struct RoundTrip {
+struct WayBackError {
     /// Without loss, and as applications have it: with OpenColorIO's default optimisation.
     ErrorStats lossless;
     ErrorStats by_default;
@@ -44,7 +44,7 @@ struct ViewError {
     ErrorStats in_gamut;
     double delta_e = 0;
     bool is_exact = true;
-    RoundTrip back;
+    WayBackError back;
 };
 
 /// Makes the parts of a config from the model and adds them to an OCIO one: to a new one, or to

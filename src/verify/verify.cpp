@@ -15,6 +15,7 @@
 #include "ocio/gpu.h"
 #include "ocio/lower.h"
 #include "ocio/read_config.h"
+#include "ocio/round_trip.h"
 #include "tonewright/engine.h"
 #include "tonewright/ocio.h"
 
@@ -122,14 +123,6 @@ Bounds bounds_of(const Pipeline& pipeline, const Lowered& lowered, bool is_hdr,
         allow(cube, cube);
     }
     return b;
-}
-
-/// Of a code value, or of light in units in which sRGB's slope at black turns it into code values,
-/// whichever is less: a display with a pure power has an infinite slope there, where light too
-/// faint to see is many code values.
-double visible_error(double code, double light) {
-    constexpr double kSrgbSlopeAtBlack = 12.92;
-    return std::min(code, kSrgbSlopeAtBlack * light);
 }
 
 class Comparison {
@@ -250,66 +243,9 @@ class Comparison {
     std::vector<RoundingPoint> rounding_points_;
 };
 
-/// The way back of a view: how far the code values that it makes are from themselves after it and
-/// the view once more, by the reference.
-class RoundTrip {
-  public:
-    RoundTrip(const View& view, const ProbeSet& probes)
-        : engine_(build_view(view)), decode_(find_display(view.display).decode) {
-        // Light that is shown, a fifth of it: two more passes through every form.
-        constexpr std::size_t kOneOf = 5;
-        for (std::size_t i = 0; i < probes.size(); i += kOneOf) {
-            if (!probes.is_non_negative(i) || probes.kind[i] == ProbeKind::special) continue;
-            codes_.insert(codes_.end(), &probes.rgb[3 * i], &probes.rgb[3 * i] + 3);
-        }
-        const std::vector<double> codes = show(codes_);
-        codes_.assign(codes.begin(), codes.end());
-    }
-
-    /// @param run  code values -> scene light, of so many pixels
-    template <class Run>
-    void measure(const Run& run, ParityRow& row) const {
-        std::vector<float> scene(codes_.size());
-        run(codes_.data(), scene.data(), codes_.size() / 3);
-        const std::vector<double> again = show(scene);
-        std::vector<double> errors;
-        for (std::size_t i = 0; i < codes_.size(); i += 3) {
-            const Vector3 before = {static_cast<double>(codes_[i]),
-                                    static_cast<double>(codes_[i + 1]),
-                                    static_cast<double>(codes_[i + 2])};
-            const Vector3 after = {again[i], again[i + 1], again[i + 2]};
-            const Vector3 light_before = decode_(before);
-            const Vector3 light_after = decode_(after);
-            double worst = 0;
-            for (std::size_t c = 0; c < 3; ++c) {
-                worst = std::max(worst, visible_error(std::fabs(after[c] - before[c]),
-                                                      std::fabs(light_after[c] - light_before[c])));
-                row.is_total = row.is_total && std::isfinite(scene[i + c]);
-            }
-            errors.push_back(worst);
-        }
-        const ErrorStats stats = summarise(errors);
-        row.max = row.max_all = stats.max;
-        row.p999 = stats.p999;
-        row.mean = stats.mean;
-        row.max_beyond_rounding = stats.p999;
-        row.is_ok = row.is_total && stats.p999 <= row.bound;
-    }
-
-  private:
-    [[nodiscard]] std::vector<double> show(const std::vector<float>& scene) const {
-        std::vector<double> codes(scene.size());
-        engine_.run_rgb(scene.data(), codes.data(), scene.size() / 3);
-        return codes;
-    }
-
-    ReferenceEngine engine_;
-    ReferenceEngine decode_;
-    std::vector<float> codes_;
-};
-
-/// What the structure of a way back allows to 99.9 % of the colors, in code values.
-double round_trip_bound(const OCIO::ConstProcessorRcPtr& back) {
+/// What the structure of a way back allows to 99.9 % of the colors, in code values; 0 where it has
+/// none of its own.
+double round_trip_bound(const OCIO::ConstProcessorRcPtr& back, const ResolvedOperator& op) {
     // Inverse tables of 16384 entries; a curve that is steep next to white has few of them there.
     double bound = 1e-3;
     const OCIO::GroupTransformRcPtr group = back->createGroupTransform();
@@ -320,8 +256,14 @@ double round_trip_bound(const OCIO::ConstProcessorRcPtr& back) {
             // functions bring back what they have clipped in their own way.
             bound = std::max(bound, f->getStyle() == OCIO::FIXED_FUNCTION_RGB_TO_HSV ? 3e-3 : 2e-2);
         }
-        // An inverse that mixes channels, in 33 or 37 nodes a side.
-        if (OCIO_DYNAMIC_POINTER_CAST<OCIO::Lut3DTransform>(part)) bound = std::max(bound, 2.5e-2);
+        if (!OCIO_DYNAMIC_POINTER_CAST<OCIO::Lut3DTransform>(part)) continue;
+        if (part->getDirection() == OCIO::TRANSFORM_DIR_INVERSE) return 0;
+        // An inverse that mixes channels, in 33 or 37 nodes a side; a formula may have corners.
+        const Pipeline stages = op.build();
+        const bool is_lattice = std::any_of(stages.begin(), stages.end(), [](const Stage& stage) {
+            return std::holds_alternative<LatticeStage>(stage);
+        });
+        bound = std::max(bound, is_lattice || op.op->build_inverse ? 2.5e-2 : 5e-2);
     }
     return bound;
 }
@@ -364,13 +306,25 @@ void add_way_back(const OCIO::ConstConfigRcPtr& config, const View& view, const 
     }
     const OCIO::ConstProcessorRcPtr back =
         config->getProcessor(space.c_str(), config_space_name(view.input).c_str());
-    row.bound = round_trip_bound(back);
+    row.bound = round_trip_bound(back, view.op);
     row.lowering = "config: " + space;
-    const RoundTrip trip(view, probes);
-    const auto measure = [&](const std::string& form, const auto& run) {
+    if (row.bound == 0) {
+        row.form = "and back";
+        row.note = "none: no table leads back, only OpenColorIO's own inversion of a cube";
+        add(row);
+        return;
+    }
+    // A fifth of the colors: two more passes through every form.
+    const RoundTrip trip(view, probes, 5);
+    const auto measure = [&](const std::string& form, const RoundTrip::WayBack& run) {
         ParityRow measured = row;
         measured.form = form;
-        trip.measure(run, measured);
+        const auto [errors, is_finite] = trip.measure(run);
+        measured.max = measured.max_all = errors.max;
+        measured.p999 = measured.max_beyond_rounding = errors.p999;
+        measured.mean = errors.mean;
+        measured.is_total = is_finite;
+        measured.is_ok = is_finite && errors.p999 <= measured.bound;
         add(measured);
     };
     for (const bool is_default : {false, true}) {

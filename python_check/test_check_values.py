@@ -114,7 +114,7 @@ def check_statements():
         abs(f(np.full(3, 40.0), source_peak=4000, target_peak=300)[0] - 1)
         for f in (eetf.bt2390, eetf.bt2446a, eetf.spline)), 1e-12)
     # Neighbouring colours meet half-way at +-0.5 stop, and each holds on its whole stop.
-    stops = np.array([-9, -7, -3, 0, 2.4, 2.5, 7, 12])
+    stops = np.array([-9, -7, -3, 0, 2.37, 2.5, 7, 12])
     shown = operators.OPERATORS["false_color"](np.repeat(0.18 * 2.0 ** stops[:, None], 3, axis=1))
     light = false_color.srgb_decode(np.array([[int(c[k:k + 2], 16) for k in (0, 2, 4)]
                                               for c in false_color.COLOURS]) / 255)

@@ -20,18 +20,18 @@ def srgb_decode(code):
 
 
 def false_color(rgb):
-    """One colour for each stop of luminance about 0.18, changing over 1/8 stop half-way between two.
+    """One colour for each stop of luminance about 0.18, changing over 1/4 stop half-way between two.
 
     >>> srgb = false_color([[0.18] * 3, [0.18 * 2**5.49] * 3, [0.0] * 3])
     >>> srgb.round(6).tolist()
-    [[0.215861, 0.215861, 0.215861], [0.754546, 0.088603, 0.201388], [0.0, 0.0, 0.0]]
+    [[0.215861, 0.215861, 0.215861], [0.767282, 0.099056, 0.22628], [0.0, 0.0, 0.0]]
     """
     light = srgb_decode(np.array([[int(text[k:k + 2], 16) for k in (0, 2, 4)] for text in COLOURS]) / 255)
     y = luminance(limit_scene(rgb))
     stops = np.where(y > 0, np.log2(np.where(y > 0, y, 1) / 0.18), -np.inf)
     out = np.broadcast_to(light[0], (*y.shape[:-1], 3))
     for k in range(-7, 7):
-        out = out + smoothstep(k + 0.5 - 1 / 16, k + 0.5 + 1 / 16, stops) * (light[k + 8] - light[k + 7])
+        out = out + smoothstep(k + 0.5 - 1 / 8, k + 0.5 + 1 / 8, stops) * (light[k + 8] - light[k + 7])
     return out
 
 

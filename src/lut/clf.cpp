@@ -20,6 +20,7 @@ std::string write_clf(const ClfTable& table, const std::string& name,
     const std::vector<float>& v = *table.values;
     const auto per_line = static_cast<std::size_t>(table.dimension == 3 ? 3 : table.channels);
     for (std::size_t i = 0; i < v.size(); ++i) {
+        const std::size_t begin = numbers.size();
         switch (table.numbers) {
             case ClfTable::Numbers::exact:
                 append_number(numbers, v[i]);
@@ -34,6 +35,7 @@ std::string write_clf(const ClfTable& table, const std::string& name,
                 append_decimals(numbers, v[i], 7);
                 break;
         }
+        if (table.numbers != ClfTable::Numbers::exact) drop_zero_before_point(numbers, begin);
         numbers += (i + 1) % per_line == 0 ? '\n' : ' ';
     }
     const char* depth = table.numbers == ClfTable::Numbers::codes ? "16i" : "32f";

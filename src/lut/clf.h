@@ -21,6 +21,7 @@ struct ClfTable {
     /// 1D: entry by entry. 3D: RGB triplets, BLUE fastest, as CLF has them.
     const std::vector<float>* values = nullptr;
     /// How its numbers are written.
+    /// All but the first without a zero before the point.
     enum class Numbers : unsigned char {
         exact,    // 9 significant digits without exponents: reads back as the same float
         compact,  // @see append_compact

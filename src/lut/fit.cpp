@@ -10,6 +10,7 @@
 
 #include "engine/probe.h"
 #include "lut/parallel.h"
+#include "lut/tetrahedron.h"
 #include "tonewright/engine.h"
 
 // With weights that interpolate linearly inside each of a cell's six tetrahedra, the normal matrix
@@ -41,12 +42,8 @@ constexpr int kRounds = 3;
 constexpr int kSteps = 30;
 constexpr double kConverged = 1e-8;
 
-/// A training colour: the tetrahedron that it is in, what its corners weigh, what is wanted.
-struct Sample {
-    std::uint32_t cell;   // the node at its near corner
-    std::uint8_t second;  // the next two corners, as masks of steps: red 4, green 2, blue 1
-    std::uint8_t third;
-    std::array<float, 3> weight;  // of the second, the third and the far corner
+/// A training colour: where it is, and what is wanted there.
+struct Sample : Tetrahedron {
     std::array<float, 3> code;
 };
 
@@ -60,7 +57,7 @@ class Fit {
           threads_(options.thread_count > 0 ? options.thread_count
                                             : std::max(1U, std::thread::hardware_concurrency())) {
         for (std::size_t mask = 0; mask < 8; ++mask)
-            step_[mask] = ((mask >> 2 & 1) * n_ + (mask >> 1 & 1)) * n_ + (mask & 1);
+            step_[mask] = node_step(mask, n_);
         const double wanted = options.samples_per_node * static_cast<double>(node_count_);
         sample_count_ =
             std::min(static_cast<std::size_t>(std::max(wanted, 0.0)), options.largest_sample_count);
@@ -246,22 +243,7 @@ class Fit {
     }
 
     [[nodiscard]] Sample make_sample(const double* place, const double* code) const {
-        std::array<std::size_t, 3> corner{};
-        std::array<float, 3> f{};
-        for (std::size_t c = 0; c < 3; ++c) {
-            const double position = std::clamp(place[c], 0.0, 1.0) * static_cast<double>(n_ - 1);
-            corner[c] = std::min(static_cast<std::size_t>(position), n_ - 2);
-            f[c] = static_cast<float>(position - static_cast<double>(corner[c]));
-        }
-        // From the near corner to the far one along the axes, largest fraction first.
-        std::array<std::size_t, 3> order = {0, 1, 2};
-        std::stable_sort(order.begin(), order.end(),
-                         [&](std::size_t a, std::size_t b) { return f[a] > f[b]; });
-        Sample sample{};
-        sample.cell = static_cast<std::uint32_t>((corner[0] * n_ + corner[1]) * n_ + corner[2]);
-        sample.second = static_cast<std::uint8_t>(4U >> order[0]);
-        sample.third = static_cast<std::uint8_t>(7U ^ 4U >> order[2]);
-        sample.weight = {f[order[0]] - f[order[1]], f[order[1]] - f[order[2]], f[order[2]]};
+        Sample sample{tetrahedron_at(place, n_), {}};
         for (std::size_t c = 0; c < 3; ++c)
             sample.code[c] = static_cast<float>(code[c]);
         return sample;

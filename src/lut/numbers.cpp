@@ -31,8 +31,16 @@ void append_compact(std::string& text, float value) {
     const float magnitude = std::fabs(value);
     const int leading = magnitude > 0 ? static_cast<int>(std::floor(std::log10(magnitude))) : 0;
     constexpr float kNothing = 1e-14F;
-    fmt::format_to(std::back_inserter(text), "{:.{}g}", magnitude < kNothing ? 0.0F : value,
-                   std::clamp(9 + leading, 7, 9));
+    const std::string exact = fmt::format("{}", value);
+    std::string number =
+        fmt::format("{:.{}g}", magnitude < kNothing ? 0.0F : value, std::clamp(9 + leading, 6, 9));
+    if (exact.size() < number.size()) number = exact;
+    text += number;
+}
+
+void drop_zero_before_point(std::string& text, std::size_t begin) {
+    if (begin < text.size() && text[begin] == '-') ++begin;
+    if (text.compare(begin, 2, "0.") == 0) text.erase(begin, 1);
 }
 
 std::string three_digits_up(double value) {

@@ -62,8 +62,8 @@ std::string readme(const ConfigModel& model, const std::vector<std::string>& pro
             fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} |\n", view.name, view.op.op->title,
                         e.is_exact ? "exact chain" : "65^3 cube", rounded_up(e.in_gamut.max),
                         rounded_up(e.in_gamut.p999), rounded_up(e.in_gamut.mean),
-                        e.has_way_back ? rounded_up(e.round_trip_lossless.p999) : "none",
-                        e.has_way_back ? rounded_up(e.round_trip.p999) : "none");
+                        e.back.exists ? rounded_up(e.back.lossless.p999) : "none",
+                        e.back.exists ? rounded_up(e.back.by_default.p999) : "none");
     }
     text += fmt::format(
         "\nErrors: sRGB code values (1 code of 10 bits is 0.00098) of OpenColorIO {}'s CPU path "
@@ -72,10 +72,11 @@ std::string readme(const ConfigModel& model, const std::vector<std::string>& pro
         "`python_check/check_config.py`\n"
         "measures the same in the application that you run it in, against `probe.csv`. And back: "
         "how far code\n"
-        "values are from themselves after `Output - VIEW - sRGB` to the scene and the view again. "
-        "By default\n"
-        "OpenColorIO inverts a cube by a coarse table (48^3; always on the GPU), without loss "
-        "exactly.\n",
+        "values that the view makes are from themselves after `Output - VIEW - sRGB` to the scene "
+        "and the view\n"
+        "again; by default is what applications and the GPU do. Every space's description has its "
+        "own figures.\n"
+        "False Color has no way back: it shows many colors as one, and OpenColorIO refuses it.\n",
         OCIO::GetVersion());
     return text;
 }

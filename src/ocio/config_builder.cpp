@@ -14,6 +14,7 @@
 #include "ocio/inverse.h"
 #include "ocio/profile_2_5.h"
 #include "ocio/read_config.h"
+#include "ocio/round_trip.h"
 #include "tonewright/engine.h"
 
 namespace tonewright {
@@ -136,15 +137,17 @@ std::string output_alias(const std::string& view, const std::string& display) {
 }
 
 /// A view as a colour space: write nodes, textures and `--colorconvert` know no views.
-OCIO::ColorSpaceRcPtr make_output_space(const DisplayedView& shown, const std::string& display) {
+/// @param way_back  what the description says of it
+OCIO::ColorSpaceRcPtr make_output_space(const DisplayedView& shown, const std::string& display,
+                                        const std::string& way_back) {
     OCIO::ColorSpaceRcPtr cs = OCIO::ColorSpace::Create(OCIO::REFERENCE_SPACE_SCENE);
-    cs->setName(("Output - " + shown.name + " - " + display).c_str());
+    cs->setName(output_space_name(shown.name, display).c_str());
     if (display == shown.display->title)
         cs->addAlias(output_alias(shown.name, shown.display->id).c_str());
     cs->setFamily(("Output/" + display).c_str());
-    cs->setDescription(
-        ("The picture of the view " + shown.name + " on " + display + ", in its code values.")
-            .c_str());
+    cs->setDescription(("The picture of the view " + shown.name + " on " + display +
+                        ", in its code values." + way_back)
+                           .c_str());
     cs->setEncoding(shown.display->is_hdr ? "hdr-video" : "sdr-video");
     cs->setBitDepth(OCIO::BIT_DEPTH_F32);
     cs->addCategory("file-io");
@@ -186,43 +189,44 @@ OCIO::GroupTransformRcPtr way_back(const ConfigModel::View& view, const Displaye
     return group;
 }
 
-/// How far code values of the view's own pictures are from themselves after the way back and the
-/// view once more, by the reference.
+/// @param back  display reference -> scene reference
 ErrorStats measure_round_trip(const View& view, const OCIO::GroupTransformRcPtr& back,
                               OCIO::OptimizationFlags flags, const ProbeSet& probes) {
     const Display& display = find_display(view.display);
-    const ReferenceEngine engine(build_view(view));
-    OCIO::GroupTransformRcPtr whole = OCIO::GroupTransform::Create();
-    append(whole, joined(display.decode, {MatrixStage{rgb_to_xyz_d65(display.primaries)}}));
-    whole->appendTransform(back);
-    append(whole, {MatrixStage{rgb_to_rgb(kAP0, find_input_space(view.input).primaries)}});
-    std::vector<float> in;
-    for (std::size_t i = 0; i < probes.size(); ++i) {
-        if (!probes.is_non_negative(i) || probes.kind[i] == ProbeKind::special) continue;
-        in.insert(in.end(), &probes.rgb[3 * i], &probes.rgb[3 * i] + 3);
-    }
-    const std::size_t count = in.size() / 3;
-    std::vector<double> codes(in.size());
-    engine.run_rgb(in.data(), codes.data(), count);
-    const std::vector<float> given(codes.begin(), codes.end());
-    std::vector<float> scene(in.size());
-    Lowered lowered;
-    lowered.transform = whole;
-    OcioCpu(make_processor(lowered), flags).run_rgb(given.data(), scene.data(), count);
-    std::vector<double> again(in.size());
-    engine.run_rgb(scene.data(), again.data(), count);
-    std::vector<double> errors;
-    for (std::size_t i = 0; i < count; ++i) {
-        double error = 0;
-        for (std::size_t c = 0; c < 3; ++c)
-            error = std::max(error, std::fabs(again[3 * i + c] - codes[3 * i + c]));
-        errors.push_back(error);
-    }
-    return summarise(errors);
+    Lowered whole;
+    whole.transform = OCIO::GroupTransform::Create();
+    append(whole.transform,
+           joined(display.decode, {MatrixStage{rgb_to_xyz_d65(display.primaries)}}));
+    whole.transform->appendTransform(back);
+    append(whole.transform,
+           {MatrixStage{rgb_to_rgb(kAP0, find_input_space(view.input).primaries)}});
+    const OcioCpu cpu(make_processor(whole), flags);
+    return RoundTrip(view, probes)
+        .measure([&](const float* in, float* out, std::size_t n) { cpu.run_rgb(in, out, n); })
+        .errors;
 }
 
 /// Beyond this, what comes back is another picture.
-bool is_way_back(const ErrorStats& lossless) { return lossless.mean <= 5e-3; }
+bool is_way_back(const ErrorStats& lossless) {
+    return lossless.mean <= 5e-3 && lossless.p999 <= 3.5e-2;
+}
+
+/// For descriptions: what comes back, and how near.
+std::string describe(const WayBackError& back, bool is_diagnostic) {
+    if (is_diagnostic) return " There is no way back: many colors of a scene are shown as one.";
+    if (!back.is_measured) return "";
+    if (!back.exists) return " There is no way back.";
+    const auto figures = [](const ErrorStats& stats) {
+        return fmt::format("max {}, 99.9 % {}, mean {}", rounded_up(stats.max),
+                           rounded_up(stats.p999), rounded_up(stats.mean));
+    };
+    std::string text =
+        " To the scene and back, for code values that the view makes of Rec.709 light: " +
+        figures(back.by_default);
+    if (back.lossless.p999 < back.by_default.p999 / 2)
+        text += " (without loss: " + figures(back.lossless) + ")";
+    return text + ".";
+}
 
 std::string yaml_of(const OCIO::Config& config) {
     std::ostringstream yaml;
@@ -418,7 +422,8 @@ void ConfigBuilder::add_virtual_display() {
 void ConfigBuilder::add_output_spaces() {
     for (const auto& view : model_.views) {
         for (const DisplayedView& shown : displayed_[view.name])
-            config_->addColorSpace(make_output_space(shown, shown.display->title));
+            config_->addColorSpace(
+                make_output_space(shown, shown.display->title, ways_back_.at(shown.transform)));
     }
 }
 
@@ -435,7 +440,8 @@ void ConfigBuilder::add_views_to(const Display& display, const std::string& host
             const std::string listed = ", " + active + ",";
             if (!active.empty() && listed.find(", " + shown.name + ",") == std::string::npos)
                 active += ", " + shown.name;
-            const OCIO::ColorSpaceRcPtr space = make_output_space(shown, host_display);
+            const OCIO::ColorSpaceRcPtr space =
+                make_output_space(shown, host_display, ways_back_.at(shown.transform));
             OCIO::GroupTransformRcPtr whole = OCIO::GroupTransform::Create();
             append_conversion(whole, *scene_, OCIO::COLORSPACE_DIR_FROM_REFERENCE);
             OCIO::DisplayViewTransformRcPtr through = OCIO::DisplayViewTransform::Create();
@@ -546,16 +552,21 @@ double ConfigBuilder::add_view_transform(const ConfigModel::View& view, const Di
             back->appendTransform(forward.transform->getTransform(i));
         back->setDirection(OCIO::TRANSFORM_DIR_INVERSE);
     }
-    // OpenColorIO takes seconds to invert a cube: once for a view.
     const bool is_diagnostic = view.op.op->is_diagnostic;
-    const bool is_measured = !is_diagnostic && (own_back || is_first);
-    if (is_measured) {
-        error.round_trip_lossless =
-            measure_round_trip(measured, back, OCIO::OPTIMIZATION_LOSSLESS, few_probes_);
-        error.round_trip =
-            measure_round_trip(measured, back, OCIO::OPTIMIZATION_DEFAULT, few_probes_);
-        error.has_way_back = is_way_back(error.round_trip_lossless);
+    // OpenColorIO takes seconds to invert a cube: once for a view, and of few colors.
+    const bool is_slow = !own_back && !forward.is_exact;
+    WayBackError& round_trip = error.back;
+    round_trip.is_measured = !is_diagnostic && (is_first || !is_slow);
+    if (round_trip.is_measured) {
+        const ProbeSet& probes = is_slow ? few_probes_ : probes_;
+        round_trip.lossless =
+            measure_round_trip(measured, back, OCIO::OPTIMIZATION_LOSSLESS, probes);
+        round_trip.by_default =
+            measure_round_trip(measured, back, OCIO::OPTIMIZATION_DEFAULT, probes);
+        round_trip.exists = is_way_back(round_trip.lossless);
     }
+    const std::string way_back_text = describe(round_trip, is_diagnostic);
+    ways_back_[shown.transform] = way_back_text;
     errors_.emplace(view.name, error);
     if (!error.is_exact) cubes_.insert(shown.transform);
     std::string text = fmt::format(
@@ -572,13 +583,7 @@ double ConfigBuilder::add_view_transform(const ConfigModel::View& view, const Di
             rounded_up(wide.in_gamut.max), rounded_up(wide.in_gamut.p999),
             rounded_up(wide.in_gamut.mean));
     }
-    if (error.has_way_back) {
-        text += fmt::format(" And back: 99.9 % {} without loss, {} by default.",
-                            rounded_up(error.round_trip_lossless.p999),
-                            rounded_up(error.round_trip.p999));
-    } else if (is_measured || is_diagnostic) {
-        text += " There is no way back.";
-    }
+    text += way_back_text;
     OCIO::ViewTransformRcPtr vt = OCIO::ViewTransform::Create(OCIO::REFERENCE_SPACE_SCENE);
     vt->setName(shown.transform.c_str());
     vt->setDescription(text.c_str());
@@ -586,7 +591,7 @@ double ConfigBuilder::add_view_transform(const ConfigModel::View& view, const Di
                                                           view.op.op->title, forward.is_exact),
                                         OCIO::TRANSFORM_DIR_FORWARD),
                      OCIO::VIEWTRANSFORM_DIR_FROM_REFERENCE);
-    if (own_back && error.has_way_back) {
+    if (own_back && round_trip.exists) {
         vt->setTransform(
             between_references(luts_.externalise(own_back, view.op.op->id + "_inverse",
                                                  view.op.op->title + ", inverse", false),

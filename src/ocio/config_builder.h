@@ -28,16 +28,23 @@ struct DisplayedView {
 [[nodiscard]] std::vector<DisplayedView> displayed_views(
     const ConfigModel::View& view, const std::vector<const Display*>& displays);
 
+/// How far code values that a view makes are from themselves after the way back to the scene and
+/// the view again.
+struct WayBackError {
+    /// Without loss, and as applications have it: with OpenColorIO's default optimisation.
+    ErrorStats lossless;
+    ErrorStats by_default;
+    bool is_measured = false;
+    /// False where what comes back is another picture.
+    bool exists = false;
+};
+
 /// How far a view is from the reference, and its way back from itself.
 struct ViewError {
     ErrorStats in_gamut;
     double delta_e = 0;
     bool is_exact = true;
-    /// Of the way back without loss, and as applications have it: with OpenColorIO's default
-    /// optimisation, which inverts a cube by a table of 48^3, as its shaders always do.
-    ErrorStats round_trip_lossless;
-    ErrorStats round_trip;
-    bool has_way_back = false;
+    WayBackError back;
 };
 
 /// Makes the parts of a config from the model and adds them to an OCIO one: to a new one, or to
@@ -115,6 +122,8 @@ class ConfigBuilder {
     std::map<std::string, ViewError> errors_;
     /// View transforms that are cubes.
     std::set<std::string> cubes_;
+    /// Of each view transform, what its way back is.
+    std::map<std::string, std::string> ways_back_;
     ProbeSet probes_ = make_probes(find_input_space("lin_rec709"), {9, 40000});
     ProbeSet wide_probes_ = make_probes(find_input_space("lin_ap1"), {9, 40000});
     ProbeSet few_probes_ = make_probes(find_input_space("lin_rec709"), {3, 1000});

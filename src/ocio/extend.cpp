@@ -167,7 +167,7 @@ ExtendedConfig extend_config(const std::string& path, const ConfigOptions& optio
                     if (shown.name == config->getView(host.name.c_str(), v))
                         refuse("on the display " + host.name + " a view", shown.name);
                 }
-                const std::string space = "Output - " + shown.name + " - " + host.name;
+                const std::string space = output_space_name(shown.name, host.name);
                 if (config->getColorSpace(space.c_str())) refuse("a space", space);
             }
         }

@@ -2,6 +2,7 @@
 #include "ocio/inverse.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -11,6 +12,11 @@
 
 namespace tonewright {
 namespace {
+
+void append(OCIO::GroupTransformRcPtr& group, const Lowered& lowered) {
+    for (int i = 0; i < lowered.transform->getNumTransforms(); ++i)
+        group->appendTransform(lowered.transform->getTransform(i));
+}
 
 // ---------------------------------------------------------------------------------------------
 // Channels apart
@@ -26,25 +32,38 @@ class ChannelCurve {
         return engine_(v)[channel_];
     }
 
+    /// In place.
+    void run(std::vector<double>& x) const {
+        std::array<std::vector<double>, 3> planes = {x, x, x};
+        engine_.run({planes[0].data(), planes[1].data(), planes[2].data()},
+                    {planes[0].data(), planes[1].data(), planes[2].data()}, x.size());
+        x = planes[channel_];
+    }
+
   private:
     ReferenceEngine engine_;
     std::size_t channel_;
 };
 
-/// The scene of least size that f makes y of: f rises.
-double solve(const ChannelCurve& f, double y, double lo, double hi) {
+/// Puts the scene of least size that f makes each y of in its place: f rises.
+void solve(const ChannelCurve& f, std::vector<double>& y, double lo, double hi) {
     // In the float's own steps: light spans many magnitudes.
     const auto to_place = [](double x) { return std::copysign(std::log1p(std::fabs(x) * 1e6), x); };
     const auto to_light = [](double p) {
         return std::copysign(std::expm1(std::fabs(p)) * 1e-6, p);
     };
-    double a = to_place(lo);
-    double b = to_place(hi);
-    for (int i = 0; i < 60; ++i) {
-        const double middle = (a + b) / 2;
-        (f(to_light(middle)) < y ? a : b) = middle;
+    std::vector<double> a(y.size(), to_place(lo));
+    std::vector<double> b(y.size(), to_place(hi));
+    std::vector<double> shown(y.size());
+    for (int round = 0; round < 60; ++round) {
+        for (std::size_t i = 0; i < y.size(); ++i)
+            shown[i] = to_light((a[i] + b[i]) / 2);
+        f.run(shown);
+        for (std::size_t i = 0; i < y.size(); ++i)
+            (shown[i] < y[i] ? a[i] : b[i]) = (a[i] + b[i]) / 2;
     }
-    return to_light(b);
+    for (std::size_t i = 0; i < y.size(); ++i)
+        y[i] = to_light(b[i]);
 }
 
 /// Tables of the inverses of a run, at equal distances over what it puts out.
@@ -75,9 +94,9 @@ bool append_inverse(const Pipeline& run, OCIO::GroupTransformRcPtr& group) {
         if (!(last[c] > first[c])) return false;
         constexpr int kEntries = 16384;
         for (int i = 0; i < kEntries; ++i) {
-            const double y = first[c] + (last[c] - first[c]) * i / (kEntries - 1);
-            inverse[c].push_back(solve(f, y, lo, kHalfMax));
+            inverse[c].push_back(first[c] + (last[c] - first[c]) * i / (kEntries - 1));
         }
+        solve(f, inverse[c], lo, kHalfMax);
     }
     const auto to_table = OCIO::MatrixTransform::Create();
     std::array<double, 16> m{};
@@ -103,11 +122,6 @@ bool append_inverse(const Pipeline& run, OCIO::GroupTransformRcPtr& group) {
 
 bool treats_channels_apart(const Stage& stage) {
     return std::holds_alternative<CurveStage>(stage) || std::holds_alternative<ClampStage>(stage);
-}
-
-void append(OCIO::GroupTransformRcPtr& group, const Lowered& lowered) {
-    for (int i = 0; i < lowered.transform->getNumTransforms(); ++i)
-        group->appendTransform(lowered.transform->getTransform(i));
 }
 
 /// Stage by stage, from the last on.
@@ -139,6 +153,33 @@ OCIO::GroupTransformRcPtr invert_stages(const Pipeline& stages) {
     return group;
 }
 
+/// Every transform inverted by OpenColorIO, of an operator that shows no light as white; else null:
+/// it does that by itself.
+OCIO::GroupTransformRcPtr invert_lowered(const Pipeline& forward, double peak) {
+    const Vector3 brightest = ReferenceEngine(forward)({kHalfMax, kHalfMax, kHalfMax});
+    if (!(*std::max_element(brightest.begin(), brightest.end()) < peak)) return nullptr;
+    // Next to white, where light grows without end, tables over half floats have no entries, and
+    // what is interpolated there is far too bright.
+    const double last = peak * (1 - 0x1p-11);
+    OCIO::GroupTransformRcPtr group = lower_to_ocio({ClampStage{0, last}}).transform;
+    const OCIO::GroupTransformRcPtr lowered = lower_to_ocio(forward).transform;
+    for (int i = lowered->getNumTransforms() - 1; i >= 0; --i) {
+        const OCIO::TransformRcPtr part = lowered->getTransform(i)->createEditableCopy();
+        part->setDirection(
+            OCIO::CombineTransformDirections(part->getDirection(), OCIO::TRANSFORM_DIR_INVERSE));
+        group->appendTransform(part);
+    }
+    return group;
+}
+
+/// True where a cube stands for it, or a part of it.
+bool needs_cube(const Pipeline& stages) {
+    return std::any_of(stages.begin(), stages.end(), [](const Stage& stage) {
+        const auto* map = std::get_if<Map3Stage>(&stage);
+        return std::holds_alternative<LatticeStage>(stage) || (map && map->ocio.empty());
+    });
+}
+
 /// OpenColorIO's own, where it has one that the operator equals; null where it has none.
 OCIO::GroupTransformRcPtr invert_builtin(const ResolvedOperator& op, const DisplayLimit& limit) {
     const std::string style = op.ocio_builtin();
@@ -166,11 +207,22 @@ OCIO::GroupTransformRcPtr invert_light(const ResolvedOperator& op, const Display
     forward.insert(forward.end(), light.begin(), light.end());
     forward = simplify(forward);
     if (auto group = invert_stages(forward)) return group;
-    if (!op.op->build_inverse) return nullptr;
-    Pipeline back = {MatrixStage{rgb_to_rgb(limit.primaries, op.output_primaries())}};
-    const Pipeline inverse = op.op->build_inverse(op.params);
-    back.insert(back.end(), inverse.begin(), inverse.end());
-    return lower_to_ocio(sampled_inverse(back, limit.peak)).transform;
+    if (op.op->is_diagnostic) return nullptr;
+    if (!needs_cube(forward)) return invert_lowered(forward, limit.peak);
+    // Of the operator's own gamut, so that displays of other gamuts have the same table.
+    const Primaries primaries = op.output_primaries();
+    Pipeline back = {MatrixStage{rgb_to_rgb(limit.primaries, primaries)}};
+    const auto append_stages = [](Pipeline& to, const Pipeline& from) {
+        to.insert(to.end(), from.begin(), from.end());
+    };
+    if (op.op->build_inverse) {
+        append_stages(back, op.op->build_inverse(op.params));
+        return lower_to_ocio(sampled_inverse(back, limit.peak)).transform;
+    }
+    Pipeline own = op.build();
+    append_stages(own, display_light_stages(op, {primaries, limit.peak}));
+    append_stages(back, fitted_inverse(own, op.op->working, limit.peak));
+    return lower_to_ocio(back).transform;
 }
 
 }  // namespace tonewright

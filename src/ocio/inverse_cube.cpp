@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ocio/inverse_cube.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
+#include <mutex>
+#include <vector>
 
+#include "lut/fit_inverse.h"
 #include "tonewright/color.h"
 #include "tonewright/engine.h"
 #include "tonewright/view.h"
@@ -17,6 +22,8 @@ constexpr double kBrightest = 4096;
 
 /// Nodes a side, for a table of 0.9 MB: 25 are twice as far from the way back in the mean.
 constexpr int kEdge = 37;
+/// Of a fitted one, for 0.6 MB: 37 are a fifth nearer.
+constexpr int kFittedEdge = 33;
 
 /// What a node holds of scene light: its logarithm, straight about 0, odd, 1 of the brightest.
 constexpr double kStraight = 0.01;
@@ -33,13 +40,16 @@ Expr light_of(const Expr& code) {
 /// Where light stands on the axes: nearly as the eye sees it, for either kind of display.
 Expr place_of(const Expr& light, double peak) {
     if (peak <= 1) return pow(max(light, 0), 1 / 2.4);
-    const double largest = evaluate(pq_encode_nits(Expr::input() * kReferenceWhite), peak);
-    return pq_encode_nits(max(light, 0) * kReferenceWhite) / largest;
+    const Expr code = pq_encode_nits(Expr::input() * kReferenceWhite);
+    const double black = evaluate(code, 0);
+    return (pq_encode_nits(max(light, 0) * kReferenceWhite) - black) /
+           (evaluate(code, peak) - black);
 }
 Expr light_at(const Expr& place, double peak) {
     if (peak <= 1) return pow(max(place, 0), 2.4);
-    const double largest = evaluate(pq_encode_nits(Expr::input() * kReferenceWhite), peak);
-    return pq_decode_nits(place * largest) / kReferenceWhite;
+    const Expr code = pq_encode_nits(Expr::input() * kReferenceWhite);
+    const double black = evaluate(code, 0);
+    return pq_decode_nits(black + place * (evaluate(code, peak) - black)) / kReferenceWhite;
 }
 
 }  // namespace
@@ -68,6 +78,48 @@ Pipeline sampled_inverse(const Pipeline& back, double peak) {
             LatticeStage{place_of(Expr::input(), peak),
                          std::make_shared<const Lattice>(kEdge, make_nodes)},
             curve_stage(light_of(Expr::input()))};
+}
+
+Pipeline fitted_inverse(const Pipeline& forward, const Primaries& primaries, double peak) {
+    // The same for displays of the same gamut and peak.
+    struct Entry {
+        std::array<Expr, 3> forward;  // equal expressions are the same node, as long as one lives
+        Primaries primaries;
+        double peak;
+        std::shared_ptr<const Lattice> cube;
+    };
+    static std::mutex mutex;
+    static std::vector<Entry> entries;
+    const std::array<Expr, 3> composed = compose(forward);
+    const Expr x = Expr::input();
+    const Expr place = place_of(x, peak);
+    const std::lock_guard lock(mutex);
+    auto entry = std::find_if(entries.begin(), entries.end(), [&](const Entry& e) {
+        return std::equal(e.forward.begin(), e.forward.end(), composed.begin(), same) &&
+               e.primaries == primaries && e.peak == peak;
+    });
+    if (entry == entries.end()) {
+        const auto make_nodes = [=] {
+            InverseCubeProblem problem;
+            problem.edge = kFittedEdge;
+            problem.place = place;
+            problem.code = peak <= 1 ? srgb_encode(x) : place;
+            problem.before = {ClampStage{0, kBrightest}, curve_stage(code_of(x))};
+            problem.forward = {ClampStage{0, 1}, curve_stage(light_of(x))};
+            problem.forward.insert(problem.forward.end(), forward.begin(), forward.end());
+            problem.primaries = primaries;
+            std::vector<double> nodes = fit_inverse_cube(problem);
+            // Where no picture leads to: light beyond the brightest is not asked for.
+            for (double& code : nodes)
+                code = std::clamp(code, -1.0, 1.0);
+            return nodes;
+        };
+        entry = entries.insert(
+            entries.end(),
+            {composed, primaries, peak, std::make_shared<const Lattice>(kFittedEdge, make_nodes)});
+    }
+    return {ClampStage{0, peak}, LatticeStage{place, entry->cube}, ClampStage{0, 1},
+            curve_stage(light_of(x))};
 }
 
 }  // namespace tonewright

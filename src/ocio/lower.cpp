@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ocio/lower.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -268,8 +271,13 @@ class Lowering {
                            return Vector3{nodes[3 * i], nodes[3 * i + 1], nodes[3 * i + 2]};
                        }),
              std::to_string(edge) + "^3 lattice");
+        // Powers of two: lattices of about the same numbers share the tables behind them.
         const auto [lo, hi] = std::minmax_element(nodes.begin(), nodes.end());
-        domain_ = {*lo, *hi};
+        const auto outwards = [](double x) {
+            return x > 0 ? std::exp2(std::ceil(std::log2(x))) : 0.0;
+        };
+        const double largest = outwards(std::max(-*lo, *hi));
+        domain_ = {*lo < 0 ? -largest : 0, largest};
     }
 
     /// @param behind  what limits the result: outside of it the cube may hold anything
@@ -439,10 +447,25 @@ std::vector<float> to_table(const Column& column) {
     return table;
 }
 
+/// The table, which is asked for nothing outside [lo, hi] and holds the values at the ends there:
+/// as short numbers, for smaller files. The next half float on either side is interpolated with.
+std::vector<float> with_short_ends(std::vector<float> table, double lo, double hi) {
+    const Column& x = halves();
+    const auto is_outside = [&](unsigned bits) { return x[bits] < lo || x[bits] > hi; };
+    for (unsigned bits = 1; bits < kHalfCount; ++bits) {
+        const bool is_next =
+            !is_outside(bits - 1) || (bits + 1 < kHalfCount && !is_outside(bits + 1));
+        if (is_outside(bits) && !is_next && bits != 0x8000)
+            table[bits] = std::strtof(fmt::format("{:.3g}", table[bits]).c_str(), nullptr);
+    }
+    return table;
+}
+
 /// A table of f, which is asked for nothing outside [lo, hi]: there the value at the end is held.
 template <class F>
 std::vector<float> table_of(double lo, double hi, const F& f) {
-    return to_table(map(halves(), [&](double x) { return f(std::clamp(x, lo, hi)); }));
+    return with_short_ends(
+        to_table(map(halves(), [&](double x) { return f(std::clamp(x, lo, hi)); })), lo, hi);
 }
 
 /// Light in stops below `unit`: positive where it is darker. Below the smallest half float, where a
@@ -528,7 +551,7 @@ AddedFunction add_function(const Column& h, double lo, double hi, double margin)
         n[bits] =
             result.sign * (result.k * std::clamp(value[bits], lo - kStop, hi + kStop) + h[bits]);
     }
-    result.forward = to_table(n);
+    result.forward = with_short_ends(to_table(n), lo - kStop, hi + kStop);
 
     // The inverse of what the table holds, its float roundings included.
     std::vector<std::pair<double, double>> pairs;
@@ -652,13 +675,13 @@ void Lowering::hexcone(const HexconeStage& stage) {
     const std::vector<float> hue = table_of(0, 1, same_number);
     int luts = 0;
     const auto lut = [&](const std::vector<float>& s, const std::vector<float>& v) {
-        result_.transform->appendTransform(make_half_lut({hue, s, v}));
+        result_.transform->appendTransform(make_half_lut({s, v, hue}));
         ++luts;
     };
     // What saturation and value become of themselves and each other.
     const auto mix = [&](double ss, double sv, double vs, double vv, double s_offset = 0) {
-        const OCIO::MatrixTransformRcPtr m = make_matrix({{{1, 0, 0}, {0, ss, sv}, {0, vs, vv}}});
-        m->setOffset(std::array{0.0, s_offset, 0.0, 0.0}.data());
+        const OCIO::MatrixTransformRcPtr m = make_matrix({{{ss, sv, 0}, {vs, vv, 0}, {0, 0, 1}}});
+        m->setOffset(std::array{s_offset, 0.0, 0.0, 0.0}.data());
         result_.transform->appendTransform(m);
     };
     constexpr double kUnseen = 48;  // stops below 1 of what has no effect
@@ -669,6 +692,10 @@ void Lowering::hexcone(const HexconeStage& stage) {
         table_of(0, kHalfMax, [&](double x) { return columns.stops.of(x); });
 
     emit(make_fixed(OCIO::FIXED_FUNCTION_RGB_TO_HSV, OCIO::TRANSFORM_DIR_FORWARD), "HSV");
+    // Saturation, value, hue: where OpenColorIO 2.1 inverts a falling half-domain table, it makes 0
+    // of all that is negative in the third channel. Hue is not.
+    const Matrix3 hue_last = {{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}}};
+    result_.transform->appendTransform(make_matrix(hue_last));
     if (stage.offset.is_constant(0)) {
         // (saturation, p) -> stops -> (stops of saturation, n). One table from p to n would be
         // coarser.
@@ -711,6 +738,7 @@ void Lowering::hexcone(const HexconeStage& stage) {
                      return stops < kAllLost - 0.5 ? std::exp2(-std::max(stops, 0.0)) : 0;
                  }),
         to_table(columns.value));
+    result_.transform->appendTransform(make_matrix(inverse(hue_last)));
     note(std::to_string(luts) + " half LUTs with matrices between");
     emit(make_fixed(OCIO::FIXED_FUNCTION_RGB_TO_HSV, OCIO::TRANSFORM_DIR_INVERSE), "HSV inverse");
     domain_ = {};

@@ -84,6 +84,7 @@ OCIO::GroupTransformRcPtr LutFiles::externalise(const OCIO::GroupTransformRcPtr&
         file->setSrc(file_for(table, stem + "_" + part, what).c_str());
         file->setInterpolation(table.dimension == 3 ? OCIO::INTERP_TETRAHEDRAL
                                                     : OCIO::INTERP_LINEAR);
+        file->setDirection(t->getDirection());
         out->appendTransform(file);
     }
     return out;

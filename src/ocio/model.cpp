@@ -505,6 +505,10 @@ std::string config_view_name(const std::string& name, const ResolvedOperator& op
     return name + fmt::format(" - HDR {:g} nits", peak);
 }
 
+std::string output_space_name(const std::string& view, const std::string& display) {
+    return "Output - " + view + " - " + display;
+}
+
 ConfigModel make_config_model(const ConfigOptions& options) {
     ConfigModel model;
     model.name = kConfigName;

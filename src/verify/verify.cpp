@@ -15,6 +15,7 @@
 #include "ocio/gpu.h"
 #include "ocio/lower.h"
 #include "ocio/read_config.h"
+#include "ocio/round_trip.h"
 #include "tonewright/engine.h"
 #include "tonewright/ocio.h"
 
@@ -187,11 +188,8 @@ class Comparison {
         return std::min({v[0], v[1], v[2]}) >= 0;
     }
 
-    /// Worst channel's error less what is allowed for it. Of a code value, or of light in units in
-    /// which sRGB's slope at black turns it into code values, whichever is less: a display with a
-    /// pure power has an infinite slope there, where light too faint to see is many code values.
+    /// Worst channel's error less what is allowed for it.
     [[nodiscard]] double excess(std::size_t i, const float* shown, const Vector3& allowed) const {
-        constexpr double kSrgbSlopeAtBlack = 12.92;
         double worst = 0;
         const Vector3 true_light = decode_({truth_[3 * i], truth_[3 * i + 1], truth_[3 * i + 2]});
         const Vector3 shown_light =
@@ -201,7 +199,7 @@ class Comparison {
             const double code = static_cast<double>(shown[c]);
             const double truth = truth_[3 * i + c];
             const double light = std::fabs(shown_light[c] - true_light[c]);
-            const double error = std::min(std::fabs(code - truth), kSrgbSlopeAtBlack * light);
+            const double error = visible_error(std::fabs(code - truth), light);
             if (std::isnan(code)) return kInfinity;
             worst = std::max(worst, error - allowed[c]);
         }
@@ -245,6 +243,31 @@ class Comparison {
     std::vector<RoundingPoint> rounding_points_;
 };
 
+/// What the structure of a way back allows to 99.9 % of the colors, in code values; 0 where it has
+/// none of its own.
+double round_trip_bound(const OCIO::ConstProcessorRcPtr& back, const ResolvedOperator& op) {
+    // Inverse tables of 16384 entries; a curve that is steep next to white has few of them there.
+    double bound = 1e-3;
+    const OCIO::GroupTransformRcPtr group = back->createGroupTransform();
+    for (int i = 0; i < group->getNumTransforms(); ++i) {
+        const OCIO::TransformRcPtr part = group->getTransform(i);
+        if (const auto f = OCIO_DYNAMIC_POINTER_CAST<OCIO::FixedFunctionTransform>(part)) {
+            // Tables that OpenColorIO inverts, by default over half floats, in HSV; the ACES
+            // functions bring back what they have clipped in their own way.
+            bound = std::max(bound, f->getStyle() == OCIO::FIXED_FUNCTION_RGB_TO_HSV ? 3e-3 : 2e-2);
+        }
+        if (!OCIO_DYNAMIC_POINTER_CAST<OCIO::Lut3DTransform>(part)) continue;
+        if (part->getDirection() == OCIO::TRANSFORM_DIR_INVERSE) return 0;
+        // An inverse that mixes channels, in 33 or 37 nodes a side; a formula may have corners.
+        const Pipeline stages = op.build();
+        const bool is_lattice = std::any_of(stages.begin(), stages.end(), [](const Stage& stage) {
+            return std::holds_alternative<LatticeStage>(stage);
+        });
+        bound = std::max(bound, is_lattice || op.op->build_inverse ? 2.5e-2 : 5e-2);
+    }
+    return bound;
+}
+
 /// OpenColorIO's built-in transform that the view's operator equals, on its display; null where
 /// there is none, or this OpenColorIO has it not.
 OCIO::ConstProcessorRcPtr builtin_processor(const View& view) {
@@ -265,6 +288,55 @@ OCIO::ConstProcessorRcPtr builtin_processor(const View& view) {
     whole.transform->appendTransform(builtin);
     whole.transform->appendTransform(lower_to_ocio(behind).transform);
     return make_processor(whole);
+}
+
+/// Rows of the way back from the config's output space, in the forms that applications have it.
+template <class Add>
+void add_way_back(const OCIO::ConstConfigRcPtr& config, const View& view, const std::string& space,
+                  const ProbeSet& probes, bool with_gpu, const Add& add) {
+    if (!config->getColorSpace(space.c_str())) return;
+    ParityRow row;
+    row.op = view.op.label;
+    row.display = view.display;
+    if (view.op.op->is_diagnostic) {
+        row.form = "and back";
+        row.note = "none: many colors are shown as one";
+        add(row);
+        return;
+    }
+    const OCIO::ConstProcessorRcPtr back =
+        config->getProcessor(space.c_str(), config_space_name(view.input).c_str());
+    row.bound = round_trip_bound(back, view.op);
+    row.lowering = "config: " + space;
+    if (row.bound == 0) {
+        row.form = "and back";
+        row.note = "none: no table leads back, only OpenColorIO's own inversion of a cube";
+        add(row);
+        return;
+    }
+    // A fifth of the colors: two more passes through every form.
+    const RoundTrip trip(view, probes, 5);
+    const auto measure = [&](const std::string& form, const RoundTrip::WayBack& run) {
+        ParityRow measured = row;
+        measured.form = form;
+        const auto [errors, is_finite] = trip.measure(run);
+        measured.max = measured.max_all = errors.max;
+        measured.p999 = measured.max_beyond_rounding = errors.p999;
+        measured.mean = errors.mean;
+        measured.is_total = is_finite;
+        measured.is_ok = is_finite && errors.p999 <= measured.bound;
+        add(measured);
+    };
+    for (const bool is_default : {false, true}) {
+        const OcioCpu cpu(back,
+                          is_default ? OCIO::OPTIMIZATION_DEFAULT : OCIO::OPTIMIZATION_LOSSLESS);
+        measure(is_default ? "back cpu default" : "back cpu lossless",
+                [&](const float* in, float* out, std::size_t n) { cpu.run_rgb(in, out, n); });
+    }
+    if (!with_gpu || !OcioGpu::unavailable_reason().empty()) return;
+    const OcioGpu gpu(back);
+    measure("back gpu",
+            [&](const float* in, float* out, std::size_t n) { gpu.run_rgb(in, out, n); });
 }
 
 double rounded_to_half(double x) {
@@ -475,6 +547,15 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
                     .run_rgb(probes.rgb.data(), shown.data(), probes.size());
             });
             rows.back().note = "a model of Blender's viewport";
+        }
+        if (is_of_config) {
+            const std::string space = output_space_name(
+                config_view_name(view_name(view.op), view.op, find_display(view.display)),
+                find_display(view.display).title);
+            add_way_back(config, view, space, probes, options.with_gpu, [&](const ParityRow& row) {
+                rows.push_back(row);
+                if (on_row) on_row(rows.back());
+            });
         }
         if (!options.with_gpu) continue;
         if (const std::string reason = OcioGpu::unavailable_reason(); !reason.empty()) {

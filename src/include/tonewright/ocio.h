@@ -91,6 +91,9 @@ inline constexpr const char* kConfigName = "tonewright";
 [[nodiscard]] std::string config_view_name(const std::string& name, const ResolvedOperator& op,
                                            const Display& display);
 
+/// The color space that is such a view, for write nodes: "Output - AgX - sRGB".
+[[nodiscard]] std::string output_space_name(const std::string& view, const std::string& display);
+
 /// Name of the config's space for an input space id: "lin_rec709" -> "Linear Rec.709". The config
 /// has none for a camera's.
 [[nodiscard]] std::string config_space_name(std::string_view input_id);

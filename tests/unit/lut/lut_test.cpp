@@ -794,6 +794,35 @@ TEST(Numbers, AreShortAndHaveNoMinusZero) {
     EXPECT_EQ(text, "0 0.12346");
 }
 
+TEST(Numbers, CompactOnesAreWithinTheirPrecision) {
+    for (const float x : hard_floats(200000)) {
+        std::string text;
+        append_compact(text, x);
+        const double size = std::fabs(static_cast<double>(x));
+        // Half of the last place: six digits, or eight decimals up to 1, or as many as a float has.
+        double bound = 5e-6 * size;
+        if (size >= 1e-3) bound = 5e-9;
+        if (size >= 1) bound = size * 0x1p-24;
+        EXPECT_NEAR(static_cast<double>(std::strtof(text.c_str(), nullptr)), static_cast<double>(x),
+                    bound * 1.001 + size * 0x1p-24 + 1e-14)
+            << text;
+    }
+}
+
+TEST(Numbers, LoseTheZeroBeforeThePoint) {
+    const auto short_of = [](std::string text) {
+        text.insert(0, "1 ");
+        drop_zero_before_point(text, 2);
+        return text.substr(2);
+    };
+    EXPECT_EQ(short_of("0.25"), ".25");
+    EXPECT_EQ(short_of("-0.25"), "-.25");
+    EXPECT_EQ(short_of("0"), "0");
+    EXPECT_EQ(short_of("10.5"), "10.5");
+    EXPECT_EQ(short_of("-1e-05"), "-1e-05");
+    EXPECT_EQ(short_of(""), "");
+}
+
 TEST(Numbers, HashIsFnv1a) {
     // The published test values of FNV-1a, 32 bits.
     EXPECT_EQ(content_hash(""), "811c9dc5");

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "engine/error_metric.h"
+#include "engine/probe.h"
+#include "tonewright/engine.h"
+#include "tonewright/view.h"
+
+namespace tonewright {
+
+/// An error of a code value, or of its light in units in which sRGB's slope at black turns it into
+/// code values, whichever is less: a display with a pure power has an infinite slope there, where
+/// light too faint to see is many code values.
+[[nodiscard]] double visible_error(double code, double light);
+
+/// How far code values that a view makes are from themselves after a way back and the view once
+/// more, by the reference.
+class RoundTrip {
+  public:
+    /// @param probes  scene light; what has negative channels is left out
+    /// @param one_of  so many of them, one is taken
+    RoundTrip(const View& view, const ProbeSet& probes, std::size_t one_of = 1);
+
+    /// Code values -> scene light in the view's input space, of so many pixels.
+    using WayBack = std::function<void(const float* in, float* out, std::size_t count)>;
+    struct Result {
+        ErrorStats errors;
+        bool is_finite = true;
+    };
+    [[nodiscard]] Result measure(const WayBack& back) const;
+
+  private:
+    [[nodiscard]] std::vector<double> show(const std::vector<float>& scene) const;
+
+    ReferenceEngine engine_;
+    ReferenceEngine decode_;
+    std::vector<float> codes_;
+};
+
+}  // namespace tonewright

@@ -137,8 +137,8 @@ void add_bake(CLI::App& program, int&) {
         ->check(CLI::IsMember({2, 4}))
         ->capture_default_str();
     command->add_option("--decimals", options->decimals,
-                        "of the numbers in a cube, 3..9 (default: as many as a float has); 4 are "
-                        "finer than its error between the nodes");
+                        "of the numbers in a cube, 3..9 (default: as many as a float has); 4 round "
+                        "by 5e-5, less than most cubes are off between their nodes");
     CLI::Option* one = command->add_flag(
         "--1d", options->one, "a 1D table; the view must be per channel in its own space");
     command->add_flag("--3d", options->three, "a cube even where a 1D table would do")

@@ -26,8 +26,7 @@ void add_lut_options(CLI::App& command, LutOptions& options, CLI::Option* op,
 
 /// @throws Error      for trilinear where there is no such
 /// @throws FileError  for a file that is missing or malformed
-[[nodiscard]] LutFile open_lut(const std::string& path,
-                               const std::string& interpolation = "auto");
+[[nodiscard]] LutFile open_lut(const std::string& path, const std::string& interpolation = "auto");
 
 /// What stands before the LUT: light of --input, with --exposure, as --input-encoding in the
 /// primaries of --lut-space. Empty without --input-encoding: colors go in as they are.

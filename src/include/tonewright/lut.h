@@ -80,8 +80,9 @@ struct LutRequest {
     std::optional<int> bits;
     /// Of the ICC's specification: 2 (more programs read it) or 4.
     int icc_version = 2;
-    /// Of the numbers in a `cube`, [3, 9]; where none is given, as many as a float has. Four are
-    /// finer than what any cube is off between its nodes, in half the space.
+    /// Of the numbers in a `cube`, [3, 9]; where none is given, as many as a float has. Four round
+    /// by 5e-5 at most, less than cubes of 33 points are off between their nodes, in half the
+    /// space.
     std::optional<int> decimals;
 };
 

@@ -150,8 +150,9 @@ const std::vector<LutHost>& all_lut_hosts() {
          "srgb",
          {},
          "trilinear",
-         "in a compositing network: Lookup COP > LUT File, behind a conversion to ACEScct; MPlay, "
-         "the same: LUT button > Load LUT",
+         "in a compositing network: Lookup COP with the file, behind a conversion to ACEScct; to "
+         "look "
+         "only: right mouse button on the viewer's LUT button, load it",
          ""},
         {"icc", "ICC device link: Photoshop, ImageMagick, LittleCMS", LutFormat::icc, 33, "srgb",
          "srgb", 16, "tetrahedral",

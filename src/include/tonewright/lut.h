@@ -168,8 +168,8 @@ struct LutClipping {
 };
 /// Of a half-domain table: nothing.
 [[nodiscard]] LutClipping measure_clipping(const LutRequest& request, const Lut& lut);
-/// "above +6.50 stops from 0.18, up to +9.25, by up to 3.1e-02; below -10.00 stops, down to black, by
-/// up to 1.8e-03"; empty where nothing is.
+/// "above +6.50 stops from 0.18, up to +9.25, by up to 3.1e-02; below -10.00 stops, down to black,
+/// by up to 1.8e-03"; empty where nothing is.
 [[nodiscard]] std::string to_string(const LutClipping& clipping);
 
 /// Which values the nodes of a cube have: sampled, fitted, or of these the one that is nearer in

@@ -9,31 +9,20 @@
 #include "tonewright/image.h"
 
 namespace tonewright {
-namespace {
 
-/// Standard error leads nowhere while it lives. For a program with one thread of its own.
-class QuietStderr {
-  public:
-    QuietStderr() : saved_(::dup(STDERR_FILENO)) {
-        std::fflush(stderr);
-        const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
-        if (saved_ >= 0 && nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
-        if (nowhere >= 0) ::close(nowhere);
-    }
-    ~QuietStderr() {
-        std::fflush(stderr);
-        if (saved_ < 0) return;
-        ::dup2(saved_, STDERR_FILENO);
-        ::close(saved_);
-    }
-    QuietStderr(const QuietStderr&) = delete;
-    QuietStderr& operator=(const QuietStderr&) = delete;
+QuietStderr::QuietStderr() : saved_(::dup(STDERR_FILENO)) {
+    std::fflush(stderr);
+    const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+    if (saved_ >= 0 && nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
+    if (nowhere >= 0) ::close(nowhere);
+}
 
-  private:
-    int saved_;
-};
-
-}  // namespace
+QuietStderr::~QuietStderr() {
+    std::fflush(stderr);
+    if (saved_ < 0) return;
+    ::dup2(saved_, STDERR_FILENO);
+    ::close(saved_);
+}
 
 OIIO::ImageBuf read_picture(const std::string& path) {
     const QuietStderr quiet;

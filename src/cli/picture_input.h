@@ -7,8 +7,24 @@
 
 namespace tonewright {
 
-/// read_image() with the terminal kept clean: libraries below OpenImageIO (libpng, libtiff) print
-/// their complaints themselves, and the error that comes back says the same in our one line.
+/// Standard error leads nowhere while it lives: libraries below OpenImageIO (libpng, libtiff) print
+/// their complaints themselves, and the error that comes back says the same in our one line. For a
+/// program with one of these at a time.
+class QuietStderr {
+  public:
+    QuietStderr();
+    ~QuietStderr();
+    QuietStderr(const QuietStderr&) = delete;
+    QuietStderr& operator=(const QuietStderr&) = delete;
+
+    /// The file descriptor of what standard error was; -1: none.
+    [[nodiscard]] int before() const { return saved_; }
+
+  private:
+    int saved_;
+};
+
+/// read_image() with the terminal kept clean.
 [[nodiscard]] OIIO::ImageBuf read_picture(const std::string& path);
 
 }  // namespace tonewright

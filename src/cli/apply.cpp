@@ -41,7 +41,8 @@ class ProgressBar {
         next_ = seconds + kInterval;
         constexpr std::size_t kWidth = 40;
         const std::size_t filled = kWidth * done / count_;
-        const double left = seconds / static_cast<double>(done) * static_cast<double>(count_ - done);
+        const double left =
+            seconds / static_cast<double>(done) * static_cast<double>(count_ - done);
         show(fmt::format("\r[{}{}] {}/{} frames, {:.1f} per second, {:.0f} s left\033[K",
                          std::string(filled, '#'), std::string(kWidth - filled, ' '), done, count_,
                          static_cast<double>(done) / seconds, left));
@@ -104,15 +105,17 @@ void add_apply(CLI::App& program, int& exit_code) {
         bool no_unpremult = false;
     };
     auto options = std::make_shared<Options>();
-    CLI::App* command = program.add_subcommand("apply", "tone map a picture, or the frames of a shot");
+    CLI::App* command =
+        program.add_subcommand("apply", "tone map a picture, or the frames of a shot");
     command->add_option("in", options->in, "picture, any format that OpenImageIO reads")
         ->required();
     command->add_option("out", options->out, "picture to write; the extension says the format")
         ->required();
     command->add_option("--operator", options->op, "operator, or operator:preset")->required();
-    command->add_option("--frames", options->frames,
-                        "frames such as 1001-1100, 1-9x2 (every second) or 1,5,10-20: `in` and `out` "
-                        "have %04d or #### where the number stands");
+    command->add_option(
+        "--frames", options->frames,
+        "frames such as 1001-1100, 1-9x2 (every second) or 1,5,10-20: `in` and `out` "
+        "have %04d or #### where the number stands");
     add_view_options(*command, *options);
     command->add_option("-d", options->type,
                         "pixel type of the output: uint8, uint16, half or float");
@@ -121,8 +124,10 @@ void add_apply(CLI::App& program, int& exit_code) {
                      "parameters that a picture has (its largest luminance, ...) and --set does "
                      "not name: `picture` or `defaults`")
         ->capture_default_str();
-    command->add_option("--threads", options->threads,
-                     "threads that read, tone map and write; 0 = all cores, 1 = one after the other")
+    command
+        ->add_option(
+            "--threads", options->threads,
+            "threads that read, tone map and write; 0 = all cores, 1 = one after the other")
         ->capture_default_str()
         ->check(CLI::Range(0, 1024));
     CLI::Option* yes = command->add_flag(

@@ -48,9 +48,13 @@ class PictureReader {
     OIIO::ImageSpec spec_;
 };
 
-/// Rows that are read, worked on and written at a time: some 16 MiB of them, at least 64 (formats
-/// compress up to 32 rows together, OpenEXR's threads one such block each), in multiples of `step`.
-[[nodiscard]] int rows_of_batch(std::size_t bytes_per_row, int step);
+/// Bytes that are read, worked on and written at a time.
+inline constexpr std::size_t kBatchBytes = std::size_t{16} << 20;
+
+/// Rows of a batch: at least 64 (formats compress up to 32 rows together, OpenEXR's threads one
+/// such block each), and a multiple of `step`.
+[[nodiscard]] int rows_of_batch(std::size_t bytes_per_row, int step,
+                                std::size_t batch_bytes = kBatchBytes);
 
 /// Reads a picture to its end and keeps nothing of it.
 /// @throws FileError  when it is not whole.

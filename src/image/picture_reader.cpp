@@ -52,7 +52,8 @@ void PictureReader::check(bool was_read) const {
     if (was_read && !in_->has_error()) return;
     const std::string reported = in_->geterror();
     // Readers of DPX and PNM say nothing about a file that ends too early.
-    cannot_read(path_, reported.empty() ? "the file is truncated or damaged" : first_line(reported));
+    cannot_read(path_,
+                reported.empty() ? "the file is truncated or damaged" : first_line(reported));
 }
 
 void PictureReader::read_rows(int ybegin, int yend, std::byte* to) {
@@ -72,10 +73,9 @@ ImageBuf PictureReader::read_all() {
     return image;
 }
 
-int rows_of_batch(std::size_t bytes_per_row, int step) {
-    constexpr std::size_t kBytes = std::size_t{16} << 20;
+int rows_of_batch(std::size_t bytes_per_row, int step, std::size_t batch_bytes) {
     constexpr int kLeast = 64;
-    const auto rows = static_cast<int>(kBytes / std::max<std::size_t>(bytes_per_row, 1));
+    const auto rows = static_cast<int>(batch_bytes / std::max<std::size_t>(bytes_per_row, 1));
     const int unit = (kLeast + step - 1) / step * step;
     return std::max(rows / unit, 1) * unit;
 }

@@ -10,8 +10,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
-#include <cstdio>
 #include <cstdint>
+#include <cstdio>
 #include <filesystem>
 #include <numeric>
 #include <string_view>
@@ -277,8 +277,8 @@ void PictureWriter::write_rows(const ImageBuf& rows) {
         fitted = &changed;
     };
     if (!channels_.empty()) {
-        change(OIIO::ImageBufAlgo::channels(*fitted, static_cast<int>(channels_.size()),
-                                            channels_));
+        change(
+            OIIO::ImageBufAlgo::channels(*fitted, static_cast<int>(channels_.size()), channels_));
     }
     if (window_) {
         // Black above the first row and below the last goes with them.
@@ -301,12 +301,11 @@ void PictureWriter::write_rows(const ImageBuf& rows) {
 
 void PictureWriter::write_fitted(const ImageBuf& rows) {
     const ROI part = rows.roi();
-    const bool written =
-        part.height() == out_->spec().height
-            ? rows.write(out_.get())
-            : out_->write_scanlines(part.ybegin, part.yend, part.zbegin, rows.spec().format,
-                                    rows.localpixels(), rows.pixel_stride(),
-                                    rows.scanline_stride());
+    const bool written = part.height() == out_->spec().height
+                             ? rows.write(out_.get())
+                             : out_->write_scanlines(part.ybegin, part.yend, part.zbegin,
+                                                     rows.spec().format, rows.localpixels(),
+                                                     rows.pixel_stride(), rows.scanline_stride());
     check_disk();
     if (!written) fail(first_line(rows.has_error() ? rows.geterror() : out_->geterror()));
 }

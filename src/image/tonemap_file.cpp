@@ -20,6 +20,7 @@
 #include "image/picture_file.h"
 #include "image/scene_meter.h"
 #include "image/source_picture.h"
+#include "image/tonemap_file.h"
 #include "tonewright/image.h"
 
 namespace tonewright {
@@ -30,7 +31,8 @@ using OIIO::ImageSpec;
 
 int thread_count(int nthreads) {
     if (nthreads == 0) OIIO::getattribute("threads", nthreads);
-    return nthreads > 0 ? nthreads : static_cast<int>(std::max(std::thread::hardware_concurrency(), 1U));
+    return nthreads > 0 ? nthreads
+                        : static_cast<int>(std::max(std::thread::hardware_concurrency(), 1U));
 }
 
 /// The spec of rows [ybegin, yend) of a picture.
@@ -58,7 +60,7 @@ ImageSpec result_spec(const Tonemapper& tonemapper, const ImageSpec& source) {
     return spec;
 }
 
-/// The numbers of a spec alone: rows have no use for the texts of their picture. 
+/// The numbers of a spec alone: rows have no use for the texts of their picture.
 ImageSpec without_metadata(ImageSpec spec) {
     const int unassociated = spec.get_int_attribute("oiio:UnassociatedAlpha", 0);
     spec.extra_attribs.clear();
@@ -77,7 +79,7 @@ struct Batch {
 class FilePass {
   public:
     FilePass(const Tonemapper& tonemapper, PictureReader& reader, PictureWriter& writer,
-             int nthreads)
+             int nthreads, std::size_t batch_bytes)
         : tonemapper_(tonemapper),
           reader_(reader),
           writer_(writer),
@@ -88,7 +90,7 @@ class FilePass {
         result_ = without_metadata(result);
         result_.set_format(writer.row_type());
         step_ = rows_of_batch(source_.scanline_bytes() + result_.scanline_bytes(),
-                              reader.row_step());
+                              reader.row_step(), batch_bytes);
     }
 
     void run_all() {
@@ -195,14 +197,14 @@ class FilePass {
     int rows_done_ = 0;
 };
 
-SceneStatistics measure_file(const std::string& path, const TonemapOptions& options,
-                             int nthreads) {
+SceneStatistics measure_file(const std::string& path, const TonemapOptions& options, int nthreads,
+                             std::size_t batch_bytes) {
     for (const SceneMeter::Cover cover : SceneMeter::kTries) {
         PictureReader reader(path, nthreads);
         const ImageSpec& spec = reader.spec();
         SceneMeter meter(spec, options.input, options.unpremult, cover, nthreads);
         const ImageSpec rows = without_metadata(spec);
-        const int step = rows_of_batch(spec.scanline_bytes(), reader.row_step());
+        const int step = rows_of_batch(spec.scanline_bytes(), reader.row_step(), batch_bytes);
         const int bottom = spec.y + spec.height;
         std::vector<std::byte> pixels(spec.scanline_bytes() * static_cast<std::size_t>(step));
         for (int y = spec.y; y < bottom; y += step) {
@@ -216,8 +218,11 @@ SceneStatistics measure_file(const std::string& path, const TonemapOptions& opti
     return {};
 }
 
-void tonemap_one(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
-                 const OIIO::TypeDesc& type, int nthreads) {
+}  // namespace
+
+void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
+                        const OIIO::TypeDesc& type, int nthreads, std::size_t batch_bytes) {
+    nthreads = thread_count(nthreads);
     PictureWriter writer(out, type, nthreads);  // a wrong name is told before a large file is read
     PictureReader reader(in, nthreads);
     check_pixel_type("source", reader.spec().format);
@@ -230,17 +235,16 @@ void tonemap_one(const Tonemapper& tonemapper, const std::string& in, const std:
     }
     std::optional<Tonemapper> own;
     if (tonemapper.takes_statistics()) {
-        own = tonemapper.with_statistics(measure_file(in, tonemapper.options(), nthreads));
+        own = tonemapper.with_statistics(
+            measure_file(in, tonemapper.options(), nthreads, batch_bytes));
     }
-    FilePass(own ? *own : tonemapper, reader, writer, nthreads).run_all();
+    FilePass(own ? *own : tonemapper, reader, writer, nthreads, batch_bytes).run_all();
 }
-
-}  // namespace
 
 void tonemap_file(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
                   const OIIO::TypeDesc& type, int nthreads) {
     try {
-        tonemap_one(tonemapper, in, out, type, thread_count(nthreads));
+        tonemap_in_batches(tonemapper, in, out, type, nthreads, kBatchBytes);
     } catch (const FileError&) {
         throw;
     } catch (const Error& e) {

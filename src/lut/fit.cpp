@@ -5,11 +5,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <future>
 #include <numbers>
-#include <thread>
 
 #include "engine/probe.h"
+#include "lut/in_parallel.h"
 #include "tonewright/engine.h"
 
 // With weights that interpolate linearly inside each of a cell's six tetrahedra, the normal matrix
@@ -50,21 +49,6 @@ struct Sample {
     std::array<float, 3> code;
 };
 
-/// Runs f(0) ... f(count - 1) on threads; what they throw is thrown.
-template <class F>
-void in_parallel(std::size_t count, unsigned thread_count, const F& f) {
-    const auto run = [&](std::size_t first) {
-        for (std::size_t i = first; i < count; i += thread_count)
-            f(i);
-    };
-    std::vector<std::future<void>> others;
-    for (std::size_t first = 1; first < std::min<std::size_t>(thread_count, count); ++first)
-        others.push_back(std::async(std::launch::async, run, first));
-    run(0);
-    for (std::future<void>& other : others)
-        other.get();
-}
-
 class Fit {
   public:
     Fit(const CubeProblem& problem, const CubeFitOptions& options)
@@ -72,8 +56,7 @@ class Fit {
           n_(static_cast<std::size_t>(problem.edge)),
           node_count_(n_ * n_ * n_),
           pad_(n_ * n_ + n_ + 1),
-          threads_(options.thread_count > 0 ? options.thread_count
-                                            : std::max(1U, std::thread::hardware_concurrency())) {
+          threads_(options.thread_count) {
         for (std::size_t mask = 0; mask < 8; ++mask)
             step_[mask] = ((mask >> 2 & 1) * n_ + (mask >> 1 & 1)) * n_ + (mask & 1);
         const double wanted = options.samples_per_node * static_cast<double>(node_count_);

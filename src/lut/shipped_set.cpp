@@ -4,6 +4,7 @@
 #include <array>
 
 #include "engine/error_metric.h"
+#include "lut/in_parallel.h"
 #include "lut/numbers.h"
 #include "tonewright/lut.h"
 
@@ -95,7 +96,6 @@ std::string readme(const std::vector<Row>& rows) {
 
 std::vector<GeneratedFile> make_shipped_luts() {
     std::vector<Row> rows;
-    std::vector<GeneratedFile> files;
     const auto add = [&](const Operator& op, const char* encoding, LutDimension dimension,
                          std::optional<int> size, const std::string& name) {
         Row row;
@@ -105,14 +105,7 @@ std::vector<GeneratedFile> make_shipped_luts() {
             make_view(resolve_operator(op.id), row.request.encoding.default_input, 0, "srgb");
         row.request.dimension = dimension;
         row.request.size = size;
-        row.lut = sample_lut(row.request);
-        row.error = measure_lut(row.lut, row.request);
-        if (row.lut.dimension == 3) row.trilinear = measure_lut(row.lut, row.request, true);
         row.path = op.id + "/" + name;
-        std::string contents = write_lut(row.lut, row.request, row.error);
-        row.hash = content_hash(contents);
-        files.push_back({row.path, std::move(contents)});
-        row.lut.values.clear();
         rows.push_back(std::move(row));
     };
     for (const char* id : kShipped) {
@@ -120,6 +113,16 @@ std::vector<GeneratedFile> make_shipped_luts() {
         add(op, "acescct", LutDimension::three, 33, op.id + "_acescct_to_srgb_33.cube");
         add(op, "log2", LutDimension::automatic, std::nullopt, op.id + "_log2_to_srgb.cube");
     }
+    std::vector<GeneratedFile> files(rows.size());
+    in_parallel(rows.size(), 0, [&](std::size_t i) {
+        Row& row = rows[i];
+        row.lut = sample_lut(row.request);
+        row.error = measure_lut(row.lut, row.request);
+        if (row.lut.dimension == 3) row.trilinear = measure_lut(row.lut, row.request, true);
+        files[i] = {row.path, write_lut(row.lut, row.request, row.error)};
+        row.hash = content_hash(files[i].contents);
+        row.lut.values.clear();
+    });
     files.push_back({"README.md", readme(rows)});
     files.push_back({"MANIFEST.csv", manifest(rows)});
     return files;

@@ -171,17 +171,17 @@ class FilePass {
                 free.push(*batch);
             }
         };
-        std::thread reader, writer;
+        std::jthread reader, writer;
         guarded([&] {
-            reader = std::thread([&] { guarded(read_batches); });
-            writer = std::thread([&] { guarded(write_batches); });
+            reader = std::jthread([&] { guarded(read_batches); });
+            writer = std::jthread([&] { guarded(write_batches); });
             while (const std::optional<Batch*> batch = read_ones.pop()) {
                 tonemap(**batch);
                 done.push(*batch);
             }
             done.close();
         });
-        for (std::thread* thread : {&reader, &writer}) {
+        for (std::jthread* thread : {&reader, &writer}) {
             if (thread->joinable()) thread->join();
         }
         if (error) std::rethrow_exception(error);
@@ -276,12 +276,10 @@ void tonemap_files(const Tonemapper& tonemapper, std::vector<FrameFiles>& frames
             if (done) done(done_count);
         }
     };
-    std::vector<std::thread> others;
+    std::vector<std::jthread> others;  // which join when they are destroyed
     for (std::size_t i = 1; i < workers; ++i)
         others.emplace_back(work);
     work();
-    for (std::thread& thread : others)
-        thread.join();
 }
 
 }  // namespace tonewright

@@ -1,5 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <set>
+
 #include "cli/command.h"
+#include "cli/frames.h"
 #include "cli/lut_input.h"
 #include "cli/picture_input.h"
 #include "tonewright/engine.h"
@@ -16,9 +25,78 @@ TonemapOptions::Statistics parse_statistics(const std::string& text) {
                 did_you_mean(text, names));
 }
 
+/// How far it is, on a terminal only, from its first half second on.
+class ProgressBar {
+  public:
+    /// @param terminal  a file descriptor, or -1
+    ProgressBar(int terminal, std::size_t count)
+        : terminal_(terminal >= 0 && ::isatty(terminal) ? terminal : -1), count_(count) {}
+    ~ProgressBar() { show("\r\033[K"); }
+    ProgressBar(const ProgressBar&) = delete;
+    ProgressBar& operator=(const ProgressBar&) = delete;
+
+    void set(std::size_t done) {
+        constexpr double kInterval = 0.1;
+        const double seconds =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+        if (terminal_ < 0 || seconds < next_) return;
+        next_ = seconds + kInterval;
+        constexpr std::size_t kWidth = 40;
+        const std::size_t filled = kWidth * done / count_;
+        const double left =
+            seconds / static_cast<double>(done) * static_cast<double>(count_ - done);
+        show(fmt::format("\r[{}{}] {}/{} frames, {:.1f} per second, {:.0f} s left\033[K",
+                         std::string(filled, '#'), std::string(kWidth - filled, ' '), done, count_,
+                         static_cast<double>(done) / seconds, left));
+    }
+
+  private:
+    void show(const std::string& text) const {
+        if (terminal_ >= 0 && next_ > kFirst) (void)!::write(terminal_, text.data(), text.size());
+    }
+
+    static constexpr double kFirst = 0.5;
+    int terminal_;
+    std::size_t count_;
+    double next_ = kFirst;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// Every frame, whatever becomes of the others. @return the exit code
+int apply_to_frames(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
+                    const std::vector<int>& numbers, const OIIO::TypeDesc& type, int threads) {
+    std::vector<FrameFiles> frames;
+    std::set<std::string> names;
+    for (const int number : numbers) {
+        frames.push_back({frame_name("in", in, number), frame_name("out", out, number)});
+        if (!names.insert(frames.back().out).second)
+            throw Error(fmt::format("apply: --frames names frame {} twice; expected once", number));
+    }
+    {
+        const QuietStderr quiet;
+        ProgressBar bar(quiet.before(), frames.size());
+        tonemap_files(
+            tonemapper, frames, type, [&](std::size_t done) { bar.set(done); }, threads);
+    }
+    std::size_t failed = 0;
+    int exit_code = kOk;
+    for (const FrameFiles& frame : frames) {
+        if (frame.error.empty()) continue;
+        ++failed;
+        exit_code = std::max<int>(exit_code, frame.is_file_error ? kFile : kUsage);
+        fmt::print(stderr, "tonewright: apply: {}\n", frame.error);
+    }
+    if (failed > 0) {
+        fmt::print(stderr, "tonewright: apply: {} of {} frames failed, {} written\n", failed,
+                   frames.size(), frames.size() - failed);
+    }
+    return exit_code;
+}
+
 struct Options : ViewOptions {
     std::string in;
     std::string out;
+    std::string frames;
     std::string type;
     std::string statistics = "picture";
     int threads = 0;
@@ -59,15 +137,20 @@ void apply_lut(const Options& options, const CLI::App& command) {
 
 }  // namespace
 
-void add_apply(CLI::App& program, int&) {
+void add_apply(CLI::App& program, int& exit_code) {
     auto options = std::make_shared<Options>();
-    CLI::App* command = program.add_subcommand("apply", "tone map a picture");
+    CLI::App* command =
+        program.add_subcommand("apply", "tone map a picture, or the frames of a shot");
     command->add_option("in", options->in, "picture, any format that OpenImageIO reads")
         ->required();
     command->add_option("out", options->out, "picture to write; the extension says the format")
         ->required();
     CLI::Option* op =
         command->add_option("--operator", options->op, "operator, or operator:preset");
+    command->add_option(
+        "--frames", options->frames,
+        "frames such as 1001-1100, 1-9x2 (every second) or 1,5,10-20: `in` and `out` "
+        "have %04d or #### where the number stands");
     add_view_options(*command, *options);
     command->add_option("-d", options->type,
                         "pixel type of the output: uint8, uint16, half or float");
@@ -76,7 +159,10 @@ void add_apply(CLI::App& program, int&) {
                      "parameters that a picture has (its largest luminance, ...) and --set does "
                      "not name: `picture` or `defaults`")
         ->capture_default_str();
-    command->add_option("--threads", options->threads, "0 = all cores")
+    command
+        ->add_option(
+            "--threads", options->threads,
+            "threads that read, tone map and write; 0 = all cores, 1 = one after the other")
         ->capture_default_str()
         ->check(CLI::Range(0, 1024));
     CLI::Option* yes = command->add_flag(
@@ -87,9 +173,11 @@ void add_apply(CLI::App& program, int&) {
     add_lut_options(*command, options->lut, op,
                     {"--set", "--look", "--display", "--reference-white", "--statistics"});
     command->footer(
-        "Examples:\n  tonewright apply render.exr out.png --operator hable --exposure 1 -d uint8\n"
+        "Examples:\n"
+        "  tonewright apply render.exr out.png --operator hable --exposure 1 -d uint8\n"
+        "  tonewright apply shot.%04d.exr out.####.png --frames 1001-1100 --operator agx_blender\n"
         "  tonewright apply render.exr out.png --lut agx.cube --input-encoding acescct -d uint8");
-    command->callback([options, command] {
+    command->callback([options, command, &exit_code] {
         if (!options->lut.file.empty()) {
             apply_lut(*options, *command);
             return;
@@ -111,12 +199,21 @@ void add_apply(CLI::App& program, int&) {
         tonemap.statistics = parse_statistics(options->statistics);
         const Tonemapper tonemapper(tonemap);  // a wrong name is told before a large file is read
         const OIIO::TypeDesc type = options->pixel_type();
-        const OIIO::ImageBuf source = read_picture(options->in);
-        OIIO::ImageBuf result;
-        if (!tonemapper(result, source, {}, options->threads)) {
-            throw Error("apply: " + options->in + ": " + result.geterror());
+        OIIO::attribute("threads", options->threads);
+        // OpenEXR has threads of its own; there, 0 is all cores and less is none.
+        OIIO::attribute("exr_threads", options->threads == 1 ? -1 : options->threads);
+        if (!options->frames.empty()) {
+            exit_code = apply_to_frames(tonemapper, options->in, options->out,
+                                        parse_frames(options->frames), type, options->threads);
+            return;
         }
-        write_image_atomically(result, options->out, type);
+        try {
+            const QuietStderr quiet;
+            tonemap_file(tonemapper, options->in, options->out, type, options->threads);
+        } catch (const FileError& e) {
+            if (!is_frame_pattern(options->in)) throw;
+            throw FileError(std::string(e.what()) + "; for the frames of a shot: --frames 1-100");
+        }
     });
 }
 

@@ -9,6 +9,7 @@
 #include "tonewright/image.h"
 
 namespace tonewright {
+
 QuietStderr::QuietStderr() : saved_(::dup(STDERR_FILENO)) {
     std::fflush(stderr);
     const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);

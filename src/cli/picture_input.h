@@ -7,7 +7,9 @@
 
 namespace tonewright {
 
-/// Standard error leads nowhere while it lives. For a program with one thread of its own.
+/// Standard error leads nowhere while it lives: libraries below OpenImageIO (libpng, libtiff) print
+/// their complaints themselves, and the error that comes back says the same in our one line. For a
+/// program with one of these at a time.
 class QuietStderr {
   public:
     QuietStderr();
@@ -15,12 +17,14 @@ class QuietStderr {
     QuietStderr(const QuietStderr&) = delete;
     QuietStderr& operator=(const QuietStderr&) = delete;
 
+    /// The file descriptor of what standard error was; -1: none.
+    [[nodiscard]] int before() const { return saved_; }
+
   private:
     int saved_;
 };
 
-/// read_image() with the terminal kept clean: libraries below OpenImageIO (libpng, libtiff) print
-/// their complaints themselves, and the error that comes back says the same in our one line.
+/// read_image() with the terminal kept clean.
 [[nodiscard]] OIIO::ImageBuf read_picture(const std::string& path);
 
 }  // namespace tonewright

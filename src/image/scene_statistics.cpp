@@ -15,6 +15,7 @@
 #include <new>
 #include <vector>
 
+#include "image/scene_meter.h"
 #include "image/source_picture.h"
 #include "tonewright/engine.h"
 #include "tonewright/image.h"
@@ -168,17 +169,38 @@ class RowMeter {
     std::array<std::array<double, kSpan>, 4> planes_{};  // r, g, b, alpha
 };
 
-Measured measure(const ImageBuf& picture, const ColorSource& color, const ROI& roi, int nthreads) {
+}  // namespace
+
+struct SceneMeter::State {
+    ColorSource color;
+    int nthreads;
+    Measured all;
+};
+
+SceneMeter::SceneMeter(const OIIO::ImageSpec& spec, std::string_view input,
+                       TonemapOptions::Unpremult unpremult, Cover cover, int nthreads)
+    : state_(std::make_unique<State>()) {
+    const Primaries primaries = find_input_space(input).primaries;
+    state_->color = {channel_layout(spec), divides_by_alpha(spec, unpremult),
+                     rgb_to_rgb(primaries, kRec709)};
+    if (unpremult == TonemapOptions::Unpremult::no || cover == Cover::ignored)
+        state_->color.layout.alpha = -1;
+    state_->nthreads = nthreads;
+}
+
+SceneMeter::~SceneMeter() = default;
+
+void SceneMeter::add(const ImageBuf& picture, const ROI& roi) {
     std::vector<Measured> rows(static_cast<std::size_t>(roi.height()) *
                                static_cast<std::size_t>(roi.depth()));
     std::atomic<bool> unreadable = false;
     std::atomic<bool> out_of_memory = false;
     // Split between rows, never within one.
-    const OIIO::paropt threads(nthreads, OIIO::paropt::SplitDir::Y);
+    const OIIO::paropt threads(state_->nthreads, OIIO::paropt::SplitDir::Y);
     OIIO::ImageBufAlgo::parallel_image(roi, threads, [&](ROI part) {
         // No exception may leave a thread of OIIO's pool.
         try {
-            const auto meter = std::make_unique<RowMeter>(picture, color);
+            const auto meter = std::make_unique<RowMeter>(picture, state_->color);
             for (int z = part.zbegin; z < part.zend; ++z) {
                 for (int y = part.ybegin; y < part.yend; ++y) {
                     const auto row = static_cast<std::size_t>(z - roi.zbegin) *
@@ -193,32 +215,26 @@ Measured measure(const ImageBuf& picture, const ColorSource& color, const ROI& r
     });
     if (out_of_memory) throw std::bad_alloc();
     check_was_read(picture, !unreadable);
-    Measured all;
     for (const Measured& row : rows)
-        all.add(row);
-    return all;
+        state_->all.add(row);
 }
 
-}  // namespace
+bool SceneMeter::has_cover() const { return state_->all.count > 0; }
+
+SceneStatistics SceneMeter::statistics() const { return state_->all.statistics(); }
 
 SceneStatistics measure_scene(const ImageBuf& src, std::string_view input,
                               TonemapOptions::Unpremult unpremult, ROI roi, int nthreads) {
-    const Primaries primaries = find_input_space(input).primaries;
+    (void)find_input_space(input);  // a wrong name is told before a picture is opened
     check_source(src);
-    const OIIO::ImageSpec& spec = src.spec();
-    ColorSource color{channel_layout(spec), divides_by_alpha(spec, unpremult),
-                      rgb_to_rgb(primaries, kRec709)};
-    if (unpremult == TonemapOptions::Unpremult::no) color.layout.alpha = -1;
-
     const ROI window = roi.defined() ? OIIO::roi_intersection(roi, src.roi()) : src.roi();
     if (window.width() <= 0 || window.height() <= 0 || window.depth() <= 0) return {};
-    Measured all = measure(src, color, window, nthreads);
-    if (all.count == 0) {
-        // Nothing covers anything: a channel that was never written, or light alone.
-        color.layout.alpha = -1;
-        all = measure(src, color, window, nthreads);
+    for (const SceneMeter::Cover cover : SceneMeter::kTries) {
+        SceneMeter meter(src.spec(), input, unpremult, cover, nthreads);
+        meter.add(src, window);
+        if (meter.has_cover()) return meter.statistics();
     }
-    return all.statistics();
+    return {};
 }
 
 }  // namespace tonewright

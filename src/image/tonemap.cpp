@@ -388,6 +388,17 @@ Tonemapper::~Tonemapper() = default;
 Tonemapper::Tonemapper(Tonemapper&&) noexcept = default;
 Tonemapper& Tonemapper::operator=(Tonemapper&&) noexcept = default;
 
+const TonemapOptions& Tonemapper::options() const noexcept { return state_->options; }
+
+bool Tonemapper::takes_statistics() const noexcept { return !state_->prepared; }
+
+Tonemapper Tonemapper::with_statistics(const SceneStatistics& statistics) const {
+    TonemapOptions options = state_->options;
+    options.settings = settings_for_picture(options.op, options.settings, statistics);
+    options.statistics = TonemapOptions::Statistics::defaults;
+    return Tonemapper(options);
+}
+
 bool Tonemapper::operator()(ImageBuf& dst, const ImageBuf& src, ROI roi,
                             int nthreads) const noexcept {
     try {

@@ -6,10 +6,9 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
-#include <thread>
 
 #include "engine/probe.h"
-#include "lut/parallel.h"
+#include "lut/in_parallel.h"
 #include "lut/tetrahedron.h"
 #include "tonewright/engine.h"
 
@@ -54,8 +53,7 @@ class Fit {
           n_(static_cast<std::size_t>(problem.edge)),
           node_count_(n_ * n_ * n_),
           pad_(n_ * n_ + n_ + 1),
-          threads_(options.thread_count > 0 ? options.thread_count
-                                            : std::max(1U, std::thread::hardware_concurrency())) {
+          threads_(options.thread_count) {
         for (std::size_t mask = 0; mask < 8; ++mask)
             step_[mask] = node_step(mask, n_);
         const double wanted = options.samples_per_node * static_cast<double>(node_count_);

@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "engine/probe.h"
-#include "lut/parallel.h"
+#include "lut/in_parallel.h"
 #include "lut/tetrahedron.h"
 #include "tonewright/engine.h"
 

@@ -3,11 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <thread>
 
 #include "engine/error_metric.h"
+#include "lut/in_parallel.h"
 #include "lut/numbers.h"
-#include "lut/parallel.h"
 #include "tonewright/lut.h"
 
 namespace tonewright {
@@ -230,8 +229,7 @@ std::vector<ShippedLut> bake_shipped_luts() {
         for (const std::string& id : shelf.operators)
             luts.push_back(plan(shelf, id));
     }
-    in_parallel(luts.size(), std::max(1U, std::thread::hardware_concurrency()),
-                [&](std::size_t i) { bake(luts[i]); });
+    in_parallel(luts.size(), 0, [&](std::size_t i) { bake(luts[i]); });
     return luts;
 }
 

@@ -10,6 +10,7 @@
 #include <sstream>
 #include <utility>
 
+#include "lut/in_parallel.h"
 #include "lut/numbers.h"
 #include "ocio/inverse.h"
 #include "ocio/profile_2_5.h"
@@ -321,14 +322,39 @@ void ConfigBuilder::add_untonemapped() {
     config_->setDefaultViewTransformName(kUntonemappedView);
 }
 
+struct ConfigBuilder::LoweredView {
+    Lowered forward;
+    OCIO::GroupTransformRcPtr back;  // null: none of our own
+    ViewError error;
+    ErrorStats wide;  // colors of all of AP1, of a view that is not exact
+};
+
 void ConfigBuilder::add_view_transforms() {
+    struct Part {
+        const ConfigModel::View* view;
+        const DisplayedView* shown;
+        bool is_first;
+        LoweredView lowered;
+    };
+    std::vector<Part> parts;
     for (const auto& view : model_.views) {
         displayed_[view.name] = displayed_views(view, model_.displays);
-        std::map<std::string, double> made;  // transform -> its largest error
+        std::set<std::string> made;
         for (const DisplayedView& shown : displayed_[view.name]) {
-            if (!made.contains(shown.transform))
-                made[shown.transform] = add_view_transform(view, shown, made.empty());
-            largest_errors_[view.name][shown.display->title] = made[shown.transform];
+            const bool is_first = made.empty();
+            if (made.insert(shown.transform).second) parts.push_back({&view, &shown, is_first, {}});
+        }
+    }
+    in_parallel(parts.size(), 0, [&](std::size_t i) {
+        Part& part = parts[i];
+        part.lowered = lower_view(*part.view, *part.shown, part.is_first);
+    });
+    for (const Part& part : parts) {
+        add_view_transform(*part.view, *part.shown, part.lowered);
+        for (const DisplayedView& shown : displayed_[part.view->name]) {
+            if (shown.transform == part.shown->transform)
+                largest_errors_[part.view->name][shown.display->title] =
+                    part.lowered.error.in_gamut.max;
         }
     }
 }
@@ -539,24 +565,26 @@ void ConfigBuilder::add_shared_view(const std::string& name, const std::string& 
         config_->addDisplaySharedView(display->title.c_str(), name.c_str());
 }
 
-double ConfigBuilder::add_view_transform(const ConfigModel::View& view, const DisplayedView& shown,
-                                         bool is_first) {
+ConfigBuilder::LoweredView ConfigBuilder::lower_view(const ConfigModel::View& view,
+                                                     const DisplayedView& shown,
+                                                     bool is_first) const {
+    LoweredView result;
     const View measured = make_view(view.op, "lin_rec709", view.exposure_stops, shown.display->id);
-    ViewError error = measure_view(measured, probes_);
-    const Lowered forward = lower_to_ocio(shown.stages, {.primaries = view.op.op->working});
-    const OCIO::GroupTransformRcPtr own_back = way_back(view, shown);
-    OCIO::GroupTransformRcPtr back = own_back;
+    ViewError& error = result.error;
+    error = measure_view(measured, probes_);
+    result.forward = lower_to_ocio(shown.stages, {.primaries = view.op.op->working});
+    result.back = way_back(view, shown);
+    OCIO::GroupTransformRcPtr back = result.back;
     if (!back) {
         back = OCIO::GroupTransform::Create();
-        for (int i = 0; i < forward.transform->getNumTransforms(); ++i)
-            back->appendTransform(forward.transform->getTransform(i));
+        for (int i = 0; i < result.forward.transform->getNumTransforms(); ++i)
+            back->appendTransform(result.forward.transform->getTransform(i));
         back->setDirection(OCIO::TRANSFORM_DIR_INVERSE);
     }
-    const bool is_diagnostic = view.op.op->is_diagnostic;
     // OpenColorIO takes seconds to invert a cube: once for a view, and of few colors.
-    const bool is_slow = !own_back && !forward.is_exact;
+    const bool is_slow = !result.back && !result.forward.is_exact;
     WayBackError& round_trip = error.back;
-    round_trip.is_measured = !is_diagnostic && (is_first || !is_slow);
+    round_trip.is_measured = !view.op.op->is_diagnostic && (is_first || !is_slow);
     if (round_trip.is_measured) {
         const ProbeSet& probes = is_slow ? few_probes_ : probes_;
         round_trip.lossless =
@@ -565,8 +593,18 @@ double ConfigBuilder::add_view_transform(const ConfigModel::View& view, const Di
             measure_round_trip(measured, back, OCIO::OPTIMIZATION_DEFAULT, probes);
         round_trip.exists = is_way_back(round_trip.lossless);
     }
-    const std::string way_back_text = describe(round_trip, is_diagnostic);
-    ways_back_[shown.transform] = way_back_text;
+    if (!error.is_exact) {
+        result.wide =
+            measure_view(make_view(view.op, "lin_ap1", view.exposure_stops, shown.display->id),
+                         wide_probes_)
+                .in_gamut;
+    }
+    return result;
+}
+
+void ConfigBuilder::add_view_transform(const ConfigModel::View& view, const DisplayedView& shown,
+                                       const LoweredView& lowered) {
+    const ViewError& error = lowered.error;
     errors_.emplace(view.name, error);
     if (!error.is_exact) cubes_.insert(shown.transform);
     std::string text = fmt::format(
@@ -574,32 +612,32 @@ double ConfigBuilder::add_view_transform(const ConfigModel::View& view, const Di
         view.description, shown.display->title, rounded_up(error.in_gamut.max),
         rounded_up(error.in_gamut.p999));
     if (!error.is_exact) {
-        const ViewError wide = measure_view(
-            make_view(view.op, "lin_ap1", view.exposure_stops, shown.display->id), wide_probes_);
         text += fmt::format(
             " A 3D table: mean {}, dE ITP at most {}; colors of all of AP1: max {}, 99.9 % {}, "
             "mean {}.",
             rounded_up(error.in_gamut.mean), rounded_up(error.delta_e),
-            rounded_up(wide.in_gamut.max), rounded_up(wide.in_gamut.p999),
-            rounded_up(wide.in_gamut.mean));
+            rounded_up(lowered.wide.max), rounded_up(lowered.wide.p999),
+            rounded_up(lowered.wide.mean));
     }
+    const std::string way_back_text = describe(error.back, view.op.op->is_diagnostic);
+    ways_back_[shown.transform] = way_back_text;
     text += way_back_text;
     OCIO::ViewTransformRcPtr vt = OCIO::ViewTransform::Create(OCIO::REFERENCE_SPACE_SCENE);
     vt->setName(shown.transform.c_str());
     vt->setDescription(text.c_str());
-    vt->setTransform(between_references(luts_.externalise(forward.transform, view.op.op->id,
-                                                          view.op.op->title, forward.is_exact),
-                                        OCIO::TRANSFORM_DIR_FORWARD),
-                     OCIO::VIEWTRANSFORM_DIR_FROM_REFERENCE);
-    if (own_back && round_trip.exists) {
+    vt->setTransform(
+        between_references(luts_.externalise(lowered.forward.transform, view.op.op->id,
+                                             view.op.op->title, lowered.forward.is_exact),
+                           OCIO::TRANSFORM_DIR_FORWARD),
+        OCIO::VIEWTRANSFORM_DIR_FROM_REFERENCE);
+    if (lowered.back && error.back.exists) {
         vt->setTransform(
-            between_references(luts_.externalise(own_back, view.op.op->id + "_inverse",
+            between_references(luts_.externalise(lowered.back, view.op.op->id + "_inverse",
                                                  view.op.op->title + ", inverse", false),
                                OCIO::TRANSFORM_DIR_INVERSE),
             OCIO::VIEWTRANSFORM_DIR_TO_REFERENCE);
     }
     config_->addViewTransform(vt);
-    return error.in_gamut.max;
 }
 
 }  // namespace tonewright

@@ -109,9 +109,12 @@ class ConfigBuilder {
     /// Of OpenColorIO 2.4 and newer: its built-in transform where ours is a cube.
     void use_builtins(const OCIO::ConfigRcPtr& config) const;
 
-    /// @return its largest error
-    double add_view_transform(const ConfigModel::View& view, const DisplayedView& shown,
-                              bool is_first);
+    /// What takes time of a view transform, on any thread.
+    struct LoweredView;
+    [[nodiscard]] LoweredView lower_view(const ConfigModel::View& view, const DisplayedView& shown,
+                                         bool is_first) const;
+    void add_view_transform(const ConfigModel::View& view, const DisplayedView& shown,
+                            const LoweredView& lowered);
 
     const ConfigModel& model_;
     OCIO::ConfigRcPtr config_;

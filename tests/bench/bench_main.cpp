@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Speed on one 1920x1080 float picture, sRGB view, in one run: memcpy, our engine on one thread and
-// on all, OpenColorIO's CPU path for the same view, and the reference engine. Ratios to memcpy
-// ("of_memcpy") are the figures to keep: they depend less on the machine.
+// Speed of the engine on one 3840x2160 RGBA float picture, sRGB view, beside memcpy of the same
+// picture and OpenColorIO's CPU path, in one run. Ratios to memcpy ("of_memcpy") are the figures to
+// keep: they depend less on the machine. table.py runs this and prints them.
 //
-//   bench --benchmark_filter='/(memcpy|hable)'
+//   tonewright_bench --benchmark_filter='^(memcpy|[a-z0-9_]+/hable$)'
+#include <OpenColorIO/OpenColorIO.h>
 #include <OpenImageIO/parallel.h>
 #include <benchmark/benchmark.h>
 
@@ -20,65 +21,54 @@
 #include "engine/probe.h"
 #include "ocio/lower.h"
 #include "tonewright/engine.h"
+#include "tonewright/lut.h"
 #include "tonewright/view.h"
 
 namespace tonewright {
 namespace {
 
-constexpr std::size_t kWidth = 1920;
-constexpr std::size_t kHeight = 1080;
+constexpr std::size_t kWidth = 3840;
+constexpr std::size_t kHeight = 2160;
 constexpr std::size_t kPixels = kWidth * kHeight;
+constexpr std::size_t kChannels = 4;
 
-/// The scene: colours between -10 and +6 stops.
-const std::vector<float>& picture(std::size_t channels) {
-    static std::vector<float> rgb, rgba;
-    std::vector<float>& pixels = channels == 3 ? rgb : rgba;
-    if (pixels.empty()) {
+/// The scene: colours between -10 and +6 stops, noise, the worst for branches and tables.
+const std::vector<float>& picture() {
+    static const std::vector<float> pixels = [] {
         ProbeRandom random(1);
-        pixels.resize(kPixels * channels);
-        for (float& x : pixels)
+        std::vector<float> made(kPixels * kChannels);
+        for (float& x : made)
             x = static_cast<float>(std::exp2(random.uniform(-10, 6)));
-    }
+        return made;
+    }();
     return pixels;
 }
 
-std::vector<float>& result(std::size_t channels) {
-    static std::vector<float> rgb(kPixels * 3), rgba(kPixels * 4);
-    return channels == 3 ? rgb : rgba;
+std::vector<float>& result() {
+    static std::vector<float> pixels(kPixels * kChannels);
+    return pixels;
 }
 
-void copy_picture(std::size_t channels) {
-    const std::vector<float>& in = picture(channels);
-    std::memcpy(result(channels).data(), in.data(), in.size() * sizeof(float));
-    benchmark::DoNotOptimize(result(channels).data());
+void copy_picture() {
+    std::memcpy(result().data(), picture().data(), picture().size() * sizeof(float));
+    benchmark::DoNotOptimize(result().data());
     benchmark::ClobberMemory();
 }
 
-/// Pixels per second of memcpy, the best of some.
-double memcpy_rate(std::size_t channels) {
-    using Clock = std::chrono::steady_clock;
-    double seconds = std::numeric_limits<double>::infinity();
-    for (int i = 0; i < 20; ++i) {
-        const auto start = Clock::now();
-        copy_picture(channels);
-        seconds = std::min(seconds, std::chrono::duration<double>(Clock::now() - start).count());
-    }
-    return static_cast<double>(kPixels) / seconds;
-}
-
-void report(benchmark::State& state, std::size_t pixels, std::size_t channels) {
-    static const double rates[2] = {memcpy_rate(3), memcpy_rate(4)};
-    const auto n = static_cast<double>(pixels);
-    state.SetItemsProcessed(static_cast<std::int64_t>(pixels) *
-                            static_cast<std::int64_t>(state.iterations()));
-    state.counters["of_memcpy"] =
-        benchmark::Counter(n / rates[channels - 3], benchmark::Counter::kIsIterationInvariantRate);
-}
-
-void copy(benchmark::State& state, std::size_t channels) {
-    for (auto _ : state)
-        copy_picture(channels);
-    report(state, kPixels, channels);
+/// Pixels per second of memcpy on one thread, the best of some.
+double memcpy_rate() {
+    static const double rate = [] {
+        using Clock = std::chrono::steady_clock;
+        double seconds = std::numeric_limits<double>::infinity();
+        for (int i = 0; i < 20; ++i) {
+            const auto start = Clock::now();
+            copy_picture();
+            seconds =
+                std::min(seconds, std::chrono::duration<double>(Clock::now() - start).count());
+        }
+        return static_cast<double>(kPixels) / seconds;
+    }();
+    return rate;
 }
 
 Pipeline view_of(const std::string& name) {
@@ -87,51 +77,138 @@ Pipeline view_of(const std::string& name) {
 
 double goal_of(const std::string& name) { return resolve_operator(name).op->bounds.simd_goal; }
 
-void run_rows(const SimdEngine& engine, std::size_t channels, std::size_t begin, std::size_t end) {
-    const float* in = picture(channels).data() + begin * kWidth * channels;
-    float* out = result(channels).data() + begin * kWidth * channels;
-    const auto stride = static_cast<std::ptrdiff_t>(channels);
-    engine.run({in, in + 1, in + 2}, stride, {out, out + 1, out + 2}, stride,
+void report(benchmark::State& state, std::size_t pixels) {
+    const auto n = static_cast<double>(pixels);
+    state.SetItemsProcessed(static_cast<std::int64_t>(pixels) *
+                            static_cast<std::int64_t>(state.iterations()));
+    state.counters["of_memcpy"] =
+        benchmark::Counter(n / memcpy_rate(), benchmark::Counter::kIsIterationInvariantRate);
+}
+
+/// Largest distance of the result's first pixels from the double reference, in code values.
+void report_error(benchmark::State& state, const std::string& name) {
+    constexpr std::size_t kSome = 100000;
+    std::vector<float> in(3 * kSome);
+    for (std::size_t i = 0; i < in.size(); ++i)
+        in[i] = picture()[i / 3 * kChannels + i % 3];
+    std::vector<double> truth(in.size());
+    ReferenceEngine(view_of(name)).run_rgb(in.data(), truth.data(), kSome);
+    double error = 0;
+    for (std::size_t i = 0; i < in.size(); ++i) {
+        const auto shown = static_cast<double>(result()[i / 3 * kChannels + i % 3]);
+        error = std::max(error, std::fabs(shown - truth[i]));
+    }
+    state.counters["max_error"] = error;
+}
+
+void copy(benchmark::State& state) {
+    for (auto _ : state)
+        copy_picture();
+    report(state, kPixels);
+}
+
+void run_rows(const SimdEngine& engine, std::size_t begin, std::size_t end) {
+    const float* in = picture().data() + begin * kWidth * kChannels;
+    float* out = result().data() + begin * kWidth * kChannels;
+    engine.run({in, in + 1, in + 2}, kChannels, {out, out + 1, out + 2}, kChannels,
                (end - begin) * kWidth);
 }
 
-void simd_one_thread(benchmark::State& state, const std::string& name, std::size_t channels) {
+/// @param threads  0: all
+void simd(benchmark::State& state, const std::string& name, int threads) {
     const SimdEngine engine(view_of(name), goal_of(name));
-    for (auto _ : state)
-        run_rows(engine, channels, 0, kHeight);
-    report(state, kPixels, channels);
-}
-
-void simd_all_threads(benchmark::State& state, const std::string& name) {
-    const SimdEngine engine(view_of(name), goal_of(name));
-    const auto rows = static_cast<std::int64_t>(kHeight);
     for (auto _ : state) {
-        OIIO::parallel_for_chunked(0, rows, 0, [&](std::int64_t begin, std::int64_t end) {
-            run_rows(engine, 3, static_cast<std::size_t>(begin), static_cast<std::size_t>(end));
-        });
+        if (threads == 1) {
+            run_rows(engine, 0, kHeight);
+            continue;
+        }
+        OIIO::parallel_for_chunked(
+            0, static_cast<std::int64_t>(kHeight), 0,
+            [&](std::int64_t begin, std::int64_t end) {
+                run_rows(engine, static_cast<std::size_t>(begin), static_cast<std::size_t>(end));
+            },
+            OIIO::paropt(threads));
     }
-    report(state, kPixels, 3);
+    report(state, kPixels);
+    report_error(state, name);
 }
 
-void ocio(benchmark::State& state, const std::string& name) {
-    std::unique_ptr<OcioCpu> cpu;
-    try {
-        cpu = std::make_unique<OcioCpu>(make_processor(lower_to_ocio(simplify(view_of(name)))));
-    } catch (const std::exception& e) {
-        return state.SkipWithError(e.what());
-    }
+/// RGB pictures of other sizes: the cost of a pixel should not depend on how many there are.
+void simd_size(benchmark::State& state, const std::string& name) {
+    const auto pixels = static_cast<std::size_t>(state.range(0));
+    const SimdEngine engine(view_of(name), goal_of(name));
+    std::vector<float> in(3 * pixels), out(3 * pixels);
+    for (std::size_t i = 0; i < in.size(); ++i)
+        in[i] = picture()[i % picture().size()];
     for (auto _ : state)
-        cpu->run_rgb(picture(3).data(), result(3).data(), kPixels);
-    report(state, kPixels, 3);
+        engine.run_rgb(in.data(), out.data(), pixels);
+    report(state, pixels);
+}
+
+void run_ocio(benchmark::State& state, const std::string& name, const Lowered& lowered,
+              OCIO::OptimizationFlags flags) {
+    const OCIO::ConstCPUProcessorRcPtr cpu = make_processor(lowered)->getOptimizedCPUProcessor(
+        OCIO::BIT_DEPTH_F32, OCIO::BIT_DEPTH_F32, flags);
+    // What it takes as constant has no const in its interface.
+    auto* in = const_cast<float*>(picture().data());  // NOLINT(*-const-cast)
+    const OCIO::PackedImageDesc source(in, kWidth, kHeight, kChannels);
+    OCIO::PackedImageDesc target(result().data(), kWidth, kHeight, kChannels);
+    for (auto _ : state)
+        cpu->apply(source, target);
+    report(state, kPixels);
+    report_error(state, name);
+}
+
+/// The most exact route that OpenColorIO has.
+void ocio(benchmark::State& state, const std::string& name, OCIO::OptimizationFlags flags) {
+    try {
+        run_ocio(state, name, lower_to_ocio(simplify(view_of(name))), flags);
+    } catch (const std::exception& e) {
+        state.SkipWithError(e.what());
+    }
+}
+
+/// What people have instead: a cube of the whole view behind a logarithm that holds the scene.
+void lut65(benchmark::State& state, const std::string& name) {
+    LutRequest request;
+    request.view = make_view(resolve_operator(name), "lin_rec709", 0, "srgb");
+    request.encoding = parse_input_encoding("log2:-10:8.5");
+    request.dimension = LutDimension::three;
+    request.size = 65;
+    const Lut lut = sample_lut(request);
+
+    constexpr double kLow = -10, kHigh = 8.5;
+    const double scene_slope[] = {1 / 0.18, 1 / 0.18, 1 / 0.18};
+    const double slope[] = {1 / (kHigh - kLow), 1 / (kHigh - kLow), 1 / (kHigh - kLow)};
+    const double offset[] = {-kLow * slope[0], -kLow * slope[0], -kLow * slope[0]};
+    const auto logarithm = OCIO::LogAffineTransform::Create();
+    logarithm->setBase(2);
+    logarithm->setLinSideSlopeValue(scene_slope);
+    logarithm->setLogSideSlopeValue(slope);
+    logarithm->setLogSideOffsetValue(offset);
+    const auto cube = OCIO::Lut3DTransform::Create(65);
+    cube->setInterpolation(OCIO::INTERP_TETRAHEDRAL);
+    std::size_t i = 0;
+    for (unsigned long b = 0; b < 65; ++b) {
+        for (unsigned long g = 0; g < 65; ++g) {
+            for (unsigned long r = 0; r < 65; ++r, i += 3)
+                cube->setValue(r, g, b, lut.values[i], lut.values[i + 1], lut.values[i + 2]);
+        }
+    }
+    Lowered lowered;
+    lowered.transform = OCIO::GroupTransform::Create();
+    lowered.transform->appendTransform(logarithm);
+    lowered.transform->appendTransform(cube);
+    run_ocio(state, name, lowered, OCIO::OPTIMIZATION_DEFAULT);
 }
 
 void reference(benchmark::State& state, const std::string& name) {
-    constexpr std::size_t kPart = kPixels / 16;
+    constexpr std::size_t kPart = kPixels / 64;
     const ReferenceEngine engine(view_of(name));
     std::vector<double> out(kPart * 3);
     for (auto _ : state)
-        engine.run_rgb(picture(3).data(), out.data(), kPart);
-    report(state, kPart, 3);
+        engine.run_rgb(picture().data(), out.data(), kPart);
+    report(state, kPart);
 }
 
 void prepare(benchmark::State& state, const std::string& name) {
@@ -141,22 +218,30 @@ void prepare(benchmark::State& state, const std::string& name) {
 }
 
 template <class F, class... Args>
-void add(const std::string& name, F function, Args... args) {
-    benchmark::RegisterBenchmark(name.c_str(), function, args...)
+benchmark::internal::Benchmark* add(const std::string& name, F function, Args... args) {
+    return benchmark::RegisterBenchmark(name.c_str(), function, args...)
         ->UseRealTime()
         ->Unit(benchmark::kMillisecond);
 }
 
 void register_all() {
-    add("memcpy/rgb", copy, 3);
-    add("memcpy/rgba", copy, 4);
+    add("memcpy", copy);
+    std::vector<std::string> names;
     for (const Operator& op : all_operators()) {
-        add("simd/" + op.id, simd_one_thread, op.id, 3);
-        add("simd_rgba/" + op.id, simd_one_thread, op.id, 4);
-        add("simd_all_threads/" + op.id, simd_all_threads, op.id);
-        add("ocio/" + op.id, ocio, op.id);
-        add("reference/" + op.id, reference, op.id);
-        add("prepare_simd/" + op.id, prepare, op.id);
+        names.push_back(op.id);
+        for (const Preset& preset : op.presets)
+            names.push_back(op.id + ":" + preset.id);
+    }
+    for (const std::string& name : names) {
+        add("simd/" + name, simd, name, 1);
+        add("simd_two_threads/" + name, simd, name, 2);
+        add("simd_all_threads/" + name, simd, name, 0);
+        add("ocio_lossless/" + name, ocio, name, OCIO::OPTIMIZATION_LOSSLESS);
+        add("ocio_default/" + name, ocio, name, OCIO::OPTIMIZATION_DEFAULT);
+        add("ocio_lut65/" + name, lut65, name);
+        add("reference/" + name, reference, name);
+        add("prepare_simd/" + name, prepare, name);
+        add("size/" + name, simd_size, name)->RangeMultiplier(10)->Range(1000, 100000000);
     }
 }
 

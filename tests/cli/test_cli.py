@@ -334,6 +334,44 @@ def check_statistics(report, command, scratch):
         applied("--operator", "drago", "--threads", "1"), applied("--operator", "drago", "--threads", "7")))
 
 
+def check_frames(report, command, scratch, picture):
+    """The frames of a shot: the files that one call for each makes; the failure of one is not that of the others."""
+    def names():
+        return sorted(path.name for path in scratch.glob("out.*"))
+
+    def applied(frames, *options, to="out.####.png", shot="shot.%04d.exr"):
+        for path in scratch.glob("out.*"):
+            path.unlink()
+        return call(command, ["apply", shot, to, "--frames", frames, "--operator", "hable", *options], folder=scratch)
+
+    for number in (998, 999, 1000, 1001, 1003, 10000):
+        run("oiiotool", picture, "--mulc", 1 + number / 1000, "-d", "half", "-o", scratch / f"shot.{number:04d}.exr")
+        run(command, "apply", scratch / f"shot.{number:04d}.exr", scratch / f"one.{number:04d}.png", "--operator",
+            "hable")
+    report.check("apply --frames 998-1001", applied("998-1001") == (OK, "", "")
+                 and names() == ["out.0998.png", "out.0999.png", "out.1000.png", "out.1001.png"], names())
+    report.check("apply --frames: the same files as one by one", all(
+        (scratch / name).read_bytes() == (scratch / name.replace("out", "one")).read_bytes() for name in names()))
+    for frames, to, expected in (("999-1003x2", "out.%04d.png", ["out.0999.png", "out.1001.png", "out.1003.png"]),
+                                 ("1003-998x5", "out.%d.png", ["out.1003.png", "out.998.png"]),
+                                 ("10000,998", "out.######.png", ["out.000998.png", "out.010000.png"])):
+        report.check(f"apply --frames {frames} {to}",
+                     applied(frames, to=to) == (OK, "", "") and names() == expected, names())
+    for threads in (1, 7):
+        code, out, err = applied("1000-1003", "--threads", threads)
+        lines = err.splitlines()
+        report.check(f"apply --frames, one is missing, --threads {threads}", code == FILE and not out and len(lines) == 2
+                     and all(line.startswith("tonewright: apply: ") for line in lines)
+                     and "shot.1002.exr: cannot read" in lines[0] and "1 of 4 frames failed, 3 written" in lines[1]
+                     and names() == ["out.1000.png", "out.1001.png", "out.1003.png"], f"exit {code}, {names()}: {err}")
+    write_exr(scratch / "shot.1002.exr", {"X": np.zeros((4, 4), np.float32), "Y": np.zeros((4, 4), np.float32)})
+    code, _, err = applied("1001-1002")
+    report.check("apply --frames, one has no color", code == USAGE and "shot.1002.exr: " in err and "2 channels" in err
+                 and names() == ["out.1001.png"], f"exit {code}: {err}")
+    code, _, err = call(command, ["apply", "none.%04d.exr", "out.png", "--operator", "hable"], folder=scratch)
+    report.check("apply of a pattern names --frames", code == FILE and "--frames" in err and err.count("\n") == 1, err)
+
+
 def read_lut(path, codes):
     """Codes through a LUT file as OpenColorIO reads it."""
     image = np.array(codes, np.float32, order="C")
@@ -511,6 +549,12 @@ def usage_errors(bad, picture):
         (["apply", picture, "out.png", "--operator", "hable", "--threads", "-1"], "--threads; -1"),
         (["apply", picture, "out.png", "--operator", "drago", "--statistics", "pictur"],
          "statistics is pictur; picture or defaults; did you mean picture?"),
+        *((["apply", "in.%04d.exr", "out.%04d.png", "--operator", "hable", "--frames", frames], f"--frames is {frames}")
+          for frames in ("abc", "1-", "1-5x", "1-5x0", "1..5", "1,,3", "0-1000000", "1-9999999999", "1.5", " 1")),
+        (["apply", "in.%04d.exr", "out.%04d.png", "--operator", "hable", "--frames", "3,1-5"], "frame 3 twice"),
+        (["apply", "in.exr", "out.%04d.png", "--operator", "hable", "--frames", "1-2"], "in is in.exr; shot.%04d.exr"),
+        (["apply", "in.%s.exr", "out.%04d.png", "--operator", "hable", "--frames", "1-2"], "in is in.%s.exr"),
+        (["apply", "in.####.exr", "out.png", "--operator", "hable", "--frames", "1-2"], "out is out.png; shot.####.exr"),
         # Told before the picture is read, although it decides on parameters.
         (["apply", bad["missing.exr"], "out.png", "--operator", "drago", "--set", "maximun=9"],
          "parameter is maximun; did you mean maximum?"),
@@ -628,6 +672,7 @@ def old_files(bad, picture):
     apply = ["--operator", "hable", "-d", "float"]
     return [
         ("apply, truncated picture", FILE, ["apply", bad["half.exr"], "old.png", *apply]),
+        ("apply, truncated picture, one thread", FILE, ["apply", bad["half.exr"], "old.png", *apply, "--threads", "1"]),
         ("apply, disk full", FILE, ["apply", picture, "old.exr", *apply], DISK_FULL),
         ("apply, disk full, PNG", FILE, ["apply", picture, "old.png", "--operator", "hable"], DISK_FULL),
         ("apply, disk full, TIFF", FILE, ["apply", picture, "old.tif", *apply], DISK_FULL),
@@ -686,6 +731,7 @@ def main():
 
         add(check_apply)
         add(check_statistics)
+        add(check_frames, picture)
         add(check_bake)
         add(check_verify, config, picture)
         add(check_archive)

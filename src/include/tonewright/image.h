@@ -4,6 +4,7 @@
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imageio.h>
 
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <string>
@@ -83,7 +84,7 @@ struct TonemapOptions {
 /// Safe to use from several threads at once, on different destinations.
 ///
 /// An operator that takes statistics is prepared again for each picture, with its own. A shot would
-/// flicker: give it those of one frame, settings_for_picture(op, settings, measure_scene(frame)).
+/// flicker: give it those of one frame, with_statistics(measure_scene(frame)).
 class Tonemapper {
   public:
     /// @throws Error  unknown name or bad value among the options, with the nearest name.
@@ -91,6 +92,13 @@ class Tonemapper {
     ~Tonemapper();
     Tonemapper(Tonemapper&&) noexcept;
     Tonemapper& operator=(Tonemapper&&) noexcept;
+
+    [[nodiscard]] const TonemapOptions& options() const noexcept;
+    /// Some of the operator's parameters are each picture's own.
+    [[nodiscard]] bool takes_statistics() const noexcept;
+    /// The same for all pictures that have these statistics: prepared once.
+    /// @throws Error  statistics that are no values of the operator's parameters
+    [[nodiscard]] Tonemapper with_statistics(const SceneStatistics& statistics) const;
 
     /// Same contract as tonemap(dst, src, ...).
     bool operator()(OIIO::ImageBuf& dst, const OIIO::ImageBuf& src, OIIO::ROI roi = {},
@@ -180,6 +188,41 @@ bool map_colors(OIIO::ImageBuf& dst, const OIIO::ImageBuf& src,
 ///                    line; nothing is left behind.
 void write_image_atomically(const OIIO::ImageBuf& image, const std::string& path,
                             const OIIO::TypeDesc& type = OIIO::TypeUnknown);
+
+/// Tone maps a file into a file: read_image(), tonemap() and write_image_atomically() at once, with
+/// the same result to the last byte, in the memory of some rows.
+///
+/// Rows are read, tone mapped and written at the same time. An operator that takes statistics reads
+/// the file twice. Volumes are held in memory as a whole. `out` may be `in`.
+///
+/// @param type      @see write_image_atomically
+/// @param nthreads  0: OIIO's `threads` attribute. 1: one step after the other in the calling
+///                  thread (OpenEXR has threads of its own: OIIO's `exr_threads` attribute).
+/// @throws FileError  @see read_image, write_image_atomically
+/// @throws Error      a picture that cannot be tone mapped, with its name.
+void tonemap_file(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
+                  const OIIO::TypeDesc& type = OIIO::TypeUnknown, int nthreads = 0);
+
+/// A frame of a shot, and what became of it.
+struct FrameFiles {
+    std::string in;
+    std::string out;
+    /// What went wrong, in one line; empty: nothing.
+    std::string error = {};
+    /// It was a FileError.
+    bool is_file_error = false;
+};
+
+/// tonemap_file() of many files, several at the same time: while one is read another is written.
+/// One that fails does not stop the others.
+///
+/// @param frames    gets the errors.
+/// @param done      called after each frame with the number of frames that are done, from one
+///                  thread at a time.
+/// @param nthreads  frames at the same time. 0: OIIO's `threads` attribute.
+void tonemap_files(const Tonemapper& tonemapper, std::vector<FrameFiles>& frames,
+                   const OIIO::TypeDesc& type, const std::function<void(std::size_t)>& done = {},
+                   int nthreads = 0);
 
 /// `uint8`, `uint16`, `half` or `float`, as oiiotool's `-d` has them.
 /// @throws Error  for any other text, with the nearest name.

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace tonewright {
+
+/// The frames that `1001-1100`, `1-9x2` (every second) or `1,5,10-20` name, in that order.
+/// @throws Error
+[[nodiscard]] std::vector<int> parse_frames(const std::string& text);
+
+/// The name of a frame: every `%d`, `%04d` (printf) or `####` (as many digits) in the pattern is
+/// its number.
+/// @param what     the argument, for the message
+/// @throws Error   a pattern that has no place for a number
+[[nodiscard]] std::string frame_name(const char* what, const std::string& pattern, int frame);
+
+/// True for a name that has places for a number.
+[[nodiscard]] bool is_frame_pattern(const std::string& name);
+
+}  // namespace tonewright

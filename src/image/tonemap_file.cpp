@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Files into files. A picture goes through in batches of rows: while one is tone mapped the next is
+// read and the one before is written, each step in a thread of its own. Few batches are under way
+// at a time, so that the memory does not grow with the picture.
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "image/batch_queue.h"
+#include "image/picture_file.h"
+#include "image/scene_meter.h"
+#include "image/source_picture.h"
+#include "image/tonemap_file.h"
+#include "tonewright/image.h"
+
+namespace tonewright {
+namespace {
+
+using OIIO::ImageBuf;
+using OIIO::ImageSpec;
+
+int thread_count(int nthreads) {
+    if (nthreads == 0) OIIO::getattribute("threads", nthreads);
+    return nthreads > 0 ? nthreads
+                        : static_cast<int>(std::max(std::thread::hardware_concurrency(), 1U));
+}
+
+/// The spec of rows [ybegin, yend) of a picture.
+ImageSpec spec_of_rows(const ImageSpec& picture, int ybegin, int yend) {
+    ImageSpec spec = picture;
+    spec.y = ybegin;
+    spec.height = yend - ybegin;
+    spec.tile_width = spec.tile_height = spec.tile_depth = 0;
+    return spec;
+}
+
+void run(const Tonemapper& tonemapper, ImageBuf& to, const ImageBuf& from, int nthreads) {
+    if (!tonemapper(to, from, {}, nthreads)) throw Error(to.geterror());
+}
+
+/// What the result of a picture will be: that of one pixel, only larger.
+ImageSpec result_spec(const Tonemapper& tonemapper, const ImageSpec& source) {
+    ImageSpec pixel = spec_of_rows(source, source.y, source.y + 1);
+    pixel.width = 1;
+    ImageBuf result;
+    run(tonemapper, result, ImageBuf(pixel), 1);
+    ImageSpec spec = result.spec();
+    spec.width = source.width;
+    spec.height = source.height;
+    return spec;
+}
+
+/// The numbers of a spec alone: rows have no use for the texts of their picture.
+ImageSpec without_metadata(ImageSpec spec) {
+    const int unassociated = spec.get_int_attribute("oiio:UnassociatedAlpha", 0);
+    spec.extra_attribs.clear();
+    if (unassociated) spec.attribute("oiio:UnassociatedAlpha", unassociated);
+    return spec;
+}
+
+struct Batch {
+    int ybegin = 0;
+    int yend = 0;
+    std::vector<std::byte> source;
+    std::vector<std::byte> result;
+};
+
+/// One picture on its way from file to file.
+class FilePass {
+  public:
+    FilePass(const Tonemapper& tonemapper, PictureReader& reader, PictureWriter& writer,
+             int nthreads, std::size_t batch_bytes)
+        : tonemapper_(tonemapper),
+          reader_(reader),
+          writer_(writer),
+          nthreads_(nthreads),
+          source_(without_metadata(reader.spec())) {
+        const ImageSpec result = result_spec(tonemapper, reader.spec());
+        writer.open(result);
+        result_ = without_metadata(result);
+        result_.set_format(writer.row_type());
+        step_ = rows_of_batch(source_.scanline_bytes() + result_.scanline_bytes(),
+                              reader.row_step(), batch_bytes);
+    }
+
+    void run_all() {
+        if (nthreads_ == 1 || source_.height <= step_) {
+            Batch batch;
+            while (next(batch)) {
+                read(batch);
+                tonemap(batch);
+                write(batch);
+            }
+        } else {
+            run_in_threads();
+        }
+        writer_.finish();
+    }
+
+  private:
+    /// @returns  false when there are no rows left.
+    bool next(Batch& batch) {
+        if (rows_done_ >= source_.height) return false;
+        const int top = source_.y;
+        const int bottom = source_.y + source_.height;
+        // Batches begin at multiples of the step from the top, in both directions.
+        const int count = (source_.height + step_ - 1) / step_;
+        const int index = rows_done_ / step_;
+        batch.ybegin = top + (writer_.is_bottom_up() ? count - 1 - index : index) * step_;
+        batch.yend = std::min(batch.ybegin + step_, bottom);
+        rows_done_ += step_;
+        return true;
+    }
+
+    void read(Batch& batch) {
+        batch.source.resize(source_.scanline_bytes() *
+                            static_cast<std::size_t>(batch.yend - batch.ybegin));
+        reader_.read_rows(batch.ybegin, batch.yend, batch.source.data());
+    }
+    void tonemap(Batch& batch) const {
+        const ImageBuf source(spec_of_rows(source_, batch.ybegin, batch.yend), batch.source.data());
+        ImageBuf result = result_of(batch);
+        run(tonemapper_, result, source, nthreads_);
+    }
+    void write(Batch& batch) { writer_.write_rows(result_of(batch)); }
+
+    [[nodiscard]] ImageBuf result_of(Batch& batch) const {
+        const ImageSpec spec = spec_of_rows(result_, batch.ybegin, batch.yend);
+        batch.result.resize(spec.image_bytes());
+        return {spec, batch.result.data()};
+    }
+
+    void run_in_threads() {
+        std::array<Batch, 4> batches;  // one in each step, and one to hand over
+        BatchQueue<Batch*> free, read_ones, done;
+        for (Batch& batch : batches)
+            free.push(&batch);
+        std::mutex mutex;
+        std::exception_ptr error;
+        const auto guarded = [&](auto&& step) {
+            try {
+                step();
+            } catch (...) {
+                const std::lock_guard lock(mutex);
+                if (!error) error = std::current_exception();
+                for (BatchQueue<Batch*>* queue : {&free, &read_ones, &done})
+                    queue->cancel();
+            }
+        };
+        const auto read_batches = [&] {
+            while (const std::optional<Batch*> batch = free.pop()) {
+                if (!next(**batch)) break;
+                read(**batch);
+                read_ones.push(*batch);
+            }
+            read_ones.close();
+        };
+        const auto write_batches = [&] {
+            while (const std::optional<Batch*> batch = done.pop()) {
+                write(**batch);
+                free.push(*batch);
+            }
+        };
+        std::jthread reader, writer;
+        guarded([&] {
+            reader = std::jthread([&] { guarded(read_batches); });
+            writer = std::jthread([&] { guarded(write_batches); });
+            while (const std::optional<Batch*> batch = read_ones.pop()) {
+                tonemap(**batch);
+                done.push(*batch);
+            }
+            done.close();
+        });
+        for (std::jthread* thread : {&reader, &writer}) {
+            if (thread->joinable()) thread->join();
+        }
+        if (error) std::rethrow_exception(error);
+    }
+
+    const Tonemapper& tonemapper_;
+    PictureReader& reader_;
+    PictureWriter& writer_;
+    int nthreads_;
+    ImageSpec source_;
+    ImageSpec result_;
+    int step_ = 0;
+    int rows_done_ = 0;
+};
+
+SceneStatistics measure_file(const std::string& path, const TonemapOptions& options, int nthreads,
+                             std::size_t batch_bytes) {
+    for (const SceneMeter::Cover cover : SceneMeter::kTries) {
+        PictureReader reader(path, nthreads);
+        const ImageSpec& spec = reader.spec();
+        SceneMeter meter(spec, options.input, options.unpremult, cover, nthreads);
+        const ImageSpec rows = without_metadata(spec);
+        const int step = rows_of_batch(spec.scanline_bytes(), reader.row_step(), batch_bytes);
+        const int bottom = spec.y + spec.height;
+        std::vector<std::byte> pixels(spec.scanline_bytes() * static_cast<std::size_t>(step));
+        for (int y = spec.y; y < bottom; y += step) {
+            const int yend = std::min(y + step, bottom);
+            reader.read_rows(y, yend, pixels.data());
+            const ImageBuf part(spec_of_rows(rows, y, yend), pixels.data());
+            meter.add(part, part.roi());
+        }
+        if (meter.has_cover()) return meter.statistics();
+    }
+    return {};
+}
+
+}  // namespace
+
+void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
+                        const OIIO::TypeDesc& type, int nthreads, std::size_t batch_bytes) {
+    nthreads = thread_count(nthreads);
+    PictureWriter writer(out, type, nthreads);  // a wrong name is told before a large file is read
+    PictureReader reader(in, nthreads);
+    check_pixel_type("source", reader.spec().format);
+    if (reader.spec().depth > 1) {
+        const ImageBuf source = reader.read_all();
+        ImageBuf result;
+        run(tonemapper, result, source, nthreads);
+        write_image_atomically(result, out, type);
+        return;
+    }
+    std::optional<Tonemapper> own;
+    if (tonemapper.takes_statistics()) {
+        own = tonemapper.with_statistics(
+            measure_file(in, tonemapper.options(), nthreads, batch_bytes));
+    }
+    FilePass(own ? *own : tonemapper, reader, writer, nthreads, batch_bytes).run_all();
+}
+
+void tonemap_file(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
+                  const OIIO::TypeDesc& type, int nthreads) {
+    try {
+        tonemap_in_batches(tonemapper, in, out, type, nthreads, kBatchBytes);
+    } catch (const FileError&) {
+        throw;
+    } catch (const Error& e) {
+        throw Error(fmt::format("{}: {}", in, e.what()));
+    }
+}
+
+void tonemap_files(const Tonemapper& tonemapper, std::vector<FrameFiles>& frames,
+                   const OIIO::TypeDesc& type, const std::function<void(std::size_t)>& done,
+                   int nthreads) {
+    const std::size_t threads = static_cast<std::size_t>(thread_count(nthreads));
+    const std::size_t workers = std::min(threads, frames.size());
+    if (workers == 0) return;
+    std::atomic<std::size_t> next = 0;
+    std::size_t done_count = 0;
+    std::mutex mutex;
+    const auto work = [&] {
+        for (std::size_t i = next++; i < frames.size(); i = next++) {
+            FrameFiles& frame = frames[i];
+            try {
+                tonemap_file(tonemapper, frame.in, frame.out, type,
+                             static_cast<int>(threads / workers));
+            } catch (const std::exception& e) {
+                frame.error = e.what();
+                frame.is_file_error = dynamic_cast<const FileError*>(&e) != nullptr;
+            }
+            const std::lock_guard lock(mutex);
+            ++done_count;
+            if (done) done(done_count);
+        }
+    };
+    std::vector<std::jthread> others;  // which join when they are destroyed
+    for (std::size_t i = 1; i < workers; ++i)
+        others.emplace_back(work);
+    work();
+}
+
+}  // namespace tonewright

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Files go through in batches of rows. Whatever the picture, the file must be the one that reading,
+// tone mapping and writing the whole of it make, to the last byte.
+#include <OpenImageIO/imagebufalgo.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <csignal>
+#include <fstream>
+#include <iterator>
+
+#include "image/picture_file.h"
+#include "image/tonemap_file.h"
+#include "tonewright/image.h"
+#include "unit/image/pictures.h"
+
+namespace tonewright {
+namespace {
+
+namespace fs = std::filesystem;
+using OIIO::ImageBuf;
+using OIIO::ImageSpec;
+using OIIO::TypeDesc;
+
+constexpr int kWidth = 300;
+constexpr int kHeight = 200;
+constexpr std::size_t kSmallBatch = 1;  // 64 rows: the least
+
+std::string bytes_of(const std::string& path) {
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+ImageSpec spec_of(const std::vector<std::string>& channels, TypeDesc type = TypeDesc::HALF) {
+    ImageSpec spec = make_spec(kWidth, kHeight, channels, type);
+    spec.attribute("DateTime", "2026:01:02 03:04:05");  // or writers put in the time
+    return spec;
+}
+
+/// A file as OIIO writes it, which write_image_atomically() would change.
+void put(const ImageSpec& spec, const std::string& path, float peak = 8) {
+    const ImageBuf picture = make_picture(spec, peak);
+    const auto out = OIIO::ImageOutput::create(path);
+    ASSERT_TRUE(out && out->open(path, spec));
+    ASSERT_TRUE(picture.write(out.get()) && out->close()) << out->geterror();
+}
+
+class TonemapFile : public testing::Test {
+  protected:
+    /// Through files in batches, with one thread and with three, and as a whole.
+    void expect_same(const std::string& in, const std::string& out, const TonemapOptions& options,
+                     TypeDesc type = OIIO::TypeUnknown) {
+        const ImageBuf source = read_image(in);
+        const std::string whole = folder_.file("whole_" + out);
+        write_image_atomically(tonemap(source, options), whole, type);
+        const std::string wanted = bytes_of(whole);
+        ASSERT_GT(wanted.size(), 100U);
+        for (const int threads : {1, 3}) {
+            const std::string path = folder_.file(out);
+            tonemap_in_batches(Tonemapper(options), in, path, type, threads, kSmallBatch);
+            EXPECT_TRUE(bytes_of(path) == wanted) << in << " -> " << out << ", " << threads;
+            fs::remove(path);
+        }
+    }
+
+    TemporaryFolder folder_;
+};
+
+TEST_F(TonemapFile, BatchesAreSomeSixteenMegabytesOfWholeTiles) {
+    EXPECT_EQ(rows_of_batch(1 << 14, 1), 1024);
+    EXPECT_EQ(rows_of_batch(1 << 20, 1), 64);    // and never fewer
+    EXPECT_EQ(rows_of_batch(1 << 14, 48), 960);  // 10 x 96
+    EXPECT_EQ(rows_of_batch(1 << 20, 200), 200);
+    EXPECT_EQ(rows_of_batch(1 << 10, 1, kSmallBatch), 64);
+}
+
+TEST_F(TonemapFile, EqualsTheWholePicture) {
+    const std::string in = folder_.file("a.exr");
+    put(spec_of({"R", "G", "B"}), in);
+    const TonemapOptions options = {.op = "hable"};
+    expect_same(in, "half.exr", options, TypeDesc::HALF);
+    expect_same(in, "float.exr", options);
+    expect_same(in, "a.png", options, TypeDesc::UINT16);
+    expect_same(in, "a.tif", options, TypeDesc::UINT16);  // written without a proxy
+    expect_same(in, "a.jpg", options);
+    expect_same(in, "a.hdr", options);
+}
+
+TEST_F(TonemapFile, TilesAlphaAndOtherChannels) {
+    ImageSpec spec = spec_of({"R", "G", "B", "A", "Z"}, TypeDesc::FLOAT);
+    spec.tile_width = 64;
+    spec.tile_height = 48;
+    const std::string in = folder_.file("a.exr");
+    put(spec, in, 1);
+    const TonemapOptions options = {.op = "reinhard"};
+    expect_same(in, "half.exr", options, TypeDesc::HALF);
+    expect_same(in, "a.png", options, TypeDesc::UINT8);  // no Z there; and color divided by alpha
+}
+
+TEST_F(TonemapFile, RowsInFilesThatBeginAtTheBottom) {
+    ImageSpec spec = spec_of({"R", "G", "B"});
+    spec.attribute("openexr:lineOrder", "decreasingY");
+    const std::string in = folder_.file("a.exr");
+    put(spec, in);
+    expect_same(in, "half.exr", {.op = "hable"}, TypeDesc::HALF);
+    expect_same(in, "a.png", {.op = "hable"}, TypeDesc::UINT8);
+}
+
+TEST_F(TonemapFile, DisplayWindowsBeyondAndInsideThePicture) {
+    for (const int offset : {-40, 40}) {
+        ImageSpec spec = spec_of({"R", "G", "B"});
+        spec.x = offset;
+        spec.y = offset;
+        spec.full_width = kWidth + offset;
+        spec.full_height = kHeight + 3 * offset;
+        const std::string in = folder_.file("a.exr");
+        put(spec, in);
+        expect_same(in, "half.exr", {.op = "hable"}, TypeDesc::HALF);
+        expect_same(in, "a.png", {.op = "hable"}, TypeDesc::UINT8);
+    }
+    // Nothing of the picture is in it.
+    ImageSpec spec = spec_of({"R", "G", "B"});
+    spec.y = 1000;
+    spec.full_height = 100;
+    const std::string in = folder_.file("b.exr");
+    put(spec, in);
+    expect_same(in, "a.png", {.op = "hable"}, TypeDesc::UINT8);
+}
+
+TEST_F(TonemapFile, StatisticsAreOfTheWholePicture) {
+    const std::string in = folder_.file("a.exr");
+    put(spec_of({"R", "G", "B"}), in, 50);
+    expect_same(in, "out.exr", {.op = "drago"});
+    // Alpha that was never written: pixels count without it.
+    ImageBuf bare = make_picture(spec_of({"R", "G", "B", "A"}), 50);
+    OIIO::ImageBufAlgo::fill(bare, {0.0F}, OIIO::ROI(0, kWidth, 0, kHeight, 0, 1, 3, 4));
+    write_image_atomically(bare, in);
+    expect_same(in, "out.exr", {.op = "drago"});
+}
+
+TEST_F(TonemapFile, GreyStaysGreyOrBecomesColor) {
+    const std::string in = folder_.file("a.exr");
+    put(spec_of({"Y"}, TypeDesc::FLOAT), in);
+    const ImageSpec spec = read_image(in).spec();
+    ASSERT_EQ(spec.nchannels, 1);
+    for (const char* op : {"hable", "false_color"}) {
+        const std::string out = folder_.file("out.exr"), whole = folder_.file("whole.exr");
+        tonemap_in_batches(Tonemapper({.op = op}), in, out, TypeDesc::HALF, 2, kSmallBatch);
+        write_image_atomically(tonemap(read_image(in), {.op = op}), whole, TypeDesc::HALF);
+        EXPECT_TRUE(bytes_of(out) == bytes_of(whole)) << op;
+    }
+}
+
+TEST_F(TonemapFile, OntoItself) {
+    const std::string in = folder_.file("a.exr"), out = folder_.file("b.exr");
+    put(spec_of({"R", "G", "B"}), in);
+    tonemap_file(Tonemapper({.op = "hable"}), in, out, TypeDesc::HALF);
+    tonemap_in_batches(Tonemapper({.op = "hable"}), in, in, TypeDesc::HALF, 3, kSmallBatch);
+    EXPECT_TRUE(bytes_of(in) == bytes_of(out));
+}
+
+std::string message_of(const std::function<void()>& function) {
+    try {
+        function();
+    } catch (const FileError& e) {
+        return std::string("file: ") + e.what();
+    } catch (const Error& e) {
+        return e.what();
+    }
+    return "no error";
+}
+
+TEST_F(TonemapFile, FailuresLeaveTheOldFile) {
+    const std::string in = folder_.file("a.exr"), out = folder_.file("out.exr");
+    put(spec_of({"R", "G", "B"}), in);
+    const std::string whole = bytes_of(in);
+    std::ofstream(out) << "the old file";
+    const auto run = [&](int threads) {
+        return message_of(
+            [&] { tonemap_file(Tonemapper({.op = "hable"}), in, out, TypeDesc::HALF, threads); });
+    };
+    const auto expect_old = [&] {
+        EXPECT_EQ(bytes_of(out), "the old file");
+        EXPECT_EQ(std::distance(fs::directory_iterator(fs::path(out).parent_path()), {}), 2);
+    };
+    // In the last batches: some are written by then.
+    std::ofstream(in, std::ios::binary) << whole.substr(0, whole.size() * 9 / 10);
+    for (const int threads : {1, 3}) {
+        EXPECT_TRUE(run(threads).starts_with("file: " + in + ": cannot read")) << run(threads);
+        expect_old();
+    }
+    std::ofstream(in, std::ios::binary) << whole;
+    std::signal(SIGXFSZ, SIG_IGN);
+    rlimit old{};
+    ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &old), 0);
+    rlimit small = old;
+    small.rlim_cur = 1 << 17;
+    for (const int threads : {1, 3}) {
+        ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+        const std::string message = run(threads);
+        ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &old), 0);
+        EXPECT_EQ(message, "file: " + out + ": cannot write: File too large");
+        expect_old();
+    }
+    std::signal(SIGXFSZ, SIG_DFL);
+}
+
+TEST_F(TonemapFile, PicturesThatCannotBeToneMappedAreNamed) {
+    const std::string in = folder_.file("a.exr");
+    put(spec_of({"X", "Y"}), in);
+    const std::string message =
+        message_of([&] { tonemap_file(Tonemapper({.op = "hable"}), in, folder_.file("out.exr")); });
+    EXPECT_TRUE(message.starts_with(in + ": ")) << message;
+    EXPECT_NE(message.find("2 channels (X, Y)"), std::string::npos) << message;
+}
+
+TEST_F(TonemapFile, OneFrameThatFailsDoesNotStopTheOthers) {
+    const Tonemapper tonemapper({.op = "hable"});
+    std::vector<FrameFiles> frames;
+    for (int i = 0; i < 7; ++i) {
+        frames.push_back({folder_.file("in." + std::to_string(i) + ".exr"),
+                          folder_.file("out." + std::to_string(i) + ".png")});
+        if (i == 2) continue;
+        ImageSpec spec = make_spec(40, 30, {"R", "G", "B"}, TypeDesc::HALF);
+        if (i == 4) spec = make_spec(40, 30, {"X", "Y"}, TypeDesc::HALF);
+        put(spec, frames.back().in);
+    }
+    for (const int threads : {1, 3, 16}) {
+        std::vector<std::size_t> counts;
+        tonemap_files(
+            tonemapper, frames, TypeDesc::UINT8, [&](std::size_t n) { counts.push_back(n); },
+            threads);
+        EXPECT_EQ(counts, (std::vector<std::size_t>{1, 2, 3, 4, 5, 6, 7}));
+        for (int i = 0; i < 7; ++i) {
+            const FrameFiles& frame = frames[static_cast<std::size_t>(i)];
+            EXPECT_EQ(frame.error.empty(), i != 2 && i != 4) << frame.error;
+            EXPECT_EQ(frame.is_file_error, i == 2);
+            EXPECT_EQ(fs::exists(frame.out), frame.error.empty());
+            fs::remove(frame.out);
+        }
+        for (FrameFiles& frame : frames)
+            frame = {frame.in, frame.out};
+    }
+    std::vector<FrameFiles> none;
+    tonemap_files(tonemapper, none, TypeDesc::UINT8);
+}
+
+}  // namespace
+}  // namespace tonewright

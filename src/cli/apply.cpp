@@ -170,14 +170,18 @@ void add_apply(CLI::App& program, int& exit_code) {
         "divide color by alpha before, multiply after; default: as the picture says");
     command->add_flag("--no-unpremult", options->no_unpremult, "take color as it is")
         ->excludes(yes);
-    add_lut_options(*command, options->lut, op,
-                    {"--set", "--look", "--display", "--reference-white", "--statistics"});
+    add_lut_options(
+        *command, options->lut, op,
+        {"--set", "--look", "--display", "--reference-white", "--statistics", "--frames"});
     command->footer(
         "Examples:\n"
         "  tonewright apply render.exr out.png --operator hable --exposure 1 -d uint8\n"
         "  tonewright apply shot.%04d.exr out.####.png --frames 1001-1100 --operator agx_blender\n"
         "  tonewright apply render.exr out.png --lut agx.cube --input-encoding acescct -d uint8");
     command->callback([options, command, &exit_code] {
+        OIIO::attribute("threads", options->threads);
+        // OpenEXR has threads of its own; there, 0 is all cores and less is none.
+        OIIO::attribute("exr_threads", options->threads == 1 ? -1 : options->threads);
         if (!options->lut.file.empty()) {
             apply_lut(*options, *command);
             return;
@@ -199,9 +203,6 @@ void add_apply(CLI::App& program, int& exit_code) {
         tonemap.statistics = parse_statistics(options->statistics);
         const Tonemapper tonemapper(tonemap);  // a wrong name is told before a large file is read
         const OIIO::TypeDesc type = options->pixel_type();
-        OIIO::attribute("threads", options->threads);
-        // OpenEXR has threads of its own; there, 0 is all cores and less is none.
-        OIIO::attribute("exr_threads", options->threads == 1 ? -1 : options->threads);
         if (!options->frames.empty()) {
             exit_code = apply_to_frames(tonemapper, options->in, options->out,
                                         parse_frames(options->frames), type, options->threads);

@@ -34,7 +34,7 @@ void take_from_host(Options& options, const CLI::App& command) {
     if (!is_given("--display")) options.display = host.display;
     if (is_given("--format")) return;  // another file than the host's own
     options.format = name_of(host.format);
-    if (is_given("--max-error") && host.format == LutFormat::strip) {
+    if (is_given("--max-error") && is_strip(host.format)) {
         throw Error("bake: max error is given for " + host.id + "; expected none, its size is " +
                     std::to_string(host.size));
     }
@@ -108,7 +108,7 @@ void add_bake(CLI::App& program, int&) {
     command
         ->add_option("--format", options->format,
                      "cube, clf, ctf, spi1d, spi3d, csp, resolve_cube (1D and 3D tables), 3dl, lut "
-                     "(Houdini), icc (device link); hald, strip (pictures); raw")
+                     "(Houdini), icc (device link); hald, strip, strip_up (pictures); raw")
         ->capture_default_str();
     command
         ->add_option("--input-encoding", options->encoding,

@@ -681,7 +681,7 @@ class Generator : public Xbyak::CodeGenerator {
 /// The code and what it reads.
 class Assembled final : public MachineCode {
   public:
-    Assembled(const Code& code, int interleaved_blocks) : MachineCode(translate(code)) {
+    Assembled(VectorProgram program, int interleaved_blocks) : MachineCode(std::move(program)) {
         pool_.resize(program_.pool.size() / kVectorBytes + 2);
         std::memcpy(pool_.data(), program_.pool.data(), program_.pool.size());
         const auto* pool = reinterpret_cast<const unsigned char*>(pool_.data());
@@ -719,10 +719,12 @@ std::shared_ptr<const MachineCode> MachineCode::make(const Code& code) {
     using Xbyak::util::Cpu;
     static const Cpu cpu;
     if (!cpu.has(Cpu::tAVX512F) || !cpu.has(Cpu::tAVX512DQ)) return nullptr;
+    const std::optional<VectorProgram> program = translate(code);
+    if (!program) return nullptr;
     // Side by side, blocks need more mask registers than there are when each needs three.
     for (int blocks = kInterleaved; blocks > 0; --blocks) {
         try {
-            return std::make_shared<const Assembled>(code, blocks);
+            return std::make_shared<const Assembled>(*program, blocks);
         } catch (const NoMaskLeft&) {
             continue;
         } catch (const Xbyak::Error&) {

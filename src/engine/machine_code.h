@@ -13,7 +13,9 @@ namespace tonewright::simd {
 class MachineCode {
   public:
     /// Nothing where the processor has no AVX-512, the system gives no memory that can be executed,
-    /// or the build has no assembler: then the interpreter runs, slower.
+    /// the build has no assembler, or the program has more values between its parts than a tile
+    /// holds or more than five comparisons open at once (no operator of the catalogue has): then
+    /// the interpreter runs, slower.
     [[nodiscard]] static std::shared_ptr<const MachineCode> make(const Code& code);
 
     /// False where the build had no assembler.

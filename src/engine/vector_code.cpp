@@ -695,9 +695,9 @@ class Translator {
         find_crossings();
     }
 
-    VectorProgram translate() {
+    std::optional<VectorProgram> translate() {
         VectorProgram program;
-        place_in_tile(program);
+        if (!place_in_tile(program)) return std::nullopt;
         program.tile_steps.resize(part_count_ - 1);
         for (const Step& s : steps_) {
             if (is_tile_step(*s.step)) program.tile_steps[s.part].push_back(moved(s));
@@ -855,13 +855,15 @@ class Translator {
         return curve.lo >= 0 && curve.hi <= 65504;
     }
 
-    void place_in_tile(VectorProgram& program) {
+    /// False where the tile is too small.
+    bool place_in_tile(VectorProgram& program) {
         // Where the pixels lie in planes, they come and go through the tile.
         std::size_t bytes = 6 * sizeof(float);
         for (const Value& v : values_)
             bytes += v.crosses ? v.wide ? sizeof(double) : sizeof(float) : 0;
         program.tile =
             std::clamp(kTileBytes / bytes / kLaneMultiple * kLaneMultiple, kLaneMultiple, kMaxTile);
+        if (program.tile * bytes > kRegisterFileBytes) return false;
         std::uint32_t end = 0;
         const auto place = [&](bool wide) {
             const std::uint32_t at = end;
@@ -879,6 +881,7 @@ class Translator {
         for (Value& v : values_) {
             if (v.crosses) v.offset = place(v.wide);
         }
+        return true;
     }
 
     Instruction moved(const Step& s) {
@@ -1215,6 +1218,6 @@ VectorCode interleaved(const VectorCode& code, int blocks) {
     return result;
 }
 
-VectorProgram translate(const Code& code) { return Translator(code).translate(); }
+std::optional<VectorProgram> translate(const Code& code) { return Translator(code).translate(); }
 
 }  // namespace tonewright::simd

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "engine/simd_kernels.h"
@@ -126,7 +127,8 @@ struct VectorProgram : TilePorts {
     std::size_t tile = 0;                              // in pixels
 };
 
+/// Nothing where more values go from part to part than a tile of 16 pixels has room for.
 /// @param code  owns the lattices that the result refers to
-[[nodiscard]] VectorProgram translate(const Code& code);
+[[nodiscard]] std::optional<VectorProgram> translate(const Code& code);
 
 }  // namespace tonewright::simd

@@ -15,9 +15,13 @@ namespace {
 
 /// The node that a pixel holds, of a cube of n points a side; red fastest.
 std::size_t node_of(LutFormat format, int n, int width, int x, int y) {
-    return static_cast<std::size_t>(format == LutFormat::hald ? y * width + x
-                                                              : (x / n * n + y) * n + x % n);
+    if (format == LutFormat::hald) return static_cast<std::size_t>(y * width + x);
+    const int green = format == LutFormat::strip_up ? n - 1 - y : y;
+    return static_cast<std::size_t>((x / n * n + green) * n + x % n);
 }
+
+/// Nothing else in the file tells a strip from one that stands on its head.
+constexpr const char* kGreenUp = "3D LUT as a strip, green from the bottom up";
 
 constexpr int kLargestLevel = 16;
 constexpr int kLargestStrip = 64;
@@ -50,10 +54,12 @@ Lut read_lut_picture(const std::string& path) {
     }
     const OIIO::ImageBuf picture = read_image(path);
     const OIIO::ImageSpec& spec = picture.spec();
-    const Layout layout = layout_of(path, spec.width, spec.height);
+    Layout layout = layout_of(path, spec.width, spec.height);
     if (spec.nchannels < 3 || spec.nchannels > 4) {
         throw FileError(fmt::format("read: {}: has {} channels; expected 3", path, spec.nchannels));
     }
+    if (layout.format == LutFormat::strip && spec["ImageDescription"].get() == kGreenUp)
+        layout.format = LutFormat::strip_up;
     Lut lut;
     lut.size = layout.n;
     lut.values.resize(3 * static_cast<std::size_t>(spec.width) *
@@ -91,6 +97,7 @@ OIIO::ImageBuf make_lut_picture(const Lut& lut, LutFormat format) {
     OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::FLOAT);
     // Numbers, not light: no program is to convert them.
     spec.attribute("oiio:ColorSpace", "Raw");
+    if (format == LutFormat::strip_up) spec.attribute("ImageDescription", kGreenUp);
     OIIO::ImageBuf picture(spec);
     for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {

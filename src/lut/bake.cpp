@@ -36,7 +36,7 @@ BakedLut bake_size(const LutRequest& request, LutNodes nodes, bool trilinear, bo
 /// Sizes that are worth trying, of which each format takes those it has.
 std::vector<int> sizes_of(LutFormat format) {
     if (format == LutFormat::hald) return {16, 25, 36, 49, 64, 81, 100, 121, 144};
-    if (format == LutFormat::strip) return {16, 32, 64};
+    if (is_strip(format)) return {16, 32, 64};
     if (format == LutFormat::threedl) return {17, 33, 65};
     return {17, 25, 33, 49, 65, 97, 129};
 }

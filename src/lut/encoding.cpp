@@ -135,17 +135,19 @@ InputEncoding parse_input_encoding(std::string_view text) {
 }
 
 std::vector<std::string> lut_format_names() {
-    return {"cube", "clf", "ctf", "spi1d", "spi3d", "csp", "resolve_cube",
-            "3dl",  "lut", "icc", "hald",  "strip", "raw"};
+    return {"cube", "clf", "ctf", "spi1d", "spi3d", "csp",      "resolve_cube",
+            "3dl",  "lut", "icc", "hald",  "strip", "strip_up", "raw"};
 }
 
 std::string name_of(LutFormat format) {
     return lut_format_names()[static_cast<std::size_t>(format)];
 }
 
-bool is_picture_format(LutFormat format) {
-    return format == LutFormat::hald || format == LutFormat::strip;
+bool is_strip(LutFormat format) {
+    return format == LutFormat::strip || format == LutFormat::strip_up;
 }
+
+bool is_picture_format(LutFormat format) { return format == LutFormat::hald || is_strip(format); }
 
 bool has_shaper(LutFormat format) {
     return format == LutFormat::csp || format == LutFormat::resolve_cube;

@@ -87,6 +87,13 @@ const std::vector<LutHost>& all_lut_hosts() {
          "be "
          "the HDRP Asset's Grading LUT Size, 32 unless changed: --size",
          ""},
+        // Core RP Library, Color.hlsl, ApplyLut2D: the slice by blue, in it u by red and v by
+        // green; Unity's textures have v 0 at the bottom.
+        {"unity_urp", "Unity URP", LutFormat::strip_up, 32, "srgb", "srgb", 8, "trilinear",
+         "import with sRGB off, no mip maps, no compression; Volume > Color Lookup > Lookup "
+         "Texture. Its height must be the URP Asset's Grading LUT Size, 32 unless changed: --size. "
+         "Works on what is shown",
+         ""},
         {"godot", "Godot", LutFormat::strip, 32, "srgb", "srgb", 8, "trilinear",
          "import as Texture3D with 32 horizontal slices; Environment > Adjustments > Color "
          "Correction: works on what is shown",

@@ -34,7 +34,7 @@ struct FormatTraits {
 };
 
 /// In the order of LutFormat.
-constexpr std::array<FormatTraits, 13> kFormats = {{
+constexpr std::array<FormatTraits, 14> kFormats = {{
     {"cube", true, true, kDefaultCubeSize, 17, 129, {32, 0, 0}},
     {"clf", true, true, kDefaultCubeSize, 17, 129, {32, 0, 0}},
     {"ctf", true, true, kDefaultCubeSize, 17, 129, {32, 0, 0}},
@@ -49,6 +49,7 @@ constexpr std::array<FormatTraits, 13> kFormats = {{
     // Level 8.
     {"hald", false, true, 64, 16, 144, {16, 8, 32}},
     {"strip", false, true, 32, 2, 64, {16, 8, 32}},
+    {"strip_up", false, true, 32, 2, 64, {16, 8, 32}},
     {"raw", false, true, kDefaultCubeSize, 2, 129, {32, 0, 0}},
 }};
 

@@ -104,7 +104,7 @@ std::string output_title(const LutRequest& request) {
 
 std::string size_text(const ShippedLut& lut) {
     const int n = lut.lut.size;
-    if (lut.request.format == LutFormat::strip) return fmt::format("{} x {} pixels", n * n, n);
+    if (is_strip(lut.request.format)) return fmt::format("{} x {} pixels", n * n, n);
     return fmt::format("{0} x {0} x {0} points", n);
 }
 

@@ -300,6 +300,7 @@ std::string write_lut(const Lut& lut, const LutRequest& request, const LutError&
             return write_raw(lut);
         case LutFormat::hald:
         case LutFormat::strip:
+        case LutFormat::strip_up:
             break;
     }
     return {};

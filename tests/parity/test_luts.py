@@ -61,6 +61,8 @@ def through_ocio(path, rgb):
 def nodes_in_picture(path, layout, size, scratch):
     """The nodes of a Hald CLUT or a strip, red fastest."""
     picture = read_rgb(path, scratch)
+    if layout == "strip_up":
+        picture = picture[::-1]
     if layout == "hald":
         return picture.reshape(-1, 3)
     # Row g, slice b, column r.
@@ -75,7 +77,7 @@ def expected_of(command, codes, encoding, display):
 def check_host(report, command, host, folder):
     if host["format"] == "icc":
         return  # clients/test_tificc.py
-    is_picture = host["format"] in ("hald", "strip")
+    is_picture = host["format"] in ("hald", "strip", "strip_up")
     path = folder / f"{host['id']}.{'png' if is_picture else host['format']}"
     run(command, "bake", *OPERATOR, "--nodes", "sampled", "--for", host["id"], "-o", path)
     size, codes = host["size"], nodes_of(host["size"])
@@ -152,8 +154,15 @@ def check_formats(report, command, folder):
                  wanted - 1e-6 <= lowest <= wanted / 2 < 0, (lowest, wanted))
     path = folder / "x.exr"
     run(command, "bake", *OPERATOR, "--nodes", "sampled", "--format", "strip", "--size", 16, "--depth", 32, "-o", path)
-    report.compare("strip: float", nodes_in_picture(path, "strip", 16, folder),
-                   expected_of(command, nodes_of(16), "acescct", "srgb"), EXACT)
+    truth_16 = expected_of(command, nodes_of(16), "acescct", "srgb")
+    report.compare("strip: float", nodes_in_picture(path, "strip", 16, folder), truth_16, EXACT)
+    # A saturated code through the file, whichever way up it stands: `eval --lut` knows from the file.
+    for layout, suffix in (("strip", "png"), ("strip_up", "png"), ("strip_up", "tif"), ("strip_up", "exr")):
+        path = folder / f"way_up_{layout}.{suffix}"
+        depth = 32 if suffix == "exr" else 16
+        run(command, "bake", *OPERATOR, "--nodes", "sampled", "--format", layout, "--size", 16, "--depth", depth, "-o", path)
+        got = [float(v) for v in run(command, "eval", "--lut", path, stdin="0.8 0.2 0.4\n").split()]
+        report.compare(f"eval --lut of {layout} in .{suffix}", np.array([got]), truth_16[[12 + 16 * 3 + 256 * 6]], 0.5 / 65535 + EXACT)
     for bits in (10, 12, 16):
         path = folder / f"x{bits}.3dl"
         run(command, "bake", *OPERATOR, "--nodes", "sampled", "--format", "3dl", "--size", 17, "--depth", bits, "-o", path)

@@ -39,8 +39,8 @@ struct InputEncoding {
 /// `spi3d` (Sony Imageworks), `csp` (cineSpace: scene-linear in, its prelut encodes),
 /// `resolve_cube` (a .cube with a 1D table before the 3D one: scene-linear in), `3dl` (Autodesk:
 /// integers), `lut` (Houdini), `icc` (ICC device link), `hald` (a Hald CLUT picture), `strip` (a
-/// picture of n slices of n x n side by side), `raw` (float32, little-endian, RGB triplets, red
-/// fastest).
+/// picture of n slices of n x n side by side, green down), `strip_up` (the same, green up), `raw`
+/// (float32, little-endian, RGB triplets, red fastest).
 enum class LutFormat : unsigned char {
     cube,
     clf,
@@ -54,6 +54,7 @@ enum class LutFormat : unsigned char {
     icc,
     hald,
     strip,
+    strip_up,
     raw
 };
 /// @throws Error with the nearest name.
@@ -61,6 +62,7 @@ enum class LutFormat : unsigned char {
 [[nodiscard]] std::vector<std::string> lut_format_names();
 [[nodiscard]] std::string name_of(LutFormat format);
 /// A picture's layout, not a file of its own kind: OpenImageIO writes it.
+[[nodiscard]] bool is_strip(LutFormat format);
 [[nodiscard]] bool is_picture_format(LutFormat format);
 /// Scene-linear goes in, and a 1D table before the cube encodes it.
 [[nodiscard]] bool has_shaper(LutFormat format);
@@ -74,7 +76,7 @@ struct LutRequest {
     LutFormat format = LutFormat::cube;
     LutDimension dimension = LutDimension::automatic;
     /// Entries of a 1D table (2..65536), or grid points a side of a cube (17..129; `3dl`: 17, 33 or
-    /// 65; `hald`: a square of 16..144; `strip`: 2..64; `raw`: 2..129).
+    /// 65; `hald`: a square of 16..144; strips: 2..64; `raw`: 2..129).
     std::optional<int> size;
     /// Of integers: 8 or 16 in pictures, 10, 12 or 16 in `3dl`, 16 in `icc`. 32: float.
     std::optional<int> bits;

@@ -5,7 +5,10 @@
 #include "engine/machine_code.h"
 
 #include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <string>
@@ -111,13 +114,61 @@ TEST(MachineCode, ComputesEveryOperation) {
     }
 }
 
+/// Each sine is a step over the whole tile, so each value goes through it: more than it holds.
+TEST(MachineCode, IsNotMadeOfMoreValuesThanATileHolds) {
+    if (const char* reason = missing()) GTEST_SKIP() << reason;
+    std::array<Expr, 3> rgb = {Expr::input(0), Expr::input(1), Expr::input(2)};
+    for (int i = 0; i < 600; ++i) {
+        for (Expr& channel : rgb)
+            channel = sin(channel);
+    }
+    const simd::Code code = simd::compile(Pipeline{Map3Stage{.f = rgb}}, 1e-6, false);
+    EXPECT_FALSE(code.machine);
+    const std::vector<float> in = floats(3 * 64);
+    std::vector<double> expected(in.size());
+    ReferenceEngine(Pipeline{Map3Stage{.f = rgb}}).run_rgb(in.data(), expected.data(), 64);
+    std::vector<float> got(in.size());
+    simd::run(code, {in.data(), in.data() + 1, in.data() + 2}, 3,
+              {got.data(), got.data() + 1, got.data() + 2}, 3, 64);
+    for (std::size_t i = 0; i < got.size(); ++i)  // a contraction: errors do not add up
+        EXPECT_NEAR(static_cast<double>(got[i]), expected[i], 1e-6) << i;
+}
+
+/// The last pixel ends where no page follows: reading or writing on ends the program.
+TEST(MachineCode, TouchesNothingBehindTheLastPixel) {
+    if (const char* reason = missing()) GTEST_SKIP() << reason;
+    const simd::Code code = simd::compile(
+        build_view(make_view(resolve_operator("agx_blender"), "lin_rec709", 0, "srgb")));
+    ASSERT_TRUE(code.machine);
+    const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+    void* memory =
+        mmap(nullptr, 4 * page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    ASSERT_NE(memory, MAP_FAILED);
+    ASSERT_EQ(mprotect(static_cast<char*>(memory) + 3 * page, page, PROT_NONE), 0);
+    auto* end = reinterpret_cast<float*>(static_cast<char*>(memory) + 3 * page);
+    for (const std::ptrdiff_t stride : {3, 4}) {
+        for (const std::ptrdiff_t count : {1, 15, 16, 17, 32, 33, 256}) {
+            // Of the last pixel three channels are ours, whatever the stride.
+            float* pixels = end - (count * stride - (stride - 3));
+            std::fill(pixels, end, 0.18F);
+            simd::run(code, {pixels, pixels + 1, pixels + 2}, stride,
+                      {pixels, pixels + 1, pixels + 2}, stride, static_cast<std::size_t>(count));
+            EXPECT_NE(end[-1], 0.18F);
+        }
+    }
+    munmap(memory, 4 * page);
+}
+
 TEST(MachineCode, WritesInPlaceAndBetweenLayouts) {
     if (const char* reason = missing()) GTEST_SKIP() << reason;
     simd::Code code = simd::compile(
         build_view(make_view(resolve_operator("agx_blender"), "lin_rec709", 0, "srgb")));
     ASSERT_TRUE(code.machine);
     const std::vector<float> in = floats(4 * 999);
+    const std::shared_ptr<const simd::MachineCode> machine = code.machine;
+    code.machine = nullptr;
     const std::vector<float> expected = run(code, in, 4, 999);
+    code.machine = machine;
     std::vector<float> pixels = in;
     simd::run(code, {pixels.data(), pixels.data() + 1, pixels.data() + 2}, 4,
               {pixels.data(), pixels.data() + 1, pixels.data() + 2}, 4, 999);

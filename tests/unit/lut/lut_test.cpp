@@ -294,7 +294,7 @@ TEST(LutFormatName, RoundTrips) {
         EXPECT_EQ(name_of(parse_lut_format(name)), name);
     EXPECT_EQ(error_of([] { (void)parse_lut_format("cub"); }),
               "bake: format is cub; expected cube, clf, ctf, spi1d, spi3d, csp, resolve_cube, 3dl, "
-              "lut, icc, hald, strip or raw; did you mean cube?");
+              "lut, icc, hald, strip, strip_up or raw; did you mean cube?");
 }
 
 // ---------------------------------------------------------------------------------------------
@@ -637,7 +637,7 @@ TEST(SampleLut, RefusesWhatAHostWouldShowWrong) {
     r.dimension = LutDimension::three;
     EXPECT_EQ(error(r),
               "bake: format is spi1d; expected a 3D format (cube, clf, ctf, spi3d, csp, "
-              "resolve_cube, 3dl, lut, icc, hald, strip, raw) with --3d");
+              "resolve_cube, 3dl, lut, icc, hald, strip, strip_up, raw) with --3d");
     r = request_for("hable", "log2", LutFormat::spi3d);
     r.dimension = LutDimension::one;
     EXPECT_EQ(error(r),

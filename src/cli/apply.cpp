@@ -119,7 +119,8 @@ void apply_lut(const Options& options, const CLI::App& command) {
     const LutFile lut = open_lut(options.lut.file, options.lut.interpolation);
     const SimdEngine encode(before);
     const OIIO::TypeDesc type = options.pixel_type();
-    const OIIO::ImageBuf source = read_picture(options.in);
+    const QuietStderr quiet;
+    const OIIO::ImageBuf source = read_image(options.in);
     OIIO::ImageBuf result;
     const auto map = [&](const float* in, float* out, std::size_t count) {
         if (before.empty()) {
@@ -150,7 +151,7 @@ void add_apply(CLI::App& program, int& exit_code) {
     command->add_option(
         "--frames", options->frames,
         "frames such as 1001-1100, 1-9x2 (every second) or 1,5,10-20: `in` and `out` "
-        "have %04d or #### where the number stands");
+        "have %04d or #### (# is four digits, too) where the number stands");
     add_view_options(*command, *options);
     command->add_option("-d", options->type,
                         "pixel type of the output: uint8, uint16, half or float");
@@ -203,7 +204,7 @@ void add_apply(CLI::App& program, int& exit_code) {
         tonemap.statistics = parse_statistics(options->statistics);
         const Tonemapper tonemapper(tonemap);  // a wrong name is told before a large file is read
         const OIIO::TypeDesc type = options->pixel_type();
-        if (!options->frames.empty()) {
+        if (command->count("--frames") > 0) {
             exit_code = apply_to_frames(tonemapper, options->in, options->out,
                                         parse_frames(options->frames), type, options->threads);
             return;

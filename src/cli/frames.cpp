@@ -58,7 +58,7 @@ std::string frame_name(const char* what, const std::string& pattern, int frame) 
     std::string rest = pattern;
     for (std::smatch match; std::regex_search(rest, match, place_of_number());) {
         const bool is_hashes = match[0].str().front() == '#';
-        const auto digits = is_hashes          ? static_cast<int>(match.length())
+        const auto digits = is_hashes ? match.length() == 1 ? 4 : static_cast<int>(match.length())
                             : match[1].matched ? std::stoi(match[1])
                                                : 1;
         // As printf does, the sign is one of the digits.

@@ -10,8 +10,8 @@ namespace tonewright {
 /// @throws Error
 [[nodiscard]] std::vector<int> parse_frames(const std::string& text);
 
-/// The name of a frame: every `%d`, `%04d` (printf) or `####` (as many digits) in the pattern is
-/// its number.
+/// The name of a frame: every `%d`, `%04d` (printf), `####` (as many digits) or `#` (four, as in
+/// oiiotool) in the pattern is its number.
 /// @param what     the argument, for the message
 /// @throws Error   a pattern that has no place for a number
 [[nodiscard]] std::string frame_name(const char* what, const std::string& pattern, int frame);

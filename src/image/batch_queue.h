@@ -16,6 +16,7 @@ class BatchQueue {
     void push(T thing) {
         {
             const std::lock_guard lock(mutex_);
+            if (cancelled_) return;
             things_.push_back(std::move(thing));
         }
         changed_.notify_one();
@@ -37,12 +38,13 @@ class BatchQueue {
         }
         changed_.notify_all();
     }
-    /// What is in it is not wanted any more.
+    /// What is in it, and what comes, is not wanted any more.
     void cancel() {
         {
             const std::lock_guard lock(mutex_);
             things_.clear();
             closed_ = true;
+            cancelled_ = true;
         }
         changed_.notify_all();
     }
@@ -52,6 +54,7 @@ class BatchQueue {
     std::condition_variable changed_;
     std::deque<T> things_;
     bool closed_ = false;
+    bool cancelled_ = false;
 };
 
 }  // namespace tonewright

@@ -109,4 +109,8 @@ class PictureWriter {
     std::unique_ptr<OIIO::ImageOutput> out_;
 };
 
+/// When the program is told to end (SIGINT, SIGTERM, SIGHUP), what PictureWriter has not finished
+/// is removed first. For a program to call once.
+void remove_unfinished_files_on_signals();
+
 }  // namespace tonewright

@@ -8,12 +8,17 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <numeric>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -60,9 +65,52 @@ std::vector<int> channels_to_write(const ImageSpec& spec, const OIIO::ImageOutpu
     return channels;
 }
 
+// ---------------------------------------------------------------------------------------------
+
+/// The temporary files that there are now, for a signal's handler: whoever takes a name out removes
+/// the file.
+std::array<std::atomic<const char*>, 256> unfinished_names;
+static_assert(std::atomic<const char*>::is_always_lock_free);
+
+class UnfinishedName {
+  public:
+    explicit UnfinishedName(const std::string& path) {
+        auto name = std::make_unique<char[]>(path.size() + 1);
+        std::copy(path.begin(), path.end(), name.get());
+        for (std::atomic<const char*>& place : unfinished_names) {
+            const char* none = nullptr;
+            if (!place.compare_exchange_strong(none, name.get())) continue;
+            (void)name.release();
+            place_ = &place;
+            return;
+        }
+    }
+    ~UnfinishedName() {
+        if (place_) delete[] place_->exchange(nullptr);
+    }
+    UnfinishedName(const UnfinishedName&) = delete;
+    UnfinishedName& operator=(const UnfinishedName&) = delete;
+
+  private:
+    std::atomic<const char*>* place_ = nullptr;  // null: so many at once that this one stays
+};
+
+void remove_unfinished(int number) {
+    for (std::atomic<const char*>& place : unfinished_names) {
+        if (const char* name = place.exchange(nullptr)) ::unlink(name);
+    }
+    ::signal(number, SIG_DFL);
+    ::raise(number);
+}
+
 }  // namespace
 
-// ---------------------------------------------------------------------------------------------
+void remove_unfinished_files_on_signals() {
+    for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+        // nohup stays in force.
+        if (::signal(number, remove_unfinished) == SIG_IGN) ::signal(number, SIG_IGN);
+    }
+}
 
 /// A file that is being written under a name of its own; removed again unless it was kept.
 class PictureWriter::TemporaryFile {
@@ -74,6 +122,7 @@ class PictureWriter::TemporaryFile {
         const std::string stem = target.stem().string().substr(0, 200);
         path_ = target.parent_path() / fmt::format(".{}.{}.{}.tmp{}", stem, ::getpid(), count++,
                                                    target.extension().string());
+        name_.emplace(path_.string());
     }
     ~TemporaryFile() {
         if (path_.empty()) return;
@@ -96,6 +145,7 @@ class PictureWriter::TemporaryFile {
         if (error) return error;
         if (::rename(path_.c_str(), target_.c_str()) != 0) return errno;
         path_.clear();
+        name_.reset();
         // The new name is on the disk when its directory is. Some file systems cannot sync one.
         const fs::path folder = target_.has_parent_path() ? target_.parent_path() : fs::path(".");
         const int directory = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -109,6 +159,7 @@ class PictureWriter::TemporaryFile {
   private:
     fs::path target_;
     fs::path path_;
+    std::optional<UnfinishedName> name_;
 };
 
 /// What OIIO's writers write to. They do not look whether their last bytes reached the disk (PNG at

@@ -25,11 +25,11 @@ constexpr int kThumbnailHeight = 54;
 constexpr int kOversampling = 4;
 
 std::string encode_png(const ImageBuf& picture, OIIO::TypeDesc type) {
+    OIIO::Filesystem::IOVecOutput memory;  // before what writes to it until it ends
     const std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create("png");
     if (!out) throw Error("bake: PNG: " + first_line(OIIO::geterror()));
     OIIO::ImageSpec spec = picture.spec();
     spec.set_format(type);
-    OIIO::Filesystem::IOVecOutput memory;
     out->set_ioproxy(&memory);
     std::vector<float> pixels(spec.image_pixels() * 3);
     if (!picture.get_pixels(picture.roi(), OIIO::TypeDesc::FLOAT, pixels.data()) ||

@@ -249,6 +249,8 @@ void tonemap_file(const Tonemapper& tonemapper, const std::string& in, const std
         throw;
     } catch (const Error& e) {
         throw Error(fmt::format("{}: {}", in, e.what()));
+    } catch (const std::bad_alloc&) {
+        throw Error(in + ": not enough memory");
     }
 }
 

@@ -11,9 +11,11 @@ import argparse
 import json
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 import zipfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -354,6 +356,7 @@ def check_frames(report, command, scratch, picture):
         (scratch / name).read_bytes() == (scratch / name.replace("out", "one")).read_bytes() for name in names()))
     for frames, to, expected in (("999-1003x2", "out.%04d.png", ["out.0999.png", "out.1001.png", "out.1003.png"]),
                                  ("1003-998x5", "out.%d.png", ["out.1003.png", "out.998.png"]),
+                                 ("998,10000", "out.#.png", ["out.0998.png", "out.10000.png"]),
                                  ("10000,998", "out.######.png", ["out.000998.png", "out.010000.png"])):
         report.check(f"apply --frames {frames} {to}",
                      applied(frames, to=to) == (OK, "", "") and names() == expected, names())
@@ -364,6 +367,17 @@ def check_frames(report, command, scratch, picture):
                      and all(line.startswith("tonewright: apply: ") for line in lines)
                      and "shot.1002.exr: cannot read" in lines[0] and "1 of 4 frames failed, 3 written" in lines[1]
                      and names() == ["out.1000.png", "out.1001.png", "out.1003.png"], f"exit {code}, {names()}: {err}")
+    large = scratch / "large.exr"
+    run("oiiotool", "--pattern", "noise", "4096x4096", 3, "-d", "half", "-o", large)
+    (scratch / "stopped.exr").write_text("the old file")
+    for end in (signal.SIGINT, signal.SIGTERM):
+        process = subprocess.Popen([command, "apply", large, scratch / "stopped.exr", "--operator", "aces_20"])
+        while process.poll() is None and not list(scratch.glob(".stopped*")):
+            time.sleep(0.002)
+        process.send_signal(end)
+        report.check(f"apply, {end.name}: the old file whole and nothing beside it", process.wait() == -end
+                     and (scratch / "stopped.exr").read_text() == "the old file" and not list(scratch.glob(".stopped*")),
+                     f"exit {process.returncode}, {list(scratch.glob('.stopped*'))}")
     write_exr(scratch / "shot.1002.exr", {"X": np.zeros((4, 4), np.float32), "Y": np.zeros((4, 4), np.float32)})
     code, _, err = applied("1001-1002")
     report.check("apply --frames, one has no color", code == USAGE and "shot.1002.exr: " in err and "2 channels" in err

@@ -178,18 +178,23 @@ TEST_F(TonemapFile, FailuresLeaveTheOldFile) {
     const std::string whole = bytes_of(in);
     std::ofstream(out) << "the old file";
     const auto run = [&](int threads) {
-        return message_of(
-            [&] { tonemap_file(Tonemapper({.op = "hable"}), in, out, TypeDesc::HALF, threads); });
+        return message_of([&] {
+            tonemap_in_batches(Tonemapper({.op = "hable"}), in, out, TypeDesc::HALF, threads,
+                               kSmallBatch);
+        });
     };
     const auto expect_old = [&] {
         EXPECT_EQ(bytes_of(out), "the old file");
         EXPECT_EQ(std::distance(fs::directory_iterator(fs::path(out).parent_path()), {}), 2);
     };
-    // In the last batches: some are written by then.
-    std::ofstream(in, std::ios::binary) << whole.substr(0, whole.size() * 9 / 10);
-    for (const int threads : {1, 3}) {
-        EXPECT_TRUE(run(threads).starts_with("file: " + in + ": cannot read")) << run(threads);
-        expect_old();
+    // In the first, a middle and the last batches, with others on their way.
+    for (const std::size_t tenths : {3, 6, 9}) {
+        std::ofstream(in, std::ios::binary) << whole.substr(0, whole.size() * tenths / 10);
+        for (const int threads : {1, 3, 3, 3}) {
+            const std::string message = run(threads);
+            EXPECT_TRUE(message.starts_with("file: " + in + ": cannot read")) << message;
+            expect_old();
+        }
     }
     std::ofstream(in, std::ios::binary) << whole;
     std::signal(SIGXFSZ, SIG_IGN);

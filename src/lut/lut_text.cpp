@@ -805,7 +805,7 @@ void check_for_other_readers(Text& text, std::string_view bytes) {
     if (bytes.substr(std::min<std::size_t>(36, bytes.size()), 4) == "acsp")
         text.fail("is that of an ICC profile; expected text");
     do {
-        const std::string line = lowercase(text.word());
+        const std::string line = lowercase(text.word().substr(0, 64));
         const Size* size = std::find_if(std::begin(kSizes), std::end(kSizes),
                                         [&](const Size& s) { return line.starts_with(s.name); });
         if (size == std::end(kSizes)) continue;

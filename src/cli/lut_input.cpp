@@ -2,21 +2,21 @@
 #include "cli/lut_input.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <filesystem>
 
 #include "cli/picture_output.h"
+#include "lut/lowercase.h"
 
 namespace tonewright {
 
 void add_lut_options(CLI::App& command, LutOptions& options, CLI::Option* op,
                      const std::vector<std::string>& others) {
-    CLI::Option* lut = command.add_option(
-        "--lut", options.file,
-        "instead of an operator a LUT, anybody's: whatever OpenColorIO reads (.cube, .clf, .ctf, "
-        ".csp, .3dl, .spi1d, .spi3d, .lut, ...), ICC device links (.icc), raw floats (.raw), Hald "
-        "CLUTs and strips (pictures)");
+    CLI::Option* lut = command.add_option("--lut", options.file,
+                                          "instead of an operator a LUT, anybody's: through "
+                                          "OpenColorIO .cube, .clf, .ctf, .csp, .3dl, "
+                                          ".spi1d, .spi3d, .lut, .itx, .spimtx and .cc, ICC device "
+                                          "links (.icc), raw floats (.raw), Hald "
+                                          "CLUTs and strips (pictures)");
     lut->excludes(op);
     for (const std::string& other : others)
         lut->excludes(command.get_option(other));
@@ -40,9 +40,7 @@ void add_lut_options(CLI::App& command, LutOptions& options, CLI::Option* op,
 
 LutFile open_lut(const std::string& path, const std::string& interpolation) {
     const LutInterpolation between = parse_lut_interpolation(interpolation);
-    std::string extension = std::filesystem::path(path).extension().string();
-    for (char& c : extension)
-        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    const std::string extension = extension_of(path);
     constexpr const char* kPictures[] = {".png", ".tif", ".tiff", ".exr", ".tga", ".bmp", ".dpx"};
     if (std::find(std::begin(kPictures), std::end(kPictures), extension) == std::end(kPictures))
         return LutFile(path, between);

@@ -3,20 +3,16 @@
 
 #include <fmt/format.h>
 
-#include <cctype>
-#include <filesystem>
-
 #include "cli/picture_input.h"
 #include "image/lut_picture.h"
 #include "image/shipped_pictures.h"
+#include "lut/lowercase.h"
 #include "tonewright/image.h"
 
 namespace tonewright {
 
 void require_lut_picture(const std::string& path, int bits) {
-    std::string extension = std::filesystem::path(path).extension().string();
-    for (char& c : extension)
-        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    const std::string extension = extension_of(path);
     const bool is_tiff = extension == ".tif" || extension == ".tiff";
     const bool is_held = is_tiff || (bits == 32 ? extension == ".exr" : extension == ".png");
     if (!is_held) {

@@ -150,10 +150,14 @@ void check_table(const std::string& path, std::string_view bytes) {
     }
     const std::uint32_t tags = big_endian(bytes, kHeader, 4);
     std::string_view tag;
+    bool has_tag = false;
     for (std::size_t i = 0; i < tags; ++i) {
         const std::size_t entry = kHeader + 4 + 12 * i;
         if (entry + 12 > bytes.size()) refuse("the table of tags is longer than the file");
         if (bytes.substr(entry, 4) != "A2B0") continue;
+        // LittleCMS reads the first.
+        if (has_tag) refuse("tag A2B0 stands there twice; expected once");
+        has_tag = true;
         const std::size_t begin = big_endian(bytes, entry + 4, 4);
         const std::size_t length = big_endian(bytes, entry + 8, 4);
         if (begin > bytes.size() || length > bytes.size() - begin)

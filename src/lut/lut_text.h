@@ -13,8 +13,10 @@ namespace tonewright {
 
 /// Looks through a LUT file before OpenColorIO reads it, whose readers make room for whatever size
 /// a file declares, leave lines out that they do not understand, take NaN for a number and wait for
-/// ever for the end of a .csp's metadata. Accepts what is about: CRLF, comments, empty lines, no
-/// TITLE, DOMAIN_MIN and DOMAIN_MAX or LUT_3D_INPUT_RANGE. Takes no memory to speak of.
+/// ever for the end of a .csp's metadata. Where one of its readers fails it tries all others: a
+/// file must have the form that its extension says, and nothing in its free text that another
+/// reader makes room for. Accepts what is about: CRLF, comments, empty lines, no TITLE, DOMAIN_MIN
+/// and DOMAIN_MAX or LUT_3D_INPUT_RANGE. Takes no memory to speak of.
 /// @param path  whose extension says the format
 /// @throws FileError  with path, line and reason.
 void check_lut_text(const std::string& path, std::string_view text);

@@ -5,13 +5,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
+#include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <optional>
 
 #include "lut/icc.h"
+#include "lut/lowercase.h"
 #include "lut/lut_text.h"
 #include "lut/printable.h"
 #include "lut/raw.h"
@@ -24,13 +25,6 @@ namespace fs = std::filesystem;
 
 /// The text of a cube of 129 has some 80 million characters.
 constexpr std::uintmax_t kLargestFile = 128U << 20U;
-
-std::string extension_of(const std::string& path) {
-    std::string extension = fs::path(path).extension().string();
-    for (char& c : extension)
-        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return extension;
-}
 
 bool is_device_link(const std::string& extension) {
     return extension == ".icc" || extension == ".icm";
@@ -60,7 +54,10 @@ std::string read_bytes(const std::string& path) {
         fail(fmt::format("has {} bytes; expected up to {}", size, kLargestFile));
     std::ifstream file(path, std::ios::binary);
     std::string bytes(static_cast<std::size_t>(size), '\0');
-    if (!file.read(bytes.data(), static_cast<std::streamsize>(size))) fail(std::strerror(errno));
+    if (!file) fail(std::strerror(errno));
+    file.read(bytes.data(), static_cast<std::streamsize>(size));
+    if (file.bad()) fail(std::strerror(errno));
+    if (!file) fail(fmt::format("ends early, after {} of {} bytes", file.gcount(), size));
     return bytes;
 }
 
@@ -143,8 +140,21 @@ OCIO::GroupTransformRcPtr group_of(const std::string& path) {
     return group;
 }
 
+/// What OpenColorIO says about a file is thrown; its log would say it once more.
+class QuietOcio {
+  public:
+    QuietOcio() { OCIO::SetLoggingLevel(OCIO::LOGGING_LEVEL_NONE); }
+    ~QuietOcio() { OCIO::SetLoggingLevel(level_); }
+    QuietOcio(const QuietOcio&) = delete;
+    QuietOcio& operator=(const QuietOcio&) = delete;
+
+  private:
+    OCIO::LoggingLevel level_ = OCIO::GetLoggingLevel();
+};
+
 OcioCpu make_cpu(const std::string& path, const OCIO::GroupTransformRcPtr& group,
                  LutInterpolation interpolation) {
+    const QuietOcio quiet;
     Lowered lowered;
     lowered.transform = group;
     try {

@@ -6,8 +6,8 @@
 
 Every file is written here, from the formats' specifications: small tables, in as many formats as are read. The corpus of
 malformed ones is made of them by a list of mutations, the same on every run. Each is given to `tonewright eval --lut` with
-1 GB of address space: no crash, exit status 3, one line with the file's name and a reason, and the line's number where the
-file has lines. What comes out of the good ones is compared with NumPy's interpolation of the same numbers. The last line
+1 GB of address space, 20 s and 300 MB of memory: no crash, exit status 3, one line with the file's name and a reason, and
+the line's number where the file has lines. What comes out of the good ones is compared with NumPy's interpolation of the same numbers. The last line
 is `N passed, M failed`.
 """
 
@@ -19,6 +19,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+import threading
 import zlib
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -32,6 +33,10 @@ from lut_encodings import acescct_encode  # noqa: E402  (python_check/, which pi
 from lut_tables import linear, tetrahedral, trilinear  # noqa: E402
 
 GIGABYTE = 1 << 30
+# Resident: the program with its libraries has some 60 MB; what files declare here would be gigabytes.
+LARGEST = 300 << 20
+# Each takes some hundredths of a second; what hangs, hangs for ever.
+LONGEST = 20
 SIZE = 3  # points a side, of most cubes here
 COLORS = np.random.default_rng(5).uniform(-0.1, 1.1, (64, 3)).astype(np.float32).astype(float)
 
@@ -100,6 +105,36 @@ GOOD = {
                 + "</Array>\n</LUT3D>\n</ProcessList>\n",
     "cube.itx": f"LUT_3D_SIZE {SIZE}\n" + rows(CUBE),
 }
+
+# OpenColorIO tries all of its readers on whatever the reader of the extension does not take: nothing of one format may
+# reach another's reader under the extension of a third. The last ones hang OpenColorIO 2.1, or declare gigabytes.
+MATRIX = "2 0 0 0\n0 0.5 0 0\n0 0 1 6553.5\n"
+CORRECTION = ('<ColorCorrection id="x">\n<SOPNode>\n<Description>\nin 2019, out of the box\nwidth of the gamut\n</Description>\n'
+              "<Slope>2 0.5 1</Slope><Offset>0 0 0.1</Offset><Power>1 1 1</Power>\n</SOPNode>\n</ColorCorrection>\n")
+HUGE = 900000000
+FOREIGN = {
+    "matrix.spimtx": MATRIX,
+    "correction.cc": CORRECTION,
+    "collection.ccc": f"<ColorCorrectionCollection>\n{CORRECTION}</ColorCorrectionCollection>\n",
+    "list.cdl": f"<ColorDecisionList>\n<ColorDecision>\n{CORRECTION}</ColorDecision>\n</ColorDecisionList>\n",
+    "discreet.lut": "LUT: 1 2\n0\n255\n",
+    "endless.csp": "CSPLUTV100\n3D\n\nBEGIN METADATA\nhello\n",
+    "blank lines and endless.csp": "\n\nCSPLUTV100\n3D\n\nBEGIN METADATA\n<ProcessList/>\n",
+    "huge.cub": f"# Truelight Cube v2.0\n# iDims 3\n# width {HUGE} {HUGE} {HUGE}\n# lutLength {HUGE}\n",
+    "huge.vf": f"#Inventor V2.1 ascii\ngrid_size {HUGE} {HUGE} {HUGE}\ndata\n",
+    "huge.m3d": f"channel 3d\nin {HUGE}\nout 4096\nformat lut\nvalues red green blue\n",
+    "huge.spi1d": f"Version 1\nFrom 0 1\nLength {HUGE}\nComponents 1\n{{\n0\n1\n}}\n",
+    "huge.itx": "LUT_3D_SIZE 1500\n0 0 0\n",
+}
+
+
+def with_description(name, text):
+    """A file of the format that OpenColorIO's own reader refuses, with free text that another one may take."""
+    if name.endswith("clf"):
+        return f"<ProcessList>\n<Description>\n{text}</Description>\n</ProcessList>\n"
+    if name.endswith("cc"):
+        return f"<ColorCorrection>\n<Description>\n{text}</Description>\n<SOPNode><Slope>x</Slope></SOPNode>\n</ColorCorrection>\n"
+    return GOOD["cube.csp"].replace("\nx\n", f"\n{text}", 1)
 
 
 def expected_of(name, colors, is_trilinear=False):
@@ -204,8 +239,7 @@ SIZES = {
     "cube.itx": (f"LUT_3D_SIZE {SIZE}", "LUT_3D_SIZE {}"),
 }
 # 1500 a side are 40 GB of floats, 950 are 10 GB.
-DECLARED = ["0", "1", "-1", "2", "4", "950", "1500", "100000", "2147483647", "2147483648", "99999999999999999999", "x", "3.5",
-            "nan", ""]
+DECLARED = ["0", "1", "-1", "2", "950", "1500", "2147483647", "99999999999999999999", "x", "3.5", ""]
 
 
 def text_corpus():
@@ -284,10 +318,55 @@ def text_corpus():
             ("cube.clf", "a comment without end", "<LUT3D", "<!-- <LUT3D"),
             ("cube.clf", "entities", "<ProcessList", '<!DOCTYPE x [<!ENTITY a "aaaaaaaaaa">]>\n<ProcessList'),
             ("cube.clf", "another document", "ProcessList", "List"),
-            ("cube.ctf", "another document", "ProcessList", "List")):
+            ("cube.ctf", "another document", "ProcessList", "List"),
+            ("cube.clf", "a tag that closes another", "</LUT3D>", "</LUT1D>"),
+            ("cube.clf", "text before it", "<?xml", "CSPLUTV100\n3D\n\nBEGIN METADATA\n<?xml"),
+            ("cube.clf", "an Array in no LUT", "LUT3D", "LUT4D"),
+            ("cube.clf", "a size in lower case", f'Array dim="{SIZE} {SIZE} {SIZE} 3"', 'array DIM="1500 1500 1500 3"'),
+            ("cube.clf", "a size behind another attribute", f'dim="{SIZE}', f'xdim="{SIZE} {SIZE} {SIZE} 3" dim="950'),
+            ("cube.clf", "a size behind a > in quotation marks", f'dim="{SIZE}', f'name=">" dim="950'),
+            ("curve.clf", "NaN, and no half domain", "<LUT1D", '<LUT1D halfDomain="false"'),
+            ("cube.clf", "an IndexMap of 900000000", "<Array", f'<IndexMap dim="{HUGE}">0@0 1@1</IndexMap>\n<Array'),
+            ("cube.clf", "an IndexMap of 100000 with two", "<Array", '<indexmap DIM="100000">0@0 1@1</indexmap>\n<Array'),
+            ("cube.clf", "an IndexMap without dim", "<Array", "<IndexMap>0@0 1@1</IndexMap>\n<Array"),
+            ("cube.ctf", "a Reference", "<LUT3D", '<Reference path="other.clf" inBitDepth="32f" outBitDepth="32f"/>\n<LUT3D'),
+            ("cube.ctf", "a reference", "<LUT3D", '<rEFERENCE path="other.clf"></rEFERENCE>\n<LUT3D'),
+            ("cube.clf", "elements without end", "<LUT3D", "<a>" * 100 + "<LUT3D"),
+            ("cube.3dl", "a size of another format", "LUT8", "LUT_3D_SIZE 1500")):
+        if "NaN" in what:
+            yield name, what, with_row(GOOD[name].replace(old, new), last_number("nan")).encode()
+            continue
         if old not in GOOD[name]:
             raise ValueError(f"{name}: {what}")
         yield name, what, GOOD[name].replace(old, new).encode()
+
+
+def foreign_corpus():
+    """Every extension that is read, with what every other format holds."""
+    contents = GOOD | FOREIGN
+    extensions = {name.rsplit(".", 1)[1] for name in GOOD} | {"spimtx", "cc"}
+    for extension in sorted(extensions):
+        for name, text in contents.items():
+            own = name.rsplit(".", 1)[1]
+            # CLF and CTF are one; our reader of cubes takes what .itx may hold.
+            if own == extension and not name.startswith(("huge", "endless", "blank")):
+                continue
+            if {own, extension} in ({"clf", "ctf"}, {"itx", "cube"}):
+                continue
+            yield f"foreign.{extension}", f"it holds {name}", text.encode()
+    for extension in ("clf", "cc", "csp"):
+        for name, text in FOREIGN.items():
+            # Whatever else stands in the metadata of a .csp is fine.
+            if "<" in text or (extension == "csp" and name not in ("huge.m3d", "huge.spi1d", "huge.itx")):
+                continue
+            yield f"described.{extension}", f"{name} in its text", with_description(extension, text).encode()
+    acsp = "<!--" + " " * 32 + "acsp" + " " * 100 + "-->\n"
+    yield "icc.clf", "the signature of an ICC profile", (acsp + GOOD["cube.clf"].split("\n", 1)[1]).encode()
+    for name, text in (("few.spimtx", "1 0 0 0\n0 1 0 0\n0 0 1\n"), ("more.spimtx", MATRIX + "1\n"),
+                       ("nan.spimtx", MATRIX.replace("0.5", "nan")), ("word.spimtx", MATRIX.replace("0.5", "x")),
+                       ("entities.cc", '<!DOCTYPE x [<!ENTITY a "aaaaaaaaaa">]>\n' + CORRECTION),
+                       ("open.cc", CORRECTION.replace("</SOPNode>", "")), ("utf16.cc", CORRECTION.encode("utf-16-le").decode("latin1"))):
+        yield name, name, text.encode("latin1")
 
 
 def binary_corpus(command, folder):
@@ -322,6 +401,8 @@ def binary_corpus(command, folder):
         for points in (0, 255):
             yield name, f"{points} points a side", good[:grid] + bytes([points] * (1 if version == 2 else 3)) + good[
                 grid + (1 if version == 2 else 3):]
+        # A second A2B0, with the name of another tag in it; LittleCMS reads the first.
+        yield name, "two tags A2B0", good.replace(b"desc", b"A2B0", 1)
         yield name, "a table of tags without end", good[:128] + b"\xff\xff\xff\xff" + good[132:]
         yield name, "a tag beyond the file", good.replace(b"A2B0" + good[good.index(b"A2B0") + 4:][:8],
                                                           b"A2B0\x7f\xff\xff\xff\x00\x00\x10\x00", 1)
@@ -345,13 +426,19 @@ def limited():
 
 
 def peak_of(arguments, stdin):
-    """(status, stdout, stderr, bytes of memory)"""
+    """(status, stdout, stderr, bytes of memory); what does not end in time is killed, and says so"""
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err, tempfile.TemporaryFile() as into:
         into.write(stdin.encode())
         into.seek(0)
         process = subprocess.Popen([str(a) for a in arguments], stdin=into, stdout=out, stderr=err, preexec_fn=limited)
+        timer = threading.Timer(LONGEST, process.kill)
+        timer.start()
         _, status, usage = os.wait4(process.pid, 0)
+        is_late = not timer.is_alive()
+        timer.cancel()
         process.returncode = os.waitstatus_to_exitcode(status)
+        if is_late:
+            return process.returncode, "", f"does not end within {LONGEST} s: {arguments[-1]}", 0
         out.seek(0)
         err.seek(0)
         return process.returncode, out.read().decode(), err.read().decode(errors="replace"), usage.ru_maxrss * 1024
@@ -377,11 +464,11 @@ def refuse(command, folder, index, case):
         return f"{name}, {what}: no line: {err.strip()}"
     if not err.isascii() or max(len(line) for line in err.split("\n")) > 600:
         return f"{name}, {what}: {err[:600]!r}"
-    return f"{name}, {what}: {peak / 2 ** 20:.0f} MB" if peak > GIGABYTE else None
+    return f"{name}, {what}: {peak / 2 ** 20:.0f} MB" if peak > LARGEST else None
 
 
 def check_corpus(report, command, folder):
-    cases = list(text_corpus()) + list(binary_corpus(command, folder))
+    cases = list(text_corpus()) + list(foreign_corpus()) + list(binary_corpus(command, folder))
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         faults = list(pool.map(lambda c: refuse(command, folder, *c), enumerate(cases)))
     kinds = {}
@@ -414,7 +501,7 @@ def check_noise(report, command, folder):
         status, out, err, peak = peak_of([command, "eval", "--lut", path], "0.1 0.2 0.3\n")
         path.unlink()
         ok = (status == 0 and len(out.split()) == 3) or (status == 3 and err.count("\n") == 1 and path.name in err)
-        return None if ok and peak <= GIGABYTE else f"{name}: exit {status}, {peak / 2 ** 20:.0f} MB: {(out + err)[:300]!r}"
+        return None if ok and peak <= LARGEST else f"{name}: exit {status}, {peak / 2 ** 20:.0f} MB: {(out + err)[:300]!r}"
 
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         bad = [fault for fault in pool.map(one, enumerate(jobs)) if fault]
@@ -578,6 +665,51 @@ def check_wild(report, command, folder):
         report.compare(f"CRLF: {name}", evaluate_lut(command, path, COLORS), expected_of(name, COLORS), FLOAT32)
 
 
+def check_xml(report, command, folder):
+    """Names without regard to case, all that Arrays may stand in, and free text."""
+    cube, curve = GOOD["cube.clf"], GOOD["curve.clf"]
+    truth = interpolate(CUBE, COLORS)
+    described = cube.replace("<LUT3D", "<Description>\nin 2019\nout of the box\nwidth 1920\nlength 7\n</Description>\n<LUT3D")
+    for what, text in (("upper case", cube.replace("Array", "ARRAY").replace("LUT3D", "LUT3d")), ("free text", described),
+                       ("a comment with tags", cube.replace("<LUT3D", "<!-- <Array dim='9'> -->\n<LUT3D"))):
+        path = folder / "wild.clf"
+        path.write_text(text)
+        report.compare(f".clf: {what}", evaluate_lut(command, path, COLORS), truth, FLOAT32)
+    path.write_text(cube.replace("<LUT3D", "<Unknown/>\n<LUT3D"))
+    status, out, err, _ = peak_of([command, "eval", "--lut", path], "0.1 0.2 0.3\n")
+    report.check(".clf: an element that OpenColorIO warns of, without its warning",
+                 status == 0 and len(out.split()) == 3 and not err, (status, err))
+    corrected = np.clip(COLORS, 0, None)
+    for name, text in (("wild.cc", CORRECTION), ("wild.spimtx", MATRIX)):
+        (folder / name).write_text(text)
+        # A power of 1: OpenColorIO's fast one may stand there, 15 bits.
+        report.compare(f"{name}: slope and offset", evaluate_lut(command, folder / name, corrected),
+                       corrected * [2, 0.5, 1] + [0, 0, 0.1], FLOAT32)
+    # Autodesk's inverses: what went in comes out. The curve's least slope is a tenth, the cube's about as much.
+    inside = np.random.default_rng(8).uniform(0.1, 0.9, (64, 3)).astype(np.float32).astype(float)
+    header = '<ProcessList version="1.6" id="x">\n'
+    for what, text, shown in (
+            ("InverseLUT1D", header + curve.split("\n", 2)[2].replace("LUT1D", "InverseLUT1D"), linear(TRIPLES, inside)),
+            ("InverseLUT3D", header + GOOD["cube.ctf"].split("\n", 2)[2].replace("LUT3D", "InverseLUT3D"),
+             interpolate(CUBE, inside))):
+        path = folder / "inverse.ctf"
+        path.write_text(text)
+        report.compare(f".ctf: {what}", evaluate_lut(command, path, shown), inside, 1e-4)
+
+
+def check_early_end(report, command, folder):
+    """A file that has less than its size says: those of Linux's sysfs have 4096 bytes, and hold a line."""
+    short = [path for path in ("/sys/kernel/mm/transparent_hugepage/enabled", "/sys/kernel/notes", "/sys/devices/system/cpu/online",
+                               "/sys/devices/system/cpu/possible")
+             if os.access(path, os.R_OK) and os.path.getsize(path) > len(Path(path).read_bytes())]
+    if not short:
+        print("skip a file that ends early: there is none in /sys")
+        return
+    (folder / "early.cube").symlink_to(short[0])
+    status, out, err, _ = peak_of([command, "eval", "--lut", folder / "early.cube"], "")
+    report.check("a file that ends early", status == 3 and not out and err.count("\n") == 1 and "ends early" in err, err)
+
+
 def check_usage(report, command, folder):
     path = folder / "adobe.cube"
     for arguments, words in ((["--interpolation", "cubic"], "interpolation is cubic; auto, tetrahedral or trilinear"),
@@ -615,6 +747,8 @@ def main():
         check_encoding(report, command, folder)
         check_apply(report, command, folder)
         check_wild(report, command, folder)
+        check_xml(report, command, folder)
+        check_early_end(report, command, folder)
         check_usage(report, command, folder)
         check_paths(report, command, folder)
         check_corpus(report, command, folder)

@@ -19,8 +19,8 @@ enum class LutInterpolation : unsigned char { automatic, tetrahedral, trilinear 
 
 /// A LUT of any format and of anybody's, ready to run.
 ///
-/// OpenColorIO runs what it reads (.cube, .clf, .ctf, .spi1d, .spi3d, .csp, .3dl, .lut, .itx, .cub,
-/// .vf, .m3d, .mga, .spimtx, .cc, .ccc, .cdl), LittleCMS an ICC device link (.icc, .icm), and our
+/// OpenColorIO runs what it reads (.cube, .clf, .ctf, .spi1d, .spi3d, .csp, .3dl, .lut, .itx,
+/// .spimtx, .cc), LittleCMS an ICC device link (.icc, .icm), and our
 /// own interpolation raw floats (.raw: the cube's size follows from the file's) and tables from
 /// elsewhere, such as the pictures of read_lut_picture().
 class LutFile {

@@ -157,7 +157,9 @@ class Generator : public Xbyak::CodeGenerator {
         return s.next < s.uses.size() ? s.uses[s.next] : std::numeric_limits<std::size_t>::max();
     }
 
-    Xbyak::Address slot_of(int slot) { return ptr[rsp + slot * static_cast<int>(kVectorBytes)]; }
+    Xbyak::Address slot_of(int slot) {
+        return ptr[rsp + static_cast<std::size_t>(slot) * kVectorBytes];
+    }
 
     /// A register that holds nothing, not locked.
     int take() {
@@ -394,19 +396,21 @@ class Generator : public Xbyak::CodeGenerator {
 
     Xbyak::Address plane(const VectorInstruction& step) {
         if (step.wide) {
-            return ptr[rdi + r8 * 2 + static_cast<int>(step.offset) +
-                       64 * (step.immediate + 2 * step.block)];
+            const std::size_t half = step.immediate + std::size_t{2} * step.block;
+            return ptr[rdi + r8 * 2 + (step.offset + kVectorBytes * half)];
         }
-        return ptr[rdi + r8 + static_cast<int>(step.offset) + 64 * step.block];
+        return ptr[rdi + r8 + (step.offset + kVectorBytes * step.block)];
     }
     Xbyak::Address pixels(const Xbyak::Reg64& base, const VectorInstruction& step) {
-        return ptr[base + 64 * step.immediate + pixel_bytes() * step.block];
+        const int offset = 64 * step.immediate + pixel_bytes() * step.block;
+        return ptr[base + static_cast<std::size_t>(offset)];
     }
     /// The stack's first lines, behind those of the spilled values.
     Xbyak::Address kept_index(const VectorInstruction& step, int number, int pixel) {
-        return ptr[rbp - kKeptBytes + 64 * (number + 4 * step.block) + 4 * pixel];
+        const int offset = 64 * (number + 4 * step.block) + 4 * pixel;
+        return ptr[rbp - static_cast<std::size_t>(kKeptBytes - offset)];
     }
-    Xbyak::Address table(std::uint32_t offset) { return ptr[rax + static_cast<int>(offset)]; }
+    Xbyak::Address table(std::uint32_t offset) { return ptr[rax + std::size_t{offset}]; }
 
     void write(const VectorInstruction& step) {
         using Z = Xbyak::Zmm;
@@ -702,7 +706,7 @@ class Assembled final : public MachineCode {
         for (std::size_t layout = 0; layout < 3; ++layout) {
             for (const std::size_t at : entry[layout])
                 function_[layout].push_back(reinterpret_cast<Function>(
-                    reinterpret_cast<std::uintptr_t>(generator_.getCode()) + at));
+                    const_cast<std::uint8_t*>(generator_.getCode() + at)));
         }
     }
 

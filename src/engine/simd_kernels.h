@@ -112,9 +112,10 @@ struct Instruction {
 
 /// Largest tile, in pixels.
 inline constexpr std::size_t kMaxTile = 256;
-inline constexpr std::size_t kVectorBytes = 64;               // the widest vector there is
-inline constexpr std::size_t kLaneMultiple = 16;              // floats in it
-inline constexpr std::size_t kRegisterFileBytes = 64 * 1024;  // on the stack of the running thread
+inline constexpr std::size_t kVectorBytes = 64;   // the widest vector there is
+inline constexpr std::size_t kLaneMultiple = 16;  // floats in it
+/// On the stack of the running thread.
+inline constexpr std::size_t kRegisterFileBytes = std::size_t{64} * 1024;
 
 struct alignas(kVectorBytes) ConstantVector {
     std::array<unsigned char, kVectorBytes> bytes;

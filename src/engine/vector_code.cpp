@@ -21,7 +21,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// more values to the tile than they compute.
 constexpr int kLongestPart = 115;
 /// Bytes of a tile: stays in a first-level cache of 32 KiB.
-constexpr std::size_t kTileBytes = 24 * 1024;
+constexpr std::size_t kTileBytes = std::size_t{24} * 1024;
 
 /// Constants and tables, each once.
 class Pool {

@@ -112,7 +112,7 @@ Lut sample_lut(const LutRequest& request) {
         throw Error(std::string("bake: format is ") + traits.name +
                     "; expected a 3D format (cube, clf, ctf, spi3d, csp, resolve_cube, 3dl, lut, "
                     "icc, hald, "
-                    "strip, raw) with --3d");
+                    "strip, strip_up, raw) with --3d");
     }
     if (request.dimension == LutDimension::one && !traits.has_1d) {
         throw Error(std::string("bake: format is ") + traits.name +

@@ -289,7 +289,7 @@ TEST(LutFormatName, RoundTrips) {
     EXPECT_EQ(parse_lut_format("spi1d"), LutFormat::spi1d);
     EXPECT_EQ(parse_lut_format("spi3d"), LutFormat::spi3d);
     EXPECT_EQ(parse_lut_format("raw"), LutFormat::raw);
-    EXPECT_EQ(lut_format_names().size(), 13U);
+    EXPECT_EQ(lut_format_names().size(), 14U);
     for (const std::string& name : lut_format_names())
         EXPECT_EQ(name_of(parse_lut_format(name)), name);
     EXPECT_EQ(error_of([] { (void)parse_lut_format("cub"); }),

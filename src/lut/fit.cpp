@@ -5,10 +5,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 
 #include "engine/probe.h"
 #include "lut/in_parallel.h"
+#include "lut/picture_color.h"
 #include "lut/tetrahedron.h"
 #include "tonewright/engine.h"
 
@@ -209,22 +209,12 @@ class Fit {
             samples_[next[sample.cell]++] = sample;
     }
 
-    /// As pictures have them: brightness log-uniform over 15 stops, channels some half of a stop
-    /// apart, in Rec.709. Others: half inside Rec.709 and half inside the primaries of the light,
-    /// channels log-uniform, a tenth with a channel at 0.
+    /// As pictures have them, or others: half inside Rec.709 and half inside the primaries of the
+    /// light, channels log-uniform, a tenth with a channel at 0.
     [[nodiscard]] Vector3 draw_color(std::size_t i, ProbeRandom& random,
                                      const Matrix3& from_rec709) const {
         Vector3 color{};
-        if (is_picture_color(i)) {
-            const double stops = std::log2(0.18) + random.uniform(-9, 6.2);
-            for (double& channel : color) {
-                // Box and Muller: a normal distribution, of 0.6 stops.
-                const double radius = std::sqrt(-2 * std::log(1 - random.uniform(0, 1)));
-                const double angle = 2 * std::numbers::pi * random.uniform(0, 1);
-                channel = std::exp2(stops + 0.6 * radius * std::cos(angle));
-            }
-            return multiply(from_rec709, color);
-        }
+        if (is_picture_color(i)) return multiply(from_rec709, draw_picture_color(random));
         double brightest = std::log2(problem_.axis.top);
         if (random.uniform(0, 10) < 7) brightest = std::min(brightest, kUsualBrightest);
         // Additive recurrence of the powers of the root of x^4 = x + 1 (M. Roberts 2018): fills

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <thread>
 
 #include "engine/probe.h"
 #include "lut/in_parallel.h"
+#include "lut/picture_color.h"
 #include "lut/tetrahedron.h"
 #include "tonewright/engine.h"
 
@@ -92,16 +92,7 @@ class InverseFit {
             const double grey = std::exp2(random.uniform(-13, 7));
             return {grey, grey, grey};
         }
-        if (kind <= 3) {
-            const double stops = std::log2(0.18) + random.uniform(-9, 6.2);
-            for (double& channel : color) {
-                // Box and Muller: a normal distribution, of 0.6 stops.
-                const double radius = std::sqrt(-2 * std::log(1 - random.uniform(0, 1)));
-                const double angle = 2 * std::numbers::pi * random.uniform(0, 1);
-                channel = std::exp2(stops + 0.6 * radius * std::cos(angle));
-            }
-            return multiply(from_rec709, color);
-        }
+        if (kind <= 3) return multiply(from_rec709, draw_picture_color(random));
         const bool is_usual = kind <= 6;
         for (double& channel : color)
             channel = std::exp2(is_usual ? random.uniform(-10, 6.5) : random.uniform(-16, 12));

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <numbers>
+
+#include "engine/probe.h"
+#include "tonewright/color.h"
+
+namespace tonewright {
+
+/// A colour as pictures have them, linear Rec.709: brightness log-uniform over 15 stops, channels
+/// some half of a stop apart.
+[[nodiscard]] inline Vector3 draw_picture_color(ProbeRandom& random) {
+    const double stops = std::log2(0.18) + random.uniform(-9, 6.2);
+    Vector3 color{};
+    for (double& channel : color) {
+        // Box and Muller: a normal distribution, of 0.6 stops.
+        const double radius = std::sqrt(-2 * std::log(1 - random.uniform(0, 1)));
+        const double angle = 2 * std::numbers::pi * random.uniform(0, 1);
+        channel = std::exp2(stops + 0.6 * radius * std::cos(angle));
+    }
+    return color;
+}
+
+}  // namespace tonewright

@@ -518,7 +518,7 @@ std::string to_svg(const CurvePlot& plot, double width) {
     draw(plot, svg);
     std::string description = fmt::format(
         "x = {} + {} (stops from 0.18 + {}), y = {} - {} {}", px(kLeft), px(kStop), -kLowestStop,
-        px(layout.upper.y_of(0)), px(layout.upper.unit()), layout.upper.scale.quantity);
+        shortest(layout.upper.y_of(0)), shortest(layout.upper.unit()), layout.upper.scale.quantity);
     if (!plot.lower_lines.empty()) {
         description += fmt::format("; lower graph y = {} - {} value", px(layout.lower.y_of(0)),
                                    shortest(layout.lower.unit()));

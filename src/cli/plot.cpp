@@ -49,7 +49,8 @@ class Readings {
     Readings(const Display& display, Quantity quantity) : display_(display), quantity_(quantity) {}
 
     [[nodiscard]] std::string light_text(double light) const {
-        const std::string number = fmt::format(light < 1000 ? "{:.3g}" : "{:.0f}", light);
+        const std::string number =
+            light < 1000 ? fmt::format("{:.3g}", light) : fmt::format("{:.0f}", light);
         return display_.is_hdr ? number : number + " %";
     }
     [[nodiscard]] std::vector<double> light_of(const std::vector<double>& codes) const {
@@ -189,8 +190,13 @@ CurvePlot plot_of(const Options& options) {
     }
     const Quantity quantity = parse_quantity(options.y);
     std::vector<View> views;
-    for (const std::string& text : options.operators)
-        views.push_back(view_of(options, text));
+    for (const std::string& text : options.operators) {
+        View view = view_of(options, text);
+        const bool is_there = std::any_of(views.begin(), views.end(), [&](const View& other) {
+            return other.op.label == view.op.label;
+        });
+        if (!is_there) views.push_back(std::move(view));
+    }
     const Display& display = find_display(views[0].display);
     const Readings readings(display, quantity);
 

@@ -143,11 +143,13 @@ ImageBuf resize_scene(const ImageBuf& picture, int width) {
 
 int choose_columns(int count, int cell_width, int cell_height) {
     constexpr double kScreen = 16.0 / 10;
+    const double width = 1.05 * cell_width;  // with margins, and a label
+    const double height = cell_height + 0.16 * cell_width;
     int best = 1;
     double least = 1e9;
     for (int columns = 1; columns <= count; ++columns) {
         const int rows = (count + columns - 1) / columns;
-        const double aspect = static_cast<double>(columns) * cell_width / rows / cell_height;
+        const double aspect = columns * width / (rows * height);
         const double gaps = static_cast<double>(columns * rows - count) / count;
         const double badness = std::fabs(std::log(aspect / kScreen)) + 2 * gaps;
         if (badness < least) {

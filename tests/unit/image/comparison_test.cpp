@@ -195,7 +195,7 @@ TEST(ResizeScene, RepeatsPixelsAndKeepsShapes) {
     odd.specmod().attribute("PixelAspectRatio", 2.0F);
     const ImageBuf scene = resize_scene(odd, 80);
     EXPECT_EQ(scene.spec().height, 20);
-    EXPECT_EQ(scene.nchannels(), 3);
+    EXPECT_EQ(scene.nchannels(), 4);
     EXPECT_EQ(at(scene, 39, 10, 0), 0);
     EXPECT_EQ(at(scene, 41, 10, 2), at(odd, 0, 10, 2));
     ImageSpec deep(4, 4, 3, TypeDesc::FLOAT);

@@ -109,7 +109,7 @@ void add_legend(SheetSurround& around) {
                                   static_cast<float>(code[2])}});
     }
     around.legend_heading =
-        "False color: stops of luminance from mid grey (0.18), after exposure; the ends go on";
+        "False color: stops of luminance from mid grey (0.18), after exposure; both ends are open";
 }
 
 void write_sheet(const Options& options, const std::vector<Rendering>& renderings,

@@ -100,6 +100,7 @@ struct Options : ViewOptions {
     std::string type;
     std::string statistics = "picture";
     int threads = 0;
+    bool is_false_color = false;
     bool unpremult = false;
     bool no_unpremult = false;
     LutOptions lut;
@@ -148,6 +149,10 @@ void add_apply(CLI::App& program, int& exit_code) {
         ->required();
     CLI::Option* op =
         command->add_option("--operator", options->op, "operator, or operator:preset");
+    CLI::Option* false_color =
+        command->add_flag("--false-color", options->is_false_color,
+                          "where the light is: a color for every stop, the operator false_color");
+    false_color->excludes(op);
     command->add_option(
         "--frames", options->frames,
         "frames such as 1001-1100, 1-9x2 (every second) or 1,5,10-20: `in` and `out` "
@@ -171,9 +176,9 @@ void add_apply(CLI::App& program, int& exit_code) {
         "divide color by alpha before, multiply after; default: as the picture says");
     command->add_flag("--no-unpremult", options->no_unpremult, "take color as it is")
         ->excludes(yes);
-    add_lut_options(
-        *command, options->lut, op,
-        {"--set", "--look", "--display", "--reference-white", "--statistics", "--frames"});
+    add_lut_options(*command, options->lut, op,
+                    {"--set", "--look", "--display", "--reference-white", "--statistics",
+                     "--frames", "--false-color"});
     command->footer(
         "Examples:\n"
         "  tonewright apply render.exr out.png --operator hable --exposure 1 -d uint8\n"
@@ -187,6 +192,7 @@ void add_apply(CLI::App& program, int& exit_code) {
             apply_lut(*options, *command);
             return;
         }
+        if (options->is_false_color) options->op = "false_color";
         if (options->op.empty()) {
             throw Error(
                 "apply: operator is missing; expected --operator with an id of `tonewright list`, "

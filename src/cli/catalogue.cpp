@@ -11,14 +11,13 @@
 #include <thread>
 
 #include "cli/curve_plot.h"
+#include "cli/grey_curve.h"
 #include "engine/error_metric.h"
 #include "engine/probe.h"
 #include "tonewright/engine.h"
 
 namespace tonewright {
 namespace {
-
-constexpr double kMidGrey = 0.18;
 
 // ---------------------------------------------------------------------------------------------
 // What a plot and a table need to know of an operator
@@ -44,53 +43,6 @@ std::vector<Variant> variants_of(const Operator& op) {
     return all;
 }
 
-using Planes = std::array<std::vector<double>, 3>;
-
-/// Code values of `color` times each number of `exposures`.
-Planes codes_of(const Pipeline& pipeline, const Vector3& color, std::span<const double> exposures) {
-    Planes planes;
-    for (std::size_t c = 0; c < 3; ++c) {
-        for (const double e : exposures)
-            planes[c].push_back(color[c] * e);
-    }
-    const std::array<double*, 3> p = {planes[0].data(), planes[1].data(), planes[2].data()};
-    ReferenceEngine(pipeline).run({p[0], p[1], p[2]}, p, exposures.size());
-    return planes;
-}
-
-/// The view, and then the code value of the grey that has the luminance of the color it shows: for
-/// a neutral color its own.
-Pipeline with_grey_level(const View& view) {
-    const Display& display = find_display(view.display);
-    Pipeline stages = build_view(view);
-    stages.insert(stages.end(), display.decode.begin(), display.decode.end());
-    stages.push_back(MatrixStage{{kRec709Weights, kRec709Weights, kRec709Weights}});
-    stages.insert(stages.end(), display.encode.begin(), display.encode.end());
-    return stages;
-}
-
-/// The code value that each scene-linear grey is shown with.
-std::vector<double> grey_codes(const View& view, std::span<const double> scene) {
-    return codes_of(with_grey_level(view), {1, 1, 1}, scene)[0];
-}
-
-double grey_code(const View& view, double scene) { return grey_codes(view, {{scene}})[0]; }
-
-std::vector<double> scene_of(const std::vector<double>& stops) {
-    std::vector<double> scene;
-    scene.reserve(stops.size());
-    for (const double s : stops)
-        scene.push_back(kMidGrey * std::exp2(s));
-    return scene;
-}
-
-double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
-    double largest = 0;
-    for (std::size_t i = 0; i < a.size(); ++i)
-        largest = std::max(largest, std::fabs(a[i] - b[i]));
-    return largest;
-}
-
 // ---------------------------------------------------------------------------------------------
 // Plots
 
@@ -108,24 +60,10 @@ constexpr SceneColor kGrey = {"grey", "1, 1, 1", {1, 1, 1}};
 constexpr std::array kChannelColors = {"#d1242f", "#1a8f3c", "#1f6feb"};
 constexpr std::array kChannelNames = {"red", "green", "blue"};
 
-/// Lines that no eye can tell apart, in code values.
-constexpr double kSameLine = 0.001;
-
 PlotLine reference_line(const std::vector<double>& scene) {
     return {"clamp",   "no tone mapping: clamp",
             "#a8b0b9", 1.2,
             "5 3",     grey_codes(srgb_view("clamp"), scene)};
-}
-
-/// Adds a line, or a name to the label of the one that it would lie on.
-void add_line(std::vector<PlotLine>& lines, PlotLine line, const std::string& short_name) {
-    for (PlotLine& other : lines) {
-        if (largest_difference(other.codes, line.codes) < kSameLine) {
-            other.label += ", " + short_name;
-            return;
-        }
-    }
-    lines.push_back(std::move(line));
 }
 
 /// "0.18 -> 0.435" where the curve is at that scene value.
@@ -163,7 +101,7 @@ CurvePlot plot_of(const Operator& op) {
     const Planes grey = codes_of(view, kGrey.rgb, scene);
     double tint = 0;
     for (const std::vector<double>& channel : grey)
-        tint = std::max(tint, largest_difference(channel, plot.lines[0].codes));
+        tint = std::max(tint, largest_difference(channel, plot.lines[0].values));
     if (tint > 0.5 / 255) {
         if (variants.size() == 1) plot.lines[0].label = "luminance of the shown grey";
         for (std::size_t c = 0; c < 3; ++c) {
@@ -173,7 +111,7 @@ CurvePlot plot_of(const Operator& op) {
         }
     }
     PlotLine clamp = reference_line(scene);
-    if (largest_difference(clamp.codes, plot.lines[0].codes) >= kSameLine)
+    if (largest_difference(clamp.values, plot.lines[0].values) >= kSameLine)
         plot.lines.push_back(clamp);
     if (!op.is_diagnostic) {
         plot.marks = {mark_at(variants[0].view, kMidGrey), mark_at(variants[0].view, 1)};
@@ -296,8 +234,8 @@ CurvePlot plot_of(const DialectGroup& group) {
     double largest = 0;
     for (PlotLine line : plot.lines) {
         for (std::size_t i = 0; i < scene.size(); ++i) {
-            line.codes[i] = 255 * (line.codes[i] - mean[i]);
-            largest = std::max(largest, std::fabs(line.codes[i]));
+            line.values[i] = 255 * (line.values[i] - mean[i]);
+            largest = std::max(largest, std::fabs(line.values[i]));
         }
         line.id += "-difference";
         line.label.clear();

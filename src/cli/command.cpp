@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/command.h"
 
+#include <algorithm>
+
 namespace tonewright {
 
 Settings ViewOptions::settings() const {
@@ -18,6 +20,12 @@ Settings ViewOptions::settings() const {
 View ViewOptions::view() const {
     return make_view(resolve_operator(op, settings(), look), input, exposure, display,
                      reference_white);
+}
+
+std::string operator_text(const ResolvedOperator& op) {
+    std::string text = op.label;
+    std::replace(text.begin(), text.end(), ' ', ':');
+    return text;
 }
 
 void add_view_options(CLI::App& command, ViewOptions& options) {

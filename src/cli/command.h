@@ -31,6 +31,9 @@ struct ViewOptions {
 /// --set, --look, --exposure, --input, --display, --reference-white.
 void add_view_options(CLI::App& command, ViewOptions& options);
 
+/// An operator as one would write it: `agx_blender:look=punchy`. @see parse_operator
+[[nodiscard]] std::string operator_text(const ResolvedOperator& op);
+
 /// Each subcommand lives in its own file and puts itself under the program.
 void add_list(CLI::App& program, int& exit_code);
 void add_eval(CLI::App& program, int& exit_code);
@@ -40,5 +43,7 @@ void add_config(CLI::App& program, int& exit_code);
 void add_verify(CLI::App& program, int& exit_code);
 void add_chart(CLI::App& program, int& exit_code);
 void add_sheet(CLI::App& program, int& exit_code);
+void add_compare(CLI::App& program, int& exit_code);
+void add_plot(CLI::App& program, int& exit_code);
 
 }  // namespace tonewright

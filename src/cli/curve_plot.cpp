@@ -9,13 +9,25 @@
 #include <iterator>
 #include <span>
 
+#include "cli/plot_surface.h"
 #include "tonewright/error.h"
 
 namespace tonewright {
 namespace {
 
-// Everything in pixels of a picture 640 wide: about the width at which a page shows it.
-constexpr double kWidth = 640;
+using Anchor = PlotSurface::Anchor;
+using Patch = PlotSurface::Patch;
+using Point = PlotSurface::Point;
+using Rule = PlotSurface::Rule;
+using Segment = PlotSurface::Segment;
+
+constexpr PlotSurface::TextStyle kPlain = {};
+constexpr PlotSurface::TextStyle kCentred = {Anchor::middle};
+constexpr PlotSurface::TextStyle kAtEnd = {Anchor::end};
+constexpr PlotSurface::TextStyle kOnLines = {Anchor::start, true};
+constexpr PlotSurface::TextStyle kOnLinesAtEnd = {Anchor::end, true};
+constexpr PlotSurface::TextStyle kHeading = {Anchor::start, false, true};
+
 constexpr double kLeft = 50;
 constexpr double kStop = 27;  // width of one stop
 constexpr int kLowestStop = -10;
@@ -24,7 +36,7 @@ constexpr double kRight = kLeft + kStop * (kHighestStop - kLowestStop);
 constexpr double kMargin = 6;  // between a graph's frame and code values 0 and 1
 constexpr double kLegendRow = 15;
 
-constexpr const char* kFrame = "#8c959f";
+constexpr std::string_view kBlack = "#000";  // SVG's own
 
 double x_of(double stops) { return kLeft + kStop * (stops - kLowestStop); }
 
@@ -68,47 +80,89 @@ void mark_needed(const std::vector<double>& x, const std::vector<double>& y, std
     mark_needed(x, y, worst, last, is_needed);
 }
 
+std::vector<Point> points_of(const PlotLine& line, const Graph& graph) {
+    const std::vector<double>& stops = plot_stops();
+    std::vector<double> x;
+    std::vector<double> y;
+    for (std::size_t i = 0; i < stops.size(); ++i) {
+        x.push_back(x_of(stops[i]));
+        y.push_back(std::round(100 * graph.y_of(line.values.at(i))) / 100);
+    }
+    std::vector<bool> is_needed(x.size());
+    is_needed.front() = is_needed.back() = true;
+    mark_needed(x, y, 0, x.size() - 1, is_needed);
+    std::vector<Point> points;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        if (is_needed[i]) points.push_back({x[i], y[i]});
+    }
+    return points;
+}
+
 /// An SVG file being written.
-class Svg {
+class Svg : public PlotSurface {
   public:
     template <typename... Args>
     void add(fmt::format_string<Args...> format, Args&&... args) {
         fmt::format_to(std::back_inserter(text_), format, std::forward<Args>(args)...);
     }
-    void text(double x, double y, std::string_view style, std::string_view words) {
-        add("<text x=\"{}\" y=\"{}\"{}>{}</text>\n", px(x), px(y), class_of(style),
+    void text(Point at, const TextStyle& style, std::string_view words) override {
+        add("<text x=\"{}\" y=\"{}\"{}>{}</text>\n", px(at.x), px(at.y), class_of(style),
             xml_escaped(words));
     }
-    void path(std::string_view style, const std::string& d) {
-        add("<path{} d=\"{}\"/>\n", class_of(style), d);
-    }
-    void curve(const PlotLine& line, const Graph& graph) {
-        const std::vector<double>& stops = plot_stops();
-        std::vector<double> x;
-        std::vector<double> y;
-        for (std::size_t i = 0; i < stops.size(); ++i) {
-            x.push_back(x_of(stops[i]));
-            y.push_back(std::round(100 * graph.y_of(line.codes.at(i))) / 100);
+    void rules(Rule kind, std::span<const Segment> segments) override {
+        constexpr std::array kClasses = {"g", "m", "t"};
+        std::string path;
+        for (const auto& [from, to] : segments) {
+            path += fmt::format("M{} {}{}{}", px(from.x), px(from.y), from.x == to.x ? 'V' : 'H',
+                                px(from.x == to.x ? to.y : to.x));
         }
-        std::vector<bool> is_needed(x.size());
-        is_needed.front() = is_needed.back() = true;
-        mark_needed(x, y, 0, x.size() - 1, is_needed);
-        std::string points;
-        for (std::size_t i = 0; i < x.size(); ++i) {
-            if (is_needed[i]) points += (points.empty() ? "" : " ") + px(x[i]) + "," + px(y[i]);
-        }
-        add("<polyline id=\"{}\"{} points=\"{}\"/>\n", xml_escaped(line.id), stroke(line), points);
+        add("<path class=\"{}\" d=\"{}\"/>\n", kClasses[static_cast<std::size_t>(kind)], path);
     }
+    void frame(Frame kind, Point top_left, double width, double height) override {
+        add("<rect class=\"{}\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>\n",
+            kind == Frame::graph ? "f" : "p", px(top_left.x), px(top_left.y), px(width),
+            px(height));
+    }
+    void dot(Point centre) override {
+        add("<circle cx=\"{}\" cy=\"{}\" r=\"{}\"/>\n", px(centre.x), px(centre.y), px(kDotRadius));
+    }
+    void sample(const PlotLine& line, Point from, double length) override {
+        add("<path{} d=\"M{} {}h{}\"/>\n", stroke(line), px(from.x), px(from.y), px(length));
+    }
+    void begin_lines() override { add("<g fill=\"none\" stroke-linejoin=\"round\">\n"); }
+    void line(const PlotLine& line, std::span<const Point> points) override {
+        std::string list;
+        for (const Point& p : points)
+            list += (list.empty() ? "" : " ") + px(p.x) + "," + px(p.y);
+        add("<polyline id=\"{}\"{} points=\"{}\"/>\n", xml_escaped(line.id), stroke(line), list);
+    }
+    void begin_patches(double height) override {
+        add("<g stroke-width=\"{}\" shape-rendering=\"crispEdges\">\n", px(height));
+    }
+    void patches(Point left, double width, std::span<const Patch> row) override {
+        add("<g transform=\"matrix({} 0 0 1 {} {})\">\n", px(width), px(left.x), px(left.y));
+        for (const Patch& patch : row) {
+            add("<path stroke=\"{}\" d=\"M{} 0h{}\"/>\n", patch.color, px(patch.left),
+                px(patch.right - patch.left));
+        }
+        end_group();
+    }
+    void end_group() override { add("</g>\n"); }
+    [[nodiscard]] std::string take() { return std::move(text_); }
+
+  private:
     [[nodiscard]] static std::string stroke(const PlotLine& line) {
         return fmt::format(
             " stroke=\"{}\" stroke-width=\"{}\"{}", line.color, px(line.width),
             line.dashes.empty() ? "" : fmt::format(" stroke-dasharray=\"{}\"", line.dashes));
     }
-    [[nodiscard]] std::string take() { return std::move(text_); }
-
-  private:
-    [[nodiscard]] static std::string class_of(std::string_view style) {
-        return style.empty() ? "" : fmt::format(" class=\"{}\"", style);
+    [[nodiscard]] static std::string class_of(const TextStyle& style) {
+        constexpr std::array kAnchors = {"", "c", "e"};
+        std::string name = style.is_heading ? "b" : style.has_halo ? "h" : "";
+        const std::string anchor = kAnchors[static_cast<std::size_t>(style.anchor)];
+        if (!name.empty() && !anchor.empty()) name += " ";
+        name += anchor;
+        return name.empty() ? "" : fmt::format(" class=\"{}\"", name);
     }
     std::string text_;
 };
@@ -130,34 +184,60 @@ double light_of(double code) {  // IEC 61966-2-1
     return code <= 0.04045 ? code / 12.92 : std::pow((code + 0.055) / 1.055, 2.4);
 }
 
-std::string vertical(double stops, double top, double bottom) {
-    return fmt::format("M{} {}V{}", px(x_of(stops)), px(top), px(bottom));
+Segment vertical(double stops, double top, double bottom) {
+    return {{x_of(stops), top}, {x_of(stops), bottom}};
 }
 
-/// Frame, grid and the numbers at the sides.
-void draw_graph(Svg& svg, const Graph& graph, bool with_light) {
-    const double top = graph.top - kMargin;
-    const double bottom = graph.bottom() + kMargin;
-    std::string grid;
-    for (int stop = kLowestStop; stop <= kHighestStop; stop += 2)
-        grid += vertical(stop, top, bottom);
-    const PlotScale& scale = graph.scale;
+/// Every step of the scale.
+std::vector<PlotTick> even_ticks(const PlotScale& scale) {
+    std::vector<PlotTick> ticks;
     const auto steps = static_cast<int>(std::lround((scale.high - scale.low) / scale.step));
     for (int i = 0; i <= steps; ++i) {
         const double value = scale.low + i * scale.step;
-        const double y = graph.y_of(value);
-        grid += fmt::format("M{} {}H{}", px(kLeft), px(y), px(kRight));
-        svg.text(kLeft - 5, y + 4, "e", tick_label(px(value)));
-        if (with_light && value > 0) {
-            const double percent = 100 * light_of(value);
-            svg.text(kRight + 5, y + 4, "",
-                     fmt::format("{:.{}f} %", percent, percent < 10 ? 1 : 0));
-        }
+        ticks.push_back({value, tick_label(px(value)), ""});
     }
-    svg.path("g", grid);
-    svg.path("m", vertical(0, top, bottom) + vertical(std::log2(1 / 0.18), top, bottom));
-    svg.add("<rect class=\"f\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>\n", px(kLeft),
-            px(top), px(kRight - kLeft), px(bottom - top));
+    return ticks;
+}
+
+/// sRGB code values, with their light at the right.
+PlotScale srgb_scale() {
+    PlotScale scale;
+    scale.ticks = even_ticks(scale);
+    for (PlotTick& tick : scale.ticks) {
+        const double percent = 100 * light_of(tick.value);
+        if (percent > 0) tick.right = fmt::format("{:.{}f} %", percent, percent < 10 ? 1 : 0);
+    }
+    return scale;
+}
+
+/// Frame, grid and the numbers at the sides.
+void draw_graph(PlotSurface& surface, const Graph& graph) {
+    const double top = graph.top - kMargin;
+    const double bottom = graph.bottom() + kMargin;
+    std::vector<Segment> grid;
+    for (int stop = kLowestStop; stop <= kHighestStop; stop += 2)
+        grid.push_back(vertical(stop, top, bottom));
+    const PlotScale& scale = graph.scale;
+    for (const PlotTick& tick : scale.ticks.empty() ? even_ticks(scale) : scale.ticks) {
+        const double y = graph.y_of(tick.value);
+        if (!tick.left.empty()) {
+            grid.push_back({{kLeft, y}, {kRight, y}});
+            surface.text({kLeft - 5, y + 4}, kAtEnd, tick.left);
+        }
+        if (!tick.right.empty()) surface.text({kRight + 5, y + 4}, kPlain, tick.right);
+    }
+    surface.rules(Rule::grid, grid);
+    surface.rules(Rule::mark,
+                  {{vertical(0, top, bottom), vertical(std::log2(1 / 0.18), top, bottom)}});
+    surface.frame(PlotSurface::Frame::graph, {kLeft, top}, kRight - kLeft, bottom - top);
+}
+
+void draw_lines(PlotSurface& surface, const std::vector<PlotLine>& lines, const Graph& graph) {
+    surface.begin_lines();
+    // The first line is on top of the others.
+    for (auto line = lines.rbegin(); line != lines.rend(); ++line)
+        surface.line(*line, points_of(*line, graph));
+    surface.end_group();
 }
 
 /// A label of several names goes on in the next row rather than beyond so many letters.
@@ -177,15 +257,21 @@ std::vector<std::string> wrapped(const std::string& label) {
     return rows;
 }
 
-void draw_legend(Svg& svg, const std::vector<PlotLine>& lines, double top) {
+/// @return the height of the rows
+double draw_legend_entry(PlotSurface& surface, const PlotLine& line, double left, double y) {
+    surface.sample(line, {left, y - 4}, 24);
+    double height = 0;
+    for (const std::string& row : wrapped(line.label)) {
+        surface.text({left + 30, y + height}, kOnLines, row);
+        height += kLegendRow;
+    }
+    return height;
+}
+
+void draw_legend(PlotSurface& surface, const std::vector<PlotLine>& lines, double top) {
     double y = top;
     for (const PlotLine& line : lines) {
-        if (line.label.empty()) continue;
-        svg.add("<path{} d=\"M{} {}h24\"/>\n", Svg::stroke(line), px(kLeft + 10), px(y - 4));
-        for (const std::string& row : wrapped(line.label)) {
-            svg.text(kLeft + 40, y, "h", row);
-            y += kLegendRow;
-        }
+        if (!line.label.empty()) y += draw_legend_entry(surface, line, kLeft + 10, y);
     }
 }
 
@@ -196,88 +282,135 @@ std::string hex(const Vector3& code) {
     return text;
 }
 
-/// A row of patches as high as the group that it stands in says; equal ones beside each other as
-/// one.
+/// A row of patches; equal ones beside each other as one.
 /// @param with_half_ends  of the first patch its right half, of the last one its left half
-void draw_patches(Svg& svg, std::span<const Vector3> codes, double x, double width, double y,
+void draw_patches(PlotSurface& surface, std::span<const Vector3> codes, Point left, double width,
                   bool with_half_ends) {
-    svg.add("<g transform=\"matrix({} 0 0 1 {} {})\">\n", px(width), px(x), px(y));
+    std::vector<Patch> row;
     const std::size_t count = codes.size();
     for (std::size_t i = 0; i < count;) {
         std::size_t end = i + 1;
         while (end < count && hex(codes[end]) == hex(codes[i]))
             ++end;
-        const double left = static_cast<double>(i) + (with_half_ends && i == 0 ? 0.5 : 0);
-        const double right = static_cast<double>(end) - (with_half_ends && end == count ? 0.5 : 0);
-        svg.add("<path stroke=\"{}\" d=\"M{} 0h{}\"/>\n", hex(codes[i]), px(left),
-                px(right - left));
+        row.push_back({hex(codes[i]), static_cast<double>(i) + (with_half_ends && i == 0 ? 0.5 : 0),
+                       static_cast<double>(end) - (with_half_ends && end == count ? 0.5 : 0)});
         i = end;
     }
-    svg.add("</g>\n");
+    surface.patches(left, width, row);
 }
 
 constexpr double kPatchRow = 13;
 
 /// Around patches, which may be as white as the page.
-void draw_patch_frame(Svg& svg, double x, double y, double width, double height) {
-    svg.add("<rect class=\"p\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>\n", px(x - 0.5),
-            px(y - 0.5), px(width + 1), px(height + 1));
-}
-
-/// Patches do not blend where they meet.
-void begin_patches(Svg& svg, double height) {
-    svg.add("<g stroke-width=\"{}\" shape-rendering=\"crispEdges\">\n", px(height));
+void draw_patch_frame(PlotSurface& surface, double x, double y, double width, double height) {
+    surface.frame(PlotSurface::Frame::patches, {x - 0.5, y - 0.5}, width + 1, height + 1);
 }
 
 double sweeps_height(std::size_t count) { return (kPatchRow + 2) * static_cast<double>(count) - 2; }
 
-void draw_sweeps(Svg& svg, const std::vector<PatchRow>& sweeps, double top) {
-    begin_patches(svg, kPatchRow);
+void draw_sweeps(PlotSurface& surface, const std::vector<PatchRow>& sweeps, double top) {
+    surface.begin_patches(kPatchRow);
     double y = top + kPatchRow / 2;
     for (const PatchRow& row : sweeps) {
         // Patches are centred on their stops: of the first and the last there is half.
-        draw_patches(svg, row.codes, kLeft - kStop / 2, kStop, y, true);
+        draw_patches(surface, row.codes, {kLeft - kStop / 2, y}, kStop, true);
         y += kPatchRow + 2;
     }
-    svg.add("</g>\n");
+    surface.end_group();
     y = top;
     for (const PatchRow& row : sweeps) {
-        draw_patch_frame(svg, kLeft, y, kRight - kLeft, kPatchRow);
-        svg.text(kLeft - 5, y + kPatchRow / 2 + 4, "e", row.label);
+        draw_patch_frame(surface, kLeft, y, kRight - kLeft, kPatchRow);
+        surface.text({kLeft - 5, y + kPatchRow / 2 + 4}, kAtEnd, row.label);
         y += kPatchRow + 2;
     }
 }
 
-void draw_axis(Svg& svg, double top) {
-    std::string ticks;
+void draw_axis(PlotSurface& surface, double top) {
+    std::vector<Segment> ticks;
     for (int stop = kLowestStop; stop <= kHighestStop; stop += 2) {
-        ticks += vertical(stop, top, top + 4);
-        svg.text(x_of(stop), top + 16, "c",
-                 tick_label(fmt::format("{}{}", stop > 0 ? "+" : "", stop)));
-        svg.text(x_of(stop), top + 31, "c", scene_linear_at(stop));
+        ticks.push_back(vertical(stop, top, top + 4));
+        surface.text({x_of(stop), top + 16}, kCentred,
+                     tick_label(fmt::format("{}{}", stop > 0 ? "+" : "", stop)));
+        surface.text({x_of(stop), top + 31}, kCentred, scene_linear_at(stop));
     }
-    svg.path("t", ticks);
-    svg.text(kRight + 16, top + 16, "", "stops");
-    svg.text(kRight + 16, top + 31, "", "scene");
+    surface.rules(Rule::tick, ticks);
+    surface.text({kRight + 16, top + 16}, kPlain, "stops");
+    surface.text({kRight + 16, top + 31}, kPlain, "scene");
+}
+
+/// Where the parts of a plot are.
+struct Layout {
+    Graph upper;
+    Graph lower;
+    double sweeps_top;
+    double axis_top;
+    double legend_top;
+    double height;
+    bool is_legend_below;
+
+    explicit Layout(const CurvePlot& plot)
+        : upper{42, 220, plot.scale.ticks.empty() ? srgb_scale() : plot.scale},
+          lower{upper.bottom() + 2 * kMargin + 10, 96, plot.lower_scale} {
+        const bool has_lower = !plot.lower_lines.empty();
+        sweeps_top = (has_lower ? lower : upper).bottom() + kMargin + 5;
+        axis_top =
+            plot.sweeps.empty() ? sweeps_top - 5 : sweeps_top + sweeps_height(plot.sweeps.size());
+        height = axis_top + 38;
+        legend_top = height + kLegendRow;
+        is_legend_below = plot.is_legend_below;
+        if (is_legend_below) {
+            double rows = 0;
+            for (const double column : legend_columns(plot.lines))
+                rows = std::max(rows, column);
+            height = legend_top + rows;
+        }
+    }
+
+    /// Entries of a legend below the graph, first down, then right.
+    static std::size_t legend_column(std::size_t index, std::size_t count) {
+        return index / ((count + 1) / 2);
+    }
+    static std::array<double, 2> legend_columns(const std::vector<PlotLine>& lines) {
+        std::array<double, 2> heights{};
+        for (std::size_t i = 0; i < lines.size(); ++i) {
+            heights.at(legend_column(i, lines.size())) +=
+                kLegendRow * static_cast<double>(wrapped(lines[i].label).size());
+        }
+        return heights;
+    }
+};
+
+/// In two columns under everything else.
+void draw_legend_below(PlotSurface& surface, const std::vector<PlotLine>& lines, double top) {
+    std::array<double, 2> y = {top, top};
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        const std::size_t column = Layout::legend_column(i, lines.size());
+        const double left = kLeft + 10 + static_cast<double>(column) * (kRight - kLeft) / 2;
+        y.at(column) += draw_legend_entry(surface, lines[i], left, y.at(column));
+    }
 }
 
 /// The file around a body.
 std::string file_of(const std::string& title, const std::string& description, double height,
-                    const std::string& body) {
+                    const std::string& body, double width = kPlotWidth,
+                    const PlotColors& colors = colors_of(PlotTheme::light)) {
     Svg svg;
     svg.add(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
-        "height=\"{1}\" font-family=\"Helvetica, Arial, sans-serif\" font-size=\"11\">\n"
-        "<title>{2}</title>\n<desc>{3}</desc>\n",
-        px(kWidth), px(height), xml_escaped(title), xml_escaped(description));
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" width=\"{}\" "
+        "height=\"{}\" font-family=\"Helvetica, Arial, sans-serif\" font-size=\"11\">\n"
+        "<title>{}</title>\n<desc>{}</desc>\n",
+        px(kPlotWidth), px(height), px(width), px(height * width / kPlotWidth), xml_escaped(title),
+        xml_escaped(description));
     svg.add(
-        "<style>text{{fill:#24292f}}.b{{font-size:14px;font-weight:bold}}"
+        "<style>text{{fill:{}}}.b{{font-size:14px;font-weight:bold}}"
         ".c{{text-anchor:middle}}.e{{text-anchor:end}}"
-        ".h{{paint-order:stroke;stroke:#fff;stroke-width:3px;stroke-linejoin:round}}"
-        ".g{{stroke:#e4e8ec}}.m{{stroke:{0};stroke-dasharray:2 3}}.t{{stroke:{0}}}"
-        ".f{{fill:none;stroke:{0}}}.p{{fill:none;stroke:#d0d7de}}</style>\n"
-        "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
-        kFrame);
+        ".h{{paint-order:stroke;stroke:{};stroke-width:3px;stroke-linejoin:round}}"
+        ".g{{stroke:{}}}.m{{stroke:{};stroke-dasharray:2 3}}.t{{stroke:{}}}"
+        ".f{{fill:none;stroke:{}}}.p{{fill:none;stroke:{}}}</style>\n"
+        "<rect width=\"100%\" height=\"100%\" fill=\"{}\"/>\n",
+        colors.text, colors.page, colors.grid, colors.frame, colors.frame, colors.frame,
+        colors.patch_frame, colors.page);
+    if (colors.dot != kBlack) svg.add("<style>circle{{fill:{}}}</style>\n", colors.dot);
     return svg.take() + body + "</svg>\n";
 }
 
@@ -295,11 +428,21 @@ const std::vector<double>& plot_stops() {
     return stops;
 }
 
-std::string line_color(std::size_t index) {
-    // Okabe and Ito 2008; their yellow is darker here, to be seen on white.
-    constexpr std::array kColors = {"#24292f", "#0072b2", "#d55e00", "#009e73",
-                                    "#cc79a7", "#e69f00", "#56b4e9", "#9a8a00"};
-    return kColors[index % kColors.size()];
+const PlotColors& colors_of(PlotTheme theme) {
+    static constexpr PlotColors kLight = {"#fff",    "#24292f", "#8c959f",
+                                          "#e4e8ec", "#d0d7de", kBlack};
+    static constexpr PlotColors kDark = {"#1b1d20", "#d8dce1", "#7d858e",
+                                         "#33373c", "#444a50", "#f2f4f6"};
+    return theme == PlotTheme::light ? kLight : kDark;
+}
+
+std::string line_color(std::size_t index, PlotTheme theme) {
+    // Okabe and Ito 2008; on white their yellow is darker, on black their black and blue lighter.
+    constexpr std::array kLight = {"#24292f", "#0072b2", "#d55e00", "#009e73",
+                                   "#cc79a7", "#e69f00", "#56b4e9", "#9a8a00"};
+    constexpr std::array kDark = {"#f2f4f6", "#2b8fd0", "#d55e00", "#009e73",
+                                  "#cc79a7", "#e69f00", "#8fd0f5", "#f0e442"};
+    return (theme == PlotTheme::light ? kLight : kDark)[index % kLight.size()];
 }
 
 std::string line_dashes(std::size_t index) {
@@ -330,55 +473,58 @@ std::string xml_escaped(std::string_view text) {
     return out;
 }
 
-std::string to_svg(const CurvePlot& plot) {
-    const bool has_lower = !plot.lower_lines.empty();
-    const Graph upper{42, 220, {}};
-    const Graph lower{upper.bottom() + 2 * kMargin + 10, 96, plot.lower_scale};
-    const double graphs_end = (has_lower ? lower : upper).bottom() + kMargin;
-    const double sweeps_end =
-        graphs_end + (plot.sweeps.empty() ? 0 : 5 + sweeps_height(plot.sweeps.size()));
+double height_of(const CurvePlot& plot) { return Layout(plot).height; }
 
-    Svg svg;
-    svg.text(kLeft, 20, "b", plot.title);
-    svg.text(kRight, 20, "e", plot.subtitle);
-    svg.text(kLeft - 5, 28, "e", "code");
-    svg.text(kRight + 5, 28, "", "light");
-    draw_graph(svg, upper, true);
-    svg.add("<g fill=\"none\" stroke-linejoin=\"round\">\n");
-    // The first line is on top of the others.
-    for (auto line = plot.lines.rbegin(); line != plot.lines.rend(); ++line)
-        svg.curve(*line, upper);
-    svg.add("</g>\n");
-    draw_legend(svg, plot.lines, upper.top + 16);
+void draw(const CurvePlot& plot, PlotSurface& surface) {
+    const Layout layout(plot);
+    const Graph& upper = layout.upper;
+    surface.text({kLeft, 20}, kHeading, plot.title);
+    surface.text({kRight, 20}, kAtEnd, plot.subtitle);
+    surface.text({kLeft - 5, 28}, kAtEnd, upper.scale.left_heading);
+    surface.text({kRight + 5, 28}, kPlain, upper.scale.right_heading);
+    if (plot.names_greys) {
+        surface.text({x_of(0), 32}, kCentred, "mid grey");
+        surface.text({x_of(std::log2(1 / 0.18)), 32}, kCentred, "white");
+    }
+    draw_graph(surface, upper);
+    draw_lines(surface, plot.lines, upper);
+    if (!layout.is_legend_below) draw_legend(surface, plot.lines, upper.top + 16);
     for (const PlotMark& mark : plot.marks) {
-        const double y = upper.y_of(mark.code);
-        svg.add("<circle cx=\"{}\" cy=\"{}\" r=\"3.5\"/>\n", px(x_of(mark.stops)), px(y));
+        const double x = x_of(mark.stops);
+        const double y = upper.y_of(mark.value);
+        surface.dot({x, y});
         // Below the curve; above it where there is no room.
         if (y > upper.bottom() - 20) {
-            svg.text(x_of(mark.stops) - 4, y - 9, "h e", mark.words);
+            surface.text({x - 4, y - 9}, kOnLinesAtEnd, mark.words);
         } else {
-            svg.text(x_of(mark.stops) + 8, y + 15, "h", mark.words);
+            surface.text({x + 8, y + 15}, kOnLines, mark.words);
         }
     }
-    if (has_lower) {
-        draw_graph(svg, lower, false);
-        svg.add("<g fill=\"none\" stroke-linejoin=\"round\">\n");
-        for (auto line = plot.lower_lines.rbegin(); line != plot.lower_lines.rend(); ++line)
-            svg.curve(*line, lower);
-        svg.add("</g>\n");
-        svg.text(kLeft + 10, lower.top + 12, "h", plot.lower_heading);
-        draw_legend(svg, plot.lower_lines, lower.top + 28);
+    if (!plot.lower_lines.empty()) {
+        const Graph& lower = layout.lower;
+        draw_graph(surface, lower);
+        draw_lines(surface, plot.lower_lines, lower);
+        surface.text({kLeft + 10, lower.top + 12}, kOnLines, plot.lower_heading);
+        draw_legend(surface, plot.lower_lines, lower.top + 28);
     }
-    if (!plot.sweeps.empty()) draw_sweeps(svg, plot.sweeps, graphs_end + 5);
-    draw_axis(svg, sweeps_end);
-    std::string description =
-        fmt::format("x = {} + {} (stops from 0.18 + {}), y = {} - {} code value", px(kLeft),
-                    px(kStop), -kLowestStop, px(upper.y_of(0)), px(upper.unit()));
-    if (has_lower) {
-        description += fmt::format("; lower graph y = {} - {} value", px(lower.y_of(0)),
-                                   shortest(lower.unit()));
+    if (!plot.sweeps.empty()) draw_sweeps(surface, plot.sweeps, layout.sweeps_top);
+    draw_axis(surface, layout.axis_top);
+    if (layout.is_legend_below) draw_legend_below(surface, plot.lines, layout.legend_top);
+}
+
+std::string to_svg(const CurvePlot& plot, double width) {
+    const Layout layout(plot);
+    Svg svg;
+    draw(plot, svg);
+    std::string description = fmt::format(
+        "x = {} + {} (stops from 0.18 + {}), y = {} - {} {}", px(kLeft), px(kStop), -kLowestStop,
+        shortest(layout.upper.y_of(0)), shortest(layout.upper.unit()), layout.upper.scale.quantity);
+    if (!plot.lower_lines.empty()) {
+        description += fmt::format("; lower graph y = {} - {} value", px(layout.lower.y_of(0)),
+                                   shortest(layout.lower.unit()));
     }
-    return file_of(plot.title, description, sweeps_end + 38, svg.take());
+    return file_of(plot.title, description, layout.height, svg.take(), width,
+                   colors_of(plot.theme));
 }
 
 std::string to_svg(const PatchChart& chart) {
@@ -386,7 +532,7 @@ std::string to_svg(const PatchChart& chart) {
     for (const PatchBlock& block : chart.blocks)
         columns += block.columns.size();
     constexpr double kLabels = 205;
-    constexpr double kEnd = kWidth - 14;
+    constexpr double kEnd = kPlotWidth - 14;
     constexpr double kGap = 12;
     const double width =
         std::floor((kEnd - kLabels - kGap * static_cast<double>(chart.blocks.size() - 1)) /
@@ -396,27 +542,28 @@ std::string to_svg(const PatchChart& chart) {
     const double height = kRowHeight * static_cast<double>(chart.rows.size());
 
     Svg svg;
-    svg.text(14, 20, "b", chart.title);
-    svg.text(kEnd, 20, "e", chart.subtitle);
+    svg.text({14, 20}, kHeading, chart.title);
+    svg.text({kEnd, 20}, kAtEnd, chart.subtitle);
     double x = kLabels;
     std::size_t column = 0;
     for (const PatchBlock& block : chart.blocks) {
         const std::size_t count = block.columns.size();
-        svg.text(x, 44, "", block.heading);
+        svg.text({x, 44}, kPlain, block.heading);
         for (std::size_t i = 0; i < count; ++i)
-            svg.text(x + width * (static_cast<double>(i) + 0.5), 60, "c", block.columns[i]);
-        begin_patches(svg, kRowHeight);
+            svg.text({x + width * (static_cast<double>(i) + 0.5), 60}, kCentred, block.columns[i]);
+        svg.begin_patches(kRowHeight);
         for (std::size_t i = 0; i < chart.rows.size(); ++i) {
-            draw_patches(svg, std::span(chart.rows[i].codes).subspan(column, count), x, width,
-                         kFirstRow + kRowHeight * (static_cast<double>(i) + 0.5), false);
+            draw_patches(svg, std::span(chart.rows[i].codes).subspan(column, count),
+                         {x, kFirstRow + kRowHeight * (static_cast<double>(i) + 0.5)}, width,
+                         false);
         }
-        svg.add("</g>\n");
+        svg.end_group();
         draw_patch_frame(svg, x, kFirstRow, width * static_cast<double>(count), height);
         column += count;
         x += width * static_cast<double>(count) + kGap;
     }
     for (std::size_t i = 0; i < chart.rows.size(); ++i) {
-        svg.text(14, kFirstRow + kRowHeight * (static_cast<double>(i) + 0.5) + 4, "",
+        svg.text({14, kFirstRow + kRowHeight * (static_cast<double>(i) + 0.5) + 4}, kPlain,
                  chart.rows[i].label);
     }
     return file_of(chart.title, chart.subtitle, kFirstRow + height + 12, svg.take());

@@ -17,8 +17,15 @@ struct PlotLine {
     std::string label;  // in the legend; empty: not there
     std::string color;
     double width = 1.5;
-    std::string dashes;         // of SVG's stroke-dasharray; empty: a solid line
-    std::vector<double> codes;  // display code values, one for each of plot_stops()
+    std::string dashes;          // of SVG's stroke-dasharray; empty: a solid line
+    std::vector<double> values;  // display code values as a rule, one for each of plot_stops()
+};
+
+/// A number at the side of a graph.
+struct PlotTick {
+    double value;
+    std::string left;   // with a line across the graph; empty: neither
+    std::string right;  // empty: none
 };
 
 /// What a graph has at its sides.
@@ -26,12 +33,16 @@ struct PlotScale {
     double low = 0;
     double high = 1;
     double step = 0.2;
+    std::vector<PlotTick> ticks = {};  // empty: one every step, at the left
+    std::string left_heading = "code";
+    std::string right_heading = "light";
+    std::string quantity = "code value";  // what its values are
 };
 
 /// A point of a line with words beside it.
 struct PlotMark {
     double stops;
-    double code;
+    double value;
     std::string words;
 };
 
@@ -41,10 +52,19 @@ struct PatchRow {
     std::vector<Vector3> codes;
 };
 
-/// Code value over stops: one picture of the catalogue. Empty parts are left out.
+/// What a plot is shown on: lines and words have colors that are readable there.
+enum class PlotTheme : unsigned char { light, dark };
+
+/// What displays show over stops. Empty parts are left out.
 struct CurvePlot {
+    PlotTheme theme = PlotTheme::light;
     std::string title;
     std::string subtitle;
+    /// Without ticks: sRGB code values, with their light at the right.
+    PlotScale scale;
+    bool names_greys = false;  // above the lines at mid grey and white
+    /// Else where tone curves are low: in the graph, at the left.
+    bool is_legend_below = false;
     std::vector<PlotLine> lines;
     std::vector<PlotMark> marks;
     /// A second, lower graph over the same stops.
@@ -71,12 +91,13 @@ struct PatchChart {
 
 /// The plot as an SVG file of its own: no script, no font, no link; the same bytes on every run.
 /// A line has as few points as keep it within a fifth of a pixel of its values.
-[[nodiscard]] std::string to_svg(const CurvePlot& plot);
+/// @param width  at which it is shown where nothing else says so
+[[nodiscard]] std::string to_svg(const CurvePlot& plot, double width = 640);
 [[nodiscard]] std::string to_svg(const PatchChart& chart);
 
 /// Color `index` of a set that stays apart for color-blind readers too (Okabe and Ito 2008), and
 /// the dashes of its line: from the ninth on the colors come again, dashed.
-[[nodiscard]] std::string line_color(std::size_t index);
+[[nodiscard]] std::string line_color(std::size_t index, PlotTheme theme = PlotTheme::light);
 [[nodiscard]] std::string line_dashes(std::size_t index);
 
 /// `&`, `<`, `>` and quotes as entities: for SVG.

@@ -43,6 +43,7 @@ constexpr const char* kWholeProgram = "tonewright-pictures";
 void require_lut_picture(const std::string&, int) { become_whole_program(); }
 void write_shipped_luts(const std::string&) { become_whole_program(); }
 void write_lut_picture(const Lut&, LutFormat, const std::string&, int) { become_whole_program(); }
+void write_plot_picture(const CurvePlot&, const std::string&, int) { become_whole_program(); }
 Lut load_lut_picture(const std::string&) { become_whole_program(); }
 
 }  // namespace tonewright
@@ -50,11 +51,12 @@ Lut load_lut_picture(const std::string&) { become_whole_program(); }
 int main(int argc, char** argv) {
     using namespace tonewright;  // NOLINT(google-build-using-namespace): this is its program
     arguments = argv;
-    constexpr const char* kOwn[] = {"list", "eval", "bake", "config"};
+    constexpr const char* kOwn[] = {"list", "eval", "bake", "config", "plot"};
     const bool is_own =
         argc > 1 && std::any_of(std::begin(kOwn), std::end(kOwn),
                                 [&](const char* name) { return std::strcmp(name, argv[1]) == 0; });
-    if (is_own) return run_program(argc, argv, {add_list, add_eval, add_bake, add_config});
+    if (is_own)
+        return run_program(argc, argv, {add_list, add_eval, add_bake, add_config, add_plot});
     try {
         become_whole_program();
     } catch (const FileError& e) {

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "cli/curve_plot.h"
 #include "tonewright/lut.h"
 
 namespace tonewright {
@@ -18,6 +19,10 @@ void write_shipped_luts(const std::string& folder);
 /// A table as a picture file. @see make_lut_picture
 /// @param bits  8, 16 or 32 (float)
 void write_lut_picture(const Lut& lut, LutFormat format, const std::string& path, int bits);
+
+/// A plot as a picture file.
+/// @param width  pixels
+void write_plot_picture(const CurvePlot& plot, const std::string& path, int width);
 
 /// A table from a picture file. @see read_lut_picture
 [[nodiscard]] Lut load_lut_picture(const std::string& path);

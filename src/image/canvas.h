@@ -5,9 +5,12 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "image/stroke_font.h"
 
 namespace tonewright {
 
@@ -49,9 +52,12 @@ class Canvas {
     enum class Align : unsigned char { left, center, right };
     /// Draws one line of text (printable ASCII; `?` for each other character), antialiased.
     /// `x` is where `align` says, `baseline` the line that the letters stand on, `cap_height` the
-    /// height of capitals.
+    /// height of capitals. Strokes are `extra_width` pixels wider than the font has them.
     void text(std::string_view text, double x, double baseline, double cap_height, const Rgb& color,
-              Align align = Align::left);
+              Align align = Align::left, double extra_width = 0);
+    /// Draws lines as one shape with round ends, antialiased: where they meet or cross nothing is
+    /// drawn twice.
+    void strokes(std::span<const Stroke> lines, double width, const Rgb& color);
 
     /// The picture in the given pixel type, R, G, B.
     [[nodiscard]] OIIO::ImageBuf to_image(const OIIO::TypeDesc& type) const;

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "image/canvas.h"
+#include "image/contact_sheet.h"
 #include "image/message.h"
 #include "tonewright/color.h"
 #include "tonewright/engine.h"
@@ -20,97 +21,167 @@ namespace {
 using OIIO::ImageBuf;
 using OIIO::ROI;
 
-// sRGB code values. Neutral, and dark enough not to light up the pictures.
-constexpr double kBackground = 0.125;
-constexpr double kText = 0.82;
-
-struct Size {
-    int width;
-    int height;
-};
-
-/// The display window: what a viewer shows. Pixels outside the data window are black.
-ROI shown_window(const ImageBuf& picture) {
-    ROI window = picture.roi_full();
-    window.chbegin = 0;
-    window.chend = picture.nchannels();
-    return window;
+void check_range(const char* name, int value, int low, int high) {
+    if (value >= low && value <= high) return;
+    throw Error(fmt::format("contact sheet: {} is {}; expected [{}, {}]", name, value, low, high));
 }
 
-/// The largest size that fits the width, with the picture's shape.
-Size fitted_size(const ImageBuf& picture, int cell_width) {
-    const ROI window = shown_window(picture);
-    const double pixel_aspect =
-        static_cast<double>(picture.spec().get_float_attribute("PixelAspectRatio", 1));
-    const double aspect =
-        window.width() * (pixel_aspect > 0 ? pixel_aspect : 1.0) / window.height();
-    return {cell_width, std::max(1, static_cast<int>(std::lround(cell_width / aspect)))};
+/// One run over pixels of interleaved RGB, in place.
+void run_in_place(const ReferenceEngine& engine, float* pixels, int count) {
+    std::vector<double> result(3 * static_cast<std::size_t>(count));
+    engine.run_rgb(pixels, result.data(), static_cast<std::size_t>(count));
+    std::transform(result.begin(), result.end(), pixels,
+                   [](double v) { return static_cast<float>(v); });
 }
 
 /// The picture at its size in the sheet, sRGB code values, float RGB.
 ///
 /// Averages of light are wanted, not of code values: else thin bright lines and fine patterns
 /// become darker when the picture shrinks.
-ImageBuf shrink(const ImageBuf& picture, const Size& size) {
+ImageBuf shrink(const ImageBuf& picture, const PictureSize& size) {
     static const Expr x = Expr::input();
     static const ReferenceEngine to_light({curve_stage(srgb_decode(x))});
     static const ReferenceEngine to_code({curve_stage(srgb_encode(x))});
 
-    const ROI window = shown_window(picture);
-    ImageBuf light(OIIO::ImageSpec(window.width(), window.height(), 3, OIIO::TypeDesc::FLOAT));
-    const auto run = [](const ReferenceEngine& engine, float* pixels, int count) {
-        std::vector<double> result(3 * static_cast<std::size_t>(count));
-        engine.run_rgb(pixels, result.data(), static_cast<std::size_t>(count));
-        std::transform(result.begin(), result.end(), pixels,
-                       [](double v) { return static_cast<float>(v); });
-    };
-    const int channels = picture.nchannels();
+    ImageBuf light = shown_rgb(picture);
+    const int width = light.spec().width;
+    if (size.width == width && size.height == light.spec().height) return light;
     OIIO::ImageBufAlgo::parallel_image(light.roi(), [&](ROI part) {
+        for (int y = part.ybegin; y < part.yend; ++y)
+            run_in_place(to_light, static_cast<float*>(light.pixeladdr(0, y)), width);
+    });
+    // A filter without negative lobes: no dark rims around lights.
+    ImageBuf small = OIIO::ImageBufAlgo::resize(light, "blackman-harris", 0,
+                                                ROI(0, size.width, 0, size.height, 0, 1, 0, 3));
+    if (small.has_error()) throw Error("contact sheet: " + first_line(small.geterror()));
+    run_in_place(to_code, static_cast<float*>(small.localpixels()), size.width * size.height);
+    return small;
+}
+
+/// Words over the sheet, patches under it.
+class Surround {
+  public:
+    Surround(const SheetSurround& words, int cell_width, int margin, int width)
+        : words_(words),
+          margin_(margin),
+          width_(width - 2 * margin),
+          heading_height_(std::clamp(cell_width / 26.0, 8.0, 22.0)),
+          remark_height_(std::max(7.0, 0.8 * heading_height_)) {
+        is_remark_below_ = text_width(words.heading, heading_height_) +
+                               text_width(words.remark, remark_height_) + 2 * heading_height_ >
+                           width_;
+    }
+    [[nodiscard]] int top() const {
+        if (words_.heading.empty() && words_.remark.empty()) return 0;
+        const double rows = heading_height_ + (is_remark_below_ ? 1.8 * remark_height_ : 0);
+        return static_cast<int>(std::lround(rows + 0.4 * heading_height_)) + margin_ / 2;
+    }
+    [[nodiscard]] int bottom() const {
+        if (words_.legend.empty()) return 0;
+        return static_cast<int>(std::lround(7.2 * remark_height_)) + margin_ / 2;
+    }
+    void draw(Canvas& canvas) const {
+        draw_heading(canvas);
+        if (!words_.legend.empty()) draw_legend(canvas);
+    }
+
+  private:
+    void draw_heading(Canvas& canvas) const {
+        const double baseline = margin_ + heading_height_;
+        canvas.text(fit_text(words_.heading, heading_height_, width_), margin_, baseline,
+                    heading_height_, grey_of(kSheetText));
+        canvas.text(fit_text(words_.remark, remark_height_, width_),
+                    is_remark_below_ ? margin_ : margin_ + width_,
+                    is_remark_below_ ? baseline + 1.8 * remark_height_ : baseline, remark_height_,
+                    grey_of(kSheetDimText),
+                    is_remark_below_ ? Canvas::Align::left : Canvas::Align::right);
+    }
+    void draw_legend(Canvas& canvas) const {
+        const double cap = remark_height_;
+        const int end = canvas.height() - margin_;
+        const double labels = end - 0.2 * cap;
+        const int patches_end = static_cast<int>(std::lround(labels - 1.7 * cap));
+        const int patches_top = static_cast<int>(std::lround(patches_end - 2.2 * cap));
+        canvas.text(fit_text(words_.legend_heading, cap, width_), margin_, patches_top - 0.8 * cap,
+                    cap, grey_of(kSheetDimText));
+        const auto count = static_cast<int>(words_.legend.size());
+        // All labels have the room of the widest, or every second or third is there.
+        double widest = 0;
+        for (const auto& [label, color] : words_.legend)
+            widest = std::max(widest, text_width(label, cap) + cap);
+        const int step = std::max(
+            1, static_cast<int>(std::ceil(widest / (width_ / static_cast<double>(count)))));
+        for (int i = 0; i < count; ++i) {
+            const auto& [label, color] = words_.legend[static_cast<std::size_t>(i)];
+            const int left = margin_ + i * width_ / count;
+            const int right = margin_ + (i + 1) * width_ / count;
+            canvas.fill(left, patches_top, right, patches_end, color);
+            if ((i - count / 2) % step == 0) {
+                canvas.text(label, (left + right) / 2.0, labels, cap, grey_of(kSheetText),
+                            Canvas::Align::center);
+            }
+        }
+    }
+
+    const SheetSurround& words_;
+    int margin_;
+    int width_;
+    double heading_height_;
+    double remark_height_;
+    bool is_remark_below_;
+};
+
+}  // namespace
+
+ROI shown_window(const ImageBuf& picture) {
+    ROI window = picture.roi_full();
+    window.zend = window.zbegin + 1;
+    window.chbegin = 0;
+    window.chend = picture.nchannels();
+    return window;
+}
+
+PictureSize fitted_size(const ImageBuf& picture, int width) {
+    const ROI window = shown_window(picture);
+    const double pixel_aspect =
+        static_cast<double>(picture.spec().get_float_attribute("PixelAspectRatio", 1));
+    const double aspect =
+        window.width() * (pixel_aspect > 0 ? pixel_aspect : 1.0) / window.height();
+    return {width, std::max(1, static_cast<int>(std::lround(width / aspect)))};
+}
+
+ImageBuf shown_rgb(const ImageBuf& picture) {
+    const ROI window = shown_window(picture);
+    const int channels = picture.nchannels();
+    ImageBuf rgb(OIIO::ImageSpec(window.width(), window.height(), 3, OIIO::TypeDesc::FLOAT));
+    OIIO::ImageBufAlgo::parallel_image(rgb.roi(), [&](ROI part) {
         std::vector<float> row(static_cast<std::size_t>(window.width()) *
                                static_cast<std::size_t>(channels));
         for (int y = part.ybegin; y < part.yend; ++y) {
             ROI line = window;
             line.ybegin = window.ybegin + y;
             line.yend = line.ybegin + 1;
-            line.zend = line.zbegin + 1;
             picture.get_pixels(line, OIIO::TypeFloat, row.data());
-            auto* to = static_cast<float*>(light.pixeladdr(0, y));
+            auto* to = static_cast<float*>(rgb.pixeladdr(0, y));
             for (int i = 0; i < window.width(); ++i) {
                 const float* from = row.data() + static_cast<std::ptrdiff_t>(i) * channels;
                 for (int c = 0; c < 3; ++c)
                     to[3 * i + c] = from[channels < 3 ? 0 : c];
             }
-            run(to_light, to, window.width());
         }
     });
     if (picture.has_error()) throw Error("contact sheet: " + first_line(picture.geterror()));
-
-    ImageBuf small = light;
-    if (size.width != window.width() || size.height != window.height()) {
-        // A filter without negative lobes: no dark rims around lights.
-        small = OIIO::ImageBufAlgo::resize(light, "blackman-harris", 0,
-                                           ROI(0, size.width, 0, size.height, 0, 1, 0, 3));
-        if (small.has_error()) throw Error("contact sheet: " + first_line(small.geterror()));
-    }
-    run(to_code, static_cast<float*>(small.localpixels()), size.width * size.height);
-    return small;
+    return rgb;
 }
-
-void check_range(const char* name, int value, int low, int high) {
-    if (value >= low && value <= high) return;
-    throw Error(fmt::format("contact sheet: {} is {}; expected [{}, {}]", name, value, low, high));
-}
-
-}  // namespace
 
 ImageBuf make_contact_sheet(const std::vector<std::pair<std::string, ImageBuf>>& labelled,
-                            int columns, int cell_width) {
+                            int columns, int cell_width, const SheetSurround& around) {
     check_range("number of pictures", static_cast<int>(labelled.size()), 1, 10000);
     check_range("columns", columns, 1, 10000);
     check_range("cell width", cell_width, 16, 16384);
     columns = std::min(columns, static_cast<int>(labelled.size()));
 
-    std::vector<Size> sizes;
+    std::vector<PictureSize> sizes;
     for (const auto& [label, picture] : labelled) {
         if (!picture.initialized() || picture.deep()) {
             throw Error(fmt::format("contact sheet: picture of {} is {}; expected flat pixels",
@@ -120,13 +191,21 @@ ImageBuf make_contact_sheet(const std::vector<std::pair<std::string, ImageBuf>>&
     }
     const double cap_height = std::clamp(cell_width / 32.0, 7.0, 20.0);
     const int margin = std::max(4, static_cast<int>(std::lround(cell_width / 20.0)));
-    const int label_height = static_cast<int>(std::lround(2.2 * cap_height));
+    const double second_height = std::max(7.0, 0.8 * cap_height);
+    const bool has_second = std::any_of(labelled.begin(), labelled.end(), [](const auto& cell) {
+        return cell.first.find('\n') != std::string::npos;
+    });
+    const int first_height = static_cast<int>(std::lround(2.2 * cap_height));
+    const int label_height =
+        first_height + (has_second ? static_cast<int>(std::lround(1.8 * second_height)) : 0);
+    const int width = margin + columns * (cell_width + margin);
+    const Surround surround(around, cell_width, margin, width);
 
     // Each row is as high as its tallest picture.
     const int rows = (static_cast<int>(labelled.size()) + columns - 1) / columns;
     std::vector<int> row_top;
     std::vector<int> row_height;
-    int height = margin;
+    int height = margin + surround.top();
     for (int r = 0; r < rows; ++r) {
         int tallest = 1;
         const int end = std::min((r + 1) * columns, static_cast<int>(sizes.size()));
@@ -137,19 +216,19 @@ ImageBuf make_contact_sheet(const std::vector<std::pair<std::string, ImageBuf>>&
         row_height.push_back(tallest);
         height += tallest + label_height + margin;
     }
-    const int width = margin + columns * (cell_width + margin);
+    height += surround.bottom();
     constexpr int kLargest = 65535;
     if (width > kLargest || height > kLargest) {
         throw Error(fmt::format("contact sheet: size is {} x {}; expected at most {} each way",
                                 width, height, kLargest));
     }
 
-    Canvas canvas(width, height, grey_of(kBackground));
+    Canvas canvas(width, height, grey_of(kSheetBackground));
     for (std::size_t i = 0; i < labelled.size(); ++i) {
         const auto r = i / static_cast<std::size_t>(columns);
         const int left = margin + static_cast<int>(i % static_cast<std::size_t>(columns)) *
                                       (cell_width + margin);
-        const Size& size = sizes[i];
+        const PictureSize& size = sizes[i];
         const int top = row_top[r] + (row_height[r] - size.height) / 2;
         const ImageBuf small = shrink(labelled[i].second, size);
         const auto* pixels = static_cast<const float*>(small.localpixels());
@@ -158,10 +237,19 @@ ImageBuf make_contact_sheet(const std::vector<std::pair<std::string, ImageBuf>>&
             pixels += 3;
             return color;
         });
-        const double baseline = row_top[r] + row_height[r] + 0.45 * label_height + cap_height / 2;
-        canvas.text(fit_text(labelled[i].first, cap_height, cell_width), left + cell_width / 2.0,
-                    baseline, cap_height, grey_of(kText), Canvas::Align::center);
+        const double baseline = row_top[r] + row_height[r] + 0.45 * first_height + cap_height / 2;
+        const std::string& label = labelled[i].first;
+        const std::size_t line_break = std::min(label.find('\n'), label.size());
+        canvas.text(fit_text(label.substr(0, line_break), cap_height, cell_width),
+                    left + cell_width / 2.0, baseline, cap_height, grey_of(kSheetText),
+                    Canvas::Align::center);
+        if (line_break < label.size()) {
+            canvas.text(fit_text(label.substr(line_break + 1), second_height, cell_width),
+                        left + cell_width / 2.0, baseline + 1.8 * second_height, second_height,
+                        grey_of(kSheetDimText), Canvas::Align::center);
+        }
     }
+    surround.draw(canvas);
     ImageBuf sheet = canvas.to_image(OIIO::TypeDesc::UINT8);
     sheet.specmod().attribute("oiio:ColorSpace", "sRGB");
     return sheet;

@@ -4,6 +4,7 @@
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imageio.h>
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -244,21 +245,32 @@ void tonemap_files(const Tonemapper& tonemapper, std::vector<FrameFiles>& frames
 /// @throws Error  size out of range.
 [[nodiscard]] OIIO::ImageBuf make_chart(int width = 1536, int height = 864);
 
+/// What a contact sheet has beside its pictures. Empty parts are left out.
+struct SheetSurround {
+    /// Over the pictures: what the sheet shows, and, dimmer, how.
+    std::string heading = {};
+    std::string remark = {};
+    /// Under them: a row of patches, label and sRGB code values, and what they are.
+    std::vector<std::pair<std::string, std::array<float, 3>>> legend = {};
+    std::string legend_heading = {};
+};
+
 /// Pictures side by side in a grid, each with its label below, on dark neutral grey.
 ///
 /// Each picture is scaled into its cell without distortion (its display window and pixel aspect
 /// ratio count), in linear light. Rows are as high as their tallest picture.
 ///
 /// @param labelled    label (printable ASCII; other characters show as `?`; cut to the cell's
-/// width)
-///                    and picture in sRGB code values, any pixel type; grey is shown as grey; alpha
-///                    is not used: associated color is shown on black.
+///                    width; after a line break a second line, smaller and dimmer) and picture in
+///                    sRGB code values, any pixel type; grey is shown as grey; alpha is not used:
+///                    associated color is shown on black.
 /// @param columns     1 or more.
 /// @param cell_width  width of a picture in pixels, [16, 16384].
+/// @param around      words and patches around the pictures.
 /// @returns           uint8 RGB, sRGB.
 /// @throws Error      no pictures, or a number out of range, or a picture that cannot be read.
 [[nodiscard]] OIIO::ImageBuf make_contact_sheet(
     const std::vector<std::pair<std::string, OIIO::ImageBuf>>& labelled, int columns,
-    int cell_width);
+    int cell_width, const SheetSurround& around = {});
 
 }  // namespace tonewright

@@ -121,6 +121,52 @@ TEST(ContactSheet, OtherPictures) {
               20);
 }
 
+TEST(ContactSheet, WordsAndPatchesAround) {
+    const std::vector<float> red = {0.8F, 0.2F, 0.1F};
+    const Labelled one = {{"Title\nid", flat(100, 100, red)}};
+    const ImageBuf plain = make_contact_sheet({{"Title", flat(100, 100, red)}}, 1, 200);
+    const ImageBuf two_lines = make_contact_sheet(one, 1, 200);
+    EXPECT_GT(two_lines.spec().height, plain.spec().height);
+    SheetSurround around;
+    around.heading = "picture.exr";
+    around.remark = "exposure 0";
+    around.legend = {{"-1", {0.9F, 0, 0}}, {"0", {0, 0.9F, 0}}, {"+1", {0, 0, 0.9F}}};
+    const ImageBuf sheet = make_contact_sheet(one, 1, 200, around);
+    EXPECT_EQ(sheet.spec().width, two_lines.spec().width);
+    const OIIO::ROI picture = extent_of(sheet, red);
+    EXPECT_EQ(picture.width(), 200);
+    EXPECT_EQ(picture.height(), 200);
+    EXPECT_GT(picture.ybegin, extent_of(two_lines, red).ybegin);
+    // From the left edge of the pictures to their right one, one after the other, below.
+    int left = picture.xbegin;
+    for (const auto& [label, color] : around.legend) {
+        const OIIO::ROI patch = extent_of(sheet, {color[0], color[1], color[2]});
+        EXPECT_EQ(patch.xbegin, left) << label;
+        EXPECT_GT(patch.ybegin, picture.yend);
+        left = patch.xend;
+    }
+    EXPECT_EQ(left, picture.xend);
+}
+
+TEST(ContactSheet, APictureOfTheCellsSizeKeepsItsPixels) {
+    ImageBuf picture(ImageSpec(64, 48, 3, TypeDesc::FLOAT));
+    auto* pixels = static_cast<float*>(picture.localpixels());
+    for (int i = 0; i < 64 * 48 * 3; ++i)
+        pixels[i] = static_cast<float>(i % 4093) / 4093;
+    const ImageBuf sheet = make_contact_sheet({{"", picture}}, 1, 64);
+    ImageBuf expected;
+    expected.copy(picture, TypeDesc::UINT8);
+    const int margin = (sheet.spec().width - 64) / 2;
+    for (int y = 0; y < 48; ++y) {
+        for (int x = 0; x < 64; ++x) {
+            for (int c = 0; c < 3; ++c) {
+                ASSERT_EQ(sheet.getchannel(margin + x, margin + y, 0, c),
+                          expected.getchannel(x, y, 0, c));
+            }
+        }
+    }
+}
+
 TEST(ContactSheet, BadArguments) {
     const Labelled one = {{"a", flat(4, 4, {0.5F, 0.5F, 0.5F})}};
     EXPECT_THROW((void)make_contact_sheet({}, 1, 100), Error);
@@ -156,6 +202,26 @@ TEST(Canvas, EveryPrintableCharacterIsDrawn) {
         EXPECT_GT(sum, 1.5) << c;
         EXPECT_LT(sum, 200) << c;
     }
+}
+
+TEST(Canvas, StrokesAreOneShape) {
+    Canvas canvas(40, 20, grey_of(0));
+    // Twice the same line, and one that crosses it: half covered pixels stay half covered.
+    const std::vector<Stroke> cross = {{5, 10, 35, 10}, {35, 10, 5, 10}, {20, 2, 20, 18}};
+    canvas.strokes(cross, 3, {1, 0.5F, 0});
+    EXPECT_EQ(canvas.at(10, 9)[0], 1);
+    EXPECT_EQ(canvas.at(10, 9)[1], 0.5F);
+    EXPECT_EQ(canvas.at(10, 8)[0], 0.5F);  // the line ends in the middle of this row
+    EXPECT_EQ(canvas.at(10, 11)[0], 0.5F);
+    EXPECT_EQ(canvas.at(10, 7)[0], 0);
+    EXPECT_EQ(canvas.at(20, 4)[0], 1);
+    EXPECT_EQ(canvas.at(2, 10)[0], 0);
+    // Nothing beyond the edges.
+    const std::vector<Stroke> outside = {{-50, -50, 100, -40}, {-9, 5, 60, 5}};
+    canvas.strokes(outside, 2, grey_of(1));
+    EXPECT_EQ(canvas.at(0, 4)[0], 1);
+    EXPECT_EQ(canvas.at(39, 5)[0], 1);
+    EXPECT_EQ(canvas.at(0, 0)[0], 0);
 }
 
 TEST(Canvas, NothingIsDrawnOutside) {

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cli/curve_plot.h"
+#include "tonewright/view.h"
+
+namespace tonewright {
+
+inline constexpr double kMidGrey = 0.18;
+
+/// Red, green and blue.
+using Planes = std::array<std::vector<double>, 3>;
+
+/// What a pipeline makes of `color` times each number of `exposures`, in double.
+[[nodiscard]] Planes codes_of(const Pipeline& pipeline, const Vector3& color,
+                              std::span<const double> exposures);
+
+/// The code value that each scene-linear grey is shown with on the view's display: where what is
+/// shown is not grey, that of the grey with the same luminance.
+[[nodiscard]] std::vector<double> grey_codes(const View& view, std::span<const double> scene);
+[[nodiscard]] double grey_code(const View& view, double scene);
+
+/// Scene-linear values of stops from mid grey.
+[[nodiscard]] std::vector<double> scene_of(const std::vector<double>& stops);
+
+[[nodiscard]] double largest_difference(const std::vector<double>& a, const std::vector<double>& b);
+
+/// Lines that no eye can tell apart, in code values.
+inline constexpr double kSameLine = 0.001;
+
+/// Adds a line, or a name to the label of the one that it would lie on.
+void add_line(std::vector<PlotLine>& lines, PlotLine line, const std::string& short_name);
+
+}  // namespace tonewright

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cli/curve_plot.h"
+
+namespace tonewright {
+
+/// About the width at which a page shows a plot: the unit of all coordinates is a pixel of a
+/// picture this wide.
+inline constexpr double kPlotWidth = 640;
+inline constexpr double kDotRadius = 3.5;
+
+/// sRGB colors of what is not data, `#rrggbb`.
+struct PlotColors {
+    std::string_view page;
+    std::string_view text;
+    std::string_view frame;
+    std::string_view grid;
+    std::string_view patch_frame;  // around patches, which may be as light as the page
+    std::string_view dot;
+};
+[[nodiscard]] const PlotColors& colors_of(PlotTheme theme);
+
+/// What a plot is drawn on: an SVG file, or pixels.
+class PlotSurface {
+  public:
+    enum class Anchor : unsigned char { start, middle, end };
+    struct TextStyle {
+        Anchor anchor = Anchor::start;
+        bool has_halo = false;  // of the page's color, where lines may be behind the words
+        bool is_heading = false;
+    };
+    enum class Rule : unsigned char { grid, mark, tick };
+    enum class Frame : unsigned char { graph, patches };
+    struct Point {
+        double x, y;
+    };
+    /// Horizontal or vertical.
+    struct Segment {
+        Point from, to;
+    };
+    /// From `left` to `right` of a row, in widths of a patch.
+    struct Patch {
+        std::string color;
+        double left, right;
+    };
+
+    PlotSurface() = default;
+    PlotSurface(const PlotSurface&) = delete;
+    PlotSurface& operator=(const PlotSurface&) = delete;
+    virtual ~PlotSurface() = default;
+
+    /// One line of words, UTF-8, that starts, ends or has its middle at `at`, on the baseline.
+    virtual void text(Point at, const TextStyle& style, std::string_view words) = 0;
+    virtual void rules(Rule kind, std::span<const Segment> segments) = 0;
+    virtual void frame(Frame kind, Point top_left, double width, double height) = 0;
+    virtual void dot(Point centre) = 0;
+    /// What a line looks like, in a legend.
+    virtual void sample(const PlotLine& line, Point from, double length) = 0;
+
+    /// Lines of data come between begin_lines() and end_group().
+    virtual void begin_lines() = 0;
+    virtual void line(const PlotLine& line, std::span<const Point> points) = 0;
+    /// And rows of patches, which do not blend where they meet, after begin_patches().
+    virtual void begin_patches(double height) = 0;
+    /// @param left  middle of the row's left side; @param width  of a patch
+    virtual void patches(Point left, double width, std::span<const Patch> row) = 0;
+    virtual void end_group() = 0;
+};
+
+/// Draws all of the plot; the page behind it is the surface's own.
+void draw(const CurvePlot& plot, PlotSurface& surface);
+[[nodiscard]] double height_of(const CurvePlot& plot);
+
+}  // namespace tonewright

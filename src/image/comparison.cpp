@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What pictures of the same scene are compared with: small scenes, splits, differences.
+#include "image/comparison.h"
+
+#include <OpenImageIO/imagebufalgo.h>
+#include <OpenImageIO/imagebufalgo_util.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "image/canvas.h"
+#include "image/contact_sheet.h"
+#include "image/message.h"
+#include "tonewright/error.h"
+#include "tonewright/pipeline.h"
+
+namespace tonewright {
+namespace {
+
+using OIIO::ImageBuf;
+using OIIO::ImageSpec;
+using OIIO::ROI;
+
+/// Of the channels of a picture its color, and alpha behind it.
+std::vector<int> color_and_alpha(const ImageSpec& spec) {
+    std::vector<int> channels(static_cast<std::size_t>(std::min(spec.nchannels, 4)));
+    for (std::size_t c = 0; c < channels.size(); ++c)
+        channels[c] = static_cast<int>(c);
+    if (spec.nchannels <= 4) return channels;
+    channels.resize(3);
+    if (spec.alpha_channel >= 3) channels.push_back(spec.alpha_channel);
+    return channels;
+}
+
+/// The display window in memory, as the first step of the engines makes it.
+ImageBuf shown_scene(const ImageBuf& picture) {
+    const ROI window = shown_window(picture);
+    const std::vector<int> channels = color_and_alpha(picture.spec());
+    const auto count = static_cast<int>(channels.size());
+    ImageSpec spec(window.width(), window.height(), count, OIIO::TypeDesc::FLOAT);
+    spec.extra_attribs = picture.spec().extra_attribs;
+    spec.erase_attribute("PixelAspectRatio");
+    spec.alpha_channel = -1;
+    for (int c = 0; c < count; ++c) {
+        const int from = channels[static_cast<std::size_t>(c)];
+        spec.channelnames[static_cast<std::size_t>(c)] = picture.spec().channel_name(from);
+        if (from == picture.spec().alpha_channel) spec.alpha_channel = c;
+    }
+    ImageBuf scene(spec);
+    OIIO::ImageBufAlgo::parallel_image(scene.roi(), [&](ROI part) {
+        const auto all = static_cast<std::size_t>(picture.nchannels());
+        std::vector<float> row(static_cast<std::size_t>(window.width()) * all);
+        for (int y = part.ybegin; y < part.yend; ++y) {
+            ROI line = window;
+            line.ybegin = window.ybegin + y;
+            line.yend = line.ybegin + 1;
+            picture.get_pixels(line, OIIO::TypeFloat, row.data());
+            auto* to = static_cast<float*>(scene.pixeladdr(0, y));
+            for (std::size_t x = 0; x < static_cast<std::size_t>(window.width()); ++x) {
+                for (const int c : channels) {
+                    constexpr auto kMax = static_cast<float>(kHalfMax);
+                    const float value = row[x * all + static_cast<std::size_t>(c)];
+                    *to++ = std::isnan(value) ? 0 : std::clamp(value, -kMax, kMax);
+                }
+            }
+        }
+    });
+    if (picture.has_error()) throw Error("compare: " + first_line(picture.geterror()));
+    return scene;
+}
+
+/// Every pixel as often as fits.
+ImageBuf enlarge(const ImageBuf& scene, const PictureSize& size) {
+    ImageSpec spec = scene.spec();
+    spec.width = spec.full_width = size.width;
+    spec.height = spec.full_height = size.height;
+    ImageBuf large(spec);
+    const auto bytes = static_cast<std::size_t>(spec.nchannels) * sizeof(float);
+    for (int y = 0; y < size.height; ++y) {
+        for (int x = 0; x < size.width; ++x) {
+            const void* from =
+                scene.pixeladdr(static_cast<int>((x + 0.5) * scene.spec().width / size.width),
+                                static_cast<int>((y + 0.5) * scene.spec().height / size.height));
+            std::copy_n(static_cast<const char*>(from), bytes,
+                        static_cast<char*>(large.pixeladdr(x, y)));
+        }
+    }
+    return large;
+}
+
+void require_same_size(const ImageBuf& a, const ImageBuf& b) {
+    const ROI x = shown_window(a);
+    const ROI y = shown_window(b);
+    if (x.width() == y.width() && x.height() == y.height()) return;
+    throw Error(fmt::format("compare: picture is {} x {}; expected {} x {}, as the first",
+                            y.width(), y.height(), x.width(), x.height()));
+}
+
+std::span<const Rgb> pixels_of(const ImageBuf& rgb) {
+    return {static_cast<const Rgb*>(rgb.localpixels()),
+            static_cast<std::size_t>(rgb.spec().image_pixels())};
+}
+
+/// Title and detail of a side, and how much room they take.
+struct Caption {
+    const SplitLabel& label;
+    double cap;
+    double room;
+
+    [[nodiscard]] double width() const {
+        return std::max(text_width(title(), cap), text_width(detail(), detail_cap()));
+    }
+    void draw(Canvas& canvas, double x, double top, Canvas::Align align) const {
+        canvas.text(title(), x, top + 1.9 * cap, cap, grey_of(kSheetText), align);
+        canvas.text(detail(), x, top + 1.9 * cap + 1.8 * detail_cap(), detail_cap(),
+                    grey_of(kSheetDimText), align);
+    }
+    [[nodiscard]] double detail_cap() const { return std::max(7.0, 0.8 * cap); }
+
+  private:
+    [[nodiscard]] std::string title() const { return fit_text(label.title, cap, room); }
+    [[nodiscard]] std::string detail() const { return fit_text(label.detail, detail_cap(), room); }
+};
+
+}  // namespace
+
+ImageBuf resize_scene(const ImageBuf& picture, int width) {
+    if (picture.deep()) throw Error("compare: picture is deep; expected flat pixels");
+    const PictureSize size = fitted_size(picture, width);
+    ImageBuf scene = shown_scene(picture);
+    const ImageSpec& spec = scene.spec();
+    if (size.width == spec.width && size.height == spec.height) return scene;
+    if (size.width > spec.width) return enlarge(scene, size);
+    ImageBuf small = OIIO::ImageBufAlgo::resize(
+        scene, "blackman-harris", 0, ROI(0, size.width, 0, size.height, 0, 1, 0, spec.nchannels));
+    if (small.has_error()) throw Error("compare: " + first_line(small.geterror()));
+    return small;
+}
+
+int choose_columns(int count, int cell_width, int cell_height) {
+    constexpr double kScreen = 16.0 / 10;
+    const double width = 1.05 * cell_width;  // with margins, and a label
+    const double height = cell_height + 0.16 * cell_width;
+    int best = 1;
+    double least = 1e9;
+    for (int columns = 1; columns <= count; ++columns) {
+        const int rows = (count + columns - 1) / columns;
+        const double aspect = columns * width / (rows * height);
+        const double gaps = static_cast<double>(columns * rows - count) / count;
+        const double badness = std::fabs(std::log(aspect / kScreen)) + 2 * gaps;
+        if (badness < least) {
+            least = badness;
+            best = columns;
+        }
+    }
+    return best;
+}
+
+int split_at(int length, double position) {
+    if (!(position >= 0 && position <= 1))
+        throw Error(fmt::format("compare: --split is {}; expected [0, 1]", position));
+    return static_cast<int>(std::lround(position * length));
+}
+
+ImageBuf make_split(const ImageBuf& before, const ImageBuf& after, const SplitOptions& options) {
+    require_same_size(before, after);
+    const ImageBuf a = shown_rgb(before);
+    const ImageBuf b = shown_rgb(after);
+    const int width = a.spec().width;
+    const int height = a.spec().height;
+    const bool is_horizontal = options.is_horizontal;
+    const int edge = split_at(is_horizontal ? height : width, options.position);
+
+    constexpr int kNarrowest = 320;  // for the words
+    const double cap = std::clamp(width / 72.0, 9.0, 26.0);
+    const int band = options.has_labels ? static_cast<int>(std::lround(4.6 * cap)) : 0;
+    const int top = is_horizontal ? band : 0;
+    const int full_width = options.has_labels ? std::max(width, kNarrowest) : width;
+    const int left = (full_width - width) / 2;
+    Canvas canvas(full_width, top + height + band, grey_of(kSheetBackground));
+
+    const std::span<const Rgb> first = pixels_of(a);
+    const std::span<const Rgb> second = pixels_of(b);
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            const auto i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                           static_cast<std::size_t>(x);
+            canvas.at(left + x, top + y) = (is_horizontal ? y : x) < edge ? first[i] : second[i];
+        }
+    }
+    if (options.has_labels) {
+        // Light, between dark edges: seen on everything. None where only one picture is shown.
+        const int thickness =
+            std::max(1, static_cast<int>(std::lround(std::min(width, height) / 700.0)));
+        if (edge > 0 && edge < (is_horizontal ? height : width)) {
+            const auto bar = [&](int from, int to, double grey) {
+                if (is_horizontal) {
+                    canvas.fill(left, top + std::max(from, 0), left + width,
+                                top + std::min(to, height), grey_of(grey));
+                } else {
+                    canvas.fill(left + std::max(from, 0), top, left + std::min(to, width),
+                                top + height, grey_of(grey));
+                }
+            };
+            const int from = edge - (3 * thickness) / 2;
+            bar(from, from + 3 * thickness, 0.05);
+            bar(from + thickness, from + 2 * thickness, 0.95);
+        }
+        const double room = is_horizontal ? full_width - 2 * cap : full_width / 2.0 - 2 * cap;
+        const Caption one = {options.before, cap, room};
+        const Caption two = {options.after, cap, room};
+        const double below = top + height;
+        const double right = full_width - cap;
+        one.draw(canvas, cap, is_horizontal ? 0 : below, Canvas::Align::left);
+        two.draw(canvas, is_horizontal ? cap : right, below,
+                 is_horizontal ? Canvas::Align::left : Canvas::Align::right);
+        const double remark_cap = one.detail_cap();
+        const double remark_width = text_width(options.remark, remark_cap);
+        if (is_horizontal) {
+            if (cap + one.width() + 2 * cap + remark_width < right) {
+                canvas.text(options.remark, right, 1.9 * cap, remark_cap, grey_of(kSheetDimText),
+                            Canvas::Align::right);
+            }
+        } else if (std::max(one.width(), two.width()) + 3 * cap + remark_width / 2 <
+                   full_width / 2.0) {
+            canvas.text(options.remark, full_width / 2.0, below + 1.9 * cap, remark_cap,
+                        grey_of(kSheetDimText), Canvas::Align::center);
+        }
+    }
+    ImageBuf split = canvas.to_image(OIIO::TypeDesc::FLOAT);
+    split.specmod().attribute("oiio:ColorSpace", "sRGB");
+    return split;
+}
+
+PictureDifference difference_of(const ImageBuf& a, const ImageBuf& b, double gain) {
+    require_same_size(a, b);
+    const ImageBuf x = shown_rgb(a);
+    const ImageBuf y = shown_rgb(b);
+    PictureDifference result;
+    result.picture = ImageBuf(x.spec());
+    const std::span<const Rgb> first = pixels_of(x);
+    const std::span<const Rgb> second = pixels_of(y);
+    auto* to = static_cast<Rgb*>(result.picture.localpixels());
+    double sum = 0;
+    for (std::size_t i = 0; i < first.size(); ++i) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double difference =
+                std::fabs(static_cast<double>(first[i][c]) - static_cast<double>(second[i][c]));
+            result.largest = std::max(result.largest, difference);
+            sum += difference;
+            to[i][c] = static_cast<float>(std::min(gain * difference, 1.0));
+        }
+    }
+    result.mean = sum / (3 * static_cast<double>(first.size()));
+    return result;
+}
+
+}  // namespace tonewright

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <OpenImageIO/imagebuf.h>
+
+#include <string>
+
+namespace tonewright {
+
+/// The scene of a picture `width` pixels wide: its display window, square pixels, float; color and
+/// alpha alone.
+///
+/// Smaller, pixels are means of light, without negative lobes: 12 operators on it take no longer
+/// than one on the picture, and noise and fine detail are those of the small picture. Larger, they
+/// are repeated. At its own size a picture is left as it is. NaN is 0, and channels are limited to
+/// +-65504 before, so that one pixel does not spoil its neighbours.
+///
+/// @param width    of the result, pixels
+/// @throws Error   deep, or cannot be read
+[[nodiscard]] OIIO::ImageBuf resize_scene(const OIIO::ImageBuf& picture, int width);
+
+/// How many columns make a sheet of so many equal cells most like a screen, without gaps where that
+/// can be had.
+[[nodiscard]] int choose_columns(int count, int cell_width, int cell_height);
+
+struct SplitLabel {
+    std::string title;
+    std::string detail;  // dimmer, under it
+};
+
+struct SplitOptions {
+    SplitLabel before;
+    SplitLabel after;
+    std::string remark;  // of both, where there is room
+    /// Of the width or height, [0, 1]: how much of `before` is shown.
+    double position = 0.5;
+    /// Before above after, not left of it.
+    bool is_horizontal = false;
+    /// A line between the two, and their labels outside of the picture.
+    bool has_labels = true;
+};
+
+/// Where the second picture begins: the nearest pixel boundary.
+[[nodiscard]] int split_at(int length, double position);
+
+/// Two display pictures in one: the first up to a line, then the second. All pixels but those of
+/// the line are theirs.
+/// @throws Error  pictures of different sizes; position out of range
+[[nodiscard]] OIIO::ImageBuf make_split(const OIIO::ImageBuf& before, const OIIO::ImageBuf& after,
+                                        const SplitOptions& options);
+
+/// How far two display pictures are apart.
+struct PictureDifference {
+    OIIO::ImageBuf picture;  // absolute differences of code values, times `gain`; at most 1
+    double largest = 0;      // of a channel
+    double mean = 0;
+};
+/// @throws Error  pictures of different sizes
+[[nodiscard]] PictureDifference difference_of(const OIIO::ImageBuf& a, const OIIO::ImageBuf& b,
+                                              double gain);
+
+}  // namespace tonewright

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <OpenImageIO/imagebuf.h>
+
+namespace tonewright {
+
+// sRGB code values around pictures. Neutral, and dark enough not to light up the pictures.
+inline constexpr double kSheetBackground = 0.125;
+inline constexpr double kSheetText = 0.82;
+inline constexpr double kSheetDimText = 0.58;
+
+struct PictureSize {
+    int width;
+    int height;
+};
+
+/// The display window, all channels: what a viewer shows. Pixels outside the data window are black.
+[[nodiscard]] OIIO::ROI shown_window(const OIIO::ImageBuf& picture);
+
+/// The size of a picture of that width with the picture's shape.
+[[nodiscard]] PictureSize fitted_size(const OIIO::ImageBuf& picture, int width);
+
+/// What is shown of a picture, as it is: float RGB, grey in all three. Alpha is not used.
+/// @throws Error  a picture that cannot be read
+[[nodiscard]] OIIO::ImageBuf shown_rgb(const OIIO::ImageBuf& picture);
+
+}  // namespace tonewright

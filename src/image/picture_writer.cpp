@@ -54,8 +54,6 @@ fs::path resolve_target(const std::string& path, std::string& why) {
     const fs::file_status status = fs::status(target, error);
     if (fs::exists(status) && !fs::is_regular_file(status)) {
         why = fs::is_directory(status) ? "it is a directory" : "it is no regular file";
-    } else if (fs::exists(status) && ::access(target.c_str(), W_OK) != 0) {
-        why = reason_of(errno);  // the folder alone would let it be replaced
     }
     return target;
 }
@@ -186,6 +184,12 @@ class PictureWriter::TemporaryFile {
     TemporaryFile& operator=(const TemporaryFile&) = delete;
 
     [[nodiscard]] const fs::path& path() const { return path_; }
+
+    /// Renaming asks the folder alone, and would replace a file that may not be written.
+    /// @returns  0 or an errno.
+    [[nodiscard]] int check_target() const {
+        return ::access(target_.c_str(), W_OK) == 0 || errno == ENOENT ? 0 : errno;
+    }
 
     /// Syncs the file and gives it its final name. @returns  0 or an errno.
     [[nodiscard]] int keep() {
@@ -374,6 +378,7 @@ ImageSpec PictureWriter::file_spec(const ImageSpec& picture) {
 }
 
 void PictureWriter::open(const ImageSpec& picture) {
+    if (const int error = temporary_->check_target()) fail(reason_of(error));
     const ImageSpec spec = plan(picture);
     // libtiff reads its own directories back when there is an EXIF one (a picture marked sRGB has),
     // and a proxy for writing cannot be read: the file would lack its first directory.

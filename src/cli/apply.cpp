@@ -1,12 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-#include <unistd.h>
-
-#include <algorithm>
-#include <chrono>
-#include <cstdio>
-#include <set>
-
+#include "cli/apply_frames.h"
 #include "cli/command.h"
 #include "cli/frames.h"
 #include "cli/lut_input.h"
@@ -25,78 +18,10 @@ TonemapOptions::Statistics parse_statistics(const std::string& text) {
                 did_you_mean(text, names));
 }
 
-/// How far it is, on a terminal only, from its first half second on.
-class ProgressBar {
-  public:
-    /// @param terminal  a file descriptor, or -1
-    ProgressBar(int terminal, std::size_t count)
-        : terminal_(terminal >= 0 && ::isatty(terminal) ? terminal : -1), count_(count) {}
-    ~ProgressBar() { show("\r\033[K"); }
-    ProgressBar(const ProgressBar&) = delete;
-    ProgressBar& operator=(const ProgressBar&) = delete;
-
-    void set(std::size_t done) {
-        constexpr double kInterval = 0.1;
-        const double seconds =
-            std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-        if (terminal_ < 0 || seconds < next_) return;
-        next_ = seconds + kInterval;
-        constexpr std::size_t kWidth = 40;
-        const std::size_t filled = kWidth * done / count_;
-        const double left =
-            seconds / static_cast<double>(done) * static_cast<double>(count_ - done);
-        show(fmt::format("\r[{}{}] {}/{} frames, {:.1f} per second, {:.0f} s left\033[K",
-                         std::string(filled, '#'), std::string(kWidth - filled, ' '), done, count_,
-                         static_cast<double>(done) / seconds, left));
-    }
-
-  private:
-    void show(const std::string& text) const {
-        if (terminal_ >= 0 && next_ > kFirst) (void)!::write(terminal_, text.data(), text.size());
-    }
-
-    static constexpr double kFirst = 0.5;
-    int terminal_;
-    std::size_t count_;
-    double next_ = kFirst;
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
-/// Every frame, whatever becomes of the others. @return the exit code
-int apply_to_frames(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
-                    const std::vector<int>& numbers, const OIIO::TypeDesc& type, int threads) {
-    std::vector<FrameFiles> frames;
-    std::set<std::string> names;
-    for (const int number : numbers) {
-        frames.push_back({frame_name("in", in, number), frame_name("out", out, number)});
-        if (!names.insert(frames.back().out).second)
-            throw Error(fmt::format("apply: --frames names frame {} twice; expected once", number));
-    }
-    {
-        const QuietStderr quiet;
-        ProgressBar bar(quiet.before(), frames.size());
-        tonemap_files(
-            tonemapper, frames, type, [&](std::size_t done) { bar.set(done); }, threads);
-    }
-    std::size_t failed = 0;
-    int exit_code = kOk;
-    for (const FrameFiles& frame : frames) {
-        if (frame.error.empty()) continue;
-        ++failed;
-        exit_code = std::max<int>(exit_code, frame.is_file_error ? kFile : kUsage);
-        fmt::print(stderr, "tonewright: apply: {}\n", frame.error);
-    }
-    if (failed > 0) {
-        fmt::print(stderr, "tonewright: apply: {} of {} frames failed, {} written\n", failed,
-                   frames.size(), frames.size() - failed);
-    }
-    return exit_code;
-}
-
 struct Options : ViewOptions {
     std::string in;
     std::string out;
-    std::string frames;
+    FrameOptions frames;
     std::string type;
     std::string statistics = "picture";
     int threads = 0;
@@ -153,10 +78,7 @@ void add_apply(CLI::App& program, int& exit_code) {
         command->add_flag("--false-color", options->is_false_color,
                           "where the light is: a color for every stop, the operator false_color");
     false_color->excludes(op);
-    command->add_option(
-        "--frames", options->frames,
-        "frames such as 1001-1100, 1-9x2 (every second) or 1,5,10-20: `in` and `out` "
-        "have %04d or #### (# is four digits, too) where the number stands");
+    add_frame_options(*command, options->frames);
     add_view_options(*command, *options);
     command->add_option("-d", options->type,
                         "pixel type of the output: uint8, uint16, half or float");
@@ -183,6 +105,8 @@ void add_apply(CLI::App& program, int& exit_code) {
         "Examples:\n"
         "  tonewright apply render.exr out.png --operator hable --exposure 1 -d uint8\n"
         "  tonewright apply shot.%04d.exr out.####.png --frames 1001-1100 --operator agx_blender\n"
+        "  tonewright apply in.@@@@.exr out.@@@@.png --frames 1-99x2 --operator hable "
+        "--skip-existing\n"
         "  tonewright apply render.exr out.png --lut agx.cube --input-encoding acescct -d uint8");
     command->callback([options, command, &exit_code] {
         OIIO::attribute("threads", options->threads);
@@ -211,8 +135,8 @@ void add_apply(CLI::App& program, int& exit_code) {
         const Tonemapper tonemapper(tonemap);  // a wrong name is told before a large file is read
         const OIIO::TypeDesc type = options->pixel_type();
         if (command->count("--frames") > 0) {
-            exit_code = apply_to_frames(tonemapper, options->in, options->out,
-                                        parse_frames(options->frames), type, options->threads);
+            exit_code = apply_to_frames(tonemapper, options->in, options->out, options->frames,
+                                        type, options->threads);
             return;
         }
         try {

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <regex>
 #include <sstream>
@@ -17,9 +18,17 @@ namespace {
 
 constexpr std::size_t kMostFrames = 1'000'000;
 
-const std::regex& place_of_number() {
-    static const std::regex place("%(?:0([1-9]))?d|#+");
-    return place;
+/// Where a pattern has the number, from `begin` on.
+struct Places {
+    std::regex shape;
+    std::size_t begin;
+};
+
+Places places_of_number(const std::string& pattern) {
+    static const std::regex common("%(?:0([1-9]))?d|#+");
+    static const std::regex at("@+");
+    if (std::regex_search(pattern, common)) return {common, 0};
+    return {at, pattern.rfind('/') == std::string::npos ? 0 : pattern.rfind('/') + 1};
 }
 
 }  // namespace
@@ -49,26 +58,49 @@ std::vector<int> parse_frames(const std::string& text) {
     return frames;
 }
 
+std::string format_frames(std::vector<int> frames) {
+    std::sort(frames.begin(), frames.end());
+    frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
+    std::string text;
+    for (std::size_t i = 0; i < frames.size();) {
+        const int step = i + 1 < frames.size() ? frames[i + 1] - frames[i] : 1;
+        std::size_t last = i;
+        while (last + 1 < frames.size() && frames[last + 1] - frames[last] == step)
+            ++last;
+        if (step > 1 && last < i + 2) last = i;  // two make no range
+        text += fmt::format("{}{}", text.empty() ? "" : ",", frames[i]);
+        if (last > i) text += fmt::format("-{}", frames[last]);
+        if (last > i && step > 1) text += fmt::format("x{}", step);
+        i = last + 1;
+    }
+    return text;
+}
+
 bool is_frame_pattern(const std::string& name) {
-    return std::regex_search(name, place_of_number());
+    const Places places = places_of_number(name);
+    return std::regex_search(name.substr(places.begin), places.shape);
 }
 
 std::string frame_name(const char* what, const std::string& pattern, int frame) {
-    std::string name;
-    std::string rest = pattern;
-    for (std::smatch match; std::regex_search(rest, match, place_of_number());) {
-        const bool is_hashes = match[0].str().front() == '#';
-        const auto digits = is_hashes ? match.length() == 1 ? 4 : static_cast<int>(match.length())
-                            : match[1].matched ? std::stoi(match[1])
-                                               : 1;
+    const Places places = places_of_number(pattern);
+    std::string name = pattern.substr(0, places.begin);
+    std::string rest = pattern.substr(places.begin);
+    bool has_place = false;
+    for (std::smatch match; std::regex_search(rest, match, places.shape); has_place = true) {
+        const bool is_hash = match[0] == "#";
+        const bool is_printf = match[0].str().front() == '%';
+        const int width = is_hash            ? 4
+                          : !is_printf       ? static_cast<int>(match.length())
+                          : match[1].matched ? std::stoi(match[1])
+                                             : 1;
         // As printf does, the sign is one of the digits.
-        name += match.prefix().str() + fmt::format("{:0{}d}", frame, digits);
+        name += match.prefix().str() + fmt::format("{:0{}d}", frame, width);
         rest = match.suffix();
     }
-    if (name.empty() && rest == pattern) {
+    if (!has_place) {
         throw Error(fmt::format(
-            "apply: {} is {}; expected a place for the frame's number, as in shot.%04d.exr or "
-            "shot.####.exr",
+            "apply: {} is {}; expected a place for the frame's number, as in shot.%04d.exr, "
+            "shot.####.exr or shot.@@@@.exr",
             what, pattern));
     }
     return name + rest;

@@ -58,7 +58,7 @@ inline constexpr std::size_t kBatchBytes = std::size_t{16} << 20;
 
 /// Reads a picture to its end and keeps nothing of it.
 /// @throws FileError  when it is not whole.
-void check_is_complete(const std::string& path);
+void check_is_complete(PictureReader& reader);
 
 /// Writes a picture from its first row to its last under a temporary name, and gives it its own
 /// when it is complete. @see write_image_atomically for what becomes of a picture on the way.
@@ -73,6 +73,10 @@ class PictureWriter {
     PictureWriter(const PictureWriter&) = delete;
     PictureWriter& operator=(const PictureWriter&) = delete;
 
+    /// What the file says of a picture: its size, and its pixel type where the format can be asked
+    /// without a file (else UNKNOWN). Touches nothing.
+    /// @throws FileError
+    [[nodiscard]] OIIO::ImageSpec file_spec(const OIIO::ImageSpec& picture);
     /// @param picture  the spec of all rows together.
     /// @throws FileError
     void open(const OIIO::ImageSpec& picture);
@@ -93,6 +97,7 @@ class PictureWriter {
 
     [[noreturn]] void fail(const std::string& reason) const;
     void check_disk() const;
+    [[nodiscard]] OIIO::ImageSpec plan(const OIIO::ImageSpec& picture);
     [[nodiscard]] OIIO::ImageBuf checked(OIIO::ImageBuf&& changed) const;
     void write_fitted(const OIIO::ImageBuf& rows);
 
@@ -108,6 +113,11 @@ class PictureWriter {
     std::unique_ptr<FileProxy> proxy_;  // null: OIIO opens the file itself
     std::unique_ptr<OIIO::ImageOutput> out_;
 };
+
+/// Removes the temporary files of these pictures that killed runs left: those of processes of this
+/// machine that are no more, and those that nobody has touched for a day (processes of other
+/// machines cannot be asked). What cannot be removed stays.
+void remove_leftovers(const std::vector<std::string>& paths);
 
 /// When the program is told to end (SIGINT, SIGTERM, SIGHUP), what PictureWriter has not finished
 /// is removed first. For a program to call once.

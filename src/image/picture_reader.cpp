@@ -80,8 +80,7 @@ int rows_of_batch(std::size_t bytes_per_row, int step, std::size_t batch_bytes) 
     return std::max(rows / unit, 1) * unit;
 }
 
-void check_is_complete(const std::string& path) {
-    PictureReader reader(path);
+void check_is_complete(PictureReader& reader) {
     const OIIO::ImageSpec& spec = reader.spec();
     if (spec.depth > 1) {
         (void)reader.read_all();

@@ -11,13 +11,17 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <regex>
+#include <set>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -25,6 +29,7 @@
 
 #include "image/message.h"
 #include "image/picture_file.h"
+#include "lut/numbers.h"
 
 namespace tonewright {
 namespace {
@@ -51,6 +56,25 @@ fs::path resolve_target(const std::string& path, std::string& why) {
         why = fs::is_directory(status) ? "it is a directory" : "it is no regular file";
     }
     return target;
+}
+
+// Names of temporary files: .<stem>.<machine>.<pid>.<n>.tmp.<extension>. The extension stays last:
+// it selects the format.
+
+/// What of a picture's name is in those of its temporary files. Names have at most 255 bytes.
+std::pair<std::string, std::string> name_parts(const fs::path& target) {
+    return {target.stem().string().substr(0, 200), target.extension().string()};
+}
+
+/// Tells the machine apart, and the container: where a process id means one process.
+const std::string& machine_tag() {
+    static const std::string tag = [] {
+        std::array<char, 256> host{};
+        (void)::gethostname(host.data(), host.size() - 1);
+        std::error_code none;
+        return content_hash(host.data() + fs::read_symlink("/proc/self/ns/pid", none).string());
+    }();
+    return tag;
 }
 
 /// The channels that a format takes: all (empty), or color and alpha, or color.
@@ -112,16 +136,43 @@ void remove_unfinished_files_on_signals() {
     }
 }
 
+void remove_leftovers(const std::vector<std::string>& paths) {
+    std::map<fs::path, std::set<std::pair<std::string, std::string>>> names_of_folders;
+    for (const std::string& path : paths) {
+        std::string why;
+        const fs::path target = resolve_target(path, why);
+        const fs::path folder = target.parent_path();
+        names_of_folders[folder.empty() ? "." : folder].insert(name_parts(target));
+    }
+    static const std::regex pattern(R"(\.(.+)\.([0-9a-f]{8})\.(\d{1,9})\.\d+\.tmp(\..*)?)");
+    const auto yesterday = fs::file_time_type::clock::now() - std::chrono::hours(24);
+    for (const auto& [folder, names] : names_of_folders) {
+        std::error_code error;
+        for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+             entry.increment(error)) {
+            const std::string name = entry->path().filename().string();
+            std::smatch match;
+            if (!name.starts_with('.') || !std::regex_match(name, match, pattern) ||
+                !names.contains({match[1], match[4]})) {
+                continue;
+            }
+            const bool is_of_nobody =
+                match[2] == machine_tag() && ::kill(std::stoi(match[3]), 0) != 0 && errno == ESRCH;
+            std::error_code unknown, ignored;
+            const bool is_old = fs::last_write_time(entry->path(), unknown) < yesterday && !unknown;
+            if (is_of_nobody || is_old) fs::remove(entry->path(), ignored);
+        }
+    }
+}
+
 /// A file that is being written under a name of its own; removed again unless it was kept.
 class PictureWriter::TemporaryFile {
   public:
     explicit TemporaryFile(const fs::path& target) : target_(target) {
-        // Unique among processes and threads. The extension stays last: it selects the format.
-        // Names have at most 255 bytes.
         static std::atomic<unsigned> count = 0;
-        const std::string stem = target.stem().string().substr(0, 200);
-        path_ = target.parent_path() / fmt::format(".{}.{}.{}.tmp{}", stem, ::getpid(), count++,
-                                                   target.extension().string());
+        const auto [stem, extension] = name_parts(target);
+        path_ = target.parent_path() / fmt::format(".{}.{}.{}.{}.tmp{}", stem, machine_tag(),
+                                                   ::getpid(), count++, extension);
         name_.emplace(path_.string());
     }
     ~TemporaryFile() {
@@ -133,6 +184,12 @@ class PictureWriter::TemporaryFile {
     TemporaryFile& operator=(const TemporaryFile&) = delete;
 
     [[nodiscard]] const fs::path& path() const { return path_; }
+
+    /// Renaming asks the folder alone, and would replace a file that may not be written.
+    /// @returns  0 or an errno.
+    [[nodiscard]] int check_target() const {
+        return ::access(target_.c_str(), W_OK) == 0 || errno == ENOENT ? 0 : errno;
+    }
 
     /// Syncs the file and gives it its final name. @returns  0 or an errno.
     [[nodiscard]] int keep() {
@@ -250,8 +307,7 @@ ImageBuf PictureWriter::checked(ImageBuf&& changed) const {
     return std::move(changed);
 }
 
-void PictureWriter::open(const ImageSpec& picture) {
-    const std::string_view format = out_->format_name();
+ImageSpec PictureWriter::plan(const ImageSpec& picture) {
     ImageSpec spec = picture;
     spec.tile_width = spec.tile_height = spec.tile_depth = 0;  // those of the file it came from
     spec.channelformats.clear();
@@ -290,18 +346,44 @@ void PictureWriter::open(const ImageSpec& picture) {
 
     // PNG wants color that is not multiplied by alpha. OIIO's writer divides integers, rounding
     // down, and for "Gamma2.2" and its like it divides by a power of alpha: 0.25 of 0.5 becomes 1.
-    divides_by_alpha_ = format == "png" && spec.alpha_channel >= 0 &&
+    divides_by_alpha_ = std::string_view(out_->format_name()) == "png" && spec.alpha_channel >= 0 &&
                         spec.get_int_attribute("oiio:UnassociatedAlpha", 0) == 0;
     if (divides_by_alpha_) spec.attribute("oiio:UnassociatedAlpha", 1);
 
     spec.set_format(type_ == OIIO::TypeUnknown ? picture.format : type_);
     if (type_ != OIIO::TypeUnknown)
         spec.erase_attribute("oiio:BitsPerSample");  // overrules the type
+    return spec;
+}
 
+ImageSpec PictureWriter::file_spec(const ImageSpec& picture) {
+    ImageSpec spec = plan(picture);
+    if (out_->supports("ioproxy") == 0) {
+        spec.format = OIIO::TypeUnknown;
+        return spec;
+    }
+    // Formats have not every type. One pixel in memory shows what they make of it.
+    std::vector<unsigned char> memory;
+    OIIO::Filesystem::IOVecOutput proxy(memory);
+    const std::string name = temporary_->path().string();
+    const auto out = OIIO::ImageOutput::create(name);
+    const ImageSpec pixel(1, 1, spec.nchannels, spec.format);
+    const std::vector<float> black(static_cast<std::size_t>(spec.nchannels));
+    out->set_ioproxy(&proxy);
+    if (!out->open(name, pixel)) fail(first_line(out->geterror()));
+    spec.format = out->spec().format;
+    out->write_scanline(0, 0, OIIO::TypeFloat, black.data());
+    out->close();
+    return spec;
+}
+
+void PictureWriter::open(const ImageSpec& picture) {
+    if (const int error = temporary_->check_target()) fail(reason_of(error));
+    const ImageSpec spec = plan(picture);
     // libtiff reads its own directories back when there is an EXIF one (a picture marked sRGB has),
     // and a proxy for writing cannot be read: the file would lack its first directory.
     std::string name = temporary_->path().string();
-    if (out_->supports("ioproxy") && format != "tiff") {
+    if (out_->supports("ioproxy") && std::string_view(out_->format_name()) != "tiff") {
         proxy_ = std::make_unique<FileProxy>(temporary_->path());
         check_disk();
         out_->set_ioproxy(proxy_.get());
@@ -367,7 +449,8 @@ void PictureWriter::finish() {
         if (const int error = proxy_->finish()) fail(reason_of(error));
     } else {
         try {
-            check_is_complete(temporary_->path().string());  // there is no other proof
+            PictureReader written(temporary_->path().string());
+            check_is_complete(written);  // there is no other proof
         } catch (const FileError&) {
             fail("what was written cannot be read back (disk full?)");
         }

@@ -6,10 +6,11 @@
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
+#include <ctime>
 #include <exception>
 #include <mutex>
 #include <optional>
@@ -29,12 +30,6 @@ namespace {
 using OIIO::ImageBuf;
 using OIIO::ImageSpec;
 
-int thread_count(int nthreads) {
-    if (nthreads == 0) OIIO::getattribute("threads", nthreads);
-    return nthreads > 0 ? nthreads
-                        : static_cast<int>(std::max(std::thread::hardware_concurrency(), 1U));
-}
-
 /// The spec of rows [ybegin, yend) of a picture.
 ImageSpec spec_of_rows(const ImageSpec& picture, int ybegin, int yend) {
     ImageSpec spec = picture;
@@ -48,16 +43,16 @@ void run(const Tonemapper& tonemapper, ImageBuf& to, const ImageBuf& from, int n
     if (!tonemapper(to, from, {}, nthreads)) throw Error(to.geterror());
 }
 
-/// What the result of a picture will be: that of one pixel, only larger.
-ImageSpec result_spec(const Tonemapper& tonemapper, const ImageSpec& source) {
-    ImageSpec pixel = spec_of_rows(source, source.y, source.y + 1);
-    pixel.width = 1;
-    ImageBuf result;
-    run(tonemapper, result, ImageBuf(pixel), 1);
-    ImageSpec spec = result.spec();
-    spec.width = source.width;
-    spec.height = source.height;
-    return spec;
+/// A picture without a date gets its file's: writers of EXR, TIFF and DPX would put in the time,
+/// and the same run could not make the same bytes again.
+void give_date(ImageSpec& picture, const std::string& path) {
+    struct stat file {};
+    if (picture.find_attribute("DateTime") || ::stat(path.c_str(), &file) != 0) return;
+    std::tm utc{};
+    ::gmtime_r(&file.st_mtime, &utc);
+    std::array<char, 32> text{};
+    (void)std::strftime(text.data(), text.size(), "%Y:%m:%d %H:%M:%S", &utc);
+    picture.attribute("DateTime", text.data());
 }
 
 /// The numbers of a spec alone: rows have no use for the texts of their picture.
@@ -79,13 +74,14 @@ struct Batch {
 class FilePass {
   public:
     FilePass(const Tonemapper& tonemapper, PictureReader& reader, PictureWriter& writer,
-             int nthreads, std::size_t batch_bytes)
+             int nthreads, std::size_t batch_bytes, const std::string& in)
         : tonemapper_(tonemapper),
           reader_(reader),
           writer_(writer),
           nthreads_(nthreads),
           source_(without_metadata(reader.spec())) {
-        const ImageSpec result = result_spec(tonemapper, reader.spec());
+        ImageSpec result = result_spec(tonemapper, reader.spec());
+        give_date(result, in);
         writer.open(result);
         result_ = without_metadata(result);
         result_.set_format(writer.row_type());
@@ -220,6 +216,23 @@ SceneStatistics measure_file(const std::string& path, const TonemapOptions& opti
 
 }  // namespace
 
+int thread_count(int nthreads) {
+    if (nthreads == 0) OIIO::getattribute("threads", nthreads);
+    return nthreads > 0 ? nthreads
+                        : static_cast<int>(std::max(std::thread::hardware_concurrency(), 1U));
+}
+
+ImageSpec result_spec(const Tonemapper& tonemapper, const ImageSpec& source) {
+    ImageSpec pixel = spec_of_rows(source, source.y, source.y + 1);
+    pixel.width = 1;
+    ImageBuf result;
+    run(tonemapper, result, ImageBuf(pixel), 1);
+    ImageSpec spec = result.spec();
+    spec.width = source.width;
+    spec.height = source.height;
+    return spec;
+}
+
 void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
                         const OIIO::TypeDesc& type, int nthreads, std::size_t batch_bytes) {
     nthreads = thread_count(nthreads);
@@ -230,6 +243,7 @@ void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, con
         const ImageBuf source = reader.read_all();
         ImageBuf result;
         run(tonemapper, result, source, nthreads);
+        give_date(result.specmod(), in);
         write_image_atomically(result, out, type);
         return;
     }
@@ -238,7 +252,7 @@ void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, con
         own = tonemapper.with_statistics(
             measure_file(in, tonemapper.options(), nthreads, batch_bytes));
     }
-    FilePass(own ? *own : tonemapper, reader, writer, nthreads, batch_bytes).run_all();
+    FilePass(own ? *own : tonemapper, reader, writer, nthreads, batch_bytes, in).run_all();
 }
 
 void tonemap_file(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
@@ -252,36 +266,6 @@ void tonemap_file(const Tonemapper& tonemapper, const std::string& in, const std
     } catch (const std::bad_alloc&) {
         throw Error(in + ": not enough memory");
     }
-}
-
-void tonemap_files(const Tonemapper& tonemapper, std::vector<FrameFiles>& frames,
-                   const OIIO::TypeDesc& type, const std::function<void(std::size_t)>& done,
-                   int nthreads) {
-    const std::size_t threads = static_cast<std::size_t>(thread_count(nthreads));
-    const std::size_t workers = std::min(threads, frames.size());
-    if (workers == 0) return;
-    std::atomic<std::size_t> next = 0;
-    std::size_t done_count = 0;
-    std::mutex mutex;
-    const auto work = [&] {
-        for (std::size_t i = next++; i < frames.size(); i = next++) {
-            FrameFiles& frame = frames[i];
-            try {
-                tonemap_file(tonemapper, frame.in, frame.out, type,
-                             static_cast<int>(threads / workers));
-            } catch (const std::exception& e) {
-                frame.error = e.what();
-                frame.is_file_error = dynamic_cast<const FileError*>(&e) != nullptr;
-            }
-            const std::lock_guard lock(mutex);
-            ++done_count;
-            if (done) done(done_count);
-        }
-    };
-    std::vector<std::jthread> others;  // which join when they are destroyed
-    for (std::size_t i = 1; i < workers; ++i)
-        others.emplace_back(work);
-    work();
 }
 
 }  // namespace tonewright

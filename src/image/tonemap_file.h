@@ -8,6 +8,14 @@
 
 namespace tonewright {
 
+/// The threads that a count stands for: 0 is OIIO's `threads` attribute, there 0 is all cores.
+[[nodiscard]] int thread_count(int nthreads);
+
+/// What the result of a picture will be: that of one pixel, only larger.
+/// @throws Error  a picture that cannot be tone mapped
+[[nodiscard]] OIIO::ImageSpec result_spec(const Tonemapper& tonemapper,
+                                          const OIIO::ImageSpec& source);
+
 /// tonemap_file(), with batches of about this size.
 /// @throws Error  without the picture's name
 void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, const std::string& out,

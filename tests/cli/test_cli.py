@@ -363,9 +363,10 @@ def check_frames(report, command, scratch, picture):
     for threads in (1, 7):
         code, out, err = applied("1000-1003", "--threads", threads)
         lines = err.splitlines()
-        report.check(f"apply --frames, one is missing, --threads {threads}", code == FILE and not out and len(lines) == 2
+        report.check(f"apply --frames, one is missing, --threads {threads}", code == CHECK_FAILED and not out
+                     and len(lines) == 2
                      and all(line.startswith("tonewright: apply: ") for line in lines)
-                     and "shot.1002.exr: cannot read" in lines[0] and "1 of 4 frames failed, 3 written" in lines[1]
+                     and "shot.1002.exr: cannot read" in lines[0] and "4 frames: 3 written, 1 failed: 1002" in lines[1]
                      and names() == ["out.1000.png", "out.1001.png", "out.1003.png"], f"exit {code}, {names()}: {err}")
     large = scratch / "large.exr"
     run("oiiotool", "--pattern", "noise", "4096x4096", 3, "-d", "half", "-o", large)
@@ -380,7 +381,7 @@ def check_frames(report, command, scratch, picture):
                      f"exit {process.returncode}, {list(scratch.glob('.stopped*'))}")
     write_exr(scratch / "shot.1002.exr", {"X": np.zeros((4, 4), np.float32), "Y": np.zeros((4, 4), np.float32)})
     code, _, err = applied("1001-1002")
-    report.check("apply --frames, one has no color", code == USAGE and "shot.1002.exr: " in err and "2 channels" in err
+    report.check("apply --frames, one has no color", code == CHECK_FAILED and "shot.1002.exr: " in err and "2 channels" in err
                  and names() == ["out.1001.png"], f"exit {code}: {err}")
     code, _, err = call(command, ["apply", "none.%04d.exr", "out.png", "--operator", "hable"], folder=scratch)
     report.check("apply of a pattern names --frames", code == FILE and "--frames" in err and err.count("\n") == 1, err)
@@ -567,6 +568,15 @@ def usage_errors(bad, picture):
           for frames in ("abc", "1-", "1-5x", "1-5x0", "1..5", "1,,3", "0-1000000", "1-9999999999", "1.5", " 1")),
         (["apply", "in.%04d.exr", "out.%04d.png", "--operator", "hable", "--frames", "3,1-5"], "frame 3 twice"),
         (["apply", "in.exr", "out.%04d.png", "--operator", "hable", "--frames", "1-2"], "in is in.exr; shot.%04d.exr"),
+        (["apply", "in@2/a.exr", "out.@.png", "--operator", "hable", "--frames", "1-2"], "in is in@2/a.exr; shot.@@@@.exr"),
+        (["apply", "in.#.exr", "out.#.png", "--operator", "hable", "--frames", "1", "--missing", "hol"],
+         "missing is hol; error, skip or hold; did you mean hold?"),
+        *((["apply", "in.#.exr", "out.#.png", "--operator", "hable", "--frames", "1", "--jobs", jobs], f"--jobs; {jobs}")
+          for jobs in ("-1", "257", "many")),
+        *((["apply", picture, "out.png", "--operator", "hable", *words], f"{words[0]} requires --frames")
+          for words in (["--missing", "skip"], ["--skip-existing"], ["--jobs", "2"])),
+        *((["apply", "in.#.exr", "./in.%04d.exr", "--operator", "hable", "--frames", "1", *words], f"in.%04d.exr; {words[0]}")
+          for words in (["--missing", "hold"], ["--skip-existing"])),
         (["apply", "in.%s.exr", "out.%04d.png", "--operator", "hable", "--frames", "1-2"], "in is in.%s.exr"),
         (["apply", "in.####.exr", "out.png", "--operator", "hable", "--frames", "1-2"], "out is out.png; shot.####.exr"),
         # Told before the picture is read, although it decides on parameters.

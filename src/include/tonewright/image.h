@@ -176,12 +176,15 @@ bool map_colors(OIIO::ImageBuf& dst, const OIIO::ImageBuf& src,
 /// @throws FileError  missing, truncated, unreadable, of unknown format, or deep. One line.
 [[nodiscard]] OIIO::ImageBuf read_image(const std::string& path);
 
-/// Writes a picture under a temporary name beside `path` (`.<stem>.<pid>.<n>.tmp.<extension>`),
-/// syncs it to the disk and renames it: `path` holds the old file or the new one, never a part.
+/// Writes a picture under a temporary name beside `path`
+/// (`.<stem>.<machine>.<pid>.<n>.tmp.<extension>`; machine: eight digits that are those of this
+/// machine and container), syncs it to the disk and renames it: `path` holds the old file or the
+/// new one, never a part.
 ///
 /// What the format cannot hold is left out: alpha, channels beyond color and alpha, and pixels
 /// outside the display window (which is filled up with black). The permissions of a file that is
-/// replaced stay; a symbolic link stays and its target is replaced.
+/// replaced stay; a symbolic link stays and its target is replaced. A file that may not be written
+/// is not replaced.
 ///
 /// @param type        pixel type of the file; UNKNOWN: the buffer's, or what OIIO
 ///                    takes for it in this format (8 bits for a float picture as PNG or JPEG).
@@ -191,7 +194,8 @@ void write_image_atomically(const OIIO::ImageBuf& image, const std::string& path
                             const OIIO::TypeDesc& type = OIIO::TypeUnknown);
 
 /// Tone maps a file into a file: read_image(), tonemap() and write_image_atomically() at once, with
-/// the same result to the last byte, in the memory of some rows.
+/// the same result to the last byte, in the memory of some rows. A picture without a date gets its
+/// file's (UTC), or some formats would put in the time: made again, the result is the same.
 ///
 /// Rows are read, tone mapped and written at the same time. An operator that takes statistics reads
 /// the file twice. Volumes are held in memory as a whole. `out` may be `in`.
@@ -203,27 +207,6 @@ void write_image_atomically(const OIIO::ImageBuf& image, const std::string& path
 /// @throws Error      a picture that cannot be tone mapped, with its name.
 void tonemap_file(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
                   const OIIO::TypeDesc& type = OIIO::TypeUnknown, int nthreads = 0);
-
-/// A frame of a shot, and what became of it.
-struct FrameFiles {
-    std::string in;
-    std::string out;
-    /// What went wrong, in one line; empty: nothing.
-    std::string error = {};
-    /// It was a FileError.
-    bool is_file_error = false;
-};
-
-/// tonemap_file() of many files, several at the same time: while one is read another is written.
-/// One that fails does not stop the others.
-///
-/// @param frames    gets the errors.
-/// @param done      called after each frame with the number of frames that are done, from one
-///                  thread at a time.
-/// @param nthreads  frames at the same time. 0: OIIO's `threads` attribute.
-void tonemap_files(const Tonemapper& tonemapper, std::vector<FrameFiles>& frames,
-                   const OIIO::TypeDesc& type, const std::function<void(std::size_t)>& done = {},
-                   int nthreads = 0);
 
 /// `uint8`, `uint16`, `half` or `float`, as oiiotool's `-d` has them.
 /// @throws Error  for any other text, with the nearest name.

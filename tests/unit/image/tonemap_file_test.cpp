@@ -221,36 +221,5 @@ TEST_F(TonemapFile, PicturesThatCannotBeToneMappedAreNamed) {
     EXPECT_NE(message.find("2 channels (X, Y)"), std::string::npos) << message;
 }
 
-TEST_F(TonemapFile, OneFrameThatFailsDoesNotStopTheOthers) {
-    const Tonemapper tonemapper({.op = "hable"});
-    std::vector<FrameFiles> frames;
-    for (int i = 0; i < 7; ++i) {
-        frames.push_back({folder_.file("in." + std::to_string(i) + ".exr"),
-                          folder_.file("out." + std::to_string(i) + ".png")});
-        if (i == 2) continue;
-        ImageSpec spec = make_spec(40, 30, {"R", "G", "B"}, TypeDesc::HALF);
-        if (i == 4) spec = make_spec(40, 30, {"X", "Y"}, TypeDesc::HALF);
-        put(spec, frames.back().in);
-    }
-    for (const int threads : {1, 3, 16}) {
-        std::vector<std::size_t> counts;
-        tonemap_files(
-            tonemapper, frames, TypeDesc::UINT8, [&](std::size_t n) { counts.push_back(n); },
-            threads);
-        EXPECT_EQ(counts, (std::vector<std::size_t>{1, 2, 3, 4, 5, 6, 7}));
-        for (int i = 0; i < 7; ++i) {
-            const FrameFiles& frame = frames[static_cast<std::size_t>(i)];
-            EXPECT_EQ(frame.error.empty(), i != 2 && i != 4) << frame.error;
-            EXPECT_EQ(frame.is_file_error, i == 2);
-            EXPECT_EQ(fs::exists(frame.out), frame.error.empty());
-            fs::remove(frame.out);
-        }
-        for (FrameFiles& frame : frames)
-            frame = {frame.in, frame.out};
-    }
-    std::vector<FrameFiles> none;
-    tonemap_files(tonemapper, none, TypeDesc::UINT8);
-}
-
 }  // namespace
 }  // namespace tonewright

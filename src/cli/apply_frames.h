@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "tonewright/image.h"
+
+namespace tonewright {
+
+/// What `apply` does with the frames of a shot.
+struct FrameOptions {
+    std::string frames;
+    std::string missing = "error";
+    bool skip_existing = false;
+    int jobs = 0;
+};
+
+/// --frames, --missing, --skip-existing, --jobs.
+void add_frame_options(CLI::App& command, FrameOptions& options);
+
+/// Every frame, whatever becomes of the others: how far it is on a terminal, and at the end what
+/// became of them, on standard error.
+/// @param in, out   names with places for the number. @see frame_name
+/// @returns         the exit code
+/// @throws Error    what is wrong with the whole of it
+int apply_to_frames(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
+                    const FrameOptions& options, const OIIO::TypeDesc& type, int threads);
+
+}  // namespace tonewright

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tonewright/sequence.h"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <system_error>
+#include <thread>
+
+#include "image/picture_file.h"
+#include "image/tonemap_file.h"
+
+namespace tonewright {
+namespace {
+
+bool is_newer(const std::string& path, const std::string& than) {
+    struct stat file {};
+    struct stat other {};
+    if (::stat(path.c_str(), &file) != 0 || ::stat(than.c_str(), &other) != 0) return false;
+    const timespec& a = file.st_mtim;
+    const timespec& b = other.st_mtim;
+    return a.tv_sec != b.tv_sec ? a.tv_sec > b.tv_sec : a.tv_nsec > b.tv_nsec;
+}
+
+/// @param tonemapper  one that takes no statistics
+bool is_done(const Tonemapper& tonemapper, const FrameFiles& frame, const OIIO::TypeDesc& type) {
+    if (!is_newer(frame.out, frame.in)) return false;
+    try {
+        const PictureReader source(frame.in);
+        PictureReader result(frame.out);
+        const OIIO::ImageSpec is = result.spec();
+        const OIIO::ImageSpec should =
+            PictureWriter(frame.out, type).file_spec(result_spec(tonemapper, source.spec()));
+        if (is.width != should.width || is.height != should.height || is.depth != should.depth ||
+            (should.format != OIIO::TypeUnknown && is.format != should.format)) {
+            return false;
+        }
+        check_is_complete(result);
+        return true;
+    } catch (const std::exception&) {
+        return false;  // whatever it is, it is told when the frame is made
+    }
+}
+
+}  // namespace
+
+void tonemap_files(const Tonemapper& tonemapper, std::vector<FrameFiles>& frames,
+                   const SequenceOptions& options) {
+    const auto threads = static_cast<std::size_t>(thread_count(options.nthreads));
+    const std::size_t jobs = std::min(
+        options.jobs > 0 ? static_cast<std::size_t>(options.jobs) : threads, frames.size());
+    if (jobs == 0) return;
+    std::vector<std::string> outs;
+    for (const FrameFiles& frame : frames)
+        outs.push_back(frame.out);
+    remove_leftovers(outs);
+
+    std::optional<Tonemapper> without_statistics;
+    if (options.skip_existing && tonemapper.takes_statistics())
+        without_statistics = tonemapper.with_statistics({});
+    const Tonemapper& any = without_statistics ? *without_statistics : tonemapper;
+    std::atomic<std::size_t> next = 0;
+    std::mutex mutex;
+    const auto work = [&](std::size_t job) {
+        const auto nthreads =
+            static_cast<int>(std::max<std::size_t>((threads + jobs - 1 - job) / jobs, 1));
+        for (std::size_t i = next++; i < frames.size(); i = next++) {
+            FrameFiles& frame = frames[i];
+            try {
+                frame.is_skipped = options.skip_existing && is_done(any, frame, options.type);
+                if (!frame.is_skipped)
+                    tonemap_file(tonemapper, frame.in, frame.out, options.type, nthreads);
+            } catch (const std::exception& e) {
+                frame.error = e.what();
+                frame.is_file_error = dynamic_cast<const FileError*>(&e) != nullptr;
+            }
+            const std::lock_guard lock(mutex);
+            if (options.done) options.done(frame);
+        }
+    };
+    std::vector<std::jthread> others;  // which join when they are destroyed
+    try {
+        for (std::size_t job = 1; job < jobs; ++job)
+            others.emplace_back(work, job);
+    } catch (const std::system_error&) {
+        // No more threads are to be had: these do the work.
+    }
+    work(0);
+}
+
+}  // namespace tonewright

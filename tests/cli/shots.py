@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Shared by the tests of sequences: small shots, and what lies in their folders."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
+from pictures import write_exr  # noqa: E402
+
+DATE = 1_600_000_000  # of every input, because outputs without a date get it
+
+
+def make_shot(folder, numbers, width=48, height=32, name="in.{:04d}.exr", seed=1):
+    """Noise with saturated colours, black, negatives, light above white and alpha; of 2020, without a date in them."""
+    for number in numbers:
+        rng = np.random.default_rng([seed, abs(number)])
+        rgb = (2.0 ** rng.uniform(-10, 6, (height, width, 3)) * rng.choice([-0.1, 0, 1, 1], (height, width, 3)))
+        path = folder / name.format(number)
+        write_exr(path, {**{c: rgb[..., i].astype(np.float32) for i, c in enumerate("RGB")},
+                         "A": rng.choice([0, 0.25, 1], (height, width)).astype(np.float32)})
+        os.utime(path, (DATE, DATE))
+
+
+def contents(folder, pattern="out.*"):
+    """name -> bytes"""
+    return {path.name: path.read_bytes() for path in folder.glob(pattern)}
+
+
+def leftovers(folder):
+    return sorted(path.name for path in folder.glob(".*"))
+
+
+def apply(command, *arguments, folder, environment=None):
+    """(exit code, lines on standard error); what is written to standard output is one of these, too."""
+    done = subprocess.run([str(command), "apply", *map(str, arguments)], cwd=folder, capture_output=True, text=True,
+                          check=False, env=environment)
+    return done.returncode, (done.stdout + done.stderr).splitlines()

@@ -1,0 +1,400 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The frames of a shot: names, missing ones, those that are there already, full disks, and what is said of them.
+
+    python3 tests/cli/test_sequences.py build/release/bin/tonewright
+
+The last line is `N passed, M failed`.
+"""
+
+import argparse
+import contextlib
+import os
+import pty
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from shots import DATE, apply, contents, leftovers, make_shot  # noqa: E402
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
+from pictures import Report  # noqa: E402
+
+OK, FAILED, USAGE = 0, 1, 2  # exit codes
+HABLE = ["--operator", "hable"]
+
+
+class Shots:
+    """A command, a report, and a folder with frames 1 to 8 of a shot and what the command makes of each, one by one."""
+
+    def __init__(self, command, report, folder):
+        self.command, self.report, self.folder = command, report, folder
+        make_shot(folder, range(1, 9))
+        self.truth = {}
+        for extension in ("png", "exr", "tif"):
+            for number in range(1, 9):
+                name = f"out.{number:04d}.{extension}"
+                code, lines = apply(command, f"in.{number:04d}.exr", name, *HABLE, folder=folder)
+                report.check(f"apply {name}", (code, lines) == (OK, []), lines)
+                self.truth[name] = (folder / name).read_bytes()
+
+    def truths(self, numbers, extension="png"):
+        return {f"out.{n:04d}.{extension}": self.truth[f"out.{n:04d}.{extension}"] for n in numbers}
+
+    def clean(self):
+        for path in self.folder.glob("out.*"):
+            path.unlink()
+
+    def apply(self, *arguments, keep=False, to="out.@@@@.png"):
+        """Of in.@@@@.exr, into an empty folder or what is there."""
+        if not keep:
+            self.clean()
+        return apply(self.command, "in.@@@@.exr", to, *HABLE, *arguments, folder=self.folder)
+
+    def check(self, what, result, code, lines, expected):
+        """lines: a text that each has, in order."""
+        is_code, is_lines = result
+        files = contents(self.folder)
+        problems = []
+        if is_code != code:
+            problems.append(f"exit {is_code}, expected {code}")
+        if len(is_lines) != len(lines) or any(
+                not line.startswith("tonewright: ") or text not in line for line, text in zip(is_lines, lines)):
+            problems.append(f"it said {is_lines}, expected {lines}")
+        if files != expected:
+            wrong = [name for name in files if name in expected and files[name] != expected[name]]
+            problems.append(f"files {sorted(files)}, of which {wrong} are wrong; expected {sorted(expected)}")
+        if leftovers(self.folder):
+            problems.append(f"left {leftovers(self.folder)}")
+        self.report.check(what, not problems, "; ".join(problems))
+
+
+def check_names(shots):
+    for to, frames, expected in (("out.@@@@.png", "2-4", ["out.0002.png", "out.0003.png", "out.0004.png"]),
+                                 ("out.@.png", "2-8x3", ["out.2.png", "out.5.png", "out.8.png"]),
+                                 ("out.@@.png", "8-6", ["out.06.png", "out.07.png", "out.08.png"]),
+                                 ("out.%06d.png", "3", ["out.000003.png"]), ("out.#.png", "3", ["out.0003.png"]),
+                                 ("out.##.png", "3", ["out.03.png"]), ("out.@2x.####.png", "3", ["out.@2x.0003.png"]),
+                                 ("out.%d-@.png", "3", ["out.3-@.png"])):
+        result = shots.apply("--frames", frames, to=to)
+        numbers = [n for n in range(1, 9) if any(str(n) in name.replace("@2x", "") for name in expected)]
+        shots.check(f"{to} {frames}", result, OK, [],
+                    {name: shots.truth[f"out.{n:04d}.png"] for name, n in zip(sorted(expected), numbers)})
+    folder = shots.folder / "me@host"
+    folder.mkdir()
+    make_shot(folder, [7, -7], name="in@{:04d}.exr", seed=1)
+    code, lines = apply(shots.command, "me@host/in@@@@@.exr", "me@host/@@.png", *HABLE, "--frames", "7",
+                        folder=shots.folder)
+    shots.report.check("an @ of a folder's name stays", code != OK and "me@host/in00007.exr" in lines[0], lines)
+    code, lines = apply(shots.command, "me@host/in@@@@.exr", "me@host/@@.png", *HABLE, "--frames", "-7", folder=shots.folder)
+    shots.report.check("one @ is a digit, too: in@0007.exr is not in0007.exr", code == FAILED, lines)
+    make_shot(folder, [-7], name="in.{:04d}.exr", seed=1)
+    code, lines = apply(shots.command, "me@host/in.@@@@.exr", "me@host/out.@@.png", *HABLE, "--frames", "-7", folder=shots.folder)
+    shots.report.check("negative numbers", (code, lines) == (OK, [])
+                       and contents(folder) == {"out.-7.png": shots.truth["out.0007.png"]}, f"{lines} {list(contents(folder))}")
+
+
+def check_jobs(shots):
+    for options in (["--jobs", 1], ["--jobs", 3, "--threads", 1], ["--jobs", 2, "--threads", 5],
+                    ["--jobs", 256, "--threads", 2], ["--threads", 1], []):
+        for extension in ("png", "exr"):
+            result = shots.apply("--frames", "1-8", *options, to=f"out.@@@@.{extension}")
+            shots.check(f"{' '.join(map(str, options))} .{extension}: the same bytes", result, OK, [],
+                        shots.truths(range(1, 9), extension))
+
+
+def check_missing(shots):
+    away = [shots.folder / f"in.{number:04d}.exr" for number in (1, 4, 5)]
+    for path in away:
+        path.rename(path.with_suffix(".away"))
+    there = shots.truths([2, 3, 6])
+    failures = ["in.0001.exr: cannot read: No such file", "in.0004.exr: cannot read", "in.0005.exr: cannot read",
+                "6 frames: 3 written, 3 failed: 1,4-5"]
+    shots.check("--missing error", shots.apply("--frames", "1-6", "--missing", "error"), FAILED, failures, there)
+    shots.check("the same by default", shots.apply("--frames", "1-6"), FAILED, failures, there)
+    shots.check("--missing skip", shots.apply("--frames", "1-6", "--missing", "skip"), OK,
+                ["6 frames: 3 written, 3 missing"], there)
+    shots.check("--missing skip of all", shots.apply("--frames", "4,5", "--missing", "skip"), OK,
+                ["2 frames: 0 written, 2 missing"], {})
+    held = {**there, "out.0004.png": shots.truth["out.0003.png"], "out.0005.png": shots.truth["out.0003.png"]}
+    shots.check("--missing hold, none earlier", shots.apply("--frames", "1-6", "--missing", "hold"), FAILED,
+                ["in.0001.exr: cannot read: No such file", "6 frames: 5 written, 2 held for missing ones, 1 failed: 1"], held)
+    for frames in ("5", "5-7x2", "7,5"):
+        numbers = [5, 7] if "7" in frames else [5]
+        expected = {"out.0005.png": shots.truth["out.0003.png"], **shots.truths(n for n in numbers if n != 5)}
+        shots.check(f"--missing hold --frames {frames}: a frame that is not of these",
+                    shots.apply("--frames", frames, "--missing", "hold"), OK, ["1 held for missing ones"], expected)
+    result = shots.apply("--frames", "2-6", "--missing", "hold", "--skip-existing", keep=True)
+    shots.check("--missing hold --skip-existing", result, OK, ["5 frames: 4 written, 1 skipped, 2 held for missing ones"],
+                {name: held[name] for name in held} | shots.truths([7]))
+    for path in away:
+        path.with_suffix(".away").rename(path)
+
+
+def check_skip_existing(shots):
+    """Of eight frames each is there in another way."""
+    folder = shots.folder
+    for extension, of_type in (("png", []), ("exr", []), ("tif", []), ("png", ["-d", "uint8"])):
+        name = lambda n: folder / f"out.{n:04d}.{extension}"  # noqa: E731
+        all_of = shots.truths(range(1, 9), extension)
+        arguments = ["--frames", "1-8", *of_type]
+        shots.apply(*arguments, to=f"out.@@@@.{extension}")
+        whole = name(1).read_bytes()
+        name(1).write_bytes(whole[:len(whole) * 9 // 10])
+        name(2).write_bytes(b"")
+        os.utime(name(3), ns=(1, (folder / "in.0003.exr").stat().st_mtime_ns))
+        os.utime(name(4), (DATE - 1, DATE - 1))
+        small = folder / "small"
+        small.mkdir(exist_ok=True)
+        make_shot(small, [5], width=47)
+        apply(shots.command, "small/in.0005.exr", name(5), *HABLE, folder=folder)
+        name(6).unlink()
+        before = {n: (name(n).stat().st_ino, name(n).stat().st_mtime_ns) for n in (7, 8)}
+        result = shots.apply(*arguments, "--skip-existing", keep=True, to=f"out.@@@@.{extension}")
+        what = f"--skip-existing .{extension} {' '.join(of_type)}"
+        shots.check(f"{what}: truncated, empty, as old, older, smaller and missing ones are made", result, OK,
+                    ["8 frames: 6 written, 2 skipped"], all_of)
+        shots.report.check(f"{what}: the others stay", before == {
+            n: (name(n).stat().st_ino, name(n).stat().st_mtime_ns) for n in (7, 8)})
+        result = shots.apply(*arguments, "--skip-existing", keep=True, to=f"out.@@@@.{extension}")
+        shots.check(f"{what}: once more", result, OK, ["8 frames: 0 written, 8 skipped"], all_of)
+    # The pixel type is one that a file shows; an operator is not, as --help says.
+    result = shots.apply("--frames", "1-8", "--skip-existing", "-d", "uint16", keep=True)
+    shots.report.check("--skip-existing, another pixel type", result == (OK, []), result)
+    result = shots.apply("--frames", "1-8", "--skip-existing", "-d", "uint16", "--exposure", "3", keep=True)
+    shots.report.check("--skip-existing does not know the exposure", "8 skipped" in result[1][0], result)
+    result = shots.apply("--frames", "1-8", keep=True)
+    shots.check("without it they are made anew", result, OK, [], shots.truths(range(1, 9)))
+    name = folder / "out.0002.png"
+    name.unlink()
+    name.mkdir()
+    code, lines = shots.apply("--frames", "1-8", "--skip-existing", keep=True)
+    shots.report.check("--skip-existing, a directory", code == FAILED and "out.0002.png: cannot write: it is a directory"
+                       in lines[0] and "8 frames: 0 written, 7 skipped, 1 failed: 2" in lines[1], lines)
+    name.rmdir()
+    results = [apply(shots.command, "in.@@@@.exr", "out.@@@@.png", "--operator", "drago", "--frames", "2",
+                     "--skip-existing", folder=folder) for _ in range(2)]
+    shots.report.check("--skip-existing of an operator with statistics", results[0] == (OK, []) and results[1] == (
+        OK, ["tonewright: apply: 1 frame: 0 written, 1 skipped"]), results)
+
+
+def check_in_place(shots):
+    folder = shots.folder / "place"
+    folder.mkdir()
+    make_shot(folder, range(1, 9))
+    result = apply(shots.command, "in.#.exr", "in.#.exr", *HABLE, "--frames", "1-8", folder=folder)
+    shots.report.check("in place", result == (OK, []) and sorted(contents(folder, "in.*").values())
+                       == sorted(shots.truths(range(1, 9), "exr").values()), result)
+
+
+def check_summary(shots):
+    """Many failures: some lines, and frames that --frames takes."""
+    folder = shots.folder / "many"
+    folder.mkdir()
+    make_shot(folder, [1, 3, 4, 120])
+    code, lines = apply(shots.command, "in.#.exr", "out.#.png", *HABLE, "--frames", "1-120", folder=folder)
+    failed = lines[-1].rpartition(": ")[2]
+    shots.report.check("116 failures: 50 lines, how many more, and which", code == FAILED and len(lines) == 52
+                       and lines[50] == "tonewright: apply: and 66 more" and failed == "2,5-119"
+                       and lines[-1].startswith("tonewright: apply: 120 frames: 4 written, 116 failed: "), lines[49:])
+    code, lines = apply(shots.command, "in.#.exr", "out.#.png", *HABLE, "--frames", "5-99x3,-3,200,203,206", folder=folder)
+    shots.report.check("steps", lines[-1].endswith(" failed: -3,5-98x3,200-206x3"), lines[-1])
+    code, lines = apply(shots.command, "in.#.exr", "out.#.png", *HABLE, "--frames", failed, "--missing", "hold",
+                        folder=folder)
+    shots.report.check("which --frames takes", code == OK and lines == [
+        "tonewright: apply: 116 frames: 116 written, 116 held for missing ones"] and len(contents(folder)) == 120, lines)
+
+
+def check_progress(shots):
+    """On a terminal frames, rate and time left; the summary; and nothing elsewhere."""
+    folder = shots.folder / "progress"
+    folder.mkdir()
+    make_shot(folder, [1])
+    leader, follower = pty.openpty()
+    # More frames than half a second takes, after which the bar appears.
+    process = subprocess.Popen([shots.command, "apply", "in.#.exr", "out.#.exr", *HABLE, "--frames", "1-900", "--missing",
+                                "hold"], cwd=folder, stderr=follower)
+    os.close(follower)
+    shown = b""
+    with contextlib.suppress(OSError):  # the other end is closed
+        while part := os.read(leader, 4096):
+            shown += part
+    os.close(leader)
+    text = shown.decode()
+    bars = [part for part in text.split("\r") if part.startswith("[")]
+    shots.report.check("on a terminal: a bar with frames a second and the time left", process.wait() == OK and bars and all(
+        "/900 frames, " in bar and " per second, " in bar and " s left" in bar for bar in bars), text[:500])
+    shots.report.check("on a terminal: the bar goes away, the summary stays",
+                       "\r\033[K" in text and text.rstrip().endswith("900 frames: 900 written, 899 held for missing ones"),
+                       text[-300:])
+
+
+def wait_for(process, folder, count):
+    """Until there are as many files."""
+    while process.poll() is None and len(list(folder.glob("out.*"))) < count:
+        time.sleep(0.002)
+
+
+def check_vanishing(shots):
+    """Inputs go, or are cut short, while a run is under way."""
+    for what, spoil, message in (("vanish", Path.unlink, "No such file or directory"),
+                                 ("are truncated", lambda path: os.truncate(path, 1000), "cannot read")):
+        folder = shots.folder / what.replace(" ", "_")
+        folder.mkdir()
+        numbers = range(1, 151)
+        make_shot(folder, numbers, width=24, height=16)
+        apply(shots.command, "in.#.exr", "out.#.exr", *HABLE, "--frames", "1-150", folder=folder)
+        truth = contents(folder)
+        for path in folder.glob("out.*"):
+            path.unlink()
+        process = subprocess.Popen([shots.command, "apply", "in.#.exr", "out.#.exr", *HABLE, "--frames", "1-150", "--jobs",
+                                    "2"], cwd=folder, stderr=subprocess.PIPE, text=True)
+        wait_for(process, folder, 5)
+        for number in range(150, 100, -1):
+            spoil(folder / f"in.{number:04d}.exr")
+        lines = process.communicate()[1].splitlines()
+        made = contents(folder)
+        shots.report.check(f"inputs {what} in a run: exit 1, a line for each, the others whole",
+                           process.returncode == FAILED and 100 <= len(made) < 150
+                           and all(truth[name] == made[name] for name in made) and not leftovers(folder)
+                           and len(lines) == 151 - len(made) and all(message in line for line in lines[:-1])
+                           and f"150 frames: {len(made)} written, {150 - len(made)} failed" in lines[-1],
+                           f"exit {process.returncode}, {len(made)} files: {lines[-3:]}")
+
+
+def check_stopped(shots):
+    folder = shots.folder / "stopped"
+    folder.mkdir()
+    make_shot(folder, [1])
+    for end in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        arguments = ["in.#.exr", "out.#.exr", *HABLE, "--frames", "1-900", "--missing", "hold", "--jobs", "4"]
+        process = subprocess.Popen([shots.command, "apply", *arguments], cwd=folder)
+        wait_for(process, folder, 20)
+        process.send_signal(end)
+        made_code = process.wait()
+        made = contents(folder)
+        shots.report.check(f"{end.name}: whole files and nothing beside them", made_code == -end and 20 <= len(made) < 900
+                           and len(set(made.values())) == 1 and not leftovers(folder), f"{made_code} {leftovers(folder)}")
+        for path in folder.glob("out.*"):
+            path.unlink()
+
+
+@contextlib.contextmanager
+def small_disk(folder, size):
+    """A file system of its own at a folder; None where none can be made."""
+    folder.mkdir()
+    done = subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", folder], capture_output=True, check=False,
+                          text=True)
+    try:
+        yield None if done.returncode else folder
+    finally:
+        if done.returncode == 0:
+            subprocess.run(["umount", folder], check=True)
+
+
+def check_disks(shots):
+    if not shutil.which("mount"):
+        print("skipped: full and read-only disks (mount is not installed)")
+        return
+    with small_disk(shots.folder / "disk", "64k") as disk:
+        if disk is None:
+            print("skipped: full and read-only disks (mounting a tmpfs needs root)")
+            return
+        for extension in ("exr", "png", "tif"):
+            everything = shots.truths(range(1, 9), extension)
+            (disk / "filler").write_bytes(b"x" * (64 * 1024 - 5 * 1024 - 2 * len(everything[f"out.0001.{extension}"])))
+            arguments = ["in.@@@@.exr", f"disk/out.@@@@.{extension}", *HABLE, "--frames", "1-8", "--jobs", "1"]
+            code, lines = apply(shots.command, *arguments, folder=shots.folder)
+            made = contents(disk)
+            # TIFF is written by libtiff itself, which does not say why; what is written is read back.
+            why = "cannot be read back (disk full?)" if extension == "tif" else "No space left on device"
+            shots.report.check(f"full disk, .{extension}: exit 1, why, nothing partial",
+                               code == FAILED and 0 < len(made) < 8 and all(everything[n] == made[n] for n in made)
+                               and not leftovers(disk) and len(lines) == 9 - len(made)
+                               and all("cannot write: " in line for line in lines[:-1])
+                               and any(why in line for line in lines[:-1])
+                               and f"8 frames: {len(made)} written, {8 - len(made)} failed" in lines[-1],
+                               f"exit {code}, {len(made)} files, {leftovers(disk)}: {lines}")
+            (disk / "filler").unlink()
+            subprocess.run(["mount", "-o", "remount,size=4m", disk], check=True)
+            code, lines = apply(shots.command, *arguments, "--skip-existing", folder=shots.folder)
+            shots.report.check(f"with room, .{extension}: --skip-existing makes the rest", code == OK and lines == [
+                f"tonewright: apply: 8 frames: {8 - len(made)} written, {len(made)} skipped"]
+                and contents(disk) == everything, lines)
+            subprocess.run(["mount", "-o", "remount,ro", disk], check=True)
+            for options, code_expected, said in (([], FAILED, "cannot write: Read-only file system"),
+                                                 (["--skip-existing"], OK, "8 frames: 0 written, 8 skipped")):
+                code, lines = apply(shots.command, *arguments, *options, folder=shots.folder)
+                shots.report.check(f"read-only disk, .{extension} {' '.join(options)}", code == code_expected
+                                   and said in lines[0] and len(lines) == (1 if options else 9)
+                                   and contents(disk) == everything, f"exit {code}: {lines}")
+            code, lines = apply(shots.command, "in.@@@@.exr", f"disk/new.@@@@.{extension}", *HABLE, "--frames", "1-3",
+                                folder=shots.folder)
+            shots.report.check(f"read-only disk, .{extension}, new files", code == FAILED and len(lines) == 4
+                               and all("cannot write: " in line for line in lines[:3])
+                               and "3 frames: 0 written, 3 failed: 1-3" in lines[3], lines)
+            subprocess.run(["mount", "-o", "remount,rw", disk], check=True)
+            for path in disk.iterdir():
+                path.unlink()
+            subprocess.run(["mount", "-o", "remount,size=64k", disk], check=True)
+
+
+def check_unwritable(shots):
+    """Files and folders that not even root may change, else those of others."""
+    folder, locked = shots.folder, shots.folder / "out.0003.png"
+    shots.clean()
+    locked.write_bytes(b"old")
+    is_root = os.geteuid() == 0
+    if is_root:
+        if subprocess.run(["chattr", "+i", locked], capture_output=True, check=False).returncode:
+            print("skipped: unwritable files (chattr +i does not work here)")
+            return
+    else:
+        locked.chmod(0o444)
+    try:
+        result = shots.apply("--frames", "1-8", keep=True)
+        expected = {**shots.truths(range(1, 9)), "out.0003.png": b"old"}
+        shots.check("an unwritable file stays, the others are made", result, FAILED,
+                    ["out.0003.png: cannot write: " + ("Operation not permitted" if is_root else "Permission denied"),
+                     "8 frames: 7 written, 1 failed: 3"], expected)
+    finally:
+        if is_root:
+            subprocess.run(["chattr", "-i", locked], check=True)
+        locked.unlink()
+    target = folder / "shut"
+    target.mkdir()
+    if is_root:
+        subprocess.run(["chattr", "+i", target], check=True)
+    else:
+        target.chmod(0o555)
+    try:
+        code, lines = apply(shots.command, "in.@@@@.exr", "shut/out.@@@@.png", *HABLE, "--frames", "1-3", folder=folder)
+        why = "Operation not permitted" if is_root else "Permission denied"
+        shots.report.check("an unwritable folder", code == FAILED and len(lines) == 4 and all(
+            f"shut/out.000{n}.png: cannot write: {why}" in lines[n - 1] for n in (1, 2, 3)), lines)
+    finally:
+        if is_root:
+            subprocess.run(["chattr", "-i", target], check=True)
+    code, lines = apply(shots.command, "in.@@@@.exr", "none/out.@@@@.png", *HABLE, "--frames", "1-3", folder=folder)
+    shots.report.check("no folder", code == FAILED and len(lines) == 4 and "No such file or directory" in lines[0], lines)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("command", type=Path)
+    command = parser.parse_args().command.resolve()
+    report = Report()
+    with tempfile.TemporaryDirectory(prefix="tonewright-") as folder:
+        shots = Shots(command, report, Path(folder))
+        for check in (check_names, check_jobs, check_missing, check_skip_existing, check_in_place, check_summary,
+                      check_progress, check_vanishing, check_stopped, check_disks, check_unwritable):
+            check(shots)
+    return report.finish()
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -35,7 +35,12 @@ int thread_count(int nthreads) {
                         : static_cast<int>(std::max(std::thread::hardware_concurrency(), 1U));
 }
 
-/// The spec of rows [ybegin, yend) of a picture.
+void run(const Tonemapper& tonemapper, ImageBuf& to, const ImageBuf& from, int nthreads) {
+    if (!tonemapper(to, from, {}, nthreads)) throw Error(to.geterror());
+}
+
+}  // namespace
+
 ImageSpec spec_of_rows(const ImageSpec& picture, int ybegin, int yend) {
     ImageSpec spec = picture;
     spec.y = ybegin;
@@ -44,12 +49,8 @@ ImageSpec spec_of_rows(const ImageSpec& picture, int ybegin, int yend) {
     return spec;
 }
 
-void run(const Tonemapper& tonemapper, ImageBuf& to, const ImageBuf& from, int nthreads) {
-    if (!tonemapper(to, from, {}, nthreads)) throw Error(to.geterror());
-}
-
-/// What the result of a picture will be: that of one pixel, only larger.
 ImageSpec result_spec(const Tonemapper& tonemapper, const ImageSpec& source) {
+    // That of one pixel, only larger.
     ImageSpec pixel = spec_of_rows(source, source.y, source.y + 1);
     pixel.width = 1;
     ImageBuf result;
@@ -60,13 +61,7 @@ ImageSpec result_spec(const Tonemapper& tonemapper, const ImageSpec& source) {
     return spec;
 }
 
-/// The numbers of a spec alone: rows have no use for the texts of their picture.
-ImageSpec without_metadata(ImageSpec spec) {
-    const int unassociated = spec.get_int_attribute("oiio:UnassociatedAlpha", 0);
-    spec.extra_attribs.clear();
-    if (unassociated) spec.attribute("oiio:UnassociatedAlpha", unassociated);
-    return spec;
-}
+namespace {
 
 struct Batch {
     int ybegin = 0;
@@ -84,10 +79,10 @@ class FilePass {
           reader_(reader),
           writer_(writer),
           nthreads_(nthreads),
-          source_(without_metadata(reader.spec())) {
+          source_(with_color_metadata_alone(reader.spec())) {
         const ImageSpec result = result_spec(tonemapper, reader.spec());
         writer.open(result);
-        result_ = without_metadata(result);
+        result_ = with_color_metadata_alone(result);
         result_.set_format(writer.row_type());
         step_ = rows_of_batch(source_.scanline_bytes() + result_.scanline_bytes(),
                               reader.row_step(), batch_bytes);
@@ -197,13 +192,15 @@ class FilePass {
     int rows_done_ = 0;
 };
 
-SceneStatistics measure_file(const std::string& path, const TonemapOptions& options, int nthreads,
-                             std::size_t batch_bytes) {
+}  // namespace
+
+SceneStatistics measure_file(const std::string& path, int subimage, const TonemapOptions& options,
+                             int nthreads, std::size_t batch_bytes) {
     for (const SceneMeter::Cover cover : SceneMeter::kTries) {
-        PictureReader reader(path, nthreads);
+        PictureReader reader(path, nthreads, subimage);
         const ImageSpec& spec = reader.spec();
         SceneMeter meter(spec, options.input, options.unpremult, cover, nthreads);
-        const ImageSpec rows = without_metadata(spec);
+        const ImageSpec rows = with_color_metadata_alone(spec);
         const int step = rows_of_batch(spec.scanline_bytes(), reader.row_step(), batch_bytes);
         const int bottom = spec.y + spec.height;
         std::vector<std::byte> pixels(spec.scanline_bytes() * static_cast<std::size_t>(step));
@@ -217,8 +214,6 @@ SceneStatistics measure_file(const std::string& path, const TonemapOptions& opti
     }
     return {};
 }
-
-}  // namespace
 
 void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
                         const OIIO::TypeDesc& type, int nthreads, std::size_t batch_bytes) {
@@ -236,7 +231,7 @@ void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, con
     std::optional<Tonemapper> own;
     if (tonemapper.takes_statistics()) {
         own = tonemapper.with_statistics(
-            measure_file(in, tonemapper.options(), nthreads, batch_bytes));
+            measure_file(in, 0, tonemapper.options(), nthreads, batch_bytes));
     }
     FilePass(own ? *own : tonemapper, reader, writer, nthreads, batch_bytes).run_all();
 }

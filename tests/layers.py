@@ -20,6 +20,8 @@ BELOW = {
     "verify": ["image", "ocio", "lut", "engine", "operators", "pipeline", "color", "expr"],
     "cli": ["verify", "image", "ocio", "lut", "engine", "operators", "pipeline", "color", "expr"],
 }
+for top in ("plugin", "python"):
+    BELOW[top] = BELOW["cli"]
 # Public header -> the folder that it belongs to.
 PUBLIC = {
     "error": "expr", "expr": "expr", "color": "color", "pipeline": "pipeline", "view": "pipeline",
@@ -29,7 +31,7 @@ PUBLIC = {
 THIRD_PARTY = {
     "hwy": ["engine"],
     "OpenColorIO": ["ocio", "verify"],
-    "OpenImageIO": ["image", "cli", "verify"],
+    "OpenImageIO": ["image", "cli", "verify", "plugin", "python"],
     "EGL": ["ocio"],
     "yaml-cpp": ["ocio"],
     "lcms2.h": ["lut"],
@@ -37,7 +39,8 @@ THIRD_PARTY = {
     "xbyak": ["engine"],
     "CLI": ["cli"],
     "nlohmann": ["cli"],
-    "fmt": ["lut", "ocio", "image", "verify", "cli"],
+    "pybind11": ["python"],
+    "fmt": ["lut", "ocio", "image", "verify", "cli", "plugin", "python"],
 }
 
 

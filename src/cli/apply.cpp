@@ -4,6 +4,7 @@
 #include "cli/frames.h"
 #include "cli/lut_input.h"
 #include "cli/picture_input.h"
+#include "image/source_picture.h"
 #include "tonewright/engine.h"
 #include "tonewright/image.h"
 
@@ -41,12 +42,16 @@ struct Options : ViewOptions {
 };
 
 void apply_lut(const Options& options, const CLI::App& command) {
-    const Pipeline before = before_lut(command, options.lut, options);
+    Pipeline before = before_lut(command, options.lut, options, source_color({}, options.input));
     const LutFile lut = open_lut(options.lut.file, options.lut.interpolation);
-    const SimdEngine encode(before);
     const OIIO::TypeDesc type = options.pixel_type();
     const QuietStderr quiet;
     const OIIO::ImageBuf source = read_image(options.in);
+    if (!before.empty()) {
+        before =
+            before_lut(command, options.lut, options, source_color(source.spec(), options.input));
+    }
+    const SimdEngine encode(before);
     OIIO::ImageBuf result;
     const auto map = [&](const float* in, float* out, std::size_t count) {
         if (before.empty()) {
@@ -79,7 +84,13 @@ void add_apply(CLI::App& program, int& exit_code) {
                           "where the light is: a color for every stop, the operator false_color");
     false_color->excludes(op);
     add_frame_options(*command, options->frames);
+    options->input = kAutoInput;
     add_view_options(*command, *options);
+    command->get_option("--input")->description(
+        "what the input's numbers are: `auto`, what the picture says (`oiio:ColorSpace`, "
+        "chromaticities, ...; linear Rec.709 where it says nothing), a scene-linear space, or "
+        "sRGB, "
+        "Rec709, Gamma2.2 or a display, whose code values are decoded");
     command->add_option("-d", options->type,
                         "pixel type of the output: uint8, uint16, half or float");
     command

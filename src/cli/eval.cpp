@@ -130,7 +130,9 @@ void add_eval(CLI::App& program, int&) {
         "  echo 0.18 0.18 0.18 | tonewright eval --lut agx.cube --input-encoding acescct");
     command->callback([options, command] {
         if (!options->lut.file.empty()) {
-            const Pipeline before = before_lut(*command, options->lut, *options);
+            const InputSpace& input = find_input_space(options->input);
+            const Pipeline before =
+                before_lut(*command, options->lut, *options, {input.id, input.primaries});
             eval_lut(open_lut(options->lut.file, options->lut.interpolation), before,
                      options->digits);
             return;

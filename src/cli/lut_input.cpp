@@ -47,7 +47,8 @@ LutFile open_lut(const std::string& path, const std::string& interpolation) {
     return LutFile(load_lut_picture(path), between);
 }
 
-Pipeline before_lut(const CLI::App& command, const LutOptions& options, const ViewOptions& view) {
+Pipeline before_lut(const CLI::App& command, const LutOptions& options, const ViewOptions& view,
+                    const SourceColor& input) {
     if (options.encoding.empty()) {
         for (const char* name : {"--input", "--exposure", "--lut-space"}) {
             if (command.count(name) > 0) {
@@ -61,11 +62,13 @@ Pipeline before_lut(const CLI::App& command, const LutOptions& options, const Vi
     const InputEncoding encoding = parse_input_encoding(options.encoding);
     if (!(std::fabs(view.exposure) <= 64))
         throw Error("exposure is " + shortest(view.exposure) + "; expected [-64, 64] stops");
-    const InputSpace& from = find_input_space(view.input);
     const InputSpace& to =
         find_input_space(options.space.empty() ? encoding.default_input : options.space);
-    const Matrix3 matrix = rgb_to_rgb(from.primaries, to.primaries);
-    return {MatrixStage{scale(matrix, std::exp2(view.exposure))}, curve_stage(encoding.encode)};
+    Pipeline stages = input.decode;
+    const Matrix3 matrix = rgb_to_rgb(input.primaries, to.primaries);
+    stages.push_back(MatrixStage{scale(matrix, std::exp2(view.exposure))});
+    stages.push_back(curve_stage(encoding.encode));
+    return stages;
 }
 
 }  // namespace tonewright

@@ -28,10 +28,10 @@ void add_lut_options(CLI::App& command, LutOptions& options, CLI::Option* op,
 /// @throws FileError  for a file that is missing or malformed
 [[nodiscard]] LutFile open_lut(const std::string& path, const std::string& interpolation = "auto");
 
-/// What stands before the LUT: light of --input, with --exposure, as --input-encoding in the
+/// What stands before the LUT: light of `input`, with --exposure, as --input-encoding in the
 /// primaries of --lut-space. Empty without --input-encoding: colors go in as they are.
 /// @throws Error  unknown names; --input, --exposure or --lut-space without --input-encoding.
 [[nodiscard]] Pipeline before_lut(const CLI::App& command, const LutOptions& options,
-                                  const ViewOptions& view);
+                                  const ViewOptions& view, const SourceColor& input);
 
 }  // namespace tonewright

@@ -52,16 +52,20 @@ Matrix3 inverse(const Matrix3& m) {
 Vector3 xyz_of(Chromaticity xy) noexcept { return {xy.x / xy.y, 1.0, (1 - xy.x - xy.y) / xy.y}; }
 
 Matrix3 rgb_to_xyz(const Primaries& p) {
-    const Vector3 r = xyz_of(p.red);
-    const Vector3 g = xyz_of(p.green);
-    const Vector3 b = xyz_of(p.blue);
+    // Any multiple of a primary will do: its amount is found below.
+    const auto column = [](Chromaticity xy) {
+        return xy.y == 0 ? Vector3{xy.x, 0, 1 - xy.x} : xyz_of(xy);
+    };
+    const Vector3 r = column(p.red);
+    const Vector3 g = column(p.green);
+    const Vector3 b = column(p.blue);
     const Matrix3 columns = {{{r[0], g[0], b[0]}, {r[1], g[1], b[1]}, {r[2], g[2], b[2]}}};
-    // Luminance of each primary such that (1,1,1) has the white's XYZ.
-    const Vector3 luminance = multiply(inverse(columns), xyz_of(p.whitepoint));
+    // How much of each primary makes (1,1,1) the white.
+    const Vector3 amount = multiply(inverse(columns), xyz_of(p.whitepoint));
     Matrix3 m = columns;
     for (auto& row : m) {
         for (std::size_t j = 0; j < 3; ++j)
-            row[j] *= luminance[j];
+            row[j] *= amount[j];
     }
     return m;
 }

@@ -22,6 +22,11 @@ Expr power_decode(const Expr& code, double exponent) { return pow(max(code, 0), 
 Expr bt1886_encode(const Expr& linear) { return power_encode(linear, 2.4); }
 Expr bt1886_decode(const Expr& code) { return power_decode(code, 2.4); }
 
+Expr bt709_inverse_oetf(const Expr& code) {
+    return select(less(code, 4.5 * 0.018), code / 4.5,
+                  pow((max(code, 4.5 * 0.018) + 0.099) / 1.099, 1 / 0.45));
+}
+
 namespace {
 // SMPTE ST 2084:2014, 5.1, as printed there.
 constexpr double kPqM1 = 2610.0 / 4096 * (1.0 / 4);

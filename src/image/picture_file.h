@@ -15,16 +15,22 @@
 /// Picture files, read and written some rows at a time, whole or not at all.
 namespace tonewright {
 
-/// Reads a picture from top to bottom or in any other order of rows. First subimage, full
-/// resolution, in the pixel type of the file.
+/// In one line, why a picture could not be opened.
+/// @param reported  what OpenImageIO says
+[[nodiscard]] std::string why_not_open(const std::string& path, const std::string& reported);
+
+/// Reads a picture from top to bottom or in any other order of rows. Full resolution, in the pixel
+/// type of the file.
 ///
 /// Stricter than ImageBuf: whatever the reader reports is an error, so that a truncated file is
 /// never a half-black picture. Nothing goes through OIIO's cache.
 class PictureReader {
   public:
     /// @param nthreads  0: OIIO's `threads` attribute.
-    /// @throws FileError  missing, unreadable, of unknown format, or deep. One line.
-    explicit PictureReader(const std::string& path, int nthreads = 0);
+    /// @throws FileError  missing, unreadable, of unknown format, without that subimage, or deep.
+    /// One
+    ///                    line.
+    explicit PictureReader(const std::string& path, int nthreads = 0, int subimage = 0);
     ~PictureReader();
     PictureReader(const PictureReader&) = delete;
     PictureReader& operator=(const PictureReader&) = delete;
@@ -44,6 +50,7 @@ class PictureReader {
     void check(bool was_read) const;
 
     std::string path_;
+    int subimage_;
     std::unique_ptr<OIIO::ImageInput> in_;
     OIIO::ImageSpec spec_;
 };

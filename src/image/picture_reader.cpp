@@ -19,6 +19,8 @@ using OIIO::ImageBuf;
     throw FileError(fmt::format("{}: cannot read: {}", path, reason));
 }
 
+}  // namespace
+
 std::string why_not_open(const std::string& path, const std::string& reported) {
     namespace fs = std::filesystem;
     std::error_code error;
@@ -30,14 +32,14 @@ std::string why_not_open(const std::string& path, const std::string& reported) {
     return first_line(reported);
 }
 
-}  // namespace
-
-PictureReader::PictureReader(const std::string& path, int nthreads)
-    : path_(path), in_(OIIO::ImageInput::open(path)) {
+PictureReader::PictureReader(const std::string& path, int nthreads, int subimage)
+    : path_(path), subimage_(subimage), in_(OIIO::ImageInput::open(path)) {
     // Not through ImageBuf: it asks the shared cache, which may know an older file of this name,
     // and it passes over errors that a reader reports while it delivers pixels.
     if (!in_) cannot_read(path, why_not_open(path, OIIO::geterror()));
     in_->threads(nthreads);
+    if (!in_->seek_subimage(subimage, 0))
+        cannot_read(path, fmt::format("it has no subimage {}; the first is 0", subimage));
     spec_ = in_->spec();
     if (spec_.deep)
         cannot_read(path, "the picture is deep; expected flat pixels (oiiotool --flatten)");
@@ -59,9 +61,9 @@ void PictureReader::check(bool was_read) const {
 void PictureReader::read_rows(int ybegin, int yend, std::byte* to) {
     const OIIO::ImageSpec& s = spec_;
     check(s.tile_width > 0
-              ? in_->read_tiles(0, 0, s.x, s.x + s.width, ybegin, yend, s.z, s.z + 1, 0,
+              ? in_->read_tiles(subimage_, 0, s.x, s.x + s.width, ybegin, yend, s.z, s.z + 1, 0,
                                 s.nchannels, s.format, to)
-              : in_->read_scanlines(0, 0, ybegin, yend, s.z, 0, s.nchannels, s.format, to));
+              : in_->read_scanlines(subimage_, 0, ybegin, yend, s.z, 0, s.nchannels, s.format, to));
 }
 
 ImageBuf PictureReader::read_all() {
@@ -69,7 +71,8 @@ ImageBuf PictureReader::read_all() {
     if (!image.localpixels()) {
         cannot_read(path_, fmt::format("no memory for {} x {} pixels", spec_.width, spec_.height));
     }
-    check(in_->read_image(0, 0, 0, spec_.nchannels, image.spec().format, image.localpixels()));
+    check(in_->read_image(subimage_, 0, 0, spec_.nchannels, image.spec().format,
+                          image.localpixels()));
     return image;
 }
 

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <memory>
 #include <new>
+#include <optional>
 #include <vector>
 
 #include "image/scene_meter.h"
@@ -108,6 +109,7 @@ struct ColorSource {
     ChannelLayout layout;  // its alpha: -1 where alpha plays no part
     bool divides;
     Matrix3 to_rec709;
+    std::optional<ReferenceEngine> decode;  // none: the picture is linear
 };
 
 /// Measures the rows of one thread's part of a picture.
@@ -139,20 +141,31 @@ class RowMeter {
         for (int c = 0; c < color_count; ++c)
             load(source, c, planes_[static_cast<std::size_t>(c)], n);
         if (color_.layout.alpha >= 0) load(source, color_.layout.alpha, planes_[3], n);
+        if (color_.layout.is_grey) planes_[1] = planes_[2] = planes_[0];
+        if (color_.layout.alpha >= 0 && color_.divides) divide(n);
+        if (color_.decode) {
+            const std::array<double*, 3> rgb = {planes_[0].data(), planes_[1].data(),
+                                                planes_[2].data()};
+            color_.decode->run({rgb[0], rgb[1], rgb[2]}, rgb, n);
+        }
         for (std::size_t i = 0; i < n; ++i) {
-            double alpha = 1;
-            if (color_.layout.alpha >= 0) {
-                alpha = planes_[3][i];
-                if (alpha == 0 || !std::isfinite(alpha)) continue;
-                if (!color_.divides) alpha = 1;
-            }
-            Vector3 rgb{};
-            for (std::size_t c = 0; c < 3; ++c)
-                rgb[c] = sanitise(planes_[color_.layout.is_grey ? 0 : c][i] / alpha);
+            if (color_.layout.alpha >= 0 && !covers(planes_[3][i])) continue;
+            Vector3 rgb = {sanitise(planes_[0][i]), sanitise(planes_[1][i]),
+                           sanitise(planes_[2][i])};
             if (converts_) rgb = multiply(color_.to_rec709, rgb);
             for (double& x : rgb)
                 x = std::clamp(x, 0.0, kHalfMax);
             row.add(rgb);
+        }
+    }
+
+    static bool covers(double alpha) noexcept { return alpha != 0 && std::isfinite(alpha); }
+
+    void divide(std::size_t n) noexcept {
+        for (std::size_t c = 0; c < 3; ++c) {
+            for (std::size_t i = 0; i < n; ++i) {
+                if (covers(planes_[3][i])) planes_[c][i] /= planes_[3][i];
+            }
         }
     }
 
@@ -180,9 +193,10 @@ struct SceneMeter::State {
 SceneMeter::SceneMeter(const OIIO::ImageSpec& spec, std::string_view input,
                        TonemapOptions::Unpremult unpremult, Cover cover, int nthreads)
     : state_(std::make_unique<State>()) {
-    const Primaries primaries = find_input_space(input).primaries;
+    const SourceColor source = source_color(spec, input);
     state_->color = {channel_layout(spec), divides_by_alpha(spec, unpremult),
-                     rgb_to_rgb(primaries, kRec709)};
+                     rgb_to_rgb(source.primaries, kRec709), std::nullopt};
+    if (!source.decode.empty()) state_->color.decode.emplace(source.decode);
     if (unpremult == TonemapOptions::Unpremult::no || cover == Cover::ignored)
         state_->color.layout.alpha = -1;
     state_->nthreads = nthreads;
@@ -225,7 +239,7 @@ SceneStatistics SceneMeter::statistics() const { return state_->all.statistics()
 
 SceneStatistics measure_scene(const ImageBuf& src, std::string_view input,
                               TonemapOptions::Unpremult unpremult, ROI roi, int nthreads) {
-    (void)find_input_space(input);  // a wrong name is told before a picture is opened
+    (void)source_color({}, input);  // a wrong name is told before a picture is opened
     check_source(src);
     const ROI window = roi.defined() ? OIIO::roi_intersection(roi, src.roi()) : src.roi();
     if (window.width() <= 0 || window.height() <= 0 || window.depth() <= 0) return {};

@@ -8,6 +8,7 @@
 
 #include "image/pixel_access.h"
 #include "tonewright/image.h"
+#include "tonewright/view.h"
 
 /// Pictures that are read span by span, whatever their pixel type, in memory or in OIIO's cache.
 namespace tonewright {
@@ -22,12 +23,26 @@ struct ChannelLayout {
     int alpha = -1;        // -1: none
 };
 
-/// @throws Error  two channels of which the second is no alpha; alpha before color.
+/// @throws Error  two channels of which the second is no alpha; alpha before color; luminance and
+///                chroma (Y, RY, BY) instead of color.
 [[nodiscard]] ChannelLayout channel_layout(const OIIO::ImageSpec& spec);
 
 /// True when color has to be divided by alpha to be a color.
 [[nodiscard]] bool divides_by_alpha(const OIIO::ImageSpec& spec,
                                     TonemapOptions::Unpremult unpremult);
+
+/// What the numbers of a picture mean.
+///
+/// @param input    a name (@see find_source_color), or `auto`: what the picture says. That is
+///                 `oiio:ColorSpace`, where it is another one than the linear Rec.709 that readers
+///                 presume; else `colorInteropID`; else ACES2065-1 where `acesImageContainerFlag`
+///                 is set; else linear light of its `chromaticities`; else linear Rec.709.
+/// @throws Error   unknown name; the picture has a name that is unknown, or impossible
+///                 chromaticities.
+[[nodiscard]] SourceColor source_color(const OIIO::ImageSpec& spec, std::string_view input);
+
+/// Only what these functions look at: rows have no use for the texts of their picture.
+[[nodiscard]] OIIO::ImageSpec with_color_metadata_alone(const OIIO::ImageSpec& spec);
 
 /// @param what    "source" or "destination"
 /// @throws Error  for a type that OIIO has no pixels of.

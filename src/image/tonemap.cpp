@@ -17,9 +17,14 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <exception>
 #include <functional>
+#include <memory>
+#include <mutex>
 #include <new>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "image/color_tags.h"
 #include "image/message.h"
@@ -50,6 +55,19 @@ struct ChannelPlan {
 
 [[noreturn]] void fail(const std::string& message) { throw Error(message); }
 
+/// Of the exception that is being handled: callers' functions may throw anything.
+std::string what_is_thrown() {
+    try {
+        throw;
+    } catch (const std::bad_alloc&) {
+        return "not enough memory";
+    } catch (const std::exception& e) {
+        return e.what();
+    } catch (...) {
+        return "unknown error";
+    }
+}
+
 /// The spec of a destination that does not exist yet.
 ImageSpec result_spec(const ImageSpec& source, bool grey_becomes_color) {
     ImageSpec spec = source;
@@ -66,8 +84,8 @@ ImageSpec result_spec(const ImageSpec& source, bool grey_becomes_color) {
     return spec;
 }
 
-View view_of(const TonemapOptions& options, const Settings& settings) {
-    return make_view(resolve_operator(options.op, settings, options.look), options.input,
+View view_of(const TonemapOptions& options, const Settings& settings, const SourceColor& source) {
+    return make_view(resolve_operator(options.op, settings, options.look), source,
                      options.exposure_stops, options.display, options.reference_white);
 }
 
@@ -82,6 +100,33 @@ using PlanarMap = std::function<void(const std::array<const float*, 3>& in,
                                      std::ptrdiff_t in_stride, const std::array<float*, 3>& out,
                                      std::ptrdiff_t out_stride, std::size_t count)>;
 
+/// Tells how much of a picture is done, from one thread at a time, and hears when to stop.
+class Progress {
+  public:
+    Progress(OIIO::ProgressCallback callback, void* data) : callback_(callback), data_(data) {}
+
+    void begin(OIIO::imagesize_t pixels) noexcept { total_ = pixels; }
+    void add(int pixels) {
+        if (!callback_) return;
+        const std::lock_guard lock(mutex_);
+        done_ += static_cast<OIIO::imagesize_t>(pixels);
+        if (stopped_ || (done_ - told_ < total_ / 100 && done_ < total_)) return;
+        told_ = done_;
+        const auto part = static_cast<double>(done_) / static_cast<double>(total_);
+        if (callback_(data_, static_cast<float>(part))) stopped_ = true;
+    }
+    [[nodiscard]] bool stopped() const noexcept { return stopped_; }
+
+  private:
+    OIIO::ProgressCallback callback_;
+    void* data_;
+    OIIO::imagesize_t total_ = 0;
+    OIIO::imagesize_t done_ = 0;
+    OIIO::imagesize_t told_ = 0;
+    std::mutex mutex_;
+    std::atomic<bool> stopped_ = false;
+};
+
 /// What is done to a picture.
 struct PictureMap {
     PlanarMap run;
@@ -93,7 +138,8 @@ struct PictureMap {
 };
 
 /// Runs it; the metadata is still that of the source. @throws Error
-void run_picture(const PictureMap& with, ImageBuf& dst, const ImageBuf& src, ROI roi, int nthreads);
+void run_picture(const PictureMap& with, ImageBuf& dst, const ImageBuf& src, ROI roi, int nthreads,
+                 Progress& progress);
 
 /// What a picture is run through.
 struct Prepared {
@@ -110,17 +156,27 @@ struct Prepared {
 }  // namespace
 
 struct Tonemapper::State {
-    explicit State(const TonemapOptions& o) : options(o) {
-        View view = view_of(options, options.settings);
-        if (!depends_on_picture(options)) prepared.emplace(std::move(view));
+    explicit State(const TonemapOptions& o)
+        : options(o), depends_on_picture(tonewright::depends_on_picture(o)) {
+        // Tells what is wrong with the options before there is a picture.
+        (void)view_of(options, options.settings, source_color({}, options.input));
     }
 
     TonemapOptions options;
-    /// Empty: made of each picture's statistics.
-    std::optional<Prepared> prepared;
+    /// Prepared anew with each picture's statistics.
+    bool depends_on_picture;
 
-    void run(ImageBuf& dst, const ImageBuf& src, ROI roi, int nthreads) const;
-    void run(const Prepared& with, ImageBuf& dst, const ImageBuf& src, ROI roi, int nthreads) const;
+    void run(ImageBuf& dst, const ImageBuf& src, ROI roi, int nthreads, Progress& progress) const;
+
+  private:
+    [[nodiscard]] std::shared_ptr<const Prepared> prepared_for(const SourceColor& source) const;
+    void run(const Prepared& with, ImageBuf& dst, const ImageBuf& src, ROI roi, int nthreads,
+             Progress& progress) const;
+
+    /// Pictures of one shot are of one kind.
+    static constexpr std::size_t kMostPrepared = 8;
+    mutable std::mutex mutex_;
+    mutable std::vector<std::shared_ptr<const Prepared>> prepared_;  // the oldest first
 };
 
 namespace {
@@ -145,11 +201,13 @@ class RowRunner {
         if (convert && !plan.copies.empty()) wide_.resize(kSpan);
     }
 
+    /// Ends early when it is told to stop.
     /// @returns  false when the source could not be read.
-    bool run(const ROI& roi) {
+    bool run(const ROI& roi, Progress& progress) {
         const ROI window = src_.roi();
         for (int z = roi.zbegin; z < roi.zend; ++z) {
             for (int y = roi.ybegin; y < roi.yend; ++y) {
+                if (progress.stopped()) return true;
                 const bool row_inside =
                     y >= window.ybegin && y < window.yend && z >= window.zbegin && z < window.zend;
                 const int from =
@@ -159,6 +217,7 @@ class RowRunner {
                     !run_part(to, roi.xend, y, z, false)) {
                     return false;
                 }
+                progress.add(roi.width());
             }
         }
         return true;
@@ -296,8 +355,8 @@ class RowRunner {
     std::vector<double> wide_;   // copied channels whose type changes; double holds every type
 };
 
-void run_picture(const PictureMap& with, ImageBuf& dst, const ImageBuf& src, ROI roi,
-                 int nthreads) {
+void run_picture(const PictureMap& with, ImageBuf& dst, const ImageBuf& src, ROI roi, int nthreads,
+                 Progress& progress) {
     const ImageSpec& source = src.spec();
     if (dst.deep()) fail("destination is deep; expected flat pixels (oiiotool --flatten)");
     if (dst.initialized()) check_pixel_type("destination", dst.spec().format);
@@ -341,44 +400,61 @@ void run_picture(const PictureMap& with, ImageBuf& dst, const ImageBuf& src, ROI
     }
 
     if (roi.width() > 0 && roi.height() > 0 && roi.depth() > 0) {
+        progress.begin(roi.npixels());
         std::atomic<bool> unreadable = false;
-        std::atomic<bool> out_of_memory = false;
+        std::exception_ptr error;
+        std::mutex error_mutex;
         OIIO::ImageBufAlgo::parallel_image(roi, OIIO::paropt(nthreads), [&](ROI part) {
             // No exception may leave a thread of OIIO's pool.
             try {
-                if (!RowRunner(with.run, plan, dst, src).run(part)) unreadable = true;
-            } catch (const std::bad_alloc&) {
-                out_of_memory = true;
+                if (!RowRunner(with.run, plan, dst, src).run(part, progress)) unreadable = true;
+            } catch (...) {
+                const std::lock_guard lock(error_mutex);
+                error = std::current_exception();
             }
         });
-        if (out_of_memory) throw std::bad_alloc();
+        if (error) std::rethrow_exception(error);
+        if (progress.stopped()) fail("cancelled");
         check_was_read(src, !unreadable);
     }
 }
 
 }  // namespace
 
-void Tonemapper::State::run(ImageBuf& dst, const ImageBuf& src, ROI roi, int nthreads) const {
+void Tonemapper::State::run(ImageBuf& dst, const ImageBuf& src, ROI roi, int nthreads,
+                            Progress& progress) const {
     check_source(src);
-    if (prepared) {
-        run(*prepared, dst, src, roi, nthreads);
+    const SourceColor source = source_color(src.spec(), options.input);
+    if (!depends_on_picture) {
+        run(*prepared_for(source), dst, src, roi, nthreads, progress);
         return;
     }
     // Of the whole picture, whatever the region: its parts must fit together.
     const SceneStatistics statistics =
         measure_scene(src, options.input, options.unpremult, {}, nthreads);
     const Settings settings = settings_for_picture(options.op, options.settings, statistics);
-    run(Prepared(view_of(options, settings)), dst, src, roi, nthreads);
+    run(Prepared(view_of(options, settings, source)), dst, src, roi, nthreads, progress);
+}
+
+std::shared_ptr<const Prepared> Tonemapper::State::prepared_for(const SourceColor& source) const {
+    const std::lock_guard lock(mutex_);
+    for (const std::shared_ptr<const Prepared>& known : prepared_) {
+        if (known->view.input == source.name) return known;
+    }
+    auto made = std::make_shared<const Prepared>(view_of(options, options.settings, source));
+    if (prepared_.size() == kMostPrepared) prepared_.erase(prepared_.begin());
+    prepared_.push_back(made);
+    return made;
 }
 
 void Tonemapper::State::run(const Prepared& with, ImageBuf& dst, const ImageBuf& src, ROI roi,
-                            int nthreads) const {
+                            int nthreads, Progress& progress) const {
     const PlanarMap engine = [&](const auto& in, std::ptrdiff_t in_stride, const auto& out,
                                  std::ptrdiff_t out_stride, std::size_t count) {
         with.engine.run(in, in_stride, out, out_stride, count);
     };
     run_picture({engine, with.keeps_grey, with.view.op.label, options.unpremult}, dst, src, roi,
-                nthreads);
+                nthreads, progress);
     tag_as_result_of(with.view, dst.specmod());
 }
 
@@ -390,7 +466,7 @@ Tonemapper& Tonemapper::operator=(Tonemapper&&) noexcept = default;
 
 const TonemapOptions& Tonemapper::options() const noexcept { return state_->options; }
 
-bool Tonemapper::takes_statistics() const noexcept { return !state_->prepared; }
+bool Tonemapper::takes_statistics() const noexcept { return state_->depends_on_picture; }
 
 Tonemapper Tonemapper::with_statistics(const SceneStatistics& statistics) const {
     TonemapOptions options = state_->options;
@@ -399,27 +475,28 @@ Tonemapper Tonemapper::with_statistics(const SceneStatistics& statistics) const 
     return Tonemapper(options);
 }
 
-bool Tonemapper::operator()(ImageBuf& dst, const ImageBuf& src, ROI roi,
-                            int nthreads) const noexcept {
+bool Tonemapper::operator()(ImageBuf& dst, const ImageBuf& src, ROI roi, int nthreads,
+                            OIIO::ProgressCallback progress, void* progress_data) const noexcept {
     try {
-        state_->run(dst, src, roi, nthreads);
+        Progress told(progress, progress_data);
+        state_->run(dst, src, roi, nthreads, told);
         return true;
-    } catch (const std::exception& e) {
-        dst.errorfmt("tonemap: {}", e.what());
+    } catch (...) {
+        dst.errorfmt("tonemap: {}", what_is_thrown());
         return false;
     }
 }
 
 bool tonemap(ImageBuf& dst, const ImageBuf& src, const TonemapOptions& options, ROI roi,
-             int nthreads) noexcept {
+             int nthreads, OIIO::ProgressCallback progress, void* progress_data) noexcept {
     std::optional<Tonemapper> tonemapper;
     try {
         tonemapper.emplace(options);
-    } catch (const std::exception& e) {
-        dst.errorfmt("tonemap: {}", e.what());
+    } catch (...) {
+        dst.errorfmt("tonemap: {}", what_is_thrown());
         return false;
     }
-    return (*tonemapper)(dst, src, roi, nthreads);
+    return (*tonemapper)(dst, src, roi, nthreads, progress, progress_data);
 }
 
 bool map_colors(ImageBuf& dst, const ImageBuf& src,
@@ -441,19 +518,20 @@ bool map_colors(ImageBuf& dst, const ImageBuf& src,
     };
     try {
         check_source(src);
-        run_picture({planar, false, "the LUT", unpremult}, dst, src, roi, nthreads);
+        Progress untold(nullptr, nullptr);
+        run_picture({planar, false, "the LUT", unpremult}, dst, src, roi, nthreads, untold);
         tag_as_unknown(dst.specmod());
         return true;
-    } catch (const std::exception& e) {
-        dst.errorfmt("{}", e.what());
+    } catch (...) {
+        dst.errorfmt("{}", what_is_thrown());
         return false;
     }
 }
 
-ImageBuf tonemap(const ImageBuf& src, const TonemapOptions& options, ROI roi,
-                 int nthreads) noexcept {
+ImageBuf tonemap(const ImageBuf& src, const TonemapOptions& options, ROI roi, int nthreads,
+                 OIIO::ProgressCallback progress, void* progress_data) noexcept {
     ImageBuf result;
-    tonemap(result, src, options, roi, nthreads);
+    tonemap(result, src, options, roi, nthreads, progress, progress_data);
     return result;
 }
 

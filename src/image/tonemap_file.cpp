@@ -30,15 +30,6 @@ namespace {
 using OIIO::ImageBuf;
 using OIIO::ImageSpec;
 
-/// The spec of rows [ybegin, yend) of a picture.
-ImageSpec spec_of_rows(const ImageSpec& picture, int ybegin, int yend) {
-    ImageSpec spec = picture;
-    spec.y = ybegin;
-    spec.height = yend - ybegin;
-    spec.tile_width = spec.tile_height = spec.tile_depth = 0;
-    return spec;
-}
-
 void run(const Tonemapper& tonemapper, ImageBuf& to, const ImageBuf& from, int nthreads) {
     if (!tonemapper(to, from, {}, nthreads)) throw Error(to.geterror());
 }
@@ -55,13 +46,35 @@ void give_date(ImageSpec& picture, const std::string& path) {
     picture.attribute("DateTime", text.data());
 }
 
-/// The numbers of a spec alone: rows have no use for the texts of their picture.
-ImageSpec without_metadata(ImageSpec spec) {
-    const int unassociated = spec.get_int_attribute("oiio:UnassociatedAlpha", 0);
-    spec.extra_attribs.clear();
-    if (unassociated) spec.attribute("oiio:UnassociatedAlpha", unassociated);
+}  // namespace
+
+int thread_count(int nthreads) {
+    if (nthreads == 0) OIIO::getattribute("threads", nthreads);
+    return nthreads > 0 ? nthreads
+                        : static_cast<int>(std::max(std::thread::hardware_concurrency(), 1U));
+}
+
+ImageSpec spec_of_rows(const ImageSpec& picture, int ybegin, int yend) {
+    ImageSpec spec = picture;
+    spec.y = ybegin;
+    spec.height = yend - ybegin;
+    spec.tile_width = spec.tile_height = spec.tile_depth = 0;
     return spec;
 }
+
+ImageSpec result_spec(const Tonemapper& tonemapper, const ImageSpec& source) {
+    // That of one pixel, only larger.
+    ImageSpec pixel = spec_of_rows(source, source.y, source.y + 1);
+    pixel.width = 1;
+    ImageBuf result;
+    run(tonemapper, result, ImageBuf(pixel), 1);
+    ImageSpec spec = result.spec();
+    spec.width = source.width;
+    spec.height = source.height;
+    return spec;
+}
+
+namespace {
 
 struct Batch {
     int ybegin = 0;
@@ -79,11 +92,11 @@ class FilePass {
           reader_(reader),
           writer_(writer),
           nthreads_(nthreads),
-          source_(without_metadata(reader.spec())) {
+          source_(with_color_metadata_alone(reader.spec())) {
         ImageSpec result = result_spec(tonemapper, reader.spec());
         give_date(result, in);
         writer.open(result);
-        result_ = without_metadata(result);
+        result_ = with_color_metadata_alone(result);
         result_.set_format(writer.row_type());
         step_ = rows_of_batch(source_.scanline_bytes() + result_.scanline_bytes(),
                               reader.row_step(), batch_bytes);
@@ -193,13 +206,15 @@ class FilePass {
     int rows_done_ = 0;
 };
 
-SceneStatistics measure_file(const std::string& path, const TonemapOptions& options, int nthreads,
-                             std::size_t batch_bytes) {
+}  // namespace
+
+SceneStatistics measure_file(const std::string& path, int subimage, const TonemapOptions& options,
+                             int nthreads, std::size_t batch_bytes) {
     for (const SceneMeter::Cover cover : SceneMeter::kTries) {
-        PictureReader reader(path, nthreads);
+        PictureReader reader(path, nthreads, subimage);
         const ImageSpec& spec = reader.spec();
         SceneMeter meter(spec, options.input, options.unpremult, cover, nthreads);
-        const ImageSpec rows = without_metadata(spec);
+        const ImageSpec rows = with_color_metadata_alone(spec);
         const int step = rows_of_batch(spec.scanline_bytes(), reader.row_step(), batch_bytes);
         const int bottom = spec.y + spec.height;
         std::vector<std::byte> pixels(spec.scanline_bytes() * static_cast<std::size_t>(step));
@@ -212,25 +227,6 @@ SceneStatistics measure_file(const std::string& path, const TonemapOptions& opti
         if (meter.has_cover()) return meter.statistics();
     }
     return {};
-}
-
-}  // namespace
-
-int thread_count(int nthreads) {
-    if (nthreads == 0) OIIO::getattribute("threads", nthreads);
-    return nthreads > 0 ? nthreads
-                        : static_cast<int>(std::max(std::thread::hardware_concurrency(), 1U));
-}
-
-ImageSpec result_spec(const Tonemapper& tonemapper, const ImageSpec& source) {
-    ImageSpec pixel = spec_of_rows(source, source.y, source.y + 1);
-    pixel.width = 1;
-    ImageBuf result;
-    run(tonemapper, result, ImageBuf(pixel), 1);
-    ImageSpec spec = result.spec();
-    spec.width = source.width;
-    spec.height = source.height;
-    return spec;
 }
 
 void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
@@ -250,7 +246,7 @@ void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, con
     std::optional<Tonemapper> own;
     if (tonemapper.takes_statistics()) {
         own = tonemapper.with_statistics(
-            measure_file(in, tonemapper.options(), nthreads, batch_bytes));
+            measure_file(in, 0, tonemapper.options(), nthreads, batch_bytes));
     }
     FilePass(own ? *own : tonemapper, reader, writer, nthreads, batch_bytes, in).run_all();
 }

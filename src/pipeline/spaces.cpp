@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <charconv>
+#include <optional>
 
 #include "tonewright/view.h"
 
@@ -12,9 +14,23 @@ bool equal_ignoring_case(std::string_view a, std::string_view b) {
                       [&](char x, char y) { return lower(x) == lower(y); });
 }
 
+/// Null: there is none of that name.
+template <class Item>
+const Item* look_up(const std::vector<Item>& items, std::string_view name) {
+    for (const Item& item : items) {
+        if (equal_ignoring_case(item.id, name) || equal_ignoring_case(item.title, name))
+            return &item;
+        for (const std::string& alias : item.aliases) {
+            if (equal_ignoring_case(alias, name)) return &item;
+        }
+    }
+    return nullptr;
+}
+
 template <class Item>
 const Item& find_named(const std::vector<Item>& items, std::string_view name, const char* what,
                        const std::vector<std::string>& extra) {
+    if (const Item* found = look_up(items, name)) return *found;
     std::vector<std::string> all;
     std::vector<std::string> ids;
     for (const Item& item : items) {
@@ -22,11 +38,6 @@ const Item& find_named(const std::vector<Item>& items, std::string_view name, co
         all.push_back(item.id);
         all.push_back(item.title);
         all.insert(all.end(), item.aliases.begin(), item.aliases.end());
-        if (equal_ignoring_case(item.id, name) || equal_ignoring_case(item.title, name))
-            return item;
-        for (const std::string& alias : item.aliases) {
-            if (equal_ignoring_case(alias, name)) return item;
-        }
     }
     ids.insert(ids.end(), extra.begin(), extra.end());
     all.insert(all.end(), extra.begin(), extra.end());
@@ -90,6 +101,50 @@ Display hlg_display() {
             .is_hdr = true,
             .peak = kHdrPeak,
             .largest_light = unit};
+}
+
+/// Light is limited as every engine limits what it takes.
+SourceColor encoded(std::string name, Pipeline decode, const Primaries& primaries) {
+    decode.push_back(ClampStage{-kHalfMax, kHalfMax});
+    return {std::move(name), primaries, std::move(decode)};
+}
+
+/// The X.Y of "GammaX.Y", as OIIO names powers of Rec.709; or 0.
+double exponent_of(std::string_view name) {
+    constexpr std::string_view kPrefix = "Gamma";
+    if (!equal_ignoring_case(name.substr(0, kPrefix.size()), kPrefix)) return 0;
+    const std::string_view digits = name.substr(kPrefix.size());
+    double exponent = 0;
+    const auto [end, error] =
+        std::from_chars(digits.data(), digits.data() + digits.size(), exponent);
+    const bool is_number = error == std::errc() && end == digits.data() + digits.size();
+    return is_number && exponent >= 0.1 && exponent <= 10 ? exponent : 0;
+}
+
+/// `<curve>_<primaries>_<scene|display>`, the curve `lin`, `srgb` or `gNN` (a power, in tenths).
+std::optional<SourceColor> by_interop_pattern(std::string_view name) {
+    const std::size_t first = name.find('_');
+    const std::size_t last = name.rfind('_');
+    if (first == std::string_view::npos || first == last) return std::nullopt;
+    const std::string_view curve = name.substr(0, first);
+    const InputSpace* space =
+        look_up(all_input_spaces(), "lin_" + std::string(name.substr(first + 1, last - first - 1)));
+    const std::string_view state = name.substr(last + 1);
+    if (!space || !(equal_ignoring_case(state, "scene") || equal_ignoring_case(state, "display")))
+        return std::nullopt;
+    if (equal_ignoring_case(curve, "lin")) return SourceColor{space->id, space->primaries};
+    const Expr x = Expr::input();
+    if (equal_ignoring_case(curve, "srgb"))
+        return encoded(std::string(name), {curve_stage(srgb_decode(x))}, space->primaries);
+    int tenths = 0;
+    const auto [end, error] =
+        std::from_chars(curve.data() + 1, curve.data() + curve.size(), tenths);
+    if (curve.size() != 3 || !equal_ignoring_case(curve.substr(0, 1), "g") ||
+        error != std::errc() || end != curve.data() + curve.size() || tenths < 1) {
+        return std::nullopt;
+    }
+    return encoded(std::string(name), {curve_stage(power_decode(x, tenths / 10.0))},
+                   space->primaries);
 }
 
 }  // namespace
@@ -156,6 +211,29 @@ const std::vector<Display>& all_displays() {
 
 const InputSpace& find_input_space(std::string_view name) {
     return find_named(all_input_spaces(), name, "input space", {});
+}
+
+SourceColor find_source_color(std::string_view name) {
+    if (const InputSpace* space = look_up(all_input_spaces(), name))
+        return {space->id, space->primaries};
+    if (const Display* display = look_up(all_displays(), name))
+        return encoded(display->title, display->decode, display->primaries);
+    const Expr x = Expr::input();
+    if (equal_ignoring_case(name, "Rec709"))
+        return encoded("Rec709", {curve_stage(bt709_inverse_oetf(x))}, kRec709);
+    if (const double exponent = exponent_of(name); exponent > 0) {
+        return encoded("Gamma" + shortest(exponent), {curve_stage(power_decode(x, exponent))},
+                       kRec709);
+    }
+    // CIE XYZ itself: its primaries are X, Y and Z.
+    if (equal_ignoring_case(name, "lin_ciexyzd65_scene"))
+        return {"lin_ciexyzd65_scene", {"CIE XYZ", {1, 0}, {0, 1}, {0, 0}, kD65}};
+    if (std::optional<SourceColor> color = by_interop_pattern(name)) return *color;
+    // The message of the input spaces, with the others.
+    return {find_named(all_input_spaces(), name, "input space",
+                       {"sRGB", "Rec709", "Gamma2.2", "a display"})
+                .id,
+            kRec709};
 }
 
 const Display& find_display(std::string_view name) {

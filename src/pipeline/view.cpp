@@ -22,6 +22,13 @@ void append(Pipeline& to, const Pipeline& from) { to.insert(to.end(), from.begin
 
 View make_view(ResolvedOperator op, std::string_view input, double exposure_stops,
                std::string_view display, double reference_white) {
+    const InputSpace& space = find_input_space(input);
+    return make_view(std::move(op), SourceColor{space.id, space.primaries}, exposure_stops, display,
+                     reference_white);
+}
+
+View make_view(ResolvedOperator op, SourceColor input, double exposure_stops,
+               std::string_view display, double reference_white) {
     if (!(std::fabs(exposure_stops) <= 64)) {
         throw Error("exposure is " + shortest(exposure_stops) + "; expected [-64, 64] stops");
     }
@@ -29,8 +36,8 @@ View make_view(ResolvedOperator op, std::string_view input, double exposure_stop
         throw Error("reference white is " + shortest(reference_white) +
                     "; expected [50, 1000] cd/m2");
     }
-    View view{std::move(op), find_input_space(input).id, exposure_stops, std::string(display),
-              reference_white};
+    View view{std::move(op),   std::move(input.name), exposure_stops,         std::string(display),
+              reference_white, input.primaries,       std::move(input.decode)};
     const bool is_display = display != kLinearOutput && display != kNativeOutput;
     if (reference_white != kReferenceWhite && !(is_display && find_display(display).is_hdr)) {
         throw Error("reference white is " + shortest(reference_white) + "; expected " +
@@ -72,8 +79,8 @@ Pipeline display_light_stages(const ResolvedOperator& op, const DisplayLimit& li
 
 Pipeline build_view(const View& view) {
     const Operator& op = *view.op.op;
-    Pipeline stages;
-    Matrix3 to_working = rgb_to_rgb(find_input_space(view.input).primaries, op.working);
+    Pipeline stages = view.input_decode;
+    Matrix3 to_working = rgb_to_rgb(view.input_primaries, op.working);
     stages.push_back(MatrixStage{scale(to_working, std::exp2(view.exposure_stops))});
     append(stages, view.op.build());
     if (view.display == kNativeOutput) return stages;
@@ -119,7 +126,7 @@ Pipeline build_inverse_view(const View& view) {
     if (view.display != kNativeOutput && op.output == OutputKind::code_value)
         stages.push_back(curve_stage(power_encode(Expr::input(), op.code_power)));
     append(stages, op.build_inverse(view.op.params));
-    const Matrix3 to_input = rgb_to_rgb(op.working, find_input_space(view.input).primaries);
+    const Matrix3 to_input = rgb_to_rgb(op.working, view.input_primaries);
     stages.push_back(MatrixStage{scale(to_input, std::exp2(-view.exposure_stops))});
     return stages;
 }

@@ -75,7 +75,9 @@ inline constexpr Primaries kDaVinciWideGamut = {
 /// XYZ of a chromaticity with Y = 1.
 [[nodiscard]] Vector3 xyz_of(Chromaticity xy) noexcept;
 
-/// Linear RGB with white (1,1,1) -> CIE XYZ of the same white with Y = 1 (SMPTE RP 177:1993).
+/// Linear RGB with white (1,1,1) -> CIE XYZ of the same white with Y = 1 (SMPTE RP 177:1993). A
+/// primary may have y = 0, as X and Z themselves have.
+/// @throws Error  when the primaries lie on one line.
 [[nodiscard]] Matrix3 rgb_to_xyz(const Primaries& primaries);
 
 /// Bradford chromatic adaptation of XYZ from one white to another (Lam 1985; ICC.1:2010 annex E).
@@ -108,6 +110,10 @@ inline constexpr Vector3 kRec709Weights = {0.2126, 0.7152, 0.0722};
 /// ITU-R BT.1886 with black at 0: the 2.4 power. Display light (1 = peak) -> code value.
 [[nodiscard]] Expr bt1886_encode(const Expr& linear);
 [[nodiscard]] Expr bt1886_decode(const Expr& code);
+
+/// ITU-R BT.709-6, item 1.2, the other way: what a camera put out -> scene light. Negatives follow
+/// the straight part.
+[[nodiscard]] Expr bt709_inverse_oetf(const Expr& code);
 
 /// SMPTE ST 2084:2014 inverse EOTF: luminance in cd/m2 [0, 10000] -> code value [0, 1].
 /// Negatives mirror.

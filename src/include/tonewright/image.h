@@ -22,6 +22,9 @@
 /// header throw, as the rest of Tonewright does.
 namespace tonewright {
 
+/// The input of a picture that says itself what it is. @see TonemapOptions::input
+inline constexpr std::string_view kAutoInput = "auto";
+
 /// What a picture is tone mapped with. Names and texts are those of the command line.
 struct TonemapOptions {
     /// What to do with color that may be multiplied by alpha. A curve needs the color alone.
@@ -51,8 +54,12 @@ struct TonemapOptions {
     std::string look = {};
     /// Exposure before the operator, in stops, [-64, 64].
     double exposure_stops = 0;
-    /// Scene-linear space of the source: id, title or alias.
-    std::string input = "lin_rec709";
+    /// What the source's numbers are: a name that find_source_color() knows, or `auto`: what the
+    /// picture says. That is its `oiio:ColorSpace` (sRGB and other code values are decoded first),
+    /// where it is another one than the linear Rec.709 that readers presume; else `colorInteropID`;
+    /// else ACES2065-1 where `acesImageContainerFlag` is set; else linear light of its
+    /// `chromaticities`; else linear Rec.709.
+    std::string input = std::string(kAutoInput);
     /// Display (id, title or alias), or `linear`, or `native`.
     std::string display = "srgb";
     /// What an HDR display shows light 1 at, cd/m2, [50, 1000].
@@ -71,18 +78,19 @@ struct TonemapOptions {
 /// cover (alpha 0 or not finite) are left out; a picture without any cover is measured as it is.
 ///
 /// @param src       any pixel type, tiled, cached or local.
-/// @param input     scene-linear space of the picture.
+/// @param input     @see TonemapOptions::input
 /// @param roi       default: the data window. Channels of it are not read.
 /// @param nthreads  0: OIIO's `threads` attribute. The result does not depend on it, in any bit.
 /// @returns         zeros for a picture without light.
-/// @throws Error    unknown space; a picture that cannot be read, is deep, or has no color.
+/// @throws Error    unknown input; a picture that cannot be read, is deep, or has no color.
 [[nodiscard]] SceneStatistics measure_scene(
-    const OIIO::ImageBuf& src, std::string_view input = "lin_rec709",
+    const OIIO::ImageBuf& src, std::string_view input = kAutoInput,
     TonemapOptions::Unpremult unpremult = TonemapOptions::Unpremult::automatic, OIIO::ROI roi = {},
     int nthreads = 0);
 
-/// A view made ready to run on pictures: compile once, use for every frame of a shot.
-/// Safe to use from several threads at once, on different destinations.
+/// A view made ready to run on pictures: compiled once for each kind of source color, at its first
+/// picture, and used for every frame of a shot. Safe to use from several threads at once, on
+/// different destinations.
 ///
 /// An operator that takes statistics is prepared again for each picture, with its own. A shot would
 /// flicker: give it those of one frame, with_statistics(measure_scene(frame)).
@@ -103,7 +111,8 @@ class Tonemapper {
 
     /// Same contract as tonemap(dst, src, ...).
     bool operator()(OIIO::ImageBuf& dst, const OIIO::ImageBuf& src, OIIO::ROI roi = {},
-                    int nthreads = 0) const noexcept;
+                    int nthreads = 0, OIIO::ProgressCallback progress = nullptr,
+                    void* progress_data = nullptr) const noexcept;
 
   private:
     struct State;
@@ -112,8 +121,8 @@ class Tonemapper {
 
 /// Tone maps `src` into `dst`, with the calling convention of ImageBufAlgo.
 ///
-/// 1. Channels go by position, not by name. The first three are color, scene-linear in
-///    `options.input`; `spec().alpha_channel` is alpha; all others are copied, bit for bit where
+/// 1. Channels go by position, not by name. The first three are color, of `options.input`;
+/// `spec().alpha_channel` is alpha; all others are copied, bit for bit where
 ///    the two pixel types are the same. (A picture that has red elsewhere: `oiiotool --ch
 ///    R,G,B,A`.)
 /// 2. One channel is grey, R = G = B; so is the first of two when the second is alpha. A grey
@@ -143,20 +152,26 @@ class Tonemapper {
 /// @param roi       default: all. `[chbegin, chend)` counts the source's channels and must contain
 ///                  its color.
 /// @param nthreads  0: OIIO's `threads` attribute. The result does not depend on it.
+/// @param progress  called with `progress_data` and the part that is done, (0, 1], about a hundred
+///                  times, from one thread at a time, which may be one of OIIO's. What it returns
+///                  true for is to stop: an error, "cancelled", with some of the pixels written.
 /// @returns         false when something is wrong; then `dst` has the error, in one line, and its
 ///                  pixels are as they were unless reading `src` failed half way. Never throws.
 bool tonemap(OIIO::ImageBuf& dst, const OIIO::ImageBuf& src, const TonemapOptions& options,
-             OIIO::ROI roi = {}, int nthreads = 0) noexcept;
+             OIIO::ROI roi = {}, int nthreads = 0, OIIO::ProgressCallback progress = nullptr,
+             void* progress_data = nullptr) noexcept;
 /// Returns the result as a new float image; on failure one with has_error().
 [[nodiscard]] OIIO::ImageBuf tonemap(const OIIO::ImageBuf& src, const TonemapOptions& options,
-                                     OIIO::ROI roi = {}, int nthreads = 0) noexcept;
+                                     OIIO::ROI roi = {}, int nthreads = 0,
+                                     OIIO::ProgressCallback progress = nullptr,
+                                     void* progress_data = nullptr) noexcept;
 
 /// Runs the colors of a picture through a function, such as a LUT of lut_file.h: channels, alpha,
 /// pixel types, regions and threads as in tonemap(). A grey picture becomes one in color. `dst`
 /// makes no claim about its colors.
 ///
 /// @param map  interleaved RGB, `count` colors from `in` to `out`, which are not the same memory;
-///             called from several threads at once. May throw only what bad_alloc is.
+///             called from several threads at once. What it throws is the error of `dst`.
 /// @returns    false when something is wrong; then `dst` has the error.
 bool map_colors(OIIO::ImageBuf& dst, const OIIO::ImageBuf& src,
                 const std::function<void(const float* in, float* out, std::size_t count)>& map,

@@ -45,6 +45,20 @@ struct Display {
 [[nodiscard]] const InputSpace& find_input_space(std::string_view name);
 [[nodiscard]] const Display& find_display(std::string_view name);
 
+/// What the numbers of a picture mean: light of some primaries, as it is or through a curve.
+struct SourceColor {
+    std::string name;  // an input space's id, "sRGB", ...; no two have the same
+    Primaries primaries;
+    /// Numbers -> scene-linear. Empty: they are linear.
+    Pipeline decode = {};
+};
+/// An input space by id, title or alias; or what pictures are encoded in: a display (its code
+/// values), `Rec709` (the camera curve of ITU-R BT.709), `GammaX.Y`, or a curve of an input space's
+/// primaries by the Color Interop Forum's pattern (`srgb_ap1_scene`, `g22_rec709_scene`).
+/// Letters' case does not matter.
+/// @throws Error  with the nearest name.
+[[nodiscard]] SourceColor find_source_color(std::string_view name);
+
 /// What OpenColorIO's HDR displays show light 1 at, cd/m2.
 inline constexpr double kReferenceWhite = 100;
 
@@ -57,12 +71,16 @@ inline constexpr std::string_view kNativeOutput = "native";
 /// display primaries -> encoding.
 struct View {
     ResolvedOperator op;
+    /// Id of an input space, or another name of a source's color.
     std::string input = "lin_rec709";
     double exposure_stops = 0;
     /// Id of a display, or `linear`, or `native`.
     std::string display = "srgb";
     /// What light 1 is shown at on an HDR display, cd/m2.
     double reference_white = kReferenceWhite;
+    Primaries input_primaries = kRec709;
+    /// What the source holds -> scene-linear of those primaries. Empty for input spaces.
+    Pipeline input_decode = {};
 };
 
 /// @param op        as resolve_operator() gives it. On a display, what the display decides of its
@@ -73,6 +91,9 @@ struct View {
 ///                  `native` know only the default.
 /// @throws Error    unknown input space or display; exposure or reference white out of range.
 [[nodiscard]] View make_view(ResolvedOperator op, std::string_view input, double exposure_stops,
+                             std::string_view display, double reference_white = kReferenceWhite);
+/// The same for a picture whose color may be of no input space.
+[[nodiscard]] View make_view(ResolvedOperator op, SourceColor input, double exposure_stops,
                              std::string_view display, double reference_white = kReferenceWhite);
 
 /// True when light of `gamut` needs no negative light of `display`: no color of it is lost there.
@@ -92,11 +113,12 @@ struct DisplayLimit {
 /// are decoded with the operator's own power, so that nothing is encoded twice.
 [[nodiscard]] Pipeline display_light_stages(const ResolvedOperator& op, const DisplayLimit& limit);
 
-/// The whole view as stages. Its input is sanitised scene-linear in the view's input space.
+/// The whole view as stages. Its input is sanitised: scene-linear in the view's input space, or
+/// what the view decodes.
 /// @see sanitise in engine.h: NaN -> 0, then each channel to +-kHalfMax
 [[nodiscard]] Pipeline build_view(const View& view);
 
-/// The way back: what the view shows -> scene-linear in the view's input space. What the view
+/// The way back: what the view shows -> scene-linear in the view's input primaries. What the view
 /// limits is not brought back.
 /// @throws Error  when the operator has no inverse.
 [[nodiscard]] Pipeline build_inverse_view(const View& view);

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "image/tonemap_arguments.h"
+
+#include <charconv>
+#include <utility>
+
+namespace tonewright {
+namespace {
+
+constexpr std::string_view kParameter = "set.";
+
+double parse_number(std::string_view name, const std::string& value) {
+    double number = 0;
+    const char* end = value.data() + value.size();
+    const auto [stop, error] = std::from_chars(value.data(), end, number);
+    if (error != std::errc() || stop != end)
+        throw Error(std::string(name) + " is " + value + "; expected a number");
+    return number;
+}
+
+template <class Choice>
+Choice parse_choice(std::string_view name, const std::string& value,
+                    const std::vector<std::pair<std::string, Choice>>& choices) {
+    std::vector<std::string> names;
+    for (const auto& [text, choice] : choices) {
+        if (text == value) return choice;
+        names.push_back(text);
+    }
+    throw Error(std::string(name) + " is " + value + "; expected " + join_choices(names) +
+                did_you_mean(value, names));
+}
+
+}  // namespace
+
+const std::vector<std::string>& tonemap_argument_names() {
+    static const std::vector<std::string> names = {
+        "op", "look", "exposure", "input", "display", "reference_white", "unpremult", "statistics"};
+    return names;
+}
+
+void set_tonemap_argument(TonemapOptions& options, std::string_view name,
+                          const std::string& value) {
+    using Unpremult = TonemapOptions::Unpremult;
+    using Statistics = TonemapOptions::Statistics;
+    if (name == "op") {
+        options.op = value;
+    } else if (name == "look") {
+        options.look = value;
+    } else if (name == "exposure") {
+        options.exposure_stops = parse_number(name, value);
+    } else if (name == "input") {
+        options.input = value;
+    } else if (name == "display") {
+        options.display = value;
+    } else if (name == "reference_white") {
+        options.reference_white = parse_number(name, value);
+    } else if (name == "unpremult") {
+        options.unpremult = parse_choice<Unpremult>(
+            name, value,
+            {{"auto", Unpremult::automatic}, {"yes", Unpremult::yes}, {"no", Unpremult::no}});
+    } else if (name == "statistics") {
+        options.statistics = parse_choice<Statistics>(
+            name, value,
+            {{"picture", Statistics::from_picture}, {"defaults", Statistics::defaults}});
+    } else if (name.substr(0, kParameter.size()) == kParameter && name.size() > kParameter.size()) {
+        options.settings[std::string(name.substr(kParameter.size()))] = value;
+    } else {
+        std::vector<std::string> expected = tonemap_argument_names();
+        expected.emplace_back("set.NAME for a parameter of the operator");
+        throw Error("argument is " + std::string(name) + "; expected " + join_choices(expected) +
+                    did_you_mean(name, tonemap_argument_names()));
+    }
+}
+
+}  // namespace tonewright

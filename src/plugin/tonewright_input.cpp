@@ -1,0 +1,368 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// A picture file, tone mapped, as an image format of OpenImageIO: "shot.exr.tonewright?op=hable" is
+// shot.exr through Hable, in every program that reads through OpenImageIO.
+//
+// No exception leaves it, and nothing but what OpenImageIO asks a plugin for is exported.
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imageio.h>
+#include <OpenImageIO/strutil.h>
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <new>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "image/message.h"
+#include "image/picture_file.h"
+#include "image/source_picture.h"
+#include "image/tonemap_arguments.h"
+#include "image/tonemap_file.h"
+
+namespace tonewright {
+namespace {
+
+namespace fs = std::filesystem;
+using OIIO::ImageBuf;
+using OIIO::ImageInput;
+using OIIO::ImageSpec;
+using OIIO::ROI;
+
+constexpr std::string_view kExtension = ".tonewright";
+using Arguments = std::map<std::string, std::string>;
+
+/// What a name stands for.
+struct Request {
+    std::string picture;
+    Arguments arguments;
+};
+
+bool has_extension(const std::string& name) {
+    return OIIO::Strutil::iends_with(name, OIIO::string_view(kExtension.data(), kExtension.size()));
+}
+
+/// A file of lines `name=value`, of which `file` names the picture, beside it.
+void read_request_file(const fs::path& path, Request& request) {
+    constexpr std::uintmax_t kMostBytes = 1 << 16;
+    std::ifstream file(path);
+    if (!file || fs::file_size(path) > kMostBytes)
+        throw FileError(path.string() + ": cannot read: expected a short text");
+    std::string line;
+    for (int number = 1; std::getline(file, line); ++number) {
+        const std::string_view text = OIIO::Strutil::strip(line);
+        if (text.empty() || text.front() == '#') continue;
+        const std::size_t equals = text.find('=');
+        if (equals == std::string_view::npos || equals == 0) {
+            throw FileError(
+                fmt::format("{}: line {} is {}; expected name=value", path.string(), number, text));
+        }
+        const std::string name(OIIO::Strutil::strip(std::string(text.substr(0, equals))));
+        const std::string value(OIIO::Strutil::strip(std::string(text.substr(equals + 1))));
+        if (name == "file") {
+            request.picture = (path.parent_path() / value).string();
+        } else {
+            request.arguments.emplace(name, value);  // what the name says counts more
+        }
+    }
+    if (request.picture.empty())
+        throw FileError(path.string() + ": file is missing; expected a line file=PICTURE");
+}
+
+/// @throws Error, FileError
+Request parse_request(const std::string& name) {
+    Request request;
+    std::string base;
+    if (!OIIO::Strutil::get_rest_arguments(name, base, request.arguments)) {
+        throw Error("arguments are " + name.substr(base.size()) +
+                    "; expected ?name=value&name=value");
+    }
+    if (!has_extension(base)) throw Error(base + " does not end in " + std::string(kExtension));
+    std::error_code ignored;
+    if (fs::is_regular_file(base, ignored)) {
+        read_request_file(base, request);
+    } else {
+        request.picture = base.substr(0, base.size() - kExtension.size());
+    }
+    if (has_extension(request.picture))
+        throw Error("picture is " + request.picture + "; expected one that is not tone mapped yet");
+    return request;
+}
+
+TonemapOptions parse_options(const Arguments& arguments, const ImageSpec& config) {
+    TonemapOptions options;
+    // What an application sets for the format: `tonewright:op` and so on.
+    constexpr std::string_view kPrefix = "tonewright:";
+    for (const OIIO::ParamValue& hint : config.extra_attribs) {
+        const std::string name(hint.name());
+        if (name.compare(0, kPrefix.size(), kPrefix) != 0) continue;
+        set_tonemap_argument(options, std::string_view(name).substr(kPrefix.size()),
+                             hint.get_string());
+    }
+    for (const auto& [name, value] : arguments)
+        set_tonemap_argument(options, name, value);
+    if (options.op.empty())
+        throw Error("op is missing; expected ?op=OPERATOR, of `tonewright list`");
+    return options;
+}
+
+/// A picture and what it is run through.
+class TonemappedInput final : public ImageInput {
+  public:
+    TonemappedInput() = default;
+    ~TonemappedInput() override { TonemappedInput::close(); }
+    TonemappedInput(const TonemappedInput&) = delete;
+    TonemappedInput& operator=(const TonemappedInput&) = delete;
+
+    [[nodiscard]] const char* format_name() const override { return "tonewright"; }
+    // Not "procedural": that is for pictures without a file, and OpenImageIO's programs would go on
+    // where the file is missing.
+    [[nodiscard]] int supports(OIIO::string_view feature) const override {
+        return picture_ && feature != "thumbnail" && feature != "procedural" && feature != "ioproxy"
+                   ? picture_->supports(feature)
+                   : 0;
+    }
+
+    bool open(const std::string& name, ImageSpec& spec) override {
+        return open(name, spec, ImageSpec());
+    }
+    bool open(const std::string& name, ImageSpec& spec, const ImageSpec& config) override {
+        close();
+        const bool is_open = guarded([&] {
+            const Request request = parse_request(name);
+            path_ = request.picture;
+            tonemapper_.emplace(parse_options(request.arguments, config));
+            picture_ = ImageInput::open(path_, &config);
+            if (!picture_) {
+                throw FileError(fmt::format("{}: cannot read: {}", path_,
+                                            why_not_open(path_, OIIO::geterror())));
+            }
+            go_to(0, 0);
+        });
+        if (is_open) {
+            spec = m_spec;
+        } else {
+            close();
+        }
+        return is_open;
+    }
+
+    bool close() override {
+        picture_.reset();
+        tonemapper_.reset();
+        levels_.clear();
+        measured_.clear();
+        subimage_ = miplevel_ = 0;
+        return true;
+    }
+
+    [[nodiscard]] int current_subimage() const override { return subimage_; }
+    [[nodiscard]] int current_miplevel() const override { return miplevel_; }
+    bool seek_subimage(int subimage, int miplevel) override {
+        if (!picture_) return false;
+        // That there is none is how an application finds the last one: no error.
+        const std::lock_guard lock(mutex_);
+        if (levels_.count({subimage, miplevel}) == 0 &&
+            !picture_->seek_subimage(subimage, miplevel))
+            return false;
+        return guarded([&] { go_to(subimage, miplevel); });
+    }
+
+    bool read_native_scanline(int subimage, int miplevel, int y, int z, void* data) override {
+        return read_native_scanlines(subimage, miplevel, y, y + 1, z, data);
+    }
+    bool read_native_scanlines(int subimage, int miplevel, int ybegin, int yend, int z,
+                               void* data) override {
+        return guarded([&] {
+            const Level& level = level_of(subimage, miplevel);
+            const ImageSpec& s = level.source;
+            const ROI part(s.x, s.x + s.width, ybegin, std::min(yend, s.y + s.height), z, z + 1, 0,
+                           s.nchannels);
+            std::vector<std::byte> pixels = buffer_for(level, part);
+            check(picture_->read_scanlines(subimage, miplevel, part.ybegin, part.yend, z, 0,
+                                           s.nchannels, s.format, pixels.data()));
+            tonemap(subimage, level, part, pixels.data(), data, part.width());
+        });
+    }
+    bool read_native_tile(int subimage, int miplevel, int x, int y, int z, void* data) override {
+        return guarded([&] {
+            const ImageSpec& s = level_of(subimage, miplevel).source;
+            read_tiles_of(subimage, miplevel, x, x + s.tile_width, y, y + s.tile_height, z,
+                          z + s.tile_depth, data, s.tile_width);
+        });
+    }
+    bool read_native_tiles(int subimage, int miplevel, int xbegin, int xend, int ybegin, int yend,
+                           int zbegin, int zend, void* data) override {
+        return guarded([&] {
+            read_tiles_of(subimage, miplevel, xbegin, xend, ybegin, yend, zbegin, zend, data,
+                          xend - xbegin);
+        });
+    }
+    // The ranges of channels that the base class takes from these are its own.
+    using ImageInput::read_native_scanlines;
+    using ImageInput::read_native_tiles;
+
+  private:
+    /// One picture of the file.
+    struct Level {
+        ImageSpec source;  // what tonemap() looks at
+        ImageSpec result;
+    };
+
+    /// Runs `step`; what it throws becomes the error of this reader.
+    template <class Step>
+    bool guarded(const Step& step) noexcept {
+        try {
+            step();
+            return true;
+        } catch (const std::bad_alloc&) {
+            errorfmt("tonewright: {}: not enough memory", path_);
+        } catch (const std::exception& e) {
+            errorfmt("tonewright: {}", e.what());
+        } catch (...) {
+            errorfmt("tonewright: unknown error");
+        }
+        return false;
+    }
+
+    /// Of the picture's own reader. @throws FileError
+    void check(bool was_read) const {
+        if (was_read) return;
+        const std::string reported = picture_->geterror();
+        throw FileError(fmt::format(
+            "{}: cannot read: {}", path_,
+            reported.empty() ? "the file is truncated or damaged" : first_line(reported)));
+    }
+
+    /// With the lock.
+    void go_to(int subimage, int miplevel) {
+        auto found = levels_.find({subimage, miplevel});
+        if (found == levels_.end()) {
+            ImageSpec source = picture_->spec(subimage, miplevel);
+            if (source.deep)
+                throw Error(path_ + " is deep; expected flat pixels (oiiotool --flatten)");
+            check_pixel_type("picture", source.format);
+            source.channelformats.clear();  // all channels are read in the widest of them
+            ImageSpec result = result_spec(*tonemapper_, source);
+            result.tile_width = source.tile_width;
+            result.tile_height = source.tile_height;
+            result.tile_depth = source.tile_depth;
+            found = levels_
+                        .emplace(std::pair(subimage, miplevel),
+                                 Level{with_color_metadata_alone(source), std::move(result)})
+                        .first;
+        }
+        subimage_ = subimage;
+        miplevel_ = miplevel;
+        m_spec = found->second.result;
+    }
+
+    /// Levels stay where they are until the picture is closed.
+    const Level& level_of(int subimage, int miplevel) {
+        const std::lock_guard lock(mutex_);
+        if (!picture_) throw Error("no picture is open");
+        const auto found = levels_.find({subimage, miplevel});
+        if (found != levels_.end()) return found->second;
+        const int current_subimage = subimage_;
+        const int current_miplevel = miplevel_;
+        if (!picture_->seek_subimage(subimage, miplevel))
+            throw Error(fmt::format("{} has no subimage {}, level {}", path_, subimage, miplevel));
+        go_to(subimage, miplevel);
+        go_to(current_subimage, current_miplevel);
+        return levels_.at({subimage, miplevel});
+    }
+
+    /// That of a subimage, whose statistics are those of its full resolution.
+    const Tonemapper& tonemapper_of(int subimage) {
+        if (!tonemapper_->takes_statistics()) return *tonemapper_;
+        const std::lock_guard lock(mutex_);
+        auto found = measured_.find(subimage);
+        if (found == measured_.end()) {
+            const SceneStatistics statistics =
+                measure_file(path_, subimage, tonemapper_->options(), threads());
+            found = measured_.emplace(subimage, tonemapper_->with_statistics(statistics)).first;
+        }
+        return found->second;
+    }
+
+    static std::vector<std::byte> buffer_for(const Level& level, const ROI& part) {
+        return std::vector<std::byte>(static_cast<std::size_t>(part.npixels()) *
+                                      level.source.pixel_bytes());
+    }
+
+    void read_tiles_of(int subimage, int miplevel, int xbegin, int xend, int ybegin, int yend,
+                       int zbegin, int zend, void* data, int row_pixels) {
+        const Level& level = level_of(subimage, miplevel);
+        const ImageSpec& s = level.source;
+        const ROI part(xbegin, std::min(xend, s.x + s.width), ybegin,
+                       std::min(yend, s.y + s.height), zbegin, std::min(zend, s.z + s.depth), 0,
+                       s.nchannels);
+        std::vector<std::byte> pixels = buffer_for(level, part);
+        check(picture_->read_tiles(subimage, miplevel, part.xbegin, part.xend, part.ybegin,
+                                   part.yend, part.zbegin, part.zend, 0, s.nchannels, s.format,
+                                   pixels.data()));
+        tonemap(subimage, level, part, pixels.data(), data, row_pixels, yend - ybegin);
+    }
+
+    /// @param to           where the part's first pixel goes
+    /// @param row_pixels   distance of its rows there, in pixels
+    /// @param slice_rows   distance of its slices there, in rows
+    void tonemap(int subimage, const Level& level, const ROI& part, std::byte* from, void* to,
+                 int row_pixels, int slice_rows = 1) {
+        const auto cut = [&](ImageSpec spec) {
+            spec.x = part.xbegin;
+            spec.y = part.ybegin;
+            spec.z = part.zbegin;
+            spec.width = part.width();
+            spec.height = part.height();
+            spec.depth = part.depth();
+            spec.tile_width = spec.tile_height = spec.tile_depth = 0;
+            return spec;
+        };
+        const ImageBuf source(cut(level.source), from);
+        const ImageSpec spec = cut(with_color_metadata_alone(level.result));
+        const auto row = static_cast<OIIO::stride_t>(spec.pixel_bytes()) * row_pixels;
+        ImageBuf result(spec, to, static_cast<OIIO::stride_t>(spec.pixel_bytes()), row,
+                        row * slice_rows);
+        if (!tonemapper_of(subimage)(result, source, {}, threads()))
+            throw Error(path_ + ": " + result.geterror());
+    }
+
+    std::string path_;
+    std::optional<Tonemapper> tonemapper_;
+    std::unique_ptr<ImageInput> picture_;
+    // OIIO's cache reads from several threads. The picture's own reader locks itself.
+    std::recursive_mutex mutex_;
+    std::map<std::pair<int, int>, Level> levels_;
+    std::map<int, Tonemapper> measured_;
+    int subimage_ = 0;
+    int miplevel_ = 0;
+};
+
+}  // namespace
+}  // namespace tonewright
+
+// NOLINTBEGIN(readability-identifier-naming): OpenImageIO looks for these names.
+OIIO_PLUGIN_EXPORTS_BEGIN
+
+OIIO_EXPORT int tonewright_imageio_version = OIIO_PLUGIN_VERSION;
+OIIO_EXPORT const char* tonewright_imageio_library_version() { return nullptr; }
+OIIO_EXPORT OIIO::ImageInput* tonewright_input_imageio_create() {
+    try {
+        return new tonewright::TonemappedInput;
+    } catch (...) {
+        return nullptr;
+    }
+}
+OIIO_EXPORT const char* tonewright_input_extensions[] = {"tonewright", nullptr};
+
+OIIO_PLUGIN_EXPORTS_END
+// NOLINTEND(readability-identifier-naming)

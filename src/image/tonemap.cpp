@@ -22,6 +22,7 @@
 #include <optional>
 
 #include "image/color_tags.h"
+#include "image/light_picture.h"
 #include "image/message.h"
 #include "image/source_picture.h"
 #include "tonewright/engine.h"
@@ -67,7 +68,7 @@ ImageSpec result_spec(const ImageSpec& source, bool grey_becomes_color) {
 }
 
 View view_of(const TonemapOptions& options, const Settings& settings) {
-    return make_view(resolve_operator(options.op, settings, options.look), options.input,
+    return make_view(resolve_picture_operator(options.op, settings, options.look), options.input,
                      options.exposure_stops, options.display, options.reference_white);
 }
 
@@ -90,6 +91,8 @@ struct PictureMap {
     /// In messages.
     std::string label;
     TonemapOptions::Unpremult unpremult = TonemapOptions::Unpremult::automatic;
+    /// Not null: color of the data window, which is taken instead of the source's.
+    const LightPicture* light = nullptr;
 };
 
 /// Runs it; the metadata is still that of the source. @throws Error
@@ -107,20 +110,40 @@ struct Prepared {
     bool keeps_grey;
 };
 
+/// What a local operator begins with: light of Rec.709, not negative.
+Pipeline light_stages(const View& view) {
+    return {MatrixStage{rgb_to_rgb(find_input_space(view.input).primaries, kRec709)},
+            ClampStage{0, kHalfMax}};
+}
+
+/// What is left to do behind a local operator: the display.
+View view_behind(View view) {
+    view.input = "lin_rec709";
+    view.exposure_stops = 0;
+    return view;
+}
+
 }  // namespace
 
 struct Tonemapper::State {
     explicit State(const TonemapOptions& o) : options(o) {
         View view = view_of(options, options.settings);
+        if (view.op.op->is_local()) {
+            to_light.emplace(light_stages(view));
+            view = view_behind(std::move(view));
+        }
         if (!depends_on_picture(options)) prepared.emplace(std::move(view));
     }
 
     TonemapOptions options;
     /// Empty: made of each picture's statistics.
     std::optional<Prepared> prepared;
+    /// Of a local operator: what comes before it. `prepared` comes behind it.
+    std::optional<SimdEngine> to_light;
 
     void run(ImageBuf& dst, const ImageBuf& src, ROI roi, int nthreads) const;
-    void run(const Prepared& with, ImageBuf& dst, const ImageBuf& src, ROI roi, int nthreads) const;
+    void run(const Prepared& with, ImageBuf& dst, const ImageBuf& src, ROI roi, int nthreads,
+             const LightPicture* light = nullptr) const;
 };
 
 namespace {
@@ -129,8 +152,9 @@ namespace {
 class RowRunner {
   public:
     /// @throws std::bad_alloc
-    RowRunner(const PlanarMap& map, const ChannelPlan& plan, ImageBuf& dst, const ImageBuf& src)
-        : map_(map),
+    RowRunner(const PictureMap& with, const ChannelPlan& plan, ImageBuf& dst, const ImageBuf& src)
+        : map_(with.run),
+          light_(with.light),
           plan_(plan),
           dst_(dst),
           src_(src),
@@ -170,20 +194,27 @@ class RowRunner {
             const std::size_t n = std::min<std::size_t>(kSpan, static_cast<std::size_t>(xend - x));
             SpanSource source{nullptr, 0};
             if (inside && !reader_.locate(x, y, z, n, source)) return false;
-            run_span(source, static_cast<std::byte*>(dst_.pixeladdr(x, y, z)), n);
+            run_span(source, x, y, static_cast<std::byte*>(dst_.pixeladdr(x, y, z)), n);
             x += static_cast<int>(n);
         }
         return true;
     }
 
-    void run_span(const SpanSource& source, std::byte* to, std::size_t n) {
+    void run_span(const SpanSource& source, int x, int y, std::byte* to, std::size_t n) {
         const std::ptrdiff_t to_stride = dst_.pixel_stride();
         if (!run_in_place_of_floats(source, to, to_stride, n)) {
             const std::array<float*, 3> rgb = {planes_.data(), planes_.data() + kSpan,
                                                planes_.data() + 2 * kSpan};
-            load_color(source, rgb, n);
             const float* alpha = load_alpha(source, n);
-            if (alpha) divide(rgb, alpha, n);
+            if (!source.pixels) {
+                for (float* plane : rgb)
+                    std::fill_n(plane, n, 0.0F);
+            } else if (light_) {
+                copy_light(x, y, rgb, n);
+            } else {
+                load_color(src_type_, plan_.grey_source, source, rgb, n);
+                if (alpha) divide(rgb, alpha, n);
+            }
             map_({rgb[0], rgb[1], rgb[2]}, 1, rgb, 1, n);
             if (alpha) multiply(rgb, alpha, n);
             store_color(rgb, to, to_stride, n);
@@ -199,10 +230,10 @@ class RowRunner {
         const auto aligned = [](const std::byte* p) {
             return reinterpret_cast<std::uintptr_t>(p) % alignof(float) == 0;
         };
-        if (!source.pixels || plan_.grey_source || plan_.grey_result || plan_.alpha >= 0 ||
-            src_type_ != OIIO::TypeFloat || dst_.spec().format != OIIO::TypeFloat ||
-            source.stride % kFloat != 0 || to_stride % kFloat != 0 || !aligned(source.pixels) ||
-            !aligned(to)) {
+        if (!source.pixels || light_ || plan_.grey_source || plan_.grey_result ||
+            plan_.alpha >= 0 || src_type_ != OIIO::TypeFloat ||
+            dst_.spec().format != OIIO::TypeFloat || source.stride % kFloat != 0 ||
+            to_stride % kFloat != 0 || !aligned(source.pixels) || !aligned(to)) {
             return false;
         }
         const auto* in = reinterpret_cast<const float*>(source.pixels);
@@ -212,28 +243,19 @@ class RowRunner {
         return true;
     }
 
-    void load_color(const SpanSource& source, const std::array<float*, 3>& rgb,
-                    std::size_t n) const noexcept {
-        for (std::size_t c = 0; c < 3; ++c) {
-            if (!source.pixels) {
-                std::fill_n(rgb[c], n, 0.0F);
-            } else if (plan_.grey_source && c > 0) {
-                std::copy_n(rgb[0], n, rgb[c]);
-            } else {
-                src_access_.load_float(source.pixels + static_cast<std::ptrdiff_t>(c) * src_size_,
-                                       source.stride, rgb[c], n);
-            }
-        }
+    void copy_light(int x, int y, const std::array<float*, 3>& rgb, std::size_t n) const noexcept {
+        const std::size_t first =
+            static_cast<std::size_t>(y - src_.ybegin()) * static_cast<std::size_t>(light_->width) +
+            static_cast<std::size_t>(x - src_.xbegin());
+        for (std::size_t c = 0; c < 3; ++c)
+            std::copy_n(&light_->rgb[c][first], n, rgb[c]);
     }
 
-    /// The alpha to divide by, with 1 where there is nothing to divide by; or null.
+    /// The alpha to divide by, or null.
     const float* load_alpha(const SpanSource& source, std::size_t n) noexcept {
         if (plan_.alpha < 0 || !source.pixels) return nullptr;
         float* alpha = planes_.data() + 3 * kSpan;
-        src_access_.load_float(source.pixels + plan_.alpha * src_size_, source.stride, alpha, n);
-        for (std::size_t i = 0; i < n; ++i) {
-            if (alpha[i] == 0 || !std::isfinite(alpha[i])) alpha[i] = 1;
-        }
+        load_divisor(src_type_, plan_.alpha, source, alpha, nullptr, n);
         return alpha;
     }
 
@@ -283,6 +305,7 @@ class RowRunner {
     }
 
     const PlanarMap& map_;
+    const LightPicture* light_;
     const ChannelPlan& plan_;
     ImageBuf& dst_;
     const ImageBuf& src_;
@@ -346,7 +369,7 @@ void run_picture(const PictureMap& with, ImageBuf& dst, const ImageBuf& src, ROI
         OIIO::ImageBufAlgo::parallel_image(roi, OIIO::paropt(nthreads), [&](ROI part) {
             // No exception may leave a thread of OIIO's pool.
             try {
-                if (!RowRunner(with.run, plan, dst, src).run(part)) unreadable = true;
+                if (!RowRunner(with, plan, dst, src).run(part)) unreadable = true;
             } catch (const std::bad_alloc&) {
                 out_of_memory = true;
             }
@@ -360,6 +383,13 @@ void run_picture(const PictureMap& with, ImageBuf& dst, const ImageBuf& src, ROI
 
 void Tonemapper::State::run(ImageBuf& dst, const ImageBuf& src, ROI roi, int nthreads) const {
     check_source(src);
+    if (to_light) {
+        LightPicture light = read_light(src, *to_light, options.unpremult, nthreads);
+        light.exposure = static_cast<float>(std::exp2(options.exposure_stops));
+        run_local_operator(prepared->view.op, light);
+        run(*prepared, dst, src, roi, nthreads, &light);
+        return;
+    }
     if (prepared) {
         run(*prepared, dst, src, roi, nthreads);
         return;
@@ -372,13 +402,13 @@ void Tonemapper::State::run(ImageBuf& dst, const ImageBuf& src, ROI roi, int nth
 }
 
 void Tonemapper::State::run(const Prepared& with, ImageBuf& dst, const ImageBuf& src, ROI roi,
-                            int nthreads) const {
+                            int nthreads, const LightPicture* light) const {
     const PlanarMap engine = [&](const auto& in, std::ptrdiff_t in_stride, const auto& out,
                                  std::ptrdiff_t out_stride, std::size_t count) {
         with.engine.run(in, in_stride, out, out_stride, count);
     };
-    run_picture({engine, with.keeps_grey, with.view.op.label, options.unpremult}, dst, src, roi,
-                nthreads);
+    run_picture({engine, with.keeps_grey, with.view.op.label, options.unpremult, light}, dst, src,
+                roi, nthreads);
     tag_as_result_of(with.view, dst.specmod());
 }
 
@@ -391,6 +421,7 @@ Tonemapper& Tonemapper::operator=(Tonemapper&&) noexcept = default;
 const TonemapOptions& Tonemapper::options() const noexcept { return state_->options; }
 
 bool Tonemapper::takes_statistics() const noexcept { return !state_->prepared; }
+bool Tonemapper::needs_whole_picture() const noexcept { return state_->to_light.has_value(); }
 
 Tonemapper Tonemapper::with_statistics(const SceneStatistics& statistics) const {
     TonemapOptions options = state_->options;

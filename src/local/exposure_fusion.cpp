@@ -10,7 +10,8 @@
 //           (aces_hill:threejs), whose clamp is part of it.
 // Formula   Three exposures c = exposure {2^-highlights, 1, 2^shadows} rgb, each tone mapped; their
 //           lightness e = sqrt(0.1 R + 0.7 G + 0.2 B); weights exp(-(e - 0.5)^2 sigma^2/2), divided
-//           by their sum. Both in pyramids by bilinear sampling. From the level `mip` up to
+//           by their sum. Both in pyramids by bilinear sampling, whose levels have two pixels or
+//           more a side. From the level `mip` up to
 //           `display_mip`, the Laplacian of e is summed by the weights of its level. To full size
 //           with a linear model of the middle exposure's lightness in 3 x 3 samples; the quotient
 //           of new and old lightness is a factor on light before the curve.
@@ -110,7 +111,7 @@ class Fusion {
           boosts_(p.choice("boost_local_contrast") == "yes"),
           is_plain_(p.number("shadows") == 0 && p.number("highlights") == 0) {
         int last = 0;
-        for (int w = picture.width, h = picture.height; w > 1 && h > 1; w /= 2, h /= 2)
+        for (int w = picture.width / 2, h = picture.height / 2; w > 1 && h > 1; w /= 2, h /= 2)
             ++last;
         mip_ = std::min(whole_number(p, "mip"), last);
         display_mip_ = std::min(whole_number(p, "display_mip"), mip_);

@@ -413,9 +413,9 @@ Operator define_local_laplacian() {
     op.licence = "published formula";
     op.negatives = kLocalNegatives;
     op.parameters = {
-        number_parameter("contrast", "stops", 6.6, 1, 24,
+        number_parameter("contrast", "stops", 7.5, 1, 24,
                          "from the 0.5 % to the 99.5 % percentile of what is shown, at most"),
-        number_parameter("base", "", 0.2, 0, 1, "slope of log light over large differences"),
+        number_parameter("base", "", 0.25, 0, 1, "slope of log light over large differences"),
         number_parameter("detail", "", 1, 0, 4, "slope of log light over small differences"),
         number_parameter("threshold", "stops", 1.3, 0.25, 8, "where differences begin to be large"),
         number_parameter("saturation", "", 0.8, 0, 1,

@@ -14,9 +14,10 @@ BELOW = {
     "pipeline": ["color", "expr"],
     "operators": ["pipeline", "color", "expr"],
     "engine": ["operators", "pipeline", "color", "expr"],
+    "local": ["engine", "operators", "pipeline", "color", "expr"],
     "lut": ["engine", "operators", "pipeline", "color", "expr"],
     "ocio": ["lut", "engine", "operators", "pipeline", "color", "expr"],
-    "image": ["lut", "engine", "operators", "pipeline", "color", "expr"],
+    "image": ["local", "lut", "engine", "operators", "pipeline", "color", "expr"],
     "verify": ["image", "ocio", "lut", "engine", "operators", "pipeline", "color", "expr"],
     "cli": ["verify", "image", "ocio", "lut", "engine", "operators", "pipeline", "color", "expr"],
 }
@@ -26,7 +27,7 @@ for top in ("plugin", "python"):
 PUBLIC = {
     "error": "expr", "expr": "expr", "color": "color", "pipeline": "pipeline", "view": "pipeline",
     "engine": "engine", "lut": "lut", "ocio": "ocio", "image": "image", "sequence": "image", "verify": "verify",
-    "lint": "verify", "lut_match": "verify", "lut_file": "ocio",
+    "local": "local", "lint": "verify", "lut_match": "verify", "lut_file": "ocio",
 }
 THIRD_PARTY = {
     "hwy": ["engine"],

@@ -434,6 +434,11 @@ std::string index_section(const std::vector<DialectGroup>& groups) {
                                 grey_code(view, 1));
         }
     }
+    text += "| **Local: pictures only** | [what that is](local.md) | | |\n";
+    for (const Operator& op : local_operators()) {
+        text += fmt::format("| [{}](#{})<br>`{}` | {} | | |\n", cell(op.title), op.id, op.id,
+                            cell(op.character));
+    }
     return text + "\n";
 }
 
@@ -572,6 +577,8 @@ std::vector<GeneratedFile> make_catalogue() {
         page +=
             fmt::format("<a id=\"{}\"></a>\n\n", op.id) + operator_section(op, plot_and_figures);
     }
+    for (const Operator& op : local_operators())
+        page += fmt::format("<a id=\"{}\"></a>\n\n", op.id) + operator_section(op);
     if (!groups.empty()) {
         const std::vector<float> probes = non_negative_probes();
         page += dialect_introduction(probes.size() / 3);

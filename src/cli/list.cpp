@@ -107,13 +107,16 @@ Json to_json(const Operator& op) {
             {"warnings", all_warnings(op)},
             {"deviations", deviations},
             {"dialects", op.dialects},
-            {"is_diagnostic", op.is_diagnostic}};
+            {"is_diagnostic", op.is_diagnostic},
+            {"is_local", op.is_local()}};
 }
 
 Json spaces_to_json() {
     Json all;
     for (const Operator& op : all_operators())
         all["operators"].push_back(to_json(op));
+    for (const Operator& op : local_operators())
+        all["local_operators"].push_back(to_json(op));
     for (const Display& d : all_displays()) {
         all["displays"].push_back(
             {{"id", d.id}, {"title", d.title}, {"aliases", d.aliases}, {"source", d.source}});
@@ -152,11 +155,23 @@ std::string dialects_of(const Operator& op) {
 }
 
 constexpr const char* kDiagnostic = "shows what is in a picture, not a picture";
+constexpr const char* kLocal = "pictures only, no LUT or config can hold it";
+
+const Operator& find_listed(const std::string& id) {
+    for (const Operator& op : local_operators()) {
+        if (op.id == id) return op;
+    }
+    return find_operator(id);
+}
 
 void print_operator(const Operator& op) {
     fmt::print("{}: {}\n  {}\n", op.id, op.title, op.character);
     fmt::print("  source      {}\n  licence     {}\n", op.source, op.licence);
-    fmt::print("  view        {} (in the OpenColorIO config)\n", op.view);
+    if (op.is_local()) {
+        fmt::print("  local       {}\n", kLocal);
+    } else {
+        fmt::print("  view        {} (in the OpenColorIO config)\n", op.view);
+    }
     fmt::print("  works in    {}; negatives: {}\n", op.working.name, op.negatives);
     fmt::print("  output      {}\n", output_of(op));
     if (!op.dialects.empty()) fmt::print("  dialect of  {}\n", dialects_of(op));
@@ -201,6 +216,9 @@ void print_overview() {
             words.push_back("--look " + l.id);
         print_entry(op.id, width, words);
     }
+    fmt::print("\nlocal: pictures only (tonewright apply)\n");
+    for (const Operator& op : local_operators())
+        print_entry(op.id, width, {op.title});
     fmt::print("\ndisplays (--display)\n");
     for (const Display& d : all_displays())
         print_entry(d.id, width, {d.title + ":", d.source});
@@ -216,10 +234,10 @@ void print_overview() {
 std::string operator_section(const Operator& op, std::string_view after_character) {
     std::string text =
         fmt::format("## {} (`{}`)\n\n{}.\n\n{}", op.title, op.id, op.character, after_character);
-    text += fmt::format(
-        "* Source: {} ({})\n* Works in: {}; output: {}\n* Negatives: {}\n"
-        "* View of the config: `{}`\n",
-        op.source, op.licence, op.working.name, output_of(op), op.negatives, op.view);
+    text += fmt::format("* Source: {} ({})\n* Works in: {}; output: {}\n* Negatives: {}\n",
+                        op.source, op.licence, op.working.name, output_of(op), op.negatives);
+    text += op.is_local() ? fmt::format("* Local: {}\n", kLocal)
+                          : fmt::format("* View of the config: `{}`\n", op.view);
     if (!op.dialects.empty()) text += fmt::format("* Dialect of {}\n", dialects_of(op));
     if (op.is_diagnostic) text += fmt::format("* Diagnostic: {}\n", kDiagnostic);
     for (const std::string& w : all_warnings(op))
@@ -332,7 +350,7 @@ void add_list(CLI::App& program, int&) {
                 print_hosts();
             }
         } else if (!options->op.empty()) {
-            const Operator& op = find_operator(options->op);
+            const Operator& op = find_listed(options->op);
             if (options->json) {
                 fmt::print("{}\n", to_json(op).dump(2));
             } else if (options->markdown) {
@@ -346,8 +364,10 @@ void add_list(CLI::App& program, int&) {
         } else if (options->json) {
             fmt::print("{}\n", spaces_to_json().dump(2));
         } else if (options->markdown) {
-            for (const Operator& op : all_operators())
-                fmt::print("{}", operator_section(op));
+            for (const std::vector<Operator>* operators : {&all_operators(), &local_operators()}) {
+                for (const Operator& op : *operators)
+                    fmt::print("{}", operator_section(op));
+            }
         } else {
             print_overview();
         }

@@ -165,4 +165,27 @@ void check_was_read(const OIIO::ImageBuf& source, bool is_complete) {
     throw Error(source.has_error() ? first_line(source.geterror()) : "source cannot be read");
 }
 
+void load_color(const OIIO::TypeDesc& type, bool is_grey, const SpanSource& source,
+                const std::array<float*, 3>& rgb, std::size_t n) noexcept {
+    const PixelAccess& access = *pixel_access(type);
+    for (std::size_t c = 0; c < 3; ++c) {
+        if (is_grey && c > 0) {
+            std::copy_n(rgb[0], n, rgb[c]);
+        } else {
+            access.load_float(source.pixels + c * type.size(), source.stride, rgb[c], n);
+        }
+    }
+}
+
+void load_divisor(const OIIO::TypeDesc& type, int alpha, const SpanSource& source, float* to,
+                  std::uint8_t* covers, std::size_t n) noexcept {
+    const auto offset = static_cast<std::size_t>(alpha) * type.size();
+    pixel_access(type)->load_float(source.pixels + offset, source.stride, to, n);
+    for (std::size_t i = 0; i < n; ++i) {
+        const bool is_divisor = to[i] != 0 && std::isfinite(to[i]);
+        if (!is_divisor) to[i] = 1;
+        if (covers) covers[i] = is_divisor ? 1 : 0;
+    }
+}
+
 }  // namespace tonewright

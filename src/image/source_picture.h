@@ -3,7 +3,9 @@
 
 #include <OpenImageIO/imagebuf.h>
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "image/pixel_access.h"
@@ -62,6 +64,15 @@ struct SpanSource {
     const std::byte* pixels;  // null: outside the data window, black
     std::ptrdiff_t stride;    // bytes from pixel to pixel
 };
+
+/// Red, green and blue of a span as planes; of a grey picture three times the same.
+void load_color(const OIIO::TypeDesc& type, bool is_grey, const SpanSource& source,
+                const std::array<float*, 3>& rgb, std::size_t n) noexcept;
+
+/// What color is divided by: alpha, and 1 where there is nothing to divide by (0 or not finite).
+/// @param covers  null, or gets 1 where alpha is a divisor, else 0
+void load_divisor(const OIIO::TypeDesc& type, int alpha, const SpanSource& source, float* to,
+                  std::uint8_t* covers, std::size_t n) noexcept;
 
 /// Finds the spans of a picture. One for each thread.
 class SpanReader {

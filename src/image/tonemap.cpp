@@ -27,6 +27,7 @@
 #include <vector>
 
 #include "image/color_tags.h"
+#include "image/light_picture.h"
 #include "image/message.h"
 #include "image/source_picture.h"
 #include "tonewright/engine.h"
@@ -85,7 +86,7 @@ ImageSpec result_spec(const ImageSpec& source, bool grey_becomes_color) {
 }
 
 View view_of(const TonemapOptions& options, const Settings& settings, const SourceColor& source) {
-    return make_view(resolve_operator(options.op, settings, options.look), source,
+    return make_view(resolve_picture_operator(options.op, settings, options.look), source,
                      options.exposure_stops, options.display, options.reference_white);
 }
 
@@ -135,22 +136,46 @@ struct PictureMap {
     /// In messages.
     std::string label;
     TonemapOptions::Unpremult unpremult = TonemapOptions::Unpremult::automatic;
+    /// Not null: color of the data window, which is taken instead of the source's.
+    const LightPicture* light = nullptr;
 };
 
 /// Runs it; the metadata is still that of the source. @throws Error
 void run_picture(const PictureMap& with, ImageBuf& dst, const ImageBuf& src, ROI roi, int nthreads,
                  Progress& progress);
 
+/// What a local operator begins with: light of Rec.709, not negative.
+Pipeline light_stages(const View& view) {
+    Pipeline stages = view.input_decode;
+    stages.emplace_back(MatrixStage{rgb_to_rgb(view.input_primaries, kRec709)});
+    stages.emplace_back(ClampStage{0, kHalfMax});
+    return stages;
+}
+
+/// What the engine has to do: behind a local operator, the display.
+Pipeline engine_stages(View view) {
+    if (view.op.op->is_local()) {
+        view.input_primaries = kRec709;
+        view.input_decode = {};
+        view.exposure_stops = 0;
+    }
+    return build_view(view);
+}
+
 /// What a picture is run through.
 struct Prepared {
     explicit Prepared(View v)
         : view(std::move(v)),
-          engine(build_view(view), view.op.op->bounds.simd_goal),
-          keeps_grey(keeps_greys(build_view(view))) {}
+          engine(engine_stages(view), view.op.op->bounds.simd_goal),
+          keeps_grey(keeps_greys(engine_stages(view))) {
+        if (view.op.op->is_local()) to_light.emplace(light_stages(view));
+    }
 
     View view;
     SimdEngine engine;
     bool keeps_grey;
+    /// Of a local operator: what comes before it. `engine` comes behind it.
+    std::optional<SimdEngine> to_light;
 };
 
 }  // namespace
@@ -159,19 +184,21 @@ struct Tonemapper::State {
     explicit State(const TonemapOptions& o)
         : options(o), depends_on_picture(tonewright::depends_on_picture(o)) {
         // Tells what is wrong with the options before there is a picture.
-        (void)view_of(options, options.settings, source_color({}, options.input));
+        is_local =
+            view_of(options, options.settings, source_color({}, options.input)).op.op->is_local();
     }
 
     TonemapOptions options;
     /// Prepared anew with each picture's statistics.
     bool depends_on_picture;
+    bool is_local = false;
 
     void run(ImageBuf& dst, const ImageBuf& src, ROI roi, int nthreads, Progress& progress) const;
 
   private:
     [[nodiscard]] std::shared_ptr<const Prepared> prepared_for(const SourceColor& source) const;
     void run(const Prepared& with, ImageBuf& dst, const ImageBuf& src, ROI roi, int nthreads,
-             Progress& progress) const;
+             Progress& progress, const LightPicture* light = nullptr) const;
 
     /// Pictures of one shot are of one kind.
     static constexpr std::size_t kMostPrepared = 8;
@@ -185,8 +212,9 @@ namespace {
 class RowRunner {
   public:
     /// @throws std::bad_alloc
-    RowRunner(const PlanarMap& map, const ChannelPlan& plan, ImageBuf& dst, const ImageBuf& src)
-        : map_(map),
+    RowRunner(const PictureMap& with, const ChannelPlan& plan, ImageBuf& dst, const ImageBuf& src)
+        : map_(with.run),
+          light_(with.light),
           plan_(plan),
           dst_(dst),
           src_(src),
@@ -229,20 +257,27 @@ class RowRunner {
             const std::size_t n = std::min<std::size_t>(kSpan, static_cast<std::size_t>(xend - x));
             SpanSource source{nullptr, 0};
             if (inside && !reader_.locate(x, y, z, n, source)) return false;
-            run_span(source, static_cast<std::byte*>(dst_.pixeladdr(x, y, z)), n);
+            run_span(source, x, y, static_cast<std::byte*>(dst_.pixeladdr(x, y, z)), n);
             x += static_cast<int>(n);
         }
         return true;
     }
 
-    void run_span(const SpanSource& source, std::byte* to, std::size_t n) {
+    void run_span(const SpanSource& source, int x, int y, std::byte* to, std::size_t n) {
         const std::ptrdiff_t to_stride = dst_.pixel_stride();
         if (!run_in_place_of_floats(source, to, to_stride, n)) {
             const std::array<float*, 3> rgb = {planes_.data(), planes_.data() + kSpan,
                                                planes_.data() + 2 * kSpan};
-            load_color(source, rgb, n);
             const float* alpha = load_alpha(source, n);
-            if (alpha) divide(rgb, alpha, n);
+            if (!source.pixels) {
+                for (float* plane : rgb)
+                    std::fill_n(plane, n, 0.0F);
+            } else if (light_) {
+                copy_light(x, y, rgb, n);
+            } else {
+                load_color(src_type_, plan_.grey_source, source, rgb, n);
+                if (alpha) divide(rgb, alpha, n);
+            }
             map_({rgb[0], rgb[1], rgb[2]}, 1, rgb, 1, n);
             if (alpha) multiply(rgb, alpha, n);
             store_color(rgb, to, to_stride, n);
@@ -258,10 +293,10 @@ class RowRunner {
         const auto aligned = [](const std::byte* p) {
             return reinterpret_cast<std::uintptr_t>(p) % alignof(float) == 0;
         };
-        if (!source.pixels || plan_.grey_source || plan_.grey_result || plan_.alpha >= 0 ||
-            src_type_ != OIIO::TypeFloat || dst_.spec().format != OIIO::TypeFloat ||
-            source.stride % kFloat != 0 || to_stride % kFloat != 0 || !aligned(source.pixels) ||
-            !aligned(to)) {
+        if (!source.pixels || light_ || plan_.grey_source || plan_.grey_result ||
+            plan_.alpha >= 0 || src_type_ != OIIO::TypeFloat ||
+            dst_.spec().format != OIIO::TypeFloat || source.stride % kFloat != 0 ||
+            to_stride % kFloat != 0 || !aligned(source.pixels) || !aligned(to)) {
             return false;
         }
         const auto* in = reinterpret_cast<const float*>(source.pixels);
@@ -271,28 +306,19 @@ class RowRunner {
         return true;
     }
 
-    void load_color(const SpanSource& source, const std::array<float*, 3>& rgb,
-                    std::size_t n) const noexcept {
-        for (std::size_t c = 0; c < 3; ++c) {
-            if (!source.pixels) {
-                std::fill_n(rgb[c], n, 0.0F);
-            } else if (plan_.grey_source && c > 0) {
-                std::copy_n(rgb[0], n, rgb[c]);
-            } else {
-                src_access_.load_float(source.pixels + static_cast<std::ptrdiff_t>(c) * src_size_,
-                                       source.stride, rgb[c], n);
-            }
-        }
+    void copy_light(int x, int y, const std::array<float*, 3>& rgb, std::size_t n) const noexcept {
+        const std::size_t first =
+            static_cast<std::size_t>(y - src_.ybegin()) * static_cast<std::size_t>(light_->width) +
+            static_cast<std::size_t>(x - src_.xbegin());
+        for (std::size_t c = 0; c < 3; ++c)
+            std::copy_n(&light_->rgb[c][first], n, rgb[c]);
     }
 
-    /// The alpha to divide by, with 1 where there is nothing to divide by; or null.
+    /// The alpha to divide by, or null.
     const float* load_alpha(const SpanSource& source, std::size_t n) noexcept {
         if (plan_.alpha < 0 || !source.pixels) return nullptr;
         float* alpha = planes_.data() + 3 * kSpan;
-        src_access_.load_float(source.pixels + plan_.alpha * src_size_, source.stride, alpha, n);
-        for (std::size_t i = 0; i < n; ++i) {
-            if (alpha[i] == 0 || !std::isfinite(alpha[i])) alpha[i] = 1;
-        }
+        load_divisor(src_type_, plan_.alpha, source, alpha, nullptr, n);
         return alpha;
     }
 
@@ -342,6 +368,7 @@ class RowRunner {
     }
 
     const PlanarMap& map_;
+    const LightPicture* light_;
     const ChannelPlan& plan_;
     ImageBuf& dst_;
     const ImageBuf& src_;
@@ -407,7 +434,7 @@ void run_picture(const PictureMap& with, ImageBuf& dst, const ImageBuf& src, ROI
         OIIO::ImageBufAlgo::parallel_image(roi, OIIO::paropt(nthreads), [&](ROI part) {
             // No exception may leave a thread of OIIO's pool.
             try {
-                if (!RowRunner(with.run, plan, dst, src).run(part, progress)) unreadable = true;
+                if (!RowRunner(with, plan, dst, src).run(part, progress)) unreadable = true;
             } catch (...) {
                 const std::lock_guard lock(error_mutex);
                 error = std::current_exception();
@@ -426,7 +453,15 @@ void Tonemapper::State::run(ImageBuf& dst, const ImageBuf& src, ROI roi, int nth
     check_source(src);
     const SourceColor source = source_color(src.spec(), options.input);
     if (!depends_on_picture) {
-        run(*prepared_for(source), dst, src, roi, nthreads, progress);
+        const std::shared_ptr<const Prepared> prepared = prepared_for(source);
+        if (prepared->to_light) {
+            LightPicture light = read_light(src, *prepared->to_light, options.unpremult, nthreads);
+            light.exposure = static_cast<float>(std::exp2(options.exposure_stops));
+            run_local_operator(prepared->view.op, light);
+            run(*prepared, dst, src, roi, nthreads, progress, &light);
+        } else {
+            run(*prepared, dst, src, roi, nthreads, progress);
+        }
         return;
     }
     // Of the whole picture, whatever the region: its parts must fit together.
@@ -448,13 +483,13 @@ std::shared_ptr<const Prepared> Tonemapper::State::prepared_for(const SourceColo
 }
 
 void Tonemapper::State::run(const Prepared& with, ImageBuf& dst, const ImageBuf& src, ROI roi,
-                            int nthreads, Progress& progress) const {
+                            int nthreads, Progress& progress, const LightPicture* light) const {
     const PlanarMap engine = [&](const auto& in, std::ptrdiff_t in_stride, const auto& out,
                                  std::ptrdiff_t out_stride, std::size_t count) {
         with.engine.run(in, in_stride, out, out_stride, count);
     };
-    run_picture({engine, with.keeps_grey, with.view.op.label, options.unpremult}, dst, src, roi,
-                nthreads, progress);
+    run_picture({engine, with.keeps_grey, with.view.op.label, options.unpremult, light}, dst, src,
+                roi, nthreads, progress);
     tag_as_result_of(with.view, dst.specmod());
 }
 
@@ -467,6 +502,7 @@ Tonemapper& Tonemapper::operator=(Tonemapper&&) noexcept = default;
 const TonemapOptions& Tonemapper::options() const noexcept { return state_->options; }
 
 bool Tonemapper::takes_statistics() const noexcept { return state_->depends_on_picture; }
+bool Tonemapper::needs_whole_picture() const noexcept { return state_->is_local; }
 
 Tonemapper Tonemapper::with_statistics(const SceneStatistics& statistics) const {
     TonemapOptions options = state_->options;

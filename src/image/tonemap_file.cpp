@@ -235,7 +235,7 @@ void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, con
     PictureWriter writer(out, type, nthreads);  // a wrong name is told before a large file is read
     PictureReader reader(in, nthreads);
     check_pixel_type("source", reader.spec().format);
-    if (reader.spec().depth > 1) {
+    if (reader.spec().depth > 1 || tonemapper.needs_whole_picture()) {
         const ImageBuf source = reader.read_all();
         ImageBuf result;
         run(tonemapper, result, source, nthreads);

@@ -92,13 +92,32 @@ const std::string& Params::text(std::string_view name) const {
     return it->second;
 }
 
-const Operator& find_operator(std::string_view id) {
-    for (const Operator& op : all_operators()) {
-        if (op.id == id) return op;
+namespace {
+
+/// Local or not.
+const Operator& find_any_operator(std::string_view id) {
+    std::vector<std::string> ids;
+    for (const std::vector<Operator>* operators : {&all_operators(), &local_operators()}) {
+        for (const Operator& op : *operators) {
+            if (op.id == id) return op;
+            ids.push_back(op.id);
+        }
     }
-    const auto ids = names_of(all_operators(), [](const Operator& op) { return op.id; });
     const std::string nearest = did_you_mean(id, ids);
     throw Error("operator is " + std::string(id) + "; expected one of `tonewright list`" + nearest);
+}
+
+}  // namespace
+
+const Operator& find_operator(std::string_view id) {
+    const Operator& op = find_any_operator(id);
+    if (op.is_local()) {
+        throw Error("operator is " + op.id +
+                    ", which looks at a pixel's surroundings: no LUT, config or color by itself "
+                    "holds it; expected an operator that `tonewright list` does not mark as local, "
+                    "or `tonewright apply` with a picture");
+    }
+    return op;
 }
 
 namespace {
@@ -106,7 +125,7 @@ namespace {
 /// `id` or `id:preset`; the second is null where there is no colon.
 std::pair<const Operator*, const Preset*> find_preset(std::string_view name) {
     const std::size_t colon = name.find(':');
-    const Operator& op = find_operator(name.substr(0, colon));
+    const Operator& op = find_any_operator(name.substr(0, colon));
     if (colon == std::string_view::npos) return {&op, nullptr};
     const std::string_view wanted = name.substr(colon + 1);
     for (const Preset& preset : op.presets) {
@@ -141,7 +160,7 @@ ResolvedOperator resolve_for_display(const ResolvedOperator& resolved,
         const std::string decided = spec.from_display(display);
         if (!decided.empty()) all.try_emplace(spec.name, decided);
     }
-    ResolvedOperator shown = resolve_operator(resolved.name, all, resolved.params.look());
+    ResolvedOperator shown = resolve_picture_operator(resolved.name, all, resolved.params.look());
     shown.label = resolved.label;
     shown.settings = resolved.settings;
     return shown;
@@ -149,6 +168,12 @@ ResolvedOperator resolve_for_display(const ResolvedOperator& resolved,
 
 ResolvedOperator resolve_operator(std::string_view name, const Settings& settings,
                                   std::string_view look) {
+    (void)find_operator(name.substr(0, name.find(':')));  // a local one is told what it is
+    return resolve_picture_operator(name, settings, look);
+}
+
+ResolvedOperator resolve_picture_operator(std::string_view name, const Settings& settings,
+                                          std::string_view look) {
     using Kind = ParameterSpec::Kind;
     const auto [found_op, preset] = find_preset(name);
     const Operator& op = *found_op;

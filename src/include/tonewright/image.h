@@ -46,7 +46,7 @@ struct TonemapOptions {
         defaults,
     };
 
-    /// Operator id, optionally `:preset`.
+    /// Operator id, optionally `:preset`. Local operators are welcome (local.h).
     std::string op;
     /// Operator parameters, name -> text.
     Settings settings = {};
@@ -105,6 +105,8 @@ class Tonemapper {
     [[nodiscard]] const TonemapOptions& options() const noexcept;
     /// Some of the operator's parameters are each picture's own.
     [[nodiscard]] bool takes_statistics() const noexcept;
+    /// The operator is a local one: a pixel's surroundings count.
+    [[nodiscard]] bool needs_whole_picture() const noexcept;
     /// The same for all pictures that have these statistics: prepared once.
     /// @throws Error  statistics that are no values of the operator's parameters
     [[nodiscard]] Tonemapper with_statistics(const SceneStatistics& statistics) const;
@@ -139,6 +141,9 @@ class Tonemapper {
 ///    "Linear"), else the display's title; no claim for `native`, unless the operator's output is
 ///    plainly linear or a power of Rec.709. Profiles, gammas and primaries that contradict it go;
 ///    `chromaticities` is set where the result is not Rec.709.
+///
+/// 7. A local operator (local.h) looks at the whole data window, whatever the region: regions fit
+///    together. It holds three floats a pixel and some more in memory. Volumes are refused.
 ///
 /// @param dst       uninitialised: becomes a float image of the ROI's size with the source's
 /// metadata.
@@ -213,7 +218,8 @@ void write_image_atomically(const OIIO::ImageBuf& image, const std::string& path
 /// file's (UTC), or some formats would put in the time: made again, the result is the same.
 ///
 /// Rows are read, tone mapped and written at the same time. An operator that takes statistics reads
-/// the file twice. Volumes are held in memory as a whole. `out` may be `in`.
+/// the file twice. Volumes, and the pictures of local operators, are held in memory as a whole.
+/// `out` may be `in`.
 ///
 /// @param type      @see write_image_atomically
 /// @param nthreads  0: OIIO's `threads` attribute. 1: one step after the other in the calling

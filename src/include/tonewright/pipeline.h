@@ -207,7 +207,8 @@ class Params {
     [[nodiscard]] const std::string& look() const { return look_; }
 
   private:
-    friend ResolvedOperator resolve_operator(std::string_view, const Settings&, std::string_view);
+    friend ResolvedOperator resolve_picture_operator(std::string_view, const Settings&,
+                                                     std::string_view);
     std::map<std::string, double, std::less<>> numbers_;
     std::map<std::string, std::string, std::less<>> choices_;
     std::map<std::string, std::string, std::less<>> texts_;
@@ -270,6 +271,8 @@ enum class OutputKind : unsigned char {
     code_value,      // already encoded with a pure power: decode before any display's encoding
 };
 
+struct LightPicture;  // local.h
+
 /// One tone mapping operator: everything that any form of it needs to know.
 struct Operator {
     std::string id;         // lower_snake; a dialect has the name of what it reproduces
@@ -306,11 +309,19 @@ struct Operator {
     /// The style of OpenColorIO's BuiltinTransform from ACES2065-1 to CIE XYZ D65 that this equals;
     /// empty: none. Null: never.
     std::string (*ocio_builtin)(const Params& params) = nullptr;
+    /// Not null: what a pixel becomes depends on its surroundings, and this is the operator, for
+    /// whole pictures (local.h). build() is what is left for a pixel by itself: nothing.
+    void (*run_local)(LightPicture& picture, const Params& params) = nullptr;
+
+    [[nodiscard]] bool is_local() const { return run_local != nullptr; }
 };
 
-/// Every operator, sorted by id. The table is generated from the files of src/operators/.
+/// Every operator of a pixel by itself, sorted by id. The table is generated from the files of
+/// src/operators/.
 [[nodiscard]] const std::vector<Operator>& all_operators();
-/// @throws Error  naming the nearest id when there is none such.
+/// Those that look at a pixel's surroundings, sorted by id: no form but a picture holds them.
+[[nodiscard]] const std::vector<Operator>& local_operators();
+/// @throws Error  naming the nearest id when there is none such; a local operator.
 [[nodiscard]] const Operator& find_operator(std::string_view id);
 
 /// An operator with its parameters fixed.
@@ -343,9 +354,15 @@ struct ResolvedOperator {
 /// @param look      look id, or empty.
 /// @throws Error    unknown operator, preset, parameter, look or choice (with the nearest name);
 ///                  a value that is no number or outside the parameter's interval. Never a clamp.
+///                  A local operator: @see resolve_picture_operator
 [[nodiscard]] ResolvedOperator resolve_operator(std::string_view name,
                                                 const Settings& settings = {},
                                                 std::string_view look = {});
+
+/// The same for whole pictures, which local operators may be used on, too.
+[[nodiscard]] ResolvedOperator resolve_picture_operator(std::string_view name,
+                                                        const Settings& settings = {},
+                                                        std::string_view look = {});
 
 /// `settings` and, of the parameters that neither they nor the preset of `name` set, those that a
 /// picture has, from its statistics.

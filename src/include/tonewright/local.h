@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "tonewright/pipeline.h"
+
+/// Operators that look at a pixel's surroundings, on planes of floats. tonemap() of image.h runs
+/// them on pictures of any kind; this header needs no other library.
+namespace tonewright {
+
+/// Calls body(begin, end) for parts that make up [0, count), each once, from any threads, and
+/// returns when all are done. What an operator computes does not depend on the parts, in any bit.
+using RowLoop = std::function<void(int count, const std::function<void(int begin, int end)>& body)>;
+
+/// One part, in the calling thread.
+void run_rows_in_turn(int count, const std::function<void(int begin, int end)>& body);
+
+/// A picture in memory, on which a local operator works in place.
+struct LightPicture {
+    int width = 0;   // at least 1
+    int height = 0;  // at least 1
+    /// Red, green and blue of Rec.709, row by row without gaps: scene-linear before exposure,
+    /// within [0, 65504]. They become the operator's output: finite, not negative.
+    std::array<std::vector<float>, 3> rgb;
+    /// 0: the pixel is left out of statistics (nothing covers it). Empty: all count. Where none
+    /// counts, all do.
+    std::vector<std::uint8_t> counts = {};
+    /// Factor on light, > 0. Statistics are those without it: it is a correction on top of what
+    /// they choose.
+    float exposure = 1;
+    RowLoop for_rows = run_rows_in_turn;
+};
+
+/// Runs a local operator.
+/// @param op      as resolve_picture_operator() gives it
+/// @throws Error  the operator is not local, or the planes are not of the picture's size.
+void run_local_operator(const ResolvedOperator& op, LightPicture& picture);
+
+}  // namespace tonewright

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "local/operators.h"
+
+#include <cmath>
+
+namespace tonewright {
+
+const std::vector<Operator>& local_operators() {
+    static const std::vector<Operator> all = {define_exposure_fusion(), define_local_laplacian(),
+                                              define_reinhard_local()};
+    return all;
+}
+
+void run_rows_in_turn(int count, const std::function<void(int begin, int end)>& body) {
+    body(0, count);
+}
+
+void run_local_operator(const ResolvedOperator& op, LightPicture& picture) {
+    if (!op.op->is_local()) {
+        throw Error("operator is " + op.op->id +
+                    ", which looks at one pixel at a time; expected a local one");
+    }
+    const std::size_t count =
+        static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
+    for (const std::vector<float>& plane : picture.rgb) {
+        if (picture.width < 1 || picture.height < 1 || plane.size() != count) {
+            throw Error("plane has " + std::to_string(plane.size()) + " pixels; expected " +
+                        std::to_string(picture.width) + " x " + std::to_string(picture.height));
+        }
+    }
+    op.op->run_local(picture, op.params);
+}
+
+int whole_number(const Params& params, const char* name) {
+    const double value = params.number(name);
+    if (value != std::floor(value)) {
+        throw Error(std::string(name) + " is " + shortest(value) + "; expected a whole number");
+    }
+    return static_cast<int>(value);
+}
+
+}  // namespace tonewright

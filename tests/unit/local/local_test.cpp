@@ -1,0 +1,362 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Local operators on planes and on pictures. Their numbers are held to NumPy by
+// python_check/local_operators.py; here is what has to be so for every picture.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "tonewright/image.h"
+#include "tonewright/local.h"
+#include "unit/image/pictures.h"
+
+namespace tonewright {
+namespace {
+
+using OIIO::ImageBuf;
+using OIIO::ROI;
+
+LightPicture make_light(int width, int height, float peak = 20) {
+    LightPicture picture;
+    picture.width = width;
+    picture.height = height;
+    const auto count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    std::uint32_t seed = 0;
+    for (std::vector<float>& plane : picture.rgb) {
+        for (std::size_t i = 0; i < count; ++i) {
+            const float n = noise(seed++);
+            plane.push_back(i % 7 == 0 ? 0 : peak * n * n * n * n);
+        }
+    }
+    return picture;
+}
+
+std::array<std::vector<float>, 3> run(const Operator& op, LightPicture picture,
+                                      const Settings& settings = {}) {
+    run_local_operator(resolve_picture_operator(op.id, settings), picture);
+    return picture.rgb;
+}
+
+TonemapOptions options_of(const Operator& op, const std::string& display = "linear") {
+    TonemapOptions options;
+    options.op = op.id;
+    options.display = display;
+    return options;
+}
+
+class Local : public testing::TestWithParam<std::string> {
+  protected:
+    [[nodiscard]] const Operator& op() const { return *resolve_picture_operator(GetParam()).op; }
+};
+
+TEST(LocalOperators, AreSortedAndApartFromTheOthers) {
+    ASSERT_FALSE(local_operators().empty());
+    for (std::size_t i = 0; i < local_operators().size(); ++i) {
+        const Operator& op = local_operators()[i];
+        EXPECT_TRUE(op.is_local()) << op.id;
+        EXPECT_TRUE(op.build(resolve_picture_operator(op.id).params).empty()) << op.id;
+        if (i > 0) {
+            EXPECT_LT(local_operators()[i - 1].id, op.id);
+        }
+        for (const Operator& other : all_operators())
+            EXPECT_NE(other.id, op.id);
+        for (const std::string& text : {op.title, op.character, op.source, op.licence})
+            EXPECT_FALSE(text.empty()) << op.id;
+    }
+    for (const Operator& op : all_operators())
+        EXPECT_FALSE(op.is_local()) << op.id;
+}
+
+TEST(LocalOperators, WhatCannotHoldThemSaysWhy) {
+    for (const Operator& op : local_operators()) {
+        for (const bool resolve : {false, true}) {
+            try {
+                if (resolve) {
+                    (void)resolve_operator(op.id);
+                } else {
+                    (void)find_operator(op.id);
+                }
+                ADD_FAILURE() << op.id << " was found";
+            } catch (const Error& e) {
+                const std::string message = e.what();
+                EXPECT_TRUE(message.starts_with("operator is " + op.id +
+                                                ", which looks at a "
+                                                "pixel's surroundings: no LUT, config or color"))
+                    << message;
+                EXPECT_NE(message.find("tonewright apply"), std::string::npos) << message;
+            }
+        }
+    }
+}
+
+TEST(LocalOperators, WrongPlanesAndOperatorsAreRefused) {
+    LightPicture picture = make_light(4, 3);
+    EXPECT_THROW(run_local_operator(resolve_operator("hable"), picture), Error);
+    picture.rgb[1].pop_back();
+    EXPECT_THROW(run_local_operator(resolve_picture_operator("reinhard_local"), picture), Error);
+    LightPicture empty;
+    EXPECT_THROW(run_local_operator(resolve_picture_operator("reinhard_local"), empty), Error);
+}
+
+TEST(LocalOperators, WholeNumbersOnly) {
+    for (const auto& [op, name] :
+         {std::pair("reinhard_local", "scales"), std::pair("exposure_fusion", "mip"),
+          std::pair("exposure_fusion", "display_mip")}) {
+        EXPECT_NO_THROW((void)resolve_picture_operator(op, {{name, "2"}}));
+        EXPECT_THROW((void)resolve_picture_operator(op, {{name, "2.5"}}), Error);
+    }
+}
+
+TEST_P(Local, PartsDoNotMatter) {
+    // Wider than the strips that the operators work in, and odd.
+    const LightPicture picture = make_light(1301, 71);
+    const auto whole = run(op(), picture);
+    for (const int step : {1, 7, 32}) {
+        LightPicture parts = picture;
+        parts.for_rows = [step](int count, const std::function<void(int, int)>& body) {
+            // From the last to the first: none relies on another.
+            for (int begin = (count - 1) / step * step; begin >= 0; begin -= step)
+                body(begin, std::min(begin + step, count));
+        };
+        const auto result = run(op(), parts);
+        for (std::size_t c = 0; c < 3; ++c) {
+            EXPECT_EQ(std::memcmp(whole[c].data(), result[c].data(), 4 * whole[c].size()), 0)
+                << step << ", channel " << c;
+        }
+    }
+}
+
+TEST_P(Local, ThreadsDoNotMatter) {
+    const ImageBuf source = make_rgb(700, 300, OIIO::TypeDesc::FLOAT, 30);
+    const ImageBuf one = tonemap(source, options_of(op()), {}, 1);
+    ASSERT_FALSE(one.has_error()) << one.geterror();
+    for (const int threads : {2, 3, 8})
+        EXPECT_TRUE(same_bits(one, tonemap(source, options_of(op()), {}, threads))) << threads;
+}
+
+TEST_P(Local, NumbersOfAllKinds) {
+    constexpr float kInf = std::numeric_limits<float>::infinity();
+    const std::vector<float> values = {0,     -0.0F, 1e-38F, -1,    1e-6F,        0.18F,
+                                       65504, 1e30F, kInf,   -kInf, std::nanf("")};
+    ImageBuf source(make_spec(11 * 3, 11, {"R", "G", "B"}, OIIO::TypeDesc::FLOAT));
+    for (int y = 0; y < 11; ++y) {
+        for (int x = 0; x < 33; ++x) {
+            set(source, x, y,
+                {values[static_cast<std::size_t>(x % 11)], values[static_cast<std::size_t>(y)],
+                 values[static_cast<std::size_t>((x + y) % 11)]});
+        }
+    }
+    for (const double stops : {-60.0, 0.0, 60.0}) {
+        TonemapOptions options = options_of(op());
+        options.exposure_stops = stops;
+        const ImageBuf result = tonemap(source, options);
+        ASSERT_FALSE(result.has_error()) << result.geterror();
+        for (int y = 0; y < 11; ++y) {
+            for (int x = 0; x < 33; ++x) {
+                for (const float v : pixel(result, x, y)) {
+                    EXPECT_TRUE(std::isfinite(v) && v >= 0)
+                        << v << " at " << x << ", " << y << " with " << stops << " stops";
+                }
+            }
+        }
+    }
+}
+
+TEST_P(Local, BlackStaysBlackAndSmallPicturesAreNoError) {
+    for (const auto& [width, height] :
+         {std::pair(1, 1), std::pair(1, 9), std::pair(9, 1), std::pair(2, 2), std::pair(7, 5)}) {
+        for (const float peak : {0.0F, 3.0F}) {
+            LightPicture picture = make_light(width, height, peak);
+            for (const std::vector<float>& plane : run(op(), picture)) {
+                for (std::size_t i = 0; i < plane.size(); ++i) {
+                    EXPECT_TRUE(std::isfinite(plane[i]) && plane[i] >= 0) << plane[i];
+                    const float light = picture.rgb[0][i] + picture.rgb[1][i] + picture.rgb[2][i];
+                    if (light == 0) {
+                        EXPECT_EQ(plane[i], 0);
+                    }
+                }
+            }
+        }
+    }
+}
+
+TEST_P(Local, RegionIsThatOfTheWholePicture) {
+    const ImageBuf source = make_rgb(90, 60, OIIO::TypeDesc::FLOAT, 10);
+    const ImageBuf whole = tonemap(source, options_of(op(), "srgb"));
+    const ROI roi(17, 50, 11, 43);
+    const ImageBuf part = tonemap(source, options_of(op(), "srgb"), roi);
+    ASSERT_FALSE(part.has_error()) << part.geterror();
+    for (int y = roi.ybegin; y < roi.yend; ++y) {
+        for (int x = roi.xbegin; x < roi.xend; ++x)
+            EXPECT_EQ(pixel(part, x, y), pixel(whole, x, y));
+    }
+}
+
+TEST_P(Local, InPlaceAndOtherTypes) {
+    ImageBuf source = make_rgb(40, 30, OIIO::TypeDesc::FLOAT, 10);
+    const ImageBuf expected = tonemap(source, options_of(op(), "srgb"));
+    EXPECT_TRUE(tonemap(source, source, options_of(op(), "srgb")));
+    EXPECT_TRUE(same_bits(source, expected));
+    const ImageBuf bytes = make_rgb(40, 30, OIIO::TypeDesc::UINT8);
+    EXPECT_FALSE(tonemap(bytes, options_of(op(), "srgb")).has_error());
+}
+
+TEST_P(Local, AlphaAndOtherChannels) {
+    const ImageBuf opaque = make_rgb(31, 20, OIIO::TypeDesc::FLOAT, 4);
+    ImageBuf source(make_spec(31, 20, {"R", "G", "B", "A", "Z"}, OIIO::TypeDesc::FLOAT));
+    for (int y = 0; y < 20; ++y) {
+        for (int x = 0; x < 31; ++x) {
+            const float alpha = x % 2 == 0 ? 0.5F : 0.25F;  // exact
+            std::vector<float> v = pixel(opaque, x, y);
+            set(source, x, y, {v[0] * alpha, v[1] * alpha, v[2] * alpha, alpha, 7});
+        }
+    }
+    const ImageBuf expected = tonemap(opaque, options_of(op(), "srgb"));
+    const ImageBuf result = tonemap(source, options_of(op(), "srgb"));
+    ASSERT_FALSE(result.has_error()) << result.geterror();
+    for (int y = 0; y < 20; ++y) {
+        for (int x = 0; x < 31; ++x) {
+            const float alpha = x % 2 == 0 ? 0.5F : 0.25F;
+            const std::vector<float> v = pixel(expected, x, y);
+            EXPECT_EQ(pixel(result, x, y),
+                      (std::vector<float>{v[0] * alpha, v[1] * alpha, v[2] * alpha, alpha, 7}));
+        }
+    }
+}
+
+TEST_P(Local, GreyStaysGrey) {
+    const ImageBuf source = make_picture(make_spec(20, 16, {"Y"}, OIIO::TypeDesc::FLOAT), 5);
+    const ImageBuf result = tonemap(source, options_of(op(), "srgb"));
+    ASSERT_FALSE(result.has_error()) << result.geterror();
+    EXPECT_EQ(result.nchannels(), 1);
+}
+
+TEST_P(Local, ExposureIsACorrectionOnTop) {
+    // A uniform picture: brighter with exposure, whatever was measured.
+    LightPicture picture;
+    picture.width = picture.height = 8;
+    for (std::vector<float>& plane : picture.rgb)
+        plane.assign(64, 0.1F);
+    const float normal = run(op(), picture)[1][20];
+    picture.exposure = 2;
+    const float brighter = run(op(), picture)[1][20];
+    EXPECT_GT(brighter, normal * 1.2F);
+}
+
+TEST_P(Local, VolumesAreRefused) {
+    OIIO::ImageSpec spec = make_spec(4, 4, {"R", "G", "B"}, OIIO::TypeDesc::FLOAT);
+    spec.depth = spec.full_depth = 3;
+    const ImageBuf result = tonemap(ImageBuf(spec), options_of(op()));
+    EXPECT_TRUE(result.has_error());
+    EXPECT_NE(result.geterror().find("3 slices; expected one"), std::string::npos);
+}
+
+TEST_P(Local, FilesAreThoseOfTheLibrary) {
+    const TemporaryFolder folder;
+    const ImageBuf source = make_rgb(50, 200, OIIO::TypeDesc::FLOAT, 10);
+    ASSERT_TRUE(source.write(folder.file("in.exr")));
+    const Tonemapper tonemapper(options_of(op(), "srgb"));
+    EXPECT_TRUE(tonemapper.needs_whole_picture());
+    tonemap_file(tonemapper, folder.file("in.exr"), folder.file("out.exr"), OIIO::TypeFloat);
+    EXPECT_TRUE(same_bits(read_image(folder.file("out.exr")), [&] {
+        ImageBuf result;
+        EXPECT_TRUE(tonemapper(result, source));
+        return result;
+    }()));
+}
+
+TEST(ReinhardLocal, UniformPictureIsTheGlobalOperator) {
+    // L/(1 + L) on luminance, key and log average as given; a saturated color keeps its ratios.
+    LightPicture picture;
+    picture.width = 70;
+    picture.height = 40;
+    const std::array<float, 3> color = {0.4F, 0.01F, 3};
+    for (std::size_t c = 0; c < 3; ++c)
+        picture.rgb[c].assign(70 * 40, color[c]);
+    const Operator& op = *resolve_picture_operator("reinhard_local").op;
+    const auto result = run(op, picture, {{"log_average", "0.36"}, {"white", "5"}});
+    const double luminance = 0.5 * (0.2126 * 0.4 + 0.7152 * 0.01 + 0.0722 * 3);
+    const double factor = 0.5 * (1 + luminance / 25) / (1 + luminance);
+    for (std::size_t c = 0; c < 3; ++c) {
+        // Kernels of up to 67 weights sum to 1 within some float roundings.
+        for (const float v : result[c])
+            EXPECT_NEAR(v, static_cast<double>(color[c]) * factor, 2e-6 * static_cast<double>(v));
+    }
+}
+
+TEST(ReinhardLocal, PixelsWithoutCoverAreNotMeasured) {
+    const Operator& op = *resolve_picture_operator("reinhard_local").op;
+    LightPicture picture = make_light(24, 10);
+    for (std::vector<float>& plane : picture.rgb)
+        std::fill(plane.begin(), plane.begin() + 120, 0.0F);
+    LightPicture covered = picture;
+    covered.counts.assign(240, 1);
+    EXPECT_EQ(run(op, covered), run(op, picture));
+    std::fill(covered.counts.begin(), covered.counts.begin() + 120, std::uint8_t{0});
+    EXPECT_NE(run(op, covered), run(op, picture));
+    covered.counts.assign(240, 0);
+    EXPECT_EQ(run(op, covered), run(op, picture)) << "where nothing is covered, all counts";
+}
+
+TEST(ExposureFusion, WithoutOtherExposuresItIsItsCurve) {
+    const ImageBuf source = make_rgb(30, 20, OIIO::TypeDesc::FLOAT, 6);
+    TonemapOptions options = {
+        .op = "exposure_fusion",
+        .settings = {{"shadows", "0"}, {"highlights", "0"}, {"exposure", "1"}}};
+    const ImageBuf fused = tonemap(source, options);
+    const ImageBuf curve = tonemap(source, {.op = "aces_hill:threejs"});
+    for (int y = 0; y < 20; ++y) {
+        for (int x = 0; x < 30; ++x) {
+            for (std::size_t c = 0; c < 3; ++c)
+                EXPECT_NEAR(pixel(fused, x, y)[c], pixel(curve, x, y)[c], 4e-6);  // two engines
+        }
+    }
+}
+
+TEST(LocalLaplacian, SaturatedColorsKeepTheirChromaticityWhereTheyAreToldTo) {
+    const Operator& op = *resolve_picture_operator("local_laplacian").op;
+    const LightPicture picture = make_light(40, 30);
+    const auto result = run(op, picture, {{"saturation", "1"}});
+    for (std::size_t i = 0; i < picture.rgb[0].size(); ++i) {
+        const double sum = static_cast<double>(picture.rgb[0][i]) +
+                           static_cast<double>(picture.rgb[1][i]) +
+                           static_cast<double>(picture.rgb[2][i]);
+        const double shown = static_cast<double>(result[0][i]) + static_cast<double>(result[1][i]) +
+                             static_cast<double>(result[2][i]);
+        for (std::size_t c = 0; c < 3 && sum > 0; ++c) {
+            EXPECT_NEAR(static_cast<double>(result[c][i]) / shown,
+                        static_cast<double>(picture.rgb[c][i]) / sum, 1e-6);
+        }
+    }
+}
+
+TEST(LocalLaplacian, NothingToCompressIsLeftAlone) {
+    // base = detail = 1 keeps all differences: the picture, but for its white.
+    const Operator& op = *resolve_picture_operator("local_laplacian").op;
+    LightPicture picture = make_light(65, 33, 2);
+    for (std::vector<float>& plane : picture.rgb) {
+        for (float& v : plane)
+            v = 0.2F + v;
+    }
+    const auto result = run(op, picture, {{"base", "1"}, {"saturation", "1"}, {"contrast", "24"}});
+    const float factor = result[0][0] / picture.rgb[0][0];
+    for (std::size_t c = 0; c < 3; ++c) {
+        for (std::size_t i = 0; i < picture.rgb[c].size(); ++i)
+            EXPECT_NEAR(result[c][i], factor * picture.rgb[c][i], 2e-5F * result[c][i]);
+    }
+}
+
+std::vector<std::string> ids() {
+    std::vector<std::string> all;
+    for (const Operator& op : local_operators())
+        all.push_back(op.id);
+    return all;
+}
+INSTANTIATE_TEST_SUITE_P(Every, Local, testing::ValuesIn(ids()),
+                         [](const auto& of) { return of.param; });
+
+}  // namespace
+}  // namespace tonewright

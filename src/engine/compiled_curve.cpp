@@ -380,11 +380,11 @@ class CurveFit {
 };
 
 /// Of a row; of a precise curve, all but the first coefficient.
-float polynomial(const float* row, int length, float t, bool is_precise) {
+float polynomial(const CurveRows& rows, const float* row, float t, bool is_precise) {
     const int lowest = is_precise ? 1 : 0;
-    float y = row[length - 1];
-    for (int k = length - 2; k >= lowest; --k)
-        y = std::fma(y, t, row[k]);
+    float y = row[rows.length - 1];
+    for (int k = rows.length - 2; k >= lowest; --k)
+        y = rows.is_fused ? std::fma(y, t, row[k]) : y * t + row[k];
     return y;
 }
 
@@ -392,8 +392,9 @@ float polynomial(const float* row, int length, float t, bool is_precise) {
 class RowFit {
   public:
     RowFit(const std::function<double(double)>& f, double hi, std::span<const double> kinks,
-           const CurveTolerance& tolerance, bool is_precise, int length, int shift)
+           const CurveTolerance& tolerance, bool is_precise, bool is_fused, int length, int shift)
         : f_(f), hi_(hi), tolerance_(tolerance), is_precise_(is_precise) {
+        rows_.is_fused = is_fused;
         rows_.length = length;
         rows_.shift = shift;
         for (const double kink : kinks) {
@@ -562,8 +563,8 @@ class RowFit {
         const float x0 = begin_of(cell);
         float distance = x_float - x0;
         if (is_precise_) distance += to_float(x - static_cast<double>(x_float));
-        const float y = polynomial(tried_.data(), rows_.length, distance * CurveRows::scale_of(x0),
-                                   is_precise_);
+        const float y =
+            polynomial(rows_, tried_.data(), distance * CurveRows::scale_of(x0), is_precise_);
         const double actual =
             static_cast<double>(y) + (is_precise_ ? static_cast<double>(tried_[0]) : 0);
         return std::fabs(actual - expected) <= tolerance_.at(x, expected);
@@ -584,12 +585,13 @@ class RowFit {
 /// pixels.
 std::optional<CompiledCurve> fit_rows(const std::function<double(double)>& f, double hi,
                                       std::span<const double> kinks,
-                                      const CurveTolerance& tolerance, bool is_precise) {
+                                      const CurveTolerance& tolerance, bool is_precise,
+                                      bool is_fused) {
     for (const int length : {4, 8}) {
         if (length == 4 && is_precise) continue;
         for (int shift = 21; shift >= 16; --shift) {
-            if (auto curve = RowFit(f, hi, kinks, tolerance, is_precise, length, shift).fit())
-                return curve;
+            RowFit rows(f, hi, kinks, tolerance, is_precise, is_fused, length, shift);
+            if (auto curve = rows.fit()) return curve;
         }
     }
     return std::nullopt;
@@ -641,7 +643,7 @@ double CompiledCurve::operator()(double x) const noexcept {
         const CurveRows::Place place = rows->find(x_float);
         float distance = x_float - place.x0;
         if (is_precise) distance += to_float(x - static_cast<double>(x_float));
-        const float y = polynomial(place.row, rows->length, distance * place.scale, is_precise);
+        const float y = polynomial(*rows, place.row, distance * place.scale, is_precise);
         return std::clamp(
             static_cast<double>(y) + (is_precise ? static_cast<double>(place.row[0]) : 0),
             static_cast<double>(least), static_cast<double>(most));
@@ -717,13 +719,13 @@ std::optional<CompiledCurve> compile_curve(const std::function<double(double)>& 
     while (hi > 0x1p-60 && is_constant(hi / 2, hi, at_top))
         hi = static_cast<double>(to_float(hi / 2));
 
-    if (form == CurveForm::rows) {
+    if (form != CurveForm::segments) {
         // What is constant from a kink on ends there: one kink less.
         for (const double kink : kinks) {
             const auto end = static_cast<double>(float_from(kink));
             if (end > 0x1p-60 && end < hi && is_constant(end, hi, at_top)) hi = end;
         }
-        return fit_rows(f, hi, kinks, tolerance, is_precise);
+        return fit_rows(f, hi, kinks, tolerance, is_precise, form == CurveForm::rows);
     }
 
     // Eighths of octaves are what segments without cells end at.

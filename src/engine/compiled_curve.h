@@ -27,6 +27,7 @@ enum class CurveForm : std::uint8_t {
     none,
     segments,  // few and long, for permutes over whole tables (AVX-512): no branch and no gather
     rows,      // many and short, for loads of neighbouring numbers (AVX2)
+    rows_unfused,  // the same with products and sums rounded one by one (SSE4)
 };
 
 /// A curve in the form of rows: the bits of x as a whole number, minus `base` and without the last
@@ -43,6 +44,7 @@ struct CurveRows {
 
     std::uint32_t base = 0;
     int shift = 0;
+    bool is_fused = true;
     /// Coefficients from the constant on in a row, 4 or 8. Of a precise curve the second is what is
     /// missing in the first.
     int length = 4;

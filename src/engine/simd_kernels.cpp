@@ -66,8 +66,9 @@ struct Source {
 template <class F, class... S>
 HWY_INLINE void map_float(const Frame& frame, const Instruction& step, F f, S... source) {
     const DF d;
-    auto* out = reinterpret_cast<float*>(frame.registers + step.out.offset);
-    for (std::size_t i = 0; i < frame.count; i += hn::Lanes(d)) {
+    const std::size_t count = frame.count;
+    auto* const out = reinterpret_cast<float*>(frame.registers + step.out.offset);
+    for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
         hn::Store(f(d, source.load(d, i)...), d, out + i);
     }
 }
@@ -82,13 +83,42 @@ HWY_INLINE void store_wide(const Frame& frame, const Operand& out, std::size_t i
     }
 }
 
-/// The same computed in double; operands and result are either.
+/// As a double; `kIsWide`: it is one.
+template <bool kIsWide>
+HWY_INLINE Vec<DD> load_double(DD d, const Source& source, std::size_t i) {
+    if constexpr (kIsWide) {
+        return hn::Load(d, reinterpret_cast<const double*>(source.data) + i * source.step);
+    } else {
+        return source.load(d, i);
+    }
+}
+
+template <bool kAllWide, bool kIsOutWide, class F, class... S>
+HWY_INLINE void map_double_as(const Frame& frame, const Instruction& step, F f, S... source) {
+    const DD d;
+    const DFOfDD narrow;
+    const std::size_t count = frame.count;
+    unsigned char* const out = frame.registers + step.out.offset;
+    for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+        const auto value = f(d, load_double<kAllWide>(d, source, i)...);
+        if constexpr (kIsOutWide) {
+            hn::Store(value, d, reinterpret_cast<double*>(out) + i);
+        } else {
+            hn::Store(hn::DemoteTo(narrow, value), narrow, reinterpret_cast<float*>(out) + i);
+        }
+    }
+}
+
+/// The same computed in double; operands and result are either, and what they are is decided before
+/// the loop.
 template <class F, class... S>
 HWY_INLINE void map_double(const Frame& frame, const Instruction& step, F f, S... source) {
-    const DD d;
-    for (std::size_t i = 0; i < frame.count; i += hn::Lanes(d)) {
-        store_wide(frame, step.out, i, f(d, source.load(d, i)...));
+    if ((source.wide && ...)) {
+        if (step.out.wide) return map_double_as<true, true>(frame, step, f, source...);
+        return map_double_as<true, false>(frame, step, f, source...);
     }
+    if (step.out.wide) return map_double_as<false, true>(frame, step, f, source...);
+    map_double_as<false, false>(frame, step, f, source...);
 }
 
 /// f over N operands, in float or double as the instruction says.
@@ -522,32 +552,39 @@ HWY_NOINLINE void curve(const Frame& frame, const Instruction& step, const Compi
 CurveForm curve_form() { return CurveForm::segments; }
 bool runs_machine_code() { return true; }
 
-#elif HWY_TARGET <= HWY_AVX2
+#elif HWY_TARGET <= HWY_SSE4
 
 using DI = hn::RebindToSigned<DF>;
 
-/// Whole numbers on their way to addresses: through memory, where eight loads cost less than taking
-/// a vector apart.
+/// Whole numbers on their way to addresses: through memory, where a load for each costs less than
+/// taking a vector apart.
 HWY_INLINE void store_places(Vec<DI> places, std::uint32_t* at) {
     hn::Store(hn::BitCast(hn::RebindToUnsigned<DF>(), places), hn::RebindToUnsigned<DF>(), at);
     __asm__("" : "+m"(*reinterpret_cast<std::uint32_t(*)[kLaneMultiple]>(at)));
 }
 
-/// Four numbers in a row for each of eight pixels, as four vectors: twice as fast as gathers.
+/// Four numbers in a row for each pixel, as four vectors: twice as fast as gathers.
 HWY_INLINE void load_rows(const float* numbers, const std::uint32_t* at, Vec<DF>* result) {
-    __m256 row[4];
     for (int p = 0; p < 4; ++p) {
-        row[p] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(numbers + at[p])),
-                                      _mm_loadu_ps(numbers + at[p + 4]), 1);
+        const __m128 row = _mm_loadu_ps(numbers + at[p]);
+#if HWY_TARGET <= HWY_AVX2
+        result[p].raw =
+            _mm256_insertf128_ps(_mm256_castps128_ps256(row), _mm_loadu_ps(numbers + at[p + 4]), 1);
+#else
+        result[p].raw = row;
+#endif
     }
-    const __m256 low01 = _mm256_unpacklo_ps(row[0], row[1]);
-    const __m256 high01 = _mm256_unpackhi_ps(row[0], row[1]);
-    const __m256 low23 = _mm256_unpacklo_ps(row[2], row[3]);
-    const __m256 high23 = _mm256_unpackhi_ps(row[2], row[3]);
-    result[0].raw = _mm256_shuffle_ps(low01, low23, 0x44);
-    result[1].raw = _mm256_shuffle_ps(low01, low23, 0xEE);
-    result[2].raw = _mm256_shuffle_ps(high01, high23, 0x44);
-    result[3].raw = _mm256_shuffle_ps(high01, high23, 0xEE);
+    const DF d;
+    const hn::Repartition<double, DF> pairs;
+    const auto in_pairs = [&](Vec<DF> x) HWY_ATTR { return hn::BitCast(pairs, x); };
+    const auto low01 = in_pairs(hn::InterleaveLower(d, result[0], result[1]));
+    const auto high01 = in_pairs(hn::InterleaveUpper(d, result[0], result[1]));
+    const auto low23 = in_pairs(hn::InterleaveLower(d, result[2], result[3]));
+    const auto high23 = in_pairs(hn::InterleaveUpper(d, result[2], result[3]));
+    result[0] = hn::BitCast(d, hn::InterleaveLower(pairs, low01, low23));
+    result[1] = hn::BitCast(d, hn::InterleaveUpper(pairs, low01, low23));
+    result[2] = hn::BitCast(d, hn::InterleaveLower(pairs, high01, high23));
+    result[3] = hn::BitCast(d, hn::InterleaveUpper(pairs, high01, high23));
 }
 
 /// The rows of cells that may have a kink inside.
@@ -557,12 +594,25 @@ HWY_INLINE Vec<DI> rows_of_cells(const CurveRows& rows, Vec<DI> cell, Vec<DF> x,
     store_places(cell, at);
     const auto* cells = reinterpret_cast<const __m64*>(rows.cells.data());
     const auto two = [cells, at](int p) HWY_ATTR {
-        return _mm_loadh_pi(_mm_loadl_pi(_mm_setzero_ps(), cells + at[p]), cells + at[p + 1]);
+        const __m128 pair =
+            _mm_loadh_pi(_mm_loadl_pi(_mm_setzero_ps(), cells + at[p]), cells + at[p + 1]);
+#if HWY_TARGET <= HWY_AVX2
+        const __m128 upper =
+            _mm_loadh_pi(_mm_loadl_pi(_mm_setzero_ps(), cells + at[p + 4]), cells + at[p + 5]);
+        return Vec<DF>{_mm256_insertf128_ps(_mm256_castps128_ps256(pair), upper, 1)};
+#else
+        return Vec<DF>{pair};
+#endif
     };
-    const __m256 outer = _mm256_insertf128_ps(_mm256_castps128_ps256(two(0)), two(4), 1);
-    const __m256 inner = _mm256_insertf128_ps(_mm256_castps128_ps256(two(2)), two(6), 1);
-    const Vec<DF> threshold{_mm256_shuffle_ps(outer, inner, 0x88)};
-    const Vec<DF> row{_mm256_shuffle_ps(outer, inner, 0xDD)};
+    const auto outer = two(0);
+    const auto inner = two(2);
+#if HWY_TARGET <= HWY_AVX2
+    const Vec<DF> threshold{_mm256_shuffle_ps(outer.raw, inner.raw, 0x88)};
+    const Vec<DF> row{_mm256_shuffle_ps(outer.raw, inner.raw, 0xDD)};
+#else
+    const Vec<DF> threshold{_mm_shuffle_ps(outer.raw, inner.raw, 0x88)};
+    const Vec<DF> row{_mm_shuffle_ps(outer.raw, inner.raw, 0xDD)};
+#endif
     const auto is_behind = hn::VecFromMask(di, hn::RebindMask(di, hn::Ge(x, threshold)));
     return hn::Add(hn::BitCast(di, row), hn::And(is_behind, hn::Set(di, rows.length)));
 }
@@ -645,7 +695,9 @@ HWY_NOINLINE void run_rows(const Frame& frame, const Instruction& step,
 }
 
 HWY_NOINLINE void curve(const Frame& frame, const Instruction& step, const CompiledCurve& curve) {
-    if (!curve.rows) return curve_of_other_form(frame, step, curve);
+    if (!curve.rows || curve.rows->is_fused != (HWY_NATIVE_FMA != 0)) {
+        return curve_of_other_form(frame, step, curve);
+    }
     const bool has_cells = !curve.rows->cells.empty();
     if (curve.is_precise) {
         return has_cells ? run_rows<8, true, true>(frame, step, curve)
@@ -659,7 +711,7 @@ HWY_NOINLINE void curve(const Frame& frame, const Instruction& step, const Compi
                      : run_rows<4, false, false>(frame, step, curve);
 }
 
-CurveForm curve_form() { return CurveForm::rows; }
+CurveForm curve_form() { return HWY_NATIVE_FMA ? CurveForm::rows : CurveForm::rows_unfused; }
 bool runs_machine_code() { return false; }
 
 #else

@@ -68,7 +68,7 @@ std::vector<Function> functions() {
     };
 }
 
-constexpr std::array kForms = {CurveForm::segments, CurveForm::rows};
+constexpr std::array kForms = {CurveForm::segments, CurveForm::rows, CurveForm::rows_unfused};
 
 CurveTolerance tolerance_of(const Function& f, bool is_precise) {
     CurveTolerance tolerance;
@@ -102,7 +102,9 @@ std::vector<float> places(const Function& f) {
 
 class CompiledCurveForm : public testing::TestWithParam<CurveForm> {};
 INSTANTIATE_TEST_SUITE_P(All, CompiledCurveForm, testing::ValuesIn(kForms), [](const auto& form) {
-    return form.param == CurveForm::rows ? "Rows" : "Segments";
+    return form.param == CurveForm::segments ? "Segments"
+           : form.param == CurveForm::rows   ? "Rows"
+                                             : "RowsUnfused";
 });
 
 TEST_P(CompiledCurveForm, IsWithinItsTolerance) {

@@ -90,6 +90,41 @@ std::vector<double> interpolate(const std::function<double(double)>& f, int degr
     return sum;
 }
 
+constexpr float kNever = std::numeric_limits<float>::infinity();
+constexpr float kMost = std::numeric_limits<float>::max();
+
+/// The least number so far, and how often it came.
+struct Least {
+    double value = std::numeric_limits<double>::infinity();
+    int times = 0;
+
+    void add(double x) {
+        if (x < value) times = 0;
+        value = std::min(value, x);
+        times += x == value ? 1 : 0;
+    }
+};
+
+/// The ends of a function that is looked at in many places.
+class Ends {
+  public:
+    void add(double y) {
+        least_.add(y);
+        most_.add(-y);
+    }
+    /// Between the places of a dip there may be a lower one, but what it has at its ends, or again
+    /// and again, is an end.
+    void set(CompiledCurve& curve, double first, double last) const {
+        const bool has_least = least_.times > 8 || least_.value >= std::min(first, last);
+        const bool has_most = most_.times > 8 || -most_.value <= std::max(first, last);
+        curve.least = has_least ? to_float(least_.value) : -kMost;
+        curve.most = has_most ? to_float(-most_.value) : kMost;
+    }
+
+  private:
+    Least least_, most_;  // of the function, and of the negative function
+};
+
 class CurveFit {
   public:
     CurveFit(const std::function<double(double)>& f, double hi, std::span<const double> kinks,
@@ -179,18 +214,6 @@ class CurveFit {
     }
 
   private:
-    /// The least number so far, and how often it came.
-    struct Least {
-        double value = std::numeric_limits<double>::infinity();
-        int times = 0;
-
-        void add(double x) {
-            if (x < value) times = 0;
-            value = std::min(value, x);
-            times += x == value ? 1 : 0;
-        }
-    };
-    static constexpr float kNever = std::numeric_limits<float>::infinity();
     struct Cell {
         int segment;
         float threshold;
@@ -250,8 +273,7 @@ class CurveFit {
     bool is_within(const Segment& s, double x) {
         if (!is_precise_) x = static_cast<double>(to_float(x));
         const double expected = f_(x);
-        least_.add(expected);
-        most_.add(-expected);
+        ends_.add(expected);
         const auto coefficient = [&](int k) { return s.coefficients[static_cast<std::size_t>(k)]; };
         const double actual =
             evaluate(x, s.scale, s.offset, degree_, coefficient, s.rest, is_precise_);
@@ -312,15 +334,7 @@ class CurveFit {
         CompiledCurve result;
         result.hi = to_float(hi_);
         result.at_lo = f_(0);
-        // Between the places of a dip there may be a lower one, but what it has at its ends, or
-        // again and again, is an end.
-        const double first = f_(0);
-        const double last = f_(hi_);
-        const bool has_least = least_.times > 8 || least_.value >= std::min(first, last);
-        const bool has_most = most_.times > 8 || -most_.value <= std::max(first, last);
-        constexpr float kMost = std::numeric_limits<float>::max();
-        result.least = has_least ? to_float(least_.value) : -kMost;
-        result.most = has_most ? to_float(-most_.value) : kMost;
+        ends_.set(result, f_(0), f_(hi_));
         result.shift = shift_;
         result.first_cell = first_cell_;
         result.cell_floor = to_float(edge(first_cell_));
@@ -359,11 +373,229 @@ class CurveFit {
     int shift_;
     std::size_t most_segments_;
     std::uint32_t first_cell_ = 0;
-    Least least_, most_;  // of the function, and of the negative function
+    Ends ends_;
     Segment tried_{};
     std::vector<Segment> segments_;
     std::vector<Cell> cells_;
 };
+
+/// Of a row; of a precise curve, all but the first coefficient.
+float polynomial(const CurveRows& rows, const float* row, float t, bool is_precise) {
+    const int lowest = is_precise ? 1 : 0;
+    float y = row[rows.length - 1];
+    for (int k = rows.length - 2; k >= lowest; --k)
+        y = rows.is_fused ? std::fma(y, t, row[k]) : y * t + row[k];
+    return y;
+}
+
+/// A curve in rows, of one length and number of cells an octave.
+class RowFit {
+  public:
+    RowFit(const std::function<double(double)>& f, double hi, std::span<const double> kinks,
+           const CurveTolerance& tolerance, bool is_precise, bool is_fused, int length, int shift)
+        : f_(f), hi_(hi), tolerance_(tolerance), is_precise_(is_precise) {
+        rows_.is_fused = is_fused;
+        rows_.length = length;
+        rows_.shift = shift;
+        for (const double kink : kinks) {
+            const float place = float_from(kink);
+            if (kink > 0 && kink < hi) kinks_.push_back(place);
+        }
+        std::sort(kinks_.begin(), kinks_.end());
+        kinks_.erase(std::unique(kinks_.begin(), kinks_.end()), kinks_.end());
+    }
+
+    std::optional<CompiledCurve> fit() {
+        // One kink that shows can lie between two cells; where there are more, such cells have two
+        // rows.
+        std::vector<float> shown;
+        if (!place_cells(0, shown)) return std::nullopt;
+        if (shown.empty()) return fit_cells(shown);
+        const std::uint32_t part =
+            std::bit_cast<std::uint32_t>(shown.front()) & ((std::uint32_t{1} << rows_.shift) - 1);
+        shown.clear();
+        if (!place_cells(part, shown)) return std::nullopt;
+        return fit_cells(shown);
+    }
+
+  private:
+    using Row = std::array<float, 8>;
+
+    [[nodiscard]] float begin_of(std::uint32_t cell) const {
+        return std::bit_cast<float>(rows_.base + (cell << rows_.shift));
+    }
+    /// The last float of a cell.
+    [[nodiscard]] double end_of(std::uint32_t cell) const {
+        const auto last =
+            static_cast<double>(std::bit_cast<float>(rows_.base + ((cell + 1) << rows_.shift) - 1));
+        return std::min(last, hi_);
+    }
+
+    /// Chooses where cells begin, finds the first one, which reaches down to 0, and kinks that no
+    /// polynomial passes.
+    bool place_cells(std::uint32_t part, std::vector<float>& shown) {
+        const std::uint32_t unit = std::uint32_t{1} << rows_.shift;
+        const auto cell_at = [&](double x) {
+            return (std::bit_cast<std::uint32_t>(to_float(x)) - part) / unit;
+        };
+        const std::uint32_t top = cell_at(hi_);
+        std::uint32_t lowest = cell_at(std::min(std::ldexp(1.0, kLowestExponent), hi_));
+        const auto first_fits = [&](std::uint32_t cell) {
+            rows_.base = cell * unit + part;
+            return try_row(0, end_of(0), 0);
+        };
+        if (!first_fits(lowest)) return false;
+        std::uint32_t failing = top + 1;
+        while (failing - lowest > 1) {
+            const std::uint32_t middle = lowest + (failing - lowest) / 2;
+            (first_fits(middle) ? lowest : failing) = middle;
+        }
+        count_ = top - lowest + 1;
+        if (count_ > CurveRows::kMaxRows) return false;
+        rows_.base = lowest * unit + part;
+        for (const float kink : kinks_) {
+            if (static_cast<double>(kink) <= end_of(0)) continue;
+            const std::uint32_t cell = (std::bit_cast<std::uint32_t>(kink) - rows_.base) / unit;
+            if (kink == begin_of(cell)) continue;
+            if (!try_row(static_cast<double>(begin_of(cell)), end_of(cell), cell))
+                shown.push_back(kink);
+        }
+        // What cannot be is seen soon: in one cell of each octave or two.
+        constexpr std::uint32_t kStride = 13;
+        for (std::uint32_t cell = kStride; cell < count_; cell += kStride) {
+            if (!has_kink(cell) &&
+                !try_row(static_cast<double>(begin_of(cell)), end_of(cell), cell))
+                return false;
+        }
+        return true;
+    }
+
+    [[nodiscard]] bool has_kink(std::uint32_t cell) const {
+        const auto kink = std::upper_bound(kinks_.begin(), kinks_.end(), begin_of(cell));
+        return kink != kinks_.end() && static_cast<double>(*kink) <= end_of(cell);
+    }
+
+    std::optional<CompiledCurve> fit_cells(const std::vector<float>& shown) {
+        const auto add = [&] {
+            rows_.numbers.insert(rows_.numbers.end(), tried_.begin(),
+                                 tried_.begin() + rows_.length);
+        };
+        for (std::uint32_t cell = 0; cell < count_; ++cell) {
+            const double begin = cell == 0 ? 0 : static_cast<double>(begin_of(cell));
+            const double end = end_of(cell);
+            const auto row = static_cast<std::int32_t>(rows_.numbers.size());
+            const auto kink = std::upper_bound(shown.begin(), shown.end(), to_float(begin));
+            if (kink == shown.end() || static_cast<double>(*kink) > end) {
+                if (!try_row(begin, end, cell)) return std::nullopt;
+                if (!shown.empty()) rows_.cells.push_back({kNever, row});
+            } else {
+                const double before = static_cast<double>(std::nextafter(*kink, 0.0F));
+                if (!try_row(begin, before, cell)) return std::nullopt;
+                add();
+                if (!try_row(static_cast<double>(*kink), end, cell)) return std::nullopt;
+                rows_.cells.push_back({*kink, row});
+            }
+            add();
+        }
+        CompiledCurve result;
+        result.hi = to_float(hi_);
+        result.at_lo = f_(0);
+        ends_.set(result, f_(0), f_(hi_));
+        result.is_precise = is_precise_;
+        result.tolerance = tolerance_;
+        result.rows = std::move(rows_);
+        return result;
+    }
+
+    /// The polynomial over [begin, end] into tried_; whether it keeps to the tolerance.
+    bool try_row(double begin, double end, std::uint32_t cell) {
+        const auto x0 = static_cast<double>(begin_of(cell));
+        const auto scale = static_cast<double>(CurveRows::scale_of(begin_of(cell)));
+        const double middle = (0.5 * (begin + end) - x0) * scale;
+        const double half = std::max(0.5 * (end - begin) * scale, 1e-6);
+        const int degree = rows_.length - (is_precise_ ? 2 : 1);
+        const std::vector<double> c = interpolate(
+            [&](double u) { return f_(std::clamp(x0 + (middle + u * half) / scale, begin, end)); },
+            degree);
+        // Powers of u = (t - middle) / half as powers of t, by Horner's rule.
+        std::vector<double> in_t = {c.back()};
+        for (auto k = static_cast<std::size_t>(degree); k-- > 0;) {
+            in_t.push_back(0);
+            for (std::size_t j = in_t.size(); j-- > 0;)
+                in_t[j] = ((j > 0 ? in_t[j - 1] : 0) - in_t[j] * middle) / half;
+            in_t[0] += c[k];
+        }
+        tried_ = {};
+        std::size_t next = 0;
+        for (const double k : in_t) {
+            if (!(std::fabs(k) < static_cast<double>(kMost))) return false;
+            tried_[next++] = to_float(k);
+            if (is_precise_ && next == 1)
+                tried_[next++] = to_float(k - static_cast<double>(to_float(k)));
+        }
+        if (!is_within(begin, cell) || !is_within(end, cell)) return false;
+        const auto behind = std::lower_bound(kinks_.begin(), kinks_.end(), to_float(begin));
+        for (auto kink = behind; kink != kinks_.end(); ++kink) {
+            if (static_cast<double>(*kink) > end) break;
+            for (const float x :
+                 {std::nextafter(*kink, 0.0F), *kink, std::nextafter(*kink, kMost)}) {
+                const auto place = static_cast<double>(x);
+                if (place >= begin && place <= end && !is_within(place, cell)) return false;
+            }
+        }
+        const int steps = 3 * rows_.length;
+        for (int i = 1; i < steps; ++i) {
+            if (!is_within(begin + (end - begin) * i / steps, cell)) return false;
+        }
+        if (begin == 0) {  // the tolerance is of the result, which may be proportional to x
+            for (double x = end; x > 0x1p-126; x *= 0.37) {
+                if (!is_within(x, cell)) return false;
+            }
+        }
+        return true;
+    }
+
+    bool is_within(double x, std::uint32_t cell) {
+        const float x_float = to_float(x);
+        if (!is_precise_) x = static_cast<double>(x_float);
+        const double expected = f_(x);
+        ends_.add(expected);
+        const float x0 = begin_of(cell);
+        float distance = x_float - x0;
+        if (is_precise_) distance += to_float(x - static_cast<double>(x_float));
+        const float y =
+            polynomial(rows_, tried_.data(), distance * CurveRows::scale_of(x0), is_precise_);
+        const double actual =
+            static_cast<double>(y) + (is_precise_ ? static_cast<double>(tried_[0]) : 0);
+        return std::fabs(actual - expected) <= tolerance_.at(x, expected);
+    }
+
+    const std::function<double(double)>& f_;
+    double hi_;
+    std::vector<float> kinks_;
+    const CurveTolerance& tolerance_;
+    bool is_precise_;
+    CurveRows rows_;
+    std::uint32_t count_ = 0;  // of cells
+    Ends ends_;
+    Row tried_{};
+};
+
+/// The shortest rows that do it, and of these the fewest: they share the first-level cache with
+/// pixels.
+std::optional<CompiledCurve> fit_rows(const std::function<double(double)>& f, double hi,
+                                      std::span<const double> kinks,
+                                      const CurveTolerance& tolerance, bool is_precise,
+                                      bool is_fused) {
+    for (const int length : {4, 8}) {
+        if (length == 4 && is_precise) continue;
+        for (int shift = 21; shift >= 16; --shift) {
+            RowFit rows(f, hi, kinks, tolerance, is_precise, is_fused, length, shift);
+            if (auto curve = rows.fit()) return curve;
+        }
+    }
+    return std::nullopt;
+}
 
 }  // namespace
 
@@ -386,10 +618,36 @@ std::size_t CompiledCurve::segment_of(float x) const noexcept {
     return static_cast<std::size_t>(segment[cell]) + (x >= threshold[cell] ? 1 : 0);
 }
 
+CurveRows::Place CurveRows::find(float x) const noexcept {
+    const auto number = [](auto k) { return static_cast<std::size_t>(k); };
+    const std::uint32_t bits =
+        std::bit_cast<std::uint32_t>(std::max(x, std::bit_cast<float>(base)));
+    const std::uint32_t cell = (bits - base) >> shift;
+    std::size_t row = number(cell) * number(length);
+    if (!cells.empty())
+        row = number(cells[cell].row) + (x >= cells[cell].threshold ? number(length) : 0);
+    const auto x0 = std::bit_cast<float>(base + (cell << shift));
+    return {numbers.data() + row, x0, scale_of(x0)};
+}
+
+float CurveRows::scale_of(float x0) noexcept {
+    return std::bit_cast<float>(0x7F000000U - (std::bit_cast<std::uint32_t>(x0) & 0x7F800000U));
+}
+
 double CompiledCurve::operator()(double x) const noexcept {
     if (!(x > static_cast<double>(lo)))  // NaN, too
         return is_precise ? at_lo : static_cast<double>(to_float(at_lo));
     x = std::min(x, static_cast<double>(hi));
+    if (rows) {
+        const float x_float = to_float(x);
+        const CurveRows::Place place = rows->find(x_float);
+        float distance = x_float - place.x0;
+        if (is_precise) distance += to_float(x - static_cast<double>(x_float));
+        const float y = polynomial(*rows, place.row, distance * place.scale, is_precise);
+        return std::clamp(
+            static_cast<double>(y) + (is_precise ? static_cast<double>(place.row[0]) : 0),
+            static_cast<double>(least), static_cast<double>(most));
+    }
     const std::size_t s = segment_of(to_float(x));
     const auto of_power = [&](int k) { return coefficient[static_cast<std::size_t>(k)][s]; };
     const double y = evaluate(x, scale[s], offset[s], degree, of_power, rest[s], is_precise);
@@ -398,6 +656,16 @@ double CompiledCurve::operator()(double x) const noexcept {
 
 double CompiledCurve::slope(double x) const noexcept {
     if (!(x >= static_cast<double>(lo) && x <= static_cast<double>(hi))) return 0;
+    if (rows) {
+        const CurveRows::Place place = rows->find(to_float(x));
+        const auto per_x = static_cast<double>(place.scale);
+        const double t = (x - static_cast<double>(place.x0)) * per_x;
+        const int first = is_precise ? 1 : 0;  // behind it, number k belongs to power k - first
+        double y = 0;
+        for (int k = rows->length - 1; k > first; --k)
+            y = y * t + (k - first) * static_cast<double>(place.row[k]);
+        return y * per_x;
+    }
     const std::size_t s = segment_of(static_cast<float>(x));
     const double t = x * static_cast<double>(scale[s]) + static_cast<double>(offset[s]);
     double y = 0;
@@ -406,15 +674,11 @@ double CompiledCurve::slope(double x) const noexcept {
     return y * static_cast<double>(scale[s]);
 }
 
-void CompiledCurve::make_rows() noexcept {
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-        rows[i] = {scale[i], offset[i], coefficient[0][i], rest[i]};
-        for (std::size_t k = 1; k < coefficient.size(); ++k)
-            rows[i][3 + k] = coefficient[k][i];
-    }
-}
-
 int CompiledCurve::cost() const noexcept {
+    if (rows) {
+        return 36 + (rows->length > 4 ? 28 : 0) + (rows->cells.empty() ? 0 : 32) +
+               (is_precise ? 24 : 0);
+    }
     const int of_cells = cells == 0 ? 4 * std::bit_width(static_cast<unsigned>(segments)) - 4
                                     : 2 * (cells <= 32 ? 1 : 3);
     const int of_segments = (degree + 3) * (segments <= 32 ? 1 : 3);
@@ -425,7 +689,8 @@ int CompiledCurve::cost() const noexcept {
 std::optional<CompiledCurve> compile_curve(const std::function<double(double)>& f,
                                            std::array<double, 2> range,
                                            std::span<const double> kinks,
-                                           const CurveTolerance& tolerance, bool is_precise) {
+                                           const CurveTolerance& tolerance, CurveForm form,
+                                           bool is_precise) {
     const double at_zero = f(0);
     if (!std::isfinite(at_zero)) return std::nullopt;
     const auto is_constant = [&](double from, double to, double value) {
@@ -454,6 +719,15 @@ std::optional<CompiledCurve> compile_curve(const std::function<double(double)>& 
     while (hi > 0x1p-60 && is_constant(hi / 2, hi, at_top))
         hi = static_cast<double>(to_float(hi / 2));
 
+    if (form != CurveForm::segments) {
+        // What is constant from a kink on ends there: one kink less.
+        for (const double kink : kinks) {
+            const auto end = static_cast<double>(float_from(kink));
+            if (end > 0x1p-60 && end < hi && is_constant(end, hi, at_top)) hi = end;
+        }
+        return fit_rows(f, hi, kinks, tolerance, is_precise, form == CurveForm::rows);
+    }
+
     // Eighths of octaves are what segments without cells end at.
     constexpr int kFree = 20;
     const auto fit = [&](int degree, int shift, std::size_t most_segments) {
@@ -476,7 +750,6 @@ std::optional<CompiledCurve> compile_curve(const std::function<double(double)>& 
                 too_low = degree;
             }
         }
-        best->make_rows();
         return best;
     }
     return std::nullopt;

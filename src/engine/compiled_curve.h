@@ -22,16 +22,53 @@ struct CurveTolerance {
     [[nodiscard]] static std::size_t exponent_of(double x) noexcept;
 };
 
-/// A function of one variable as polynomials in float over segments, made so that a processor with
-/// permutes over whole tables (AVX-512) finds the segment and its coefficients without a branch and
-/// without a gather.
+/// How a compiled curve finds the polynomial of a number: what is fast differs between processors.
+enum class CurveForm : std::uint8_t {
+    none,
+    segments,  // few and long, for permutes over whole tables (AVX-512): no branch and no gather
+    rows,      // many and short, for loads of neighbouring numbers (AVX2)
+    rows_unfused,  // the same with products and sums rounded one by one (SSE4)
+};
+
+/// A curve in the form of rows: the bits of x as a whole number, minus `base` and without the last
+/// `shift`, are its cell, and the polynomial of a cell is in t = (x - x0) scale, where x0 is the
+/// float that the cell begins with and scale the power of two that brings x0 into [1, 2): neither
+/// takes a number of the row, and t is exact. Below `base`, cell 0.
+struct CurveRows {
+    static constexpr int kMaxRows = 1024;
+    /// A cell with a kink inside: `row` before the threshold, the next one from it on.
+    struct Cell {
+        float threshold;
+        std::int32_t row;  // where it begins among the numbers
+    };
+
+    std::uint32_t base = 0;
+    int shift = 0;
+    bool is_fused = true;
+    /// Coefficients from the constant on in a row, 4 or 8. Of a precise curve the second is what is
+    /// missing in the first.
+    int length = 4;
+    std::vector<float> numbers;
+    /// Empty: no kink is inside a cell, and row k is that of cell k.
+    std::vector<Cell> cells;
+
+    struct Place {
+        const float* row;
+        float x0;
+        float scale;
+    };
+    [[nodiscard]] Place find(float x) const noexcept;
+    [[nodiscard]] static float scale_of(float x0) noexcept;
+};
+
+/// A function of one variable as polynomials in float, over segments or in rows.
 ///
-/// x is limited to [lo, hi]. Its exponent, or that and the first bits of its fraction, is the cell.
-/// A cell has at most one segment boundary inside, `threshold`: before it lies `segment[cell]`,
-/// from it on the next one. A segment may span many cells. Where boundaries are too near together
-/// for that, or too many octaves apart, there are no cells: `threshold` is where each segment
-/// begins, rising, filled up with infinity, and the segment is searched for. The polynomial of a
-/// segment is in t = x scale + offset, within [-1, 1].
+/// Segments: x is limited to [lo, hi]. Its exponent, or that and the first bits of its fraction, is
+/// the cell. A cell has at most one segment boundary inside, `threshold`: before it lies
+/// `segment[cell]`, from it on the next one. A segment may span many cells. Where boundaries are
+/// too near together for that, or too many octaves apart, there are no cells: `threshold` is where
+/// each segment begins, rising, filled up with infinity, and the segment is searched for. The
+/// polynomial of a segment is in t = x scale + offset, within [-1, 1].
 struct CompiledCurve {
     static constexpr int kMaxCells = 64;
     static constexpr int kMaxSegments = 64;
@@ -59,17 +96,14 @@ struct CompiledCurve {
     alignas(64) std::array<std::array<float, kMaxSegments>, kMaxDegree + 1> coefficient{};
     /// What is missing in the first coefficients; of a precise curve.
     alignas(64) std::array<float, kMaxSegments> rest{};
-    /// The same by segment, for processors that read four neighbours faster than four numbers
-    /// apart: scale, offset, the first coefficient, the rest of it, the other coefficients.
-    alignas(64) std::array<std::array<float, 16>, kMaxSegments> rows{};
+
+    /// The other form. Where it is there, nothing is said of cells and segments.
+    std::optional<CurveRows> rows;
 
     /// Takes and gives doubles. x and the first coefficient count with all their digits, and only
     /// the change within a segment is computed in float.
     bool is_precise = false;
     CurveTolerance tolerance;
-
-    /// Fills `rows` from the others.
-    void make_rows() noexcept;
 
     /// As the kernels compute it: in float with fused multiply-adds.
     [[nodiscard]] double operator()(double x) const noexcept;
@@ -85,6 +119,7 @@ struct CompiledCurve {
 /// The cheapest such curve that is within the tolerance of f, measured in float at many places of
 /// every segment, and at and beside every kink. Nothing when there is none: f is no function of
 /// that kind (it has values below 0 that matter, too many kinks, a pole...).
+/// @param form  not `none`
 /// @param is_precise  see CompiledCurve
 /// @param range  of x. Above 0 all of it counts; below 0, f has to be f(0).
 /// @param kinks  where f is not smooth, rising; those that do not show cost nothing
@@ -92,6 +127,6 @@ struct CompiledCurve {
                                                          std::array<double, 2> range,
                                                          std::span<const double> kinks,
                                                          const CurveTolerance& tolerance,
-                                                         bool is_precise = false);
+                                                         CurveForm form, bool is_precise = false);
 
 }  // namespace tonewright

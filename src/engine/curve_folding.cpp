@@ -137,12 +137,12 @@ Interval interval_of(const TapeInstruction& step, const Interval& a, const Inter
 class CurveFolder {
   public:
     CurveFolder(std::vector<TapeInstruction>& code, std::array<std::uint32_t, 3>& outputs,
-                const Influence& influence, CurveCache& cache, double curve_cost)
+                const Influence& influence, CurveCache& cache, CurveForm form)
         : code_(code),
           outputs_(outputs),
           influence_(influence),
           cache_(cache),
-          curve_cost_(curve_cost),
+          form_(form),
           value_(code.size()) {
         uses_.resize(code_.size());
         for (std::size_t i = 0; i < code_.size(); ++i) {
@@ -328,11 +328,12 @@ class CurveFolder {
             const auto f = [&](double x) { return run(steps, root, x); };
             tolerance.half_ulps = folded.is_precise ? kPreciseHalfUlps : kHalfUlps;
             std::optional<CompiledCurve> curve;
-            if (const auto kinks = find_kinks(root, steps))
-                curve =
-                    compile_curve(f, {range.lo, range.hi}, *kinks, tolerance, folded.is_precise);
+            if (const auto kinks = find_kinks(root, steps)) {
+                curve = compile_curve(f, {range.lo, range.hi}, *kinks, tolerance, form_,
+                                      folded.is_precise);
+            }
             // What a precise curve stands for would be in double.
-            if (curve && curve_cost_ * curve->cost() < (folded.is_precise ? 2.5 * cost : cost))
+            if (curve && curve->cost() < (folded.is_precise ? 2.5 * cost : cost))
                 folded.curve = std::make_unique<const CompiledCurve>(*curve);
         }
         return folded;
@@ -435,7 +436,7 @@ class CurveFolder {
     std::array<std::uint32_t, 3>& outputs_;
     const Influence& influence_;
     CurveCache& cache_;
-    double curve_cost_;
+    CurveForm form_;
     std::vector<Interval> interval_;
     std::vector<std::int64_t> dominator_;
     std::vector<int> uses_;
@@ -458,8 +459,8 @@ void reject_curve(CurveCache& cache, const CompiledCurve* curve) {
 }
 
 void fold_curves(std::vector<TapeInstruction>& code, std::array<std::uint32_t, 3>& outputs,
-                 const Influence& influence, CurveCache& cache, double curve_cost) {
-    CurveFolder(code, outputs, influence, cache, curve_cost).fold();
+                 const Influence& influence, CurveCache& cache, CurveForm form) {
+    CurveFolder(code, outputs, influence, cache, form).fold();
 }
 
 }  // namespace tonewright

@@ -35,8 +35,8 @@ void reject_curve(CurveCache& cache, const CompiledCurve* curve);
 /// @param outputs  indices into it
 /// @param influence  of the values of the code
 /// @param cache    owns the curves that the code refers to afterwards
-/// @param curve_cost  see simd::curve_cost()
+/// @param form  see simd::curve_form()
 void fold_curves(std::vector<TapeInstruction>& code, std::array<std::uint32_t, 3>& outputs,
-                 const Influence& influence, CurveCache& cache, double curve_cost);
+                 const Influence& influence, CurveCache& cache, CurveForm form);
 
 }  // namespace tonewright

@@ -66,8 +66,9 @@ struct Source {
 template <class F, class... S>
 HWY_INLINE void map_float(const Frame& frame, const Instruction& step, F f, S... source) {
     const DF d;
-    auto* out = reinterpret_cast<float*>(frame.registers + step.out.offset);
-    for (std::size_t i = 0; i < frame.count; i += hn::Lanes(d)) {
+    const std::size_t count = frame.count;
+    auto* const out = reinterpret_cast<float*>(frame.registers + step.out.offset);
+    for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
         hn::Store(f(d, source.load(d, i)...), d, out + i);
     }
 }
@@ -82,13 +83,42 @@ HWY_INLINE void store_wide(const Frame& frame, const Operand& out, std::size_t i
     }
 }
 
-/// The same computed in double; operands and result are either.
+/// As a double; `kIsWide`: it is one.
+template <bool kIsWide>
+HWY_INLINE Vec<DD> load_double(DD d, const Source& source, std::size_t i) {
+    if constexpr (kIsWide) {
+        return hn::Load(d, reinterpret_cast<const double*>(source.data) + i * source.step);
+    } else {
+        return source.load(d, i);
+    }
+}
+
+template <bool kAllWide, bool kIsOutWide, class F, class... S>
+HWY_INLINE void map_double_as(const Frame& frame, const Instruction& step, F f, S... source) {
+    const DD d;
+    const DFOfDD narrow;
+    const std::size_t count = frame.count;
+    unsigned char* const out = frame.registers + step.out.offset;
+    for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+        const auto value = f(d, load_double<kAllWide>(d, source, i)...);
+        if constexpr (kIsOutWide) {
+            hn::Store(value, d, reinterpret_cast<double*>(out) + i);
+        } else {
+            hn::Store(hn::DemoteTo(narrow, value), narrow, reinterpret_cast<float*>(out) + i);
+        }
+    }
+}
+
+/// The same computed in double; operands and result are either, and what they are is decided before
+/// the loop.
 template <class F, class... S>
 HWY_INLINE void map_double(const Frame& frame, const Instruction& step, F f, S... source) {
-    const DD d;
-    for (std::size_t i = 0; i < frame.count; i += hn::Lanes(d)) {
-        store_wide(frame, step.out, i, f(d, source.load(d, i)...));
+    if ((source.wide && ...)) {
+        if (step.out.wide) return map_double_as<true, true>(frame, step, f, source...);
+        return map_double_as<true, false>(frame, step, f, source...);
     }
+    if (step.out.wide) return map_double_as<false, true>(frame, step, f, source...);
+    map_double_as<false, false>(frame, step, f, source...);
 }
 
 /// f over N operands, in float or double as the instruction says.
@@ -311,6 +341,22 @@ HWY_INLINE Vec<DF> load_narrow(DF d, const Source& source, std::size_t i) {
 #endif
 }
 
+/// An engine made for another instruction set computes the same here, slowly.
+HWY_NOINLINE void curve_of_other_form(const Frame& frame, const Instruction& step,
+                                      const CompiledCurve& curve) {
+    for (std::size_t i = 0; i < frame.count; ++i) {
+        double y = 0;
+        with_number(frame, step.in[0], i, [&](auto& x) {
+            y = curve(curve.is_precise ? static_cast<double>(x)
+                                       : static_cast<double>(static_cast<float>(x)));
+        });
+        with_number(frame, step.out, i,
+                    [&](auto& out) { out = static_cast<std::decay_t<decltype(out)>>(y); });
+    }
+}
+
+#if HWY_TARGET <= HWY_AVX3
+
 /// The curve's degree as a constant.
 template <class F>
 HWY_INLINE void with_degree(const CompiledCurve& curve, F run) {
@@ -332,8 +378,6 @@ HWY_INLINE void with_degree(const CompiledCurve& curve, F run) {
             return run(std::integral_constant<int, 9>());
     }
 }
-
-#if HWY_TARGET <= HWY_AVX3
 
 /// 16, 32 or 64 numbers, and those of them that a vector of indices picks.
 template <int kSize>
@@ -489,6 +533,7 @@ HWY_INLINE void run_curve(const Frame& frame, const Instruction& step, const Com
 }
 
 HWY_NOINLINE void curve(const Frame& frame, const Instruction& step, const CompiledCurve& curve) {
+    if (curve.rows) return curve_of_other_form(frame, step, curve);
     if (curve.cells == 0) {
         if (curve.segments <= 16) return run_curve<0, 16>(frame, step, curve);
         if (curve.segments <= 32) return run_curve<0, 32>(frame, step, curve);
@@ -504,141 +549,178 @@ HWY_NOINLINE void curve(const Frame& frame, const Instruction& step, const Compi
     return run_curve<64, 64>(frame, step, curve);
 }
 
-double curve_cost() { return 1; }
+CurveForm curve_form() { return CurveForm::segments; }
 bool runs_machine_code() { return true; }
 
-#elif HWY_TARGET <= HWY_AVX2
+#elif HWY_TARGET <= HWY_SSE4
 
 using DI = hn::RebindToSigned<DF>;
 
-HWY_INLINE Vec<DI> segment_of(const CompiledCurve& curve, Vec<DF> x) {
+/// Whole numbers on their way to addresses: through memory, where a load for each costs less than
+/// taking a vector apart.
+HWY_INLINE void store_places(Vec<DI> places, std::uint32_t* at) {
+    hn::Store(hn::BitCast(hn::RebindToUnsigned<DF>(), places), hn::RebindToUnsigned<DF>(), at);
+    __asm__("" : "+m"(*reinterpret_cast<std::uint32_t(*)[kLaneMultiple]>(at)));
+}
+
+/// Four numbers in a row for each pixel, as four vectors: twice as fast as gathers.
+HWY_INLINE void load_rows(const float* numbers, const std::uint32_t* at, Vec<DF>* result) {
+    for (int p = 0; p < 4; ++p) {
+        const __m128 row = _mm_loadu_ps(numbers + at[p]);
+#if HWY_TARGET <= HWY_AVX2
+        result[p].raw =
+            _mm256_insertf128_ps(_mm256_castps128_ps256(row), _mm_loadu_ps(numbers + at[p + 4]), 1);
+#else
+        result[p].raw = row;
+#endif
+    }
+    const DF d;
+    const hn::Repartition<double, DF> pairs;
+    const auto in_pairs = [&](Vec<DF> x) HWY_ATTR { return hn::BitCast(pairs, x); };
+    const auto low01 = in_pairs(hn::InterleaveLower(d, result[0], result[1]));
+    const auto high01 = in_pairs(hn::InterleaveUpper(d, result[0], result[1]));
+    const auto low23 = in_pairs(hn::InterleaveLower(d, result[2], result[3]));
+    const auto high23 = in_pairs(hn::InterleaveUpper(d, result[2], result[3]));
+    result[0] = hn::BitCast(d, hn::InterleaveLower(pairs, low01, low23));
+    result[1] = hn::BitCast(d, hn::InterleaveUpper(pairs, low01, low23));
+    result[2] = hn::BitCast(d, hn::InterleaveLower(pairs, high01, high23));
+    result[3] = hn::BitCast(d, hn::InterleaveUpper(pairs, high01, high23));
+}
+
+/// The rows of cells that may have a kink inside.
+HWY_INLINE Vec<DI> rows_of_cells(const CurveRows& rows, Vec<DI> cell, Vec<DF> x,
+                                 std::uint32_t* at) {
+    const DI di;
+    store_places(cell, at);
+    const auto* cells = reinterpret_cast<const __m64*>(rows.cells.data());
+    const auto two = [cells, at](int p) HWY_ATTR {
+        const __m128 pair =
+            _mm_loadh_pi(_mm_loadl_pi(_mm_setzero_ps(), cells + at[p]), cells + at[p + 1]);
+#if HWY_TARGET <= HWY_AVX2
+        const __m128 upper =
+            _mm_loadh_pi(_mm_loadl_pi(_mm_setzero_ps(), cells + at[p + 4]), cells + at[p + 5]);
+        return Vec<DF>{_mm256_insertf128_ps(_mm256_castps128_ps256(pair), upper, 1)};
+#else
+        return Vec<DF>{pair};
+#endif
+    };
+    const auto outer = two(0);
+    const auto inner = two(2);
+#if HWY_TARGET <= HWY_AVX2
+    const Vec<DF> threshold{_mm256_shuffle_ps(outer.raw, inner.raw, 0x88)};
+    const Vec<DF> row{_mm256_shuffle_ps(outer.raw, inner.raw, 0xDD)};
+#else
+    const Vec<DF> threshold{_mm_shuffle_ps(outer.raw, inner.raw, 0x88)};
+    const Vec<DF> row{_mm_shuffle_ps(outer.raw, inner.raw, 0xDD)};
+#endif
+    const auto is_behind = hn::VecFromMask(di, hn::RebindMask(di, hn::Ge(x, threshold)));
+    return hn::Add(hn::BitCast(di, row), hn::And(is_behind, hn::Set(di, rows.length)));
+}
+
+template <int kLength, bool kHasCells, bool kIsPrecise>
+HWY_NOINLINE void run_rows(const Frame& frame, const Instruction& step,
+                           const CompiledCurve& curve) {
     const DF d;
     const DI di;
-    const auto threshold = [&curve, d](Vec<DI> at)
-                               HWY_ATTR { return hn::GatherIndex(d, curve.threshold.data(), at); };
-    if (curve.cells == 0) {
-        auto index = hn::Zero(di);
-        for (int bit = curve.segments / 2; bit > 0; bit /= 2) {
-            const auto next = hn::Or(index, hn::Set(di, bit));
-            const auto is_there = hn::RebindMask(di, hn::Ge(x, threshold(next)));
-            index = hn::IfThenElse(is_there, next, index);
-        }
-        return index;
-    }
-    const auto bits = hn::BitCast(di, hn::Max(x, hn::Set(d, curve.cell_floor)));
-    const auto cell = hn::Sub(hn::ShiftRightSame(bits, curve.shift),
-                              hn::Set(di, static_cast<std::int32_t>(curve.first_cell)));
-    const auto is_behind = hn::RebindMask(di, hn::Ge(x, threshold(cell)));
-    return hn::Sub(hn::GatherIndex(di, curve.segment.data(), cell), hn::VecFromMask(di, is_behind));
-}
-
-/// Four numbers in a row for each of eight pixels, as four vectors: twice as fast as gathers.
-HWY_INLINE void load_rows(const float* numbers, const std::int32_t* at, Vec<DF>* result) {
-    __m256 row[4];
-    for (int p = 0; p < 4; ++p) {
-        row[p] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_load_ps(numbers + at[p])),
-                                      _mm_load_ps(numbers + at[p + 4]), 1);
-    }
-    const __m256 low01 = _mm256_unpacklo_ps(row[0], row[1]);
-    const __m256 high01 = _mm256_unpackhi_ps(row[0], row[1]);
-    const __m256 low23 = _mm256_unpacklo_ps(row[2], row[3]);
-    const __m256 high23 = _mm256_unpackhi_ps(row[2], row[3]);
-    result[0].raw = _mm256_shuffle_ps(low01, low23, 0x44);
-    result[1].raw = _mm256_shuffle_ps(low01, low23, 0xEE);
-    result[2].raw = _mm256_shuffle_ps(high01, high23, 0x44);
-    result[3].raw = _mm256_shuffle_ps(high01, high23, 0xEE);
-}
-
-template <int kDegree, bool kIsPrecise>
-HWY_NOINLINE void run_curve(const Frame& frame, const Instruction& step,
-                            const CompiledCurve& curve) {
-    const DF d;
     const DD dd;
     const hn::Half<DF> half;
+    const CurveRows& rows = *curve.rows;
+    const float* const numbers = rows.numbers.data();
     const auto lo = hn::Set(d, curve.lo);
     const auto hi = hn::Set(d, curve.hi);
+    const auto base = hn::Set(di, static_cast<std::int32_t>(rows.base));
+    const int shift = rows.shift;
     const auto promote = [dd, half](Vec<DF> x, bool is_upper) HWY_ATTR {
         return hn::PromoteTo(dd, is_upper ? hn::UpperHalf(half, x) : hn::LowerHalf(half, x));
     };
+    const double least = static_cast<double>(curve.least);
+    const double most = static_cast<double>(curve.most);
+    const double at_lo = curve.at_lo;
     // NaN is not above lo.
-    const auto finished = [&curve](auto tag, auto y, auto is_above) HWY_ATTR {
+    const auto finished = [least, most, at_lo](auto tag, auto y, auto is_above) HWY_ATTR {
         using T = hn::TFromD<decltype(tag)>;
-        const auto number = [tag](auto k) HWY_ATTR { return hn::Set(tag, static_cast<T>(k)); };
-        const auto limited = hn::Min(hn::Max(y, number(curve.least)), number(curve.most));
-        return hn::IfThenElse(is_above, limited, number(curve.at_lo));
+        const auto number = [tag](double k) HWY_ATTR { return hn::Set(tag, static_cast<T>(k)); };
+        const auto limited = hn::Min(hn::Max(y, number(least)), number(most));
+        return hn::IfThenElse(is_above, limited, number(at_lo));
     };
-    alignas(kVectorBytes) std::int32_t at[kLaneMultiple];
+    alignas(kVectorBytes) std::uint32_t at[kLaneMultiple];
     const Source source(frame, step.in[0]);
     for (std::size_t i = 0; i < frame.count; i += hn::Lanes(d)) {
         const auto given = load_narrow(d, source, i);
         const auto x = hn::Min(hn::Max(given, lo), hi);
-        hn::Store(hn::ShiftLeft<4>(segment_of(curve, x)), DI(), at);
-        Vec<DF> number[4];
-        load_rows(curve.rows[0].data(), at, number);
-        const auto scale = number[0];
-        const auto first = number[2];
-        const auto rest_of_first = number[3];
-        auto t = hn::MulAdd(x, scale, number[1]);
+        const auto bits = hn::BitCast(di, hn::Max(x, hn::BitCast(d, base)));
+        const auto cell = hn::ShiftRightSame(hn::Sub(bits, base), shift);
+        const auto x0_bits = hn::Add(hn::ShiftLeftSame(cell, shift), base);
+        const auto x0 = hn::BitCast(d, x0_bits);
+        const auto scale = hn::BitCast(
+            d, hn::Sub(hn::Set(di, 0x7F000000), hn::And(x0_bits, hn::Set(di, 0x7F800000))));
+        store_places(kHasCells ? rows_of_cells(rows, cell, x, at)
+                     : hn::ShiftLeft < kLength == 4 ? 2
+                                                    : 3 > (cell),
+                     at);
+        auto distance = hn::Sub(x, x0);
         if (kIsPrecise && source.wide) {
             const auto rest = hn::Combine(
                 d,
                 hn::DemoteTo(half,
                              hn::Sub(source.load(dd, i + hn::Lanes(dd)), promote(given, true))),
                 hn::DemoteTo(half, hn::Sub(source.load(dd, i), promote(given, false))));
-            t = hn::MulAdd(hn::IfThenElseZero(hn::Eq(given, x), rest), scale, t);
+            distance = hn::Add(distance, hn::IfThenElseZero(hn::Eq(given, x), rest));
         }
-        // Four coefficients at a time: registers are few.
+        const auto t = hn::Mul(distance, scale);
+        Vec<DF> number[4];
         auto y = hn::Zero(d);
-        for (int k = (kDegree - 1) / 4 * 4 + 1; k >= 1; k -= 4) {
-            load_rows(curve.rows[0].data() + 3 + k, at, number);
-            for (int j = HWY_MIN(3, kDegree - k); j >= 0; --j)
-                y = k + j == kDegree ? number[j] : hn::MulAdd(y, t, number[j]);
+        if constexpr (kLength == 8) {
+            load_rows(numbers + 4, at, number);
+            y = number[3];
+            for (int k = 2; k >= 0; --k)
+                y = hn::MulAdd(y, t, number[k]);
         }
+        load_rows(numbers, at, number);
+        y = kLength == 8 ? hn::MulAdd(y, t, number[3]) : number[3];
+        y = hn::MulAdd(hn::MulAdd(y, t, number[2]), t, number[1]);
         if constexpr (kIsPrecise) {
-            const auto change = hn::MulAdd(y, t, rest_of_first);
-            const auto at_lo = hn::Set(dd, static_cast<double>(curve.lo));
+            const auto lowest = hn::Set(dd, static_cast<double>(curve.lo));
             for (int upper = 0; upper < 2; ++upper) {
-                const auto sum = hn::Add(promote(first, upper > 0), promote(change, upper > 0));
+                const auto sum = hn::Add(promote(number[0], upper > 0), promote(y, upper > 0));
                 store_wide(frame, step.out, i + (upper > 0 ? hn::Lanes(dd) : 0),
-                           finished(dd, sum, hn::Gt(promote(x, upper > 0), at_lo)));
+                           finished(dd, sum, hn::Gt(promote(x, upper > 0), lowest)));
             }
         } else {
-            hn::Store(finished(d, hn::MulAdd(y, t, first), hn::Gt(x, lo)), d,
+            y = hn::MulAdd(y, t, number[0]);
+            hn::Store(finished(d, y, hn::Gt(x, lo)), d,
                       reinterpret_cast<float*>(frame.registers + step.out.offset) + i);
         }
     }
 }
 
-template <int kDegree>
-HWY_INLINE void run_curve(const Frame& frame, const Instruction& step, const CompiledCurve& curve) {
-    if (curve.is_precise) return run_curve<kDegree, true>(frame, step, curve);
-    run_curve<kDegree, false>(frame, step, curve);
-}
-
 HWY_NOINLINE void curve(const Frame& frame, const Instruction& step, const CompiledCurve& curve) {
-    with_degree(curve, [&](auto degree) HWY_ATTR { run_curve<degree>(frame, step, curve); });
+    if (!curve.rows || curve.rows->is_fused != (HWY_NATIVE_FMA != 0)) {
+        return curve_of_other_form(frame, step, curve);
+    }
+    const bool has_cells = !curve.rows->cells.empty();
+    if (curve.is_precise) {
+        return has_cells ? run_rows<8, true, true>(frame, step, curve)
+                         : run_rows<8, false, true>(frame, step, curve);
+    }
+    if (curve.rows->length == 8) {
+        return has_cells ? run_rows<8, true, false>(frame, step, curve)
+                         : run_rows<8, false, false>(frame, step, curve);
+    }
+    return has_cells ? run_rows<4, true, false>(frame, step, curve)
+                     : run_rows<4, false, false>(frame, step, curve);
 }
 
-double curve_cost() { return 1.5; }
+CurveForm curve_form() { return HWY_NATIVE_FMA ? CurveForm::rows : CurveForm::rows_unfused; }
 bool runs_machine_code() { return false; }
 
 #else
 
-// An engine made for another instruction set computes the same here, slowly; one made for this has
-// no compiled curves.
 HWY_NOINLINE void curve(const Frame& frame, const Instruction& step, const CompiledCurve& curve) {
-    for (std::size_t i = 0; i < frame.count; ++i) {
-        double y = 0;
-        with_number(frame, step.in[0], i, [&](auto& x) {
-            y = curve(curve.is_precise ? static_cast<double>(x)
-                                       : static_cast<double>(static_cast<float>(x)));
-        });
-        with_number(frame, step.out, i,
-                    [&](auto& out) { out = static_cast<std::decay_t<decltype(out)>>(y); });
-    }
+    curve_of_other_form(frame, step, curve);
 }
 
-double curve_cost() { return 0; }
+CurveForm curve_form() { return CurveForm::none; }
 bool runs_machine_code() { return false; }
 
 #endif
@@ -957,7 +1039,7 @@ HWY_NOINLINE void store_tile(const TilePorts& ports, const Frame& frame,
                                       value[2].load(d, done), d, out[0] + done * 3);
             }
         }
-#if HWY_TARGET <= HWY_AVX2
+#if HWY_TARGET <= HWY_AVX3
         // Masked stores leave the fourth channel alone.
         if (stride == 4) {
             alignas(kVectorBytes) float pixels[4 * kLaneMultiple];
@@ -970,6 +1052,33 @@ HWY_NOINLINE void store_tile(const TilePorts& ports, const Frame& frame,
                 for (std::size_t k = 0; k < 4; ++k) {
                     hn::BlendedStore(hn::Load(d, pixels + k * lanes), ours, d,
                                      out[0] + done * 4 + k * lanes);
+                }
+            }
+        }
+#elif HWY_TARGET <= HWY_AVX2
+        // The fourth channel is written as it was read: masked stores are slow here.
+        if (stride == 4) {
+            for (; done + lanes < count; done += lanes) {
+                float* pixels = out[0] + done * 4;
+                const __m256 r = value[0].load(d, done).raw;
+                const __m256 g = value[1].load(d, done).raw;
+                const __m256 b = value[2].load(d, done).raw;
+                // By pixel: the first two channels of 0 1 | 4 5 and of 2 3 | 6 7; the third one
+                // beside itself.
+                const __m256 rg01 = _mm256_unpacklo_ps(r, g);
+                const __m256 rg23 = _mm256_unpackhi_ps(r, g);
+                const __m256 bb01 = _mm256_unpacklo_ps(b, b);
+                const __m256 bb23 = _mm256_unpackhi_ps(b, b);
+                const __m256 pixel[4] = {
+                    _mm256_shuffle_ps(rg01, bb01, 0x44), _mm256_shuffle_ps(rg01, bb01, 0xEE),
+                    _mm256_shuffle_ps(rg23, bb23, 0x44), _mm256_shuffle_ps(rg23, bb23, 0xEE)};
+                for (std::size_t k = 0; k < 4; ++k) {
+                    float* lower = pixels + 4 * k;
+                    float* upper = lower + 16;
+                    _mm_storeu_ps(lower, _mm_blend_ps(_mm256_castps256_ps128(pixel[k]),
+                                                      _mm_loadu_ps(lower), 8));
+                    _mm_storeu_ps(upper, _mm_blend_ps(_mm256_extractf128_ps(pixel[k], 1),
+                                                      _mm_loadu_ps(upper), 8));
                 }
             }
         }
@@ -1077,7 +1186,7 @@ namespace tonewright::simd {
 namespace {
 
 HWY_EXPORT(run);
-HWY_EXPORT(curve_cost);
+HWY_EXPORT(curve_form);
 HWY_EXPORT(runs_machine_code);
 
 /// Highway's bits of the targets compiled in that the machine has, best (lowest bit) first.
@@ -1094,7 +1203,7 @@ void run(const Code& code, const std::array<const float*, 3>& in, std::ptrdiff_t
     HWY_DYNAMIC_DISPATCH(run)(code, in, in_stride, out, out_stride, count);
 }
 
-double curve_cost() { return HWY_DYNAMIC_DISPATCH(curve_cost)(); }
+CurveForm curve_form() { return HWY_DYNAMIC_DISPATCH(curve_form)(); }
 
 bool runs_machine_code() { return HWY_DYNAMIC_DISPATCH(runs_machine_code)(); }
 

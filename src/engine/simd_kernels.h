@@ -154,9 +154,9 @@ struct Code : TilePorts {
 void run(const Code& code, const std::array<const float*, 3>& in, std::ptrdiff_t in_stride,
          const std::array<float*, 3>& out, std::ptrdiff_t out_stride, std::size_t count) noexcept;
 
-/// What a compiled curve costs on the instruction set that runs now, beside what is said of it
-/// (CompiledCurve::cost()), in instructions of the program; 0 where none pays.
-[[nodiscard]] double curve_cost();
+/// The form of compiled curves that pays on the instruction set that runs now. The other form and
+/// instruction sets that have none compute the same, slowly.
+[[nodiscard]] CurveForm curve_form();
 /// True when that is the one that machine code is made for.
 [[nodiscard]] bool runs_machine_code();
 /// Instruction sets compiled in that this machine has, best first.

@@ -44,7 +44,7 @@ class FloatTape {
 
     /// @param cache  owns the curves
     void fold(const Influence& influence, CurveCache& cache) {
-        fold_curves(code_, outputs_, influence, cache, curve_cost());
+        fold_curves(code_, outputs_, influence, cache, curve_form());
     }
 
     [[nodiscard]] const std::vector<TapeInstruction>& code() const { return code_; }
@@ -662,12 +662,12 @@ Code compile(const Pipeline& pipeline, double max_error, bool has_curves) {
 
 struct SimdEngine::Program {
     simd::Code code;
-    double curve_cost;  // of the target that it is made for
+    CurveForm curve_form;  // of the target that it is made for
 };
 
 SimdEngine::SimdEngine(const Pipeline& pipeline, double max_error)
     : program_(std::make_unique<const Program>(
-          Program{simd::compile(pipeline, max_error), simd::curve_cost()})) {}
+          Program{simd::compile(pipeline, max_error), simd::curve_form()})) {}
 SimdEngine::~SimdEngine() = default;
 SimdEngine::SimdEngine(SimdEngine&&) noexcept = default;
 SimdEngine& SimdEngine::operator=(SimdEngine&&) noexcept = default;
@@ -685,7 +685,7 @@ void SimdEngine::run_rgb(const float* in, float* out, std::size_t pixel_count) c
 std::vector<std::string> SimdEngine::targets() { return simd::target_names(); }
 
 bool SimdEngine::is_made_for_target() const noexcept {
-    return program_->curve_cost == simd::curve_cost();
+    return program_->curve_form == simd::curve_form();
 }
 
 void SimdEngine::use_target(const std::string& name) {

@@ -21,6 +21,6 @@ namespace tonewright::simd {
 /// 6. for AVX-512, machine code of the same (machine_code.h).
 /// @param has_curves  whether to do 2, to test what is compiled without.
 [[nodiscard]] Code compile(const Pipeline& pipeline, double max_error = kSimdError,
-                           bool has_curves = curve_cost() > 0);
+                           bool has_curves = curve_form() != CurveForm::none);
 
 }  // namespace tonewright::simd

@@ -6,6 +6,9 @@
 
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
+
+#include "engine/half_float.h"
 
 namespace tonewright {
 namespace {
@@ -29,6 +32,22 @@ void store(const Value* from, std::byte* to, std::ptrdiff_t stride, std::size_t 
     }
 }
 
+template <class Pixel>
+void run_to_float(const std::byte* from, float* to, std::size_t count) noexcept {
+    if constexpr (std::is_same_v<Pixel, half>) {
+        if (half_to_float(from, to, count)) return;
+    }
+    load<Pixel, float>(from, sizeof(Pixel), to, count);
+}
+
+template <class Pixel>
+void run_from_float(const float* from, std::byte* to, std::size_t count) noexcept {
+    if constexpr (std::is_same_v<Pixel, half>) {
+        if (float_to_half(from, to, count)) return;
+    }
+    store<Pixel, float>(from, to, sizeof(Pixel), count);
+}
+
 template <std::size_t size>
 void copy_bits(const std::byte* from, std::ptrdiff_t from_stride, std::byte* to,
                std::ptrdiff_t to_stride, std::size_t count) noexcept {
@@ -39,9 +58,9 @@ void copy_bits(const std::byte* from, std::ptrdiff_t from_stride, std::byte* to,
 
 template <class Pixel>
 const PixelAccess* access_as() noexcept {
-    static constexpr PixelAccess access = {load<Pixel, float>, store<Pixel, float>,
-                                           load<Pixel, double>, store<Pixel, double>,
-                                           copy_bits<sizeof(Pixel)>};
+    static constexpr PixelAccess access = {
+        load<Pixel, float>,  store<Pixel, float>,   load<Pixel, double>,     store<Pixel, double>,
+        run_to_float<Pixel>, run_from_float<Pixel>, copy_bits<sizeof(Pixel)>};
     return &access;
 }
 

@@ -21,6 +21,9 @@ struct PixelAccess {
                         std::size_t count) noexcept;
     void (*store_double)(const double* from, std::byte* to, std::ptrdiff_t stride,
                          std::size_t count) noexcept;
+    /// The same of values that follow each other in memory, as fast as it gets.
+    void (*run_to_float)(const std::byte* from, float* to, std::size_t count) noexcept;
+    void (*run_from_float)(const float* from, std::byte* to, std::size_t count) noexcept;
     /// Bits of one value moved as they are.
     void (*copy)(const std::byte* from, std::ptrdiff_t from_stride, std::byte* to,
                  std::ptrdiff_t to_stride, std::size_t count) noexcept;

@@ -68,6 +68,8 @@ std::vector<Function> functions() {
     };
 }
 
+constexpr std::array kForms = {CurveForm::segments, CurveForm::rows, CurveForm::rows_unfused};
+
 CurveTolerance tolerance_of(const Function& f, bool is_precise) {
     CurveTolerance tolerance;
     tolerance.half_ulps = is_precise ? 1.5 : 3;
@@ -98,10 +100,17 @@ std::vector<float> places(const Function& f) {
     return x;
 }
 
-TEST(CompiledCurve, IsWithinItsTolerance) {
+class CompiledCurveForm : public testing::TestWithParam<CurveForm> {};
+INSTANTIATE_TEST_SUITE_P(All, CompiledCurveForm, testing::ValuesIn(kForms), [](const auto& form) {
+    return form.param == CurveForm::segments ? "Segments"
+           : form.param == CurveForm::rows   ? "Rows"
+                                             : "RowsUnfused";
+});
+
+TEST_P(CompiledCurveForm, IsWithinItsTolerance) {
     for (const Function& f : functions()) {
         const CurveTolerance tolerance = tolerance_of(f, false);
-        const auto curve = compile_curve(f.f, f.range, f.kinks, tolerance);
+        const auto curve = compile_curve(f.f, f.range, f.kinks, tolerance, GetParam());
         ASSERT_TRUE(curve) << f.name;
         double worst = 0;
         for (const float place : places(f)) {
@@ -116,10 +125,10 @@ TEST(CompiledCurve, IsWithinItsTolerance) {
     }
 }
 
-TEST(CompiledCurve, PreciseOnesTakeDoublesToHalfAFloatsError) {
+TEST_P(CompiledCurveForm, PreciseOnesTakeDoublesToHalfAFloatsError) {
     const auto f = [](double x) { return std::pow(x, 1.5) + 0.01; };
     const CurveTolerance tolerance = tolerance_of({"", f, {0, 64}, {}, 1e-12}, true);
-    const auto curve = compile_curve(f, {0, 64}, {}, tolerance, true);
+    const auto curve = compile_curve(f, {0, 64}, {}, tolerance, GetParam(), true);
     ASSERT_TRUE(curve);
     EXPECT_TRUE(curve->is_precise);
     for (double x = 1e-6; x < 64; x *= 1.00037) {
@@ -127,9 +136,9 @@ TEST(CompiledCurve, PreciseOnesTakeDoublesToHalfAFloatsError) {
     }
 }
 
-TEST(CompiledCurve, StaysBetweenTheLeastAndTheMostOfTheFunction) {
+TEST_P(CompiledCurveForm, StaysBetweenTheLeastAndTheMostOfTheFunction) {
     const Function f = functions().front();
-    const auto curve = compile_curve(f.f, f.range, f.kinks, tolerance_of(f, false));
+    const auto curve = compile_curve(f.f, f.range, f.kinks, tolerance_of(f, false), GetParam());
     ASSERT_TRUE(curve);
     for (std::uint32_t bits = 0; bits < 0x7F800000; bits += 7919) {
         const double y = (*curve)(static_cast<double>(std::bit_cast<float>(bits)));
@@ -143,10 +152,10 @@ TEST(CompiledCurve, StaysBetweenTheLeastAndTheMostOfTheFunction) {
     EXPECT_EQ((*curve)(std::numeric_limits<double>::infinity()), 1);
 }
 
-TEST(CompiledCurve, DoesNotPretend) {
+TEST_P(CompiledCurveForm, DoesNotPretend) {
     const CurveTolerance tolerance = tolerance_of(functions().front(), false);
     const auto compiled = [&](const std::function<double(double)>& f) {
-        return compile_curve(f, {-4, 65504}, {}, tolerance).has_value();
+        return compile_curve(f, {-4, 65504}, {}, tolerance, GetParam()).has_value();
     };
     EXPECT_FALSE(compiled([](double x) { return x; })) << "values below 0";
     EXPECT_FALSE(compiled([](double x) { return 1 / std::fmax(x - 1, 0); })) << "a pole";
@@ -155,11 +164,11 @@ TEST(CompiledCurve, DoesNotPretend) {
 }
 
 /// What a kernel and operator() do has to be the same arithmetic.
-TEST(CompiledCurve, KernelsComputeWhatItSays) {
+TEST_P(CompiledCurveForm, KernelsComputeWhatItSays) {
     for (const Function& f : functions()) {
         for (const bool is_precise : {false, true}) {
-            const auto curve =
-                compile_curve(f.f, f.range, f.kinks, tolerance_of(f, is_precise), is_precise);
+            const auto curve = compile_curve(f.f, f.range, f.kinks, tolerance_of(f, is_precise),
+                                             GetParam(), is_precise);
             if (!curve) continue;
             simd::Code code;
             code.tile = simd::kMaxTile;

@@ -26,8 +26,8 @@ for top in ("plugin", "python"):
 # Public header -> the folder that it belongs to.
 PUBLIC = {
     "error": "expr", "expr": "expr", "color": "color", "pipeline": "pipeline", "view": "pipeline",
-    "engine": "engine", "lut": "lut", "ocio": "ocio", "image": "image", "sequence": "image", "verify": "verify",
-    "local": "local", "lint": "verify", "lut_match": "verify", "lut_file": "ocio",
+    "engine": "engine", "lut": "lut", "ocio": "ocio", "image": "image", "sequence": "image", "meter": "image",
+    "verify": "verify", "local": "local", "lint": "verify", "lut_match": "verify", "lut_file": "ocio",
 }
 THIRD_PARTY = {
     "hwy": ["engine"],

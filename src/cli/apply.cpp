@@ -1,9 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <iterator>
+#include <map>
+#include <set>
+
 #include "cli/apply_frames.h"
 #include "cli/command.h"
+#include "cli/exposure_options.h"
 #include "cli/frames.h"
 #include "cli/lut_input.h"
 #include "cli/picture_input.h"
+#include "cli/progress_bar.h"
 #include "image/source_picture.h"
 #include "tonewright/engine.h"
 #include "tonewright/image.h"
@@ -12,9 +21,9 @@ namespace tonewright {
 namespace {
 
 TonemapOptions::Statistics parse_statistics(const std::string& text) {
-    if (text == "picture") return TonemapOptions::Statistics::from_picture;
+    if (text == "picture" || text == "sequence") return TonemapOptions::Statistics::from_picture;
     if (text == "defaults") return TonemapOptions::Statistics::defaults;
-    const std::vector<std::string> names = {"picture", "defaults"};
+    const std::vector<std::string> names = {"picture", "sequence", "defaults"};
     throw Error("apply: statistics is " + text + "; expected " + join_choices(names) +
                 did_you_mean(text, names));
 }
@@ -30,6 +39,8 @@ struct Options : ViewOptions {
     bool unpremult = false;
     bool no_unpremult = false;
     LutOptions lut;
+    ExposureOptions metering;
+    ShotOptions shot;
 
     [[nodiscard]] TonemapOptions::Unpremult alpha() const {
         if (unpremult) return TonemapOptions::Unpremult::yes;
@@ -40,6 +51,64 @@ struct Options : ViewOptions {
         return type.empty() ? OIIO::TypeDesc(OIIO::TypeUnknown) : parse_pixel_type(type);
     }
 };
+
+/// What the frames of a shot say before any of them is tone mapped: their exposures, the statistics
+/// of all.
+void meter_frames(Tonemapper& tonemapper, std::vector<FrameFiles>& frames,
+                  const std::vector<int>& numbers, const Options& options,
+                  const CLI::App& command) {
+    const bool has_exposures = !options.metering.method.empty();
+    const bool has_statistics = options.statistics == "sequence" && tonemapper.takes_statistics();
+    if (!has_exposures && !has_statistics) return;
+    const ExposureRule rule = has_exposures ? options.metering.rule() : ExposureRule{};
+    const Adaptation adaptation = options.shot.adaptation(command);
+    std::vector<int> all =
+        options.shot.meter_frames.empty() ? numbers : parse_frames(options.shot.meter_frames);
+    const std::set<int> metered(all.begin(), all.end());
+    for (const int number : numbers) {
+        if (metered.contains(number)) continue;
+        throw Error(fmt::format("apply: --meter-frames is {}; expected frame {} of --frames in it",
+                                options.shot.meter_frames, number));
+    }
+    // Where frames may be missing, the shot is those that are there.
+    if (options.frames.missing != "error") {
+        std::erase_if(all, [&](int number) {
+            return !std::filesystem::exists(frame_name("in", options.in, number));
+        });
+    }
+    MeteredShot shot;
+    {
+        const QuietStderr quiet;
+        ProgressBar bar(quiet.before(), metered.size());
+        shot = meter_shot(options.in, all,
+                          options.metering.meter_options(options.input, options.alpha()),
+                          options.shot.cache, options.threads, [&](std::size_t) { bar.add(true); });
+    }
+    if (has_statistics) tonemapper = tonemapper.with_statistics(shot.statistics());
+    if (!has_exposures) return;
+    const std::map<int, double> exposures =
+        shot.exposures(rule, options.metering.delta, options.shot.adapt ? &adaptation : nullptr);
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        // A missing frame that is held has the exposure of the one before, too. One that could not
+        // be metered cannot be tone mapped either, which says why.
+        const auto after = exposures.upper_bound(numbers[i]);
+        if (after != exposures.begin())
+            frames[i].exposure_stops = options.exposure + std::prev(after)->second;
+    }
+}
+
+/// Of one picture, stops.
+double meter_exposure(const Options& options) {
+    const ExposureRule rule = options.metering.rule();
+    const MeteredPicture metered =
+        meter_pictures({options.in}, options.metering.meter_options(options.input, options.alpha()),
+                       options.shot.cache, options.threads)
+            .front();
+    if (metered.is_file_error) throw FileError(metered.error);
+    if (!metered.error.empty()) throw Error(metered.error);
+    return suggested_exposure(
+        metered_luminance(metered.metering, rule.method, options.metering.delta), rule);
+}
 
 void apply_lut(const Options& options, const CLI::App& command) {
     Pipeline before = before_lut(command, options.lut, options, source_color({}, options.input));
@@ -83,7 +152,7 @@ void add_apply(CLI::App& program, int& exit_code) {
         command->add_flag("--false-color", options->is_false_color,
                           "where the light is: a color for every stop, the operator false_color");
     false_color->excludes(op);
-    add_frame_options(*command, options->frames);
+    CLI::Option* frames = add_frame_options(*command, options->frames);
     options->input = kAutoInput;
     add_view_options(*command, *options);
     command->get_option("--input")->description(
@@ -96,7 +165,8 @@ void add_apply(CLI::App& program, int& exit_code) {
     command
         ->add_option("--statistics", options->statistics,
                      "parameters that a picture has (its largest luminance, ...) and --set does "
-                     "not name: `picture` or `defaults`")
+                     "not name: each `picture`'s own, those of the `sequence` of --frames, or "
+                     "`defaults`")
         ->capture_default_str();
     command
         ->add_option(
@@ -109,9 +179,16 @@ void add_apply(CLI::App& program, int& exit_code) {
         "divide color by alpha before, multiply after; default: as the picture says");
     command->add_flag("--no-unpremult", options->no_unpremult, "take color as it is")
         ->excludes(yes);
+    CLI::Option* metered = command
+                               ->add_option("--auto-exposure", options->metering.method,
+                                            "exposure from the picture's light: log-average, "
+                                            "histogram, mean or max; --exposure comes on top")
+                               ->group("Metering");
+    add_exposure_options(*command, options->metering, metered);
+    add_shot_options(*command, options->shot, frames, metered);
     add_lut_options(*command, options->lut, op,
                     {"--set", "--look", "--display", "--reference-white", "--statistics",
-                     "--frames", "--false-color"});
+                     "--frames", "--false-color", "--auto-exposure"});
     command->footer(
         "Examples:\n"
         "  tonewright apply render.exr out.png --operator hable --exposure 1 -d uint8\n"
@@ -143,15 +220,34 @@ void add_apply(CLI::App& program, int& exit_code) {
         tonemap.reference_white = options->reference_white;
         tonemap.unpremult = options->alpha();
         tonemap.statistics = parse_statistics(options->statistics);
-        const Tonemapper tonemapper(tonemap);  // a wrong name is told before a large file is read
+        for (const char* name : {"--meter-frames", "--meter-cache"}) {
+            if (command->count(name) == 0 || command->count("--auto-exposure") > 0 ||
+                options->statistics == "sequence") {
+                continue;
+            }
+            throw Error(fmt::format(
+                "apply: {} is {}; expected --auto-exposure or --statistics sequence with it", name,
+                command->get_option(name)->as<std::string>()));
+        }
+        Tonemapper tonemapper(tonemap);  // a wrong name is told before a large file is read
         const OIIO::TypeDesc type = options->pixel_type();
         if (command->count("--frames") > 0) {
+            const auto prepare = [&](std::vector<FrameFiles>& all,
+                                     const std::vector<int>& numbers) {
+                meter_frames(tonemapper, all, numbers, *options, *command);
+            };
             exit_code = apply_to_frames(tonemapper, options->in, options->out, options->frames,
-                                        type, options->threads);
+                                        type, options->threads, prepare);
             return;
         }
+        if (options->statistics == "sequence")
+            throw Error("apply: statistics is sequence; expected --frames with it");
         try {
             const QuietStderr quiet;
+            if (!options->metering.method.empty()) {
+                const double metered_stops = meter_exposure(*options);
+                tonemapper = tonemapper.with_exposure(options->exposure + metered_stops);
+            }
             tonemap_file(tonemapper, options->in, options->out, type, options->threads);
         } catch (const FileError& e) {
             if (!is_frame_pattern(options->in)) throw;

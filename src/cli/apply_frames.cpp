@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <map>
@@ -16,6 +15,7 @@
 #include "cli/command.h"
 #include "cli/frames.h"
 #include "cli/picture_input.h"
+#include "cli/progress_bar.h"
 #include "tonewright/sequence.h"
 
 namespace tonewright {
@@ -33,51 +33,6 @@ Missing parse_missing(const std::string& text) {
     throw Error("apply: missing is " + text + "; expected " + join_choices(names) +
                 did_you_mean(text, names));
 }
-
-/// How far it is, on a terminal only, from its first half second on.
-class ProgressBar {
-  public:
-    /// @param terminal  a file descriptor, or -1
-    ProgressBar(int terminal, std::size_t count)
-        : terminal_(terminal >= 0 && ::isatty(terminal) ? terminal : -1), count_(count) {}
-    ~ProgressBar() { show("\r\033[K"); }
-    ProgressBar(const ProgressBar&) = delete;
-    ProgressBar& operator=(const ProgressBar&) = delete;
-
-    void add(const FrameFiles& frame) {
-        ++done_;
-        made_ += frame.is_skipped ? 0 : 1;
-        constexpr double kInterval = 0.1;
-        const double seconds =
-            std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-        if (terminal_ < 0 || seconds < next_) return;
-        next_ = seconds + kInterval;
-        constexpr std::size_t kWidth = 40;
-        const std::size_t filled = kWidth * done_ / count_;
-        std::string text = fmt::format("\r[{}{}] {}/{} frames", std::string(filled, '#'),
-                                       std::string(kWidth - filled, ' '), done_, count_);
-        // Those that are there already take next to no time, and say nothing of the others.
-        if (made_ > 0) {
-            const double rate = static_cast<double>(made_) / seconds;
-            text += fmt::format(", {:.1f} per second, {:.0f} s left", rate,
-                                static_cast<double>(count_ - done_) / rate);
-        }
-        show(text + "\033[K");
-    }
-
-  private:
-    void show(const std::string& text) const {
-        if (terminal_ >= 0 && next_ > kFirst) (void)!::write(terminal_, text.data(), text.size());
-    }
-
-    static constexpr double kFirst = 0.5;
-    int terminal_;
-    std::size_t count_;
-    std::size_t done_ = 0;
-    std::size_t made_ = 0;
-    double next_ = kFirst;
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 /// The files of a shot, some of whose frames may be missing.
 class Shot {
@@ -179,7 +134,7 @@ void print_summary(const Plan& plan, bool is_terminal) {
 
 }  // namespace
 
-void add_frame_options(CLI::App& command, FrameOptions& options) {
+CLI::Option* add_frame_options(CLI::App& command, FrameOptions& options) {
     CLI::Option* frames = command.add_option(
         "--frames", options.frames,
         "frames such as 1001-1100, 1-9x2 (every second) or 1,5,10-20: `in` and `out` "
@@ -209,11 +164,15 @@ void add_frame_options(CLI::App& command, FrameOptions& options) {
         ->capture_default_str()
         ->check(CLI::Range(0, 256))
         ->needs(frames);
+    return frames;
 }
 
-int apply_to_frames(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
-                    const FrameOptions& options, const OIIO::TypeDesc& type, int threads) {
+int apply_to_frames(
+    const Tonemapper& tonemapper, const std::string& in, const std::string& out,
+    const FrameOptions& options, const OIIO::TypeDesc& type, int threads,
+    const std::function<void(std::vector<FrameFiles>&, const std::vector<int>&)>& prepare) {
     Plan plan = plan_frames(in, out, options);
+    prepare(plan.frames, plan.numbers);
     {
         const QuietStderr quiet;
         ProgressBar bar(quiet.before(), plan.frames.size());
@@ -222,7 +181,7 @@ int apply_to_frames(const Tonemapper& tonemapper, const std::string& in, const s
         sequence.skip_existing = options.skip_existing;
         sequence.jobs = options.jobs;
         sequence.nthreads = threads;
-        sequence.done = [&](const FrameFiles& frame) { bar.add(frame); };
+        sequence.done = [&](const FrameFiles& frame) { bar.add(!frame.is_skipped); };
         tonemap_files(tonemapper, plan.frames, sequence);
     }
     print_summary(plan, ::isatty(STDERR_FILENO) != 0);

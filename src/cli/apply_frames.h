@@ -2,9 +2,12 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <string>
+#include <vector>
 
 #include "tonewright/image.h"
+#include "tonewright/sequence.h"
 
 namespace tonewright {
 
@@ -16,15 +19,18 @@ struct FrameOptions {
     int jobs = 0;
 };
 
-/// --frames, --missing, --skip-existing, --jobs.
-void add_frame_options(CLI::App& command, FrameOptions& options);
+/// --frames, --missing, --skip-existing, --jobs. @returns  the first
+CLI::Option* add_frame_options(CLI::App& command, FrameOptions& options);
 
 /// Every frame, whatever becomes of the others: how far it is on a terminal, and at the end what
 /// became of them, on standard error.
 /// @param in, out   names with places for the number. @see frame_name
+/// @param prepare   called with the frames and their numbers before any is made
 /// @returns         the exit code
 /// @throws Error    what is wrong with the whole of it
-int apply_to_frames(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
-                    const FrameOptions& options, const OIIO::TypeDesc& type, int threads);
+int apply_to_frames(
+    const Tonemapper& tonemapper, const std::string& in, const std::string& out,
+    const FrameOptions& options, const OIIO::TypeDesc& type, int threads,
+    const std::function<void(std::vector<FrameFiles>&, const std::vector<int>&)>& prepare);
 
 }  // namespace tonewright

@@ -83,6 +83,14 @@ int rows_of_batch(std::size_t bytes_per_row, int step, std::size_t batch_bytes) 
     return std::max(rows / unit, 1) * unit;
 }
 
+OIIO::ImageSpec spec_of_rows(const OIIO::ImageSpec& picture, int ybegin, int yend) {
+    OIIO::ImageSpec spec = picture;
+    spec.y = ybegin;
+    spec.height = yend - ybegin;
+    spec.tile_width = spec.tile_height = spec.tile_depth = 0;
+    return spec;
+}
+
 void check_is_complete(PictureReader& reader) {
     const OIIO::ImageSpec& spec = reader.spec();
     if (spec.depth > 1) {

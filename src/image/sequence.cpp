@@ -72,8 +72,12 @@ void tonemap_files(const Tonemapper& tonemapper, std::vector<FrameFiles>& frames
             FrameFiles& frame = frames[i];
             try {
                 frame.is_skipped = options.skip_existing && is_done(any, frame, options.type);
-                if (!frame.is_skipped)
-                    tonemap_file(tonemapper, frame.in, frame.out, options.type, nthreads);
+                if (!frame.is_skipped) {
+                    std::optional<Tonemapper> own;
+                    if (frame.exposure_stops) own = tonemapper.with_exposure(*frame.exposure_stops);
+                    tonemap_file(own ? *own : tonemapper, frame.in, frame.out, options.type,
+                                 nthreads);
+                }
             } catch (const std::exception& e) {
                 frame.error = e.what();
                 frame.is_file_error = dynamic_cast<const FileError*>(&e) != nullptr;

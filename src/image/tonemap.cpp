@@ -511,6 +511,12 @@ Tonemapper Tonemapper::with_statistics(const SceneStatistics& statistics) const 
     return Tonemapper(options);
 }
 
+Tonemapper Tonemapper::with_exposure(double stops) const {
+    TonemapOptions options = state_->options;
+    options.exposure_stops = stops;
+    return Tonemapper(options);
+}
+
 bool Tonemapper::operator()(ImageBuf& dst, const ImageBuf& src, ROI roi, int nthreads,
                             OIIO::ProgressCallback progress, void* progress_data) const noexcept {
     try {

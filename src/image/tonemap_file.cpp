@@ -54,14 +54,6 @@ int thread_count(int nthreads) {
                         : static_cast<int>(std::max(std::thread::hardware_concurrency(), 1U));
 }
 
-ImageSpec spec_of_rows(const ImageSpec& picture, int ybegin, int yend) {
-    ImageSpec spec = picture;
-    spec.y = ybegin;
-    spec.height = yend - ybegin;
-    spec.tile_width = spec.tile_height = spec.tile_depth = 0;
-    return spec;
-}
-
 ImageSpec result_spec(const Tonemapper& tonemapper, const ImageSpec& source) {
     // That of one pixel, only larger.
     ImageSpec pixel = spec_of_rows(source, source.y, source.y + 1);
@@ -208,27 +200,6 @@ class FilePass {
 
 }  // namespace
 
-SceneStatistics measure_file(const std::string& path, int subimage, const TonemapOptions& options,
-                             int nthreads, std::size_t batch_bytes) {
-    for (const SceneMeter::Cover cover : SceneMeter::kTries) {
-        PictureReader reader(path, nthreads, subimage);
-        const ImageSpec& spec = reader.spec();
-        SceneMeter meter(spec, options.input, options.unpremult, cover, nthreads);
-        const ImageSpec rows = with_color_metadata_alone(spec);
-        const int step = rows_of_batch(spec.scanline_bytes(), reader.row_step(), batch_bytes);
-        const int bottom = spec.y + spec.height;
-        std::vector<std::byte> pixels(spec.scanline_bytes() * static_cast<std::size_t>(step));
-        for (int y = spec.y; y < bottom; y += step) {
-            const int yend = std::min(y + step, bottom);
-            reader.read_rows(y, yend, pixels.data());
-            const ImageBuf part(spec_of_rows(rows, y, yend), pixels.data());
-            meter.add(part, part.roi());
-        }
-        if (meter.has_cover()) return meter.statistics();
-    }
-    return {};
-}
-
 void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
                         const OIIO::TypeDesc& type, int nthreads, std::size_t batch_bytes) {
     nthreads = thread_count(nthreads);
@@ -245,8 +216,12 @@ void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, con
     }
     std::optional<Tonemapper> own;
     if (tonemapper.takes_statistics()) {
+        MeterOptions options;
+        options.input = tonemapper.options().input;
+        options.unpremult = tonemapper.options().unpremult;
         own = tonemapper.with_statistics(
-            measure_file(in, 0, tonemapper.options(), nthreads, batch_bytes));
+            measure_file(in, 0, options, SceneMeter::Figures::statistics, nthreads, batch_bytes)
+                .statistics());
     }
     FilePass(own ? *own : tonemapper, reader, writer, nthreads, batch_bytes, in).run_all();
 }

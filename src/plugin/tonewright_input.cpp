@@ -24,6 +24,7 @@
 
 #include "image/message.h"
 #include "image/picture_file.h"
+#include "image/scene_meter.h"
 #include "image/source_picture.h"
 #include "image/tonemap_arguments.h"
 #include "image/tonemap_file.h"
@@ -286,8 +287,12 @@ class TonemappedInput final : public ImageInput {
         const std::lock_guard lock(mutex_);
         auto found = measured_.find(subimage);
         if (found == measured_.end()) {
+            MeterOptions options;
+            options.input = tonemapper_->options().input;
+            options.unpremult = tonemapper_->options().unpremult;
             const SceneStatistics statistics =
-                measure_file(path_, subimage, tonemapper_->options(), threads());
+                measure_file(path_, subimage, options, SceneMeter::Figures::statistics, threads())
+                    .statistics();
             found = measured_.emplace(subimage, tonemapper_->with_statistics(statistics)).first;
         }
         return found->second;

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -110,6 +111,9 @@ class Tonemapper {
     /// The same for all pictures that have these statistics: prepared once.
     /// @throws Error  statistics that are no values of the operator's parameters
     [[nodiscard]] Tonemapper with_statistics(const SceneStatistics& statistics) const;
+    /// The same at another exposure, in stops, [-64, 64]: prepared anew.
+    /// @throws Error  out of that interval
+    [[nodiscard]] Tonemapper with_exposure(double stops) const;
 
     /// Same contract as tonemap(dst, src, ...).
     bool operator()(OIIO::ImageBuf& dst, const OIIO::ImageBuf& src, OIIO::ROI roi = {},

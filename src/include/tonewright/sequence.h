@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,8 @@ namespace tonewright {
 struct FrameFiles {
     std::string in;
     std::string out;
+    /// Instead of the tonemapper's exposure, in stops.
+    std::optional<double> exposure_stops = {};
     /// What went wrong, in one line; empty: nothing.
     std::string error = {};
     /// It was a FileError.

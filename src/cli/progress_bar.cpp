@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/progress_bar.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+namespace tonewright {
+
+ProgressBar::ProgressBar(int terminal, std::size_t count)
+    : terminal_(terminal >= 0 && ::isatty(terminal) ? terminal : -1), count_(count) {}
+
+ProgressBar::~ProgressBar() { show("\r\033[K"); }
+
+void ProgressBar::add(bool took_time) {
+    ++done_;
+    made_ += took_time ? 1 : 0;
+    constexpr double kInterval = 0.1;
+    const double seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    if (terminal_ < 0 || seconds < next_) return;
+    next_ = seconds + kInterval;
+    constexpr std::size_t kWidth = 40;
+    const std::size_t filled = kWidth * done_ / count_;
+    std::string text = fmt::format("\r[{}{}] {}/{} frames", std::string(filled, '#'),
+                                   std::string(kWidth - filled, ' '), done_, count_);
+    if (made_ > 0) {
+        const double rate = static_cast<double>(made_) / seconds;
+        text += fmt::format(", {:.1f} per second, {:.0f} s left", rate,
+                            static_cast<double>(count_ - done_) / rate);
+    }
+    show(text + "\033[K");
+}
+
+void ProgressBar::show(const std::string& text) const {
+    if (terminal_ >= 0 && next_ > kFirst) (void)!::write(terminal_, text.data(), text.size());
+}
+
+}  // namespace tonewright

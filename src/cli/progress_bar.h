@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <string>
+
+namespace tonewright {
+
+/// How far the frames of a shot are, on a terminal only, from its first half second on.
+class ProgressBar {
+  public:
+    /// @param terminal  a file descriptor, or -1
+    ProgressBar(int terminal, std::size_t count);
+    ~ProgressBar();
+    ProgressBar(const ProgressBar&) = delete;
+    ProgressBar& operator=(const ProgressBar&) = delete;
+
+    /// One frame more. @param took_time  else it was there already, and says nothing of the others.
+    void add(bool took_time);
+
+  private:
+    void show(const std::string& text) const;
+
+    static constexpr double kFirst = 0.5;
+    int terminal_;
+    std::size_t count_;
+    std::size_t done_ = 0;
+    std::size_t made_ = 0;
+    double next_ = kFirst;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace tonewright

@@ -12,6 +12,7 @@ import contextlib
 import os
 import re
 import shutil
+import signal
 import socket
 import subprocess
 import sys
@@ -108,7 +109,8 @@ def slurm(folder):
     munge = folder / "munge"
     with contextlib.ExitStack() as stack, open(folder / "output", "wb") as output:
         def start(*command):
-            process = subprocess.Popen(list(map(str, command)), env=environment, stdout=output, stderr=output)
+            process = subprocess.Popen(list(map(str, command)), env=environment, stdout=output, stderr=output,
+                                       start_new_session=True)
             stack.callback(stop, process)
 
         def said(*command):
@@ -122,7 +124,8 @@ def slurm(folder):
         else:
             start("slurmctld", "-D", "-c")
             start("slurmd", "-D", "-c", "-N", "localhost")
-            stack.callback(said, "scancel", "--full", "--signal=KILL", "--user=root")
+            stack.callback(wait_until, lambda: not said("squeue", "-h"), 20)
+            stack.callback(said, "scancel", "--user=root")  # before the wait: callbacks run from the last to the first
             if not wait_until(lambda: "idle" in said("sinfo", "-h", "-o", "%T"), 60):
                 problem = "slurmctld and slurmd did not start"
         if problem:
@@ -204,6 +207,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("command", type=Path)
     command = parser.parse_args().command.resolve()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # and the daemons end, too
     report = Report()
     with tempfile.TemporaryDirectory(prefix="tonewright-") as name:
         shot = Path(name)

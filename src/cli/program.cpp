@@ -38,8 +38,8 @@ int run_program(int argc, char** argv, const std::vector<AddCommand>& commands) 
         "  tonewright apply in.exr out.png --operator agx_sobotka\n"
         "  tonewright config -o ocio_config                      the OpenColorIO config\n"
         "  echo 0.18 0.18 0.18 | tonewright eval hable\n"
-        "Exit codes: 0 ok, 1 a check failed, 2 wrong usage, 3 a file could not be read or "
-        "written.");
+        "Exit codes: 0 ok, 1 a check or a frame of --frames failed, 2 wrong usage, 3 a file could "
+        "not be read or written.");
     int exit_code = kOk;
     for (const AddCommand add : commands)
         add(program, exit_code);

@@ -96,6 +96,14 @@ std::vector<int> channels_to_write(const ImageSpec& spec, const OIIO::ImageOutpu
 std::array<std::atomic<const char*>, 256> unfinished_names;
 static_assert(std::atomic<const char*>::is_always_lock_free);
 
+/// A signal's handler removes them just now: who makes a file after this leaves it behind.
+std::atomic<bool> is_ending = false;
+
+void wait_for_end() {
+    while (is_ending)
+        ::pause();
+}
+
 class UnfinishedName {
   public:
     explicit UnfinishedName(const std::string& path) {
@@ -120,6 +128,7 @@ class UnfinishedName {
 };
 
 void remove_unfinished(int number) {
+    is_ending = true;
     for (std::atomic<const char*>& place : unfinished_names) {
         if (const char* name = place.exchange(nullptr)) ::unlink(name);
     }
@@ -380,6 +389,7 @@ ImageSpec PictureWriter::file_spec(const ImageSpec& picture) {
 void PictureWriter::open(const ImageSpec& picture) {
     if (const int error = temporary_->check_target()) fail(reason_of(error));
     const ImageSpec spec = plan(picture);
+    wait_for_end();
     // libtiff reads its own directories back when there is an EXIF one (a picture marked sRGB has),
     // and a proxy for writing cannot be read: the file would lack its first directory.
     std::string name = temporary_->path().string();
@@ -389,7 +399,10 @@ void PictureWriter::open(const ImageSpec& picture) {
         out_->set_ioproxy(proxy_.get());
         name = fs::path(path_).filename().string();
     }
-    if (!out_->open(name, spec)) fail(first_line(out_->geterror()));
+    const bool is_open = out_->open(name, spec);
+    if (is_ending) temporary_.reset();
+    wait_for_end();
+    if (!is_open) fail(first_line(out_->geterror()));
 }
 
 OIIO::TypeDesc PictureWriter::row_type() const {

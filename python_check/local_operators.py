@@ -272,7 +272,7 @@ def main(command):
             rgb = rgb.astype(np.float32).astype(float)
             write_exr(source, {c: rgb[..., i] for i, c in enumerate("RGB")})
             for op, (function, settings) in OPERATORS.items():
-                for setting in settings:
+                for setting in settings if name in ("7 x 5", "150 x 97", "a square") else [{}]:
                     given = [x for k, v in setting.items() for x in ("--set", f"{k}={v}")]
                     run(command, "apply", source, result, "--operator", op, *given, "--display", "linear", "-d", "float")
                     shown = read_rgb(result, folder)

@@ -11,17 +11,16 @@
 // Formula   Three exposures c = exposure {2^-highlights, 1, 2^shadows} rgb, each tone mapped; their
 //           lightness e = sqrt(0.1 R + 0.7 G + 0.2 B); weights exp(-(e - 0.5)^2 sigma^2/2), divided
 //           by their sum. Both in pyramids by bilinear sampling, whose levels have two pixels or
-//           more a side. From the level `mip` up to
-//           `display_mip`, the Laplacian of e is summed by the weights of its level. To full size
-//           with a linear model of the middle exposure's lightness in 3 x 3 samples; the quotient
-//           of new and old lightness is a factor on light before the curve.
+//           more a side. From the level `mip` up to `display_mip`, the Laplacian of e is summed by
+//           the weights of its level. To full size with a linear model of the middle exposure's
+//           lightness in 3 x 3 samples; the quotient of new and old lightness is a factor on light
+//           before the curve.
 // Differs   the demo encodes with a square root; here the display does. With shadows = highlights =
 //           0 there is one exposure, and the curve alone is shown: the demo's epsilons are up to
 //           6 % in near-black.
 // Check     python_check/local_operators.py
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <vector>
 
 #include "local/operators.h"
@@ -291,9 +290,9 @@ class Fusion {
       public:
         WideRows(const Level& guide, const Level& fused, std::size_t width)
             : guide_(guide), fused_(fused), rows_(kKept, Row(width, 6)) {
-            for (int shift = -1; shift <= 1; ++shift) {
-                across_[static_cast<std::size_t>(shift + 1)] =
-                    samples_of(static_cast<int>(width), guide.width, shift);
+            for (std::size_t i = 0; i < 3; ++i) {
+                across_[i] =
+                    samples_of(static_cast<int>(width), guide.width, static_cast<int>(i) - 1);
             }
             kept_.fill(static_cast<std::size_t>(-1));
         }
@@ -326,23 +325,19 @@ class Fusion {
     /// The fused lightness at full size, put into the picture.
     void upsample(const Level& guide, const Level& fused) {
         std::array<std::vector<Sample>, 3> down;
-        for (int shift = -1; shift <= 1; ++shift) {
-            down[static_cast<std::size_t>(shift + 1)] =
-                samples_of(picture_.height, guide.height, shift);
-        }
+        for (std::size_t i = 0; i < 3; ++i)
+            down[i] = samples_of(picture_.height, guide.height, static_cast<int>(i) - 1);
+        const auto weight_of = [](int i) {
+            const int dx = i % 3 - 1;
+            const int dy = i / 3 - 1;
+            return std::exp(-0.5 * (dx * dx + dy * dy) / 0.49);
+        };
+        double sum = 0;
+        for (int i = 0; i < 9; ++i)
+            sum += weight_of(i);
         std::array<float, 9> weights{};
-        double weight_sum = 0;
-        for (int i = 0; i < 9; ++i) {
-            const double dx = i % 3 - 1;
-            const double dy = i / 3 - 1;
-            weight_sum += std::exp(-0.5 * (dx * dx + dy * dy) / 0.49);
-        }
-        for (int i = 0; i < 9; ++i) {
-            const double dx = i % 3 - 1;
-            const double dy = i / 3 - 1;
-            weights[static_cast<std::size_t>(i)] =
-                static_cast<float>(std::exp(-0.5 * (dx * dx + dy * dy) / 0.49) / weight_sum);
-        }
+        for (int i = 0; i < 9; ++i)
+            weights[static_cast<std::size_t>(i)] = static_cast<float>(weight_of(i) / sum);
         picture_.for_rows(picture_.height, [&](int begin, int end) {
             WideRows wide(guide, fused, width_);
             Row rgb(width_, 3);

@@ -104,13 +104,13 @@ class Expansion {
     void expand(int begin, int end, float* to) const {
         constexpr float kSum = 1.0F / 64;
         const float* s = column_sums_.data() + 1 + begin / 2;
-        const int count = end - begin;
-        for (int i = 0; i < count / 2; ++i) {
+        const std::ptrdiff_t count = end - begin;
+        for (std::ptrdiff_t i = 0; i < count / 2; ++i) {
             to[2 * i] = kSum * ((s[i - 1] + s[i + 1]) + 6 * s[i]);
             to[2 * i + 1] = kSum * 4 * (s[i] + s[i + 1]);
         }
         if (count % 2 == 1) {
-            const int i = count / 2;
+            const std::ptrdiff_t i = count / 2;
             to[2 * i] = kSum * ((s[i - 1] + s[i + 1]) + 6 * s[i]);
         }
     }
@@ -330,7 +330,7 @@ class Histogram {
   private:
     static constexpr float kStops = 64;  // on either side of 0
     static constexpr float kBinsPerStop = 64;
-    std::vector<std::size_t> bins_ = std::vector<std::size_t>(2 * 64 * 64);
+    std::vector<std::size_t> bins_ = std::vector<std::size_t>(std::size_t{2} * 64 * 64);
 };
 
 /// Of the pixels that count and have light.

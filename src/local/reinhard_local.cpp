@@ -19,7 +19,6 @@
 // Check     python_check/local_operators.py
 #include <algorithm>
 #include <cmath>
-#include <string>
 #include <vector>
 
 #include "local/operators.h"
@@ -77,8 +76,8 @@ Blur make_blur(int k, int width, int height) {
     return blur;
 }
 
-/// to[x] = factor * (sum over d of weights[|d|] * from(d)[x]), for a multiple of kBlock columns.
-/// Blocks that stay in registers while all taps pass.
+/// to[x] = sum over d of weights[|d|] tap(d)[x], for `count` columns and up to a whole block. The
+/// columns of a block stay in registers while all taps pass.
 constexpr std::size_t kBlock = 16;
 template <class Tap>
 void convolve(const std::vector<float>& weights, const Tap& tap, std::size_t count, float* to) {
@@ -148,7 +147,7 @@ class Adaptation {
           columns_(kStrip + 2 * static_cast<std::size_t>(blurs.back().radius) + 2 * kBlock) {}
 
     /// @param count  at most kStrip pixels
-    /// @returns      `count` values and some more
+    /// @returns      as many values, until the next call
     const float* run(std::size_t x, int y, std::size_t count) {
         blur(blurs_[0], x, y, count, center_.data());
         std::copy_n(center_.begin(), count, chosen_.begin());

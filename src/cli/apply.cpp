@@ -65,11 +65,13 @@ class ProgressBar {
 
 /// Every frame, whatever becomes of the others. @return the exit code
 int apply_to_frames(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
-                    const std::vector<int>& numbers, const OIIO::TypeDesc& type, int threads) {
+                    const std::vector<int>& numbers, const OIIO::TypeDesc& type, int threads,
+                    int subimage) {
     std::vector<FrameFiles> frames;
     std::set<std::string> names;
     for (const int number : numbers) {
         frames.push_back({frame_name("in", in, number), frame_name("out", out, number)});
+        frames.back().subimage = subimage;
         if (!names.insert(frames.back().out).second)
             throw Error(fmt::format("apply: --frames names frame {} twice; expected once", number));
     }
@@ -101,6 +103,7 @@ struct Options : ViewOptions {
     std::string type;
     std::string statistics = "picture";
     int threads = 0;
+    int subimage = 0;
     bool unpremult = false;
     bool no_unpremult = false;
     LutOptions lut;
@@ -177,14 +180,19 @@ void add_apply(CLI::App& program, int& exit_code) {
             "threads that read, tone map and write; 0 = all cores, 1 = one after the other")
         ->capture_default_str()
         ->check(CLI::Range(0, 1024));
+    command
+        ->add_option("--subimage", options->subimage,
+                     "which part of a multi-part file (view, page), from 0")
+        ->capture_default_str()
+        ->check(CLI::Range(0, 1 << 20));
     CLI::Option* yes = command->add_flag(
         "--unpremult", options->unpremult,
         "divide color by alpha before, multiply after; default: as the picture says");
     command->add_flag("--no-unpremult", options->no_unpremult, "take color as it is")
         ->excludes(yes);
-    add_lut_options(
-        *command, options->lut, op,
-        {"--set", "--look", "--display", "--reference-white", "--statistics", "--frames"});
+    add_lut_options(*command, options->lut, op,
+                    {"--set", "--look", "--display", "--reference-white", "--statistics",
+                     "--frames", "--subimage"});
     command->footer(
         "Examples:\n"
         "  tonewright apply render.exr out.png --operator hable --exposure 1 -d uint8\n"
@@ -217,12 +225,14 @@ void add_apply(CLI::App& program, int& exit_code) {
         const OIIO::TypeDesc type = options->pixel_type();
         if (command->count("--frames") > 0) {
             exit_code = apply_to_frames(tonemapper, options->in, options->out,
-                                        parse_frames(options->frames), type, options->threads);
+                                        parse_frames(options->frames), type, options->threads,
+                                        options->subimage);
             return;
         }
         try {
             const QuietStderr quiet;
-            tonemap_file(tonemapper, options->in, options->out, type, options->threads);
+            tonemap_file(tonemapper, options->in, options->out, type, options->threads,
+                         options->subimage);
         } catch (const FileError& e) {
             if (!is_frame_pattern(options->in)) throw;
             throw FileError(std::string(e.what()) + "; for the frames of a shot: --frames 1-100");

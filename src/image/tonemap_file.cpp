@@ -216,10 +216,11 @@ SceneStatistics measure_file(const std::string& path, int subimage, const Tonema
 }
 
 void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
-                        const OIIO::TypeDesc& type, int nthreads, std::size_t batch_bytes) {
+                        const OIIO::TypeDesc& type, int nthreads, std::size_t batch_bytes,
+                        int subimage) {
     nthreads = thread_count(nthreads);
     PictureWriter writer(out, type, nthreads);  // a wrong name is told before a large file is read
-    PictureReader reader(in, nthreads);
+    PictureReader reader(in, nthreads, subimage);
     check_pixel_type("source", reader.spec().format);
     if (reader.spec().depth > 1) {
         const ImageBuf source = reader.read_all();
@@ -231,15 +232,15 @@ void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, con
     std::optional<Tonemapper> own;
     if (tonemapper.takes_statistics()) {
         own = tonemapper.with_statistics(
-            measure_file(in, 0, tonemapper.options(), nthreads, batch_bytes));
+            measure_file(in, subimage, tonemapper.options(), nthreads, batch_bytes));
     }
     FilePass(own ? *own : tonemapper, reader, writer, nthreads, batch_bytes).run_all();
 }
 
 void tonemap_file(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
-                  const OIIO::TypeDesc& type, int nthreads) {
+                  const OIIO::TypeDesc& type, int nthreads, int subimage) {
     try {
-        tonemap_in_batches(tonemapper, in, out, type, nthreads, kBatchBytes);
+        tonemap_in_batches(tonemapper, in, out, type, nthreads, kBatchBytes, subimage);
     } catch (const FileError&) {
         throw;
     } catch (const Error& e) {
@@ -263,7 +264,7 @@ void tonemap_files(const Tonemapper& tonemapper, std::vector<FrameFiles>& frames
             FrameFiles& frame = frames[i];
             try {
                 tonemap_file(tonemapper, frame.in, frame.out, type,
-                             static_cast<int>(threads / workers));
+                             static_cast<int>(threads / workers), frame.subimage);
             } catch (const std::exception& e) {
                 frame.error = e.what();
                 frame.is_file_error = dynamic_cast<const FileError*>(&e) != nullptr;

@@ -205,7 +205,8 @@ void write_image_atomically(const OIIO::ImageBuf& image, const std::string& path
                             const OIIO::TypeDesc& type = OIIO::TypeUnknown);
 
 /// Tone maps a file into a file: read_image(), tonemap() and write_image_atomically() at once, with
-/// the same result to the last byte, in the memory of some rows.
+/// the same result to the last byte, in the memory of some rows. One subimage of it (a part of an
+/// OpenEXR file, a page): parts are seldom all of them color.
 ///
 /// Rows are read, tone mapped and written at the same time. An operator that takes statistics reads
 /// the file twice. Volumes are held in memory as a whole. `out` may be `in`.
@@ -216,7 +217,8 @@ void write_image_atomically(const OIIO::ImageBuf& image, const std::string& path
 /// @throws FileError  @see read_image, write_image_atomically
 /// @throws Error      a picture that cannot be tone mapped, with its name.
 void tonemap_file(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
-                  const OIIO::TypeDesc& type = OIIO::TypeUnknown, int nthreads = 0);
+                  const OIIO::TypeDesc& type = OIIO::TypeUnknown, int nthreads = 0,
+                  int subimage = 0);
 
 /// A frame of a shot, and what became of it.
 struct FrameFiles {
@@ -226,6 +228,8 @@ struct FrameFiles {
     std::string error = {};
     /// It was a FileError.
     bool is_file_error = false;
+    /// Of `in`.
+    int subimage = 0;
 };
 
 /// tonemap_file() of many files, several at the same time: while one is read another is written.

@@ -132,7 +132,8 @@ class Tonemapper {
 ///    flame, stays.
 /// 4. NaN is 0 and every channel is limited to +-65504 before the view; the result is finite.
 /// 5. Statistics are those of the whole source, whatever the region: parts that are rendered one by
-///    one fit together. (Not in place: there the source changes under them. Measure first.)
+///    one fit together. (Not in place: there the source changes under them, and so does what it says
+///    of its color. Measure first, and name the input.)
 /// 6. `dst` says what it holds: `oiio:ColorSpace` as OIIO names it ("sRGB", "Gamma2.4" for
 /// Rec.1886,
 ///    "Linear"), else the display's title; no claim for `native`, unless the operator's output is

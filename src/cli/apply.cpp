@@ -36,6 +36,7 @@ struct Options : ViewOptions {
     std::string statistics = "picture";
     int threads = 0;
     bool is_false_color = false;
+    int subimage = 0;
     bool unpremult = false;
     bool no_unpremult = false;
     LutOptions lut;
@@ -80,9 +81,10 @@ void meter_frames(Tonemapper& tonemapper, std::vector<FrameFiles>& frames,
     {
         const QuietStderr quiet;
         ProgressBar bar(quiet.before(), metered.size());
-        shot = meter_shot(options.in, all,
-                          options.metering.meter_options(options.input, options.alpha()),
-                          options.shot.cache, options.threads, [&](std::size_t) { bar.add(true); });
+        shot = meter_shot(
+            options.in, all,
+            options.metering.meter_options(options.input, options.alpha(), options.subimage),
+            options.shot.cache, options.threads, [&](std::size_t) { bar.add(true); });
     }
     if (has_statistics) tonemapper = tonemapper.with_statistics(shot.statistics());
     if (!has_exposures) return;
@@ -101,8 +103,10 @@ void meter_frames(Tonemapper& tonemapper, std::vector<FrameFiles>& frames,
 double meter_exposure(const Options& options) {
     const ExposureRule rule = options.metering.rule();
     const MeteredPicture metered =
-        meter_pictures({options.in}, options.metering.meter_options(options.input, options.alpha()),
-                       options.shot.cache, options.threads)
+        meter_pictures(
+            {options.in},
+            options.metering.meter_options(options.input, options.alpha(), options.subimage),
+            options.shot.cache, options.threads)
             .front();
     if (metered.is_file_error) throw FileError(metered.error);
     if (!metered.error.empty()) throw Error(metered.error);
@@ -174,6 +178,11 @@ void add_apply(CLI::App& program, int& exit_code) {
             "threads that read, tone map and write; 0 = all cores, 1 = one after the other")
         ->capture_default_str()
         ->check(CLI::Range(0, 1024));
+    command
+        ->add_option("--subimage", options->subimage,
+                     "which part of a multi-part file (view, page), from 0")
+        ->capture_default_str()
+        ->check(CLI::Range(0, 1 << 20));
     CLI::Option* yes = command->add_flag(
         "--unpremult", options->unpremult,
         "divide color by alpha before, multiply after; default: as the picture says");
@@ -188,7 +197,7 @@ void add_apply(CLI::App& program, int& exit_code) {
     add_shot_options(*command, options->shot, frames, metered);
     add_lut_options(*command, options->lut, op,
                     {"--set", "--look", "--display", "--reference-white", "--statistics",
-                     "--frames", "--false-color", "--auto-exposure"});
+                     "--frames", "--false-color", "--auto-exposure", "--subimage"});
     command->footer(
         "Examples:\n"
         "  tonewright apply render.exr out.png --operator hable --exposure 1 -d uint8\n"
@@ -234,6 +243,8 @@ void add_apply(CLI::App& program, int& exit_code) {
         if (command->count("--frames") > 0) {
             const auto prepare = [&](std::vector<FrameFiles>& all,
                                      const std::vector<int>& numbers) {
+                for (FrameFiles& frame : all)
+                    frame.subimage = options->subimage;
                 meter_frames(tonemapper, all, numbers, *options, *command);
             };
             exit_code = apply_to_frames(tonemapper, options->in, options->out, options->frames,
@@ -248,7 +259,8 @@ void add_apply(CLI::App& program, int& exit_code) {
                 const double metered_stops = meter_exposure(*options);
                 tonemapper = tonemapper.with_exposure(options->exposure + metered_stops);
             }
-            tonemap_file(tonemapper, options->in, options->out, type, options->threads);
+            tonemap_file(tonemapper, options->in, options->out, type, options->threads,
+                         options->subimage);
         } catch (const FileError& e) {
             if (!is_frame_pattern(options->in)) throw;
             throw FileError(std::string(e.what()) + "; for the frames of a shot: --frames 1-100");

@@ -55,9 +55,11 @@ OIIO::ROI parse_region(const std::string& text) {
 }  // namespace
 
 MeterOptions ExposureOptions::meter_options(const std::string& input,
-                                            TonemapOptions::Unpremult unpremult) const {
+                                            TonemapOptions::Unpremult unpremult,
+                                            int subimage) const {
     MeterOptions o;
     o.input = input;
+    o.subimage = subimage;
     o.unpremult = unpremult;
     if (!region.empty()) o.region = parse_region(region);
     o.delta = delta;

@@ -28,7 +28,8 @@ struct ExposureOptions {
 
     /// @throws Error
     [[nodiscard]] MeterOptions meter_options(const std::string& input,
-                                             TonemapOptions::Unpremult unpremult) const;
+                                             TonemapOptions::Unpremult unpremult,
+                                             int subimage) const;
     /// @throws Error
     [[nodiscard]] ExposureRule rule() const;
 };

@@ -44,7 +44,8 @@ struct Metered {
 struct Options {
     std::vector<std::string> in;
     std::string frames;
-    std::string input = "lin_rec709";
+    std::string input = std::string(kAutoInput);
+    int subimage = 0;
     bool json = false;
     int threads = 0;
     bool unpremult = false;
@@ -287,8 +288,16 @@ void add_meter(CLI::App& program, int& exit_code) {
         command->add_option("--frames", options->frames,
                             "frames of a shot, such as 1001-1100: `in` has %04d or #### where the "
                             "number stands");
-    command->add_option("--input", options->input, "scene-linear space of the input")
+    command
+        ->add_option("--input", options->input,
+                     "what the input's numbers are: `auto`, what the picture says, or a name as in "
+                     "`apply`")
         ->capture_default_str();
+    command
+        ->add_option("--subimage", options->subimage,
+                     "which part of a multi-part file (view, page), from 0")
+        ->capture_default_str()
+        ->check(CLI::Range(0, 1 << 20));
     command->add_option("--threads", options->threads, "0 = all cores")
         ->capture_default_str()
         ->check(CLI::Range(0, 1024));
@@ -307,7 +316,8 @@ void add_meter(CLI::App& program, int& exit_code) {
         OIIO::attribute("threads", options->threads);
         OIIO::attribute("exr_threads", options->threads == 1 ? -1 : options->threads);
         const ExposureRule rule = options->metering.rule();
-        const MeterOptions how = options->metering.meter_options(options->input, options->alpha());
+        const MeterOptions how =
+            options->metering.meter_options(options->input, options->alpha(), options->subimage);
         const std::vector<Metered> all = meter_all(*options, *command, how, rule);
         if (options->json) {
             Json pictures = Json::array();

@@ -79,6 +79,7 @@ Json to_json(const MeterOptions& options) {
     if (const OIIO::ROI& r = options.region; r.defined())
         region = {r.xbegin, r.ybegin, r.width(), r.height()};
     return {{"input", options.input},
+            {"subimage", options.subimage},
             {"unpremult", options.unpremult == Unpremult::automatic
                               ? Json("as the picture says")
                               : Json(options.unpremult == Unpremult::yes)},

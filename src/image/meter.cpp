@@ -96,13 +96,13 @@ SceneMeter measure_picture(const ImageSpec& spec, const MeterOptions& options,
     return meter;
 }
 
-SceneMeter measure_file(const std::string& path, int subimage, const MeterOptions& options,
+SceneMeter measure_file(const std::string& path, const MeterOptions& options,
                         SceneMeter::Figures figures, int nthreads, std::size_t batch_bytes) {
-    const ImageSpec spec = PictureReader(path, nthreads, subimage).spec();
+    const ImageSpec spec = PictureReader(path, nthreads, options.subimage).spec();
     check_pixel_type("source", spec.format);
     const ROI window = measured_window(spec, options);
     return measure_picture(spec, options, figures, nthreads, [&](SceneMeter& meter) {
-        PictureReader reader(path, nthreads, subimage);
+        PictureReader reader(path, nthreads, options.subimage);
         if (spec.depth > 1) {
             const ImageBuf volume = reader.read_all();
             pass_over(volume, options)(meter);
@@ -150,8 +150,8 @@ Metering meter(const ImageBuf& src, const MeterOptions& options, int nthreads) {
 Metering meter_file(const std::string& path, const MeterOptions& options, int nthreads) {
     check_meter_options(options);
     try {
-        require_pixels(PictureReader(path, nthreads).spec(), options);
-        return measure_file(path, 0, options, SceneMeter::Figures::all, nthreads).metering();
+        require_pixels(PictureReader(path, nthreads, options.subimage).spec(), options);
+        return measure_file(path, options, SceneMeter::Figures::all, nthreads).metering();
     } catch (const FileError&) {
         throw;
     } catch (const Error& e) {

@@ -320,6 +320,9 @@ ImageSpec PictureWriter::plan(const ImageSpec& picture) {
     ImageSpec spec = picture;
     spec.tile_width = spec.tile_height = spec.tile_depth = 0;  // those of the file it came from
     spec.channelformats.clear();
+    // One level alone is no texture: OpenEXR's writer would wait for the others.
+    if (spec.get_string_attribute("textureformat") == "Plain Texture")
+        spec.erase_attribute("textureformat");
     channels_ = channels_to_write(spec, *out_);
     if (!channels_.empty()) {
         // One pixel shows what becomes of names and places of channels.
@@ -458,6 +461,7 @@ void PictureWriter::write_fitted(const ImageBuf& rows) {
 
 void PictureWriter::finish() {
     if (!out_->close()) fail(first_line(out_->geterror()));
+    out_.reset();  // some write their last bytes only now
     if (proxy_) {
         if (const int error = proxy_->finish()) fail(reason_of(error));
     } else {

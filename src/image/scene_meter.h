@@ -52,8 +52,8 @@ using PicturePass = std::function<void(SceneMeter&)>;
 
 /// Of a file, or of the rows of a region of it.
 /// @throws Error  without the file's name, but for FileError
-[[nodiscard]] SceneMeter measure_file(const std::string& path, int subimage,
-                                      const MeterOptions& options, SceneMeter::Figures figures,
-                                      int nthreads, std::size_t batch_bytes = kBatchBytes);
+[[nodiscard]] SceneMeter measure_file(const std::string& path, const MeterOptions& options,
+                                      SceneMeter::Figures figures, int nthreads,
+                                      std::size_t batch_bytes = kBatchBytes);
 
 }  // namespace tonewright

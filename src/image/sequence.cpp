@@ -30,7 +30,7 @@ bool is_newer(const std::string& path, const std::string& than) {
 bool is_done(const Tonemapper& tonemapper, const FrameFiles& frame, const OIIO::TypeDesc& type) {
     if (!is_newer(frame.out, frame.in)) return false;
     try {
-        const PictureReader source(frame.in);
+        const PictureReader source(frame.in, 0, frame.subimage);
         PictureReader result(frame.out);
         const OIIO::ImageSpec is = result.spec();
         const OIIO::ImageSpec should =
@@ -76,7 +76,7 @@ void tonemap_files(const Tonemapper& tonemapper, std::vector<FrameFiles>& frames
                     std::optional<Tonemapper> own;
                     if (frame.exposure_stops) own = tonemapper.with_exposure(*frame.exposure_stops);
                     tonemap_file(own ? *own : tonemapper, frame.in, frame.out, options.type,
-                                 nthreads);
+                                 nthreads, frame.subimage);
                 }
             } catch (const std::exception& e) {
                 frame.error = e.what();

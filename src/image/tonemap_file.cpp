@@ -201,10 +201,11 @@ class FilePass {
 }  // namespace
 
 void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
-                        const OIIO::TypeDesc& type, int nthreads, std::size_t batch_bytes) {
+                        const OIIO::TypeDesc& type, int nthreads, std::size_t batch_bytes,
+                        int subimage) {
     nthreads = thread_count(nthreads);
     PictureWriter writer(out, type, nthreads);  // a wrong name is told before a large file is read
-    PictureReader reader(in, nthreads);
+    PictureReader reader(in, nthreads, subimage);
     check_pixel_type("source", reader.spec().format);
     if (reader.spec().depth > 1 || tonemapper.needs_whole_picture()) {
         const ImageBuf source = reader.read_all();
@@ -219,17 +220,18 @@ void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, con
         MeterOptions options;
         options.input = tonemapper.options().input;
         options.unpremult = tonemapper.options().unpremult;
+        options.subimage = subimage;
         own = tonemapper.with_statistics(
-            measure_file(in, 0, options, SceneMeter::Figures::statistics, nthreads, batch_bytes)
+            measure_file(in, options, SceneMeter::Figures::statistics, nthreads, batch_bytes)
                 .statistics());
     }
     FilePass(own ? *own : tonemapper, reader, writer, nthreads, batch_bytes, in).run_all();
 }
 
 void tonemap_file(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
-                  const OIIO::TypeDesc& type, int nthreads) {
+                  const OIIO::TypeDesc& type, int nthreads, int subimage) {
     try {
-        tonemap_in_batches(tonemapper, in, out, type, nthreads, kBatchBytes);
+        tonemap_in_batches(tonemapper, in, out, type, nthreads, kBatchBytes, subimage);
     } catch (const FileError&) {
         throw;
     } catch (const Error& e) {

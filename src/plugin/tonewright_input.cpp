@@ -28,6 +28,7 @@
 #include "image/source_picture.h"
 #include "image/tonemap_arguments.h"
 #include "image/tonemap_file.h"
+#include "lut/printable.h"
 
 namespace tonewright {
 namespace {
@@ -63,8 +64,8 @@ void read_request_file(const fs::path& path, Request& request) {
         if (text.empty() || text.front() == '#') continue;
         const std::size_t equals = text.find('=');
         if (equals == std::string_view::npos || equals == 0) {
-            throw FileError(
-                fmt::format("{}: line {} is {}; expected name=value", path.string(), number, text));
+            throw FileError(fmt::format("{}: line {} is {}; expected name=value", path.string(),
+                                        number, printable(text)));
         }
         const std::string name(OIIO::Strutil::strip(std::string(text.substr(0, equals))));
         const std::string value(OIIO::Strutil::strip(std::string(text.substr(equals + 1))));
@@ -290,8 +291,9 @@ class TonemappedInput final : public ImageInput {
             MeterOptions options;
             options.input = tonemapper_->options().input;
             options.unpremult = tonemapper_->options().unpremult;
+            options.subimage = subimage;
             const SceneStatistics statistics =
-                measure_file(path_, subimage, options, SceneMeter::Figures::statistics, threads())
+                measure_file(path_, options, SceneMeter::Figures::statistics, threads())
                     .statistics();
             found = measured_.emplace(subimage, tonemapper_->with_statistics(statistics)).first;
         }

@@ -110,6 +110,7 @@ ImageBuf tonemap_picture(const ImageBuf& source, const TonemapOptions& options, 
         is_done = tonemap(result, source, options, roi, nthreads, told.callback(), &told);
     }
     told.check();
+    if (!is_done && !source.initialized()) throw FileError(result.geterror());
     if (!is_done) throw Error(result.geterror());
     return result;
 }

@@ -139,7 +139,8 @@ class Tonemapper {
 ///    flame, stays.
 /// 4. NaN is 0 and every channel is limited to +-65504 before the view; the result is finite.
 /// 5. Statistics are those of the whole source, whatever the region: parts that are rendered one by
-///    one fit together. (Not in place: there the source changes under them. Measure first.)
+///    one fit together. (Not in place: there the source changes under them, and so does what it
+///    says of its color. Measure first, and name the input.)
 /// 6. `dst` says what it holds: `oiio:ColorSpace` as OIIO names it ("sRGB", "Gamma2.4" for
 /// Rec.1886,
 ///    "Linear"), else the display's title; no claim for `native`, unless the operator's output is
@@ -218,7 +219,8 @@ void write_image_atomically(const OIIO::ImageBuf& image, const std::string& path
                             const OIIO::TypeDesc& type = OIIO::TypeUnknown);
 
 /// Tone maps a file into a file: read_image(), tonemap() and write_image_atomically() at once, with
-/// the same result to the last byte, in the memory of some rows. A picture without a date gets its
+/// the same result to the last byte, in the memory of some rows. One subimage of it (a part of an
+/// OpenEXR file, a page): parts are seldom all of them color. A picture without a date gets its
 /// file's (UTC), or some formats would put in the time: made again, the result is the same.
 ///
 /// Rows are read, tone mapped and written at the same time. An operator that takes statistics reads
@@ -231,7 +233,8 @@ void write_image_atomically(const OIIO::ImageBuf& image, const std::string& path
 /// @throws FileError  @see read_image, write_image_atomically
 /// @throws Error      a picture that cannot be tone mapped, with its name.
 void tonemap_file(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
-                  const OIIO::TypeDesc& type = OIIO::TypeUnknown, int nthreads = 0);
+                  const OIIO::TypeDesc& type = OIIO::TypeUnknown, int nthreads = 0,
+                  int subimage = 0);
 
 /// `uint8`, `uint16`, `half` or `float`, as oiiotool's `-d` has them.
 /// @throws Error  for any other text, with the nearest name.

@@ -26,6 +26,8 @@ struct MeterOptions {
     /// As in tonemap(). Where alpha counts, pixels without cover (alpha 0 or not finite) are left
     /// out, unless none has any.
     TonemapOptions::Unpremult unpremult = TonemapOptions::Unpremult::automatic;
+    /// Of a file.
+    int subimage = 0;
     /// Pixels that count, in the picture's coordinates. Default: the data window. Channels of it
     /// are not read.
     OIIO::ROI region = {};

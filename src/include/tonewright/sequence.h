@@ -17,6 +17,8 @@ struct FrameFiles {
     std::string out;
     /// Instead of the tonemapper's exposure, in stops.
     std::optional<double> exposure_stops = {};
+    /// Of `in`.
+    int subimage = 0;
     /// What went wrong, in one line; empty: nothing.
     std::string error = {};
     /// It was a FileError.

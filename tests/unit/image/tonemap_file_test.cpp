@@ -7,9 +7,11 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <array>
 #include <csignal>
 #include <fstream>
 #include <iterator>
+#include <memory>
 
 #include "image/picture_file.h"
 #include "image/tonemap_file.h"
@@ -97,6 +99,44 @@ TEST_F(TonemapFile, TilesAlphaAndOtherChannels) {
     const TonemapOptions options = {.op = "reinhard"};
     expect_same(in, "half.exr", options, TypeDesc::HALF);
     expect_same(in, "a.png", options, TypeDesc::UINT8);  // no Z there; and color divided by alpha
+}
+
+TEST_F(TonemapFile, TexturesBecomePictures) {
+    for (const char* kind : {"Plain Texture", "LatLong Environment"}) {
+        const std::string in = folder_.file("a.exr");
+        OIIO::ImageSpec config;
+        config.set_format(TypeDesc::HALF);
+        ASSERT_TRUE(OIIO::ImageBufAlgo::make_texture(
+            kind[0] == 'P' ? OIIO::ImageBufAlgo::MakeTxTexture : OIIO::ImageBufAlgo::MakeTxEnvLatl,
+            make_rgb(64, 32, TypeDesc::HALF, 4), in, config))
+            << OIIO::geterror();
+        expect_same(in, "half.exr", {.op = "hable"}, TypeDesc::HALF);
+        const std::string out = folder_.file("out.exr");
+        tonemap_file(Tonemapper({.op = "hable"}), in, out);
+        EXPECT_EQ(read_image(out).spec().width, 64) << "all of it is in the file";
+    }
+}
+
+TEST_F(TonemapFile, AnySubimage) {
+    const std::string in = folder_.file("pages.tif");
+    const std::unique_ptr<OIIO::ImageOutput> file = OIIO::ImageOutput::create(in);
+    const std::array pages = {make_rgb(20, 10), make_rgb(30, 15, TypeDesc::FLOAT, 5)};
+    ASSERT_TRUE(file->open(in, pages[0].spec()));
+    ASSERT_TRUE(pages[0].write(file.get()));
+    ASSERT_TRUE(file->open(in, pages[1].spec(), OIIO::ImageOutput::AppendSubimage));
+    ASSERT_TRUE(pages[1].write(file.get()));
+    ASSERT_TRUE(file->close());
+    const std::string out = folder_.file("page.exr");
+    // Also of an operator that measures its picture.
+    for (const char* op : {"hable", "drago"}) {
+        for (int page = 0; page < 2; ++page) {
+            tonemap_file(Tonemapper({.op = op}), in, out, TypeDesc::FLOAT, 1, page);
+            EXPECT_TRUE(same_bits(read_image(out),
+                                  tonemap(pages.at(static_cast<std::size_t>(page)), {.op = op})))
+                << op << ", " << page;
+        }
+    }
+    EXPECT_THROW(tonemap_file(Tonemapper({.op = "hable"}), in, out, {}, 1, 2), FileError);
 }
 
 TEST_F(TonemapFile, RowsInFilesThatBeginAtTheBottom) {

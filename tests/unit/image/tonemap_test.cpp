@@ -867,7 +867,7 @@ TEST(TonemapInput, CieXyz) {
     ImageSpec spec = one_pixel();
     set_chromaticities(spec, kXyz);
     expect_light(light_of(spec, {0.5F, 0.5F, 0.5F}), {0.5, 0.5, 0.5}, kTolerance);
-    const Vector3 expected = multiply(to_srgb, multiply(to_d65, {0.30, 0.28, 0.20}));
+    const Vector3 expected = multiply(to_srgb, multiply(to_d65, Vector3{0.30, 0.28, 0.20}));
     expect_light(light_of(spec, {0.30F, 0.28F, 0.20F}), expected, 5e-4);
 }
 
@@ -969,7 +969,8 @@ TEST(Tonemap, TellsItsProgress) {
 TEST(Tonemap, StopsWhenItIsTold) {
     const ImageBuf src = make_rgb(64, 500);
     for (const int threads : {1, 4}) {
-        Told told{.stop_at = 0.3F};
+        Told told;
+        told.stop_at = 0.3F;
         ImageBuf dst;
         const bool ok = tonemap(dst, src, hable(), {}, threads, tell, &told);
         expect_error(dst, ok, "cancelled");
@@ -988,8 +989,8 @@ TEST(Tonemap, WhatAFunctionThrowsIsAnError) {
         };
         EXPECT_FALSE(map_colors(dst, src, thrower, Unpremult::automatic, {}, 4));
         const std::string message = dst.geterror();
-        EXPECT_EQ(message, std::array{"no more", "not enough memory",
-                                      "unknown error"}[static_cast<std::size_t>(kind)]);
+        constexpr std::array kMessages = {"no more", "not enough memory", "unknown error"};
+        EXPECT_EQ(message, kMessages.at(static_cast<std::size_t>(kind)));
     }
 }
 

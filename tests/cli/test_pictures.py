@@ -1,0 +1,313 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`tonewright apply` on pictures of every kind: each pixel is what `tonewright eval` makes of its color.
+
+    python3 tests/cli/test_pictures.py build/release/bin/tonewright
+
+Pictures are made and read with OpenImageIO's Python; real ones join where they are found, see
+pictures.shared_picture. The last line is `N passed, M failed`.
+"""
+
+import argparse
+import struct
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
+from pictures import Report, evaluate, run, shared_picture, skip  # noqa: E402
+
+try:
+    import OpenImageIO as oiio
+except ImportError:
+    skip("OpenImageIO's Python module is missing (Debian: python3-openimageio)")
+
+# Both run the SIMD engine, but on other rows of matrices: what is decoded or converted here in double is one float
+# away from what the engine computes inside, and the engine is within 1e-6 of the reference (engine.h).
+EXACT = 2e-6
+# `eval` prints 9 digits: every float. Where the picture's numbers go in as they are, the same float comes out.
+SAME = 0
+NAN, INF = float("nan"), float("inf")
+
+
+def picture(height, width, channels, peak=6.0):
+    """Light of all kinds, the same on every machine."""
+    rng = np.random.default_rng(11)
+    light = 0.18 * 2.0 ** rng.uniform(-8, np.log2(peak / 0.18), (height, width, channels))
+    flat = light.reshape(-1, channels)
+    flat[::7] *= rng.choice([-1, 0, 1], (len(flat[::7]), channels))
+    return light.astype(np.float32)
+
+
+def names_of(count, alpha):
+    names = ["Y"] if count - alpha == 1 else ["R", "G", "B"]
+    names += ["A"] * alpha
+    return names + [f"extra{i}" for i in range(count - len(names))]
+
+
+def spec_of(pixels, kind="float", alpha=False, attributes=None, names=None):
+    height, width, count = pixels.shape
+    spec = oiio.ImageSpec(width, height, count, kind)
+    spec.channelnames = names or names_of(count, alpha)
+    spec.alpha_channel = spec.channelnames.index("A") if "A" in spec.channelnames else -1
+    for name, value in (attributes or {}).items():
+        if isinstance(value, tuple):
+            spec.attribute(name, f"float[{len(value)}]", value)
+        else:
+            spec.attribute(name, value)
+    return spec
+
+
+def write(path, spec, pixels):
+    image = oiio.ImageBuf(spec)
+    image.set_pixels(oiio.get_roi(spec), pixels)
+    if not image.write(str(path)):
+        raise RuntimeError(f"{path}: {image.geterror()}")
+    return path
+
+
+def read(path, subimage=0, level=0):
+    image = oiio.ImageBuf(str(path), subimage, level)
+    pixels = image.get_pixels("float")
+    if pixels is None or image.has_error:
+        raise RuntimeError(f"{path}: {image.geterror()}")
+    return pixels, image.spec()
+
+
+def srgb_decode(code):
+    return np.where(code <= 0.04045, code / 12.92, ((np.maximum(code, 0.04045) + 0.055) / 1.055) ** 2.4)
+
+
+def rgb_to_xyz(primaries):
+    """SMPTE RP 177; primaries are x, y of red, green, blue and white. A primary may have y = 0."""
+    xy = np.asarray(primaries, float).reshape(4, 2)
+    columns = np.stack([xy[:, 0], xy[:, 1], 1 - xy.sum(1)])
+    white = columns[:, 3] / xy[3, 1]
+    return columns[:, :3] * np.linalg.solve(columns[:, :3], white)
+
+
+BRADFORD = np.array([[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]])
+REC709 = (0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329)
+
+
+def to_rec709(primaries):
+    """Light of some primaries -> linear Rec.709, Bradford-adapted."""
+    def white(p):
+        return BRADFORD @ np.array([p[6] / p[7], 1, (1 - p[6] - p[7]) / p[7]])
+    adapt = np.linalg.inv(BRADFORD) @ np.diag(white(REC709) / white(primaries)) @ BRADFORD
+    return np.linalg.inv(rgb_to_xyz(REC709)) @ adapt @ rgb_to_xyz(primaries)
+
+
+def sanitised(rgb):
+    return np.clip(np.nan_to_num(rgb.astype(float), nan=0, posinf=65504, neginf=-65504), -65504, 65504)
+
+
+class Check:
+    def __init__(self, report, command, scratch):
+        self.report, self.command, self.scratch = report, command, Path(scratch)
+
+    def apply(self, path, *options):
+        out = self.scratch / "out.exr"
+        run(self.command, "apply", path, out, "--operator", "agx_sobotka", "-d", "float", *options)
+        return read(out)
+
+    def expected(self, pixels, alpha=None, decode=None, matrix=None, divides=True):
+        """Of colours by `eval`; pixels that the picture says to be coded or of other primaries are brought to Rec.709.
+
+        --engine simd: the numbers of `apply`.
+        """
+        color = pixels[..., :3].astype(np.float32) if pixels.shape[-1] >= 3 else np.repeat(pixels[..., :1], 3, axis=-1)
+        cover = None
+        if alpha is not None and divides:
+            cover = np.where((alpha == 0) | ~np.isfinite(alpha), 1, alpha).astype(np.float32)[..., None]
+            color = color / cover
+        if decode or matrix is not None:
+            color = sanitised(color)
+        if decode:
+            color = decode(color)
+        if matrix is not None:
+            color = color @ matrix.T
+        shown = evaluate(self.command, color.reshape(-1, 3), "agx_sobotka", "--engine", "simd").reshape(color.shape)
+        return shown * cover if cover is not None else shown
+
+    def same(self, what, path, bound=SAME, alpha=None, options=(), **kinds):
+        """The file, pixel by pixel."""
+        pixels, spec = read(path)
+        cover = pixels[..., alpha] if alpha is not None else None
+        shown, result = self.apply(path, *options)
+        expected = self.expected(pixels, cover, **kinds)
+        colors = 1 if pixels.shape[-1] < 3 else 3
+        if shown.shape[-1] >= 3 and colors == 1:
+            colors = 3
+        first = 1 if colors == 1 else 0  # a grey result is the green of the view
+        self.report.compare(f"{what}: color", shown[..., :colors],
+                            expected[..., first:first + colors].astype(np.float32), bound)
+        rest = 1 if pixels.shape[-1] < 3 else 3
+        self.report.check(f"{what}: other channels are copied", np.array_equal(
+            shown[..., colors:], pixels[..., rest:], equal_nan=True))
+        self.report.check(f"{what}: windows and names", (spec.x, spec.y, spec.full_x, spec.full_y, spec.full_width,
+                                                         spec.full_height, tuple(spec.channelnames))
+                          == (result.x, result.y, result.full_x, result.full_y, result.full_width, result.full_height,
+                              tuple(result.channelnames)))
+        return shown
+
+
+def check_files(check, scratch):
+    """Formats, layouts, sizes."""
+    rgb, rgba, five = picture(37, 53, 3), picture(37, 53, 4), picture(20, 30, 5)
+    rgba[..., 3] = np.linspace(0, 1, rgba[..., 3].size).reshape(rgba.shape[:2])
+    special = rgb.copy()
+    special[0, :6] = [(NAN, 1, 0.2), (INF, -INF, 0.5), (-0.1, 0.18, -7), (1e30, 1e-30, 0), (0, 0, 0), (-0.0, NAN, INF)]
+    check.same("float EXR with NaN, infinities, negatives", write(scratch / "special.exr", spec_of(special), special))
+    check.same("half EXR", write(scratch / "half.exr", spec_of(rgb, "half"), rgb))
+    tiled = spec_of(rgb, "half")
+    tiled.tile_width, tiled.tile_height = 16, 16
+    check.same("tiled EXR", write(scratch / "tiled.exr", tiled, rgb))
+    window = spec_of(rgb, "half")
+    window.x, window.y, window.full_x, window.full_y, window.full_width, window.full_height = -5, 7, 0, 0, 40, 30
+    check.same("data window larger than the display's", write(scratch / "over.exr", window, rgb))
+    window.x, window.y, window.full_width, window.full_height = 10, 12, 200, 100
+    check.same("data window smaller than the display's", write(scratch / "crop.exr", window, rgb))
+    # Division by alpha is by float on both sides; multiplied once more.
+    check.same("EXR with alpha", write(scratch / "alpha.exr", spec_of(rgba, alpha=True), rgba), 1e-7, alpha=3)
+    straight = rgba.copy()
+    path = write(scratch / "alpha2.exr", spec_of(straight, alpha=True), straight)
+    check.same("--no-unpremult", path, alpha=3, divides=False, options=("--no-unpremult",))
+    check.same("five channels", write(scratch / "five.exr", spec_of(five), five))
+    check.same("one channel", write(scratch / "grey.exr", spec_of(rgb[..., :1]), rgb[..., :1]))
+    grey = np.abs(rgba[..., [0, 3]])
+    check.same("grey and alpha", write(scratch / "grey2.exr", spec_of(grey, alpha=True), grey), 1e-7, alpha=1)
+    for height, width in ((1, 1), (1, 100000), (100000, 1)):
+        line = picture(height, width, 3)
+        check.same(f"{width} x {height}", write(scratch / "line.exr", spec_of(line, "half"), line))
+    check.same("RGBE", write(scratch / "rgbe.hdr", spec_of(np.abs(rgb)), np.abs(rgb)))
+    unit = np.clip(rgb, 0, 1)
+    check.same("16-bit TIFF", write(scratch / "a.tif", spec_of(unit, "uint16"), unit))
+    check.same("float TIFF", write(scratch / "f.tif", spec_of(rgb), rgb))
+
+
+def check_color(check, scratch):
+    """What the picture says of its numbers."""
+    rgb = np.clip(picture(24, 24, 3), 0, 1)
+    check.same("16-bit PNG, sRGB", write(scratch / "a.png", spec_of(rgb, "uint16"), rgb), EXACT, decode=srgb_decode)
+    check.same("the same, --input lin_rec709", scratch / "a.png", options=("--input", "lin_rec709"))
+    check.same("TIFF, --input sRGB", write(scratch / "b.tif", spec_of(rgb, "uint16"), rgb), EXACT, decode=srgb_decode,
+               options=("--input", "sRGB"))
+    rgba = np.concatenate([rgb * 0.5, np.full((24, 24, 1), 0.5, np.float32)], axis=-1)
+    check.same("PNG with alpha", write(scratch / "c.png", spec_of(rgba, "uint8", alpha=True), rgba), EXACT, alpha=3,
+               decode=srgb_decode)
+    wide = picture(24, 24, 3)
+    ap1 = (0.713, 0.293, 0.165, 0.83, 0.128, 0.044, 0.32168, 0.33767)
+    ap0 = (0.7347, 0.2653, 0, 1, 0.0001, -0.077, 0.32168, 0.33767)
+    xyz = (1, 0, 0, 1, 0, 0, 1 / 3, 1 / 3)
+    for name, primaries in (("ACEScg", ap1), ("CIE XYZ", xyz), ("Rec.709 itself", REC709)):
+        path = write(scratch / "w.exr", spec_of(wide, attributes={"chromaticities": primaries}), wide)
+        # Saturated colours leave Rec.709: a matrix that is one with the operator's loses less than two in a row do.
+        check.same(f"chromaticities of {name}", path, 2e-6, matrix=to_rec709(primaries))
+        check.same(f"the same, --input lin_rec709 ({name})", path, options=("--input", "lin_rec709"))
+    path = write(scratch / "aces.exr", spec_of(wide, attributes={"acesImageContainerFlag": 1}), wide)
+    check.same("acesImageContainerFlag", path, 2e-6, matrix=to_rec709(ap0))
+    report = check.report
+    luma = picture(8, 8, 3)
+    path = write(scratch / "yc.exr", spec_of(luma, "half", names=["Y", "RY", "BY"]), luma)
+    fails(check, "luminance and chroma", path, 2, "channels are Y, RY, BY: luminance and chroma; expected R, G, B")
+    (scratch / "sub.exr").write_bytes(subsampled_exr())
+    fails(check, "luminance-chroma EXR as OpenEXR writes it", scratch / "sub.exr", 3, "Subsampled channels")
+    log = write(scratch / "log.tif", spec_of(rgb, attributes={"oiio:ColorSpace": "KodakLog"}), rgb)
+    _, spec = read(log)
+    if spec.getattribute("oiio:ColorSpace") == "KodakLog":
+        fails(check, "an unknown color space", log, 2, "oiio:ColorSpace of the picture")
+    fails(check, "--input of no space", log, 2, "input space is lin_rec708", "--input", "lin_rec708")
+    report.check("a result in sRGB says so", read_tag(check, scratch) == "sRGB")
+
+
+def read_tag(check, scratch):
+    run(check.command, "apply", scratch / "w.exr", scratch / "tag.png", "--operator", "hable")
+    return read(scratch / "tag.png")[1].getattribute("oiio:ColorSpace")
+
+
+def fails(check, what, path, code, words, *options):
+    """One line, the exit code, and no file."""
+    out = check.scratch / "never.exr"
+    done = subprocess.run([check.command, "apply", path, out, "--operator", "hable", *options], capture_output=True,
+                          text=True, check=False)
+    check.report.check(f"{what} is refused in one line", done.returncode == code and words in done.stderr
+                       and done.stderr.count("\n") == 1 and not out.exists(), f"{done.returncode}: {done.stderr}")
+
+
+def subsampled_exr():
+    """2 x 2 pixels, Y of full resolution, RY and BY of half: what OpenEXR's RgbaOutputFile writes as YC."""
+    channels = b"".join(name + b"\0" + struct.pack("<iiii", 1, 0, step, step)
+                        for name, step in ((b"BY", 2), (b"RY", 2), (b"Y", 1))) + b"\0"
+    box = struct.pack("<iiii", 0, 0, 1, 1)
+    header = struct.pack("<ii", 20000630, 2)
+    for name, kind, value in ((b"channels", b"chlist", channels), (b"compression", b"compression", b"\0"),
+                              (b"dataWindow", b"box2i", box), (b"displayWindow", b"box2i", box),
+                              (b"lineOrder", b"lineOrder", b"\0"), (b"pixelAspectRatio", b"float", struct.pack("<f", 1)),
+                              (b"screenWindowCenter", b"v2f", struct.pack("<ff", 0, 0)),
+                              (b"screenWindowWidth", b"float", struct.pack("<f", 1))):
+        header += name + b"\0" + kind + b"\0" + struct.pack("<i", len(value)) + value
+    header += b"\0"
+    first = np.array([0.1, -0.1, 0.5, 0.5], "<f2").tobytes()  # BY, RY, Y, Y
+    second = np.array([0.5, 0.5], "<f2").tobytes()
+    start = len(header) + 16
+    return (header + struct.pack("<QQ", start, start + 8 + len(first))
+            + struct.pack("<ii", 0, len(first)) + first + struct.pack("<ii", 1, len(second)) + second)
+
+
+def check_parts(check, scratch):
+    """Multi-part and multi-view files, and levels: --subimage, the first by default."""
+    parts = [picture(12, 16, 3), picture(9, 7, 3), picture(12, 16, 3)]
+    specs = []
+    for name, view, pixels in zip(("beauty", "light", "beauty.right"), ("left", "left", "right"), parts):
+        specs.append(spec_of(pixels, "half", attributes={"oiio:subimagename": name, "view": view}))
+        specs[-1].full_width, specs[-1].full_height = 16, 12  # one display window for all parts
+    path = str(scratch / "parts.exr")
+    out = oiio.ImageOutput.create(path)
+    if not out.open(path, tuple(specs)):
+        raise RuntimeError(out.geterror())
+    for number, (spec, pixels) in enumerate(zip(specs, parts)):
+        if number:
+            out.open(path, spec, "AppendSubimage")
+        out.write_image(pixels)
+    out.close()
+    for number in range(3):
+        options = ("--subimage", str(number)) if number else ()
+        shown, _ = check.apply(path, *options)
+        pixels, _ = read(path, number)
+        check.report.compare(f"part {number} of a multi-part file", shown, check.expected(pixels).astype(np.float32),
+                             SAME)
+    fails(check, "a part that is not there", path, 3, "it has no subimage 3; the first is 0", "--subimage", "3")
+
+
+def check_real(check):
+    """Whole pictures of every kind that OpenEXR's collection has."""
+    kinds = {"Desk.exr": {"alpha": 3, "bound": 1e-7}, "CandleGlass.exr": {"alpha": 3, "bound": 1e-6}, "t05.exr": {},
+             "StageEnvLatLong.exr": {}, "memorial.hdr": {}, "composited.exr": {"alpha": 3, "bound": 1e-7},
+             "XYZ.exr": {"matrix": to_rec709((1, 0, 0, 1, 0, 0, 1 / 3, 1 / 3)), "bound": EXACT},
+             "Tree.exr": {"alpha": 3, "bound": EXACT, "matrix": to_rec709(
+                 (0.62955, 0.341, 0.2867, 0.6108, 0.1489, 0.07125, 0.3155, 0.33165))}}
+    for name, kind in kinds.items():
+        path = shared_picture(name)
+        if path:
+            check.same(name, path, **kind)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("command", type=Path)
+    command = parser.parse_args().command.resolve()
+    report = Report()
+    with tempfile.TemporaryDirectory(prefix="tonewright-") as folder:
+        check = Check(report, command, folder)
+        check_files(check, Path(folder))
+        check_color(check, Path(folder))
+        check_parts(check, Path(folder))
+        check_real(check)
+    return report.finish()
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

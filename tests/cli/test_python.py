@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The Python module `tonewright`: pictures of OpenImageIO and NumPy, colors, operators, LUTs, errors.
+
+    python3 tests/cli/test_python.py build/release/bin/tonewright build/release/python
+
+The last line is `N passed, M failed`.
+"""
+
+import argparse
+import json
+import sys
+import tempfile
+import threading
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
+from pictures import Report, evaluate, run  # noqa: E402
+
+# The SIMD engine is within 1e-6 of the reference (engine.h); float32 rounds by 6e-8.
+FLOAT32 = 1.1e-6
+
+
+def srgb(light):
+    """IEC 61966-2-1."""
+    return np.where(light <= 0.0031308, 12.92 * light, 1.055 * np.maximum(light, 0.0031308) ** (1 / 2.4) - 0.055)
+
+
+def light(shape, peak=1.0):
+    return np.random.default_rng(3).uniform(0, peak, shape)
+
+
+def raises(report, what, error, words, function):
+    try:
+        function()
+    except Exception as e:  # noqa: BLE001: which one it is, is the check
+        text = str(e)
+        report.check(f"{what}: {error.__name__}", type(e) is error and words in text and "\n" not in text, repr(e))
+        return
+    report.check(f"{what}: {error.__name__}", False, "nothing was raised")
+
+
+def check_colors(report, tw, command):
+    for shape in ((3,), (1, 3), (7, 3), (4, 5, 3), (0, 3)):
+        colors = light(shape)
+        shown = tw.evaluate("clamp", colors)
+        report.check(f"evaluate {shape}: float64 of its shape", shown.dtype == np.float64 and shown.shape == shape)
+        # The closed form of what a clamp on an sRGB display shows.
+        report.bound(f"evaluate {shape}", np.abs(shown - srgb(colors)).max(initial=0), 1e-14)
+        shown = tw.evaluate("clamp", colors.astype(np.float32))
+        report.check(f"evaluate {shape}: float32 of its shape", shown.dtype == np.float32 and shown.shape == shape)
+        report.bound(f"evaluate {shape}, float32", np.abs(shown - srgb(colors)).max(initial=0), FLOAT32)
+    wide = light((64, 3), 8.0)
+    report.compare("evaluate with options", tw.evaluate(
+        "reinhard_extended", wide, settings={"white": 8}, exposure=0.5, input="acescg", display="display_p3"),
+        evaluate(command, wide, "reinhard_extended", "--set", "white=8", "--exposure", "0.5", "--input", "acescg",
+                 "--display", "display_p3", "--engine", "reference", "--digits", "17"), 1e-15)
+    strided = light((8, 8, 6))[:, ::2, ::2]
+    report.compare("evaluate of a view of an array", tw.evaluate("clamp", strided), srgb(strided), 1e-14)
+    report.check("evaluate: NaN and infinities", np.isfinite(tw.evaluate("hable", [[np.nan, np.inf, -np.inf]])).all())
+    report.compare("evaluate, input sRGB", tw.evaluate("clamp", [[0.5, 0.01, 1]], input="sRGB"),
+                   np.array([[0.5, 0.01, 1]]), 1e-12)
+
+
+def check_arrays(report, tw):
+    rgb = light((9, 7, 3))
+    for kind in ("float16", "float32", "float64", "uint8", "uint16"):
+        top = {"uint8": 255, "uint16": 65535}.get(kind, 1)
+        stored = np.round(rgb * top).astype(kind) if top > 1 else rgb.astype(kind)
+        expected = srgb(stored.astype(float) / top)
+        shown = tw.tonemap(stored, "clamp")
+        report.check(f"tonemap of {kind}: float32", shown.dtype == np.float32 and shown.shape == rgb.shape)
+        report.bound(f"tonemap of {kind}", np.abs(shown - expected).max(), FLOAT32)
+    rgba = np.concatenate([rgb * 0.5, np.full((9, 7, 1), 0.5)], axis=-1)
+    shown = tw.tonemap(rgba, "clamp")
+    report.compare("tonemap divides by alpha", shown[..., :3], srgb(rgb) * 0.5, FLOAT32)
+    report.check("and keeps it", (shown[..., 3] == 0.5).all())
+    report.compare("unpremult='no'", tw.tonemap(rgba, "clamp", unpremult="no")[..., :3], srgb(rgba[..., :3]), FLOAT32)
+    report.compare("unpremult=False", tw.tonemap(rgba, "clamp", unpremult=False)[..., :3], srgb(rgba[..., :3]), FLOAT32)
+    grey = rgb[..., 0]
+    report.compare("grey stays grey", tw.tonemap(grey, "clamp")[..., None], srgb(grey)[..., None], FLOAT32)
+    report.check("and of its shape", tw.tonemap(grey[..., None], "clamp").shape == (9, 7, 1))
+    parts = []
+    tw.tonemap(light((500, 8, 3)), "hable", progress=lambda part: parts.append(part))
+    report.check("progress", len(parts) > 50 and parts == sorted(parts) and parts[-1] == 1, parts[-3:])
+    raises(report, "progress that stops", ValueError, "cancelled",
+           lambda: tw.tonemap(rgb, "hable", progress=lambda part: True))
+    raises(report, "progress that raises", ZeroDivisionError, "division",
+           lambda: tw.tonemap(rgb, "hable", progress=lambda part: 1 / 0))
+    results = [None] * 8
+
+    def work(i):
+        results[i] = tw.tonemap(rgb, "agx_sobotka")
+    threads = [threading.Thread(target=work, args=(i,)) for i in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    report.check("eight threads, the same bits", all(np.array_equal(r, results[0]) for r in results))
+
+
+def check_errors(report, tw):
+    rgb = light((2, 2, 3))
+    raises(report, "unknown operator", ValueError, "did you mean hable?", lambda: tw.tonemap(rgb, "habel"))
+    raises(report, "unknown option", ValueError, "did you mean exposure?", lambda: tw.tonemap(rgb, "hable", exposur=1))
+    raises(report, "option of the wrong kind", ValueError, "exposure is bright; expected a number",
+           lambda: tw.tonemap(rgb, "hable", exposure="bright"))
+    raises(report, "unknown parameter", ValueError, "did you mean white?",
+           lambda: tw.tonemap(rgb, "hable", settings={"whit": 1}))
+    raises(report, "parameter out of range", ValueError, "white is -2",
+           lambda: tw.tonemap(rgb, "hable", settings={"white": -2}))
+    raises(report, "integers of 64 bits", ValueError, "array is of int64", lambda: tw.tonemap(np.ones((2, 2, 3), int), "hable"))
+    raises(report, "foreign byte order", ValueError, "array is of >f4", lambda: tw.tonemap(rgb.astype(">f4"), "hable"))
+    for shape in ((3,), (2, 2, 2, 3), (0, 2, 3)):
+        raises(report, f"shape {shape}", ValueError, "array has the shape", lambda s=shape: tw.tonemap(np.zeros(s), "hable"))
+    raises(report, "no picture", TypeError, "image is a list; expected a numpy array or an OpenImageIO.ImageBuf",
+           lambda: tw.tonemap([1, 2, 3], "hable"))
+    raises(report, "colors of two numbers", ValueError, "expected (..., 3)", lambda: tw.evaluate("hable", [1, 2]))
+    raises(report, "a number alone", ValueError, "expected (..., 3)", lambda: tw.evaluate("hable", 1.0))
+
+
+def check_lists(report, tw, command):
+    expected = {op["id"]: op for op in json.loads(run(command, "list", "--json"))["operators"]}
+    ours = {op["id"]: op for op in tw.operators()}
+    report.check("operators(): those of `list`", ours.keys() == expected.keys())
+    report.check("operators(): with parameters", all(
+        [p["name"] for p in ours[i]["parameters"]] == [p["name"] for p in expected[i]["parameters"]]
+        and [p["default"] for p in ours[i]["parameters"]] == [p["default"] for p in expected[i]["parameters"]]
+        for i in expected))
+
+
+def check_luts(report, tw, command, scratch):
+    for options, words in (({"size": 17}, ["--size", "17"]),
+                           ({"host": "resolve"}, ["--for", "resolve"]),
+                           ({"format": "spi3d", "size": 17, "exposure": 1}, ["--format", "spi3d", "--size", "17",
+                                                                             "--exposure", "1"])):
+        result = tw.bake("hable", str(scratch / "a.lut"), **options)
+        run(command, "bake", "hable", "-o", scratch / "b.lut", *words)
+        report.check(f"bake {options}: the file of `bake`",
+                     (scratch / "a.lut").read_bytes() == (scratch / "b.lut").read_bytes(), str(result))
+    raises(report, "bake into no folder", OSError, "/nonexistent/a.cube", lambda: tw.bake("hable", "/nonexistent/a.cube"))
+    raises(report, "bake for nobody", ValueError, "did you mean resolve?", lambda: tw.bake("hable", "a", host="resolv"))
+    raises(report, "bake of a kind", ValueError, "format is", lambda: tw.bake("hable", "a", format="cub"))
+
+
+def check_pictures(report, tw, command, scratch):
+    try:
+        import OpenImageIO as oiio
+    except ImportError:
+        print("skipped: ImageBuf (OpenImageIO's Python module is missing; Debian: python3-openimageio)")
+        return
+    path = scratch / "a.exr"
+    spec = oiio.ImageSpec(40, 30, 4, "half")
+    spec.attribute("chromaticities", "float[8]", (0.713, 0.293, 0.165, 0.83, 0.128, 0.044, 0.32168, 0.33767))
+    image = oiio.ImageBuf(spec)
+    image.set_pixels(oiio.get_roi(spec), light((30, 40, 4), 4).astype(np.float32))
+    image.write(str(path))
+    run(command, "apply", path, scratch / "b.exr", "--operator", "hable", "--exposure", "1", "-d", "float")
+    applied = oiio.ImageBuf(str(scratch / "b.exr")).get_pixels("float")
+    result = tw.tonemap(oiio.ImageBuf(str(path)), "hable", exposure=1)
+    report.check("ImageBuf in, ImageBuf out", isinstance(result, oiio.ImageBuf))
+    report.check("the bits of `apply`", np.array_equal(result.get_pixels("float"), applied))
+    report.check("its color space is said", result.spec().getattribute("oiio:ColorSpace") == "sRGB")
+    part = tw.tonemap(oiio.ImageBuf(str(path)), "hable", exposure=1, roi=oiio.ROI(3, 9, 5, 8, 0, 1, 0, 4))
+    report.check("roi", np.array_equal(part.get_pixels("float"), applied[5:8, 3:9]))
+    raises(report, "a missing file", OSError, "/nonexistent/a.exr",
+           lambda: tw.tonemap(oiio.ImageBuf("/nonexistent/a.exr"), "hable"))
+    deep = oiio.ImageSpec(2, 2, 3, "float")
+    deep.deep = True
+    raises(report, "a deep picture", ValueError, "source is deep", lambda: tw.tonemap(oiio.ImageBuf(deep), "hable"))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("command", type=Path)
+    parser.add_argument("module", type=Path, help="the folder that holds it")
+    arguments = parser.parse_args()
+    command = arguments.command.resolve()
+    sys.path.insert(0, str(arguments.module.resolve()))
+    import tonewright as tw
+    report = Report()
+    check_colors(report, tw, command)
+    check_arrays(report, tw)
+    check_errors(report, tw)
+    check_lists(report, tw, command)
+    with tempfile.TemporaryDirectory(prefix="tonewright-") as folder:
+        check_luts(report, tw, command, Path(folder))
+        check_pictures(report, tw, command, Path(folder))
+    return report.finish()
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

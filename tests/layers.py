@@ -23,7 +23,7 @@ BELOW = {
 # Public header -> the folder that it belongs to.
 PUBLIC = {
     "error": "expr", "expr": "expr", "color": "color", "pipeline": "pipeline", "view": "pipeline",
-    "engine": "engine", "lut": "lut", "ocio": "ocio", "image": "image", "verify": "verify",
+    "engine": "engine", "lut": "lut", "ocio": "ocio", "image": "image", "meter": "image", "verify": "verify",
     "lint": "verify", "lut_match": "verify", "lut_file": "ocio",
 }
 THIRD_PARTY = {

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <map>
 #include <set>
 
 #include "cli/command.h"
+#include "cli/exposure_options.h"
 #include "cli/frames.h"
 #include "cli/lut_input.h"
 #include "cli/picture_input.h"
@@ -18,9 +20,9 @@ namespace tonewright {
 namespace {
 
 TonemapOptions::Statistics parse_statistics(const std::string& text) {
-    if (text == "picture") return TonemapOptions::Statistics::from_picture;
+    if (text == "picture" || text == "sequence") return TonemapOptions::Statistics::from_picture;
     if (text == "defaults") return TonemapOptions::Statistics::defaults;
-    const std::vector<std::string> names = {"picture", "defaults"};
+    const std::vector<std::string> names = {"picture", "sequence", "defaults"};
     throw Error("apply: statistics is " + text + "; expected " + join_choices(names) +
                 did_you_mean(text, names));
 }
@@ -62,9 +64,73 @@ class ProgressBar {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+struct Options : ViewOptions {
+    std::string in;
+    std::string out;
+    std::string frames;
+    std::string type;
+    std::string statistics = "picture";
+    int threads = 0;
+    bool unpremult = false;
+    bool no_unpremult = false;
+    LutOptions lut;
+    ExposureOptions metering;
+    ShotOptions shot;
+
+    [[nodiscard]] TonemapOptions::Unpremult alpha() const {
+        if (unpremult) return TonemapOptions::Unpremult::yes;
+        if (no_unpremult) return TonemapOptions::Unpremult::no;
+        return TonemapOptions::Unpremult::automatic;
+    }
+    [[nodiscard]] OIIO::TypeDesc pixel_type() const {
+        return type.empty() ? OIIO::TypeDesc(OIIO::TypeUnknown) : parse_pixel_type(type);
+    }
+};
+
+/// What the frames of a shot say before any of them is tone mapped: their exposures, the statistics
+/// of all.
+void meter_frames(Tonemapper& tonemapper, std::vector<FrameFiles>& frames,
+                  const std::vector<int>& numbers, const Options& options,
+                  const CLI::App& command) {
+    const bool has_exposures = !options.metering.method.empty();
+    const bool has_statistics = options.statistics == "sequence" && tonemapper.takes_statistics();
+    if (!has_exposures && !has_statistics) return;
+    const ExposureRule rule = has_exposures ? options.metering.rule() : ExposureRule{};
+    const Adaptation adaptation = options.shot.adaptation(command);
+    const std::vector<int> all =
+        options.shot.meter_frames.empty() ? numbers : parse_frames(options.shot.meter_frames);
+    const std::set<int> metered(all.begin(), all.end());
+    for (const int number : numbers) {
+        if (metered.contains(number)) continue;
+        throw Error(fmt::format("apply: --meter-frames is {}; expected frame {} of --frames in it",
+                                options.shot.meter_frames, number));
+    }
+    MeteredShot shot;
+    {
+        const QuietStderr quiet;
+        ProgressBar bar(quiet.before(), metered.size());
+        shot = meter_shot(
+            options.in, all, options.metering.meter_options(options.input, options.alpha()),
+            options.shot.cache, options.threads, [&](std::size_t done) { bar.set(done); });
+    }
+    if (has_statistics) tonemapper = tonemapper.with_statistics(shot.statistics());
+    if (!has_exposures) return;
+    const std::map<int, double> exposures =
+        shot.exposures(rule, options.metering.delta, options.shot.adapt ? &adaptation : nullptr);
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        // One that could not be metered cannot be tone mapped either, which says why.
+        const auto found = exposures.find(numbers[i]);
+        if (found != exposures.end()) frames[i].exposure_stops = options.exposure + found->second;
+    }
+}
+
 /// Every frame, whatever becomes of the others. @return the exit code
-int apply_to_frames(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
-                    const std::vector<int>& numbers, const OIIO::TypeDesc& type, int threads) {
+int apply_to_frames(Tonemapper& tonemapper, const Options& options, const CLI::App& command) {
+    const std::string& in = options.in;
+    const std::string& out = options.out;
+    const std::vector<int> numbers = parse_frames(options.frames);
+    const OIIO::TypeDesc type = options.pixel_type();
+    const int threads = options.threads;
     std::vector<FrameFiles> frames;
     std::set<std::string> names;
     for (const int number : numbers) {
@@ -72,6 +138,7 @@ int apply_to_frames(const Tonemapper& tonemapper, const std::string& in, const s
         if (!names.insert(frames.back().out).second)
             throw Error(fmt::format("apply: --frames names frame {} twice; expected once", number));
     }
+    meter_frames(tonemapper, frames, numbers, options, command);
     {
         const QuietStderr quiet;
         ProgressBar bar(quiet.before(), frames.size());
@@ -93,26 +160,18 @@ int apply_to_frames(const Tonemapper& tonemapper, const std::string& in, const s
     return exit_code;
 }
 
-struct Options : ViewOptions {
-    std::string in;
-    std::string out;
-    std::string frames;
-    std::string type;
-    std::string statistics = "picture";
-    int threads = 0;
-    bool unpremult = false;
-    bool no_unpremult = false;
-    LutOptions lut;
-
-    [[nodiscard]] TonemapOptions::Unpremult alpha() const {
-        if (unpremult) return TonemapOptions::Unpremult::yes;
-        if (no_unpremult) return TonemapOptions::Unpremult::no;
-        return TonemapOptions::Unpremult::automatic;
-    }
-    [[nodiscard]] OIIO::TypeDesc pixel_type() const {
-        return type.empty() ? OIIO::TypeDesc(OIIO::TypeUnknown) : parse_pixel_type(type);
-    }
-};
+/// Of one picture, stops.
+double meter_exposure(const Options& options) {
+    const ExposureRule rule = options.metering.rule();
+    const MeteredPicture metered =
+        meter_pictures({options.in}, options.metering.meter_options(options.input, options.alpha()),
+                       options.shot.cache, options.threads)
+            .front();
+    if (metered.is_file_error) throw FileError(metered.error);
+    if (!metered.error.empty()) throw Error(metered.error);
+    return suggested_exposure(
+        metered_luminance(metered.metering, rule.method, options.metering.delta), rule);
+}
 
 void apply_lut(const Options& options, const CLI::App& command) {
     const Pipeline before = before_lut(command, options.lut, options);
@@ -148,7 +207,7 @@ void add_apply(CLI::App& program, int& exit_code) {
         ->required();
     CLI::Option* op =
         command->add_option("--operator", options->op, "operator, or operator:preset");
-    command->add_option(
+    CLI::Option* frames = command->add_option(
         "--frames", options->frames,
         "frames such as 1001-1100, 1-9x2 (every second) or 1,5,10-20: `in` and `out` "
         "have %04d or #### (# is four digits, too) where the number stands");
@@ -158,7 +217,8 @@ void add_apply(CLI::App& program, int& exit_code) {
     command
         ->add_option("--statistics", options->statistics,
                      "parameters that a picture has (its largest luminance, ...) and --set does "
-                     "not name: `picture` or `defaults`")
+                     "not name: each `picture`'s own, those of the `sequence` of --frames, or "
+                     "`defaults`")
         ->capture_default_str();
     command
         ->add_option(
@@ -171,9 +231,16 @@ void add_apply(CLI::App& program, int& exit_code) {
         "divide color by alpha before, multiply after; default: as the picture says");
     command->add_flag("--no-unpremult", options->no_unpremult, "take color as it is")
         ->excludes(yes);
-    add_lut_options(
-        *command, options->lut, op,
-        {"--set", "--look", "--display", "--reference-white", "--statistics", "--frames"});
+    CLI::Option* metered = command
+                               ->add_option("--auto-exposure", options->metering.method,
+                                            "exposure from the picture's light: log-average, "
+                                            "histogram, mean or max; --exposure comes on top")
+                               ->group("Metering");
+    add_exposure_options(*command, options->metering, metered);
+    add_shot_options(*command, options->shot, frames, metered);
+    add_lut_options(*command, options->lut, op,
+                    {"--set", "--look", "--display", "--reference-white", "--statistics",
+                     "--frames", "--auto-exposure"});
     command->footer(
         "Examples:\n"
         "  tonewright apply render.exr out.png --operator hable --exposure 1 -d uint8\n"
@@ -202,15 +269,29 @@ void add_apply(CLI::App& program, int& exit_code) {
         tonemap.reference_white = options->reference_white;
         tonemap.unpremult = options->alpha();
         tonemap.statistics = parse_statistics(options->statistics);
-        const Tonemapper tonemapper(tonemap);  // a wrong name is told before a large file is read
+        for (const char* name : {"--meter-frames", "--meter-cache"}) {
+            if (command->count(name) == 0 || command->count("--auto-exposure") > 0 ||
+                options->statistics == "sequence") {
+                continue;
+            }
+            throw Error(fmt::format(
+                "apply: {} is {}; expected --auto-exposure or --statistics sequence with it", name,
+                command->get_option(name)->as<std::string>()));
+        }
+        Tonemapper tonemapper(tonemap);  // a wrong name is told before a large file is read
         const OIIO::TypeDesc type = options->pixel_type();
         if (command->count("--frames") > 0) {
-            exit_code = apply_to_frames(tonemapper, options->in, options->out,
-                                        parse_frames(options->frames), type, options->threads);
+            exit_code = apply_to_frames(tonemapper, *options, *command);
             return;
         }
+        if (options->statistics == "sequence")
+            throw Error("apply: statistics is sequence; expected --frames with it");
         try {
             const QuietStderr quiet;
+            if (!options->metering.method.empty()) {
+                const double metered_stops = meter_exposure(*options);
+                tonemapper = tonemapper.with_exposure(options->exposure + metered_stops);
+            }
             tonemap_file(tonemapper, options->in, options->out, type, options->threads);
         } catch (const FileError& e) {
             if (!is_frame_pattern(options->in)) throw;

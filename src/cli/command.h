@@ -35,6 +35,7 @@ void add_view_options(CLI::App& command, ViewOptions& options);
 void add_list(CLI::App& program, int& exit_code);
 void add_eval(CLI::App& program, int& exit_code);
 void add_apply(CLI::App& program, int& exit_code);
+void add_meter(CLI::App& program, int& exit_code);
 void add_bake(CLI::App& program, int& exit_code);
 void add_config(CLI::App& program, int& exit_code);
 void add_verify(CLI::App& program, int& exit_code);

@@ -8,7 +8,7 @@
 int main(int argc, char** argv) {
     using namespace tonewright;  // NOLINT(google-build-using-namespace): this is its program
     remove_unfinished_files_on_signals();
-    return run_program(
-        argc, argv,
-        {add_list, add_eval, add_apply, add_bake, add_config, add_verify, add_chart, add_sheet});
+    return run_program(argc, argv,
+                       {add_list, add_eval, add_apply, add_meter, add_bake, add_config, add_verify,
+                        add_chart, add_sheet});
 }

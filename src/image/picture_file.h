@@ -56,6 +56,12 @@ inline constexpr std::size_t kBatchBytes = std::size_t{16} << 20;
 [[nodiscard]] int rows_of_batch(std::size_t bytes_per_row, int step,
                                 std::size_t batch_bytes = kBatchBytes);
 
+/// The spec of rows [ybegin, yend) of a picture.
+[[nodiscard]] OIIO::ImageSpec spec_of_rows(const OIIO::ImageSpec& picture, int ybegin, int yend);
+
+/// The numbers of a spec alone: rows have no use for the texts of their picture.
+[[nodiscard]] OIIO::ImageSpec without_metadata(OIIO::ImageSpec spec);
+
 /// Reads a picture to its end and keeps nothing of it.
 /// @throws FileError  when it is not whole.
 void check_is_complete(const std::string& path);

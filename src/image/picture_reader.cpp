@@ -80,6 +80,21 @@ int rows_of_batch(std::size_t bytes_per_row, int step, std::size_t batch_bytes) 
     return std::max(rows / unit, 1) * unit;
 }
 
+OIIO::ImageSpec spec_of_rows(const OIIO::ImageSpec& picture, int ybegin, int yend) {
+    OIIO::ImageSpec spec = picture;
+    spec.y = ybegin;
+    spec.height = yend - ybegin;
+    spec.tile_width = spec.tile_height = spec.tile_depth = 0;
+    return spec;
+}
+
+OIIO::ImageSpec without_metadata(OIIO::ImageSpec spec) {
+    const int unassociated = spec.get_int_attribute("oiio:UnassociatedAlpha", 0);
+    spec.extra_attribs.clear();
+    if (unassociated) spec.attribute("oiio:UnassociatedAlpha", unassociated);
+    return spec;
+}
+
 void check_is_complete(const std::string& path) {
     PictureReader reader(path);
     const OIIO::ImageSpec& spec = reader.spec();

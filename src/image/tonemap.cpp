@@ -399,6 +399,12 @@ Tonemapper Tonemapper::with_statistics(const SceneStatistics& statistics) const 
     return Tonemapper(options);
 }
 
+Tonemapper Tonemapper::with_exposure(double stops) const {
+    TonemapOptions options = state_->options;
+    options.exposure_stops = stops;
+    return Tonemapper(options);
+}
+
 bool Tonemapper::operator()(ImageBuf& dst, const ImageBuf& src, ROI roi,
                             int nthreads) const noexcept {
     try {

@@ -35,15 +35,6 @@ int thread_count(int nthreads) {
                         : static_cast<int>(std::max(std::thread::hardware_concurrency(), 1U));
 }
 
-/// The spec of rows [ybegin, yend) of a picture.
-ImageSpec spec_of_rows(const ImageSpec& picture, int ybegin, int yend) {
-    ImageSpec spec = picture;
-    spec.y = ybegin;
-    spec.height = yend - ybegin;
-    spec.tile_width = spec.tile_height = spec.tile_depth = 0;
-    return spec;
-}
-
 void run(const Tonemapper& tonemapper, ImageBuf& to, const ImageBuf& from, int nthreads) {
     if (!tonemapper(to, from, {}, nthreads)) throw Error(to.geterror());
 }
@@ -57,14 +48,6 @@ ImageSpec result_spec(const Tonemapper& tonemapper, const ImageSpec& source) {
     ImageSpec spec = result.spec();
     spec.width = source.width;
     spec.height = source.height;
-    return spec;
-}
-
-/// The numbers of a spec alone: rows have no use for the texts of their picture.
-ImageSpec without_metadata(ImageSpec spec) {
-    const int unassociated = spec.get_int_attribute("oiio:UnassociatedAlpha", 0);
-    spec.extra_attribs.clear();
-    if (unassociated) spec.attribute("oiio:UnassociatedAlpha", unassociated);
     return spec;
 }
 
@@ -197,27 +180,6 @@ class FilePass {
     int rows_done_ = 0;
 };
 
-SceneStatistics measure_file(const std::string& path, const TonemapOptions& options, int nthreads,
-                             std::size_t batch_bytes) {
-    for (const SceneMeter::Cover cover : SceneMeter::kTries) {
-        PictureReader reader(path, nthreads);
-        const ImageSpec& spec = reader.spec();
-        SceneMeter meter(spec, options.input, options.unpremult, cover, nthreads);
-        const ImageSpec rows = without_metadata(spec);
-        const int step = rows_of_batch(spec.scanline_bytes(), reader.row_step(), batch_bytes);
-        const int bottom = spec.y + spec.height;
-        std::vector<std::byte> pixels(spec.scanline_bytes() * static_cast<std::size_t>(step));
-        for (int y = spec.y; y < bottom; y += step) {
-            const int yend = std::min(y + step, bottom);
-            reader.read_rows(y, yend, pixels.data());
-            const ImageBuf part(spec_of_rows(rows, y, yend), pixels.data());
-            meter.add(part, part.roi());
-        }
-        if (meter.has_cover()) return meter.statistics();
-    }
-    return {};
-}
-
 }  // namespace
 
 void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
@@ -235,8 +197,12 @@ void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, con
     }
     std::optional<Tonemapper> own;
     if (tonemapper.takes_statistics()) {
+        MeterOptions options;
+        options.input = tonemapper.options().input;
+        options.unpremult = tonemapper.options().unpremult;
         own = tonemapper.with_statistics(
-            measure_file(in, tonemapper.options(), nthreads, batch_bytes));
+            measure_file(in, options, SceneMeter::Figures::statistics, nthreads, batch_bytes)
+                .statistics());
     }
     FilePass(own ? *own : tonemapper, reader, writer, nthreads, batch_bytes).run_all();
 }
@@ -267,7 +233,9 @@ void tonemap_files(const Tonemapper& tonemapper, std::vector<FrameFiles>& frames
         for (std::size_t i = next++; i < frames.size(); i = next++) {
             FrameFiles& frame = frames[i];
             try {
-                tonemap_file(tonemapper, frame.in, frame.out, type,
+                std::optional<Tonemapper> own;
+                if (frame.exposure_stops) own = tonemapper.with_exposure(*frame.exposure_stops);
+                tonemap_file(own ? *own : tonemapper, frame.in, frame.out, type,
                              static_cast<int>(threads / workers));
             } catch (const std::exception& e) {
                 frame.error = e.what();

@@ -31,7 +31,7 @@ try:
 except ImportError:
     ocio = None
 
-SUBCOMMANDS = ["list", "eval", "apply", "bake", "config", "verify", "chart", "sheet"]
+SUBCOMMANDS = ["list", "eval", "apply", "meter", "bake", "config", "verify", "chart", "sheet"]
 OK, CHECK_FAILED, USAGE, FILE = 0, 1, 2, 3  # exit codes
 
 # Half of what OpenColorIO's chain for a tone scale may differ on the CPU; on the GPU it may differ by 5e-5.
@@ -562,7 +562,7 @@ def usage_errors(bad, picture):
         (["apply", picture, "out.png", "--operator", "hable", "-d", "unit8"], "unit8; did you mean uint8?"),
         (["apply", picture, "out.png", "--operator", "hable", "--threads", "-1"], "--threads; -1"),
         (["apply", picture, "out.png", "--operator", "drago", "--statistics", "pictur"],
-         "statistics is pictur; picture or defaults; did you mean picture?"),
+         "statistics is pictur; picture, sequence or defaults; did you mean picture?"),
         *((["apply", "in.%04d.exr", "out.%04d.png", "--operator", "hable", "--frames", frames], f"--frames is {frames}")
           for frames in ("abc", "1-", "1-5x", "1-5x0", "1..5", "1,,3", "0-1000000", "1-9999999999", "1.5", " 1")),
         (["apply", "in.%04d.exr", "out.%04d.png", "--operator", "hable", "--frames", "3,1-5"], "frame 3 twice"),

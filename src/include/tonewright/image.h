@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -99,6 +100,9 @@ class Tonemapper {
     /// The same for all pictures that have these statistics: prepared once.
     /// @throws Error  statistics that are no values of the operator's parameters
     [[nodiscard]] Tonemapper with_statistics(const SceneStatistics& statistics) const;
+    /// The same at another exposure, in stops, [-64, 64]: prepared anew.
+    /// @throws Error  out of that interval
+    [[nodiscard]] Tonemapper with_exposure(double stops) const;
 
     /// Same contract as tonemap(dst, src, ...).
     bool operator()(OIIO::ImageBuf& dst, const OIIO::ImageBuf& src, OIIO::ROI roi = {},
@@ -207,6 +211,8 @@ void tonemap_file(const Tonemapper& tonemapper, const std::string& in, const std
 struct FrameFiles {
     std::string in;
     std::string out;
+    /// Instead of the tonemapper's exposure, in stops.
+    std::optional<double> exposure_stops = {};
     /// What went wrong, in one line; empty: nothing.
     std::string error = {};
     /// It was a FileError.

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/meter_cache.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cerrno>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <system_error>
+#include <utility>
+
+#include "tonewright/lut.h"
+
+namespace tonewright {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kFormat = "tonewright_meter_cache";
+constexpr int kVersion = 1;
+
+std::string absolute(const std::string& path) {
+    std::error_code error;
+    const fs::path full = fs::absolute(path, error);
+    return (error ? fs::path(path) : full).lexically_normal().string();
+}
+
+Metering metering_from(const Json& j) {
+    Metering m;
+    const Json& pixels = j.at("pixels");
+    pixels.at("counted").get_to(m.counted);
+    pixels.at("black").get_to(m.black);
+    pixels.at("nan").get_to(m.nan);
+    pixels.at("infinite").get_to(m.infinite);
+    pixels.at("uncovered").get_to(m.uncovered);
+    const Json& luminance = j.at("luminance");
+    luminance.at("log_average").get_to(m.log_average);
+    luminance.at("geometric_mean").get_to(m.geometric_mean);
+    luminance.at("mean").get_to(m.mean);
+    luminance.at("minimum").get_to(m.minimum);
+    luminance.at("maximum").get_to(m.maximum);
+    luminance.at("histogram_average").get_to(m.histogram_average);
+    for (const auto& [percent, value] : luminance.at("percentiles").items())
+        m.percentiles.push_back(value.get<double>());
+    j.at("histogram").get_to(m.histogram);
+    const Json& scene = j.at("statistics");
+    scene.at("log_average").get_to(m.scene.log_average);
+    scene.at("mean_luminance").get_to(m.scene.mean_luminance);
+    scene.at("minimum_luminance").get_to(m.scene.minimum_luminance);
+    scene.at("maximum_luminance").get_to(m.scene.maximum_luminance);
+    scene.at("mean_rgb").get_to(m.scene.mean_rgb);
+    scene.at("maximum_rgb").get_to(m.scene.maximum_rgb);
+    scene.at("count").get_to(m.scene_count);
+    scene.at("lit_count").get_to(m.scene_lit_count);
+    return m;
+}
+
+}  // namespace
+
+FileStamp stamp_of(const std::string& path) {
+    std::error_code error;
+    FileStamp stamp;
+    const auto bytes = fs::file_size(path, error);
+    if (error) return {};
+    stamp.bytes = bytes;
+    const auto time = fs::last_write_time(path, error);
+    if (error) return {};
+    stamp.modified =
+        std::chrono::duration_cast<std::chrono::nanoseconds>(time.time_since_epoch()).count();
+    return stamp;
+}
+
+Json to_json(const MeterOptions& options) {
+    using Unpremult = TonemapOptions::Unpremult;
+    Json region = nullptr;
+    if (const OIIO::ROI& r = options.region; r.defined())
+        region = {r.xbegin, r.ybegin, r.width(), r.height()};
+    return {{"input", options.input},
+            {"unpremult", options.unpremult == Unpremult::automatic
+                              ? Json("as the picture says")
+                              : Json(options.unpremult == Unpremult::yes)},
+            {"region", region},
+            {"delta", options.delta},
+            {"histogram_range", {options.histogram_min, options.histogram_max}},
+            {"bins", options.bins},
+            {"percentiles", {options.low_percentile, options.high_percentile}},
+            {"exact", options.exact}};
+}
+
+Json to_json(const Metering& m) {
+    Json percentiles = Json::object();
+    for (std::size_t i = 0; i < m.percentiles.size(); ++i)
+        percentiles[shortest(Metering::kPercents[i])] = m.percentiles[i];
+    return {{"pixels",
+             {{"counted", m.counted},
+              {"black", m.black},
+              {"nan", m.nan},
+              {"infinite", m.infinite},
+              {"uncovered", m.uncovered}}},
+            {"luminance",
+             {{"log_average", m.log_average},
+              {"geometric_mean", m.geometric_mean},
+              {"mean", m.mean},
+              {"minimum", m.minimum},
+              {"maximum", m.maximum},
+              {"histogram_average", m.histogram_average},
+              {"percentiles", percentiles}}},
+            {"histogram", m.histogram},
+            {"statistics",
+             {{"log_average", m.scene.log_average},
+              {"mean_luminance", m.scene.mean_luminance},
+              {"minimum_luminance", m.scene.minimum_luminance},
+              {"maximum_luminance", m.scene.maximum_luminance},
+              {"mean_rgb", m.scene.mean_rgb},
+              {"maximum_rgb", m.scene.maximum_rgb},
+              {"count", m.scene_count},
+              {"lit_count", m.scene_lit_count}}}};
+}
+
+MeterCache::MeterCache(std::string path, const MeterOptions& options)
+    : path_(std::move(path)), options_(to_json(options)) {
+    std::error_code error;
+    if (path_.empty() || (!fs::exists(path_, error) && !error)) return;
+    const auto fail = [&](const std::string& reason) {
+        throw FileError(fmt::format("meter cache: {}: {}", path_, reason));
+    };
+    if (fs::is_directory(path_, error)) fail("it is a directory");
+    std::ifstream file(path_, std::ios::binary);
+    if (!file) fail(std::generic_category().message(errno));
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    try {
+        const Json all = Json::parse(text);
+        if (all.at(kFormat) != kVersion || all.at("options") != options_) return;
+        for (const auto& [picture, entry] : all.at("pictures").items()) {
+            entries_[picture] = {
+                {entry.at("bytes").get<std::uint64_t>(), entry.at("modified").get<std::int64_t>()},
+                metering_from(entry.at("metering"))};
+        }
+    } catch (const Json::exception&) {
+        fail("is not a meter cache; expected one that --meter-cache wrote, or no file");
+    }
+}
+
+const Metering* MeterCache::find(const std::string& picture, const FileStamp& stamp) const {
+    const auto found = entries_.find(absolute(picture));
+    if (found == entries_.end() || found->second.stamp != stamp) return nullptr;
+    return &found->second.metering;
+}
+
+void MeterCache::add(const std::string& picture, const FileStamp& stamp, const Metering& metering) {
+    if (!path_.empty()) added_[absolute(picture)] = {stamp, metering};
+}
+
+void MeterCache::save() const {
+    if (added_.empty()) return;
+    std::map<std::string, Entry> all = added_;
+    all.insert(entries_.begin(), entries_.end());
+    Json pictures = Json::object();
+    for (const auto& [picture, entry] : all) {
+        pictures[picture] = {{"bytes", entry.stamp.bytes},
+                             {"modified", entry.stamp.modified},
+                             {"metering", to_json(entry.metering)}};
+    }
+    const Json file = {{kFormat, kVersion}, {"options", options_}, {"pictures", pictures}};
+    write_text_atomically(path_, file.dump() + "\n");
+}
+
+}  // namespace tonewright

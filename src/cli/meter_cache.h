@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tonewright/meter.h"
+
+namespace tonewright {
+
+/// What tells whether a file has changed.
+struct FileStamp {
+    std::uint64_t bytes = 0;
+    std::int64_t modified = 0;  // nanoseconds of its file system's clock
+    friend bool operator==(const FileStamp&, const FileStamp&) = default;
+};
+/// Zeros of a file that is not there.
+[[nodiscard]] FileStamp stamp_of(const std::string& path);
+
+[[nodiscard]] nlohmann::ordered_json to_json(const MeterOptions& options);
+[[nodiscard]] nlohmann::ordered_json to_json(const Metering& metering);
+
+/// What was metered, kept in a file.
+class MeterCache {
+  public:
+    /// @param path  empty: nothing is known and nothing is kept. A file that is not there: is made.
+    /// @throws FileError  it cannot be read, or is something else.
+    MeterCache(std::string path, const MeterOptions& options);
+
+    /// Null where the file is not known, or has changed, or was metered in another way.
+    [[nodiscard]] const Metering* find(const std::string& picture, const FileStamp& stamp) const;
+    void add(const std::string& picture, const FileStamp& stamp, const Metering& metering);
+    /// Writes it, if something was added.
+    /// @throws FileError
+    void save() const;
+
+  private:
+    struct Entry {
+        FileStamp stamp;
+        Metering metering;
+    };
+    std::string path_;
+    nlohmann::ordered_json options_;
+    std::map<std::string, Entry> entries_;  // by absolute name
+    std::map<std::string, Entry> added_;
+};
+
+}  // namespace tonewright

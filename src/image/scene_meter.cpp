@@ -1,0 +1,562 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What operators ask of a whole picture, and what meters do: one pass for both.
+//
+// Every row is summed by itself, from left to right, and the rows from top to bottom: whichever
+// threads they were on, the sums are the same to the last bit. Sums are compensated, so that a row
+// of a million pixels loses nothing. Pixels that do not count, or that only statistics count, are
+// rare and taken out of a span before the vector code runs.
+#include "image/scene_meter.h"
+
+#include <OpenImageIO/imagebufalgo_util.h>
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <mutex>
+#include <new>
+#include <vector>
+
+#include "engine/light_kernels.h"
+#include "image/source_picture.h"
+#include "tonewright/engine.h"
+#include "tonewright/view.h"
+
+namespace tonewright {
+namespace {
+
+using OIIO::ImageBuf;
+using OIIO::ROI;
+
+/// A. Neumaier, "Rundungsfehleranalyse einiger Verfahren zur Summation endlicher Summen", ZAMM 54
+/// (1974): the rounding errors are summed beside the sum.
+class Sum {
+  public:
+    void add(double x) noexcept {
+        const double sum = sum_ + x;
+        lost_ += std::fabs(sum_) >= std::fabs(x) ? (sum_ - sum) + x : (x - sum) + sum_;
+        sum_ = sum;
+    }
+    void add(const Sum& other) noexcept {
+        add(other.sum_);
+        add(other.lost_);
+    }
+    [[nodiscard]] double value() const noexcept { return sum_ + lost_; }
+
+  private:
+    double sum_ = 0;
+    double lost_ = 0;
+};
+
+/// A sum of logarithms.
+class LogSum {
+  public:
+    void add(const light::Product& product) noexcept {
+        exponent_ += product.exponent;
+        mantissa_.add(std::log(product.mantissa));
+    }
+    void add(const LogSum& other) noexcept {
+        exponent_ += other.exponent_;
+        mantissa_.add(other.mantissa_);
+    }
+    /// exp of the mean of `count` terms.
+    [[nodiscard]] double geometric_mean(std::uint64_t count) const noexcept {
+        constexpr double kLn2 = 0.693147180559945309417;
+        const auto n = static_cast<double>(count);
+        return std::exp((static_cast<double>(exponent_) * kLn2 + mantissa_.value()) / n);
+    }
+
+  private:
+    std::int64_t exponent_ = 0;
+    Sum mantissa_;
+};
+
+/// The light of a set of pixels.
+struct Light {
+    std::uint64_t count = 0;
+    std::uint64_t lit_count = 0;  // L > 0
+    LogSum log_lit;
+    LogSum log_with_delta;
+    std::array<Sum, 3> rgb;
+    double minimum_lit = kInfinity;
+    double maximum = 0;
+    Vector3 maximum_rgb{};
+
+    void add(const light::SpanLight& span, std::size_t n) noexcept {
+        count += n;
+        lit_count += span.lit_count;
+        log_lit.add(span.lit);
+        log_with_delta.add(span.with_delta);
+        for (std::size_t c = 0; c < 3; ++c) {
+            rgb[c].add(span.rgb[c].sum);
+            rgb[c].add(span.rgb[c].lost);
+            maximum_rgb[c] = std::max(maximum_rgb[c], span.maximum_rgb[c]);
+        }
+        minimum_lit = std::min(minimum_lit, span.minimum_lit);
+        maximum = std::max(maximum, span.maximum);
+    }
+
+    void add(const Light& other) noexcept {
+        count += other.count;
+        lit_count += other.lit_count;
+        log_lit.add(other.log_lit);
+        log_with_delta.add(other.log_with_delta);
+        for (std::size_t c = 0; c < 3; ++c) {
+            rgb[c].add(other.rgb[c]);
+            maximum_rgb[c] = std::max(maximum_rgb[c], other.maximum_rgb[c]);
+        }
+        minimum_lit = std::min(minimum_lit, other.minimum_lit);
+        maximum = std::max(maximum, other.maximum);
+    }
+
+    /// The mean of luminances is the luminance of the mean color.
+    [[nodiscard]] double mean_luminance() const noexcept {
+        Sum sum;
+        for (std::size_t c = 0; c < 3; ++c)
+            sum.add(kRec709Weights[c] * rgb[c].value());
+        return sum.value() / static_cast<double>(count);
+    }
+
+    [[nodiscard]] SceneStatistics statistics() const noexcept {
+        SceneStatistics s;
+        if (lit_count == 0) return s;
+        const auto n = static_cast<double>(count);
+        s.log_average = log_lit.geometric_mean(lit_count);
+        s.mean_luminance = mean_luminance();
+        s.minimum_luminance = minimum_lit;
+        s.maximum_luminance = maximum;
+        s.mean_rgb = {rgb[0].value() / n, rgb[1].value() / n, rgb[2].value() / n};
+        s.maximum_rgb = maximum_rgb;
+        return s;
+    }
+};
+
+/// Of a row, or of all.
+struct Measured {
+    Light finite;
+    Light limited;  // pixels with NaN or infinities, which only statistics count
+    std::uint64_t nan = 0;
+    std::uint64_t infinite = 0;
+    std::uint64_t uncovered = 0;
+    std::vector<double> kept;  // luminances that are not black, where percentiles are exact
+
+    void add(const Measured& other) {
+        finite.add(other.finite);
+        limited.add(other.limited);
+        nan += other.nan;
+        infinite += other.infinite;
+        uncovered += other.uncovered;
+        kept.insert(kept.end(), other.kept.begin(), other.kept.end());
+    }
+};
+
+/// Luminances below are black to the histogram.
+constexpr double kHistogramBlack = 1e-6;
+
+/// The bins of a histogram, found without a logarithm: a table by exponent and first digits, and
+/// the next edge where one is within such a step.
+class Bins {
+  public:
+    explicit Bins(const MeterOptions& options) {
+        const int last = options.bins - 1;
+        const double range = options.histogram_max - options.histogram_min;
+        edges_.assign(static_cast<std::size_t>(options.bins) + 1, kInfinity);
+        edges_[0] = 0;
+        edges_[1] = kHistogramBlack;
+        // The last bin has what is clamped to 1.
+        for (int i = 2; i <= last; ++i) {
+            edges_[static_cast<std::size_t>(i)] = std::max(
+                std::exp2(options.histogram_min + range * (i - 1) / (last - 1)), kHistogramBlack);
+        }
+        bins_.reserve(key_of(kHalfMax) + 1);
+        std::uint16_t bin = 0;
+        for (std::size_t key = 0; key <= key_of(kHalfMax); ++key) {
+            const std::uint16_t before = bin;
+            while (least_of(key) >= edges_[bin + 1U])
+                ++bin;
+            has_narrow_ |= bin - before > 1;
+            bins_.push_back(bin);
+        }
+        has_narrow_ |= bin + 2U < edges_.size() && edges_[bin + 2U] <= kHalfMax;
+    }
+
+    /// Calls count(i, bin) for each luminance.
+    template <class Count>
+    void find(const double* luminances, std::size_t n, const Count& count) const noexcept {
+        for (std::size_t i = 0; i < n; ++i) {
+            const double y = std::max(luminances[i], kFirst);
+            std::size_t bin = bins_[key_of(y)];
+            if (has_narrow_) {
+                while (y >= edges_[bin + 1])
+                    ++bin;
+            } else {
+                bin += y >= edges_[bin + 1] ? 1 : 0;
+            }
+            count(i, bin);
+        }
+    }
+
+  private:
+    static constexpr int kShift = 46;  // 6 of 52 digits
+    static constexpr double kFirst = 0x1p-20;
+    static_assert(kHistogramBlack > kFirst);
+
+    static std::size_t key_of(double luminance) noexcept {
+        return (std::bit_cast<std::uint64_t>(luminance) - std::bit_cast<std::uint64_t>(kFirst)) >>
+               kShift;
+    }
+    static double least_of(std::size_t key) noexcept {
+        return std::bit_cast<double>((key << kShift) + std::bit_cast<std::uint64_t>(kFirst));
+    }
+
+    std::vector<double> edges_;        // bin i is [edges_[i], edges_[i + 1])
+    std::vector<std::uint16_t> bins_;  // of the least luminance of each step
+    bool has_narrow_ = false;          // several edges are within a step
+};
+
+/// Several counters of each bin: neighbours are often alike, and one would wait for the other.
+class Histogram {
+  public:
+    explicit Histogram(std::size_t bins) : counts_(kCopies * bins) {}
+
+    void add(const Bins& bins, const double* luminances, std::size_t count) noexcept {
+        bins.find(luminances, count,
+                  [&](std::size_t i, std::size_t bin) { ++counts_[kCopies * bin + i % kCopies]; });
+    }
+    void add_to(std::vector<std::uint64_t>& all) const noexcept {
+        for (std::size_t i = 0; i < counts_.size(); ++i)
+            all[i / kCopies] += counts_[i];
+    }
+
+  private:
+    static constexpr std::size_t kCopies = 4;
+    std::vector<std::uint64_t> counts_;
+};
+
+/// How a picture is measured.
+struct Plan {
+    MeterOptions options;
+    SceneMeter::Figures figures;
+    ChannelLayout layout;  // its alpha: -1 where alpha plays no part
+    bool divides;
+    bool converts;
+    Matrix3 to_rec709;
+    Bins bins;
+};
+
+/// Measures the rows of one thread's part of a picture.
+class RowMeter {
+  public:
+    /// @throws std::bad_alloc
+    RowMeter(const ImageBuf& picture, const Plan& plan)
+        : plan_(plan),
+          reader_(picture),
+          type_(picture.spec().format),
+          access_(*pixel_access(type_)),
+          size_(static_cast<std::ptrdiff_t>(type_.size())),
+          histogram_(static_cast<std::size_t>(plan.options.bins)) {}
+
+    /// @returns  false when the picture could not be read.
+    bool measure(int xbegin, int xend, int y, int z, Measured& row) {
+        for (int x = xbegin; x < xend;) {
+            const std::size_t n =
+                std::min<std::size_t>(light::kSpan, static_cast<std::size_t>(xend - x));
+            SpanSource source{nullptr, 0};
+            if (!reader_.locate(x, y, z, n, source)) return false;
+            measure_span(source, n, row);
+            x += static_cast<int>(n);
+        }
+        return true;
+    }
+
+    [[nodiscard]] const Histogram& histogram() const noexcept { return histogram_; }
+
+  private:
+    void measure_span(const SpanSource& source, std::size_t n, Measured& row) {
+        const bool has_alpha = plan_.layout.alpha >= 0;
+        load(source, n);
+        const light::Kinds kinds = light::kinds(planes_, n, has_alpha);
+        std::size_t limited = 0;
+        if (!kinds.all_finite || !kinds.all_cover) {
+            const std::size_t all = n;
+            n = sort_out(all, has_alpha, row, limited);
+        }
+        if (n > 0) {
+            if (has_alpha && plan_.divides && !kinds.all_opaque) light::divide_by_alpha(planes_, n);
+            add_up(planes_, n, row.finite);
+            if (plan_.figures == SceneMeter::Figures::all) count(n, row);
+        }
+        if (limited > 0) add_up(limited_, limited, row.limited);
+    }
+
+    void load(const SpanSource& source, std::size_t n) noexcept {
+        if (load_floats(source, n)) return;
+        const std::size_t colors = plan_.layout.is_grey ? 1 : 3;
+        for (std::size_t c = 0; c < colors; ++c)
+            load(source, static_cast<int>(c), planes_[c], n);
+        if (plan_.layout.is_grey) {
+            std::copy_n(planes_[0].begin(), n, planes_[1].begin());
+            std::copy_n(planes_[0].begin(), n, planes_[2].begin());
+        }
+        if (plan_.layout.alpha >= 0) load(source, plan_.layout.alpha, planes_[3], n);
+    }
+    void load(const SpanSource& source, int channel, std::array<double, light::kSpan>& to,
+              std::size_t n) const noexcept {
+        access_.load_double(source.pixels + channel * size_, source.stride, to.data(), n);
+    }
+    /// RGB or RGBA of floats, packed.
+    bool load_floats(const SpanSource& source, std::size_t n) noexcept {
+        const std::ptrdiff_t channels = source.stride / static_cast<std::ptrdiff_t>(sizeof(float));
+        if (type_ != OIIO::TypeFloat || plan_.layout.is_grey ||
+            (source.stride != 3 * size_ && source.stride != 4 * size_) ||
+            (plan_.layout.alpha >= 0 && plan_.layout.alpha != 3) ||
+            reinterpret_cast<std::uintptr_t>(source.pixels) % alignof(float) != 0) {
+            return false;
+        }
+        light::split(reinterpret_cast<const float*>(source.pixels), static_cast<int>(channels), n,
+                     planes_);
+        return true;
+    }
+
+    /// Moves the pixels that count to the front, and those that only statistics count apart.
+    /// @returns  how many count
+    std::size_t sort_out(std::size_t n, bool has_alpha, Measured& row, std::size_t& limited) {
+        std::size_t counted = 0;
+        for (std::size_t i = 0; i < n; ++i) {
+            const double alpha = has_alpha ? planes_[3][i] : 1;
+            if (alpha == 0 || !std::isfinite(alpha)) {
+                ++row.uncovered;
+                continue;
+            }
+            const Vector3 color = {planes_[0][i], planes_[1][i], planes_[2][i]};
+            const bool is_finite =
+                std::all_of(color.begin(), color.end(), [](double x) { return std::isfinite(x); });
+            if (is_finite) {
+                for (std::size_t c = 0; c < 3; ++c)
+                    planes_[c][counted] = color[c];
+                planes_[3][counted++] = alpha;
+                continue;
+            }
+            const bool is_nan =
+                std::any_of(color.begin(), color.end(), [](double x) { return std::isnan(x); });
+            ++(is_nan ? row.nan : row.infinite);
+            for (std::size_t c = 0; c < 3; ++c)
+                limited_[c][limited] = sanitise(color[c] / (plan_.divides ? alpha : 1));
+            ++limited;
+        }
+        // Alpha is divided by in whole blocks.
+        std::fill(planes_[3].begin() + static_cast<std::ptrdiff_t>(counted), planes_[3].end(), 1);
+        return counted;
+    }
+
+    void add_up(light::Planes& planes, std::size_t n, Light& light) noexcept {
+        light::weigh(planes, n, plan_.converts ? &plan_.to_rec709 : nullptr, luminance_);
+        light.add(light::add_up(planes, luminance_, n, plan_.options.delta), n);
+    }
+
+    void count(std::size_t n, Measured& row) {
+        histogram_.add(plan_.bins, luminance_.data(), n);
+        if (!plan_.options.exact) return;
+        std::copy_if(luminance_.begin(), luminance_.begin() + static_cast<std::ptrdiff_t>(n),
+                     std::back_inserter(row.kept), [](double y) { return y >= kHistogramBlack; });
+    }
+
+    const Plan& plan_;
+    SpanReader reader_;
+    OIIO::TypeDesc type_;
+    const PixelAccess& access_;
+    std::ptrdiff_t size_;
+    light::Planes planes_{};
+    light::Planes limited_{};
+    std::array<double, light::kSpan> luminance_{};
+    Histogram histogram_;
+};
+
+/// 2^(mean log2) of the bins, each weighted with what is between the percentiles of it.
+double average_of_bins(const std::vector<std::uint64_t>& histogram, const MeterOptions& options) {
+    std::uint64_t all = 0;
+    for (std::size_t i = 1; i < histogram.size(); ++i)
+        all += histogram[i];
+    const double low = static_cast<double>(all) * options.low_percentile / 100;
+    const double high = static_cast<double>(all) * options.high_percentile / 100;
+    double before = 0;
+    double sum = 0;
+    double weights = 0;
+    for (std::size_t i = 1; i < histogram.size(); ++i) {
+        const double after = before + static_cast<double>(histogram[i]);
+        const double weight = std::max(std::min(after, high) - std::max(before, low), 0.0);
+        sum += weight * static_cast<double>(i);
+        weights += weight;
+        before = after;
+    }
+    const double range = options.histogram_max - options.histogram_min;
+    const double bin = (weights > 0 ? sum / weights : 0) - 1;
+    return std::exp2(bin / (options.bins - 2) * range + options.histogram_min);
+}
+
+/// Luminance below which `rank` pixels of the histogram are.
+double luminance_at(const std::vector<std::uint64_t>& histogram, double rank,
+                    const MeterOptions& options) {
+    double before = 0;
+    std::size_t bin = 1;
+    while (bin + 1 < histogram.size() &&
+           (histogram[bin] == 0 || before + static_cast<double>(histogram[bin]) < rank))
+        before += static_cast<double>(histogram[bin++]);
+    const double within =
+        histogram[bin] == 0
+            ? 0
+            : std::clamp((rank - before) / static_cast<double>(histogram[bin]), 0.0, 1.0);
+    const double range = options.histogram_max - options.histogram_min;
+    return std::exp2((static_cast<double>(bin - 1) + within) / (options.bins - 2) * range +
+                     options.histogram_min);
+}
+
+/// Puts the value that has `rank` others before it there, and smaller ones before it.
+double select(std::vector<double>& values, std::size_t from, std::size_t rank) {
+    const auto at = [&](std::size_t i) { return values.begin() + static_cast<std::ptrdiff_t>(i); };
+    std::nth_element(at(from), at(rank), values.end());
+    return values[rank];
+}
+
+/// 2^(mean log2) of the luminances between the percentiles; those at the ends with the part of them
+/// that is between.
+double average_of_luminances(std::vector<double> values, const MeterOptions& options) {
+    const auto n = static_cast<double>(values.size());
+    const double low = n * options.low_percentile / 100;
+    const double high = n * options.high_percentile / 100;
+    const auto first = static_cast<std::size_t>(low);
+    const auto end = static_cast<std::size_t>(std::ceil(high));
+    if (first > 0) (void)select(values, 0, first);
+    if (end < values.size()) (void)select(values, first, end);
+    // The smallest and the largest may count in part.
+    std::nth_element(values.begin() + static_cast<std::ptrdiff_t>(first),
+                     values.begin() + static_cast<std::ptrdiff_t>(first),
+                     values.begin() + static_cast<std::ptrdiff_t>(end));
+    Sum sum;
+    double largest = values[first];
+    for (std::size_t i = first; i < end; ++i) {
+        sum.add(std::log2(values[i]));
+        largest = std::max(largest, values[i]);
+    }
+    sum.add(-(low - static_cast<double>(first)) * std::log2(values[first]));
+    sum.add(-(static_cast<double>(end) - high) * std::log2(largest));
+    return std::exp2(sum.value() / (high - low));
+}
+
+}  // namespace
+
+struct SceneMeter::State {
+    Plan plan;
+    int nthreads;
+    Measured all;
+    std::vector<std::uint64_t> histogram;
+};
+
+SceneMeter::SceneMeter(const OIIO::ImageSpec& spec, const MeterOptions& options, Cover cover,
+                       Figures figures, int nthreads) {
+    const Primaries primaries = find_input_space(options.input).primaries;
+    const Matrix3 to_rec709 = rgb_to_rgb(primaries, kRec709);
+    ChannelLayout layout = channel_layout(spec);
+    if (options.unpremult == TonemapOptions::Unpremult::no || cover == Cover::ignored)
+        layout.alpha = -1;
+    state_ = std::make_unique<State>(
+        State{{options, figures, layout, divides_by_alpha(spec, options.unpremult),
+               to_rec709 != kIdentity3, to_rec709, Bins(options)},
+              nthreads,
+              {},
+              std::vector<std::uint64_t>(static_cast<std::size_t>(options.bins))});
+}
+
+SceneMeter::~SceneMeter() = default;
+SceneMeter::SceneMeter(SceneMeter&&) noexcept = default;
+SceneMeter& SceneMeter::operator=(SceneMeter&&) noexcept = default;
+
+void SceneMeter::add(const ImageBuf& picture, const ROI& roi) {
+    std::vector<Measured> rows(static_cast<std::size_t>(roi.height()) *
+                               static_cast<std::size_t>(roi.depth()));
+    std::atomic<bool> unreadable = false;
+    std::atomic<bool> out_of_memory = false;
+    std::mutex mutex;
+    // Split between rows, never within one.
+    const OIIO::paropt threads(state_->nthreads, OIIO::paropt::SplitDir::Y);
+    OIIO::ImageBufAlgo::parallel_image(roi, threads, [&](ROI part) {
+        // No exception may leave a thread of OIIO's pool.
+        try {
+            const auto meter = std::make_unique<RowMeter>(picture, state_->plan);
+            for (int z = part.zbegin; z < part.zend; ++z) {
+                for (int y = part.ybegin; y < part.yend; ++y) {
+                    const auto row = static_cast<std::size_t>(z - roi.zbegin) *
+                                         static_cast<std::size_t>(roi.height()) +
+                                     static_cast<std::size_t>(y - roi.ybegin);
+                    if (!meter->measure(part.xbegin, part.xend, y, z, rows[row])) unreadable = true;
+                }
+            }
+            const std::lock_guard lock(mutex);
+            meter->histogram().add_to(state_->histogram);
+        } catch (const std::bad_alloc&) {
+            out_of_memory = true;
+        }
+    });
+    if (out_of_memory) throw std::bad_alloc();
+    check_was_read(picture, !unreadable);
+    for (const Measured& row : rows)
+        state_->all.add(row);
+}
+
+bool SceneMeter::has_cover() const {
+    const Measured& all = state_->all;
+    return all.finite.count + all.limited.count > 0;
+}
+
+SceneStatistics SceneMeter::statistics() const {
+    Light light = state_->all.finite;
+    light.add(state_->all.limited);
+    return light.statistics();
+}
+
+Metering SceneMeter::metering() const {
+    const Measured& all = state_->all;
+    const MeterOptions& options = state_->plan.options;
+    const Light& light = all.finite;
+    Metering m;
+    m.counted = light.count;
+    m.black = light.count - light.lit_count;
+    m.nan = all.nan;
+    m.infinite = all.infinite;
+    m.uncovered = all.uncovered;
+    m.scene = statistics();
+    m.scene_count = light.count + all.limited.count;
+    m.scene_lit_count = light.lit_count + all.limited.lit_count;
+    m.histogram = state_->histogram;
+    m.histogram_average = average_of_bins(m.histogram, options);
+    if (light.count == 0) return m;
+    m.log_average = light.log_with_delta.geometric_mean(light.count);
+    m.mean = light.mean_luminance();
+    m.maximum = light.maximum;
+    if (light.lit_count > 0) {
+        m.geometric_mean = light.log_lit.geometric_mean(light.lit_count);
+        m.minimum = light.minimum_lit;
+    }
+    const std::uint64_t measurable = light.count - m.histogram[0];
+    if (measurable == 0) return m;
+    if (options.exact) {
+        m.histogram_average = average_of_luminances(all.kept, options);
+        std::vector<double> values = all.kept;
+        std::size_t sorted = 0;  // what is before is smaller
+        for (const double percent : Metering::kPercents) {
+            const double wanted = static_cast<double>(values.size()) * percent / 100;
+            const std::size_t rank = std::min(static_cast<std::size_t>(wanted), values.size() - 1);
+            m.percentiles.push_back(select(values, sorted, rank));
+            sorted = rank;
+        }
+    } else {
+        for (const double percent : Metering::kPercents) {
+            m.percentiles.push_back(luminance_at(
+                m.histogram, static_cast<double>(measurable) * percent / 100, options));
+        }
+    }
+    return m;
+}
+
+}  // namespace tonewright

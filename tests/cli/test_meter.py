@@ -12,6 +12,7 @@ import os
 import subprocess
 import sys
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -267,7 +268,7 @@ def refusals(tool, report):
     def apply(*arguments):
         return "apply", "a.exr", "bad.exr", "--operator", "hable", "--auto-exposure", "log-average", *arguments
 
-    for words, arguments in {
+    refused = {
         "did you mean log-average?": ("apply", "a.exr", "bad.exr", "--operator", "hable", "--auto-exposure", "log-averge"),
         "delta is 0; expected [1e-10, 1]": apply("--delta", "0"),
         "delta is nan": apply("--delta", "nan"),
@@ -301,8 +302,9 @@ def refusals(tool, report):
         "starting exposure is 99": ("meter", "shot.####.exr", "--frames", "1-2", "--adapt", "--adapt-start", "99"),
         "expected one name": ("meter", "a.exr", "shot.####.exr", "--frames", "1-2"),
         "lin_rec709": ("meter", "a.exr", "--input", "lin_rec708"),
-    }.items():
-        tool.refused(f"refused: {words}", 2, words, *arguments)
+    }
+    with ThreadPoolExecutor(4) as pool:  # starting a program is all that takes time here
+        list(pool.map(lambda item: tool.refused(f"refused: {item[0]}", 2, item[0], *item[1]), refused.items()))
     report.check("nothing was written", not list(tool.folder.glob("bad*")))
     tool.refused("no picture", 3, "none.exr", "meter", "none.exr")
     (tool.folder / "cut.exr").write_bytes((tool.folder / "a.exr").read_bytes()[:-20])

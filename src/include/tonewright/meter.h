@@ -93,7 +93,7 @@ struct Metering {
     std::uint64_t scene_lit_count = 0;
 };
 
-/// One pass over a picture, at the speed of memory.
+/// One pass over a picture.
 ///
 /// @param nthreads  0: OIIO's `threads` attribute. The result does not depend on it, nor on the
 ///                  instruction set, in any bit.

@@ -227,6 +227,17 @@ class RowRunner {
           planes_(kSpan * (plan.alpha >= 0 ? 4 : 3)) {
         const bool convert = src_type_ != dst.spec().format;
         if (convert && !plan.copies.empty()) wide_.resize(kSpan);
+        const auto channels = [](const ImageBuf& picture) {
+            return static_cast<std::size_t>(picture.nchannels());
+        };
+        if (src_type_ != OIIO::TypeFloat && channels(src) <= kMostChannels)
+            from_.resize(kSpan * channels(src));
+        // Copied channels are written last; in place they would be gone by then.
+        const bool is_in_place = dst.localpixels() == src.localpixels();
+        if (dst.spec().format != OIIO::TypeFloat && channels(dst) <= kMostChannels &&
+            channels(dst) == 3 + plan.copies.size() && (plan.copies.empty() || !is_in_place)) {
+            to_.resize(kSpan * channels(dst));
+        }
     }
 
     /// Ends early when it is told to stop.
@@ -265,17 +276,18 @@ class RowRunner {
 
     void run_span(const SpanSource& source, int x, int y, std::byte* to, std::size_t n) {
         const std::ptrdiff_t to_stride = dst_.pixel_stride();
-        if (!run_in_place_of_floats(source, to, to_stride, n)) {
+        const FloatSpan floats = as_floats(source, n);
+        const float* alpha = load_alpha(floats, n);
+        if (!run_interleaved(floats, alpha, to, to_stride, n)) {
             const std::array<float*, 3> rgb = {planes_.data(), planes_.data() + kSpan,
                                                planes_.data() + 2 * kSpan};
-            const float* alpha = load_alpha(source, n);
             if (!source.pixels) {
                 for (float* plane : rgb)
                     std::fill_n(plane, n, 0.0F);
             } else if (light_) {
                 copy_light(x, y, rgb, n);
             } else {
-                load_color(src_type_, plan_.grey_source, source, rgb, n);
+                load_color(floats.type, plan_.grey_source, floats.source, rgb, n);
                 if (alpha) divide(rgb, alpha, n);
             }
             map_({rgb[0], rgb[1], rgb[2]}, 1, rgb, 1, n);
@@ -286,23 +298,45 @@ class RowRunner {
             copy(source, channel, to, to_stride, n);
     }
 
-    /// Float to float without alpha needs no scratch: the engine reads and writes the pictures.
-    bool run_in_place_of_floats(const SpanSource& source, std::byte* to, std::ptrdiff_t to_stride,
-                                std::size_t n) {
+    /// All channels of the source as floats where that is done in one go, else as they are.
+    struct FloatSpan {
+        SpanSource source;
+        OIIO::TypeDesc type;
+    };
+    FloatSpan as_floats(const SpanSource& source, std::size_t n) {
+        const int channels = src_.nchannels();
+        if (!source.pixels || from_.empty() || source.stride != channels * src_size_)
+            return {source, src_type_};
+        src_access_.run_to_float(source.pixels, from_.data(),
+                                 n * static_cast<std::size_t>(channels));
+        return {{reinterpret_cast<const std::byte*>(from_.data()),
+                 channels * static_cast<std::ptrdiff_t>(sizeof(float))},
+                OIIO::TypeFloat};
+    }
+
+    /// Interleaved floats need no planes: the engine reads and writes the pictures, or what was
+    /// converted of them.
+    bool run_interleaved(const FloatSpan& from, const float* alpha, std::byte* to,
+                         std::ptrdiff_t to_stride, std::size_t n) {
         constexpr std::ptrdiff_t kFloat = sizeof(float);
-        const auto aligned = [](const std::byte* p) {
-            return reinterpret_cast<std::uintptr_t>(p) % alignof(float) == 0;
+        const auto is_aligned = [](const std::byte* p, std::ptrdiff_t stride) {
+            return reinterpret_cast<std::uintptr_t>(p) % alignof(float) == 0 &&
+                   stride % kFloat == 0;
         };
-        if (!source.pixels || light_ || plan_.grey_source || plan_.grey_result ||
-            plan_.alpha >= 0 || src_type_ != OIIO::TypeFloat ||
-            dst_.spec().format != OIIO::TypeFloat || source.stride % kFloat != 0 ||
-            to_stride % kFloat != 0 || !aligned(source.pixels) || !aligned(to)) {
+        const std::byte* pixels = from.source.pixels;
+        if (!pixels || light_ || plan_.grey_source || plan_.grey_result || alpha ||
+            from.type != OIIO::TypeFloat || !is_aligned(pixels, from.source.stride)) {
             return false;
         }
-        const auto* in = reinterpret_cast<const float*>(source.pixels);
-        auto* out = reinterpret_cast<float*>(to);
-        map_({in, in + 1, in + 2}, source.stride / kFloat, {out, out + 1, out + 2},
-             to_stride / kFloat, n);
+        const int channels = dst_.nchannels();
+        const bool converts = !to_.empty() && to_stride == channels * dst_size_;
+        const bool is_float = dst_.spec().format == OIIO::TypeFloat && is_aligned(to, to_stride);
+        if (!converts && !is_float) return false;
+        const auto* in = reinterpret_cast<const float*>(pixels);
+        float* out = converts ? to_.data() : reinterpret_cast<float*>(to);
+        map_({in, in + 1, in + 2}, from.source.stride / kFloat, {out, out + 1, out + 2},
+             converts ? channels : to_stride / kFloat, n);
+        if (converts) dst_access_.run_from_float(out, to, n * static_cast<std::size_t>(channels));
         return true;
     }
 
@@ -314,12 +348,12 @@ class RowRunner {
             std::copy_n(&light_->rgb[c][first], n, rgb[c]);
     }
 
-    /// The alpha to divide by, or null.
-    const float* load_alpha(const SpanSource& source, std::size_t n) noexcept {
-        if (plan_.alpha < 0 || !source.pixels) return nullptr;
+    /// The alpha to divide by; null where there is none, or nothing but 1.
+    const float* load_alpha(const FloatSpan& from, std::size_t n) noexcept {
+        if (plan_.alpha < 0 || !from.source.pixels) return nullptr;
         float* alpha = planes_.data() + 3 * kSpan;
-        load_divisor(src_type_, plan_.alpha, source, alpha, nullptr, n);
-        return alpha;
+        load_divisor(from.type, plan_.alpha, from.source, alpha, nullptr, n);
+        return std::all_of(alpha, alpha + n, [](float a) { return a == 1; }) ? nullptr : alpha;
     }
 
     static void divide(const std::array<float*, 3>& rgb, const float* alpha,
@@ -379,7 +413,11 @@ class RowRunner {
     std::ptrdiff_t src_size_;
     std::ptrdiff_t dst_size_;
     std::vector<float> planes_;  // r, g, b (, alpha)
-    std::vector<double> wide_;   // copied channels whose type changes; double holds every type
+    /// All channels of a span, converted in one go. Empty: for none that are as they are, or too
+    /// many for the first-level cache.
+    static constexpr std::size_t kMostChannels = 8;
+    std::vector<float> from_, to_;
+    std::vector<double> wide_;  // copied channels whose type changes; double holds every type
 };
 
 void run_picture(const PictureMap& with, ImageBuf& dst, const ImageBuf& src, ROI roi, int nthreads,

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "image/pixel_access.h"
+
+#include <OpenImageIO/fmath.h>
+#include <OpenImageIO/half.h>
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+#include "tonewright/engine.h"
+
+namespace tonewright {
+namespace {
+
+/// Numbers of all magnitudes, and halfway between two halves.
+std::vector<float> floats() {
+    std::vector<float> x;
+    for (std::uint64_t bits = 0; bits < 0x100000000; bits += 65521)
+        x.push_back(std::bit_cast<float>(static_cast<std::uint32_t>(bits)));
+    for (std::uint32_t i = 0; i < 0x7C00; ++i) {
+        half a, b;
+        a.setBits(static_cast<std::uint16_t>(i));
+        b.setBits(static_cast<std::uint16_t>(i + 1));
+        const float middle = (static_cast<float>(a) + static_cast<float>(b)) / 2;
+        for (const float y : {std::nextafter(middle, 0.0F), middle, std::nextafter(middle, 1e9F)}) {
+            x.push_back(y);
+            x.push_back(-y);
+        }
+    }
+    return x;
+}
+
+/// Of runs: 1 to 70 numbers, from places that are no multiples of anything.
+template <class Run>
+void in_runs(std::size_t count, Run run) {
+    for (std::size_t begin = 0, n = 1; begin < count; begin += n, n = n % 70 + 1)
+        run(begin, std::min(n, count - begin));
+}
+
+TEST(PixelAccess, RunsOfHalvesAreThoseOfOpenImageIO) {
+    for (const std::string& target : SimdEngine::targets()) {
+        SimdEngine::use_target(target);
+        const PixelAccess& access = *pixel_access(OIIO::TypeHalf);
+        std::vector<std::uint16_t> halves(65536);
+        for (std::size_t i = 0; i < halves.size(); ++i)
+            halves[i] = static_cast<std::uint16_t>(i);
+        std::vector<float> result(halves.size());
+        in_runs(halves.size(), [&](std::size_t begin, std::size_t n) {
+            access.run_to_float(reinterpret_cast<const std::byte*>(&halves[begin]), &result[begin],
+                                n);
+        });
+        for (std::size_t i = 0; i < halves.size(); ++i) {
+            half h;
+            h.setBits(halves[i]);
+            const auto expected = static_cast<float>(h);
+            ASSERT_TRUE(result[i] == expected || (std::isnan(result[i]) && std::isnan(expected)))
+                << i << " on " << target;
+        }
+
+        const std::vector<float> x = floats();
+        std::vector<std::uint16_t> back(x.size());
+        in_runs(x.size(), [&](std::size_t begin, std::size_t n) {
+            access.run_from_float(&x[begin], reinterpret_cast<std::byte*>(&back[begin]), n);
+        });
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            const half expected(x[i]);
+            half h;
+            h.setBits(back[i]);
+            ASSERT_TRUE(h.bits() == expected.bits() || (h.isNan() && expected.isNan()))
+                << x[i] << " on " << target;
+        }
+    }
+    SimdEngine::use_target("");
+}
+
+TEST(PixelAccess, RunsOfIntegersAreTheSameAsOneByOne) {
+    const std::vector<float> x = floats();
+    for (const OIIO::TypeDesc type : {OIIO::TypeUInt8, OIIO::TypeUInt16}) {
+        const PixelAccess& access = *pixel_access(type);
+        std::vector<std::byte> run(x.size() * type.size()), single(run.size());
+        access.run_from_float(x.data(), run.data(), x.size());
+        access.store_float(x.data(), single.data(), static_cast<std::ptrdiff_t>(type.size()),
+                           x.size());
+        EXPECT_EQ(run, single) << type;
+        std::vector<float> a(x.size()), b(x.size());
+        access.run_to_float(run.data(), a.data(), x.size());
+        access.load_float(run.data(), static_cast<std::ptrdiff_t>(type.size()), b.data(), x.size());
+        EXPECT_EQ(a, b) << type;
+    }
+}
+
+}  // namespace
+}  // namespace tonewright

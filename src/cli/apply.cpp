@@ -37,6 +37,7 @@ struct Options : ViewOptions {
     int threads = 0;
     bool is_false_color = false;
     int subimage = 0;
+    bool dither = false;
     bool unpremult = false;
     bool no_unpremult = false;
     LutOptions lut;
@@ -183,6 +184,9 @@ void add_apply(CLI::App& program, int& exit_code) {
                      "which part of a multi-part file (view, page), from 0")
         ->capture_default_str()
         ->check(CLI::Range(0, 1 << 20));
+    command->add_flag("--dither", options->dither,
+                      "noise of half a code value against bands, in files of 8 bits; as "
+                      "oiiotool's");
     CLI::Option* yes = command->add_flag(
         "--unpremult", options->unpremult,
         "divide color by alpha before, multiply after; default: as the picture says");
@@ -197,7 +201,7 @@ void add_apply(CLI::App& program, int& exit_code) {
     add_shot_options(*command, options->shot, frames, metered);
     add_lut_options(*command, options->lut, op,
                     {"--set", "--look", "--display", "--reference-white", "--statistics",
-                     "--frames", "--false-color", "--auto-exposure", "--subimage"});
+                     "--frames", "--false-color", "--auto-exposure", "--subimage", "--dither"});
     command->footer(
         "Examples:\n"
         "  tonewright apply render.exr out.png --operator hable --exposure 1 -d uint8\n"
@@ -228,6 +232,7 @@ void add_apply(CLI::App& program, int& exit_code) {
         tonemap.display = options->display;
         tonemap.reference_white = options->reference_white;
         tonemap.unpremult = options->alpha();
+        tonemap.dither = options->dither;
         tonemap.statistics = parse_statistics(options->statistics);
         for (const char* name : {"--meter-frames", "--meter-cache"}) {
             if (command->count(name) == 0 || command->count("--auto-exposure") > 0 ||

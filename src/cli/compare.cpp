@@ -8,6 +8,7 @@
 #include "cli/command.h"
 #include "cli/picture_input.h"
 #include "image/comparison.h"
+#include "image/source_picture.h"
 #include "ocio/model.h"
 #include "tonewright/engine.h"
 #include "tonewright/image.h"
@@ -23,7 +24,7 @@ struct Options {
     std::vector<std::string> operators;
     std::string file;
     double exposure = 0;
-    std::string input = "lin_rec709";
+    std::string input = std::string(kAutoInput);
     int columns = 0;
     int cell_width = 480;
     bool has_false_color = false;
@@ -55,7 +56,7 @@ Rendering rendering_of(const ResolvedOperator& op, const Options& options) {
 std::vector<Rendering> renderings_of(const Options& options) {
     std::vector<Rendering> all;
     for (const std::string& text : options.operators)
-        all.push_back(rendering_of(parse_operator(text), options));
+        all.push_back(rendering_of(parse_picture_operator(text), options));
     if (options.operators.empty()) {
         for (const ConfigModel::View& view : make_config_model().views) {
             if (!view.op.op->is_diagnostic) all.push_back(rendering_of(view.op, options));
@@ -94,6 +95,27 @@ std::string exposure_text(double stops) {
     return fmt::format("exposure {:+g} {}", stops, std::fabs(stops) == 1 ? "stop" : "stops");
 }
 
+std::string title_of(const SourceColor& source) {
+    for (const InputSpace& space : all_input_spaces()) {
+        if (space.id == source.name) return space.title;
+    }
+    return source.name;
+}
+
+/// Scene-linear Rec.709.
+OIIO::ImageBuf decoded(const OIIO::ImageBuf& picture, const SourceColor& source,
+                       const std::string& path) {
+    Pipeline stages = source.decode;
+    stages.emplace_back(MatrixStage{rgb_to_rgb(source.primaries, kRec709)});
+    const SimdEngine engine(stages);
+    OIIO::ImageBuf scene;
+    const auto run = [&](const float* in, float* out, std::size_t n) {
+        engine.run_rgb(in, out, n);
+    };
+    if (!map_colors(scene, picture, run)) throw Error("compare: " + path + ": " + scene.geterror());
+    return scene;
+}
+
 /// What its colors mean, as the operator makes them.
 void add_legend(SheetSurround& around) {
     const ReferenceEngine engine(
@@ -113,13 +135,12 @@ void add_legend(SheetSurround& around) {
 }
 
 void write_sheet(const Options& options, const std::vector<Rendering>& renderings,
-                 const OIIO::ImageBuf& picture) {
+                 const OIIO::ImageBuf& picture, const std::string& remark) {
     const OIIO::ImageBuf scene = resize_scene(picture, options.cell_width);
     std::vector<std::pair<std::string, OIIO::ImageBuf>> cells;
     SheetSurround around;
     around.heading = name_of(options.in);
-    around.remark = fmt::format("{}, {}, shown on sRGB", exposure_text(options.exposure),
-                                find_input_space(options.input).title);
+    around.remark = remark;
     for (const Rendering& r : renderings) {
         cells.emplace_back(r.label(), render(r, scene, options.in));
         if (r.op.op->id == kDiagnostic && around.legend.empty()) add_legend(around);
@@ -169,7 +190,10 @@ void add_compare(CLI::App& program, int&) {
         ->required();
     command->add_option("--exposure", options->exposure, "stops, the same for all")
         ->capture_default_str();
-    command->add_option("--input", options->input, "scene-linear space of the picture")
+    command
+        ->add_option(
+            "--input", options->input,
+            "what the picture's numbers are: `auto`, what it says, or a name as in `apply`")
         ->capture_default_str();
     CLI::Option* columns =
         command->add_option("--columns", options->columns, "pictures a row; default: as fits")
@@ -218,13 +242,22 @@ void add_compare(CLI::App& program, int&) {
                                         options->has_false_color ? ", without --false-color" : ""));
             }
         }
-        const OIIO::ImageBuf picture = read_picture(options->in);
+        OIIO::ImageBuf picture = read_picture(options->in);
         const QuietStderr quiet;
+        const SourceColor source = source_color(picture.spec(), options->input);
+        const std::string remark = fmt::format("{}, {}, shown on sRGB",
+                                               exposure_text(options->exposure), title_of(source));
+        if (split->count() == 0 && !source.decode.empty()) {
+            // Code values are no light to scale.
+            picture = decoded(picture, source, options->in);
+            options->input = "lin_rec709";
+            renderings = renderings_of(*options);
+        }
         take_statistics(renderings, picture, options->input);
         if (split->count() > 0) {
             write_split(*options, renderings, picture);
         } else {
-            write_sheet(*options, renderings, picture);
+            write_sheet(*options, renderings, picture, remark);
         }
     });
 }

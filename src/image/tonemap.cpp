@@ -529,6 +529,7 @@ void Tonemapper::State::run(const Prepared& with, ImageBuf& dst, const ImageBuf&
     run_picture({engine, with.keeps_grey, with.view.op.label, options.unpremult, light}, dst, src,
                 roi, nthreads, progress);
     tag_as_result_of(with.view, dst.specmod());
+    if (options.dither) dst.specmod().attribute("oiio:dither", 1);
 }
 
 Tonemapper::Tonemapper(const TonemapOptions& options)

@@ -405,8 +405,9 @@ Operator define_local_laplacian() {
     op.id = "local_laplacian";
     op.title = "Local Laplacian";
     op.character =
-        "fits any scene into the display's range and keeps its details: edges without halos, local "
-        "contrast of any strength; absolute brightness is lost";
+        "fits any scene into the display's range and keeps its details at the contrast that is "
+        "set; "
+        "absolute brightness is lost, and noise in blacks is lifted";
     op.source =
         "Paris, Hasinoff, Kautz, Local Laplacian Filters, SIGGRAPH 2011; Aubry, Paris, Hasinoff, "
         "Kautz, Durand, Fast Local Laplacian Filters, ACM TOG 33(5), 2014";

@@ -242,8 +242,9 @@ Operator define_reinhard_local() {
     op.id = "reinhard_local";
     op.title = "Reinhard, dodging and burning";
     op.character =
-        "Reinhard with an exposure for every pixel: lights and shadows keep their local contrast, "
-        "edges stay free of halos";
+        "Reinhard with an exposure for every pixel, of its surroundings up to the next edge: "
+        "lights "
+        "and shadows keep their local contrast; saturated lights clip";
     op.source =
         "Reinhard, Stark, Shirley, Ferwerda, Photographic Tone Reproduction for Digital Images, "
         "SIGGRAPH 2002, eq. 1-9";

@@ -477,10 +477,17 @@ std::vector<ConfigModel::Look> choose_looks(const ConfigOptions& options,
 
 }  // namespace
 
-ResolvedOperator parse_operator(std::string_view text) {
+namespace {
+
+struct OperatorText {
     std::string name;
     Settings settings;
     std::string look;
+};
+
+OperatorText take_apart(std::string_view text) {
+    OperatorText parts;
+    auto& [name, settings, look] = parts;
     std::size_t begin = 0;
     while (begin <= text.size()) {
         const std::size_t end = std::min(text.find(':', begin), text.size());
@@ -495,7 +502,19 @@ ResolvedOperator parse_operator(std::string_view text) {
         }
         begin = end + 1;
     }
-    return resolve_operator(name, settings, look);
+    return parts;
+}
+
+}  // namespace
+
+ResolvedOperator parse_operator(std::string_view text) {
+    const OperatorText parts = take_apart(text);
+    return resolve_operator(parts.name, parts.settings, parts.look);
+}
+
+ResolvedOperator parse_picture_operator(std::string_view text) {
+    const OperatorText parts = take_apart(text);
+    return resolve_picture_operator(parts.name, parts.settings, parts.look);
 }
 
 std::string config_view_name(const std::string& name, const ResolvedOperator& op,

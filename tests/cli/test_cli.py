@@ -245,6 +245,12 @@ def check_apply(report, command, scratch):
     for kind, top in (("uint8", 255), ("uint16", 65535)):
         shown = stack(applied("-d", kind, to=scratch / "out.png"))
         report.compare(f"apply -d {kind} to PNG", shown, truth, 0.5 / top + FLOAT32)
+    dithered = stack(applied("-d", "uint8", "--dither", to=scratch / "dithered.png"))
+    applied("-d", "float")
+    run("oiiotool", out, "--dither", "-d", "uint8", "-o", scratch / "by_oiiotool.png")
+    report.check("apply --dither is oiiotool's", np.array_equal(
+        dithered, read_rgb(scratch / "by_oiiotool.png", scratch)))
+    report.check("apply --dither changes the picture", not np.array_equal(dithered, np.round(truth * 255) / 255))
     for kind, options, bound in (("tif", ["-d", "float"], FLOAT32), ("tif", [], 0.5 / 255 + FLOAT32),
                                  ("tga", [], 0.5 / 255 + FLOAT32), ("bmp", [], 0.5 / 255 + FLOAT32),
                                  ("dpx", ["-d", "uint16"], 0.5 / 65535 + FLOAT32),

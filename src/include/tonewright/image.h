@@ -66,6 +66,9 @@ struct TonemapOptions {
     /// What an HDR display shows light 1 at, cd/m2, [50, 1000].
     double reference_white = kReferenceWhite;
     Unpremult unpremult = Unpremult::automatic;
+    /// Files of 8 bits get noise of half a code value against bands: `oiio:dither`, which OIIO's
+    /// writers follow.
+    bool dither = false;
     Statistics statistics = Statistics::from_picture;
 };
 

@@ -84,6 +84,8 @@ inline constexpr const char* kConfigName = "tonewright";
 
 /// `id[:preset][:parameter=value...]`. @throws Error as resolve_operator() does.
 [[nodiscard]] ResolvedOperator parse_operator(std::string_view text);
+/// The same, of local operators, too. @throws Error as resolve_picture_operator() does.
+[[nodiscard]] ResolvedOperator parse_picture_operator(std::string_view text);
 
 /// What the config calls a view of an operator on a display: the operator's name, and where its
 /// picture is brighter than white, its peak: "AgX - HDR 1000 nits".

@@ -79,17 +79,17 @@ TEST(PixelAccess, RunsOfHalvesAreThoseOfOpenImageIO) {
 
 TEST(PixelAccess, RunsOfIntegersAreTheSameAsOneByOne) {
     const std::vector<float> x = floats();
-    for (const OIIO::TypeDesc type : {OIIO::TypeUInt8, OIIO::TypeUInt16}) {
+    for (const OIIO::TypeDesc& type : {OIIO::TypeUInt8, OIIO::TypeUInt16}) {
         const PixelAccess& access = *pixel_access(type);
         std::vector<std::byte> run(x.size() * type.size()), single(run.size());
         access.run_from_float(x.data(), run.data(), x.size());
         access.store_float(x.data(), single.data(), static_cast<std::ptrdiff_t>(type.size()),
                            x.size());
-        EXPECT_EQ(run, single) << type;
+        EXPECT_EQ(run, single) << type.c_str();
         std::vector<float> a(x.size()), b(x.size());
         access.run_to_float(run.data(), a.data(), x.size());
         access.load_float(run.data(), static_cast<std::ptrdiff_t>(type.size()), b.data(), x.size());
-        EXPECT_EQ(a, b) << type;
+        EXPECT_EQ(a, b) << type.c_str();
     }
 }
 

@@ -185,8 +185,8 @@ void add_apply(CLI::App& program, int& exit_code) {
         ->capture_default_str()
         ->check(CLI::Range(0, 1 << 20));
     command->add_flag("--dither", options->dither,
-                      "noise of half a code value against bands, in files of 8 bits; as "
-                      "oiiotool's");
+                      "noise of half a code value against bands, in files of 8 bits; the same in "
+                      "every frame");
     CLI::Option* yes = command->add_flag(
         "--unpremult", options->unpremult,
         "divide color by alpha before, multiply after; default: as the picture says");

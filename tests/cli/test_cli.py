@@ -247,7 +247,8 @@ def check_apply(report, command, scratch):
         report.compare(f"apply -d {kind} to PNG", shown, truth, 0.5 / top + FLOAT32)
     dithered = stack(applied("-d", "uint8", "--dither", to=scratch / "dithered.png"))
     applied("-d", "float")
-    run("oiiotool", out, "--dither", "-d", "uint8", "-o", scratch / "by_oiiotool.png")
+    # `--dither` of oiiotool takes another pattern for every file name.
+    run("oiiotool", out, "--attrib:type=int", "oiio:dither", "1", "-d", "uint8", "-o", scratch / "by_oiiotool.png")
     report.check("apply --dither is oiiotool's", np.array_equal(
         dithered, read_rgb(scratch / "by_oiiotool.png", scratch)))
     report.check("apply --dither changes the picture", not np.array_equal(dithered, np.round(truth * 255) / 255))

@@ -261,7 +261,11 @@ def cache(tool, report, adapt):
                  "--operator", "hable", "--frames", "1010", "--meter-frames", "1001-1012", *adapt[:2], *adapt[4:])
     report.check("and writes none without", not list((tool.folder / "lost").iterdir()))
     done, files = render(tool, "without", "--frames", "1001-1012", *adapt[:4])
-    report.check("without adaptation the others are made", done.returncode == 3 and len(files) == 11, done.stderr)
+    report.check("without adaptation the others are made", done.returncode == 1 and len(files) == 11, done.stderr)
+    for policy, count in (("skip", 11), ("hold", 12)):
+        done, files = render(tool, policy, "--frames", "1001-1012", "--missing", policy, *adapt)
+        report.check(f"--adapt --missing {policy}", done.returncode == 0 and len(files) == count, done.stderr)
+    report.check("a held frame has the exposure of the one before", files.get(1006) == files[1005])
 
 
 def refusals(tool, report):

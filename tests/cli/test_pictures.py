@@ -69,6 +69,8 @@ def write(path, spec, pixels):
 
 
 def read(path, subimage=0, level=0):
+    # The cache takes a file that was written again within a second for the old one.
+    oiio.ImageCache(True).invalidate(str(path), True)
     image = oiio.ImageBuf(str(path), subimage, level)
     pixels = image.get_pixels("float")
     if pixels is None or image.has_error:

@@ -36,6 +36,8 @@ def call(*arguments, folder=None):
 
 def pixels_of(path, subimage=0, level=0):
     """All channels as floats, which hold every half and every integer of 16 bits; through OpenImageIO's cache."""
+    # The cache takes a file that was written again within a second for the old one.
+    oiio.ImageCache(True).invalidate(str(path), True)
     image = oiio.ImageBuf(str(path), subimage, level)
     pixels = image.get_pixels("float")
     if pixels is None or image.has_error:

@@ -209,9 +209,28 @@ def check_shared(shared):
     published = list(make_operator_rows.published_rows(shared))
     committed = [row for row in make_operator_rows.read_rows()
                  if row["operator"] in operators.OPERATORS and not row["origin"].startswith("python_check/operators")]
-    missing = [row for row in published if row not in committed]
+    # Their last digits follow the processor: NumPy's pow is another one where there is AVX-512.
+    figures = ("out_r", "out_g", "out_b")
+
+    def identity(row):
+        return tuple(value for column, value in row.items() if column not in figures)
+
+    def off(row, others):
+        """Largest relative difference of a row to the one of the same colour, settings and origin, of its tolerance."""
+        wanted = np.array([float(row[c]) for c in figures])
+        return min((relative_error([float(other[c]) for c in figures], wanted) / float(row["tolerance"])
+                    for other in others.get(identity(row), ())), default=np.inf)
+
+    def by_identity(rows):
+        found = {}
+        for row in rows:
+            found.setdefault(identity(row), []).append(row)
+        return found
+
+    there, here = by_identity(published), by_identity(committed)
+    missing = [row for row in published if off(row, here) > 1]
     report("rows of check_values.json that operators.csv lacks", len(missing), 0.5, missing[:1])
-    stray = [row for row in committed if row not in published]
+    stray = [row for row in committed if off(row, there) > 1]
     report("rows of operators.csv that check_values.json lacks", len(stray), 0.5, stray[:1])
 
     values = json.loads((Path(shared) / "reference" / "check_values.json").read_text())

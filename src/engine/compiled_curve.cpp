@@ -406,34 +406,43 @@ class RowFit {
     }
 
     std::optional<CompiledCurve> fit() {
-        // One kink that shows can lie between two cells; where there are more, such cells have two
-        // rows.
-        std::vector<float> shown;
-        if (!place_cells(0, shown)) return std::nullopt;
-        if (shown.empty()) return fit_cells(shown);
-        const std::uint32_t part =
-            std::bit_cast<std::uint32_t>(shown.front()) & ((std::uint32_t{1} << rows_.shift) - 1);
-        shown.clear();
-        if (!place_cells(part, shown)) return std::nullopt;
-        return fit_cells(shown);
+        // One kink that shows can lie between two cells of the same grid.
+        if (!place_cells(0)) return std::nullopt;
+        if (!rows_.restarts.empty() &&
+            !place_cells(rows_.restarts.front().from & ((std::uint32_t{1} << rows_.shift) - 1)))
+            return std::nullopt;
+        return fit_cells();
     }
 
   private:
     using Row = std::array<float, 8>;
 
+    /// With a restart, the first of its cells.
+    struct Grid {
+        std::uint32_t from, base, first_cell;
+    };
+
+    [[nodiscard]] std::uint32_t first_bits_of(std::uint32_t cell) const {
+        auto grid = grids_.rbegin();
+        while (grid->first_cell > cell)
+            ++grid;
+        return grid->base + (cell << rows_.shift);
+    }
     [[nodiscard]] float begin_of(std::uint32_t cell) const {
-        return std::bit_cast<float>(rows_.base + (cell << rows_.shift));
+        return std::bit_cast<float>(first_bits_of(cell));
     }
     /// The last float of a cell.
     [[nodiscard]] double end_of(std::uint32_t cell) const {
-        const auto last =
-            static_cast<double>(std::bit_cast<float>(rows_.base + ((cell + 1) << rows_.shift) - 1));
-        return std::min(last, hi_);
+        std::uint32_t next = first_bits_of(cell) + (std::uint32_t{1} << rows_.shift);
+        for (const Grid& grid : grids_) {
+            if (grid.first_cell == cell + 1) next = grid.from;
+        }
+        return std::min(static_cast<double>(std::bit_cast<float>(next - 1)), hi_);
     }
 
-    /// Chooses where cells begin, finds the first one, which reaches down to 0, and kinks that no
-    /// polynomial passes.
-    bool place_cells(std::uint32_t part, std::vector<float>& shown) {
+    /// Chooses where cells begin, finds the first one, which reaches down to 0, and lets them begin
+    /// anew at kinks that no polynomial passes.
+    bool place_cells(std::uint32_t part) {
         const std::uint32_t unit = std::uint32_t{1} << rows_.shift;
         const auto cell_at = [&](double x) {
             return (std::bit_cast<std::uint32_t>(to_float(x)) - part) / unit;
@@ -442,6 +451,7 @@ class RowFit {
         std::uint32_t lowest = cell_at(std::min(std::ldexp(1.0, kLowestExponent), hi_));
         const auto first_fits = [&](std::uint32_t cell) {
             rows_.base = cell * unit + part;
+            grids_ = {{rows_.base, rows_.base, 0}};
             return try_row(0, end_of(0), 0);
         };
         if (!first_fits(lowest)) return false;
@@ -450,52 +460,36 @@ class RowFit {
             const std::uint32_t middle = lowest + (failing - lowest) / 2;
             (first_fits(middle) ? lowest : failing) = middle;
         }
-        count_ = top - lowest + 1;
-        if (count_ > CurveRows::kMaxRows) return false;
+        if (top - lowest >= CurveRows::kMaxRows) return false;
         rows_.base = lowest * unit + part;
+        grids_ = {{rows_.base, rows_.base, 0}};
+        rows_.restarts.clear();
         for (const float kink : kinks_) {
             if (static_cast<double>(kink) <= end_of(0)) continue;
-            const std::uint32_t cell = (std::bit_cast<std::uint32_t>(kink) - rows_.base) / unit;
+            const auto bits = std::bit_cast<std::uint32_t>(kink);
+            const std::uint32_t cell = (bits - grids_.back().base) / unit;
             if (kink == begin_of(cell)) continue;
-            if (!try_row(static_cast<double>(begin_of(cell)), end_of(cell), cell))
-                shown.push_back(kink);
+            if (try_row(static_cast<double>(begin_of(cell)), end_of(cell), cell)) continue;
+            const std::uint32_t base = bits - (cell + 1) * unit;
+            grids_.push_back({bits, base, cell + 1});
+            rows_.restarts.push_back({bits, base});
         }
+        count_ = (std::bit_cast<std::uint32_t>(to_float(hi_)) - grids_.back().base) / unit + 1;
+        if (count_ > CurveRows::kMaxRows) return false;
         // What cannot be is seen soon: in one cell of each octave or two.
         constexpr std::uint32_t kStride = 13;
         for (std::uint32_t cell = kStride; cell < count_; cell += kStride) {
-            if (!has_kink(cell) &&
-                !try_row(static_cast<double>(begin_of(cell)), end_of(cell), cell))
-                return false;
+            if (!try_row(static_cast<double>(begin_of(cell)), end_of(cell), cell)) return false;
         }
         return true;
     }
 
-    [[nodiscard]] bool has_kink(std::uint32_t cell) const {
-        const auto kink = std::upper_bound(kinks_.begin(), kinks_.end(), begin_of(cell));
-        return kink != kinks_.end() && static_cast<double>(*kink) <= end_of(cell);
-    }
-
-    std::optional<CompiledCurve> fit_cells(const std::vector<float>& shown) {
-        const auto add = [&] {
-            rows_.numbers.insert(rows_.numbers.end(), tried_.begin(),
-                                 tried_.begin() + rows_.length);
-        };
+    std::optional<CompiledCurve> fit_cells() {
         for (std::uint32_t cell = 0; cell < count_; ++cell) {
             const double begin = cell == 0 ? 0 : static_cast<double>(begin_of(cell));
-            const double end = end_of(cell);
-            const auto row = static_cast<std::int32_t>(rows_.numbers.size());
-            const auto kink = std::upper_bound(shown.begin(), shown.end(), to_float(begin));
-            if (kink == shown.end() || static_cast<double>(*kink) > end) {
-                if (!try_row(begin, end, cell)) return std::nullopt;
-                if (!shown.empty()) rows_.cells.push_back({kNever, row});
-            } else {
-                const double before = static_cast<double>(std::nextafter(*kink, 0.0F));
-                if (!try_row(begin, before, cell)) return std::nullopt;
-                add();
-                if (!try_row(static_cast<double>(*kink), end, cell)) return std::nullopt;
-                rows_.cells.push_back({*kink, row});
-            }
-            add();
+            if (!try_row(begin, end_of(cell), cell)) return std::nullopt;
+            rows_.numbers.insert(rows_.numbers.end(), tried_.begin(),
+                                 tried_.begin() + rows_.length);
         }
         CompiledCurve result;
         result.hi = to_float(hi_);
@@ -576,6 +570,7 @@ class RowFit {
     const CurveTolerance& tolerance_;
     bool is_precise_;
     CurveRows rows_;
+    std::vector<Grid> grids_;  // the first one, and one for each restart
     std::uint32_t count_ = 0;  // of cells
     Ends ends_;
     Row tried_{};
@@ -618,16 +613,21 @@ std::size_t CompiledCurve::segment_of(float x) const noexcept {
     return static_cast<std::size_t>(segment[cell]) + (x >= threshold[cell] ? 1 : 0);
 }
 
+std::uint32_t CurveRows::base_of(std::uint32_t bits) const noexcept {
+    std::uint32_t last = base;
+    for (const Restart& restart : restarts) {
+        if (bits >= restart.from) last = restart.base;
+    }
+    return last;
+}
+
 CurveRows::Place CurveRows::find(float x) const noexcept {
-    const auto number = [](auto k) { return static_cast<std::size_t>(k); };
-    const std::uint32_t bits =
-        std::bit_cast<std::uint32_t>(std::max(x, std::bit_cast<float>(base)));
-    const std::uint32_t cell = (bits - base) >> shift;
-    std::size_t row = number(cell) * number(length);
-    if (!cells.empty())
-        row = number(cells[cell].row) + (x >= cells[cell].threshold ? number(length) : 0);
-    const auto x0 = std::bit_cast<float>(base + (cell << shift));
-    return {numbers.data() + row, x0, scale_of(x0)};
+    const auto bits = std::bit_cast<std::uint32_t>(std::max(x, std::bit_cast<float>(base)));
+    const std::uint32_t start = base_of(bits);
+    const std::uint32_t cell = (bits - start) >> shift;
+    const auto x0 = std::bit_cast<float>(start + (cell << shift));
+    return {numbers.data() + std::size_t{cell} * static_cast<std::size_t>(length), x0,
+            scale_of(x0)};
 }
 
 float CurveRows::scale_of(float x0) noexcept {
@@ -676,7 +676,7 @@ double CompiledCurve::slope(double x) const noexcept {
 
 int CompiledCurve::cost() const noexcept {
     if (rows) {
-        return 36 + (rows->length > 4 ? 28 : 0) + (rows->cells.empty() ? 0 : 32) +
+        return 36 + (rows->length > 4 ? 28 : 0) + 4 * static_cast<int>(rows->restarts.size()) +
                (is_precise ? 24 : 0);
     }
     const int of_cells = cells == 0 ? 4 * std::bit_width(static_cast<unsigned>(segments)) - 4

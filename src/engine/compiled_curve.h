@@ -36,10 +36,10 @@ enum class CurveForm : std::uint8_t {
 /// takes a number of the row, and t is exact. Below `base`, cell 0.
 struct CurveRows {
     static constexpr int kMaxRows = 1024;
-    /// A cell with a kink inside: `row` before the threshold, the next one from it on.
-    struct Cell {
-        float threshold;
-        std::int32_t row;  // where it begins among the numbers
+    /// At a kink cells begin anew: from the float with the bits `from` on, `base` is this one.
+    struct Restart {
+        std::uint32_t from;
+        std::uint32_t base;
     };
 
     std::uint32_t base = 0;
@@ -49,9 +49,10 @@ struct CurveRows {
     /// missing in the first.
     int length = 4;
     std::vector<float> numbers;
-    /// Empty: no kink is inside a cell, and row k is that of cell k.
-    std::vector<Cell> cells;
+    std::vector<Restart> restarts;  // rising
 
+    /// Of the cells of a number that is not below `base`, given by its bits.
+    [[nodiscard]] std::uint32_t base_of(std::uint32_t bits) const noexcept;
     struct Place {
         const float* row;
         float x0;

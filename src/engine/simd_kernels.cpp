@@ -5,7 +5,9 @@
 // made once in 256 pixels or so, and the values of a tile never leave the first-level cache.
 #include "engine/simd_kernels.h"
 
+#include <algorithm>
 #include <cstring>
+#include <span>
 
 #if defined(__GNUC__) && !defined(__clang__)
 // GCC's AVX-512 header hands an undefined vector to instructions that do not read it.
@@ -587,79 +589,124 @@ HWY_INLINE void load_rows(const float* numbers, const std::uint32_t* at, Vec<DF>
     result[3] = hn::BitCast(d, hn::InterleaveUpper(pairs, high01, high23));
 }
 
-/// The rows of cells that may have a kink inside.
-HWY_INLINE Vec<DI> rows_of_cells(const CurveRows& rows, Vec<DI> cell, Vec<DF> x,
-                                 std::uint32_t* at) {
-    const DI di;
-    store_places(cell, at);
-    const auto* cells = reinterpret_cast<const __m64*>(rows.cells.data());
-    const auto two = [cells, at](int p) HWY_ATTR {
-        const __m128 pair =
-            _mm_loadh_pi(_mm_loadl_pi(_mm_setzero_ps(), cells + at[p]), cells + at[p + 1]);
-#if HWY_TARGET <= HWY_AVX2
-        const __m128 upper =
-            _mm_loadh_pi(_mm_loadl_pi(_mm_setzero_ps(), cells + at[p + 4]), cells + at[p + 5]);
-        return Vec<DF>{_mm256_insertf128_ps(_mm256_castps128_ps256(pair), upper, 1)};
-#else
-        return Vec<DF>{pair};
-#endif
-    };
-    const auto outer = two(0);
-    const auto inner = two(2);
-#if HWY_TARGET <= HWY_AVX2
-    const Vec<DF> threshold{_mm256_shuffle_ps(outer.raw, inner.raw, 0x88)};
-    const Vec<DF> row{_mm256_shuffle_ps(outer.raw, inner.raw, 0xDD)};
-#else
-    const Vec<DF> threshold{_mm_shuffle_ps(outer.raw, inner.raw, 0x88)};
-    const Vec<DF> row{_mm_shuffle_ps(outer.raw, inner.raw, 0xDD)};
-#endif
-    const auto is_behind = hn::VecFromMask(di, hn::RebindMask(di, hn::Ge(x, threshold)));
-    return hn::Add(hn::BitCast(di, row), hn::And(is_behind, hn::Set(di, rows.length)));
-}
+/// The polynomial of a curve in rows, but for its constant.
+template <int kLength, bool kHasRestarts>
+class RowPolynomial {
+  public:
+    HWY_INLINE explicit RowPolynomial(const CurveRows& rows)
+        : numbers_(rows.numbers.data()),
+          restarts_(rows.restarts),
+          shift_(rows.shift),
+          base_(hn::Set(DI(), static_cast<std::int32_t>(rows.base))) {}
 
-template <int kLength, bool kHasCells, bool kIsPrecise>
+    struct Place {
+        Vec<DF> x0, scale;
+    };
+    /// Of numbers above 0; where their rows begin goes to `at`.
+    HWY_INLINE Place find(Vec<DF> x, std::uint32_t* at) const {
+        const DF d;
+        const DI di;
+        auto base = base_;
+        const auto bits = hn::BitCast(di, hn::Max(x, hn::BitCast(d, base)));
+        if constexpr (kHasRestarts) {
+            for (const CurveRows::Restart& restart : restarts_) {
+                const auto is_behind =
+                    hn::Gt(bits, hn::Set(di, static_cast<std::int32_t>(restart.from) - 1));
+                base = hn::IfThenElse(is_behind,
+                                      hn::Set(di, static_cast<std::int32_t>(restart.base)), base);
+            }
+        }
+        const auto cell = hn::ShiftRightSame(hn::Sub(bits, base), shift_);
+        store_places(hn::ShiftLeft<(kLength == 4 ? 2 : 3)>(cell), at);
+        const auto x0 = hn::Add(hn::ShiftLeftSame(cell, shift_), base);
+        const auto scale = hn::Sub(hn::Set(di, 0x7F000000), hn::And(x0, hn::Set(di, 0x7F800000)));
+        return {hn::BitCast(d, x0), hn::BitCast(d, scale)};
+    }
+    /// @param number  the first four of each row: constant (and rest, of a precise curve) are left
+    HWY_INLINE Vec<DF> sum(const std::uint32_t* at, Vec<DF> t, Vec<DF>* number) const {
+        auto y = hn::Zero(DF());
+        if constexpr (kLength == 8) {
+            load_rows(numbers_ + 4, at, number);
+            y = number[3];
+            for (int k = 2; k >= 0; --k)
+                y = hn::MulAdd(y, t, number[k]);
+        }
+        load_rows(numbers_, at, number);
+        y = kLength == 8 ? hn::MulAdd(y, t, number[3]) : number[3];
+        return hn::MulAdd(hn::MulAdd(y, t, number[2]), t, number[1]);
+    }
+
+  private:
+    const float* numbers_;
+    std::span<const CurveRows::Restart> restarts_;
+    int shift_;
+    Vec<DI> base_;
+};
+
+/// A curve of floats. Its numbers are vectors from the start: what is written may not be them.
+template <int kLength, bool kHasRestarts>
+class RowCurve {
+  public:
+    HWY_INLINE explicit RowCurve(const CompiledCurve& curve)
+        : polynomial_(*curve.rows),
+          lo_(hn::Set(DF(), curve.lo)),
+          hi_(hn::Set(DF(), curve.hi)),
+          least_(hn::Set(DF(), curve.least)),
+          most_(hn::Set(DF(), curve.most)),
+          at_lo_(hn::Set(DF(), static_cast<float>(curve.at_lo))) {}
+
+    HWY_INLINE Vec<DF> operator()(Vec<DF> given) const {
+        alignas(kVectorBytes) std::uint32_t at[kLaneMultiple];
+        const auto x = hn::Min(hn::Max(given, lo_), hi_);
+        const auto place = polynomial_.find(x, at);
+        const auto t = hn::Mul(hn::Sub(x, place.x0), place.scale);
+        Vec<DF> number[4];
+        const auto sum = polynomial_.sum(at, t, number);
+        const auto y = hn::MulAdd(sum, t, number[0]);
+        // NaN is not above lo.
+        return hn::IfThenElse(hn::Gt(x, lo_), hn::Min(hn::Max(y, least_), most_), at_lo_);
+    }
+
+  private:
+    RowPolynomial<kLength, kHasRestarts> polynomial_;
+    Vec<DF> lo_, hi_, least_, most_, at_lo_;
+};
+
+template <int kLength, bool kHasRestarts>
 HWY_NOINLINE void run_rows(const Frame& frame, const Instruction& step,
                            const CompiledCurve& curve) {
     const DF d;
-    const DI di;
+    const RowCurve<kLength, kHasRestarts> at(curve);
+    const Source source(frame, step.in[0]);  // float or double
+    auto* const out = reinterpret_cast<float*>(frame.registers + step.out.offset);
+    for (std::size_t i = 0; i < frame.count; i += hn::Lanes(d))
+        hn::Store(at(load_narrow(d, source, i)), d, out + i);
+}
+
+template <int kLength, bool kHasRestarts>
+HWY_NOINLINE void run_precise_rows(const Frame& frame, const Instruction& step,
+                                   const CompiledCurve& curve) {
+    const DF d;
     const DD dd;
     const hn::Half<DF> half;
-    const CurveRows& rows = *curve.rows;
-    const float* const numbers = rows.numbers.data();
+    const RowPolynomial<kLength, kHasRestarts> polynomial(*curve.rows);
     const auto lo = hn::Set(d, curve.lo);
     const auto hi = hn::Set(d, curve.hi);
-    const auto base = hn::Set(di, static_cast<std::int32_t>(rows.base));
-    const int shift = rows.shift;
+    const auto lowest = hn::Set(dd, static_cast<double>(curve.lo));
+    const auto least = hn::Set(dd, static_cast<double>(curve.least));
+    const auto most = hn::Set(dd, static_cast<double>(curve.most));
+    const auto at_lo = hn::Set(dd, curve.at_lo);
     const auto promote = [dd, half](Vec<DF> x, bool is_upper) HWY_ATTR {
         return hn::PromoteTo(dd, is_upper ? hn::UpperHalf(half, x) : hn::LowerHalf(half, x));
-    };
-    const double least = static_cast<double>(curve.least);
-    const double most = static_cast<double>(curve.most);
-    const double at_lo = curve.at_lo;
-    // NaN is not above lo.
-    const auto finished = [least, most, at_lo](auto tag, auto y, auto is_above) HWY_ATTR {
-        using T = hn::TFromD<decltype(tag)>;
-        const auto number = [tag](double k) HWY_ATTR { return hn::Set(tag, static_cast<T>(k)); };
-        const auto limited = hn::Min(hn::Max(y, number(least)), number(most));
-        return hn::IfThenElse(is_above, limited, number(at_lo));
     };
     alignas(kVectorBytes) std::uint32_t at[kLaneMultiple];
     const Source source(frame, step.in[0]);
     for (std::size_t i = 0; i < frame.count; i += hn::Lanes(d)) {
         const auto given = load_narrow(d, source, i);
         const auto x = hn::Min(hn::Max(given, lo), hi);
-        const auto bits = hn::BitCast(di, hn::Max(x, hn::BitCast(d, base)));
-        const auto cell = hn::ShiftRightSame(hn::Sub(bits, base), shift);
-        const auto x0_bits = hn::Add(hn::ShiftLeftSame(cell, shift), base);
-        const auto x0 = hn::BitCast(d, x0_bits);
-        const auto scale = hn::BitCast(
-            d, hn::Sub(hn::Set(di, 0x7F000000), hn::And(x0_bits, hn::Set(di, 0x7F800000))));
-        store_places(kHasCells ? rows_of_cells(rows, cell, x, at)
-                     : hn::ShiftLeft < kLength == 4 ? 2
-                                                    : 3 > (cell),
-                     at);
-        auto distance = hn::Sub(x, x0);
-        if (kIsPrecise && source.wide) {
+        const auto place = polynomial.find(x, at);
+        auto distance = hn::Sub(x, place.x0);
+        if (source.wide) {
             const auto rest = hn::Combine(
                 d,
                 hn::DemoteTo(half,
@@ -667,48 +714,70 @@ HWY_NOINLINE void run_rows(const Frame& frame, const Instruction& step,
                 hn::DemoteTo(half, hn::Sub(source.load(dd, i), promote(given, false))));
             distance = hn::Add(distance, hn::IfThenElseZero(hn::Eq(given, x), rest));
         }
-        const auto t = hn::Mul(distance, scale);
         Vec<DF> number[4];
-        auto y = hn::Zero(d);
-        if constexpr (kLength == 8) {
-            load_rows(numbers + 4, at, number);
-            y = number[3];
-            for (int k = 2; k >= 0; --k)
-                y = hn::MulAdd(y, t, number[k]);
-        }
-        load_rows(numbers, at, number);
-        y = kLength == 8 ? hn::MulAdd(y, t, number[3]) : number[3];
-        y = hn::MulAdd(hn::MulAdd(y, t, number[2]), t, number[1]);
-        if constexpr (kIsPrecise) {
-            const auto lowest = hn::Set(dd, static_cast<double>(curve.lo));
-            for (int upper = 0; upper < 2; ++upper) {
-                const auto sum = hn::Add(promote(number[0], upper > 0), promote(y, upper > 0));
-                store_wide(frame, step.out, i + (upper > 0 ? hn::Lanes(dd) : 0),
-                           finished(dd, sum, hn::Gt(promote(x, upper > 0), lowest)));
-            }
-        } else {
-            y = hn::MulAdd(y, t, number[0]);
-            hn::Store(finished(d, y, hn::Gt(x, lo)), d,
-                      reinterpret_cast<float*>(frame.registers + step.out.offset) + i);
+        const auto change = polynomial.sum(at, hn::Mul(distance, place.scale), number);
+        for (int upper = 0; upper < 2; ++upper) {
+            const auto y = hn::Add(promote(number[0], upper > 0), promote(change, upper > 0));
+            const auto limited = hn::Min(hn::Max(y, least), most);
+            // NaN is not above lo.
+            store_wide(frame, step.out, i + (upper > 0 ? hn::Lanes(dd) : 0),
+                       hn::IfThenElse(hn::Gt(promote(x, upper > 0), lowest), limited, at_lo));
         }
     }
 }
 
+HWY_INLINE bool is_of_this_form(const CompiledCurve& curve) {
+    return curve.rows && curve.rows->is_fused == (HWY_NATIVE_FMA != 0);
+}
+
 HWY_NOINLINE void curve(const Frame& frame, const Instruction& step, const CompiledCurve& curve) {
-    if (!curve.rows || curve.rows->is_fused != (HWY_NATIVE_FMA != 0)) {
-        return curve_of_other_form(frame, step, curve);
-    }
-    const bool has_cells = !curve.rows->cells.empty();
+    if (!is_of_this_form(curve)) return curve_of_other_form(frame, step, curve);
+    const bool has_restarts = !curve.rows->restarts.empty();
     if (curve.is_precise) {
-        return has_cells ? run_rows<8, true, true>(frame, step, curve)
-                         : run_rows<8, false, true>(frame, step, curve);
+        return has_restarts ? run_precise_rows<8, true>(frame, step, curve)
+                            : run_precise_rows<8, false>(frame, step, curve);
     }
     if (curve.rows->length == 8) {
-        return has_cells ? run_rows<8, true, false>(frame, step, curve)
-                         : run_rows<8, false, false>(frame, step, curve);
+        return has_restarts ? run_rows<8, true>(frame, step, curve)
+                            : run_rows<8, false>(frame, step, curve);
     }
-    return has_cells ? run_rows<4, true, false>(frame, step, curve)
-                     : run_rows<4, false, false>(frame, step, curve);
+    return has_restarts ? run_rows<4, true>(frame, step, curve)
+                        : run_rows<4, false>(frame, step, curve);
+}
+
+/// The curve of every float.
+/// @param is_rgba  every fourth is left as it is
+template <int kLength, bool kHasRestarts>
+HWY_NOINLINE void run_flat(const CompiledCurve& curve, const float* in, float* out,
+                           std::size_t count, bool is_rgba) {
+    const DF d;
+    const DI di;
+    const std::size_t lanes = hn::Lanes(d);
+    const RowCurve<kLength, kHasRestarts> at(curve);
+    const auto channel = hn::And(hn::Iota(di, 0), hn::Set(di, 3));
+    const auto is_left = hn::RebindMask(d, hn::Eq(channel, hn::Set(di, is_rgba ? 3 : 4)));
+    const std::size_t whole = count / lanes * lanes;
+    for (std::size_t i = 0; i < whole; i += lanes) {
+        const auto y = at(hn::LoadU(d, in + i));
+        hn::StoreU(is_rgba ? hn::IfThenElse(is_left, hn::LoadU(d, out + i), y) : y, d, out + i);
+    }
+    alignas(kVectorBytes) float rest[kLaneMultiple] = {};
+    std::copy(in + whole, in + count, rest);
+    hn::Store(at(hn::Load(d, rest)), d, rest);
+    for (std::size_t i = whole; i < count; ++i) {
+        if (!is_rgba || i % 4 != 3) out[i] = rest[i - whole];
+    }
+}
+
+HWY_INLINE void run_flat(const CompiledCurve& curve, const float* in, float* out, std::size_t count,
+                         bool is_rgba) {
+    const bool has_restarts = !curve.rows->restarts.empty();
+    if (curve.rows->length == 8) {
+        return has_restarts ? run_flat<8, true>(curve, in, out, count, is_rgba)
+                            : run_flat<8, false>(curve, in, out, count, is_rgba);
+    }
+    return has_restarts ? run_flat<4, true>(curve, in, out, count, is_rgba)
+                        : run_flat<4, false>(curve, in, out, count, is_rgba);
 }
 
 CurveForm curve_form() { return HWY_NATIVE_FMA ? CurveForm::rows : CurveForm::rows_unfused; }
@@ -948,7 +1017,7 @@ HWY_NOINLINE void run_instruction(const Frame& frame, const Code& code, const In
 
 /// NaN -> 0, then limited to +-65504.
 HWY_INLINE Vec<DF> sanitised(DF d, Vec<DF> x) {
-    const auto limit = hn::Set(d, 65504.0F);
+    const auto limit = hn::Set(d, kLargestInput);
     const auto number = hn::IfThenElseZero(hn::Eq(x, x), x);
     return hn::Min(hn::Max(number, hn::Neg(limit)), limit);
 }
@@ -1151,12 +1220,35 @@ void run_machine(const Code& code, const std::array<const float*, 3>& in, std::p
     }
 }
 
+#elif HWY_TARGET <= HWY_SSE4
+
+/// What is one curve of every channel needs no planes: whether it is, and the pixels lie so.
+bool run_without_tiles(const Code& code, const std::array<const float*, 3>& in,
+                       std::ptrdiff_t in_stride, const std::array<float*, 3>& out,
+                       std::ptrdiff_t out_stride, std::size_t count) {
+    if (!code.only_curve || in_stride != out_stride || count == 0) return false;
+    const CompiledCurve& curve = code.curves[*code.only_curve];
+    if (!is_of_this_form(curve)) return false;
+    if (in_stride == 1) {
+        for (std::size_t c = 0; c < 3; ++c)
+            run_flat(curve, in[c], out[c], count, false);
+        return true;
+    }
+    if (!are_interleaved(in, in_stride) || !are_interleaved(out, out_stride)) return false;
+    // What follows the last pixel's three channels is not ours.
+    const bool is_rgba = in_stride == 4;
+    run_flat(curve, in[0], out[0], is_rgba ? 4 * count - 1 : 3 * count, is_rgba);
+    return true;
+}
+
 #endif
 
 void run(const Code& code, const std::array<const float*, 3>& in, std::ptrdiff_t in_stride,
          const std::array<float*, 3>& out, std::ptrdiff_t out_stride, std::size_t count) {
 #if HWY_TARGET <= HWY_AVX3
     if (code.machine) return run_machine(code, in, in_stride, out, out_stride, count);
+#elif HWY_TARGET <= HWY_SSE4
+    if (run_without_tiles(code, in, in_stride, out, out_stride, count)) return;
 #endif
     alignas(kVectorBytes) unsigned char registers[kRegisterFileBytes];
     const auto* constants = reinterpret_cast<const unsigned char*>(code.constants.data());

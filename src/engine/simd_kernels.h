@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -114,6 +115,8 @@ struct Instruction {
 inline constexpr std::size_t kMaxTile = 256;
 inline constexpr std::size_t kVectorBytes = 64;   // the widest vector there is
 inline constexpr std::size_t kLaneMultiple = 16;  // floats in it
+/// Numbers beyond this, infinity too, count as this; NaN as 0.
+inline constexpr float kLargestInput = 65504.0F;
 /// On the stack of the running thread.
 inline constexpr std::size_t kRegisterFileBytes = std::size_t{64} * 1024;
 
@@ -139,6 +142,9 @@ struct Code : TilePorts {
     std::vector<PositionedTables> positioned;
     std::vector<SampledLattice> lattices;
     std::vector<CompiledCurve> curves;
+    /// Where the program is this curve of every channel by itself, in float, and limits numbers as
+    /// the engine does before it.
+    std::optional<std::uint32_t> only_curve;
     /// Pixels per tile: a multiple of kLaneMultiple, such that the registers fit into the file.
     std::size_t tile = 0;
     /// The same for a processor with AVX-512, where it could be made. Refers to the lattices: a

@@ -507,7 +507,7 @@ class Writer {
 
     Number sanitised(Number x) {
         const Number number = zero_unless(false, compare(VectorOp::equal, false, x, x), x);
-        return limited(false, number, 65504);
+        return limited(false, number, kLargestInput);
     }
 
     Number shuffle(Number a, Number b, const std::array<std::int32_t, 16>& from) {
@@ -852,7 +852,7 @@ class Translator {
     bool limits_input(const Instruction& step) const {
         if (step.op != Op::curve) return false;
         const CompiledCurve& curve = code_.curves[step.table];
-        return curve.lo >= 0 && curve.hi <= 65504;
+        return curve.lo >= 0 && curve.hi <= kLargestInput;
     }
 
     /// False where the tile is too small.

@@ -570,18 +570,22 @@ TEST_F(Simd, MatrixOfMixedSignsBeforeAPowerDisplay) {
 // Memory
 
 TEST_F(Simd, AnyStrideAndCountAndNothingOutsideThePixels) {
-    const SimdEngine engine(view_of("aces_hill"));
     constexpr float kGuard = -123.5F;
     constexpr std::size_t kEdge = 8;  // guard floats around
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
     ProbeRandom random(23);
-    for (const std::string& target : SimdEngine::targets()) {
-        SimdEngine::use_target(target);
+    const auto check = [&](const std::string& target, const SimdEngine& engine) {
         for (const std::size_t count :
              {0, 1, 2, 3, 15, 16, 17, 31, 255, 256, 257, 511, 513, 1000}) {
             // Each pixel alone: what the whole has to equal, bit for bit.
             std::vector<float> pixels(3 * count);
             for (float& x : pixels)
                 x = static_cast<float>(random.uniform(-0.5, 4));
+            for (std::size_t i = 0; i + 4 < pixels.size(); i += 29) {
+                pixels[i] = std::numeric_limits<float>::quiet_NaN();
+                pixels[i + 2] = kInfinity;
+                pixels[i + 4] = -kInfinity;
+            }
             std::vector<float> expected(3 * count);
             for (std::size_t i = 0; i < count; ++i) {
                 engine.run_rgb(&pixels[3 * i], &expected[3 * i], 1);
@@ -623,6 +627,11 @@ TEST_F(Simd, AnyStrideAndCountAndNothingOutsideThePixels) {
                 }
             }
         }
+    };
+    for (const std::string& target : SimdEngine::targets()) {
+        SimdEngine::use_target(target);
+        check(target, SimdEngine(view_of("aces_hill")));
+        check(target, SimdEngine(view_of("uchimura")));  // each channel alone
     }
 }
 

@@ -15,8 +15,6 @@ namespace tonewright::light {
 inline constexpr std::size_t kSpan = 512;
 /// Planes hold whole blocks of this many pixels.
 inline constexpr std::size_t kBlock = 64;
-/// Luminance of what fills up the last block.
-inline constexpr double kNoPixel = -1;
 
 [[nodiscard]] constexpr std::size_t padded(std::size_t count) {
     return (count + kBlock - 1) / kBlock * kBlock;
@@ -38,14 +36,13 @@ struct Kinds {
 /// Fills the last block up. Without `has_alpha` all are opaque.
 [[nodiscard]] Kinds kinds(Planes& planes, std::size_t count, bool has_alpha) noexcept;
 
+/// True where nothing is: all of interleaved floats are finite, and opaque.
+/// @param channels  3 or 4; without `has_alpha` a fourth says nothing.
+[[nodiscard]] bool are_plain(const float* pixels, int channels, std::size_t count,
+                             bool has_alpha) noexcept;
+
 /// Color divided by alpha, of whole blocks.
 void divide_by_alpha(Planes& planes, std::size_t count) noexcept;
-
-/// Colors without NaN become colors of Rec.709, [0, kHalfMax], and their luminances. Fills the last
-/// block up with black of luminance kNoPixel.
-/// @param to_rec709  null: they are of Rec.709.
-void weigh(Planes& planes, std::size_t count, const Matrix3* to_rec709,
-           std::array<double, kSpan>& luminance) noexcept;
 
 /// The sum of logarithms of a span as the logarithm of a product: mantissa 2^exponent.
 struct Product {
@@ -69,10 +66,19 @@ struct SpanLight {
     Product lit;         // of luminances above 0
     Product with_delta;  // of luminances and delta
 };
-/// Of what weigh() leaves.
-/// @param delta  added to luminances inside the logarithm, [1e-12, 1]
-[[nodiscard]] SpanLight add_up(const Planes& planes, const std::array<double, kSpan>& luminance,
-                               std::size_t count, double delta) noexcept;
+/// How colors count.
+struct Weighing {
+    const Matrix3* to_rec709;  // null: they are of Rec.709
+    double delta;              // added to luminances inside the logarithm, [1e-12, 1]
+};
+/// Of colors without NaN, which become colors of Rec.709, [0, kHalfMax].
+/// @param luminance  of each pixel
+[[nodiscard]] SpanLight add_up(Planes& planes, std::size_t count, const Weighing& weighing,
+                               std::array<double, kSpan>& luminance) noexcept;
+/// The same of interleaved floats, to the same bits.
+[[nodiscard]] SpanLight add_up(const float* pixels, int channels, std::size_t count,
+                               const Weighing& weighing,
+                               std::array<double, kSpan>& luminance) noexcept;
 
 /// Product of any positive numbers.
 [[nodiscard]] Product product_of(const double* values, std::size_t count) noexcept;

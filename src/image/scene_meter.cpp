@@ -160,6 +160,9 @@ constexpr double kHistogramBlack = 1e-6;
 /// the next edge where one is within such a step.
 class Bins {
   public:
+    /// Several counters of each bin: neighbours are often alike, and one would wait for the other.
+    static constexpr std::size_t kCopies = 4;
+
     explicit Bins(const MeterOptions& options) {
         const int last = options.bins - 1;
         const double range = options.histogram_max - options.histogram_min;
@@ -171,69 +174,84 @@ class Bins {
             edges_[static_cast<std::size_t>(i)] = std::max(
                 std::exp2(options.histogram_min + range * (i - 1) / (last - 1)), kHistogramBlack);
         }
-        bins_.reserve(key_of(kHalfMax) + 1);
-        std::uint16_t bin = 0;
-        for (std::size_t key = 0; key <= key_of(kHalfMax); ++key) {
-            const std::uint16_t before = bin;
-            while (least_of(key) >= edges_[bin + 1U])
-                ++bin;
-            has_narrow_ |= bin - before > 1;
-            bins_.push_back(bin);
+        // As few digits as tell the edges apart: the table shares the cache with pixels.
+        for (digits_ = kFewestDigits; digits_ < kMostDigits; ++digits_) {
+            if (!has_narrow_bin()) break;
         }
-        has_narrow_ |= bin + 2U < edges_.size() && edges_[bin + 2U] <= kHalfMax;
+        has_narrow_ = has_narrow_bin();
+        steps_.reserve(key_of(kHalfMax) + 1);
+        std::size_t bin = 0;
+        for (std::size_t key = 0; key <= key_of(kHalfMax); ++key) {
+            const auto least = static_cast<std::int64_t>(key) << (kDigits - digits_);
+            while (least >= place_of(edges_[bin + 1]))
+                ++bin;
+            steps_.push_back({place_of(edges_[bin + 1]), kCopies * bin});
+        }
     }
 
-    /// Calls count(i, bin) for each luminance.
-    template <class Count>
-    void find(const double* luminances, std::size_t n, const Count& count) const noexcept {
-        for (std::size_t i = 0; i < n; ++i) {
-            const double y = std::max(luminances[i], kFirst);
-            std::size_t bin = bins_[key_of(y)];
-            if (has_narrow_) {
-                while (y >= edges_[bin + 1])
-                    ++bin;
-            } else {
-                bin += y >= edges_[bin + 1] ? 1 : 0;
-            }
-            count(i, bin);
+    /// Counts luminances.
+    /// @param counts  kCopies of each bin, which add up
+    void count(const double* luminances, std::size_t n, std::uint64_t* counts) const noexcept {
+        if (has_narrow_) {
+            for (std::size_t i = 0; i < n; ++i)
+                ++counts[kCopies * bin_of(luminances[i])];
+            return;
         }
+        const Step* const steps = steps_.data();
+        const int shift = kDigits - digits_;
+        const auto add = [&](std::size_t i, std::size_t copy) {
+            const std::int64_t place = place_of(luminances[i]);
+            const Step& step = steps[place >> shift];
+            ++counts[step.counter + (place >= step.next ? kCopies : 0) + copy];
+        };
+        std::size_t i = 0;
+        for (; i + kCopies <= n; i += kCopies) {
+            for (std::size_t copy = 0; copy < kCopies; ++copy)
+                add(i + copy, copy);
+        }
+        for (; i < n; ++i)
+            add(i, 0);
     }
 
   private:
-    static constexpr int kShift = 46;  // 6 of 52 digits
+    struct Step {
+        std::int64_t next;    // place of the edge behind its least luminance
+        std::size_t counter;  // of the bin before
+    };
+    static constexpr int kDigits = 52;  // of a double
+    static constexpr int kFewestDigits = 3;
+    static constexpr int kMostDigits = 8;
     static constexpr double kFirst = 0x1p-20;
     static_assert(kHistogramBlack > kFirst);
 
-    static std::size_t key_of(double luminance) noexcept {
-        return (std::bit_cast<std::uint64_t>(luminance) - std::bit_cast<std::uint64_t>(kFirst)) >>
-               kShift;
+    /// Bits that rise with luminances, from those of kFirst on.
+    static std::int64_t place_of(double luminance) noexcept {
+        return std::max(
+            std::bit_cast<std::int64_t>(luminance) - std::bit_cast<std::int64_t>(kFirst),
+            std::int64_t{0});
     }
-    static double least_of(std::size_t key) noexcept {
-        return std::bit_cast<double>((key << kShift) + std::bit_cast<std::uint64_t>(kFirst));
+    [[nodiscard]] std::size_t key_of(double luminance) const noexcept {
+        return static_cast<std::size_t>(place_of(luminance) >> (kDigits - digits_));
     }
-
-    std::vector<double> edges_;        // bin i is [edges_[i], edges_[i + 1])
-    std::vector<std::uint16_t> bins_;  // of the least luminance of each step
-    bool has_narrow_ = false;          // several edges are within a step
-};
-
-/// Several counters of each bin: neighbours are often alike, and one would wait for the other.
-class Histogram {
-  public:
-    explicit Histogram(std::size_t bins) : counts_(kCopies * bins) {}
-
-    void add(const Bins& bins, const double* luminances, std::size_t count) noexcept {
-        bins.find(luminances, count,
-                  [&](std::size_t i, std::size_t bin) { ++counts_[kCopies * bin + i % kCopies]; });
+    /// Several edges are within a step.
+    [[nodiscard]] bool has_narrow_bin() const noexcept {
+        for (std::size_t i = 2; i < edges_.size() && edges_[i] <= kHalfMax; ++i) {
+            if (key_of(edges_[i]) == key_of(edges_[i - 1]) && edges_[i] != edges_[i - 1])
+                return true;
+        }
+        return false;
     }
-    void add_to(std::vector<std::uint64_t>& all) const noexcept {
-        for (std::size_t i = 0; i < counts_.size(); ++i)
-            all[i / kCopies] += counts_[i];
+    [[nodiscard]] std::size_t bin_of(double luminance) const noexcept {
+        std::size_t bin = steps_[key_of(luminance)].counter / kCopies;
+        while (luminance >= edges_[bin + 1])
+            ++bin;
+        return bin;
     }
 
-  private:
-    static constexpr std::size_t kCopies = 4;
-    std::vector<std::uint64_t> counts_;
+    std::vector<double> edges_;  // bin i is [edges_[i], edges_[i + 1])
+    std::vector<Step> steps_;
+    int digits_ = 0;
+    bool has_narrow_ = false;
 };
 
 /// How a picture is measured.
@@ -258,7 +276,8 @@ class RowMeter {
           type_(picture.spec().format),
           access_(*pixel_access(type_)),
           size_(static_cast<std::ptrdiff_t>(type_.size())),
-          histogram_(static_cast<std::size_t>(plan.options.bins)) {}
+          weighing_{plan.converts ? &plan.to_rec709 : nullptr, plan.options.delta},
+          counts_(Bins::kCopies * static_cast<std::size_t>(plan.options.bins)) {}
 
     /// @returns  false when the picture could not be read.
     bool measure(int xbegin, int xend, int y, int z, Measured& row) {
@@ -273,12 +292,25 @@ class RowMeter {
         return true;
     }
 
-    [[nodiscard]] const Histogram& histogram() const noexcept { return histogram_; }
+    void add_to(std::vector<std::uint64_t>& histogram) const noexcept {
+        for (std::size_t i = 0; i < counts_.size(); ++i)
+            histogram[i / Bins::kCopies] += counts_[i];
+    }
 
   private:
     void measure_span(const SpanSource& source, std::size_t n, Measured& row) {
         const bool has_alpha = plan_.layout.alpha >= 0;
-        load(source, n);
+        if (const float* pixels = packed_floats(source, n)) {
+            const int channels = static_cast<int>(source.stride / size_);
+            if (!plan_.decode && light::are_plain(pixels, channels, n, has_alpha)) {
+                row.finite.add(light::add_up(pixels, channels, n, weighing_, luminance_), n);
+                count(n, row);
+                return;
+            }
+            light::split(pixels, channels, n, planes_);
+        } else {
+            load(source, n);
+        }
         const light::Kinds kinds = light::kinds(planes_, n, has_alpha);
         std::size_t limited = 0;
         if (!kinds.all_finite || !kinds.all_cover) {
@@ -288,13 +320,12 @@ class RowMeter {
         if (n > 0) {
             if (has_alpha && plan_.divides && !kinds.all_opaque) light::divide_by_alpha(planes_, n);
             add_up(planes_, n, row.finite);
-            if (plan_.figures == SceneMeter::Figures::all) count(n, row);
+            count(n, row);
         }
         if (limited > 0) add_up(limited_, limited, row.limited);
     }
 
     void load(const SpanSource& source, std::size_t n) noexcept {
-        if (load_floats(source, n)) return;
         const std::size_t colors = plan_.layout.is_grey ? 1 : 3;
         for (std::size_t c = 0; c < colors; ++c)
             load(source, static_cast<int>(c), planes_[c], n);
@@ -308,18 +339,19 @@ class RowMeter {
               std::size_t n) const noexcept {
         access_.load_double(source.pixels + channel * size_, source.stride, to.data(), n);
     }
-    /// RGB or RGBA of floats, packed.
-    bool load_floats(const SpanSource& source, std::size_t n) noexcept {
-        const std::ptrdiff_t channels = source.stride / static_cast<std::ptrdiff_t>(sizeof(float));
-        if (type_ != OIIO::TypeFloat || plan_.layout.is_grey ||
+    /// RGB or RGBA as floats that follow each other, of floats or halves; else null.
+    const float* packed_floats(const SpanSource& source, std::size_t n) noexcept {
+        const bool is_half = type_ == OIIO::TypeHalf;
+        if ((type_ != OIIO::TypeFloat && !is_half) || plan_.layout.is_grey ||
             (source.stride != 3 * size_ && source.stride != 4 * size_) ||
             (plan_.layout.alpha >= 0 && plan_.layout.alpha != 3) ||
-            reinterpret_cast<std::uintptr_t>(source.pixels) % alignof(float) != 0) {
-            return false;
+            reinterpret_cast<std::uintptr_t>(source.pixels) % type_.size() != 0) {
+            return nullptr;
         }
-        light::split(reinterpret_cast<const float*>(source.pixels), static_cast<int>(channels), n,
-                     planes_);
-        return true;
+        if (!is_half) return reinterpret_cast<const float*>(source.pixels);
+        access_.run_to_float(source.pixels, floats_.data(),
+                             n * static_cast<std::size_t>(source.stride / size_));
+        return floats_.data();
     }
 
     /// Moves the pixels that count to the front, and those that only statistics count apart.
@@ -359,12 +391,12 @@ class RowMeter {
                                                 planes[2].data()};
             plan_.decode->run({rgb[0], rgb[1], rgb[2]}, rgb, n);
         }
-        light::weigh(planes, n, plan_.converts ? &plan_.to_rec709 : nullptr, luminance_);
-        light.add(light::add_up(planes, luminance_, n, plan_.options.delta), n);
+        light.add(light::add_up(planes, n, weighing_, luminance_), n);
     }
 
     void count(std::size_t n, Measured& row) {
-        histogram_.add(plan_.bins, luminance_.data(), n);
+        if (plan_.figures != SceneMeter::Figures::all) return;
+        plan_.bins.count(luminance_.data(), n, counts_.data());
         if (!plan_.options.exact) return;
         std::copy_if(luminance_.begin(), luminance_.begin() + static_cast<std::ptrdiff_t>(n),
                      std::back_inserter(row.kept), [](double y) { return y >= kHistogramBlack; });
@@ -375,10 +407,12 @@ class RowMeter {
     OIIO::TypeDesc type_;
     const PixelAccess& access_;
     std::ptrdiff_t size_;
+    light::Weighing weighing_;
     light::Planes planes_{};
     light::Planes limited_{};
+    std::array<float, 4 * light::kSpan> floats_{};
     std::array<double, light::kSpan> luminance_{};
-    Histogram histogram_;
+    std::vector<std::uint64_t> counts_;  // of the histogram
 };
 
 /// 2^(mean log2) of the bins, each weighted with what is between the percentiles of it.
@@ -503,7 +537,7 @@ void SceneMeter::add(const ImageBuf& picture, const ROI& roi) {
                 }
             }
             const std::lock_guard lock(mutex);
-            meter->histogram().add_to(state_->histogram);
+            meter->add_to(state_->histogram);
         } catch (const std::bad_alloc&) {
             out_of_memory = true;
         }

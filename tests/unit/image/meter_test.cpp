@@ -9,6 +9,7 @@
 #include <limits>
 #include <tuple>
 
+#include "tonewright/engine.h"
 #include "unit/image/pictures.h"
 
 namespace tonewright {
@@ -292,6 +293,27 @@ TEST(Meter, PackedFloatsAreReadAsAnyOthers) {
     MeterOptions options;
     options.input = "lin_ap1";
     EXPECT_TRUE(same(meter(rgb, options), meter(rgb.copy(TypeDesc::DOUBLE), options)));
+    // Opaque but for a few, on every instruction set.
+    ImageBuf opaque = make_picture(make_spec(1237, 7, {"R", "G", "B", "A"}, TypeDesc::FLOAT), 3);
+    for (ImageBuf::Iterator<float> p(opaque); !p.done(); ++p)
+        p[3] = 1;
+    set(opaque, 1200, 1, {0.5F, 0.25F, 0.125F, 0.5F});
+    set(opaque, 1236, 2, {1, 1, 1, kNan});
+    set(opaque, 1235, 3, {1, 1, -kInf, 1});
+    set(opaque, 0, 4, {1, kNan, 1, 1});
+    set(opaque, 513, 5, {-1, 0, 1e9F, 1});
+    const Metering expected = meter(opaque.copy(TypeDesc::DOUBLE));
+    EXPECT_EQ(expected.uncovered + expected.nan + expected.infinite, 3U);
+    for (const std::string& target : SimdEngine::targets()) {
+        SimdEngine::use_target(target);
+        EXPECT_TRUE(same(meter(opaque), expected)) << target;
+    }
+    SimdEngine::use_target("");
+    // Halves, and a fourth channel that is no alpha.
+    ImageBuf depth = make_picture(make_spec(1237, 3, {"R", "G", "B", "Z"}, TypeDesc::HALF), 3);
+    set(depth, 64, 1, {1, 1, 1, kInf});
+    EXPECT_TRUE(same(meter(depth), meter(depth.copy(TypeDesc::DOUBLE))));
+    EXPECT_EQ(meter(depth).counted, 1237U * 3);
 }
 
 TEST(Meter, DoesNotDependOnThreads) {

@@ -34,21 +34,13 @@ struct Options : ViewOptions {
     FrameOptions frames;
     std::string type;
     std::string statistics = "picture";
-    int threads = 0;
     bool is_false_color = false;
-    int subimage = 0;
     bool dither = false;
-    bool unpremult = false;
-    bool no_unpremult = false;
+    PictureInput picture;
     LutOptions lut;
     ExposureOptions metering;
     ShotOptions shot;
 
-    [[nodiscard]] TonemapOptions::Unpremult alpha() const {
-        if (unpremult) return TonemapOptions::Unpremult::yes;
-        if (no_unpremult) return TonemapOptions::Unpremult::no;
-        return TonemapOptions::Unpremult::automatic;
-    }
     [[nodiscard]] OIIO::TypeDesc pixel_type() const {
         return type.empty() ? OIIO::TypeDesc(OIIO::TypeUnknown) : parse_pixel_type(type);
     }
@@ -82,10 +74,11 @@ void meter_frames(Tonemapper& tonemapper, std::vector<FrameFiles>& frames,
     {
         const QuietStderr quiet;
         ProgressBar bar(quiet.before(), metered.size());
-        shot = meter_shot(
-            options.in, all,
-            options.metering.meter_options(options.input, options.alpha(), options.subimage),
-            options.shot.cache, options.threads, [&](std::size_t) { bar.add(true); });
+        shot = meter_shot(options.in, all,
+                          options.metering.meter_options(options.input, options.picture.alpha(),
+                                                         options.picture.subimage),
+                          options.shot.cache, options.picture.threads,
+                          [&](std::size_t) { bar.add(true); });
     }
     if (has_statistics) tonemapper = tonemapper.with_statistics(shot.statistics());
     if (!has_exposures) return;
@@ -104,10 +97,10 @@ void meter_frames(Tonemapper& tonemapper, std::vector<FrameFiles>& frames,
 double meter_exposure(const Options& options) {
     const ExposureRule rule = options.metering.rule();
     const MeteredPicture metered =
-        meter_pictures(
-            {options.in},
-            options.metering.meter_options(options.input, options.alpha(), options.subimage),
-            options.shot.cache, options.threads)
+        meter_pictures({options.in},
+                       options.metering.meter_options(options.input, options.picture.alpha(),
+                                                      options.picture.subimage),
+                       options.shot.cache, options.picture.threads)
             .front();
     if (metered.is_file_error) throw FileError(metered.error);
     if (!metered.error.empty()) throw Error(metered.error);
@@ -136,7 +129,7 @@ void apply_lut(const Options& options, const CLI::App& command) {
         encode.run_rgb(in, code.data(), count);
         lut.run_rgb(code.data(), out, count);
     };
-    if (!map_colors(result, source, map, options.alpha(), {}, options.threads))
+    if (!map_colors(result, source, map, options.picture.alpha(), {}, options.picture.threads))
         throw Error("apply: " + options.in + ": " + result.geterror());
     write_image_atomically(result, options.out, type);
 }
@@ -173,25 +166,10 @@ void add_apply(CLI::App& program, int& exit_code) {
                      "not name: each `picture`'s own, those of the `sequence` of --frames, or "
                      "`defaults`")
         ->capture_default_str();
-    command
-        ->add_option(
-            "--threads", options->threads,
-            "threads that read, tone map and write; 0 = all cores, 1 = one after the other")
-        ->capture_default_str()
-        ->check(CLI::Range(0, 1024));
-    command
-        ->add_option("--subimage", options->subimage,
-                     "which part of a multi-part file (view, page), from 0")
-        ->capture_default_str()
-        ->check(CLI::Range(0, 1 << 20));
+    add_picture_input(*command, options->picture);
     command->add_flag("--dither", options->dither,
                       "noise of half a code value against bands, in files of 8 bits; the same in "
                       "every frame");
-    CLI::Option* yes = command->add_flag(
-        "--unpremult", options->unpremult,
-        "divide color by alpha before, multiply after; default: as the picture says");
-    command->add_flag("--no-unpremult", options->no_unpremult, "take color as it is")
-        ->excludes(yes);
     CLI::Option* metered = command
                                ->add_option("--auto-exposure", options->metering.method,
                                             "exposure from the picture's light: log-average, "
@@ -210,9 +188,7 @@ void add_apply(CLI::App& program, int& exit_code) {
         "--skip-existing\n"
         "  tonewright apply render.exr out.png --lut agx.cube --input-encoding acescct -d uint8");
     command->callback([options, command, &exit_code] {
-        OIIO::attribute("threads", options->threads);
-        // OpenEXR has threads of its own; there, 0 is all cores and less is none.
-        OIIO::attribute("exr_threads", options->threads == 1 ? -1 : options->threads);
+        options->picture.use_threads();
         if (!options->lut.file.empty()) {
             apply_lut(*options, *command);
             return;
@@ -231,7 +207,7 @@ void add_apply(CLI::App& program, int& exit_code) {
         tonemap.input = options->input;
         tonemap.display = options->display;
         tonemap.reference_white = options->reference_white;
-        tonemap.unpremult = options->alpha();
+        tonemap.unpremult = options->picture.alpha();
         tonemap.dither = options->dither;
         tonemap.statistics = parse_statistics(options->statistics);
         for (const char* name : {"--meter-frames", "--meter-cache"}) {
@@ -249,11 +225,11 @@ void add_apply(CLI::App& program, int& exit_code) {
             const auto prepare = [&](std::vector<FrameFiles>& all,
                                      const std::vector<int>& numbers) {
                 for (FrameFiles& frame : all)
-                    frame.subimage = options->subimage;
+                    frame.subimage = options->picture.subimage;
                 meter_frames(tonemapper, all, numbers, *options, *command);
             };
             exit_code = apply_to_frames(tonemapper, options->in, options->out, options->frames,
-                                        type, options->threads, prepare);
+                                        type, options->picture.threads, prepare);
             return;
         }
         if (options->statistics == "sequence")
@@ -264,8 +240,8 @@ void add_apply(CLI::App& program, int& exit_code) {
                 const double metered_stops = meter_exposure(*options);
                 tonemapper = tonemapper.with_exposure(options->exposure + metered_stops);
             }
-            tonemap_file(tonemapper, options->in, options->out, type, options->threads,
-                         options->subimage);
+            tonemap_file(tonemapper, options->in, options->out, type, options->picture.threads,
+                         options->picture.subimage);
         } catch (const FileError& e) {
             if (!is_frame_pattern(options->in)) throw;
             throw FileError(std::string(e.what()) + "; for the frames of a shot: --frames 1-100");

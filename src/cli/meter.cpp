@@ -45,20 +45,12 @@ struct Options {
     std::vector<std::string> in;
     std::string frames;
     std::string input = std::string(kAutoInput);
-    int subimage = 0;
     bool json = false;
-    int threads = 0;
-    bool unpremult = false;
-    bool no_unpremult = false;
+    PictureInput picture;
     ExposureOptions metering;
     ShotOptions shot;
 
     Options() { metering.method = kMethods[0].name; }
-    [[nodiscard]] TonemapOptions::Unpremult alpha() const {
-        if (unpremult) return TonemapOptions::Unpremult::yes;
-        if (no_unpremult) return TonemapOptions::Unpremult::no;
-        return TonemapOptions::Unpremult::automatic;
-    }
 };
 
 /// What an exposure is made of.
@@ -248,7 +240,7 @@ std::vector<Metered> meter_all(const Options& options, const CLI::App& command,
     std::vector<Metered> all;
     if (options.frames.empty()) {
         for (MeteredPicture& picture :
-             meter_pictures(options.in, how, options.shot.cache, options.threads))
+             meter_pictures(options.in, how, options.shot.cache, options.picture.threads))
             all.push_back({std::move(picture), {}, {}});
         return all;
     }
@@ -260,7 +252,7 @@ std::vector<Metered> meter_all(const Options& options, const CLI::App& command,
     }
     const Adaptation adaptation = options.shot.adaptation(command);
     const MeteredShot shot = meter_shot(options.in.front(), parse_frames(options.frames), how,
-                                        options.shot.cache, options.threads);
+                                        options.shot.cache, options.picture.threads);
     std::map<int, double> adapted;
     if (options.shot.adapt) adapted = shot.exposures(rule, options.metering.delta, &adaptation);
     for (std::size_t i = 0; i < shot.numbers.size(); ++i) {
@@ -293,18 +285,7 @@ void add_meter(CLI::App& program, int& exit_code) {
                      "what the input's numbers are: `auto`, what the picture says, or a name as in "
                      "`apply`")
         ->capture_default_str();
-    command
-        ->add_option("--subimage", options->subimage,
-                     "which part of a multi-part file (view, page), from 0")
-        ->capture_default_str()
-        ->check(CLI::Range(0, 1 << 20));
-    command->add_option("--threads", options->threads, "0 = all cores")
-        ->capture_default_str()
-        ->check(CLI::Range(0, 1024));
-    CLI::Option* yes = command->add_flag("--unpremult", options->unpremult,
-                                         "divide color by alpha; default: as the picture says");
-    command->add_flag("--no-unpremult", options->no_unpremult, "take color as it is")
-        ->excludes(yes);
+    add_picture_input(*command, options->picture);
     add_exposure_options(*command, options->metering, nullptr);
     add_shot_options(*command, options->shot, frames, nullptr);
     command->footer(
@@ -313,11 +294,10 @@ void add_meter(CLI::App& program, int& exit_code) {
         "  tonewright meter render.exr --json --method histogram --percentiles 40,95\n"
         "  tonewright meter shot.####.exr --frames 1001-1100 --adapt --meter-cache shot.json");
     command->callback([options, command, &exit_code] {
-        OIIO::attribute("threads", options->threads);
-        OIIO::attribute("exr_threads", options->threads == 1 ? -1 : options->threads);
+        options->picture.use_threads();
         const ExposureRule rule = options->metering.rule();
-        const MeterOptions how =
-            options->metering.meter_options(options->input, options->alpha(), options->subimage);
+        const MeterOptions how = options->metering.meter_options(
+            options->input, options->picture.alpha(), options->picture.subimage);
         const std::vector<Metered> all = meter_all(*options, *command, how, rule);
         if (options->json) {
             Json pictures = Json::array();

@@ -569,6 +569,10 @@ def usage_errors(bad, picture):
         (["apply", picture, "out.png"], "--operator"), (["apply", picture], "out"),
         (["apply", picture, "out.png", "--operator", "hable", "-d", "unit8"], "unit8; did you mean uint8?"),
         (["apply", picture, "out.png", "--operator", "hable", "--threads", "-1"], "--threads; -1"),
+        (["meter", picture, "--threads", "1025"], "--threads; 1025"),
+        (["apply", picture, "out.png", "--operator", "hable", "--subimage", "-1"], "--subimage; -1"),
+        (["apply", picture, "out.png", "--dither", "--lut", "x.cube"], "--dither excludes --lut"),
+        (["apply", picture, "out.png", "--operator", "hable", "--dither=much"], "dither; much"),
         (["apply", picture, "out.png", "--operator", "drago", "--statistics", "pictur"],
          "statistics is pictur; picture, sequence or defaults; did you mean picture?"),
         *((["apply", "in.%04d.exr", "out.%04d.png", "--operator", "hable", "--frames", frames], f"--frames is {frames}")

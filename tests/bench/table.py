@@ -88,6 +88,26 @@ def print_engine(forms, sizes, operators):
           [[f"{n:.0e}", number(ns)] for n, ns in sorted(sizes.items())])
 
 
+def run_newer(program, command, operators, scratch):
+    """The version of another OpenColorIO, and its Mpix/s of each operator that is a view by itself."""
+    views = dict(line.split("\t") for line in call(command, "list", "--views").splitlines())
+    chosen = [o for o in operators if o in views]
+    call(command, "config", "-o", scratch / "newer", "--views", ",".join(chosen))
+    found = json.loads(call(program, "python3", Path(__file__).with_name("newer_ocio.py").resolve(),
+                            scratch / "newer" / "config.ocio", *(views[o] for o in chosen)))
+    return {"version": found["version"], "operators": {o: found["views"][views[o]] for o in chosen}}
+
+
+def print_newer(newer, forms):
+    rows = []
+    for name, of in newer["operators"].items():
+        ours = forms["simd"][name]["mpix"]
+        rows.append([f"`{name}`", number(ours), number(of["lossless"]), number(of["default"]),
+                     times(ours, of["lossless"]), times(ours, of["default"])])
+    table(f"The same views in OpenColorIO {newer['version']}, one thread, in place",
+          ["operator", "ours, Mpix/s", "without loss", "default", "times without loss", "times default"], rows)
+
+
 # --------------------------------------------------------------------------------------------------
 # Whole commands
 
@@ -196,6 +216,8 @@ def main():
     parser.add_argument("--picture", type=Path, help="for the whole commands (default: the chart)")
     parser.add_argument("--runs", type=int, default=5, help="of each whole command")
     parser.add_argument("--only", choices=["engine", "commands"])
+    parser.add_argument("--newer-ocio", type=Path, default=os.environ.get("TONEWRIGHT_NEWER_OCIO"),
+                        help="a program that runs what follows it with another OpenColorIO's Python")
     parser.add_argument("--json", type=Path, help="write all figures there, too")
     arguments, extra = parser.parse_known_args()
     os.environ.pop("OCIO", None)
@@ -208,6 +230,9 @@ def main():
             forms, sizes = run_engine(arguments.bench.resolve(), operators, scratch, extra)
             print_engine(forms, sizes, operators)
             results.update(engine=forms, ns_per_pixel=sizes)
+            if arguments.newer_ocio:
+                results["newer_ocio"] = run_newer(arguments.newer_ocio, command, operators, scratch)
+                print_newer(results["newer_ocio"], forms)
         if arguments.only != "engine":
             picture = arguments.picture
             if not picture:

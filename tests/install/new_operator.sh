@@ -1,17 +1,20 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # "An operator is one new file": drops one into a copy of the tree, touches nothing else, builds the
-# command and uses the operator in every form.
-# new_operator.sh SOURCE_TREE WORK_FOLDER
+# command and uses the operator in every form. What stays as it is, the tree's own build has compiled.
+# new_operator.sh SOURCE_TREE BUILD WORK_FOLDER
 set -euo pipefail
-source=$1 work=$2
+source=$1 build=$2 work=$3
 mkdir -p "$work/tree"
 # Only what the command is built from; unchanged files keep their times, so a second run is short.
 (cd "$source" && tar cf - CMakeLists.txt src) | (cd "$work/tree" && tar xf -)
 mkdir -p "$work/tree/tests" && : >"$work/tree/tests/CMakeLists.txt"
 cp -p "$source/tests/install/new_operator/toy.cpp" "$work/tree/src/operators/toy.cpp"
-cmake -S "$work/tree" -B "$work/build" -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS=-O0 \
-    -DTONEWRIGHT_BUILD_TESTS=OFF -DTONEWRIGHT_BUILD_BENCH=OFF >"$work/build.log" 2>&1 &&
+as_built() { sed -n "s/^$1:[A-Z]*=//p" "$build/CMakeCache.txt"; }
+cmake -S "$work/tree" -B "$work/build" -G Ninja -DCMAKE_BUILD_TYPE="$(as_built CMAKE_BUILD_TYPE)" \
+    -DCMAKE_CXX_FLAGS="$(as_built CMAKE_CXX_FLAGS)" -DTONEWRIGHT_BUILD_TESTS=OFF -DTONEWRIGHT_BUILD_BENCH=OFF \
+    -DCMAKE_CXX_COMPILER_LAUNCHER="$source/tests/install/reuse_object.sh;$build;$source;$work/tree" \
+    >"$work/build.log" 2>&1 &&
     cmake --build "$work/build" --target tonewright-cli >>"$work/build.log" 2>&1 ||
     { tail -40 "$work/build.log"; exit 1; }
 tonewright=$work/build/bin/tonewright

@@ -21,7 +21,7 @@ OPERATORS = ("hable,uchimura,reinhard,reinhard:luminance,reinhard_extended,agx_s
              "khronos_neutral,agx_blender,aces_13,aces_20")
 COMMAND_OPERATORS = "hable,agx_blender,aces_20"
 FORMS = ["simd", "simd_two_threads", "simd_all_threads", "ocio_lossless", "ocio_default", "ocio_lut65"]
-WIDTH, HEIGHT, FRAMES = 3840, 2160, 24
+WIDTH, HEIGHT, FRAMES = 3840, 2160, 100
 
 
 def call(*arguments):

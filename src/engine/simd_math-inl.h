@@ -42,6 +42,9 @@ HWY_INLINE Vec<D> horner(D d, Vec<D> x, double c0, C... c) {
 
 #if HWY_TARGET <= HWY_AVX3  // AVX-512 has instructions for both
 
+// As many floats as doubles. Highway's tag for them is another type from one version to the next.
+using HalfOfFloats = hn::Rebind<float, hn::Full512<double>>;
+
 // 4/3 x has the next exponent exactly where the fraction of x is 3/2 or more, also when rounded:
 // with 4/3 rounded up to float (by 1/3 of a last place) and down to double (by 1/3), 3/2 gives 2
 // and the number before it gives less. Rounded up to double (by 2/3), that one would give 2 as
@@ -52,8 +55,8 @@ HWY_INLINE void split(hn::Full512<float> d, Vec<hn::Full512<float>> x, Vec<hn::F
     f.raw = _mm512_getmant_ps(x.raw, _MM_MANT_NORM_p75_1p5, _MM_MANT_SIGN_zero);
     f = hn::Sub(f, hn::Set(d, 1.0F));
 }
-HWY_INLINE void split(hn::Full256<float> d, Vec<hn::Full256<float>> x, Vec<hn::Full256<float>>& e,
-                      Vec<hn::Full256<float>>& f) {
+HWY_INLINE void split(HalfOfFloats d, Vec<HalfOfFloats> x, Vec<HalfOfFloats>& e,
+                      Vec<HalfOfFloats>& f) {
     e.raw = _mm256_getexp_ps(hn::Mul(x, hn::Set(d, 1.33333337F)).raw);
     f.raw = _mm256_getmant_ps(x.raw, _MM_MANT_NORM_p75_1p5, _MM_MANT_SIGN_zero);
     f = hn::Sub(f, hn::Set(d, 1.0F));
@@ -68,9 +71,8 @@ HWY_INLINE Vec<hn::Full512<float>> scale(hn::Full512<float> /*d*/, Vec<hn::Full5
                                          Vec<hn::Full512<float>> n) {
     return Vec<hn::Full512<float>>{_mm512_scalef_ps(x.raw, n.raw)};
 }
-HWY_INLINE Vec<hn::Full256<float>> scale(hn::Full256<float> /*d*/, Vec<hn::Full256<float>> x,
-                                         Vec<hn::Full256<float>> n) {
-    return Vec<hn::Full256<float>>{_mm256_scalef_ps(x.raw, n.raw)};
+HWY_INLINE Vec<HalfOfFloats> scale(HalfOfFloats /*d*/, Vec<HalfOfFloats> x, Vec<HalfOfFloats> n) {
+    return Vec<HalfOfFloats>{_mm256_scalef_ps(x.raw, n.raw)};
 }
 HWY_INLINE Vec<hn::Full512<double>> scale(hn::Full512<double> /*d*/, Vec<hn::Full512<double>> x,
                                           Vec<hn::Full512<double>> n) {

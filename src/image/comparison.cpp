@@ -135,8 +135,7 @@ ImageBuf resize_scene(const ImageBuf& picture, int width) {
     const ImageSpec& spec = scene.spec();
     if (size.width == spec.width && size.height == spec.height) return scene;
     if (size.width > spec.width) return enlarge(scene, size);
-    ImageBuf small = OIIO::ImageBufAlgo::resize(
-        scene, "blackman-harris", 0, ROI(0, size.width, 0, size.height, 0, 1, 0, spec.nchannels));
+    ImageBuf small = filtered_down(scene, size);
     if (small.has_error()) throw Error("compare: " + first_line(small.geterror()));
     return small;
 }

@@ -50,9 +50,7 @@ ImageBuf shrink(const ImageBuf& picture, const PictureSize& size) {
         for (int y = part.ybegin; y < part.yend; ++y)
             run_in_place(to_light, static_cast<float*>(light.pixeladdr(0, y)), width);
     });
-    // A filter without negative lobes: no dark rims around lights.
-    ImageBuf small = OIIO::ImageBufAlgo::resize(light, "blackman-harris", 0,
-                                                ROI(0, size.width, 0, size.height, 0, 1, 0, 3));
+    ImageBuf small = filtered_down(light, size);
     if (small.has_error()) throw Error("contact sheet: " + first_line(small.geterror()));
     run_in_place(to_code, static_cast<float*>(small.localpixels()), size.width * size.height);
     return small;
@@ -172,6 +170,15 @@ ImageBuf shown_rgb(const ImageBuf& picture) {
     });
     if (picture.has_error()) throw Error("contact sheet: " + first_line(picture.geterror()));
     return rgb;
+}
+
+ImageBuf filtered_down(const ImageBuf& picture, const PictureSize& size) {
+    const ROI roi(0, size.width, 0, size.height, 0, 1, 0, picture.nchannels());
+#if OIIO_VERSION >= 30000  // where the other form is deprecated
+    return OIIO::ImageBufAlgo::resize(picture, {{"filtername", "blackman-harris"}}, roi);
+#else
+    return OIIO::ImageBufAlgo::resize(picture, "blackman-harris", 0, roi);
+#endif
 }
 
 ImageBuf make_contact_sheet(const std::vector<std::pair<std::string, ImageBuf>>& labelled,

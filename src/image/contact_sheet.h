@@ -25,4 +25,8 @@ struct PictureSize {
 /// @throws Error  a picture that cannot be read
 [[nodiscard]] OIIO::ImageBuf shown_rgb(const OIIO::ImageBuf& picture);
 
+/// All channels of a picture, made smaller by a filter without negative lobes: no dark rims around
+/// lights. Errors are those of the result.
+[[nodiscard]] OIIO::ImageBuf filtered_down(const OIIO::ImageBuf& picture, const PictureSize& size);
+
 }  // namespace tonewright

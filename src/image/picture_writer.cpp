@@ -474,7 +474,7 @@ void PictureWriter::finish() {
     }
     if (const int error = temporary_->keep()) fail(reason_of(error));
     // Who reads the file through OIIO's shared cache gets the new one.
-    OIIO::ImageCache* cache = OIIO::ImageCache::create(true);
+    auto cache = OIIO::ImageCache::create(true);  // a pointer, or since 3.0 a shared one
     cache->invalidate(OIIO::ustring(path_));
     OIIO::ImageCache::destroy(cache);
 }

@@ -6,6 +6,7 @@
 #include "lut/lut_text.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>

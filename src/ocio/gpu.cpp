@@ -437,7 +437,12 @@ struct OcioGpu::Impl {
             OCIO::GpuShaderDesc::TextureType channels = OCIO::GpuShaderDesc::TEXTURE_RGB_CHANNEL;
             OCIO::Interpolation how = OCIO::INTERP_LINEAR;
             const float* values = nullptr;
+#if OCIO_VERSION_HEX >= 0x02030000  // one argument more: what the height says as well
+            auto dimensions = OCIO::GpuShaderDesc::TEXTURE_1D;
+            desc.getTexture(i, name, sampler, width, height, channels, dimensions, how);
+#else
             desc.getTexture(i, name, sampler, width, height, channels, how);
+#endif
             desc.getTextureValues(i, values);
 
             const bool is_red = channels == OCIO::GpuShaderDesc::TEXTURE_RED_CHANNEL;

@@ -62,7 +62,7 @@ def spec_of(pixels, kind="float", alpha=False, attributes=None, names=None):
 
 def write(path, spec, pixels):
     image = oiio.ImageBuf(spec)
-    image.set_pixels(oiio.get_roi(spec), pixels)
+    image.set_pixels(oiio.get_roi(spec), np.ascontiguousarray(pixels))
     if not image.write(str(path)):
         raise RuntimeError(f"{path}: {image.geterror()}")
     return path
@@ -209,7 +209,9 @@ def check_color(check, scratch):
         # Saturated colours leave Rec.709: a matrix that is one with the operator's loses less than two in a row do.
         check.same(f"chromaticities of {name}", path, 2e-6, matrix=to_rec709(primaries))
         check.same(f"the same, --input lin_rec709 ({name})", path, options=("--input", "lin_rec709"))
-    path = write(scratch / "aces.exr", spec_of(wide, attributes={"acesImageContainerFlag": 1}), wide)
+    # OpenImageIO 3.1 sets the flag in half-float files that are all that ACES asks for, and in no others.
+    path = write(scratch / "aces.exr", spec_of(wide, attributes={"acesImageContainerFlaX": 1}), wide)
+    path.write_bytes(path.read_bytes().replace(b"acesImageContainerFlaX", b"acesImageContainerFlag"))
     check.same("acesImageContainerFlag", path, 2e-6, matrix=to_rec709(ap0))
     report = check.report
     luma = picture(8, 8, 3)
@@ -222,7 +224,8 @@ def check_color(check, scratch):
     if spec.getattribute("oiio:ColorSpace") == "KodakLog":
         fails(check, "an unknown color space", log, 2, "oiio:ColorSpace of the picture")
     fails(check, "--input of no space", log, 2, "input space is lin_rec708", "--input", "lin_rec708")
-    report.check("a result in sRGB says so", read_tag(check, scratch) == "sRGB")
+    # The second is what OpenImageIO 3.1 calls it.
+    report.check("a result in sRGB says so", read_tag(check, scratch) in ("sRGB", "srgb_rec709_scene"))
 
 
 def read_tag(check, scratch):

@@ -179,13 +179,15 @@ class Bins {
             if (!has_narrow_bin()) break;
         }
         has_narrow_ = has_narrow_bin();
+        for (const double edge : edges_)
+            places_.push_back(place_of(edge));
         steps_.reserve(key_of(kHalfMax) + 1);
         std::size_t bin = 0;
         for (std::size_t key = 0; key <= key_of(kHalfMax); ++key) {
             const auto least = static_cast<std::int64_t>(key) << (kDigits - digits_);
-            while (least >= place_of(edges_[bin + 1]))
+            while (least >= places_[bin + 1])
                 ++bin;
-            steps_.push_back({place_of(edges_[bin + 1]), kCopies * bin});
+            steps_.push_back(static_cast<std::uint16_t>(bin));
         }
     }
 
@@ -197,12 +199,13 @@ class Bins {
                 ++counts[kCopies * bin_of(luminances[i])];
             return;
         }
-        const Step* const steps = steps_.data();
+        const std::uint16_t* const steps = steps_.data();
+        const std::int64_t* const next = places_.data() + 1;
         const int shift = kDigits - digits_;
         const auto add = [&](std::size_t i, std::size_t copy) {
             const std::int64_t place = place_of(luminances[i]);
-            const Step& step = steps[place >> shift];
-            ++counts[step.counter + (place >= step.next ? kCopies : 0) + copy];
+            const std::size_t bin = steps[place >> shift];
+            ++counts[kCopies * (bin + (place >= next[bin] ? 1 : 0)) + copy];
         };
         std::size_t i = 0;
         for (; i + kCopies <= n; i += kCopies) {
@@ -214,10 +217,6 @@ class Bins {
     }
 
   private:
-    struct Step {
-        std::int64_t next;    // place of the edge behind its least luminance
-        std::size_t counter;  // of the bin before
-    };
     static constexpr int kDigits = 52;  // of a double
     static constexpr int kFewestDigits = 3;
     static constexpr int kMostDigits = 8;
@@ -242,14 +241,15 @@ class Bins {
         return false;
     }
     [[nodiscard]] std::size_t bin_of(double luminance) const noexcept {
-        std::size_t bin = steps_[key_of(luminance)].counter / kCopies;
+        std::size_t bin = steps_[key_of(luminance)];
         while (luminance >= edges_[bin + 1])
             ++bin;
         return bin;
     }
 
-    std::vector<double> edges_;  // bin i is [edges_[i], edges_[i + 1])
-    std::vector<Step> steps_;
+    std::vector<double> edges_;         // bin i is [edges_[i], edges_[i + 1])
+    std::vector<std::int64_t> places_;  // of the edges
+    std::vector<std::uint16_t> steps_;  // the bin of the least luminance of each step
     int digits_ = 0;
     bool has_narrow_ = false;
 };

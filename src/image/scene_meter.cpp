@@ -235,8 +235,7 @@ class Bins {
     /// Several edges are within a step.
     [[nodiscard]] bool has_narrow_bin() const noexcept {
         for (std::size_t i = 2; i < edges_.size() && edges_[i] <= kHalfMax; ++i) {
-            if (key_of(edges_[i]) == key_of(edges_[i - 1]) && edges_[i] != edges_[i - 1])
-                return true;
+            if (key_of(edges_[i]) == key_of(edges_[i - 1])) return true;
         }
         return false;
     }

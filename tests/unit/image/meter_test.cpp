@@ -164,15 +164,21 @@ TEST(Meter, EqualsItsDefinition) {
 }
 
 TEST(Meter, NarrowAndOddHistograms) {
-    const ImageBuf picture = make_rgb(300, 40, TypeDesc::FLOAT, 2);
+    ImageBuf picture = make_rgb(300, 40, TypeDesc::FLOAT, 2);
+    // About black, where bins end that begin below it.
+    for (int x = 0; x < 300; ++x) {
+        const float grey = 0.9e-6F + static_cast<float>(x) * 1e-9F;
+        set(picture, x, 7, {grey, grey, grey});
+    }
     const std::vector<double> all = luminances(picture);
     struct Shape {
         double min, max;
         int bins;
     };
-    // More bins than steps of the table; limits that nothing is within; three bins.
-    for (const Shape& shape :
-         {Shape{-1, 0.5, 4096}, Shape{15, 16, 200}, Shape{-64, -63, 10}, Shape{-64, 16, 3}}) {
+    // More bins than steps of the table; limits that nothing is within; three bins; many bins that
+    // are black.
+    for (const Shape& shape : {Shape{-1, 0.5, 4096}, Shape{15, 16, 200}, Shape{-64, -63, 10},
+                               Shape{-64, 16, 3}, Shape{-64, 1, 700}}) {
         MeterOptions options;
         options.histogram_min = shape.min;
         options.histogram_max = shape.max;

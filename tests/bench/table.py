@@ -220,6 +220,8 @@ def main():
                         help="a program that runs what follows it with another OpenColorIO's Python")
     parser.add_argument("--json", type=Path, help="write all figures there, too")
     arguments, extra = parser.parse_known_args()
+    if arguments.newer_ocio and not shutil.which(arguments.newer_ocio):
+        parser.error(f"--newer-ocio is {arguments.newer_ocio}; expected a program")
     os.environ.pop("OCIO", None)
     command = arguments.command.resolve()
     results = {"processors": os.cpu_count()}

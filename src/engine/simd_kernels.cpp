@@ -1230,6 +1230,10 @@ bool run_without_tiles(const Code& code, const std::array<const float*, 3>& in,
     const CompiledCurve& curve = code.curves[*code.only_curve];
     if (!is_of_this_form(curve)) return false;
     if (in_stride == 1) {
+        // One after the other: planes that change places have to go through a tile.
+        for (std::size_t c = 0; c < 3; ++c) {
+            if (out[c] == in[(c + 1) % 3] || out[c] == in[(c + 2) % 3]) return false;
+        }
         for (std::size_t c = 0; c < 3; ++c)
             run_flat(curve, in[c], out[c], count, false);
         return true;

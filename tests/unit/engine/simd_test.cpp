@@ -635,6 +635,20 @@ TEST_F(Simd, AnyStrideAndCountAndNothingOutsideThePixels) {
     }
 }
 
+TEST_F(Simd, PlanesMayChangePlaces) {
+    for (const std::string& target : SimdEngine::targets()) {
+        SimdEngine::use_target(target);
+        const SimdEngine engine(view_of("hable"));  // each channel alone
+        const std::vector<float> rgb = {0.1F, 0.2F, 0.4F, 0.8F, 1.6F, 3.2F};
+        const std::vector<float> expected = run(engine, rgb);
+        std::vector<float> x = {0.1F, 0.8F}, y = {0.2F, 1.6F}, z = {0.4F, 3.2F};
+        engine.run({x.data(), y.data(), z.data()}, 1, {y.data(), z.data(), x.data()}, 1, 2);
+        EXPECT_EQ(y, (std::vector<float>{expected[0], expected[3]})) << target;
+        EXPECT_EQ(z, (std::vector<float>{expected[1], expected[4]})) << target;
+        EXPECT_EQ(x, (std::vector<float>{expected[2], expected[5]})) << target;
+    }
+}
+
 TEST_F(Simd, PixelsMayEndWithTheBuffer) {
     // Exactly as many floats as there are; an address sanitizer sees any access beyond.
     const SimdEngine engine(view_of("hable"));

@@ -7,32 +7,38 @@ import pathlib
 import re
 import sys
 
-# Each folder may include itself and the folders named here; third-party headers only where listed.
-BELOW = {
-    "expr": [],
+# Folders in the order of the floors, lowest first. A folder includes itself and what stands here.
+BELOW = {"base": []}
+for folder, direct in {
+    "expr": ["base"],
     "color": ["expr"],
-    "pipeline": ["color", "expr"],
-    "operators": ["pipeline", "color", "expr"],
-    "engine": ["operators", "pipeline", "color", "expr"],
-    "local": ["engine", "operators", "pipeline", "color", "expr"],
-    "lut": ["engine", "operators", "pipeline", "color", "expr"],
-    "ocio": ["lut", "engine", "operators", "pipeline", "color", "expr"],
-    "image": ["local", "lut", "engine", "operators", "pipeline", "color", "expr"],
-    "verify": ["image", "ocio", "lut", "engine", "operators", "pipeline", "color", "expr"],
-    "cli": ["verify", "image", "ocio", "lut", "engine", "operators", "pipeline", "color", "expr"],
-}
-for top in ("plugin", "python"):
-    BELOW[top] = BELOW["cli"]
+    "pipeline": ["color"],
+    "operators": ["pipeline"],
+    "engine": ["operators"],
+    "measure": ["engine"],
+    "local": ["measure"],
+    "registry": ["local"],
+    "lut": ["registry"],
+    "ocio": ["lut"],
+    "image": ["lut"],
+    "verify": ["ocio"],
+    "cli": ["verify", "image"],
+    "plugin": ["image"],
+    "python": ["verify", "image"],
+}.items():
+    BELOW[folder] = sorted(set(direct).union(*(BELOW[d] for d in direct)))
 # Public header -> the folder that it belongs to.
 PUBLIC = {
-    "error": "expr", "expr": "expr", "color": "color", "pipeline": "pipeline", "view": "pipeline",
-    "engine": "engine", "lut": "lut", "ocio": "ocio", "image": "image", "sequence": "image", "meter": "image",
-    "verify": "verify", "local": "local", "lint": "verify", "lut_match": "verify", "lut_file": "ocio",
+    "version": "base", "error": "base", "generated_files": "base", "expr": "expr", "color": "color",
+    "pipeline": "pipeline", "view": "pipeline", "engine": "engine", "local": "local", "registry": "registry",
+    "lut": "lut", "lut_applications": "lut", "ocio": "ocio", "lut_file": "ocio", "tonemap": "image",
+    "image_io": "image", "chart": "image", "contact_sheet": "image", "sequence": "image", "meter": "image",
+    "verify": "verify", "lint": "verify", "lut_match": "verify",
 }
 THIRD_PARTY = {
-    "hwy": ["engine"],
+    "hwy": ["engine", "image"],
     "OpenColorIO": ["ocio", "verify"],
-    "OpenImageIO": ["image", "cli", "verify", "plugin", "python"],
+    "OpenImageIO": ["image", "cli", "plugin", "python"],
     "EGL": ["ocio"],
     "yaml-cpp": ["ocio"],
     "lcms2.h": ["lut"],
@@ -41,7 +47,7 @@ THIRD_PARTY = {
     "CLI": ["cli"],
     "nlohmann": ["cli"],
     "pybind11": ["python"],
-    "fmt": ["lut", "ocio", "image", "verify", "cli", "plugin", "python"],
+    "fmt": ["base", "measure", "lut", "ocio", "image", "verify", "cli", "plugin", "python"],
 }
 
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "base/strings.h"
 #include "cli/apply_frames.h"
 #include "cli/command.h"
 #include "cli/exposure_options.h"
@@ -15,9 +16,10 @@
 #include "cli/progress_bar.h"
 #include "image/source_picture.h"
 #include "tonewright/engine.h"
-#include "tonewright/image.h"
+#include "tonewright/image_io.h"
+#include "tonewright/tonemap.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 TonemapOptions::Statistics parse_statistics(const std::string& text) {
@@ -249,4 +251,4 @@ void add_apply(CLI::App& program, int& exit_code) {
     });
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -12,13 +12,15 @@
 #include <set>
 #include <vector>
 
+#include "base/strings.h"
 #include "cli/command.h"
 #include "cli/frames.h"
 #include "cli/picture_input.h"
 #include "cli/progress_bar.h"
 #include "tonewright/sequence.h"
+#include "tonewright/tonemap.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 namespace fs = std::filesystem;
@@ -190,4 +192,4 @@ int apply_to_frames(
     return any_failed ? kCheckFailed : kOk;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

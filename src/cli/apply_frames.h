@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "tonewright/image.h"
 #include "tonewright/sequence.h"
+#include "tonewright/tonemap.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// What `apply` does with the frames of a shot.
 struct FrameOptions {
@@ -33,4 +33,4 @@ int apply_to_frames(
     const FrameOptions& options, const OIIO::TypeDesc& type, int threads,
     const std::function<void(std::vector<FrameFiles>&, const std::vector<int>&)>& prepare);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

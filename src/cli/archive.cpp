@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/archive.h"
+#include "tonewright/error.h"
+#include "tonewright/generated_files.h"
 
 #include <zip.h>
 
 #include <ctime>
 #include <memory>
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 struct Closer {
@@ -61,4 +63,4 @@ std::string make_archive(const std::vector<GeneratedFile>& files) {
     return bytes;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

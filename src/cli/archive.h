@@ -4,12 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "tonewright/lut.h"
+#include "tonewright/generated_files.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// The bytes of a ZIP archive of the files: with a config.ocio and its tables, what OpenColorIO 2.2
 /// and newer read as an .ocioz. The same bytes for the same files.
 [[nodiscard]] std::string make_archive(const std::vector<GeneratedFile>& files);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include "base/atomic_file.h"
 #include "cli/command.h"
 #include "cli/picture_output.h"
-#include "engine/error_metric.h"
+#include "measure/error_metric.h"
 #include "tonewright/lut.h"
+#include "tonewright/lut_applications.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 struct Options : ViewOptions {
@@ -28,7 +30,7 @@ struct Options : ViewOptions {
 /// What the host expects, where the user has not said otherwise.
 void take_from_host(Options& options, const CLI::App& command) {
     if (options.host.empty()) return;
-    const LutHost& host = find_lut_host(options.host);
+    const LutApplication& host = find_lut_application(options.host);
     const auto is_given = [&](const char* option) { return command.count(option) > 0; };
     if (!is_given("--input-encoding")) options.encoding = host.encoding;
     if (!is_given("--display")) options.display = host.display;
@@ -61,7 +63,8 @@ void bake_one(Options& options, const CLI::App& command) {
     request.decimals = options.decimals;
     if (options.one) request.dimension = LutDimension::one;
     if (options.three) request.dimension = LutDimension::three;
-    const bool trilinear = !options.host.empty() && is_trilinear(find_lut_host(options.host));
+    const bool trilinear =
+        !options.host.empty() && is_trilinear(find_lut_application(options.host));
     LutNodes nodes = LutNodes::automatic;
     if (options.nodes == "sampled") nodes = LutNodes::sampled;
     if (options.nodes == "fitted") nodes = LutNodes::fitted;
@@ -89,7 +92,7 @@ void bake_one(Options& options, const CLI::App& command) {
                    clipped);
     }
     if (!options.host.empty()) {
-        const LutHost& host = find_lut_host(options.host);
+        const LutApplication& host = find_lut_application(options.host);
         fmt::print(stderr, "{}: {}\n", host.title, host.steps);
     }
 }
@@ -162,4 +165,4 @@ void add_bake(CLI::App& program, int&) {
     });
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -10,13 +10,17 @@
 #include <span>
 #include <thread>
 
+#include "base/atomic_file.h"
+#include "base/format_number.h"
 #include "cli/curve_plot.h"
 #include "cli/grey_curve.h"
-#include "engine/error_metric.h"
-#include "engine/probe.h"
+#include "measure/error_metric.h"
+#include "measure/sample_set.h"
 #include "tonewright/engine.h"
+#include "tonewright/generated_files.h"
+#include "tonewright/registry.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 // ---------------------------------------------------------------------------------------------
@@ -280,7 +284,7 @@ struct Distance {
 
 /// The standard probe colors that have no negative channel.
 std::vector<float> non_negative_probes() {
-    const ProbeSet probes = make_probes(find_input_space("lin_rec709"));
+    const SampleSet probes = make_sample_set(find_input_space("lin_rec709"));
     std::vector<float> rgb;
     for (std::size_t i = 0; i < probes.size(); ++i) {
         if (probes.is_non_negative(i))
@@ -612,4 +616,4 @@ void write_catalogue(const std::string& folder) {
     write_text_atomically(folder + "/operators.md", page);
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

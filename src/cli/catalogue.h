@@ -5,10 +5,10 @@
 #include <string_view>
 #include <vector>
 
-#include "tonewright/lut.h"
+#include "tonewright/generated_files.h"
 #include "tonewright/pipeline.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// An operator as a section of a Markdown page: what it is like, facts, parameters, presets, looks.
 /// @param after_character  lines to put under the sentence about its character.
@@ -23,4 +23,4 @@ namespace tonewright {
 /// @throws FileError
 void write_catalogue(const std::string& folder);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

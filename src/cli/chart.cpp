@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "tonewright/chart.h"
 #include "cli/command.h"
-#include "tonewright/image.h"
+#include "tonewright/image_io.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 void add_chart(CLI::App& program, int&) {
     struct Options {
@@ -29,4 +30,4 @@ void add_chart(CLI::App& program, int&) {
     });
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/command.h"
+#include "tonewright/registry.h"
 
 #include <algorithm>
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 Settings ViewOptions::settings() const {
     Settings result;
@@ -20,12 +21,6 @@ Settings ViewOptions::settings() const {
 View ViewOptions::view() const {
     return make_view(resolve_operator(op, settings(), look), input, exposure, display,
                      reference_white);
-}
-
-std::string operator_text(const ResolvedOperator& op) {
-    std::string text = op.label;
-    std::replace(text.begin(), text.end(), ' ', ':');
-    return text;
 }
 
 void add_view_options(CLI::App& command, ViewOptions& options) {
@@ -47,4 +42,4 @@ void add_view_options(CLI::App& command, ViewOptions& options) {
         ->capture_default_str();
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -7,7 +7,7 @@
 
 #include "tonewright/view.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// Exit codes of the command.
 enum ExitCode { kOk = 0, kCheckFailed = 1, kUsage = 2, kFile = 3 };
@@ -31,9 +31,6 @@ struct ViewOptions {
 /// --set, --look, --exposure, --input, --display, --reference-white.
 void add_view_options(CLI::App& command, ViewOptions& options);
 
-/// An operator as one would write it: `agx_blender:look=punchy`. @see parse_operator
-[[nodiscard]] std::string operator_text(const ResolvedOperator& op);
-
 /// Each subcommand lives in its own file and puts itself under the program.
 void add_list(CLI::App& program, int& exit_code);
 void add_eval(CLI::App& program, int& exit_code);
@@ -47,4 +44,4 @@ void add_sheet(CLI::App& program, int& exit_code);
 void add_compare(CLI::App& program, int& exit_code);
 void add_plot(CLI::App& program, int& exit_code);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -10,11 +10,15 @@
 #include "image/comparison.h"
 #include "image/source_picture.h"
 #include "ocio/model.h"
+#include "tonewright/contact_sheet.h"
 #include "tonewright/engine.h"
-#include "tonewright/image.h"
+#include "tonewright/image_io.h"
+#include "tonewright/lut.h"
 #include "tonewright/ocio.h"
+#include "tonewright/registry.h"
+#include "tonewright/tonemap.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 constexpr const char* kDiagnostic = "false_color";
@@ -44,7 +48,7 @@ struct Rendering {
 
 Rendering rendering_of(const ResolvedOperator& op, const Options& options) {
     TonemapOptions tonemap;
-    tonemap.op = op.name;
+    tonemap.op = op.name();
     tonemap.settings = op.settings;
     tonemap.look = op.params.look();
     tonemap.exposure_stops = options.exposure;
@@ -117,7 +121,7 @@ OIIO::ImageBuf decoded(const OIIO::ImageBuf& picture, const SourceColor& source,
 }
 
 /// What its colors mean, as the operator makes them.
-void add_legend(SheetSurround& around) {
+void add_legend(SheetAnnotations& around) {
     const ReferenceEngine engine(
         build_view(make_view(resolve_operator(kDiagnostic), "lin_rec709", 0, "srgb")));
     constexpr int kStops = 7;
@@ -138,7 +142,7 @@ void write_sheet(const Options& options, const std::vector<Rendering>& rendering
                  const OIIO::ImageBuf& picture, const std::string& remark) {
     const OIIO::ImageBuf scene = resize_scene(picture, options.cell_width);
     std::vector<std::pair<std::string, OIIO::ImageBuf>> cells;
-    SheetSurround around;
+    SheetAnnotations around;
     around.heading = name_of(options.in);
     around.remark = remark;
     for (const Rendering& r : renderings) {
@@ -262,4 +266,4 @@ void add_compare(CLI::App& program, int&) {
     });
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

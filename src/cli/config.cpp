@@ -3,11 +3,13 @@
 
 #include <filesystem>
 
+#include "base/atomic_file.h"
 #include "cli/archive.h"
 #include "cli/command.h"
+#include "tonewright/generated_files.h"
 #include "tonewright/ocio.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 namespace {
 
@@ -148,4 +150,4 @@ void add_config(CLI::App& program, int&) {
     });
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -9,10 +9,11 @@
 #include <iterator>
 #include <span>
 
+#include "base/format_number.h"
 #include "cli/plot_surface.h"
 #include "tonewright/error.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 using Anchor = PlotSurface::Anchor;
@@ -569,4 +570,4 @@ std::string to_svg(const PatchChart& chart) {
     return file_of(chart.title, chart.subtitle, kFirstRow + height + 12, svg.take());
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

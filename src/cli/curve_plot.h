@@ -6,7 +6,7 @@
 
 #include "tonewright/color.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// Where the lines of a plot have their values: stops from mid grey, -10..+10, half a pixel apart.
 [[nodiscard]] const std::vector<double>& plot_stops();
@@ -103,4 +103,4 @@ struct PatchChart {
 /// `&`, `<`, `>` and quotes as entities: for SVG.
 [[nodiscard]] std::string xml_escaped(std::string_view text);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

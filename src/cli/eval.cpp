@@ -5,13 +5,15 @@
 #include <iostream>
 #include <iterator>
 
+#include "base/strings.h"
 #include "cli/command.h"
 #include "cli/lut_input.h"
 #include "ocio/gpu.h"
 #include "ocio/lower.h"
 #include "tonewright/engine.h"
+#include "tonewright/registry.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 /// Triplets of numbers, one a line; comma or space between; `#` begins a comment.
@@ -147,6 +149,10 @@ void add_eval(CLI::App& program, int&) {
                         join_choices(engines) + did_you_mean(options->engine, engines));
         }
         const View view = options->view();
+        if (options->inverse && !view.op.op->build_inverse) {
+            throw Error(view.op.op->id + " has no inverse; expected " +
+                        join_choices(invertible_operators()));
+        }
         const Pipeline pipeline = options->inverse ? build_inverse_view(view) : build_view(view);
         const std::vector<double> values = read_triplets();
         const std::size_t count = values.size() / 3;
@@ -181,4 +187,4 @@ void add_eval(CLI::App& program, int&) {
     });
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -12,8 +12,9 @@
 #include "cli/frames.h"
 #include "cli/meter_cache.h"
 #include "lut/in_parallel.h"
+#include "tonewright/tonemap.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 /// `count` numbers with commas between them.
@@ -266,4 +267,4 @@ std::map<int, double> MeteredShot::exposures(const ExposureRule& rule, double de
     return exposures;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -8,8 +8,9 @@
 #include <vector>
 
 #include "tonewright/meter.h"
+#include "tonewright/tonemap.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// How pictures are metered, and which exposure follows: of `apply` and `meter`.
 struct ExposureOptions {
@@ -96,4 +97,4 @@ struct MeteredShot {
                                      int threads,
                                      const std::function<void(std::size_t)>& done = {});
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

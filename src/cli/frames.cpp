@@ -13,7 +13,7 @@
 
 #include "tonewright/error.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 constexpr std::size_t kMostFrames = 1'000'000;
@@ -106,4 +106,4 @@ std::string frame_name(const char* what, const std::string& pattern, int frame) 
     return name + rest;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
-namespace tonewright {
+#include "tonewright/version.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// The frames that `1001-1100`, `1-9x2` (every second) or `1,5,10-20` name, in that order.
 /// @throws Error
@@ -23,4 +25,4 @@ namespace tonewright {
 /// True for a name that has places for a number.
 [[nodiscard]] bool is_frame_pattern(const std::string& name);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -7,7 +7,7 @@
 
 #include "tonewright/engine.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 Vector3 luminance_weights(const Primaries& primaries) {
@@ -70,4 +70,4 @@ void add_line(std::vector<PlotLine>& lines, PlotLine line, const std::string& sh
     lines.push_back(std::move(line));
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

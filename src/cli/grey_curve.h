@@ -9,7 +9,7 @@
 #include "cli/curve_plot.h"
 #include "tonewright/view.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 inline constexpr double kMidGrey = 0.18;
 
@@ -36,4 +36,4 @@ inline constexpr double kSameLine = 0.001;
 /// Adds a line, or a name to the label of the one that it would lie on.
 void add_line(std::vector<PlotLine>& lines, PlotLine line, const std::string& short_name);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

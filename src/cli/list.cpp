@@ -5,10 +5,15 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/format_number.h"
+#include "base/strings.h"
 #include "cli/catalogue.h"
 #include "cli/command.h"
+#include "tonewright/lut.h"
+#include "tonewright/lut_applications.h"
+#include "tonewright/registry.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -32,17 +37,17 @@ std::string_view kind_name(Kind kind) {
     return "text";
 }
 
-std::string_view kind_name(Deviation::Kind kind) {
+std::string_view kind_name(DocumentedDifference::Kind kind) {
     switch (kind) {
-        case Deviation::Kind::black:
+        case DocumentedDifference::Kind::black:
             return "black";
-        case Deviation::Kind::crushes_black:
+        case DocumentedDifference::Kind::crushes_black:
             return "crushes_black";
-        case Deviation::Kind::never_reaches_white:
+        case DocumentedDifference::Kind::never_reaches_white:
             return "never_reaches_white";
-        case Deviation::Kind::exceeds_white:
+        case DocumentedDifference::Kind::exceeds_white:
             return "exceeds_white";
-        case Deviation::Kind::not_monotone:
+        case DocumentedDifference::Kind::not_monotone:
             break;
     }
     return "not_monotone";
@@ -51,7 +56,7 @@ std::string_view kind_name(Deviation::Kind kind) {
 /// The operator's own warnings and what follows from its deviations.
 std::vector<std::string> all_warnings(const Operator& op) {
     std::vector<std::string> all = op.warnings;
-    for (const Deviation& d : op.deviations)
+    for (const DocumentedDifference& d : op.deviations)
         all.push_back(to_string(d));
     return all;
 }
@@ -80,7 +85,7 @@ Json to_json(const Operator& op) {
     for (const ParameterSpec& p : op.parameters)
         parameters.push_back(to_json(p));
     Json deviations = Json::array();
-    for (const Deviation& d : op.deviations) {
+    for (const DocumentedDifference& d : op.deviations) {
         deviations.push_back({{"kind", kind_name(d.kind)},
                               {"value", number_or_null(d.value)},
                               {"when", d.when},
@@ -257,20 +262,20 @@ std::string operator_section(const Operator& op, std::string_view after_characte
     return text + "\n";
 }
 
-std::string format_of(const LutHost& host) {
+std::string format_of(const LutApplication& host) {
     std::string text = fmt::format("{} {}", name_of(host.format), host.size);
     if (host.bits) text += fmt::format(", {} bit", *host.bits);
     return text;
 }
 
-std::string output_of(const LutHost& host) {
+std::string output_of(const LutApplication& host) {
     return host.display == kLinearOutput ? "display-linear Rec.709"
                                          : find_display(host.display).title;
 }
 
 void print_hosts() {
     fmt::print("applications (tonewright bake OPERATOR --for HOST -o FILE)\n");
-    for (const LutHost& host : all_lut_hosts()) {
+    for (const LutApplication& host : all_lut_applications()) {
         fmt::print(
             "\n  {}: {}\n      {}; {} in, {} out; between the nodes {}\n      {}\n      {}\n",
             host.id, host.title, format_of(host), parse_input_encoding(host.encoding).title,
@@ -282,7 +287,7 @@ void print_hosts() {
 
 Json hosts_to_json() {
     Json all = Json::array();
-    for (const LutHost& host : all_lut_hosts()) {
+    for (const LutApplication& host : all_lut_applications()) {
         all.push_back({{"id", host.id},
                        {"title", host.title},
                        {"format", name_of(host.format)},
@@ -374,4 +379,4 @@ void add_list(CLI::App& program, int&) {
     });
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

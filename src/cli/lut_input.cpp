@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/format_number.h"
+#include "base/strings.h"
 #include "cli/picture_output.h"
-#include "lut/lowercase.h"
+#include "tonewright/lut.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 void add_lut_options(CLI::App& command, LutOptions& options, CLI::Option* op,
                      const std::vector<std::string>& others) {
@@ -71,4 +73,4 @@ Pipeline before_lut(const CLI::App& command, const LutOptions& options, const Vi
     return stages;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

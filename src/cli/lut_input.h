@@ -7,7 +7,7 @@
 #include "cli/command.h"
 #include "tonewright/lut_file.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// A LUT instead of an operator.
 struct LutOptions {
@@ -34,4 +34,4 @@ void add_lut_options(CLI::App& command, LutOptions& options, CLI::Option* op,
 [[nodiscard]] Pipeline before_lut(const CLI::App& command, const LutOptions& options,
                                   const ViewOptions& view, const SourceColor& input);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

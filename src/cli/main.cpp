@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The whole program: every command. front.cpp starts it for those that read or write pictures.
+#include "base/atomic_file.h"
 #include "cli/command.h"
 #include "cli/program.h"
 #include "image/picture_file.h"

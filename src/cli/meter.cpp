@@ -11,13 +11,15 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "base/format_number.h"
 #include "cli/command.h"
 #include "cli/exposure_options.h"
 #include "cli/frames.h"
 #include "cli/meter_cache.h"
 #include "cli/picture_input.h"
+#include "tonewright/tonemap.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -319,4 +321,4 @@ void add_meter(CLI::App& program, int& exit_code) {
     });
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

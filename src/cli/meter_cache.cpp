@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/meter_cache.h"
+#include "base/atomic_file.h"
+#include "base/format_number.h"
+#include "tonewright/tonemap.h"
 
 #include <fmt/format.h>
 
@@ -11,9 +14,7 @@
 #include <system_error>
 #include <utility>
 
-#include "tonewright/lut.h"
-
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 namespace fs = std::filesystem;
@@ -169,4 +170,4 @@ void MeterCache::save() const {
     write_text_atomically(path_, file.dump() + "\n");
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

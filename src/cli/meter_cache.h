@@ -8,7 +8,7 @@
 
 #include "tonewright/meter.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// What tells whether a file has changed.
 struct FileStamp {
@@ -47,4 +47,4 @@ class MeterCache {
     std::map<std::string, Entry> added_;
 };
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/picture_input.h"
+#include "tonewright/image_io.h"
+#include "tonewright/tonemap.h"
 
 #include <fcntl.h>
 #include <unistd.h>
 
 #include <cstdio>
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 QuietStderr::QuietStderr() : saved_(::dup(STDERR_FILENO)) {
     std::fflush(stderr);
@@ -56,4 +58,4 @@ OIIO::ImageBuf read_picture(const std::string& path) {
     return read_image(path);
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -6,9 +6,9 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "tonewright/image.h"
+#include "tonewright/tonemap.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// Standard error leads nowhere while it lives: libraries below OpenImageIO (libpng, libtiff) print
 /// their complaints themselves, and the error that comes back says the same in our one line. For a
@@ -46,4 +46,4 @@ void add_picture_input(CLI::App& command, PictureInput& options);
 /// read_image() with the terminal kept clean.
 [[nodiscard]] OIIO::ImageBuf read_picture(const std::string& path);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -3,13 +3,17 @@
 
 #include <fmt/format.h>
 
+#include "base/atomic_file.h"
+#include "base/strings.h"
 #include "cli/picture_input.h"
 #include "image/lut_picture.h"
 #include "image/shipped_pictures.h"
-#include "lut/lowercase.h"
-#include "tonewright/image.h"
+#include "lut/shipped_set.h"
+#include "tonewright/generated_files.h"
+#include "tonewright/image_io.h"
+#include "tonewright/lut.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 void require_lut_picture(const std::string& path, int bits) {
     const std::string extension = extension_of(path);
@@ -42,4 +46,4 @@ Lut load_lut_picture(const std::string& path) {
     return read_lut_picture(path);
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

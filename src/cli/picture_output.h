@@ -6,7 +6,7 @@
 #include "cli/curve_plot.h"
 #include "tonewright/lut.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// Before anything is computed for a picture.
 /// @throws Error  for a file type that does not hold the numbers as they are: lossy, or of other
@@ -27,4 +27,4 @@ void write_plot_picture(const CurvePlot& plot, const std::string& path, int widt
 /// A table from a picture file. @see read_lut_picture
 [[nodiscard]] Lut load_lut_picture(const std::string& path);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

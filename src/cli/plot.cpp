@@ -4,15 +4,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/atomic_file.h"
+#include "base/format_number.h"
+#include "base/strings.h"
 #include "cli/command.h"
 #include "cli/curve_plot.h"
 #include "cli/grey_curve.h"
 #include "cli/picture_output.h"
-#include "lut/lowercase.h"
 #include "tonewright/lut.h"
 #include "tonewright/ocio.h"
+#include "tonewright/registry.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 /// What the plot has upwards.
@@ -156,7 +159,7 @@ View view_of(const Options& options, const std::string& text) {
     Settings settings = own.settings;
     settings.merge(options.settings());
     const std::string& look = own.params.look();
-    return make_view(resolve_operator(own.name, settings, look.empty() ? options.look : look),
+    return make_view(resolve_operator(own.name(), settings, look.empty() ? options.look : look),
                      options.input, options.exposure, options.display, options.reference_white);
 }
 
@@ -293,4 +296,4 @@ void add_plot(CLI::App& program, int&) {
     });
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -9,9 +9,9 @@
 #include "cli/picture_output.h"
 #include "cli/plot_surface.h"
 #include "image/canvas.h"
-#include "tonewright/image.h"
+#include "tonewright/image_io.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 /// `#rgb` or `#rrggbb` as code values.
@@ -178,4 +178,4 @@ void write_plot_picture(const CurvePlot& plot, const std::string& path, int widt
     write_image_atomically(picture, path, OIIO::TypeDesc::UINT8);
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -8,7 +8,7 @@
 
 #include "cli/curve_plot.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// About the width at which a page shows a plot: the unit of all coordinates is a pixel of a
 /// picture this wide.
@@ -77,4 +77,4 @@ class PlotSurface {
 void draw(const CurvePlot& plot, PlotSurface& surface);
 [[nodiscard]] double height_of(const CurvePlot& plot);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

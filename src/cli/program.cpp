@@ -8,9 +8,11 @@
 #include <exception>
 #include <system_error>
 
+#include "base/strings.h"
 #include "cli/command.h"
+#include "tonewright/error.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 /// One line on stderr, whatever the library's message looked like.
@@ -74,4 +76,4 @@ int run_program(int argc, char** argv, const std::vector<AddCommand>& commands) 
     return exit_code;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

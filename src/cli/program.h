@@ -4,11 +4,13 @@
 #include <CLI/CLI.hpp>
 #include <vector>
 
-namespace tonewright {
+#include "tonewright/version.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
 
 using AddCommand = void (*)(CLI::App& program, int& exit_code);
 
 /// The command line with these subcommands. @return the exit code
 int run_program(int argc, char** argv, const std::vector<AddCommand>& commands);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 ProgressBar::ProgressBar(int terminal, std::size_t count)
     : terminal_(terminal >= 0 && ::isatty(terminal) ? terminal : -1), count_(count) {}
@@ -35,4 +35,4 @@ void ProgressBar::show(const std::string& text) const {
     if (terminal_ >= 0 && next_ > kFirst) (void)!::write(terminal_, text.data(), text.size());
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

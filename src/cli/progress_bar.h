@@ -5,7 +5,9 @@
 #include <cstddef>
 #include <string>
 
-namespace tonewright {
+#include "tonewright/version.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// How far the frames of a shot are, on a terminal only, from its first half second on.
 class ProgressBar {
@@ -31,4 +33,4 @@ class ProgressBar {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/command.h"
 #include "cli/picture_input.h"
-#include "tonewright/image.h"
+#include "tonewright/contact_sheet.h"
+#include "tonewright/image_io.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 void add_sheet(CLI::App& program, int&) {
     struct Options {
@@ -37,4 +38,4 @@ void add_sheet(CLI::App& program, int&) {
     });
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

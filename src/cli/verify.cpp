@@ -10,11 +10,10 @@
 #include "cli/command.h"
 #include "cli/lut_input.h"
 #include "cli/picture_input.h"
-#include "tonewright/image.h"
 #include "tonewright/lint.h"
 #include "tonewright/lut_match.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 /// Every pixel up to a million, then every n-th.
@@ -196,4 +195,4 @@ void add_verify(CLI::App& program, int& exit_code) {
     });
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -2,7 +2,7 @@
 #include "tonewright/color.h"
 #include "tonewright/error.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 Matrix3 multiply(const Matrix3& a, const Matrix3& b) noexcept {
     Matrix3 m{};
@@ -93,4 +93,4 @@ Matrix3 rgb_to_xyz_d65(const Primaries& p) {
     return multiply(bradford_adaptation(p.whitepoint, kD65), rgb_to_xyz(p));
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

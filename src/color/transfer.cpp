@@ -3,7 +3,7 @@
 
 #include "tonewright/color.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 Expr srgb_encode(const Expr& linear) {
     // The power sees no negative number: the straight part is taken there.
@@ -187,4 +187,4 @@ Expr unreal_log_encode(const Expr& linear) {
 
 Expr unreal_log_decode(const Expr& code) { return exp2((code - 444.0 / 1023) * 14) * 0.18; }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

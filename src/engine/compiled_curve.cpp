@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 constexpr double kHalfUlp = 0x1p-24;
@@ -755,4 +755,4 @@ std::optional<CompiledCurve> compile_curve(const std::function<double(double)>& 
     return std::nullopt;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -8,7 +8,9 @@
 #include <span>
 #include <vector>
 
-namespace tonewright {
+#include "tonewright/version.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// What a curve may be wrong by, where its result is y: units of 2^-24 |y|, but at least a floor,
 /// which depends on the exponent of x.
@@ -130,4 +132,4 @@ struct CompiledCurve {
                                                          const CurveTolerance& tolerance,
                                                          CurveForm form, bool is_precise = false);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -10,7 +10,8 @@
 #include <cstring>
 #include <limits>
 
-namespace tonewright::simd {
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace simd {
 namespace {
 
 constexpr std::int32_t kNone = VectorOperand::kNone;
@@ -24,7 +25,7 @@ constexpr int kInterleaved = 2;
 /// 4096 were equally fast, a third faster than without.
 constexpr int kFetchAhead = 1024;
 
-/// On the stack, of what keep_index keeps: four lines for each of the blocks.
+/// On the stack, of what spill_index keeps: four lines for each of the blocks.
 constexpr int kKeptBytes = 4 * 64 * 4;
 /// Encodings of comparisons (ordered, quiet).
 constexpr std::uint8_t kEqual = 0x00;
@@ -591,11 +592,11 @@ class Generator : public Xbyak::CodeGenerator {
                 if (!wide) return vcvttps2dq(result_after(step), a);
                 return vcvttpd2dq(Xbyak::Ymm(result_after(step).getIdx()), a);
             }
-            case VectorOp::pick_16: {
+            case VectorOp::permute_16: {
                 const Z index = in_register(step.in[0], false);
                 return vpermps(result_after(step), index, table(step.offset));
             }
-            case VectorOp::pick_32: {
+            case VectorOp::permute_32: {
                 const Z index = in_register(step.in[0], false);
                 const Z r = result_apart(step);
                 vmovaps(r, table(step.offset));
@@ -610,7 +611,7 @@ class Generator : public Xbyak::CodeGenerator {
                     r | k6,
                     ptr[rax + Xbyak::Ymm(index.getIdx()) * 8 + static_cast<int>(step.offset)]);
             }
-            case VectorOp::keep_index: {
+            case VectorOp::spill_index: {
                 const Z a = in_register(step.in[0], false);
                 vmovdqa32(kept_index(step, step.immediate, 0), a);
                 return release(step);
@@ -630,7 +631,7 @@ class Generator : public Xbyak::CodeGenerator {
                 }
                 return;
             }
-            case VectorOp::spread: {
+            case VectorOp::expand: {
                 const Z a = in_register(step.in[0], false);
                 const Z r = result_apart(step);
                 vmovaps(r, table(step.offset));
@@ -662,7 +663,7 @@ class Generator : public Xbyak::CodeGenerator {
                 vmovaps(r, table(step.offset));
                 return vpermi2ps(r, a, b);
             }
-            case VectorOp::quarters: {
+            case VectorOp::shuffle_128: {
                 const Z a = in_register(step.in[0], false);
                 const Z b = in_register(step.in[1], false);
                 return vshuff64x2(result_after(step), a, b, step.immediate);
@@ -738,16 +739,19 @@ std::shared_ptr<const MachineCode> MachineCode::make(const Code& code) {
     return nullptr;
 }
 
-}  // namespace tonewright::simd
+}  // namespace simd
+TONEWRIGHT_NAMESPACE_END
 
 #else
 
-namespace tonewright::simd {
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace simd {
 
 bool MachineCode::is_built_in() noexcept { return false; }
 
 std::shared_ptr<const MachineCode> MachineCode::make(const Code& /*code*/) { return nullptr; }
 
-}  // namespace tonewright::simd
+}  // namespace simd
+TONEWRIGHT_NAMESPACE_END
 
 #endif

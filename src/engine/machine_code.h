@@ -6,7 +6,8 @@
 
 #include "engine/vector_code.h"
 
-namespace tonewright::simd {
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace simd {
 
 /// A float program as code of the processor that runs now: values stay in registers, where the
 /// interpreter writes each to the first-level cache and reads it back. Computes the same bits.
@@ -43,4 +44,5 @@ class MachineCode {
     std::array<std::vector<Function>, 3> function_;  // by layout, by part
 };
 
-}  // namespace tonewright::simd
+}  // namespace simd
+TONEWRIGHT_NAMESPACE_END

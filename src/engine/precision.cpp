@@ -5,11 +5,11 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/probe.h"
 #include "expr/scalar_ops.h"
+#include "measure/sample_set.h"
 #include "tonewright/pipeline.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 /// Half a unit in the last place of 1 in float.
@@ -20,7 +20,7 @@ constexpr double kSmallestStep = 0x1p-150;
 /// Colours where roundings show: greys, colours of all saturations and signs, and the extremes.
 std::vector<Vector3> probe_colours() {
     std::vector<Vector3> probes;
-    ProbeRandom random(7);
+    SampleRandom random(7);
     const auto add = [&](double r, double g, double b) {
         const auto rounded = [](double x) {
             return static_cast<double>(static_cast<float>(std::clamp(x, -kHalfMax, kHalfMax)));
@@ -226,8 +226,8 @@ class PrecisionChooser {
           adjoint_(code.size()),
           has_pole_(code.size()) {}
 
-    Influence influence() {
-        Influence result;
+    Sensitivity sensitivity() {
+        Sensitivity result;
         const std::vector<Vector3> probes = probe_colours();
         for (std::size_t p = 0; p < probes.size(); p += 3) {
             evaluate(probes[p], code_.size());
@@ -239,7 +239,7 @@ class PrecisionChooser {
                         std::max(largest[i], has_pole_[i] ? kPole : std::fabs(adjoint_[i]));
             }
             result.value.push_back(value_);
-            result.influence.push_back(std::move(largest));
+            result.sensitivity.push_back(std::move(largest));
         }
         return result;
     }
@@ -309,7 +309,7 @@ class PrecisionChooser {
         std::array<std::vector<Vector3>, 2> sides;
     };
     static constexpr std::size_t kPairs = 4;
-    /// Influence where the derivative has no end.
+    /// Sensitivity where the derivative has no end.
     static constexpr double kPole = 1e12;
 
     /// A sum of constant multiples of values, with a negative constant among them.
@@ -583,14 +583,14 @@ class PrecisionChooser {
     std::vector<bool> has_pole_;
     std::vector<Share> shares_, curves_;
     std::vector<Branch> branches_;
-    ProbeRandom random_{11};
+    SampleRandom random_{11};
 };
 
 }  // namespace
 
-Influence measure_influence(const std::vector<TapeInstruction>& code,
-                            const std::array<std::uint32_t, 3>& outputs) {
-    return PrecisionChooser(code, outputs, 0).influence();
+Sensitivity measure_influence(const std::vector<TapeInstruction>& code,
+                              const std::array<std::uint32_t, 3>& outputs) {
+    return PrecisionChooser(code, outputs, 0).sensitivity();
 }
 
 Precision choose_precision(const std::vector<TapeInstruction>& code,
@@ -598,4 +598,4 @@ Precision choose_precision(const std::vector<TapeInstruction>& code,
     return PrecisionChooser(code, outputs, max_error).choose();
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -7,7 +7,7 @@
 
 #include "engine/tape.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// Which values of a program are to be kept in double, so that the outputs keep to an error
 /// (absolute up to 1, relative above) when all others are float.
@@ -33,11 +33,11 @@ struct Precision {
 /// What values are, and how much of their errors reaches an output: the largest derivative of an
 /// output by each value, relative to outputs above 1; very large where there is none.
 /// [probe][index], over a set of probe colours.
-struct Influence {
+struct Sensitivity {
     std::vector<std::vector<double>> value;
-    std::vector<std::vector<double>> influence;
+    std::vector<std::vector<double>> sensitivity;
 };
-[[nodiscard]] Influence measure_influence(const std::vector<TapeInstruction>& code,
-                                          const std::array<std::uint32_t, 3>& outputs);
+[[nodiscard]] Sensitivity measure_influence(const std::vector<TapeInstruction>& code,
+                                            const std::array<std::uint32_t, 3>& outputs);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -6,7 +6,7 @@
 #include "expr/scalar_ops.h"
 #include "tonewright/engine.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 constexpr std::size_t kTile = 256;  // pixels per pass: a tile of every value stays in the cache
@@ -138,4 +138,4 @@ void ReferenceEngine::run_rgb(const float* in, double* out,
     }
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -26,7 +26,8 @@
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace tonewright::simd {
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace simd {
 namespace HWY_NAMESPACE {
 
 using DF = hn::ScalableTag<float>;
@@ -164,7 +165,7 @@ HWY_INLINE void store_result(const Frame& frame, const Operand& out, std::size_t
 
 /// Operands loaded, and converted, once for all rows.
 template <class D>
-HWY_INLINE void rows3(D d, const Frame& frame, const Instruction& step) {
+HWY_INLINE void dot3(D d, const Frame& frame, const Instruction& step) {
     using T = hn::TFromD<D>;
     const Source a(frame, step.in[0]);
     const Source b(frame, step.in[1]);
@@ -184,11 +185,11 @@ HWY_INLINE void rows3(D d, const Frame& frame, const Instruction& step) {
     }
 }
 
-HWY_NOINLINE void rows3(const Frame& frame, const Instruction& step) {
+HWY_NOINLINE void dot3(const Frame& frame, const Instruction& step) {
     if (step.wide) {
-        rows3(DD(), frame, step);
+        dot3(DD(), frame, step);
     } else {
-        rows3(DF(), frame, step);
+        dot3(DF(), frame, step);
     }
 }
 
@@ -291,8 +292,8 @@ HWY_INLINE void with_number(const Frame& frame, const Operand& operand, std::siz
 }
 
 /// Always in double. Pixel by pixel: gathers are slower, and all tables lie in one line of memory.
-HWY_NOINLINE void lookup_at(const Frame& frame, const Instruction& step,
-                            const PositionedTables& tables) {
+HWY_NOINLINE void lookup_nonuniform(const Frame& frame, const Instruction& step,
+                                    const NonuniformTables& tables) {
     const DD d;
     const hn::CappedTag<double, 4> part;
     const std::size_t lanes = hn::Lanes(d);
@@ -313,7 +314,7 @@ HWY_NOINLINE void lookup_at(const Frame& frame, const Instruction& step,
             std::size_t cell = tables.first_cell[static_cast<std::size_t>(part_of[p])];
             for (int k = 0; k < tables.steps; ++k)
                 cell += place[p] >= tables.end[cell] ? 1 : 0;
-            const PositionedTables::Line& line = tables.lines[cell];
+            const NonuniformTables::Line& line = tables.lines[cell];
             const auto at = hn::Set(part, place[p]);
             for (std::size_t c = 0; c < 4; c += hn::Lanes(part)) {
                 hn::Store(hn::MulAdd(hn::Load(part, line.slope.data() + c), at,
@@ -934,8 +935,8 @@ HWY_NOINLINE void run_instruction(const Frame& frame, const Code& code, const In
             return map<3>(frame, step, [](auto, auto a, auto b, auto c) HWY_ATTR {
                 return hn::NegMulAdd(a, b, c);
             });
-        case Op::rows3:
-            return rows3(frame, step);
+        case Op::dot3:
+            return dot3(frame, step);
         case Op::minimum:
             return map<2>(frame, step, [](auto, auto a, auto b) HWY_ATTR { return minimum(a, b); });
         case Op::maximum:
@@ -1003,8 +1004,8 @@ HWY_NOINLINE void run_instruction(const Frame& frame, const Code& code, const In
             });
         case Op::lookup:
             return lookup(frame, step, code.tables[step.table]);
-        case Op::lookup_at:
-            return lookup_at(frame, step, code.positioned[step.table]);
+        case Op::lookup_nonuniform:
+            return lookup_nonuniform(frame, step, code.positioned[step.table]);
         case Op::curve:
             return curve(frame, step, code.curves[step.table]);
         case Op::lattice:
@@ -1274,11 +1275,13 @@ void run(const Code& code, const std::array<const float*, 3>& in, std::ptrdiff_t
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)
 }  // namespace HWY_NAMESPACE
-}  // namespace tonewright::simd
+}  // namespace simd
+TONEWRIGHT_NAMESPACE_END
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace tonewright::simd {
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace simd {
 namespace {
 
 HWY_EXPORT(run);
@@ -1318,5 +1321,6 @@ void use_target(int index) {
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
 
-}  // namespace tonewright::simd
+}  // namespace simd
+TONEWRIGHT_NAMESPACE_END
 #endif  // HWY_ONCE

@@ -15,7 +15,8 @@
 #include "engine/compiled_curve.h"
 #include "tonewright/expr.h"
 
-namespace tonewright::simd {
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace simd {
 
 /// What one instruction does with its operands a, b, c, e.
 enum class Op : std::uint8_t {
@@ -27,7 +28,7 @@ enum class Op : std::uint8_t {
     multiply_add,       // a*b + c, rounded once where the processor can
     multiply_subtract,  // a*b - c
     subtract_product,   // c - a*b
-    rows3,              // k0*a + k1*b + k2*c, of one to three rows of a matrix
+    dot3,               // k0*a + k1*b + k2*c, of one to three rows of a matrix
     minimum,            // b < a ? b : a
     maximum,            // a < b ? b : a
     clamp,              // minimum(maximum(a, b), c)
@@ -50,9 +51,9 @@ enum class Op : std::uint8_t {
     select_less_equal,
     select_equal,
     lookup,
-    lookup_at,  // of one to three tables with the same positions
-    curve,      // compiled
-    lattice,    // of coordinates a, b, c: all three channels
+    lookup_nonuniform,  // of one to three tables with the same positions
+    curve,              // compiled
+    lattice,            // of coordinates a, b, c: all three channels
 };
 
 /// Where a value is: in the tile's register file, or among the constants, which stand there as one
@@ -71,7 +72,7 @@ struct SampledTable {
 };
 
 /// Up to three tables with the same positions.
-struct PositionedTables {
+struct NonuniformTables {
     /// What is before the first and behind the last position counts as that.
     double first = 0;
     double last = 0;
@@ -104,7 +105,7 @@ struct Instruction {
     bool wide = false;
     Operand out;
     std::array<Operand, 4> in;
-    std::array<double, 9> k{};  // coefficients of rows3, exponent of power_constant
+    std::array<double, 9> k{};  // coefficients of dot3, exponent of power_constant
     std::uint32_t table = 0;    // of a lookup, a curve, a lattice: its index among those
     /// Where the results go of an operation that has up to three. One that nobody reads is marked
     /// as a constant.
@@ -139,7 +140,7 @@ struct Code : TilePorts {
     std::vector<Instruction> instructions;
     std::vector<ConstantVector> constants;
     std::vector<SampledTable> tables;
-    std::vector<PositionedTables> positioned;
+    std::vector<NonuniformTables> positioned;
     std::vector<SampledLattice> lattices;
     std::vector<CompiledCurve> curves;
     /// Where the program is this curve of every channel by itself, in float, and limits numbers as
@@ -170,4 +171,5 @@ const std::vector<std::string>& target_names();
 /// @param index  into target_names(), or -1 for the best.
 void use_target(int index);
 
-}  // namespace tonewright::simd
+}  // namespace simd
+TONEWRIGHT_NAMESPACE_END

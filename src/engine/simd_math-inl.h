@@ -17,7 +17,8 @@
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace tonewright::simd {
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace simd {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -414,7 +415,8 @@ HWY_INLINE Vec<D> lookup_step(D d, Vec<D> x, const hn::TFromD<D>* samples, std::
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)
 }  // namespace HWY_NAMESPACE
-}  // namespace tonewright::simd
+}  // namespace simd
+TONEWRIGHT_NAMESPACE_END
 HWY_AFTER_NAMESPACE();
 
 #endif  // per-target include guard

@@ -7,14 +7,15 @@
 #include <cstring>
 #include <map>
 
-#include "engine/curve_folding.h"
+#include "base/strings.h"
+#include "engine/curve_fitting.h"
 #include "engine/machine_code.h"
 #include "engine/precision.h"
 #include "engine/tape.h"
 #include "tonewright/engine.h"
 #include "tonewright/error.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace simd {
 namespace {
 
@@ -43,8 +44,8 @@ class FloatTape {
     }
 
     /// @param cache  owns the curves
-    void fold(const Influence& influence, CurveCache& cache) {
-        fold_curves(code_, outputs_, influence, cache, curve_form());
+    void fold(const Sensitivity& sensitivity, CurveCache& cache) {
+        fit_curves(code_, outputs_, sensitivity, cache, curve_form());
     }
 
     [[nodiscard]] const std::vector<TapeInstruction>& code() const { return code_; }
@@ -136,9 +137,9 @@ bool are_siblings(const Selected& x, const Selected& y) {
     switch (x.op) {
         case Op::lattice:
             return x.lattice == y.lattice;
-        case Op::rows3:
+        case Op::dot3:
             return true;
-        case Op::lookup_at:
+        case Op::lookup_nonuniform:
             return x.table->positions == y.table->positions;
         default:
             return false;
@@ -249,7 +250,7 @@ class Selector {
             !is_term(sum.b, k[2], x[2])) {
             return false;
         }
-        emit(Op::rows3, {x[0], x[1], x[2]}, {sum.a, first.a, first.b, sum.b});
+        emit(Op::dot3, {x[0], x[1], x[2]}, {sum.a, first.a, first.b, sum.b});
         current_.k = k;
         return true;
     }
@@ -308,7 +309,7 @@ class Selector {
                 current_.curve = step.curve;
                 return emit(step.curve                      ? Op::curve
                             : step.table->positions.empty() ? Op::lookup
-                                                            : Op::lookup_at,
+                                                            : Op::lookup_nonuniform,
                             {a});
             case ExprOp::lattice:
                 current_.lattice = step.lattice;
@@ -407,14 +408,14 @@ class Assembler {
             Instruction step;
             step.op = s.op;
             step.wide = s.wide || s.op == Op::sine || s.op == Op::cosine || s.op == Op::atan2 ||
-                        s.op == Op::lookup_at;
+                        s.op == Op::lookup_nonuniform;
             step.out = place(slot);
             for (Operand& channel : step.channel)
                 channel.constant = true;
             if (s.op == Op::lookup) step.table = table(*s.table);
             if (s.op == Op::curve) step.table = curve(*s.curve);
             if (s.op == Op::lattice) step.table = lattice(*s.lattice, step.wide);
-            if (s.op == Op::lookup_at) {
+            if (s.op == Op::lookup_nonuniform) {
                 step.table = static_cast<std::uint32_t>(positioned_.size());
                 positioned_.push_back(at_positions(s.table->positions));
             }
@@ -547,11 +548,11 @@ class Assembler {
         const auto n = static_cast<std::size_t>(s.sibling);
         step.channel[s.op == Op::lattice ? static_cast<std::size_t>(s.channel) : n] = place(slot);
         std::copy(s.k.begin(), s.k.end(), step.k.begin() + 3 * s.sibling);
-        if (s.op == Op::lookup_at) add_lines(positioned_[step.table], *s.table, n);
+        if (s.op == Op::lookup_nonuniform) add_lines(positioned_[step.table], *s.table, n);
     }
 
-    static PositionedTables at_positions(const std::vector<double>& positions) {
-        PositionedTables result;
+    static NonuniformTables at_positions(const std::vector<double>& positions) {
+        NonuniformTables result;
         result.first = positions.front();
         result.last = positions.back();
         result.end.assign(positions.begin() + 1, positions.end());
@@ -579,7 +580,7 @@ class Assembler {
         return result;
     }
 
-    static void add_lines(PositionedTables& tables, const Table& source, std::size_t n) {
+    static void add_lines(NonuniformTables& tables, const Table& source, std::size_t n) {
         const bool is_linear = source.interpolation == Table::Interpolation::linear;
         for (std::size_t i = 0; i < tables.lines.size(); ++i) {
             double slope = 0;
@@ -647,7 +648,7 @@ class Assembler {
     std::map<std::pair<std::uint64_t, bool>, std::size_t> constant_index_;
     std::vector<SampledTable> tables_;
     std::map<const Table*, std::uint32_t> table_index_;
-    std::vector<PositionedTables> positioned_;
+    std::vector<NonuniformTables> positioned_;
     std::vector<SampledLattice> lattices_;
     std::map<const Lattice*, std::uint32_t> lattice_index_;
     std::vector<CompiledCurve> curves_;
@@ -659,12 +660,12 @@ class Assembler {
 Code compile(const Pipeline& pipeline, double max_error, bool has_curves) {
     const Tape source(compose(simplify(pipeline)));
     const FloatTape plain(source);
-    Influence influence;
-    if (has_curves) influence = measure_influence(plain.code(), plain.outputs());
+    Sensitivity sensitivity;
+    if (has_curves) sensitivity = measure_influence(plain.code(), plain.outputs());
     CurveCache curves;
     while (true) {
         FloatTape tape = plain;
-        if (has_curves) tape.fold(influence, curves);
+        if (has_curves) tape.fold(sensitivity, curves);
         const Precision precision = choose_precision(tape.code(), tape.outputs(), max_error);
         // Exact enough where it stands, or compiled again or not at all.
         for (const CompiledCurve* curve : precision.too_coarse)
@@ -717,4 +718,4 @@ void SimdEngine::use_target(const std::string& name) {
     simd::use_target(static_cast<int>(it - names.begin()));
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -5,7 +5,8 @@
 #include "tonewright/engine.h"
 #include "tonewright/pipeline.h"
 
-namespace tonewright::simd {
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace simd {
 
 /// The float program of a pipeline. The passes that change the last bits are here and only here:
 ///
@@ -23,4 +24,5 @@ namespace tonewright::simd {
 [[nodiscard]] Code compile(const Pipeline& pipeline, double max_error = kSimdError,
                            bool has_curves = curve_form() != CurveForm::none);
 
-}  // namespace tonewright::simd
+}  // namespace simd
+TONEWRIGHT_NAMESPACE_END

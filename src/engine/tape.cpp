@@ -3,7 +3,7 @@
 
 #include "tonewright/error.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 Tape::Tape(const std::array<Expr, 3>& outputs) : keep_(outputs.begin(), outputs.end()) {
     std::unordered_map<const ExprNode*, std::uint32_t> seen;
@@ -77,4 +77,4 @@ RegisterAllocation allocate_registers(const std::vector<std::array<std::int64_t,
     return result;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -10,7 +10,7 @@
 #include "engine/compiled_curve.h"
 #include "tonewright/expr.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// One step of a tape: its own index is the value it defines; a, b, c are earlier indices.
 struct TapeInstruction {
@@ -20,7 +20,7 @@ struct TapeInstruction {
     int input = 0;                         // of an input; channel of a lattice
     const Table* table = nullptr;          // of a lookup; owned by the tape
     const Lattice* lattice = nullptr;      // owned by the tape
-    const CompiledCurve* curve = nullptr;  // of a lookup, instead of a table: see fold_curves()
+    const CompiledCurve* curve = nullptr;  // of a lookup, instead of a table: see fit_curves()
     const ExprNode* node = nullptr;        // where it came from
 };
 
@@ -76,4 +76,4 @@ struct RegisterAllocation {
     const std::vector<std::array<std::int64_t, 4>>& operands,
     const std::vector<bool>& needs_register, const std::vector<std::uint32_t>& pinned);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -9,7 +9,8 @@
 #include <map>
 #include <string>
 
-namespace tonewright::simd {
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace simd {
 namespace {
 
 using Number = VectorOperand;  // of a vector: a value or a constant
@@ -340,7 +341,7 @@ class Writer {
 
     Number pick(Number index, std::uint32_t table, int size) {
         VectorInstruction step;
-        step.op = size == 16 ? VectorOp::pick_16 : VectorOp::pick_32;
+        step.op = size == 16 ? VectorOp::permute_16 : VectorOp::permute_32;
         step.offset = table;
         step.in[0] = index;
         if (size <= 32) return emit(step);
@@ -390,7 +391,7 @@ class Writer {
             step.immediate = 4;  // of bytes of a node
             step.in[0] = op(VectorOp::to_index, false, node[i]);
             const Number index = emit(step);
-            step.op = VectorOp::keep_index;
+            step.op = VectorOp::spill_index;
             step.immediate = i;
             step.in[0] = index;
             emit_store(step);
@@ -407,7 +408,7 @@ class Writer {
                 step.immediate = static_cast<std::uint8_t>(i + 4 * four);
                 step.address = lattice.narrow.data();
                 const Number nodes = emit(step);
-                step.op = VectorOp::spread;
+                step.op = VectorOp::expand;
                 step.offset = pool_.table(of_pixel.data(), of_pixel.size());
                 step.in[0] = weight[i];
                 const Number weights = emit(step);
@@ -538,9 +539,9 @@ class Writer {
         }
         return result;
     }
-    Number quarters(Number a, Number b, std::uint8_t which) {
+    Number shuffle_128(Number a, Number b, std::uint8_t which) {
         VectorInstruction step;
-        step.op = VectorOp::quarters;
+        step.op = VectorOp::shuffle_128;
         step.immediate = which;
         step.in = {a, b, {}};
         return emit(step);
@@ -560,8 +561,8 @@ class Writer {
         const Number high = shuffle(v[2], v[3], red_green);
         const Number blue_low = shuffle(v[0], v[1], blue);
         const Number blue_high = shuffle(v[2], v[3], blue);
-        return {quarters(low, high, 0x44), quarters(low, high, 0xEE),
-                quarters(blue_low, blue_high, 0x44)};
+        return {shuffle_128(low, high, 0x44), shuffle_128(low, high, 0xEE),
+                shuffle_128(blue_low, blue_high, 0x44)};
     }
     void store(VectorOp o, int number, Number value) {
         VectorInstruction step;
@@ -608,7 +609,7 @@ class Writer {
 /// What runs over a whole tile: what is rare, and what goes pixel by pixel.
 bool is_tile_step(const Instruction& step) {
     switch (step.op) {
-        case Op::lookup_at:
+        case Op::lookup_nonuniform:
         case Op::sine:
         case Op::cosine:
             return true;
@@ -621,7 +622,9 @@ bool is_tile_step(const Instruction& step) {
     }
 }
 
-bool has_channels(Op op) { return op == Op::rows3 || op == Op::lookup_at || op == Op::lattice; }
+bool has_channels(Op op) {
+    return op == Op::dot3 || op == Op::lookup_nonuniform || op == Op::lattice;
+}
 
 int operand_count(Op op) {
     switch (op) {
@@ -636,13 +639,13 @@ int operand_count(Op op) {
         case Op::sine:
         case Op::cosine:
         case Op::lookup:
-        case Op::lookup_at:
+        case Op::lookup_nonuniform:
         case Op::curve:
             return 1;
         case Op::multiply_add:
         case Op::multiply_subtract:
         case Op::subtract_product:
-        case Op::rows3:
+        case Op::dot3:
         case Op::clamp:
         case Op::select:
         case Op::lattice:
@@ -807,7 +810,7 @@ class Translator {
                 const CompiledCurve& curve = code_.curves[step.table];
                 return 20 + (curve.segments > 32 ? 5 : 2) * curve.degree;
             }
-            case Op::rows3:
+            case Op::dot3:
                 return halves * 9;
             case Op::exp2:
             case Op::log2:
@@ -1120,7 +1123,7 @@ class Translator {
                 return op(VectorOp::multiply_subtract, x(0), x(1), x(2));
             case Op::subtract_product:
                 return op(VectorOp::subtract_product, x(0), x(1), x(2));
-            case Op::rows3: {
+            case Op::dot3: {
                 const auto k = [&](std::size_t i) {
                     return pool_.number(step.k[3 * row + i], wide);
                 };
@@ -1172,7 +1175,7 @@ class Translator {
                 return chosen(VectorOp::equal);
             case Op::lookup:
                 return w.lookup(x(0), code_.tables[step.table]);
-            case Op::lookup_at:
+            case Op::lookup_nonuniform:
             case Op::lattice:
             case Op::sine:
             case Op::cosine:
@@ -1220,4 +1223,5 @@ VectorCode interleaved(const VectorCode& code, int blocks) {
 
 std::optional<VectorProgram> translate(const Code& code) { return Translator(code).translate(); }
 
-}  // namespace tonewright::simd
+}  // namespace simd
+TONEWRIGHT_NAMESPACE_END

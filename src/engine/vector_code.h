@@ -12,7 +12,8 @@
 
 #include "engine/simd_kernels.h"
 
-namespace tonewright::simd {
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace simd {
 
 /// What a vector instruction does. Floats are 16 to a vector, doubles 8.
 enum class VectorOp : std::uint8_t {
@@ -56,12 +57,12 @@ enum class VectorOp : std::uint8_t {
     to_index,           // from floats, or from doubles to half a vector
     shift_left,         // as shift_right
     // Tables
-    pick_16,  // the element of 16 floats at `offset` that a says
-    pick_32,
-    gather,      // of the doubles at `offset`, that of number a
-    keep_index,  // the whole numbers a, on the stack, number `immediate`
-    nodes,       // four floats each for four pixels, at `address` + 4 times what keep_index kept:
-                 // `immediate` says which index, and times 4, which pixels
+    permute_16,  // the element of 16 floats at `offset` that a says
+    permute_32,
+    gather,       // of the doubles at `offset`, that of number a
+    spill_index,  // the whole numbers a, on the stack, number `immediate`
+    nodes,        // four floats each for four pixels, at `address` + 4 times what spill_index kept:
+                  // `immediate` says which index, and times 4, which pixels
     // Memory
     load_plane,
     store_plane,
@@ -69,8 +70,8 @@ enum class VectorOp : std::uint8_t {
     store_pixels,  //
     store_colors,  // only the first three of each four floats
     shuffle,       // of the 32 floats of a, b: those that 16 numbers at `offset` say
-    spread,        // the floats of a that 16 numbers at `offset` say
-    quarters,      // two quarters of a, two of b
+    expand,        // the floats of a that 16 numbers at `offset` say
+    shuffle_128,   // two shuffle_128 of a, two of b
 };
 
 /// A value in a register, or a number in the pool.
@@ -131,4 +132,5 @@ struct VectorProgram : TilePorts {
 /// @param code  owns the lattices that the result refers to
 [[nodiscard]] std::optional<VectorProgram> translate(const Code& code);
 
-}  // namespace tonewright::simd
+}  // namespace simd
+TONEWRIGHT_NAMESPACE_END

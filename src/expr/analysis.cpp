@@ -6,12 +6,13 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "base/format_number.h"
 #include "expr/node.h"
 #include "expr/scalar_ops.h"
 #include "tonewright/error.h"
 #include "tonewright/expr.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 /// Rebuilds an expression bottom-up, each shared node once.
@@ -276,4 +277,4 @@ std::vector<double> kinks(const Expr& f, double lo, double hi) {
     return found;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

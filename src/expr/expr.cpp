@@ -11,11 +11,12 @@
 #include <unordered_map>
 #include <utility>
 
+#include "base/format_number.h"
 #include "expr/node.h"
 #include "expr/scalar_ops.h"
 #include "tonewright/error.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 double at_positions(const Table& table, double x) noexcept {
@@ -345,4 +346,4 @@ Expr smoothstep(const Expr& edge0, const Expr& edge1, const Expr& x) {
     return t * t * (3 - 2 * t);
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -6,7 +6,7 @@
 
 #include "tonewright/expr.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 struct ExprNode {
     ExprOp op = ExprOp::constant;
@@ -17,4 +17,4 @@ struct ExprNode {
     std::shared_ptr<const Lattice> lattice;
 };
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 
+#include "base/format_number.h"
 #include "tonewright/error.h"
 #include "tonewright/expr.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 // Binding strength, weakest first.
@@ -107,4 +108,4 @@ std::string to_string(const Expr& expr, std::span<const std::string> names) {
     return print(expr, x).text;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -5,7 +5,7 @@
 
 #include "tonewright/expr.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// What each operation means, in double; of a lattice, Lattice::operator(). Folding, evaluate() and
 /// the reference engine all call it.
@@ -61,4 +61,4 @@ inline double scalar_op(ExprOp op, double a, double b, double c, const Table* ta
     return a;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -7,7 +7,9 @@
 #include <optional>
 #include <utility>
 
-namespace tonewright {
+#include "tonewright/version.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// Hands things from one thread to another, in order.
 template <class T>
@@ -57,4 +59,4 @@ class BatchQueue {
     bool cancelled_ = false;
 };
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -7,7 +7,7 @@
 
 #include "image/stroke_font.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 /// Bytes 10xxxxxx go on with a UTF-8 character whose first byte was drawn.
@@ -140,4 +140,4 @@ std::string fit_text(std::string_view text, double cap_height, double width) {
     return fitted;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

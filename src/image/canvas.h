@@ -12,7 +12,7 @@
 
 #include "image/stroke_font.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 using Rgb = std::array<float, 3>;
 
@@ -23,7 +23,7 @@ inline Rgb grey_of(double value) {
 
 /// A float RGB picture in memory that one can draw on. Coordinates are pixels; (0, 0) is the top
 /// left corner of the first pixel, whose centre is (0.5, 0.5). What lies outside is not drawn.
-class Canvas {
+class TONEWRIGHT_API Canvas {
   public:
     Canvas(int width, int height, const Rgb& fill);
 
@@ -69,8 +69,9 @@ class Canvas {
 };
 
 /// Width of a line of text in pixels.
-[[nodiscard]] double text_width(std::string_view text, double cap_height);
+[[nodiscard]] TONEWRIGHT_API double text_width(std::string_view text, double cap_height);
 /// The text, or its longest beginning that fits into `width` with "..." behind it.
-[[nodiscard]] std::string fit_text(std::string_view text, double cap_height, double width);
+[[nodiscard]] TONEWRIGHT_API std::string fit_text(std::string_view text, double cap_height,
+                                                  double width);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -10,10 +10,10 @@
 
 #include "image/canvas.h"
 #include "image/chart_scene.h"
+#include "tonewright/chart.h"
 #include "tonewright/color.h"
-#include "tonewright/image.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 constexpr double kMidGrey = 0.18;
@@ -279,4 +279,4 @@ OIIO::ImageBuf make_chart(int width, int height) {
     return image;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -8,7 +8,7 @@
 #include <array>
 #include <cmath>
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 struct Vec {
@@ -237,4 +237,4 @@ void draw_sunset(Canvas& canvas, int x0, int y0, int x1, int y1) {
     });
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/color_tags.h"
+#include "base/format_number.h"
 
 #include <array>
 #include <cmath>
 #include <string>
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 /// What can be said about the numbers of a result.
@@ -89,4 +90,4 @@ void tag_as_result_of(const View& view, OIIO::ImageSpec& spec) {
     spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), xy.data());
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -5,13 +5,13 @@
 
 #include "tonewright/view.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// Makes the metadata say what a picture holds after `view`: sets `oiio:ColorSpace`, and
 /// `chromaticities` where they are not those of Rec.709, and removes whatever described the
 /// source's colors.
-void tag_as_result_of(const View& view, OIIO::ImageSpec& spec);
+TONEWRIGHT_API void tag_as_result_of(const View& view, OIIO::ImageSpec& spec);
 /// Removes it, and says nothing: nobody knows what the colors are now.
-void tag_as_unknown(OIIO::ImageSpec& spec);
+TONEWRIGHT_API void tag_as_unknown(OIIO::ImageSpec& spec);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

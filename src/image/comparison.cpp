@@ -12,13 +12,13 @@
 #include <span>
 #include <vector>
 
+#include "base/strings.h"
 #include "image/canvas.h"
 #include "image/contact_sheet.h"
-#include "image/message.h"
 #include "tonewright/error.h"
 #include "tonewright/pipeline.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 using OIIO::ImageBuf;
@@ -258,4 +258,4 @@ PictureDifference difference_of(const ImageBuf& a, const ImageBuf& b, double gai
     return result;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -5,7 +5,9 @@
 
 #include <string>
 
-namespace tonewright {
+#include "tonewright/version.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// The scene of a picture `width` pixels wide: its display window, square pixels, float; color and
 /// alpha alone.
@@ -17,11 +19,11 @@ namespace tonewright {
 ///
 /// @param width    of the result, pixels
 /// @throws Error   deep, or cannot be read
-[[nodiscard]] OIIO::ImageBuf resize_scene(const OIIO::ImageBuf& picture, int width);
+[[nodiscard]] TONEWRIGHT_API OIIO::ImageBuf resize_scene(const OIIO::ImageBuf& picture, int width);
 
 /// How many columns make a sheet of so many equal cells most like a screen, without gaps where that
 /// can be had.
-[[nodiscard]] int choose_columns(int count, int cell_width, int cell_height);
+[[nodiscard]] TONEWRIGHT_API int choose_columns(int count, int cell_width, int cell_height);
 
 struct SplitLabel {
     std::string title;
@@ -41,13 +43,14 @@ struct SplitOptions {
 };
 
 /// Where the second picture begins: the nearest pixel boundary.
-[[nodiscard]] int split_at(int length, double position);
+[[nodiscard]] TONEWRIGHT_API int split_at(int length, double position);
 
 /// Two display pictures in one: the first up to a line, then the second. All pixels but those of
 /// the line are theirs.
 /// @throws Error  pictures of different sizes; position out of range
-[[nodiscard]] OIIO::ImageBuf make_split(const OIIO::ImageBuf& before, const OIIO::ImageBuf& after,
-                                        const SplitOptions& options);
+[[nodiscard]] TONEWRIGHT_API OIIO::ImageBuf make_split(const OIIO::ImageBuf& before,
+                                                       const OIIO::ImageBuf& after,
+                                                       const SplitOptions& options);
 
 /// How far two display pictures are apart.
 struct PictureDifference {
@@ -56,7 +59,7 @@ struct PictureDifference {
     double mean = 0;
 };
 /// @throws Error  pictures of different sizes
-[[nodiscard]] PictureDifference difference_of(const OIIO::ImageBuf& a, const OIIO::ImageBuf& b,
-                                              double gain);
+[[nodiscard]] TONEWRIGHT_API PictureDifference difference_of(const OIIO::ImageBuf& a,
+                                                             const OIIO::ImageBuf& b, double gain);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -8,14 +8,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/strings.h"
 #include "image/canvas.h"
 #include "image/contact_sheet.h"
-#include "image/message.h"
 #include "tonewright/color.h"
+#include "tonewright/contact_sheet.h"
 #include "tonewright/engine.h"
-#include "tonewright/image.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 using OIIO::ImageBuf;
@@ -59,7 +59,7 @@ ImageBuf shrink(const ImageBuf& picture, const PictureSize& size) {
 /// Words over the sheet, patches under it.
 class Surround {
   public:
-    Surround(const SheetSurround& words, int cell_width, int margin, int width)
+    Surround(const SheetAnnotations& words, int cell_width, int margin, int width)
         : words_(words),
           margin_(margin),
           width_(width - 2 * margin),
@@ -121,7 +121,7 @@ class Surround {
         }
     }
 
-    const SheetSurround& words_;
+    const SheetAnnotations& words_;
     int margin_;
     int width_;
     double heading_height_;
@@ -182,7 +182,7 @@ ImageBuf filtered_down(const ImageBuf& picture, const PictureSize& size) {
 }
 
 ImageBuf make_contact_sheet(const std::vector<std::pair<std::string, ImageBuf>>& labelled,
-                            int columns, int cell_width, const SheetSurround& around) {
+                            int columns, int cell_width, const SheetAnnotations& around) {
     check_range("number of pictures", static_cast<int>(labelled.size()), 1, 10000);
     check_range("columns", columns, 1, 10000);
     check_range("cell width", cell_width, 16, 16384);
@@ -262,4 +262,4 @@ ImageBuf make_contact_sheet(const std::vector<std::pair<std::string, ImageBuf>>&
     return sheet;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

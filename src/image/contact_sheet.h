@@ -3,7 +3,9 @@
 
 #include <OpenImageIO/imagebuf.h>
 
-namespace tonewright {
+#include "tonewright/version.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
 
 // sRGB code values around pictures. Neutral, and dark enough not to light up the pictures.
 inline constexpr double kSheetBackground = 0.125;
@@ -16,17 +18,18 @@ struct PictureSize {
 };
 
 /// The display window, all channels: what a viewer shows. Pixels outside the data window are black.
-[[nodiscard]] OIIO::ROI shown_window(const OIIO::ImageBuf& picture);
+[[nodiscard]] TONEWRIGHT_API OIIO::ROI shown_window(const OIIO::ImageBuf& picture);
 
 /// The size of a picture of that width with the picture's shape.
-[[nodiscard]] PictureSize fitted_size(const OIIO::ImageBuf& picture, int width);
+[[nodiscard]] TONEWRIGHT_API PictureSize fitted_size(const OIIO::ImageBuf& picture, int width);
 
 /// What is shown of a picture, as it is: float RGB, grey in all three. Alpha is not used.
 /// @throws Error  a picture that cannot be read
-[[nodiscard]] OIIO::ImageBuf shown_rgb(const OIIO::ImageBuf& picture);
+[[nodiscard]] TONEWRIGHT_API OIIO::ImageBuf shown_rgb(const OIIO::ImageBuf& picture);
 
 /// All channels of a picture, made smaller by a filter without negative lobes: no dark rims around
 /// lights. Errors are those of the result.
-[[nodiscard]] OIIO::ImageBuf filtered_down(const OIIO::ImageBuf& picture, const PictureSize& size);
+[[nodiscard]] TONEWRIGHT_API OIIO::ImageBuf filtered_down(const OIIO::ImageBuf& picture,
+                                                          const PictureSize& size);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

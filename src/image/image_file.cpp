@@ -4,11 +4,11 @@
 #include <string_view>
 #include <utility>
 
-#include "image/message.h"
+#include "base/strings.h"
 #include "image/picture_file.h"
-#include "tonewright/image.h"
+#include "tonewright/image_io.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 OIIO::ImageBuf read_image(const std::string& path) { return PictureReader(path).read_all(); }
 
@@ -41,4 +41,4 @@ OIIO::TypeDesc parse_pixel_type(std::string_view text) {
                             did_you_mean(text, names)));
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/lut_picture.h"
+#include "tonewright/image_io.h"
+#include "tonewright/lut.h"
 
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
@@ -8,9 +10,7 @@
 #include <array>
 #include <cmath>
 
-#include "tonewright/image.h"
-
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 /// The node that a pixel holds, of a cube of n points a side; red fastest.
@@ -107,4 +107,4 @@ OIIO::ImageBuf make_lut_picture(const Lut& lut, LutFormat format) {
     return picture;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

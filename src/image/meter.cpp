@@ -10,12 +10,15 @@
 #include <limits>
 #include <new>
 
+#include "base/format_number.h"
+#include "base/strings.h"
 #include "image/picture_file.h"
 #include "image/scene_meter.h"
 #include "image/source_picture.h"
+#include "tonewright/tonemap.h"
 #include "tonewright/view.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 using OIIO::ImageBuf;
@@ -282,4 +285,4 @@ std::vector<double> adapted_exposures(const std::vector<int>& frames,
     return exposures;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

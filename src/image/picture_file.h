@@ -10,21 +10,23 @@
 #include <string>
 #include <vector>
 
+#include "base/atomic_file.h"
 #include "tonewright/error.h"
 
 /// Picture files, read and written some rows at a time, whole or not at all.
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// In one line, why a picture could not be opened.
 /// @param reported  what OpenImageIO says
-[[nodiscard]] std::string why_not_open(const std::string& path, const std::string& reported);
+[[nodiscard]] TONEWRIGHT_API std::string why_not_open(const std::string& path,
+                                                      const std::string& reported);
 
 /// Reads a picture from top to bottom or in any other order of rows. Full resolution, in the pixel
 /// type of the file.
 ///
 /// Stricter than ImageBuf: whatever the reader reports is an error, so that a truncated file is
 /// never a half-black picture. Nothing goes through OIIO's cache.
-class PictureReader {
+class TONEWRIGHT_API PictureReader {
   public:
     /// @param nthreads  0: OIIO's `threads` attribute.
     /// @throws FileError  missing, unreadable, of unknown format, without that subimage, or deep.
@@ -60,19 +62,20 @@ inline constexpr std::size_t kBatchBytes = std::size_t{16} << 20;
 
 /// Rows of a batch: at least 64 (formats compress up to 32 rows together, OpenEXR's threads one
 /// such block each), and a multiple of `step`.
-[[nodiscard]] int rows_of_batch(std::size_t bytes_per_row, int step,
-                                std::size_t batch_bytes = kBatchBytes);
+[[nodiscard]] TONEWRIGHT_API int rows_of_batch(std::size_t bytes_per_row, int step,
+                                               std::size_t batch_bytes = kBatchBytes);
 
 /// The spec of rows [ybegin, yend) of a picture, untiled.
-[[nodiscard]] OIIO::ImageSpec spec_of_rows(const OIIO::ImageSpec& picture, int ybegin, int yend);
+[[nodiscard]] TONEWRIGHT_API OIIO::ImageSpec spec_of_rows(const OIIO::ImageSpec& picture,
+                                                          int ybegin, int yend);
 
 /// Reads a picture to its end and keeps nothing of it.
 /// @throws FileError  when it is not whole.
-void check_is_complete(PictureReader& reader);
+TONEWRIGHT_API void check_is_complete(PictureReader& reader);
 
 /// Writes a picture from its first row to its last under a temporary name, and gives it its own
 /// when it is complete. @see write_image_atomically for what becomes of a picture on the way.
-class PictureWriter {
+class TONEWRIGHT_API PictureWriter {
   public:
     /// Touches nothing yet.
     /// @param nthreads  0: OIIO's `threads` attribute.
@@ -102,7 +105,6 @@ class PictureWriter {
     void finish();
 
   private:
-    class TemporaryFile;
     class FileProxy;
 
     [[noreturn]] void fail(const std::string& reason) const;
@@ -119,18 +121,9 @@ class PictureWriter {
     int last_row_ = 0;  // of the picture, exclusive
     int next_row_ = 0;  // of the window, or of the picture
     // In this order: the writer, when it ends, writes to the proxy, which writes to the file.
-    std::unique_ptr<TemporaryFile> temporary_;
+    std::unique_ptr<AtomicFile> temporary_;
     std::unique_ptr<FileProxy> proxy_;  // null: OIIO opens the file itself
     std::unique_ptr<OIIO::ImageOutput> out_;
 };
 
-/// Removes the temporary files of these pictures that killed runs left: those of processes of this
-/// machine that are no more, and those that nobody has touched for a day (processes of other
-/// machines cannot be asked). What cannot be removed stays.
-void remove_leftovers(const std::vector<std::string>& paths);
-
-/// When the program is told to end (SIGINT, SIGTERM, SIGHUP), what PictureWriter has not finished
-/// is removed first. For a program to call once.
-void remove_unfinished_files_on_signals();
-
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

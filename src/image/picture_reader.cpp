@@ -7,10 +7,11 @@
 #include <filesystem>
 #include <system_error>
 
-#include "image/message.h"
+#include "base/strings.h"
 #include "image/picture_file.h"
+#include "tonewright/image_io.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 using OIIO::ImageBuf;
@@ -104,4 +105,4 @@ void check_is_complete(PictureReader& reader) {
         reader.read_rows(y, std::min(y + step, yend), rows.data());
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -4,78 +4,32 @@
 #include <OpenImageIO/imagecache.h>
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <atomic>
 #include <cerrno>
-#include <chrono>
-#include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <numeric>
 #include <optional>
-#include <regex>
-#include <set>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
-#include "image/message.h"
+#include "base/atomic_file.h"
+#include "base/strings.h"
 #include "image/picture_file.h"
-#include "lut/numbers.h"
+#include "tonewright/error.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 namespace fs = std::filesystem;
 using OIIO::ImageBuf;
 using OIIO::ImageSpec;
 using OIIO::ROI;
-
-std::string reason_of(int error_number) { return std::generic_category().message(error_number); }
-
-/// Where the bytes go in the end: symbolic links are followed.
-/// @returns  empty, and the reason in `why`, when that is no place for a file.
-fs::path resolve_target(const std::string& path, std::string& why) {
-    std::error_code error;
-    fs::path target = path;
-    if (fs::is_symlink(fs::symlink_status(target, error))) {
-        target = fs::weakly_canonical(target, error);
-        if (error) why = error.message();
-    }
-    // Renaming over a device or a directory would destroy it, or fail late.
-    const fs::file_status status = fs::status(target, error);
-    if (fs::exists(status) && !fs::is_regular_file(status)) {
-        why = fs::is_directory(status) ? "it is a directory" : "it is no regular file";
-    }
-    return target;
-}
-
-// Names of temporary files: .<stem>.<machine>.<pid>.<n>.tmp.<extension>. The extension stays last:
-// it selects the format.
-
-/// What of a picture's name is in those of its temporary files. Names have at most 255 bytes.
-std::pair<std::string, std::string> name_parts(const fs::path& target) {
-    return {target.stem().string().substr(0, 200), target.extension().string()};
-}
-
-/// Tells the machine apart, and the container: where a process id means one process.
-const std::string& machine_tag() {
-    static const std::string tag = [] {
-        std::array<char, 256> host{};
-        (void)::gethostname(host.data(), host.size() - 1);
-        std::error_code none;
-        return content_hash(host.data() + fs::read_symlink("/proc/self/ns/pid", none).string());
-    }();
-    return tag;
-}
 
 /// The channels that a format takes: all (empty), or color and alpha, or color.
 std::vector<int> channels_to_write(const ImageSpec& spec, const OIIO::ImageOutput& out) {
@@ -89,144 +43,7 @@ std::vector<int> channels_to_write(const ImageSpec& spec, const OIIO::ImageOutpu
     return channels;
 }
 
-// ---------------------------------------------------------------------------------------------
-
-/// The temporary files that there are now, for a signal's handler: whoever takes a name out removes
-/// the file.
-std::array<std::atomic<const char*>, 256> unfinished_names;
-static_assert(std::atomic<const char*>::is_always_lock_free);
-
-/// A signal's handler removes them just now: who makes a file after this leaves it behind.
-std::atomic<bool> is_ending = false;
-
-void wait_for_end() {
-    while (is_ending)
-        ::pause();
-}
-
-class UnfinishedName {
-  public:
-    explicit UnfinishedName(const std::string& path) {
-        auto name = std::make_unique<char[]>(path.size() + 1);
-        std::copy(path.begin(), path.end(), name.get());
-        for (std::atomic<const char*>& place : unfinished_names) {
-            const char* none = nullptr;
-            if (!place.compare_exchange_strong(none, name.get())) continue;
-            (void)name.release();
-            place_ = &place;
-            return;
-        }
-    }
-    ~UnfinishedName() {
-        if (place_) delete[] place_->exchange(nullptr);
-    }
-    UnfinishedName(const UnfinishedName&) = delete;
-    UnfinishedName& operator=(const UnfinishedName&) = delete;
-
-  private:
-    std::atomic<const char*>* place_ = nullptr;  // null: so many at once that this one stays
-};
-
-void remove_unfinished(int number) {
-    is_ending = true;
-    for (std::atomic<const char*>& place : unfinished_names) {
-        if (const char* name = place.exchange(nullptr)) ::unlink(name);
-    }
-    ::signal(number, SIG_DFL);
-    ::raise(number);
-}
-
 }  // namespace
-
-void remove_unfinished_files_on_signals() {
-    for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
-        // nohup stays in force.
-        if (::signal(number, remove_unfinished) == SIG_IGN) ::signal(number, SIG_IGN);
-    }
-}
-
-void remove_leftovers(const std::vector<std::string>& paths) {
-    std::map<fs::path, std::set<std::pair<std::string, std::string>>> names_of_folders;
-    for (const std::string& path : paths) {
-        std::string why;
-        const fs::path target = resolve_target(path, why);
-        const fs::path folder = target.parent_path();
-        names_of_folders[folder.empty() ? "." : folder].insert(name_parts(target));
-    }
-    static const std::regex pattern(R"(\.(.+)\.([0-9a-f]{8})\.(\d{1,9})\.\d+\.tmp(\..*)?)");
-    const auto yesterday = fs::file_time_type::clock::now() - std::chrono::hours(24);
-    for (const auto& [folder, names] : names_of_folders) {
-        std::error_code error;
-        for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
-             entry.increment(error)) {
-            const std::string name = entry->path().filename().string();
-            std::smatch match;
-            if (!name.starts_with('.') || !std::regex_match(name, match, pattern) ||
-                !names.contains({match[1], match[4]})) {
-                continue;
-            }
-            const bool is_of_nobody =
-                match[2] == machine_tag() && ::kill(std::stoi(match[3]), 0) != 0 && errno == ESRCH;
-            std::error_code unknown, ignored;
-            const bool is_old = fs::last_write_time(entry->path(), unknown) < yesterday && !unknown;
-            if (is_of_nobody || is_old) fs::remove(entry->path(), ignored);
-        }
-    }
-}
-
-/// A file that is being written under a name of its own; removed again unless it was kept.
-class PictureWriter::TemporaryFile {
-  public:
-    explicit TemporaryFile(const fs::path& target) : target_(target) {
-        static std::atomic<unsigned> count = 0;
-        const auto [stem, extension] = name_parts(target);
-        path_ = target.parent_path() / fmt::format(".{}.{}.{}.{}.tmp{}", stem, machine_tag(),
-                                                   ::getpid(), count++, extension);
-        name_.emplace(path_.string());
-    }
-    ~TemporaryFile() {
-        if (path_.empty()) return;
-        std::error_code ignored;
-        fs::remove(path_, ignored);
-    }
-    TemporaryFile(const TemporaryFile&) = delete;
-    TemporaryFile& operator=(const TemporaryFile&) = delete;
-
-    [[nodiscard]] const fs::path& path() const { return path_; }
-
-    /// Renaming asks the folder alone, and would replace a file that may not be written.
-    /// @returns  0 or an errno.
-    [[nodiscard]] int check_target() const {
-        return ::access(target_.c_str(), W_OK) == 0 || errno == ENOENT ? 0 : errno;
-    }
-
-    /// Syncs the file and gives it its final name. @returns  0 or an errno.
-    [[nodiscard]] int keep() {
-        const int file = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC);
-        if (file < 0) return errno;
-        struct stat old {};
-        if (::stat(target_.c_str(), &old) == 0) (void)::fchmod(file, old.st_mode & 07777);
-        const int error = ::fsync(file) == 0 ? 0 : errno;
-        ::close(file);
-        if (error) return error;
-        if (::rename(path_.c_str(), target_.c_str()) != 0) return errno;
-        path_.clear();
-        name_.reset();
-        // The new name is on the disk when its directory is. Some file systems cannot sync one.
-        const fs::path folder = target_.has_parent_path() ? target_.parent_path() : fs::path(".");
-        const int directory = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-        if (directory >= 0) {
-            (void)::fsync(directory);
-            ::close(directory);
-        }
-        return 0;
-    }
-
-  private:
-    fs::path target_;
-    fs::path path_;
-    std::optional<UnfinishedName> name_;
-};
 
 /// What OIIO's writers write to. They do not look whether their last bytes reached the disk (PNG at
 /// none), and libjpeg ends the process when one did not. So this takes everything, and remembers.
@@ -289,16 +106,15 @@ class PictureWriter::FileProxy final : public OIIO::Filesystem::IOProxy {
 
 PictureWriter::PictureWriter(const std::string& path, const OIIO::TypeDesc& type, int nthreads)
     : path_(path), type_(type) {
-    std::string why;
-    const fs::path target = resolve_target(path, why);
-    if (!why.empty()) fail(why);
+    temporary_ = std::make_unique<AtomicFile>(path);
+    if (!temporary_->refusal().empty()) fail(temporary_->refusal());
+    const fs::path& target = temporary_->target();
     out_ = OIIO::ImageOutput::create(target.string());
     if (!out_) {
         fail(target.has_extension() ? first_line(OIIO::geterror())
                                     : "the name has no extension that selects a format");
     }
     out_->threads(nthreads);
-    temporary_ = std::make_unique<TemporaryFile>(target);
 }
 
 PictureWriter::~PictureWriter() = default;
@@ -392,7 +208,6 @@ ImageSpec PictureWriter::file_spec(const ImageSpec& picture) {
 void PictureWriter::open(const ImageSpec& picture) {
     if (const int error = temporary_->check_target()) fail(reason_of(error));
     const ImageSpec spec = plan(picture);
-    wait_for_end();
     // libtiff reads its own directories back when there is an EXIF one (a picture marked sRGB has),
     // and a proxy for writing cannot be read: the file would lack its first directory.
     std::string name = temporary_->path().string();
@@ -403,8 +218,7 @@ void PictureWriter::open(const ImageSpec& picture) {
         name = fs::path(path_).filename().string();
     }
     const bool is_open = out_->open(name, spec);
-    if (is_ending) temporary_.reset();
-    wait_for_end();
+    temporary_->settle();
     if (!is_open) fail(first_line(out_->geterror()));
 }
 
@@ -479,4 +293,4 @@ void PictureWriter::finish() {
     OIIO::ImageCache::destroy(cache);
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

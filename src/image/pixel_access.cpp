@@ -8,9 +8,9 @@
 #include <cstring>
 #include <type_traits>
 
-#include "engine/half_float.h"
+#include "image/half_float.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 // Values go through memcpy: a caller's buffer may have any alignment.
@@ -91,4 +91,4 @@ const PixelAccess* pixel_access(const OIIO::TypeDesc& type) noexcept {
     }
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

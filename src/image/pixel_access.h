@@ -5,9 +5,11 @@
 
 #include <cstddef>
 
+#include "tonewright/version.h"
+
 /// Access to one channel of interleaved pixels of any type. Types are converted at the edge only,
 /// so that there is one kernel inside, not one for each pair of pixel types.
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// How the values of one pixel type are read and written. Conversions are OIIO's: integers stand
 /// for [0, 1] (or [-1, 1]), rounded and clamped when written.
@@ -32,4 +34,4 @@ struct PixelAccess {
 /// Null for a type that OIIO has no pixels of (64-bit integers, strings, pointers).
 [[nodiscard]] const PixelAccess* pixel_access(const OIIO::TypeDesc& type) noexcept;
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

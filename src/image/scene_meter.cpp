@@ -20,12 +20,13 @@
 #include <utility>
 #include <vector>
 
-#include "engine/light_kernels.h"
+#include "image/metering_kernels.h"
 #include "image/source_picture.h"
 #include "tonewright/engine.h"
+#include "tonewright/tonemap.h"
 #include "tonewright/view.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 using OIIO::ImageBuf;
@@ -602,4 +603,4 @@ Metering SceneMeter::metering() const {
     return m;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -8,14 +8,13 @@
 #include <memory>
 
 #include "image/picture_file.h"
-#include "tonewright/image.h"
 #include "tonewright/meter.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// meter() and measure_scene() of a picture that comes in parts, from top to bottom: the same to
 /// the last bit.
-class SceneMeter {
+class TONEWRIGHT_API SceneMeter {
   public:
     /// Whether pixels without cover are left out. Where that leaves none (a channel that was never
     /// written, or light alone), a second pass ignores cover.
@@ -46,14 +45,16 @@ class SceneMeter {
 
 /// Hands all parts of a picture to a meter. Called again where cover has to be ignored.
 using PicturePass = std::function<void(SceneMeter&)>;
-[[nodiscard]] SceneMeter measure_picture(const OIIO::ImageSpec& spec, const MeterOptions& options,
-                                         SceneMeter::Figures figures, int nthreads,
-                                         const PicturePass& pass);
+[[nodiscard]] TONEWRIGHT_API SceneMeter measure_picture(const OIIO::ImageSpec& spec,
+                                                        const MeterOptions& options,
+                                                        SceneMeter::Figures figures, int nthreads,
+                                                        const PicturePass& pass);
 
 /// Of a file, or of the rows of a region of it.
 /// @throws Error  without the file's name, but for FileError
-[[nodiscard]] SceneMeter measure_file(const std::string& path, const MeterOptions& options,
-                                      SceneMeter::Figures figures, int nthreads,
-                                      std::size_t batch_bytes = kBatchBytes);
+[[nodiscard]] TONEWRIGHT_API SceneMeter measure_file(const std::string& path,
+                                                     const MeterOptions& options,
+                                                     SceneMeter::Figures figures, int nthreads,
+                                                     std::size_t batch_bytes = kBatchBytes);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -11,10 +11,12 @@
 #include <system_error>
 #include <thread>
 
+#include "base/atomic_file.h"
 #include "image/picture_file.h"
 #include "image/tonemap_file.h"
+#include "tonewright/tonemap.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 bool is_newer(const std::string& path, const std::string& than) {
@@ -96,4 +98,4 @@ void tonemap_files(const Tonemapper& tonemapper, std::vector<FrameFiles>& frames
     work(0);
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

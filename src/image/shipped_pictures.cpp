@@ -8,12 +8,16 @@
 #include <memory>
 #include <utility>
 
+#include "base/strings.h"
 #include "image/lut_picture.h"
-#include "image/message.h"
+#include "lut/shipped_set.h"
+#include "tonewright/chart.h"
 #include "tonewright/engine.h"
-#include "tonewright/image.h"
+#include "tonewright/generated_files.h"
+#include "tonewright/lut.h"
+#include "tonewright/lut_applications.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 using OIIO::ImageBuf;
@@ -103,4 +107,4 @@ std::vector<GeneratedFile> make_shipped_files(std::vector<ShippedLut>& luts) {
     return files;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -3,13 +3,15 @@
 
 #include <vector>
 
-#include "tonewright/lut.h"
+#include "lut/shipped_set.h"
+#include "tonewright/generated_files.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// The files of the LUTs, those that are pictures and the thumbnails included: what a picture
 /// format's `contents` lack is filled in.
 /// @throws Error  when OpenImageIO cannot write PNG.
-[[nodiscard]] std::vector<GeneratedFile> make_shipped_files(std::vector<ShippedLut>& luts);
+[[nodiscard]] TONEWRIGHT_API std::vector<GeneratedFile> make_shipped_files(
+    std::vector<ShippedLut>& luts);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

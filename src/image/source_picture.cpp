@@ -8,9 +8,10 @@
 #include <cmath>
 #include <string>
 
-#include "image/message.h"
+#include "base/strings.h"
+#include "tonewright/tonemap.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 bool names_alpha(const std::string& name) {
@@ -188,4 +189,4 @@ void load_divisor(const OIIO::TypeDesc& type, int alpha, const SpanSource& sourc
     }
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "image/pixel_access.h"
-#include "tonewright/image.h"
+#include "tonewright/tonemap.h"
 #include "tonewright/view.h"
 
 /// Pictures that are read span by span, whatever their pixel type, in memory or in OIIO's cache.
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// Pixels that are worked on at a time: four float planes of them are 16 KiB and stay in the L1
 /// cache.
@@ -27,11 +27,11 @@ struct ChannelLayout {
 
 /// @throws Error  two channels of which the second is no alpha; alpha before color; luminance and
 ///                chroma (Y, RY, BY) instead of color.
-[[nodiscard]] ChannelLayout channel_layout(const OIIO::ImageSpec& spec);
+[[nodiscard]] TONEWRIGHT_API ChannelLayout channel_layout(const OIIO::ImageSpec& spec);
 
 /// True when color has to be divided by alpha to be a color.
-[[nodiscard]] bool divides_by_alpha(const OIIO::ImageSpec& spec,
-                                    TonemapOptions::Unpremult unpremult);
+[[nodiscard]] TONEWRIGHT_API bool divides_by_alpha(const OIIO::ImageSpec& spec,
+                                                   TonemapOptions::Unpremult unpremult);
 
 /// What the numbers of a picture mean.
 ///
@@ -41,23 +41,24 @@ struct ChannelLayout {
 ///                 is set; else linear light of its `chromaticities`; else linear Rec.709.
 /// @throws Error   unknown name; the picture has a name that is unknown, or impossible
 ///                 chromaticities.
-[[nodiscard]] SourceColor source_color(const OIIO::ImageSpec& spec, std::string_view input);
+[[nodiscard]] TONEWRIGHT_API SourceColor source_color(const OIIO::ImageSpec& spec,
+                                                      std::string_view input);
 
 /// Only what these functions look at: rows have no use for the texts of their picture.
-[[nodiscard]] OIIO::ImageSpec with_color_metadata_alone(const OIIO::ImageSpec& spec);
+[[nodiscard]] TONEWRIGHT_API OIIO::ImageSpec with_color_metadata_alone(const OIIO::ImageSpec& spec);
 
 /// @param what    "source" or "destination"
 /// @throws Error  for a type that OIIO has no pixels of.
-void check_pixel_type(const char* what, const OIIO::TypeDesc& type);
+TONEWRIGHT_API void check_pixel_type(const char* what, const OIIO::TypeDesc& type);
 
 /// Reads the header of a picture that is not open yet.
 /// @throws Error  no picture, or one that cannot be read, or deep, or of a type without pixels.
-void check_source(const OIIO::ImageBuf& source);
+TONEWRIGHT_API void check_source(const OIIO::ImageBuf& source);
 
 /// After a pass over it: a cached picture is read as it is worked on, and its cache reports through
 /// the picture.
 /// @throws Error  with the reader's message.
-void check_was_read(const OIIO::ImageBuf& source, bool is_complete);
+TONEWRIGHT_API void check_was_read(const OIIO::ImageBuf& source, bool is_complete);
 
 /// Where the pixels of a span are.
 struct SpanSource {
@@ -66,16 +67,16 @@ struct SpanSource {
 };
 
 /// Red, green and blue of a span as planes; of a grey picture three times the same.
-void load_color(const OIIO::TypeDesc& type, bool is_grey, const SpanSource& source,
-                const std::array<float*, 3>& rgb, std::size_t n) noexcept;
+TONEWRIGHT_API void load_color(const OIIO::TypeDesc& type, bool is_grey, const SpanSource& source,
+                               const std::array<float*, 3>& rgb, std::size_t n) noexcept;
 
 /// What color is divided by: alpha, and 1 where there is nothing to divide by (0 or not finite).
 /// @param covers  null, or gets 1 where alpha is a divisor, else 0
-void load_divisor(const OIIO::TypeDesc& type, int alpha, const SpanSource& source, float* to,
-                  std::uint8_t* covers, std::size_t n) noexcept;
+TONEWRIGHT_API void load_divisor(const OIIO::TypeDesc& type, int alpha, const SpanSource& source,
+                                 float* to, std::uint8_t* covers, std::size_t n) noexcept;
 
 /// Finds the spans of a picture. One for each thread.
-class SpanReader {
+class TONEWRIGHT_API SpanReader {
   public:
     /// @throws std::bad_alloc
     explicit SpanReader(const OIIO::ImageBuf& picture)
@@ -106,4 +107,4 @@ class SpanReader {
     std::vector<std::byte> fetched_;
 };
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

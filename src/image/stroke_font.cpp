@@ -10,7 +10,7 @@
 #include <numbers>
 #include <string_view>
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 struct GlyphSource {
@@ -204,4 +204,4 @@ const Glyph& glyph_of(char character) {
                       : static_cast<std::size_t>('?' - ' ')];
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

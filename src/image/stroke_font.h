@@ -3,7 +3,9 @@
 
 #include <vector>
 
-namespace tonewright {
+#include "tonewright/version.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
 
 struct Stroke {
     float x0, y0, x1, y1;
@@ -23,4 +25,4 @@ inline constexpr double kLetterSpacing = 1.75;
 /// The glyph of a character; that of `?` for what is not printable ASCII.
 [[nodiscard]] const Glyph& glyph_of(char character);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -26,15 +26,16 @@
 #include <string>
 #include <vector>
 
+#include "base/strings.h"
 #include "image/color_tags.h"
-#include "image/light_picture.h"
-#include "image/message.h"
+#include "image/scene_planes.h"
 #include "image/source_picture.h"
 #include "tonewright/engine.h"
-#include "tonewright/image.h"
+#include "tonewright/registry.h"
+#include "tonewright/tonemap.h"
 #include "tonewright/view.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 using OIIO::ImageBuf;
@@ -85,6 +86,10 @@ ImageSpec result_spec(const ImageSpec& source, bool grey_becomes_color) {
     return spec;
 }
 
+ResolvedOperator operator_of(const TonemapOptions& options) {
+    return resolve_picture_operator(options.op, options.settings, options.look);
+}
+
 View view_of(const TonemapOptions& options, const Settings& settings, const SourceColor& source) {
     return make_view(resolve_picture_operator(options.op, settings, options.look), source,
                      options.exposure_stops, options.display, options.reference_white);
@@ -93,7 +98,7 @@ View view_of(const TonemapOptions& options, const Settings& settings, const Sour
 /// True when a picture decides on some of the operator's parameters.
 bool depends_on_picture(const TonemapOptions& options) {
     return options.statistics == TonemapOptions::Statistics::from_picture &&
-           settings_for_picture(options.op, options.settings, {}).size() > options.settings.size();
+           settings_for_picture(operator_of(options), {}).size() > options.settings.size();
 }
 
 /// Planar colors with strides, as SimdEngine::run() has them. In and out may be the same.
@@ -137,7 +142,7 @@ struct PictureMap {
     std::string label;
     TonemapOptions::Unpremult unpremult = TonemapOptions::Unpremult::automatic;
     /// Not null: color of the data window, which is taken instead of the source's.
-    const LightPicture* light = nullptr;
+    const ScenePlanes* light = nullptr;
 };
 
 /// Runs it; the metadata is still that of the source. @throws Error
@@ -198,7 +203,7 @@ struct Tonemapper::State {
   private:
     [[nodiscard]] std::shared_ptr<const Prepared> prepared_for(const SourceColor& source) const;
     void run(const Prepared& with, ImageBuf& dst, const ImageBuf& src, ROI roi, int nthreads,
-             Progress& progress, const LightPicture* light = nullptr) const;
+             Progress& progress, const ScenePlanes* light = nullptr) const;
 
     /// Pictures of one shot are of one kind.
     static constexpr std::size_t kMostPrepared = 8;
@@ -402,7 +407,7 @@ class RowRunner {
     }
 
     const PlanarMap& map_;
-    const LightPicture* light_;
+    const ScenePlanes* light_;
     const ChannelPlan& plan_;
     ImageBuf& dst_;
     const ImageBuf& src_;
@@ -493,7 +498,7 @@ void Tonemapper::State::run(ImageBuf& dst, const ImageBuf& src, ROI roi, int nth
     if (!depends_on_picture) {
         const std::shared_ptr<const Prepared> prepared = prepared_for(source);
         if (prepared->to_light) {
-            LightPicture light = read_light(src, *prepared->to_light, options.unpremult, nthreads);
+            ScenePlanes light = read_light(src, *prepared->to_light, options.unpremult, nthreads);
             light.exposure = static_cast<float>(std::exp2(options.exposure_stops));
             run_local_operator(prepared->view.op, light);
             run(*prepared, dst, src, roi, nthreads, progress, &light);
@@ -505,7 +510,7 @@ void Tonemapper::State::run(ImageBuf& dst, const ImageBuf& src, ROI roi, int nth
     // Of the whole picture, whatever the region: its parts must fit together.
     const SceneStatistics statistics =
         measure_scene(src, options.input, options.unpremult, {}, nthreads);
-    const Settings settings = settings_for_picture(options.op, options.settings, statistics);
+    const Settings settings = settings_for_picture(operator_of(options), statistics);
     run(Prepared(view_of(options, settings, source)), dst, src, roi, nthreads, progress);
 }
 
@@ -521,7 +526,7 @@ std::shared_ptr<const Prepared> Tonemapper::State::prepared_for(const SourceColo
 }
 
 void Tonemapper::State::run(const Prepared& with, ImageBuf& dst, const ImageBuf& src, ROI roi,
-                            int nthreads, Progress& progress, const LightPicture* light) const {
+                            int nthreads, Progress& progress, const ScenePlanes* light) const {
     const PlanarMap engine = [&](const auto& in, std::ptrdiff_t in_stride, const auto& out,
                                  std::ptrdiff_t out_stride, std::size_t count) {
         with.engine.run(in, in_stride, out, out_stride, count);
@@ -545,7 +550,7 @@ bool Tonemapper::needs_whole_picture() const noexcept { return state_->is_local;
 
 Tonemapper Tonemapper::with_statistics(const SceneStatistics& statistics) const {
     TonemapOptions options = state_->options;
-    options.settings = settings_for_picture(options.op, options.settings, statistics);
+    options.settings = settings_for_picture(operator_of(options), statistics);
     options.statistics = TonemapOptions::Statistics::defaults;
     return Tonemapper(options);
 }
@@ -616,4 +621,4 @@ ImageBuf tonemap(const ImageBuf& src, const TonemapOptions& options, ROI roi, in
     return result;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

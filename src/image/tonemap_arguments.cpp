@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/tonemap_arguments.h"
+#include "base/strings.h"
+#include "tonewright/tonemap.h"
 
 #include <charconv>
 #include <utility>
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 constexpr std::string_view kParameter = "set.";
@@ -72,4 +74,4 @@ void set_tonemap_argument(TonemapOptions& options, std::string_view name,
     }
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -22,9 +22,10 @@
 #include "image/scene_meter.h"
 #include "image/source_picture.h"
 #include "image/tonemap_file.h"
-#include "tonewright/image.h"
+#include "tonewright/image_io.h"
+#include "tonewright/tonemap.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 using OIIO::ImageBuf;
@@ -241,4 +242,4 @@ void tonemap_file(const Tonemapper& tonemapper, const std::string& in, const std
     }
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

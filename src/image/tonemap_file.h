@@ -5,22 +5,22 @@
 #include <string>
 
 #include "image/picture_file.h"
-#include "tonewright/image.h"
+#include "tonewright/tonemap.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// The threads that a count stands for: 0 is OIIO's `threads` attribute, there 0 is all cores.
-[[nodiscard]] int thread_count(int nthreads);
+[[nodiscard]] TONEWRIGHT_API int thread_count(int nthreads);
 
 /// What the result of a picture will be, untiled, without its pixels.
 /// @throws Error  a picture that cannot be tone mapped
-[[nodiscard]] OIIO::ImageSpec result_spec(const Tonemapper& tonemapper,
-                                          const OIIO::ImageSpec& source);
+[[nodiscard]] TONEWRIGHT_API OIIO::ImageSpec result_spec(const Tonemapper& tonemapper,
+                                                         const OIIO::ImageSpec& source);
 
 /// tonemap_file(), with batches of about this size.
 /// @throws Error  without the picture's name
-void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
-                        const OIIO::TypeDesc& type, int nthreads, std::size_t batch_bytes,
-                        int subimage = 0);
+TONEWRIGHT_API void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in,
+                                       const std::string& out, const OIIO::TypeDesc& type,
+                                       int nthreads, std::size_t batch_bytes, int subimage = 0);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -24,10 +24,11 @@
 #include <vector>
 
 #include "local/operators.h"
-#include "local/scene_light.h"
+#include "local/scene_luminance.h"
 #include "tonewright/engine.h"
+#include "tonewright/registry.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 constexpr Vector3 kLightness = {0.1, 0.7, 0.2};
@@ -100,7 +101,7 @@ SimdEngine engine_of(double gain) {
 
 class Fusion {
   public:
-    Fusion(LightPicture& picture, const Params& p)
+    Fusion(ScenePlanes& picture, const Params& p)
         : picture_(picture),
           width_(static_cast<std::size_t>(picture.width)),
           gain_(p.number("exposure") * static_cast<double>(picture.exposure)),
@@ -411,7 +412,7 @@ class Fusion {
         }
     }
 
-    LightPicture& picture_;
+    ScenePlanes& picture_;
     std::size_t width_;
     double gain_;
     std::array<SimdEngine, kExposures> engines_;
@@ -422,7 +423,7 @@ class Fusion {
     int display_mip_ = 0;
 };
 
-void run(LightPicture& picture, const Params& p) { Fusion(picture, p).run(); }
+void run(ScenePlanes& picture, const Params& p) { Fusion(picture, p).run(); }
 
 }  // namespace
 
@@ -465,4 +466,4 @@ Operator define_exposure_fusion() {
     return op;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -26,9 +26,9 @@
 #include <vector>
 
 #include "local/operators.h"
-#include "local/scene_light.h"
+#include "local/scene_luminance.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 constexpr float kStopsBelowLargest = 24;
@@ -334,7 +334,7 @@ class Histogram {
 };
 
 /// Of the pixels that count and have light.
-Histogram histogram_of(const LightPicture& picture, const std::vector<float>& luminance,
+Histogram histogram_of(const ScenePlanes& picture, const std::vector<float>& luminance,
                        const Plane& stops) {
     const bool all_count = std::none_of(picture.counts.begin(), picture.counts.end(),
                                         [](std::uint8_t counts) { return counts != 0; });
@@ -356,7 +356,7 @@ Histogram histogram_of(const LightPicture& picture, const std::vector<float>& lu
     return parts[0];
 }
 
-Plane stops_of(const LightPicture& picture, const std::vector<float>& luminance) {
+Plane stops_of(const ScenePlanes& picture, const std::vector<float>& luminance) {
     Plane stops(picture.width, picture.height);
     const float largest = *std::max_element(luminance.begin(), luminance.end());
     const float least =
@@ -368,7 +368,7 @@ Plane stops_of(const LightPicture& picture, const std::vector<float>& luminance)
     return stops;
 }
 
-void run(LightPicture& picture, const Params& p) {
+void run(ScenePlanes& picture, const Params& p) {
     const std::vector<float> luminance = luminance_of(picture);
     const auto base = static_cast<float>(p.number("base"));
     const auto threshold = static_cast<float>(p.number("threshold"));
@@ -429,4 +429,4 @@ Operator define_local_laplacian() {
     return op;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

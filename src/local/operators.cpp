@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "local/operators.h"
+#include "base/format_number.h"
+#include "tonewright/registry.h"
 
 #include <cmath>
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 const std::vector<Operator>& local_operators() {
     static const std::vector<Operator> all = {define_exposure_fusion(), define_local_laplacian(),
@@ -15,7 +17,7 @@ void run_rows_in_turn(int count, const std::function<void(int begin, int end)>& 
     body(0, count);
 }
 
-void run_local_operator(const ResolvedOperator& op, LightPicture& picture) {
+void run_local_operator(const ResolvedOperator& op, ScenePlanes& picture) {
     if (!op.op->is_local()) {
         throw Error("operator is " + op.op->id +
                     ", which looks at one pixel at a time; expected a local one");
@@ -39,4 +41,4 @@ int whole_number(const Params& params, const char* name) {
     return static_cast<int>(value);
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

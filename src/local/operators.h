@@ -4,7 +4,7 @@
 #include "tonewright/local.h"
 
 /// Each file of this folder defines one operator: what it is, and what it does to a picture.
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 [[nodiscard]] Operator define_exposure_fusion();
 [[nodiscard]] Operator define_local_laplacian();
@@ -18,4 +18,4 @@ inline constexpr const char* kLocalNegatives =
 /// @throws Error
 [[nodiscard]] int whole_number(const Params& params, const char* name);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

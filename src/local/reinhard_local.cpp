@@ -22,9 +22,9 @@
 #include <vector>
 
 #include "local/operators.h"
-#include "local/scene_light.h"
+#include "local/scene_luminance.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 constexpr double kDelta = 1e-3;
@@ -102,7 +102,7 @@ void convolve(const std::vector<float>& weights, const Tap& tap, std::size_t cou
 /// Scaled luminance with margins of zeros: what lies outside of the picture adds nothing.
 class PaddedPlane {
   public:
-    PaddedPlane(const LightPicture& picture, const std::vector<float>& luminance, int margin)
+    PaddedPlane(const ScenePlanes& picture, const std::vector<float>& luminance, int margin)
         : height_(picture.height),
           margin_(static_cast<std::size_t>(margin)),
           stride_(2 * margin_ + static_cast<std::size_t>(picture.width) + kBlock),
@@ -193,7 +193,7 @@ class Adaptation {
     std::vector<float> passes_ = std::vector<float>(kStrip);
 };
 
-void run(LightPicture& picture, const Params& p) {
+void run(ScenePlanes& picture, const Params& p) {
     const double key = p.number("key");
     double average = p.number("log_average");
     std::vector<float> luminance = luminance_of(picture);
@@ -280,4 +280,4 @@ Operator define_reinhard_local() {
     return op;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

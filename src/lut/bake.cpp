@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include "engine/error_metric.h"
-#include "lut/numbers.h"
+#include "base/format_number.h"
+#include "measure/error_metric.h"
 #include "tonewright/lut.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 BakedLut measured(Lut lut, const LutRequest& request, bool trilinear, bool is_fitted) {
@@ -69,4 +69,4 @@ BakedLut bake_lut(const LutRequest& request, LutNodes nodes, bool trilinear,
                             name_of(request.format), baked.lut.size));
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -3,9 +3,10 @@
 
 #include <fmt/format.h>
 
-#include "lut/numbers.h"
+#include "base/format_number.h"
+#include "base/strings.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 namespace {
 bool is_ctf(const ClfTable& table) { return table.is_ctf || table.is_hue_preserving; }
@@ -64,4 +65,4 @@ std::string write_clf(const ClfTable& table, const std::string& name,
     return text;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

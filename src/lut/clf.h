@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
-namespace tonewright {
+#include "tonewright/version.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// One table as a Common LUT Format file (Academy S-2014-006, version 3), or as a Color Transform
 /// Format file where CLF does not reach; 32-bit float in and out.
@@ -34,9 +36,9 @@ struct ClfTable {
 };
 
 /// ".clf" or ".ctf". OCIO knows a format by it.
-[[nodiscard]] const char* file_extension(const ClfTable& table);
+[[nodiscard]] TONEWRIGHT_API const char* file_extension(const ClfTable& table);
 
-[[nodiscard]] std::string write_clf(const ClfTable& table, const std::string& name,
-                                    const std::vector<std::string>& description);
+[[nodiscard]] TONEWRIGHT_API std::string write_clf(const ClfTable& table, const std::string& name,
+                                                   const std::vector<std::string>& description);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -5,11 +5,11 @@
 #include <array>
 #include <cmath>
 
-#include "engine/error_metric.h"
+#include "measure/error_metric.h"
 #include "tonewright/engine.h"
 #include "tonewright/lut.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 constexpr double kMidGrey = 0.18;
@@ -97,4 +97,4 @@ std::string to_string(const LutClipping& clipping) {
     return text;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

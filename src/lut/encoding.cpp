@@ -5,9 +5,11 @@
 #include <charconv>
 #include <cmath>
 
+#include "base/format_number.h"
+#include "base/strings.h"
 #include "tonewright/lut.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 /// An encoding without parameters, and the primaries of the light that it is of.
@@ -162,4 +164,4 @@ LutFormat parse_lut_format(std::string_view text) {
                 did_you_mean(text, names));
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -6,18 +6,19 @@
 #include <cmath>
 #include <cstdint>
 
-#include "engine/probe.h"
 #include "lut/in_parallel.h"
 #include "lut/picture_color.h"
 #include "lut/tetrahedron.h"
+#include "measure/sample_set.h"
 #include "tonewright/engine.h"
+#include "tonewright/lut.h"
 
 // With weights that interpolate linearly inside each of a cell's six tetrahedra, the normal matrix
 // of the least squares connects a node with those that it shares an edge with: seven neighbours up
 // (the other corners of the cell above it) and seven down. So it is eight numbers a node, however
 // many samples are in it, and a step of conjugate gradients costs little; some 15 are needed.
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 /// Of a logarithmic axis: where its toe ends and its longer steps begin.
@@ -179,7 +180,7 @@ class Fit {
             const std::size_t begin = block * kBlock;
             const std::size_t count = std::min(kBlock, sample_count_ - begin);
             std::vector<float> light(3 * count);
-            ProbeRandom random(block);
+            SampleRandom random(block);
             for (std::size_t i = 0; i < count; ++i) {
                 const Vector3 color = draw_color(begin + i, random, from_rec709);
                 for (std::size_t c = 0; c < 3; ++c) {
@@ -211,7 +212,7 @@ class Fit {
 
     /// As pictures have them, or others: half inside Rec.709 and half inside the primaries of the
     /// light, channels log-uniform, a tenth with a channel at 0.
-    [[nodiscard]] Vector3 draw_color(std::size_t i, ProbeRandom& random,
+    [[nodiscard]] Vector3 draw_color(std::size_t i, SampleRandom& random,
                                      const Matrix3& from_rec709) const {
         Vector3 color{};
         if (is_picture_color(i)) return multiply(from_rec709, draw_picture_color(random));
@@ -430,4 +431,4 @@ std::vector<double> fit_cube(const CubeProblem& problem, const CubeFitOptions& o
     return Fit(problem, options).run();
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

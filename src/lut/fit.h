@@ -7,7 +7,7 @@
 #include "tonewright/color.h"
 #include "tonewright/pipeline.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// Where light stands on each of the three axes of a cube.
 struct CubeAxis {
@@ -25,7 +25,8 @@ struct CubeAxis {
 /// @param edge             of the cube.
 /// @param share_of_lights  of an axis that reaches further than 64, what is for the lights above,
 ///                         in longer steps; 64 is a node. 0: equal steps everywhere.
-[[nodiscard]] CubeAxis make_log_axis(double top, int edge, double share_of_lights = 0);
+[[nodiscard]] TONEWRIGHT_API CubeAxis make_log_axis(double top, int edge,
+                                                    double share_of_lights = 0);
 
 /// What a cube stands for.
 struct CubeProblem {
@@ -45,7 +46,7 @@ struct CubeProblem {
 /// The logarithmic axis that suits the pipeline best, by the errors of sampled cubes of 33 nodes a
 /// side: with longer steps for the lights where the operator has little left to do above 64.
 /// @param problem  its axis is not read.
-[[nodiscard]] CubeAxis choose_log_axis(const CubeProblem& problem, double top);
+[[nodiscard]] TONEWRIGHT_API CubeAxis choose_log_axis(const CubeProblem& problem, double top);
 
 struct CubeFitOptions {
     /// Twice as many gain a few hundredths.
@@ -58,7 +59,7 @@ struct CubeFitOptions {
 
 /// RGB at the nodes, blue fastest: nodes[3 * ((r * edge + g) * edge + b) + c], in double from the
 /// reference.
-[[nodiscard]] std::vector<double> sample_cube(const CubeProblem& problem);
+[[nodiscard]] TONEWRIGHT_API std::vector<double> sample_cube(const CubeProblem& problem);
 
 /// The nodes whose tetrahedral interpolation is nearest to the pipeline: least squares of the seen
 /// differences over colours that are like those of pictures and beyond, from the sampled nodes on.
@@ -67,7 +68,7 @@ struct CubeFitOptions {
 /// one way; a fitted one errs to both sides, half as much. Greys are fitted first, on their own, so
 /// they stay as neutral as the operator makes them; black stays what it is. Nodes that no colour
 /// needs stay as sampled. The same nodes on every run.
-[[nodiscard]] std::vector<double> fit_cube(const CubeProblem& problem,
-                                           const CubeFitOptions& options = {});
+[[nodiscard]] TONEWRIGHT_API std::vector<double> fit_cube(const CubeProblem& problem,
+                                                          const CubeFitOptions& options = {});
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

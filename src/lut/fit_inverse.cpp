@@ -6,13 +6,13 @@
 #include <cmath>
 #include <thread>
 
-#include "engine/probe.h"
 #include "lut/in_parallel.h"
 #include "lut/picture_color.h"
 #include "lut/tetrahedron.h"
+#include "measure/sample_set.h"
 #include "tonewright/engine.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 /// With half as many, 99.9 % of other colors are off by half as much again.
@@ -84,7 +84,7 @@ class InverseFit {
 
     /// As pictures have them, or log-uniform from black to the brightest light; in Rec.709 or the
     /// scene's primaries, greys, and with a channel at 0.
-    [[nodiscard]] Vector3 draw_color(std::size_t i, ProbeRandom& random,
+    [[nodiscard]] Vector3 draw_color(std::size_t i, SampleRandom& random,
                                      const Matrix3& from_rec709) const {
         Vector3 color{};
         const std::size_t kind = i % 10;
@@ -105,7 +105,7 @@ class InverseFit {
         const std::size_t reached = count - count / kAnyLight;
         const Matrix3 from_rec709 = rgb_to_rgb(kRec709, problem_.primaries);
         Colors light = make_colors(reached);
-        ProbeRandom random(1);
+        SampleRandom random(1);
         for (std::size_t i = 0; i < reached; ++i) {
             const Vector3 color = draw_color(i, random, from_rec709);
             for (std::size_t c = 0; c < 3; ++c)
@@ -362,4 +362,4 @@ std::vector<double> fit_inverse_cube(const InverseCubeProblem& problem) {
     return InverseFit(problem).run();
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

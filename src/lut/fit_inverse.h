@@ -6,7 +6,7 @@
 #include "tonewright/color.h"
 #include "tonewright/pipeline.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// A cube over light that leads back through a pipeline.
 struct InverseCubeProblem {
@@ -32,6 +32,7 @@ struct InverseCubeProblem {
 /// cube goes on evenly, drawn to what is nearest in code. Black comes back as what the nodes hold
 /// of black. The same nodes on every run.
 /// @returns RGB at the nodes, blue fastest, as fit_cube().
-[[nodiscard]] std::vector<double> fit_inverse_cube(const InverseCubeProblem& problem);
+[[nodiscard]] TONEWRIGHT_API std::vector<double> fit_inverse_cube(
+    const InverseCubeProblem& problem);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -7,7 +7,7 @@
 
 #include "tonewright/engine.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 constexpr unsigned kHalfCount = 65536;
 constexpr unsigned kSignBit = 0x8000;
@@ -63,4 +63,4 @@ std::vector<float> sample_half_domain(const Expr& f, double lo, double hi) {
     return table;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -5,16 +5,17 @@
 
 #include "tonewright/expr.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// 65536 samples of f at the half floats, in the order of their bit patterns; entry -0 equals +0,
 /// NaN is f(0), infinities are f(+-65504). Outside [lo, hi] (by more than one half step) the value
 /// at the end is held.
 /// @param f       of input 0, finite on [lo, hi].
 /// @param lo, hi  the interval that a clamp before the curve leaves.
-[[nodiscard]] std::vector<float> sample_half_domain(const Expr& f, double lo, double hi);
+[[nodiscard]] TONEWRIGHT_API std::vector<float> sample_half_domain(const Expr& f, double lo,
+                                                                   double hi);
 
 /// The half float of a bit pattern, as a double; NaN patterns give NaN.
-[[nodiscard]] double half_value(unsigned bits) noexcept;
+[[nodiscard]] TONEWRIGHT_API double half_value(unsigned bits) noexcept;
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -4,7 +4,6 @@
 #include "lut/icc.h"
 
 #include <fmt/format.h>
-#include <lcms2.h>
 
 #include <algorithm>
 #include <array>
@@ -13,9 +12,16 @@
 #include <new>
 #include <type_traits>
 
-#include "lut/printable.h"
+#include "base/strings.h"
+#include "tonewright/error.h"
 
-namespace tonewright {
+#ifdef TONEWRIGHT_HAVE_LCMS2
+#include <lcms2.h>
+#endif
+
+TONEWRIGHT_NAMESPACE_BEGIN
+
+#ifdef TONEWRIGHT_HAVE_LCMS2
 namespace {
 
 struct Deleter {
@@ -227,4 +233,28 @@ void DeviceLink::run_rgb(const float* in, float* out, std::size_t count) const {
     }
 }
 
-}  // namespace tonewright
+#else
+
+namespace {
+[[noreturn]] void refuse_icc() {
+    throw Error(
+        "icc: this build has no Little CMS; expected one configured with TONEWRIGHT_WITH_ICC");
+}
+}  // namespace
+
+struct DeviceLink::Profile {};
+
+std::string write_icc(const std::vector<float>&, int, int, const std::string&,
+                      const std::vector<std::string>&) {
+    refuse_icc();
+}
+
+DeviceLink::DeviceLink(const std::string&, std::string_view) { refuse_icc(); }
+DeviceLink::~DeviceLink() = default;
+DeviceLink::DeviceLink(DeviceLink&&) noexcept = default;
+DeviceLink& DeviceLink::operator=(DeviceLink&&) noexcept = default;
+void DeviceLink::run_rgb(const float*, float*, std::size_t) const { refuse_icc(); }
+
+#endif
+
+TONEWRIGHT_NAMESPACE_END

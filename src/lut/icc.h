@@ -6,21 +6,21 @@
 #include <string_view>
 #include <vector>
 
-#include "tonewright/lut.h"
+#include "tonewright/version.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// A cube as an ICC device link, RGB to RGB, 16 bits: the contents of the file, the same on every
 /// run.
 /// @param nodes        RGB triplets of numbers in [0, 1], blue fastest
 /// @param description  one line that programs show
 /// @param text         what else there is to say
-[[nodiscard]] std::string write_icc(const std::vector<float>& nodes, int size, int version,
-                                    const std::string& description,
-                                    const std::vector<std::string>& text);
+[[nodiscard]] TONEWRIGHT_API std::string write_icc(const std::vector<float>& nodes, int size,
+                                                   int version, const std::string& description,
+                                                   const std::vector<std::string>& text);
 
 /// An ICC device link as LittleCMS runs it: tetrahedral, in 16 bits.
-class DeviceLink {
+class TONEWRIGHT_API DeviceLink {
   public:
     /// @param path  for errors
     /// @throws FileError  when it is none, of something else than RGB to RGB, or damaged.
@@ -37,4 +37,4 @@ class DeviceLink {
     std::unique_ptr<const Profile> profile_;
 };
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

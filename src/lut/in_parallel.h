@@ -8,7 +8,9 @@
 #include <thread>
 #include <vector>
 
-namespace tonewright {
+#include "tonewright/version.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// Runs f(0) ... f(count - 1), each once, on threads that take the next one when they are free.
 /// What one throws is thrown when all threads have ended.
@@ -29,4 +31,4 @@ void in_parallel(std::size_t count, unsigned thread_count, const F& f) {
         other.get();
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -3,14 +3,14 @@
 #include <array>
 #include <cmath>
 
-#include "engine/error_metric.h"
-#include "engine/probe.h"
 #include "lut/half_domain.h"
-#include "lut/numbers.h"
+#include "lut/shaper.h"
+#include "measure/error_metric.h"
+#include "measure/sample_set.h"
 #include "tonewright/engine.h"
 #include "tonewright/lut.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 double interpolate_half(const Lut& lut, double x) {
@@ -113,10 +113,10 @@ Vector3 interpolate(const Lut& lut, const Vector3& rgb, bool trilinear) {
 
 LutError measure_lut(const Lut& lut, const LutRequest& request, bool trilinear) {
     const InputSpace& space = find_input_space(request.view.input);
-    ProbeSet probes = make_probes(space, {17, 50000});
+    SampleSet probes = make_sample_set(space, {17, 50000});
     // And table inputs over the whole cube: the corners that no scene colour of the set reaches.
     constexpr std::size_t kRandomCount = 50000;
-    ProbeRandom random(7);
+    SampleRandom random(7);
     std::array<std::vector<double>, 3> inputs;
     for (auto& plane : inputs) {
         for (std::size_t i = 0; i < kRandomCount; ++i)
@@ -126,7 +126,7 @@ LutError measure_lut(const Lut& lut, const LutRequest& request, bool trilinear) 
     ReferenceEngine({curve_stage(request.encoding.decode)})
         .run({planes[0], planes[1], planes[2]}, planes, kRandomCount);
     for (std::size_t i = 0; i < kRandomCount; ++i) {
-        probes.add(inputs[0][i], inputs[1][i], inputs[2][i], ProbeKind::random);
+        probes.add(inputs[0][i], inputs[1][i], inputs[2][i], SampleKind::random);
     }
     // Table input as a client has it: float, of the float colour.
     std::vector<double> code(probes.rgb.size());
@@ -148,7 +148,7 @@ LutError measure_lut(const Lut& lut, const LutRequest& request, bool trilinear) 
     std::vector<double> shown;
     std::vector<double> wanted;
     for (std::size_t i = 0; i < probes.size(); ++i) {
-        if (probes.kind[i] == ProbeKind::special) continue;
+        if (probes.kind[i] == SampleKind::special) continue;
         const float* v = &probes.rgb[3 * i];
         bool inside = true;
         for (std::size_t c = 0; c < 3; ++c) {
@@ -184,4 +184,4 @@ LutError measure_lut(const Lut& lut, const LutRequest& request, bool trilinear) 
     return result;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

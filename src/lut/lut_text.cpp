@@ -17,11 +17,11 @@
 #include <limits>
 #include <optional>
 
-#include "lut/lowercase.h"
-#include "lut/printable.h"
+#include "base/strings.h"
 #include "tonewright/error.h"
+#include "tonewright/lut.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 /// What OpenColorIO takes.
@@ -886,4 +886,4 @@ CubeText parse_cube(const std::string& path, std::string_view text) {
     return read_cube(lines);
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

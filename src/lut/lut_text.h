@@ -6,10 +6,12 @@
 #include <string_view>
 #include <vector>
 
-namespace tonewright {
+#include "tonewright/version.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// Extensions of the LUT files that are text, with the dot.
-[[nodiscard]] const std::vector<std::string>& lut_text_extensions();
+[[nodiscard]] TONEWRIGHT_API const std::vector<std::string>& lut_text_extensions();
 
 /// Looks through a LUT file before OpenColorIO reads it, whose readers make room for whatever size
 /// a file declares, leave lines out that they do not understand, take NaN for a number and wait for
@@ -19,7 +21,7 @@ namespace tonewright {
 /// and DOMAIN_MAX or LUT_3D_INPUT_RANGE. Takes no memory to speak of.
 /// @param path  whose extension says the format
 /// @throws FileError  with path, line and reason.
-void check_lut_text(const std::string& path, std::string_view text);
+TONEWRIGHT_API void check_lut_text(const std::string& path, std::string_view text);
 
 /// A .cube: a table, a cube or both, and the light or code that each of them begins and ends at.
 struct CubeText {
@@ -36,6 +38,6 @@ struct CubeText {
 /// Adobe's and Resolve's .cube. OpenColorIO has a reader for each, that takes no TITLE together
 /// with a range: files that are about have both.
 /// @throws FileError  with path, line and reason.
-[[nodiscard]] CubeText parse_cube(const std::string& path, std::string_view text);
+[[nodiscard]] TONEWRIGHT_API CubeText parse_cube(const std::string& path, std::string_view text);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -4,14 +4,14 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/probe.h"
+#include "measure/sample_set.h"
 #include "tonewright/color.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// A colour as pictures have them, linear Rec.709: brightness log-uniform over 15 stops, channels
 /// some half of a stop apart.
-[[nodiscard]] inline Vector3 draw_picture_color(ProbeRandom& random) {
+[[nodiscard]] inline Vector3 draw_picture_color(SampleRandom& random) {
     const double stops = std::log2(0.18) + random.uniform(-9, 6.2);
     Vector3 color{};
     for (double& channel : color) {
@@ -23,4 +23,4 @@ namespace tonewright {
     return color;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lut/raw.h"
+#include "tonewright/lut.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <cstring>
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 Lut parse_raw_lut(const std::string& path, std::string_view bytes) {
     constexpr std::size_t kNode = 3 * sizeof(float);
@@ -31,4 +32,4 @@ Lut parse_raw_lut(const std::string& path, std::string_view bytes) {
     return lut;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -6,11 +6,11 @@
 
 #include "tonewright/lut.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// Raw floats: RGB triplets, little-endian, red fastest, of a cube of 2 to 129 points a side.
 /// @param path  for errors
 /// @throws FileError  another number of bytes; NaN and infinities.
-[[nodiscard]] Lut parse_raw_lut(const std::string& path, std::string_view bytes);
+[[nodiscard]] TONEWRIGHT_API Lut parse_raw_lut(const std::string& path, std::string_view bytes);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

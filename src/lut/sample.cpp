@@ -3,12 +3,14 @@
 #include <array>
 #include <cmath>
 
+#include "base/format_number.h"
+#include "base/strings.h"
 #include "lut/fit.h"
 #include "lut/half_domain.h"
 #include "tonewright/engine.h"
 #include "tonewright/lut.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 constexpr int kHalfCount = 65536;
@@ -236,4 +238,4 @@ void quantize(Lut& lut, const LutRequest& request) {
         v = std::round(std::clamp(v, 0.0F, 1.0F) * largest) / largest;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -6,7 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace tonewright {
+#include "tonewright/version.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// Where a place is in a cube of nodes that is interpolated in tetrahedra.
 struct Tetrahedron {
@@ -43,4 +45,4 @@ struct Tetrahedron {
     return ((mask >> 2 & 1) * edge + (mask >> 1 & 1)) * edge + (mask & 1);
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -6,13 +6,15 @@
 #include <cmath>
 #include <cstring>
 
-#include "engine/error_metric.h"
+#include "base/format_number.h"
+#include "base/strings.h"
 #include "lut/clf.h"
 #include "lut/icc.h"
-#include "lut/numbers.h"
+#include "lut/shaper.h"
+#include "measure/error_metric.h"
 #include "tonewright/lut.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 std::string title_of(const LutRequest& r) {
@@ -306,4 +308,4 @@ std::string write_lut(const Lut& lut, const LutRequest& request, const LutError&
     return {};
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

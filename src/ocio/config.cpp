@@ -7,12 +7,13 @@
 #include <map>
 #include <set>
 
-#include "lut/numbers.h"
+#include "base/strings.h"
 #include "ocio/config_builder.h"
 #include "tonewright/engine.h"
+#include "tonewright/generated_files.h"
 #include "tonewright/ocio.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 constexpr const char* kLutFolder = "luts";
@@ -115,7 +116,7 @@ std::string probe_csv(const ConfigModel& model,
         const double v = 0.18 * std::exp2(stops);
         colors.push_back({v, v, v});
     }
-    ProbeRandom random(5);
+    SampleRandom random(5);
     for (int i = 0; i < 24; ++i) {
         Vector3 v{};
         for (double& x : v)
@@ -232,4 +233,4 @@ std::vector<GeneratedFile> make_config(const ConfigOptions& options) {
     return files;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ocio/config_builder.h"
+#include "base/strings.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,14 +12,13 @@
 #include <utility>
 
 #include "lut/in_parallel.h"
-#include "lut/numbers.h"
 #include "ocio/inverse.h"
 #include "ocio/profile_2_5.h"
 #include "ocio/read_config.h"
 #include "ocio/round_trip.h"
 #include "tonewright/engine.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 OCIO::GroupTransformRcPtr lower_part(LutFiles& luts, const Pipeline& stages,
@@ -124,30 +124,31 @@ Pipeline view_stages(const ResolvedOperator& op, double exposure_stops, const Di
 /// "AgX - HDR 1000 nits" on "Rec.2100-PQ" -> "agx_hdr_1000_nits_rec2100_pq".
 std::string output_alias(const std::string& view, const std::string& display) {
     std::string alias = "out_";
-    for (std::size_t i = 0; i < view.size(); ++i) {
-        const char c = view[i];
+    const std::string name = lowercase(view);
+    for (std::size_t i = 0; i < name.size(); ++i) {
+        const char c = name[i];
         const bool is_sign =
-            i + 1 < view.size() && std::isdigit(static_cast<unsigned char>(view[i + 1])) != 0;
+            i + 1 < name.size() && std::isdigit(static_cast<unsigned char>(name[i + 1])) != 0;
         if (is_sign && c == '+') alias += "plus";
         if (is_sign && c == '-') alias += "minus";
         const bool is_word = std::isalnum(static_cast<unsigned char>(c)) != 0;
-        if (is_word) alias += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+        if (is_word) alias += c;
         if (!is_word && alias.back() != '_') alias += '_';
     }
     return alias + "_" + display;
 }
 
 /// A view as a colour space: write nodes, textures and `--colorconvert` know no views.
-/// @param way_back  what the description says of it
+/// @param inverse_space  what the description says of it
 OCIO::ColorSpaceRcPtr make_output_space(const DisplayedView& shown, const std::string& display,
-                                        const std::string& way_back) {
+                                        const std::string& inverse_space) {
     OCIO::ColorSpaceRcPtr cs = OCIO::ColorSpace::Create(OCIO::REFERENCE_SPACE_SCENE);
     cs->setName(output_space_name(shown.name, display).c_str());
     if (display == shown.display->title)
         cs->addAlias(output_alias(shown.name, shown.display->id).c_str());
     cs->setFamily(("Output/" + display).c_str());
     cs->setDescription(("The picture of the view " + shown.name + " on " + display +
-                        ", in its code values." + way_back)
+                        ", in its code values." + inverse_space)
                            .c_str());
     cs->setEncoding(shown.display->is_hdr ? "hdr-video" : "sdr-video");
     cs->setBitDepth(OCIO::BIT_DEPTH_F32);
@@ -176,7 +177,7 @@ void append(OCIO::GroupTransformRcPtr& group, const Pipeline& stages) {
 
 /// Display reference -> scene reference, of what the view transform makes; null where OpenColorIO's
 /// own inversion of the view transform is as good: its tables and cubes, on the CPU.
-OCIO::GroupTransformRcPtr way_back(const ConfigModel::View& view, const DisplayedView& shown) {
+OCIO::GroupTransformRcPtr inverse_space(const ConfigModel::View& view, const DisplayedView& shown) {
     const DisplayLimit limit = display_limit(shown.op, *shown.display);
     const OCIO::GroupTransformRcPtr inverted = invert_light(shown.op, limit);
     if (!inverted) return nullptr;
@@ -192,7 +193,7 @@ OCIO::GroupTransformRcPtr way_back(const ConfigModel::View& view, const Displaye
 
 /// @param back  display reference -> scene reference
 ErrorStats measure_round_trip(const View& view, const OCIO::GroupTransformRcPtr& back,
-                              OCIO::OptimizationFlags flags, const ProbeSet& probes) {
+                              OCIO::OptimizationFlags flags, const SampleSet& probes) {
     const Display& display = find_display(view.display);
     Lowered whole;
     whole.transform = OCIO::GroupTransform::Create();
@@ -208,7 +209,7 @@ ErrorStats measure_round_trip(const View& view, const OCIO::GroupTransformRcPtr&
 }
 
 /// Beyond this, what comes back is another picture.
-bool is_way_back(const ErrorStats& lossless) {
+bool is_inverse_space(const ErrorStats& lossless) {
     return lossless.mean <= 5e-3 && lossless.p999 <= 3.5e-2;
 }
 
@@ -236,7 +237,7 @@ std::string yaml_of(const OCIO::Config& config) {
 }
 
 /// OCIO's CPU path of the view against the reference, for colors of the input space >= 0.
-ViewError measure_view(const View& view, const ProbeSet& probes) {
+ViewError measure_view(const View& view, const SampleSet& probes) {
     const Pipeline stages = build_view(view);
     const Lowered lowered = lower_to_ocio(stages, {.primaries = view.op.op->working});
     std::vector<double> truth(probes.rgb.size());
@@ -247,7 +248,7 @@ ViewError measure_view(const View& view, const ProbeSet& probes) {
     std::vector<double> a;
     std::vector<double> b;
     for (std::size_t i = 0; i < probes.size(); ++i) {
-        if (!probes.is_non_negative(i) || probes.kind[i] == ProbeKind::special) continue;
+        if (!probes.is_non_negative(i) || probes.kind[i] == SampleKind::special) continue;
         errors.push_back(channel_error(&truth[3 * i], &shown[3 * i]));
         for (std::size_t c = 0; c < 3; ++c) {
             a.push_back(truth[3 * i + c]);
@@ -573,7 +574,7 @@ ConfigBuilder::LoweredView ConfigBuilder::lower_view(const ConfigModel::View& vi
     ViewError& error = result.error;
     error = measure_view(measured, probes_);
     result.forward = lower_to_ocio(shown.stages, {.primaries = view.op.op->working});
-    result.back = way_back(view, shown);
+    result.back = inverse_space(view, shown);
     OCIO::GroupTransformRcPtr back = result.back;
     if (!back) {
         back = OCIO::GroupTransform::Create();
@@ -586,12 +587,12 @@ ConfigBuilder::LoweredView ConfigBuilder::lower_view(const ConfigModel::View& vi
     WayBackError& round_trip = error.back;
     round_trip.is_measured = !view.op.op->is_diagnostic && (is_first || !is_slow);
     if (round_trip.is_measured) {
-        const ProbeSet& probes = is_slow ? few_probes_ : probes_;
+        const SampleSet& probes = is_slow ? few_probes_ : probes_;
         round_trip.lossless =
             measure_round_trip(measured, back, OCIO::OPTIMIZATION_LOSSLESS, probes);
         round_trip.by_default =
             measure_round_trip(measured, back, OCIO::OPTIMIZATION_DEFAULT, probes);
-        round_trip.exists = is_way_back(round_trip.lossless);
+        round_trip.exists = is_inverse_space(round_trip.lossless);
     }
     if (!error.is_exact) {
         result.wide =
@@ -619,9 +620,9 @@ void ConfigBuilder::add_view_transform(const ConfigModel::View& view, const Disp
             rounded_up(lowered.wide.max), rounded_up(lowered.wide.p999),
             rounded_up(lowered.wide.mean));
     }
-    const std::string way_back_text = describe(error.back, view.op.op->is_diagnostic);
-    ways_back_[shown.transform] = way_back_text;
-    text += way_back_text;
+    const std::string inverse_space_text = describe(error.back, view.op.op->is_diagnostic);
+    ways_back_[shown.transform] = inverse_space_text;
+    text += inverse_space_text;
     OCIO::ViewTransformRcPtr vt = OCIO::ViewTransform::Create(OCIO::REFERENCE_SPACE_SCENE);
     vt->setName(shown.transform.c_str());
     vt->setDescription(text.c_str());
@@ -640,4 +641,4 @@ void ConfigBuilder::add_view_transform(const ConfigModel::View& view, const Disp
     config_->addViewTransform(vt);
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -6,12 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "engine/error_metric.h"
-#include "engine/probe.h"
+#include "measure/error_metric.h"
+#include "measure/sample_set.h"
 #include "ocio/lut_files.h"
 #include "ocio/model.h"
+#include "tonewright/generated_files.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// The view transform that a view takes on a display.
 struct DisplayedView {
@@ -127,9 +128,9 @@ class ConfigBuilder {
     std::set<std::string> cubes_;
     /// Of each view transform, what its way back is.
     std::map<std::string, std::string> ways_back_;
-    ProbeSet probes_ = make_probes(find_input_space("lin_rec709"), {9, 40000});
-    ProbeSet wide_probes_ = make_probes(find_input_space("lin_ap1"), {9, 40000});
-    ProbeSet few_probes_ = make_probes(find_input_space("lin_rec709"), {3, 1000});
+    SampleSet probes_ = make_sample_set(find_input_space("lin_rec709"), {9, 40000});
+    SampleSet wide_probes_ = make_sample_set(find_input_space("lin_ap1"), {9, 40000});
+    SampleSet few_probes_ = make_sample_set(find_input_space("lin_rec709"), {3, 1000});
 };
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

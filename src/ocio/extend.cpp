@@ -7,12 +7,13 @@
 #include <cstring>
 #include <map>
 
+#include "base/strings.h"
 #include "ocio/config_builder.h"
 #include "ocio/read_config.h"
 #include "tonewright/engine.h"
 #include "tonewright/ocio.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 /// A display of somebody's config that shows what one of ours does.
@@ -210,7 +211,7 @@ ExtendedConfig extend_config(const std::string& path, const ConfigOptions& optio
             if (!is_same) throw Error("config: the result changes " + name + " of " + path);
         }
         std::vector<ExtendedView> views;
-        const ProbeSet probes = make_probes(find_input_space("lin_ap0"), {5, 4000});
+        const SampleSet probes = make_sample_set(find_input_space("lin_ap0"), {5, 4000});
         for (const auto& view : model.views) {
             for (const HostDisplay& host : hosts) {
                 if (!view.is_on(*host.ours)) continue;
@@ -219,7 +220,7 @@ ExtendedConfig extend_config(const std::string& path, const ConfigOptions& optio
                 const std::string name = config_view_name(view.name, shown.op, *host.ours);
                 std::vector<float> in;
                 for (std::size_t i = 0; i < probes.size(); ++i) {
-                    if (probes.is_non_negative(i) && probes.kind[i] != ProbeKind::special)
+                    if (probes.is_non_negative(i) && probes.kind[i] != SampleKind::special)
                         in.insert(in.end(), &probes.rgb[3 * i], &probes.rgb[3 * i] + 3);
                 }
                 std::vector<double> truth(in.size());
@@ -248,4 +249,4 @@ ExtendedConfig extend_config(const std::string& path, const ConfigOptions& optio
     return result;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

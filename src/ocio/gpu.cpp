@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ocio/gpu.h"
 
+#include "base/strings.h"
 #include "tonewright/error.h"
 
 #ifdef TONEWRIGHT_HAVE_EGL
@@ -14,7 +15,7 @@
 #include <mutex>
 #include <vector>
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 /// Colours per draw: a texture of kBatchWidth x kBatchHeight texels, 4 MiB each way. Eight times as
@@ -499,11 +500,11 @@ std::string OcioGpu::renderer() {
     return availability().device ? availability().device->renderer() : "";
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END
 
 #else  // without EGL
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 struct OcioGpu::Impl {
     [[noreturn]] static void build(const OCIO::ConstProcessorRcPtr&, OCIO::OptimizationFlags) {
@@ -516,11 +517,11 @@ std::string OcioGpu::unavailable_reason() { return "built without EGL"; }
 
 std::string OcioGpu::renderer() { return ""; }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END
 
 #endif
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 OcioGpu::OcioGpu(const OCIO::ConstProcessorRcPtr& processor, OCIO::OptimizationFlags flags)
     : impl_(std::make_unique<Impl>()) {
@@ -535,4 +536,4 @@ void OcioGpu::run_rgb(const float* in, float* out, std::size_t pixel_count) cons
     impl_->run_rgb(in, out, pixel_count);
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -7,7 +7,9 @@
 #include <memory>
 #include <string>
 
-namespace tonewright {
+#include "tonewright/version.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
 
 namespace OCIO = OCIO_NAMESPACE;
 
@@ -19,7 +21,7 @@ namespace OCIO = OCIO_NAMESPACE;
 ///
 /// All objects of a process share one OpenGL context; any thread may use any of them, one at a
 /// time. What the calling thread has current in EGL is the same after each call as before.
-class OcioGpu {
+class TONEWRIGHT_API OcioGpu {
   public:
     /// Compiles the shader and uploads the LUTs.
     ///
@@ -50,4 +52,4 @@ class OcioGpu {
     std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 constexpr std::string_view kUrn = "urn:ampas:aces:transformId:";
@@ -133,4 +133,4 @@ std::vector<std::string> amf_ids_of_output(std::string_view style, std::string_v
     return ids;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

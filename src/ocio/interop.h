@@ -5,7 +5,9 @@
 #include <string_view>
 #include <vector>
 
-namespace tonewright {
+#include "tonewright/version.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// Ids of transforms in ACES Metadata Files, SMPTE ST 2067-50 and Academy S-2019-001: "from" one to
 /// the other and back. Source of all: OpenColorIO 2.5.1's Studio config v4.0.0, and for ACES 1 its
@@ -21,4 +23,4 @@ namespace tonewright {
 [[nodiscard]] std::vector<std::string> amf_ids_of_output(std::string_view style,
                                                          std::string_view display);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -10,7 +10,7 @@
 #include "ocio/inverse_cube.h"
 #include "tonewright/engine.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 void append(OCIO::GroupTransformRcPtr& group, const Lowered& lowered) {
@@ -175,7 +175,7 @@ OCIO::GroupTransformRcPtr invert_lowered(const Pipeline& forward, double peak) {
 /// True where a cube stands for it, or a part of it.
 bool needs_cube(const Pipeline& stages) {
     return std::any_of(stages.begin(), stages.end(), [](const Stage& stage) {
-        const auto* map = std::get_if<Map3Stage>(&stage);
+        const auto* map = std::get_if<CrossTalkStage>(&stage);
         return std::holds_alternative<LatticeStage>(stage) || (map && map->ocio.empty());
     });
 }
@@ -225,4 +225,4 @@ OCIO::GroupTransformRcPtr invert_light(const ResolvedOperator& op, const Display
     return lower_to_ocio(back).transform;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -4,7 +4,7 @@
 #include "ocio/lower.h"
 #include "tonewright/view.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// The way back from a display's light, of the limit's primaries and [0, peak], to scene-linear in
 /// the operator's working space. The first that there is of
@@ -23,4 +23,4 @@ namespace tonewright {
 [[nodiscard]] OCIO::GroupTransformRcPtr invert_light(const ResolvedOperator& op,
                                                      const DisplayLimit& limit);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -13,7 +13,7 @@
 #include "tonewright/engine.h"
 #include "tonewright/view.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 /// Scene light that counts as the brightest: 14 stops over middle grey. What is shown as white
@@ -122,4 +122,4 @@ Pipeline fitted_inverse(const Pipeline& forward, const Primaries& primaries, dou
             curve_stage(light_of(x))};
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

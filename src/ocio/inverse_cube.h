@@ -3,7 +3,7 @@
 
 #include "tonewright/pipeline.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 // Inverses that mix channels, as cubes over a display's light: OpenColorIO's own inversion of a
 // forward cube is one of its codes, 48 nodes a side and sampled, and far from the inverse where the
@@ -19,4 +19,4 @@ namespace tonewright {
 [[nodiscard]] Pipeline fitted_inverse(const Pipeline& forward, const Primaries& primaries,
                                       double peak);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

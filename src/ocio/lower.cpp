@@ -13,12 +13,13 @@
 #include <utility>
 #include <vector>
 
+#include "base/format_number.h"
 #include "lut/fit.h"
 #include "lut/half_domain.h"
 #include "tonewright/engine.h"
 #include "tonewright/lut.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 constexpr unsigned long kHalfCount = 65536;
@@ -281,7 +282,7 @@ class Lowering {
     }
 
     /// @param behind  what limits the result: outside of it the cube may hold anything
-    void map3(const Map3Stage& stage, const ClampStage& behind = {-kInfinity, kInfinity}) {
+    void map3(const CrossTalkStage& stage, const ClampStage& behind = {-kInfinity, kInfinity}) {
         flush_curves();
         if (!stage.ocio.empty()) {
             for (const FixedFunction& function : stage.ocio)
@@ -757,7 +758,7 @@ Lowered lower_to_ocio(const Pipeline& pipeline, const LowerOptions& options) {
         if (const auto* t = std::get_if<ToneScaleStage>(&stage)) lowering.tone_scale(*t);
         if (const auto* h = std::get_if<HuePreservingStage>(&stage)) lowering.hue_preserving(*h);
         if (const auto* h = std::get_if<HexconeStage>(&stage)) lowering.hexcone(*h);
-        if (const auto* m = std::get_if<Map3Stage>(&stage)) {
+        if (const auto* m = std::get_if<CrossTalkStage>(&stage)) {
             const auto* behind =
                 i + 1 < stages.size() ? std::get_if<ClampStage>(&stages[i + 1]) : nullptr;
             lowering.map3(*m, behind ? *behind : ClampStage{-kInfinity, kInfinity});
@@ -786,4 +787,4 @@ OCIO::ConstProcessorRcPtr make_processor(const Lowered& lowered) {
     return config->getProcessor(lowered.transform);
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -7,7 +7,7 @@
 
 #include "tonewright/pipeline.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 namespace OCIO = OCIO_NAMESPACE;
 
@@ -42,10 +42,11 @@ struct LowerOptions {
 /// OCIO's sRGB is 1e-5 off IEC 61966-2-1.
 ///
 /// @throws Error  when a stage has no lowering.
-[[nodiscard]] Lowered lower_to_ocio(const Pipeline& pipeline, const LowerOptions& options = {});
+[[nodiscard]] TONEWRIGHT_API Lowered lower_to_ocio(const Pipeline& pipeline,
+                                                   const LowerOptions& options = {});
 
 /// Runs OCIO's CPU path.
-class OcioCpu {
+class TONEWRIGHT_API OcioCpu {
   public:
     OcioCpu(const OCIO::ConstProcessorRcPtr& processor,
             OCIO::OptimizationFlags flags = OCIO::OPTIMIZATION_DEFAULT);
@@ -58,6 +59,6 @@ class OcioCpu {
 
 /// A processor for a lowered pipeline, from a config without caches: OCIO's processor cache tells
 /// in-memory LUTs apart by size alone.
-[[nodiscard]] OCIO::ConstProcessorRcPtr make_processor(const Lowered& lowered);
+[[nodiscard]] TONEWRIGHT_API OCIO::ConstProcessorRcPtr make_processor(const Lowered& lowered);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -11,14 +11,15 @@
 #include <fstream>
 #include <optional>
 
+#include "base/strings.h"
 #include "lut/icc.h"
-#include "lut/lowercase.h"
 #include "lut/lut_text.h"
-#include "lut/printable.h"
 #include "lut/raw.h"
 #include "ocio/lower.h"
+#include "tonewright/lut.h"
+#include "tonewright/lut_applications.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 namespace fs = std::filesystem;
@@ -246,4 +247,4 @@ void LutFile::run_rgb(const float* in, float* out, std::size_t count) const {
     }
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ocio/lut_files.h"
+#include "base/strings.h"
 
 #include <array>
 
-#include "lut/numbers.h"
-
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 std::vector<float> values_of(const OCIO::Lut1DTransform& lut, ClfTable& table) {
@@ -107,4 +106,4 @@ std::string LutFiles::file_for(const ClfTable& table, const std::string& stem,
     return it->second;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

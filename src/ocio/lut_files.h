@@ -7,9 +7,9 @@
 
 #include "lut/clf.h"
 #include "ocio/lower.h"
-#include "tonewright/lut.h"
+#include "tonewright/generated_files.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// Collects the LUT files that transforms need: OCIO configs cannot hold tables themselves.
 class LutFiles {
@@ -34,4 +34,4 @@ class LutFiles {
     std::vector<GeneratedFile> files_;
 };
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

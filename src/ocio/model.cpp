@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ocio/model.h"
+#include "base/strings.h"
+#include "tonewright/registry.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +11,7 @@
 #include <map>
 #include <set>
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 using Space = ConfigModel::Space;
@@ -253,23 +255,16 @@ std::vector<std::pair<std::string, std::string>> role_table(const std::string& w
     };
 }
 
-std::string lower(const std::string& s) {
-    std::string out = s;
-    for (char& c : out)
-        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return out;
-}
-
 /// What hosts choke on: Blender cuts names at 63 bytes, OCIO looks names up without case.
 void check_names(const ConfigModel& model) {
     std::map<std::string, std::string> taken;
     for (const auto& [role, space] : model.roles)
-        taken[lower(role)] = "role " + role;
+        taken[lowercase(role)] = "role " + role;
     const auto claim = [&](const std::string& name, const std::string& owner) {
         if (name.size() > 63) {
             throw Error("config: name is " + name + "; expected at most 63 bytes");
         }
-        const auto [it, is_new] = taken.emplace(lower(name), owner);
+        const auto [it, is_new] = taken.emplace(lowercase(name), owner);
         if (!is_new) {
             throw Error("config: name is " + name + " for " + owner + "; expected one that " +
                         it->second + " does not have");
@@ -280,11 +275,11 @@ void check_names(const ConfigModel& model) {
         for (const std::string& alias : space.aliases)
             claim(alias, "space " + space.name);
     }
-    std::set<std::string> views = {lower(kUntonemappedView), lower(kRawView)};
+    std::set<std::string> views = {lowercase(kUntonemappedView), lowercase(kRawView)};
     for (const auto& view : model.views) {
         if (view.name.size() > 63)
             throw Error("config: view is " + view.name + "; expected at most 63 bytes");
-        if (!views.insert(lower(view.name)).second) {
+        if (!views.insert(lowercase(view.name)).second) {
             throw Error("config: view is " + view.name + "; expected a name no other operator has");
         }
     }
@@ -404,7 +399,7 @@ std::vector<ConfigModel::View> choose_views(const ConfigOptions& options) {
             continue;
         }
         const auto named = std::find_if(all.begin(), all.end(), [&](const ConfigModel::View& v) {
-            return lower(v.name) == lower(wanted);
+            return lowercase(v.name) == lowercase(wanted);
         });
         if (named != all.end()) {
             add(*named);
@@ -414,7 +409,7 @@ std::vector<ConfigModel::View> choose_views(const ConfigOptions& options) {
             const ResolvedOperator op = parse_operator(wanted);
             std::string name = op.op->view;
             for (const Preset& preset : op.op->presets) {
-                if (op.name == op.op->id + ":" + preset.id) name += " " + preset.title;
+                if (&preset == op.preset) name += " " + preset.title;
             }
             add({name, op, description_of(*op.op)});
         } catch (const Error& e) {
@@ -461,7 +456,7 @@ std::vector<ConfigModel::Look> choose_looks(const ConfigOptions& options,
     for (const std::string& wanted : options.looks) {
         if (wanted == "none") continue;
         const auto found = std::find_if(all.begin(), all.end(), [&](const auto& look) {
-            return lower(look.name) == lower(wanted);
+            return lowercase(look.name) == lowercase(wanted);
         });
         if (found == all.end()) {
             std::vector<std::string> names = {"none"};
@@ -476,46 +471,6 @@ std::vector<ConfigModel::Look> choose_looks(const ConfigOptions& options,
 }
 
 }  // namespace
-
-namespace {
-
-struct OperatorText {
-    std::string name;
-    Settings settings;
-    std::string look;
-};
-
-OperatorText take_apart(std::string_view text) {
-    OperatorText parts;
-    auto& [name, settings, look] = parts;
-    std::size_t begin = 0;
-    while (begin <= text.size()) {
-        const std::size_t end = std::min(text.find(':', begin), text.size());
-        const std::string part(text.substr(begin, end - begin));
-        const std::size_t equals = part.find('=');
-        if (equals == std::string::npos) {
-            name += (name.empty() ? "" : ":") + part;
-        } else if (part.substr(0, equals) == "look") {
-            look = part.substr(equals + 1);
-        } else {
-            settings[part.substr(0, equals)] = part.substr(equals + 1);
-        }
-        begin = end + 1;
-    }
-    return parts;
-}
-
-}  // namespace
-
-ResolvedOperator parse_operator(std::string_view text) {
-    const OperatorText parts = take_apart(text);
-    return resolve_operator(parts.name, parts.settings, parts.look);
-}
-
-ResolvedOperator parse_picture_operator(std::string_view text) {
-    const OperatorText parts = take_apart(text);
-    return resolve_picture_operator(parts.name, parts.settings, parts.look);
-}
 
 std::string config_view_name(const std::string& name, const ResolvedOperator& op,
                              const Display& display) {
@@ -645,4 +600,4 @@ ConfigModel make_config_model(const ConfigOptions& options) {
     return model;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -8,7 +8,7 @@
 #include "tonewright/ocio.h"
 #include "tonewright/view.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// Everything that the config says, once, before any of it becomes an OCIO object: all profiles are
 /// written from this.
@@ -79,7 +79,7 @@ struct ConfigModel {
 
 /// @throws Error  for unknown views, looks and displays, and for names that hosts cannot take: over
 ///                63 bytes, twice the same, an alias that is a role.
-[[nodiscard]] ConfigModel make_config_model(const ConfigOptions& options = {});
+[[nodiscard]] TONEWRIGHT_API ConfigModel make_config_model(const ConfigOptions& options = {});
 
 inline constexpr const char* kDataSpace = "Non-Color";
 inline constexpr const char* kUntonemappedView = "Un-tone-mapped";
@@ -88,4 +88,4 @@ inline constexpr const char* kRawView = "Raw";
 /// it, as the ACES configs have them, for an alias.
 inline constexpr const char* kDisplaySuffix = " - Display";
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

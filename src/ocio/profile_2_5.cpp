@@ -9,7 +9,7 @@
 
 #include "ocio/interop.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 constexpr const char* kStandIn = "builtin:";
@@ -122,4 +122,4 @@ std::string to_profile_2_5(const std::string& yaml, const ConfigModel& model,
     return spaced(out.c_str());
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

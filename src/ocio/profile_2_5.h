@@ -8,7 +8,7 @@
 #include "ocio/config_builder.h"
 #include "ocio/model.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// Stands for a built-in transform that the library at hand may not know, in a config that
 /// to_profile_2_5() writes.
@@ -21,4 +21,4 @@ namespace tonewright {
     const std::string& yaml, const ConfigModel& model,
     const std::map<std::string, std::vector<DisplayedView>>& displayed);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -3,7 +3,7 @@
 
 #include "tonewright/error.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 OCIO::ConfigRcPtr editable_copy(const OCIO::Config& config) {
     const OCIO::ConfigRcPtr copy = config.createEditableCopy();
@@ -21,4 +21,4 @@ OCIO::ConfigRcPtr read_config(const std::string& path) {
     }
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -5,9 +5,10 @@
 
 #include <string>
 
+#include "tonewright/version.h"
 namespace OCIO = OCIO_NAMESPACE;
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// OpenColorIO 2.1's own copy forgets which view transform is the default, and with it what becomes
 /// of scene light that is converted to a display.
@@ -17,4 +18,4 @@ namespace tonewright {
 /// @throws FileError  for a file that is missing or no config, with OpenColorIO's reason
 [[nodiscard]] OCIO::ConfigRcPtr read_config(const std::string& path);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -4,17 +4,17 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 double visible_error(double code, double light) {
     constexpr double kSrgbSlopeAtBlack = 12.92;
     return std::min(code, kSrgbSlopeAtBlack * light);
 }
 
-RoundTrip::RoundTrip(const View& view, const ProbeSet& probes, std::size_t one_of)
+RoundTrip::RoundTrip(const View& view, const SampleSet& probes, std::size_t one_of)
     : engine_(build_view(view)), decode_(find_display(view.display).decode) {
     for (std::size_t i = 0; i < probes.size(); i += one_of) {
-        if (!probes.is_non_negative(i) || probes.kind[i] == ProbeKind::special) continue;
+        if (!probes.is_non_negative(i) || probes.kind[i] == SampleKind::special) continue;
         codes_.insert(codes_.end(), &probes.rgb[3 * i], &probes.rgb[3 * i] + 3);
     }
     const std::vector<double> codes = show(codes_);
@@ -51,4 +51,4 @@ std::vector<double> RoundTrip::show(const std::vector<float>& scene) const {
     return codes;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -4,12 +4,12 @@
 #include <functional>
 #include <vector>
 
-#include "engine/error_metric.h"
-#include "engine/probe.h"
+#include "measure/error_metric.h"
+#include "measure/sample_set.h"
 #include "tonewright/engine.h"
 #include "tonewright/view.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// An error of a code value, or of its light in units in which sRGB's slope at black turns it into
 /// code values, whichever is less: a display with a pure power has an infinite slope there, where
@@ -22,7 +22,7 @@ class RoundTrip {
   public:
     /// @param probes  scene light; what has negative channels is left out
     /// @param one_of  so many of them, one is taken
-    RoundTrip(const View& view, const ProbeSet& probes, std::size_t one_of = 1);
+    RoundTrip(const View& view, const SampleSet& probes, std::size_t one_of = 1);
 
     /// Code values -> scene light in the view's input space, of so many pixels.
     using WayBack = std::function<void(const float* in, float* out, std::size_t count)>;
@@ -40,4 +40,4 @@ class RoundTrip {
     std::vector<float> codes_;
 };
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

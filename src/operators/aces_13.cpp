@@ -39,7 +39,7 @@
 #include "operators/color_modifiers.h"
 #include "operators/family.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 /// A form of the standard: what `output` chooses.
@@ -265,14 +265,14 @@ Expr tone_curve(const Form& form, bool is_ocio) {
 /// In AP1. The distance of a channel from the largest, D = max - c, is left alone up to u0 = thr a,
 /// a = |max|; with u = D - u0 beyond it becomes u0 + u/(1 + (u/s)^p)^(1/p), s = scale a: the
 /// standard's formula, times a, which needs no division by it.
-Map3Stage compress_gamut() {
+CrossTalkStage compress_gamut() {
     constexpr double power = 1.2;
     constexpr std::array limit = {1.147, 1.264, 1.312};  // cyan, magenta, yellow
     constexpr std::array threshold = {0.815, 0.803, 0.880};
     const std::array<Expr, 3> c = {Expr::input(0), Expr::input(1), Expr::input(2)};
     const Expr achromatic = max(max(c[0], c[1]), c[2]);
     const Expr a = abs(achromatic);
-    Map3Stage stage{c};
+    CrossTalkStage stage{c};
     stage.ocio = {
         {"ACES_GamutComp13",
          {limit[0], limit[1], limit[2], threshold[0], threshold[1], threshold[2], power}}};
@@ -293,7 +293,7 @@ Map3Stage compress_gamut() {
 }
 
 /// The first two steps of the RRT, in AP0; also of negatives.
-Map3Stage glow_and_red_modifier(bool is_ocio) {
+CrossTalkStage glow_and_red_modifier(bool is_ocio) {
     constexpr double floor = 1e-10;
     const std::array<Expr, 3> rgb = {Expr::input(0), Expr::input(1), Expr::input(2)};
     const Expr saturation = rrt_saturation(rgb, floor);
@@ -304,7 +304,7 @@ Map3Stage glow_and_red_modifier(bool is_ocio) {
     const Expr outer = max(2 - distance, 0);
     const Expr inner = max(1 - distance, 0);
     const Expr weight = 0.25 * (outer * outer * outer) - inner * inner * inner;
-    Map3Stage stage{
+    CrossTalkStage stage{
         rrt_red_modifier(glowing, weight, is_ocio ? rrt_saturation(glowing, floor) : saturation)};
     stage.ocio = {{"ACES_Glow10"}, {"ACES_RedMod10"}};
     // The saturation of the dark: where all channels are below 0.01.
@@ -438,8 +438,8 @@ std::vector<Operator> define_aces_13() {
          {{"gamut_compression", "yes"}}},
     };
     op.warnings = {"of hdr outputs greys near the peak are a little blue: red is limited first"};
-    op.deviations = {{Deviation::Kind::exceeds_white, 10, "hdr_1000"},
-                     {Deviation::Kind::crushes_black, 0.00199, "ctl"}};
+    op.deviations = {{DocumentedDifference::Kind::exceeds_white, 10, "hdr_1000"},
+                     {DocumentedDifference::Kind::crushes_black, 0.00199, "ctl"}};
     op.build = build;
     op.output_primaries = [](const Params& p) {
         return form_of(p).is_hdr ? kRec2020 : limiting_primaries(p, kAP1);
@@ -453,4 +453,4 @@ std::vector<Operator> define_aces_13() {
     return {op};
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -32,9 +32,10 @@
 #include <numbers>
 #include <tuple>
 
+#include "base/format_number.h"
 #include "operators/family.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 // The formulas that both the tables (double) and the pixels (Expr) need are templates of the scalar
@@ -582,7 +583,7 @@ class OutputTransform {
     [[nodiscard]] const Constants& constants() const { return k_; }
 
     /// AP1, limited to the input's range, to the display's RGB, not limited.
-    [[nodiscard]] Map3Stage forward() const {
+    [[nodiscard]] CrossTalkStage forward() const {
         // The first step of the standard is AP0's model, behind a matrix from AP1: the model of
         // AP1 itself, as both have the same white.
         std::array<Expr, 3> cones = transform<Expr>(ap1_.from_rgb, inputs());
@@ -599,13 +600,13 @@ class OutputTransform {
                                        achromatic, hue);
 
         const auto [moved_j, moved_m] = move_along_line(j, m, j, hue, false);
-        Map3Stage stage{rgb_of(display_, achromatic_of(moved_j), moved_m, hue)};
+        CrossTalkStage stage{rgb_of(display_, achromatic_of(moved_j), moved_m, hue)};
         stage.is_cube_fitted = true;
         return stage;
     }
 
     /// The display's RGB, limited to its range, to AP1, not limited.
-    [[nodiscard]] Map3Stage backward() const {
+    [[nodiscard]] CrossTalkStage backward() const {
         const bool has_negatives = display_.has_negatives();
         std::array<Expr, 3> cones = transform<Expr>(display_.from_rgb, inputs());
         for (Expr& x : cones)
@@ -889,4 +890,4 @@ std::vector<Operator> define_aces_20() {
     return {op};
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -23,10 +23,11 @@
 //           white, so greys are tinted: that is in the source. No form holds a display encoding.
 // Check     mid grey 0.18 -> 0.266898920 (Narkowicz; 0.140119567 with prescale 0.6), red
 //           0.105591247 (Hill), 0.106938283 (Filament, Rec.2020) (check_values.json).
+#include "base/format_number.h"
 #include "operators/color_modifiers.h"
 #include "operators/family.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 Operator narkowicz() {
@@ -94,12 +95,12 @@ Operator hill() {
          {{"prescale", "1.8"}, {"white", "1"}, {"clamp", "no"}}},
         {"threejs", "as in three.js: prescale 1/0.6", {{"prescale", "1.6666666666666667"}}},
     };
-    op.deviations = {{Deviation::Kind::crushes_black, 0.0032, ""},
-                     {Deviation::Kind::crushes_black, 0.0018, "godot"},
-                     {Deviation::Kind::crushes_black, 0.0019, "threejs"},
-                     {Deviation::Kind::black, -0.00049, "godot"},
-                     {Deviation::Kind::exceeds_white, 1.8, "bakinglab"},
-                     {Deviation::Kind::exceeds_white, 1.3, "godot"}};
+    op.deviations = {{DocumentedDifference::Kind::crushes_black, 0.0032, ""},
+                     {DocumentedDifference::Kind::crushes_black, 0.0018, "godot"},
+                     {DocumentedDifference::Kind::crushes_black, 0.0019, "threejs"},
+                     {DocumentedDifference::Kind::black, -0.00049, "godot"},
+                     {DocumentedDifference::Kind::exceeds_white, 1.8, "bakinglab"},
+                     {DocumentedDifference::Kind::exceeds_white, 1.3, "godot"}};
     op.build = [](const Params& p) -> Pipeline {
         const double prescale = p.number("prescale");
         const double white = p.number("white");
@@ -144,7 +145,7 @@ Operator filament() {
     op.parameters = {number_parameter("brightness", "", 1, 0.01, 100,
                                       "factor before the curve: 1 in ACES, 1/0.6 in ACESLegacy")};
     op.presets = {{"legacy", "as Filament's ACESLegacy", {{"brightness", "1.6666666666666667"}}}};
-    op.deviations = {{Deviation::Kind::never_reaches_white, 0.869, ""}};
+    op.deviations = {{DocumentedDifference::Kind::never_reaches_white, 0.869, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const Matrix3 to_ap1 = rec2020_to_ap1_unadapted();
         const Vector3 w = ap1_weights();
@@ -167,4 +168,4 @@ Operator filament() {
 
 std::vector<Operator> define_aces_fits() { return {narkowicz(), hill(), filament()}; }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -39,7 +39,7 @@
 #include "operators/color_modifiers.h"
 #include "operators/family.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 // clang-format off
@@ -110,8 +110,8 @@ Operator sobotka() {
                 {"punchy", "Punchy", "darker and stronger: ASC CDL power 1.35, saturation 1.4"}};
     op.warnings = {
         "this is not the AgX of Blender: mid grey is shown at code value 0.5, Blender's at 0.46"};
-    op.deviations = {{Deviation::Kind::never_reaches_white, 0.193, "golden"},
-                     {Deviation::Kind::exceeds_white, 1.06, "golden"}};
+    op.deviations = {{DocumentedDifference::Kind::never_reaches_white, 0.193, "golden"},
+                     {DocumentedDifference::Kind::exceeds_white, 1.06, "golden"}};
     op.build = [](const Params& p) -> Pipeline {
         const AgxSigmoid sigmoid(10 / 16.5, 0.5, 2.0, 3.0, 3.25);
         Pipeline stages = {limit_to_positive(), MatrixStage{kInset}, limit_to_shaper(),
@@ -141,11 +141,11 @@ Operator minimal() {
     op.code_power = 2.2;
     op.parameters = {choice_parameter("order", {"6", "7"}, "6", "order of the polynomial")};
     op.presets = {{"order7", "with Filament's polynomial", {{"order", "7"}}}};
-    op.deviations = {{Deviation::Kind::black, -0.0023, ""},
-                     {Deviation::Kind::black, 0.0029, "order7"},
-                     {Deviation::Kind::never_reaches_white, 0.997, ""},
-                     {Deviation::Kind::never_reaches_white, 0.961, "order7"},
-                     {Deviation::Kind::not_monotone, 0.00024, "order7"}};
+    op.deviations = {{DocumentedDifference::Kind::black, -0.0023, ""},
+                     {DocumentedDifference::Kind::black, 0.0029, "order7"},
+                     {DocumentedDifference::Kind::never_reaches_white, 0.997, ""},
+                     {DocumentedDifference::Kind::never_reaches_white, 0.961, "order7"},
+                     {DocumentedDifference::Kind::not_monotone, 0.00024, "order7"}};
     op.build = [](const Params& p) -> Pipeline {
         const Expr n = normalised_log(Expr::input());
         const Expr f = p.choice("order") == "6" ? polynomial6(n) : polynomial7(n);
@@ -176,8 +176,8 @@ Operator threejs() {
         "pass through the matrices to Rec.2020 and of the inset; what is below the shaper's range "
         "there is its lower end";
     op.warnings = {"where the shaper ends, at scene-linear 16.3, greys fall by 5e-6 of the light"};
-    op.deviations = {{Deviation::Kind::never_reaches_white, 0.997, ""},
-                     {Deviation::Kind::not_monotone, 16, ""}};
+    op.deviations = {{DocumentedDifference::Kind::never_reaches_white, 0.997, ""},
+                     {DocumentedDifference::Kind::not_monotone, 16, ""}};
     op.build = [](const Params&) -> Pipeline {
         // clang-format off
         // Rec.709 to Rec.2020 and back, as the source prints them: 0.0113 is not the rounded value.
@@ -198,11 +198,11 @@ Operator threejs() {
 
 /// Filament's look on code values: a CDL whose saturation is about the luma from before slope and
 /// power, so that no chain of curves and matrices makes it.
-Map3Stage filament_look(const Vector3& slope, double power, double saturation) {
+CrossTalkStage filament_look(const Vector3& slope, double power, double saturation) {
     const std::array<Expr, 3> v = {Expr::input(0), Expr::input(1), Expr::input(2)};
     const Expr luma =
         kRec709Weights[0] * v[0] + kRec709Weights[1] * v[1] + kRec709Weights[2] * v[2];
-    Map3Stage look{v};
+    CrossTalkStage look{v};
     for (std::size_t i = 0; i < 3; ++i)
         look.f[i] = luma + saturation * (pow(slope[i] * v[i], power) - luma);
     return look;
@@ -225,15 +225,15 @@ Operator filament() {
     // Punchy takes black below 0 before it is light: there the lifted black is gone.
     op.bounds = {.cube = 2.4e-2,
                  .reason = "looks saturate about a luma taken before their power: a cube"};
-    op.deviations = {{Deviation::Kind::black, 2.5e-6, ""},
-                     {Deviation::Kind::black, 5.2e-5, "golden"},
-                     {Deviation::Kind::black, 0, "punchy"},
-                     {Deviation::Kind::crushes_black, 0.0020, "punchy"},
-                     {Deviation::Kind::never_reaches_white, 0.961, ""},
-                     {Deviation::Kind::never_reaches_white, -0.0052, "golden"},
-                     {Deviation::Kind::never_reaches_white, 0.942, "punchy"},
-                     {Deviation::Kind::exceeds_white, 1.24, "golden"},
-                     {Deviation::Kind::not_monotone, 0.00021, "golden"}};
+    op.deviations = {{DocumentedDifference::Kind::black, 2.5e-6, ""},
+                     {DocumentedDifference::Kind::black, 5.2e-5, "golden"},
+                     {DocumentedDifference::Kind::black, 0, "punchy"},
+                     {DocumentedDifference::Kind::crushes_black, 0.0020, "punchy"},
+                     {DocumentedDifference::Kind::never_reaches_white, 0.961, ""},
+                     {DocumentedDifference::Kind::never_reaches_white, -0.0052, "golden"},
+                     {DocumentedDifference::Kind::never_reaches_white, 0.942, "punchy"},
+                     {DocumentedDifference::Kind::exceeds_white, 1.24, "golden"},
+                     {DocumentedDifference::Kind::not_monotone, 0.00021, "golden"}};
     op.build = [](const Params& p) -> Pipeline {
         Pipeline stages = {limit_to_positive(), MatrixStage{kAgxInsetRec2020}, limit_to_shaper(),
                            curve_stage(polynomial7(normalised_log(Expr::input())))};
@@ -259,8 +259,8 @@ Operator godot44() {
     op.dialects = "AgX";
     op.negatives = "2e-10, before the first matrix";
     op.warnings = {"where the shaper ends, at scene-linear 16.3, greys fall by 4e-6 of the light"};
-    op.deviations = {{Deviation::Kind::exceeds_white, 1.0003, ""},
-                     {Deviation::Kind::not_monotone, 16, ""}};
+    op.deviations = {{DocumentedDifference::Kind::exceeds_white, 1.0003, ""},
+                     {DocumentedDifference::Kind::not_monotone, 16, ""}};
     op.build = [](const Params&) -> Pipeline {
         // clang-format off
         // Rec.709 to Rec.2020 and Blender's inset in one; its outset and the way back in one.
@@ -341,4 +341,4 @@ std::vector<Operator> define_agx() {
     return {sobotka(), minimal(), threejs(), filament(), godot44(), godot()};
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -38,11 +38,12 @@
 #include <cmath>
 #include <memory>
 
+#include "base/format_number.h"
 #include "operators/agx_sigmoid.h"
 #include "operators/color_modifiers.h"
 #include "operators/family.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 // clang-format off
@@ -248,8 +249,8 @@ Vector3 weights_of(const Primaries& gamut, const Vector3& weights) {
     return out;
 }
 
-Map3Stage as_one(const Pipeline& chain) {
-    Map3Stage stage{compose(chain)};
+CrossTalkStage as_one(const Pipeline& chain) {
+    CrossTalkStage stage{compose(chain)};
     stage.is_cube_fitted = true;
     return stage;
 }
@@ -257,24 +258,26 @@ Map3Stage as_one(const Pipeline& chain) {
 /// The formula up to the guard rail of the limit, behind a look's stages: one stage of cross-talk,
 /// so that where it has to be sampled it is sampled once. It takes channels below 0.
 Pipeline sdr_formula(const Pipeline& look, const Primaries& limit) {
-    Pipeline chain = look + Pipeline{Map3Stage{scene_rail(inputs(), kRailWeights)},
-                                     MatrixStage{kAgxInsetRec2020}, Map3Stage{sdr_map(inputs())},
-                                     MatrixStage{kAgxOutsetRec2020}};
+    Pipeline chain =
+        look + Pipeline{CrossTalkStage{scene_rail(inputs(), kRailWeights)},
+                        MatrixStage{kAgxInsetRec2020}, CrossTalkStage{sdr_map(inputs())},
+                        MatrixStage{kAgxOutsetRec2020}};
     if (!(limit == kRec2020)) {
         chain.push_back(MatrixStage{rgb_to_rgb(kRec2020, limit)});
-        chain.push_back(Map3Stage{display_rail(inputs(), weights_of(limit, kRailWeights))});
+        chain.push_back(CrossTalkStage{display_rail(inputs(), weights_of(limit, kRailWeights))});
     }
     return {as_one(chain), ClampStage{0, 1}};
 }
 
 Pipeline hdr_formula(const Pipeline& look) {
     const Pipeline chain =
-        look + Pipeline{Map3Stage{scene_rail(inputs(), kRailWeights2025)},
-                        MatrixStage{kAgxInsetRec2020},
-                        Map3Stage{hdr_map(inputs())},
-                        MatrixStage{kAgxOutsetRec2020},
-                        MatrixStage{rgb_to_rgb(kRec2020, kP3D65)},
-                        Map3Stage{display_rail(inputs(), weights_of(kP3D65, kRailWeights2025))}};
+        look +
+        Pipeline{CrossTalkStage{scene_rail(inputs(), kRailWeights2025)},
+                 MatrixStage{kAgxInsetRec2020},
+                 CrossTalkStage{hdr_map(inputs())},
+                 MatrixStage{kAgxOutsetRec2020},
+                 MatrixStage{rgb_to_rgb(kRec2020, kP3D65)},
+                 CrossTalkStage{display_rail(inputs(), weights_of(kP3D65, kRailWeights2025))}};
     return {as_one(chain), MatrixStage{rgb_to_rgb(kP3D65, kRec2020)}, ClampStage{0, 1},
             MatrixStage{scale(kIdentity3, kHdrPeak)}};
 }
@@ -488,7 +491,7 @@ Pipeline look_stages(const std::string& look) {
 /// Rec.2020 -> Rec.2020.
 Pipeline apply_look(const std::string& look, bool is_lattice) {
     if (look.empty()) return {};
-    Pipeline rail = {Map3Stage{scene_rail(inputs(), kRailWeights)}};
+    Pipeline rail = {CrossTalkStage{scene_rail(inputs(), kRailWeights)}};
     if (is_lattice) {
         rail = through(rail_lattice()) + Pipeline{curve_stage(log_decode(Expr::input())),
                                                   MatrixStage{inverse(rec2020_to_e_gamut())}};
@@ -549,11 +552,11 @@ std::vector<Operator> define_agx_blender() {
         "with range=hdr an SDR display clips at 100 cd/m2",
         "Blender multiplies the light of its HDR view by 2.03 where it shows or saves it"};
     // The cube of the looks' guard rail ends 10 stops below mid grey, where these looks lift.
-    op.deviations = {{Deviation::Kind::exceeds_white, 10, "hdr"},
-                     {Deviation::Kind::black, 0.000105, "punchy"},
-                     {Deviation::Kind::black, 1.85e-5, "medium_low_contrast"},
-                     {Deviation::Kind::black, 0.000128, "low_contrast"},
-                     {Deviation::Kind::black, 0.000456, "very_low_contrast"}};
+    op.deviations = {{DocumentedDifference::Kind::exceeds_white, 10, "hdr"},
+                     {DocumentedDifference::Kind::black, 0.000105, "punchy"},
+                     {DocumentedDifference::Kind::black, 1.85e-5, "medium_low_contrast"},
+                     {DocumentedDifference::Kind::black, 0.000128, "low_contrast"},
+                     {DocumentedDifference::Kind::black, 0.000456, "very_low_contrast"}};
     op.bounds = {.simd = 3e-5,
                  .simd_goal = 1e-5,
                  .ocio_cpu = 8e-5,
@@ -580,4 +583,4 @@ std::vector<Operator> define_agx_blender() {
     return {op};
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

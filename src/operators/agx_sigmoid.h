@@ -7,7 +7,7 @@
 
 /// What the dialects of AgX share: Blender's matrices and the curve, for expressions and, where the
 /// nodes of cubes are computed, for numbers.
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 // clang-format off
 /// Blender's inset and outset, for Rec.2020. The outset is the inverse of another inset than this.
@@ -72,4 +72,4 @@ class AgxSigmoid {
     double px_, py_, slope_, toe_power_, shoulder_power_, toe_, shoulder_;
 };
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

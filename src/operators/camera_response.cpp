@@ -24,10 +24,10 @@
 // Check     mid grey 0.18 -> 0.239063797 (python_check/operators/camera_response.py).
 #include <cmath>
 
-#include "color/response_curve.h"
+#include "operators/camera_response/response_curve.h"
 #include "operators/family.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 std::shared_ptr<const Table> synthetic_curve() {
@@ -102,4 +102,4 @@ std::vector<Operator> define_camera_response() {
     return {op};
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -11,7 +11,7 @@
 // Check     0.18 -> 0.18
 #include "operators/family.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 std::vector<Operator> define_clamp() {
     Operator op;
@@ -26,4 +26,4 @@ std::vector<Operator> define_clamp() {
     return {op};
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -9,7 +9,7 @@
 #include "tonewright/pipeline.h"
 
 /// What several operators do to colour beside their curve.
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// s I + (1 - s) [w; w; w]: saturation about the luminance of weights w.
 inline Matrix3 saturation_matrix(double s, const Vector3& weights) {
@@ -71,9 +71,9 @@ inline std::array<Expr, 3> glow_and_red_modifier(const std::array<Expr, 3>& ap0,
 
 /// The same from AP1 light >= 0 to AP1 light, of which red may come out below 0. A stage of its
 /// own: the matrices and curves that follow stay exact where this has to be sampled.
-inline Map3Stage ap1_glow_and_red_modifier(double floor) {
+inline CrossTalkStage ap1_glow_and_red_modifier(double floor) {
     const std::array<Expr, 3> ap0 = compose({MatrixStage{rgb_to_rgb(kAP1, kAP0)}});
     return {apply_stage(MatrixStage{rgb_to_rgb(kAP0, kAP1)}, glow_and_red_modifier(ap0, floor))};
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -26,9 +26,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/format_number.h"
 #include "operators/family.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 /// What the curves are between, in cd/m2.
@@ -272,4 +273,4 @@ Operator spline() {
 
 std::vector<Operator> define_eetf() { return {bt2390(), bt2446a(), spline()}; }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -27,7 +27,7 @@
 
 #include "operators/family.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 constexpr const char* kZeltner =
@@ -109,7 +109,7 @@ Operator logarithmic() {
                           "factor on the scene value inside the logarithm: larger is flatter"),
          maximum_luminance("maximum", 100, 1e-6, "scene value that is shown as display white")});
     op.warnings = {kChannelsMayClip};
-    op.deviations = {{Deviation::Kind::exceeds_white, 2.4, ""}};
+    op.deviations = {{DocumentedDifference::Kind::exceeds_white, 2.4, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const double scale = p.number("p");
         const double at_maximum = std::log1p(scale * p.number("maximum"));
@@ -137,7 +137,7 @@ Operator log_tonemap() {
                           "share of the S-curve x^2 (3 - 2x), of each channel, after a limit to "
                           "[0, 1]; 0: neither")});
     op.warnings = {kChannelsMayClip};
-    op.deviations = {{Deviation::Kind::exceeds_white, 3.9, ""}};
+    op.deviations = {{DocumentedDifference::Kind::exceeds_white, 3.9, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const Expr x = Expr::input();
         const double contrast = p.number("contrast");
@@ -164,7 +164,7 @@ Operator exponentiation() {
         {number_parameter("p", "", 0.5, 0.01, 1, "the power: smaller is flatter, 1 is linear"),
          maximum_luminance("maximum", 100, 1e-6, "scene value that is shown as display white")});
     op.warnings = {kChannelsMayClip};
-    op.deviations = {{Deviation::Kind::exceeds_white, kInfinity, ""}};
+    op.deviations = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
     op.bounds.ocio_cpu = op.bounds.ocio_gpu = 2e-3;
     op.bounds.reason = "infinitely steep at black, where half floats end at 6e-8";
     op.build = [](const Params& p) -> Pipeline {
@@ -181,4 +181,4 @@ std::vector<Operator> define_exposure() {
     return {linear(), exponential(), logarithmic(), log_tonemap(), exponentiation()};
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -15,7 +15,7 @@
 
 #include "operators/family.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 /// sRGB code values of the stops -7 and below, -6, ..., +6, +7 and above.
@@ -46,8 +46,8 @@ std::vector<Operator> define_false_color() {
     op.licence = "Apache-2.0";
     op.negatives = kNegativesClampAtZero;
     op.is_diagnostic = true;
-    op.deviations = {{Deviation::Kind::crushes_black, 0.0018, ""},
-                     {Deviation::Kind::not_monotone, 4.3, ""}};
+    op.deviations = {{DocumentedDifference::Kind::crushes_black, 0.0018, ""},
+                     {DocumentedDifference::Kind::not_monotone, 4.3, ""}};
     op.bounds = {.ocio_cpu = 2e-5,
                  .ocio_gpu = 2e-5,
                  .reason = "a color goes over into the next within a quarter of a stop"};
@@ -70,4 +70,4 @@ std::vector<Operator> define_false_color() {
     return {op};
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -6,7 +6,7 @@
 
 /// Words that several operator files share. An operator file `<family>.cpp` defines
 /// `std::vector<Operator> define_<family>()`; CMake puts the call into the registry.
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// What nearly all operators do first: negatives of the working primaries are 0, and the half-float
 /// range ends at 65504.
@@ -56,4 +56,4 @@ inline Primaries limiting_primaries(const Params& params, const Primaries& none)
     return limit == "p3d65" ? kP3D65 : kRec2020;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

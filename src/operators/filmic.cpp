@@ -44,9 +44,10 @@
 //           (python_check/operators/filmic.py).
 #include <cmath>
 
+#include "base/format_number.h"
 #include "operators/family.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 /// Its light is code values: a 2.2 power is in the constants.
@@ -72,7 +73,7 @@ Operator hejl_burgess_dawson() {
     op.code_power = kBakedPower;
     op.dialects = "Hejl";
     op.parameters = with_apply("channels");
-    op.deviations = {{Deviation::Kind::crushes_black, 0.004, ""}};
+    op.deviations = {{DocumentedDifference::Kind::crushes_black, 0.004, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const Expr f = hejl_rational(max(Expr::input() - 0.004, 0));
         return tone_curve_pipeline({.f = f, .code_power = kBakedPower}, p);
@@ -97,9 +98,9 @@ Operator hejl_2015() {
         "channels", {number_parameter("white", "scene-linear", 11.2, 0.1, kHalfMax,
                                       "smallest scene value that is shown as display white")});
     op.warnings = {"quoted elsewhere with 1.425 where this, as BakingLab, has 1.435"};
-    op.deviations = {{Deviation::Kind::black, -0.00072, ""},
-                     {Deviation::Kind::crushes_black, 0.0046, ""},
-                     {Deviation::Kind::exceeds_white, 1.0, ""}};
+    op.deviations = {{DocumentedDifference::Kind::black, -0.00072, ""},
+                     {DocumentedDifference::Kind::crushes_black, 0.0046, ""},
+                     {DocumentedDifference::Kind::exceeds_white, 1.0, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const auto f = [](const Expr& v) {
             const Expr a = 1.435 * v + 0.05;
@@ -190,7 +191,7 @@ Operator lottes() {
          number_parameter("mid_out", "display-linear", 0.267, 0.01, 0.99,
                           "light that mid grey is shown with")});
     op.warnings = {"with a shoulder above 1 lights get darker again above some scene value"};
-    op.deviations = {{Deviation::Kind::exceeds_white, 1.4, ""}};
+    op.deviations = {{DocumentedDifference::Kind::exceeds_white, 1.4, ""}};
     op.bounds = {.simd = 1e-5,
                  .reason =
                      "with a shoulder above 1 the curve may pass far above white and come "
@@ -241,7 +242,7 @@ Operator filament_generic() {
                           "light that mid grey is shown with"),
          number_parameter("hdr_max", "scene-linear", 10, 1, kHalfMax,
                           "scene value that is shown as display white")});
-    op.deviations = {{Deviation::Kind::exceeds_white, 1.0, ""}};
+    op.deviations = {{DocumentedDifference::Kind::exceeds_white, 1.0, ""}};
     op.build = [](const Params& p) -> Pipeline {
         return tone_curve_pipeline({.f = filament_curve(p)}, p);
     };
@@ -317,9 +318,9 @@ Operator day() {
                                               "scene value that the others are multiples of"),
                              "mean luminance",
                              [](const SceneStatistics& s) { return s.mean_luminance; })});
-    op.deviations = {{Deviation::Kind::black, -0.0040, ""},
-                     {Deviation::Kind::crushes_black, 0.099, ""},
-                     {Deviation::Kind::exceeds_white, 1.2, ""}};
+    op.deviations = {{DocumentedDifference::Kind::black, -0.0040, ""},
+                     {DocumentedDifference::Kind::crushes_black, 0.099, ""},
+                     {DocumentedDifference::Kind::exceeds_white, 1.2, ""}};
     op.build = [](const Params& p) -> Pipeline {
         return tone_curve_pipeline({.f = day_curve(p)}, p);
     };
@@ -346,7 +347,7 @@ Operator schlick() {
                              [](const SceneStatistics& s) { return s.maximum_luminance; })});
     op.warnings = {
         "apply=luminance keeps chromaticity, so a saturated channel may exceed 1 and clip"};
-    op.deviations = {{Deviation::Kind::exceeds_white, 1.1, ""}};
+    op.deviations = {{DocumentedDifference::Kind::exceeds_white, 1.1, ""}};
     op.build = [](const Params& params) -> Pipeline {
         const Expr x = Expr::input();
         const double p = params.number("p");
@@ -386,7 +387,7 @@ Operator toe() {
     op.warnings = {"a definition of ours: neither game's formula was published"};
     op.bounds.ocio_cpu = op.bounds.ocio_gpu = 5e-5;
     op.bounds.reason = "the ramp ends with an edge, between two half floats";
-    op.deviations = {{Deviation::Kind::exceeds_white, kInfinity, ""}};
+    op.deviations = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const Expr x = Expr::input();
         const double width = p.number("width");
@@ -425,4 +426,4 @@ std::vector<Operator> define_filmic() {
             toe()};
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -20,7 +20,7 @@
 //           (check_values.json).
 #include "operators/family.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 // clang-format off
@@ -57,7 +57,7 @@ std::array<Expr, 3> to_rgb(const std::array<Expr, 3>& ictcp) {
         ictcp);
 }
 
-Map3Stage frostbite_mapping(double linear_end) {
+CrossTalkStage frostbite_mapping(double linear_end) {
     const double rest = 1 - linear_end;
     const auto compress = [&](const Expr& v) {
         const Expr above = max(v, linear_end) - linear_end;
@@ -107,4 +107,4 @@ std::vector<Operator> define_frostbite() {
     return {op};
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

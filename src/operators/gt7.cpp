@@ -22,9 +22,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/format_number.h"
 #include "operators/family.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 // clang-format off
@@ -75,7 +76,7 @@ Expr gt7_curve(double peak) {
     return select(less(x, linear * peak), below, a + b * exp(c * x));
 }
 
-Map3Stage gt7_mapping(double peak) {
+CrossTalkStage gt7_mapping(double peak) {
     const Expr f = gt7_curve(peak);
     const std::array<Expr, 3> skewed = compose({curve_stage(f)});
     const std::array<Expr, 3> in = compose(to_ictcp());
@@ -85,7 +86,7 @@ Map3Stage gt7_mapping(double peak) {
     std::array<Expr, 3> kept = {intensity, in[1] * chroma, in[2] * chroma};
     for (const Stage& stage : from_ictcp())
         kept = apply_stage(stage, kept);
-    Map3Stage mapping{skewed};
+    CrossTalkStage mapping{skewed};
     for (std::size_t i = 0; i < 3; ++i)
         mapping.f[i] = mix(skewed[i], kept[i], 0.6);
     return mapping;
@@ -122,7 +123,7 @@ std::vector<Operator> define_gt7() {
         "scene-linear 1 stands for 100 cd/m2: expose about 1.3 stops more than for "
         "operators that show 1 near white",
         "with output=hdr an SDR display clips at 100 cd/m2"};
-    op.deviations = {{Deviation::Kind::exceeds_white, 10, "hdr"}};
+    op.deviations = {{DocumentedDifference::Kind::exceeds_white, 10, "hdr"}};
     op.peak = [](const Params& p) {
         return p.choice("output") == "hdr" ? p.number("peak") / kReferenceLuminance : 1;
     };
@@ -136,4 +137,4 @@ std::vector<Operator> define_gt7() {
     return {op};
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -30,9 +30,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/format_number.h"
 #include "operators/family.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 struct Hable {
@@ -92,9 +93,9 @@ Operator uncharted() {
                     {"linear_strength", "0.3"},
                     {"toe_numerator", "0.01"},
                     {"white", "2"}}}};
-    op.deviations = {{Deviation::Kind::exceeds_white, 1.3, ""},
-                     {Deviation::Kind::exceeds_white, 1.1, "gdc"},
-                     {Deviation::Kind::exceeds_white, 1.7, "godot"}};
+    op.deviations = {{DocumentedDifference::Kind::exceeds_white, 1.3, ""},
+                     {DocumentedDifference::Kind::exceeds_white, 1.1, "gdc"},
+                     {DocumentedDifference::Kind::exceeds_white, 1.7, "godot"}};
     op.build = [](const Params& p) -> Pipeline {
         return hable_pipeline({.A = p.number("shoulder_strength"),
                                .B = p.number("linear_strength"),
@@ -118,7 +119,7 @@ Operator gdc() {
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Hable";
     op.parameters = with_apply("channels", {white(), exposure_bias(1)});
-    op.deviations = {{Deviation::Kind::exceeds_white, 1.1, ""}};
+    op.deviations = {{DocumentedDifference::Kind::exceeds_white, 1.1, ""}};
     op.build = [](const Params& p) -> Pipeline {
         return hable_pipeline({.A = 0.22, .B = 0.30, .C = 0.10, .D = 0.20, .E = 0.01, .F = 0.30},
                               p);
@@ -236,8 +237,8 @@ Operator piecewise() {
                     {"shoulder_strength", "4"},
                     {"shoulder_length", "0.7"},
                     {"shoulder_angle", "0.4"}}}};
-    op.deviations = {{Deviation::Kind::exceeds_white, 1.1, "film"},
-                     {Deviation::Kind::exceeds_white, 1.0, "soft"}};
+    op.deviations = {{DocumentedDifference::Kind::exceeds_white, 1.1, "film"},
+                     {DocumentedDifference::Kind::exceeds_white, 1.0, "soft"}};
     op.build = [](const Params& p) -> Pipeline {
         const double brightness = p.number("max_brightness");
         const Expr x = Expr::input() / brightness;
@@ -251,4 +252,4 @@ Operator piecewise() {
 
 std::vector<Operator> define_hable() { return {uncharted(), gdc(), piecewise()}; }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

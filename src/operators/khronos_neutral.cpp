@@ -24,7 +24,7 @@
 // Check     mid grey 0.18 -> 0.14, 1 -> 0.869090909 (check_values.json).
 #include "operators/family.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 std::vector<ParameterSpec> neutral_parameters() {
@@ -109,4 +109,4 @@ Operator filament() {
 
 std::vector<Operator> define_khronos_neutral() { return {khronos(), filament()}; }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -36,7 +36,7 @@
 
 #include "operators/family.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 using Channels = std::array<Expr, 3>;
@@ -90,7 +90,7 @@ Operator extended() {
                                       "smallest scene value that is shown as display white")});
     op.presets = {{"luminance", "Reinhard Extended on luminance", {{"apply", "luminance"}}},
                   {"max", "Reinhard Extended on the largest channel", {{"apply", "max"}}}};
-    op.deviations = {{Deviation::Kind::exceeds_white, kInfinity, ""}};
+    op.deviations = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const Expr x = Expr::input();
         const double white = p.number("white");
@@ -125,7 +125,7 @@ Operator nebula() {
     op.warnings = {
         "programs with the code as it was printed show another picture, quadratic near "
         "black: they do not divide by the luminance"};
-    op.deviations = {{Deviation::Kind::exceeds_white, kInfinity, ""}};
+    op.deviations = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const double white = p.number("maximum");
         const Expr scaled = Expr::input() * (p.number("middle_grey") / p.number("average"));
@@ -154,7 +154,7 @@ Operator jodie() {
             const Expr t = v / (1 + v);
             return mix(v / (1 + luminance), t, t);
         };
-        return {limit_to_positive(), Map3Stage{{channel(c[0]), channel(c[1]), channel(c[2])}}};
+        return {limit_to_positive(), CrossTalkStage{{channel(c[0]), channel(c[1]), channel(c[2])}}};
     };
     return op;
 }
@@ -186,9 +186,10 @@ Operator constant_luminance() {
         const ToneScaleStage scale{ToneScaleStage::Norm::luminance, kRec709Weights, x / (1 + x)};
         // No channel is above 1/w, of blue 13.9. Of the 65 nodes of a cube that ends at 16 one is
         // at 1.00, where what is handed on starts with an edge.
-        return {limit_to_positive(), scale, ClampStage{0, 16},
-                Map3Stage{{c[0] + handed_on[1] + handed_on[2], c[1] + handed_on[2] + handed_on[0],
-                           c[2] + handed_on[0] + handed_on[1]}}};
+        return {
+            limit_to_positive(), scale, ClampStage{0, 16},
+            CrossTalkStage{{c[0] + handed_on[1] + handed_on[2], c[1] + handed_on[2] + handed_on[0],
+                            c[2] + handed_on[0] + handed_on[1]}}};
     };
     return op;
 }
@@ -241,7 +242,7 @@ Operator devlin() {
              "of the picture; read with light_adaptation below 1",
              [](const SceneStatistics& s) { return s.mean_luminance; })};
     op.warnings = {"contrast=1 with light_adaptation=1 gives every grey but black the same light"};
-    op.deviations = {{Deviation::Kind::never_reaches_white, 0.99, ""}};
+    op.deviations = {{DocumentedDifference::Kind::never_reaches_white, 0.99, ""}};
     op.bounds.cube = 0.05;
     op.bounds.reason = "infinitely steep at black, where half floats end at 6e-8; else a cube's";
     op.build = [](const Params& p) -> Pipeline {
@@ -266,7 +267,7 @@ Operator devlin() {
             out[i] = in[i] / (in[i] + pow(max(f * adaptation, 0x1p-100), m));
         }
         return {limit_to_positive(), curve_stage(pow(Expr::input(), steepness)),
-                ClampStage{0, std::pow(kHalfMax, steepness)}, Map3Stage{out}};
+                ClampStage{0, std::pow(kHalfMax, steepness)}, CrossTalkStage{out}};
     };
     return op;
 }
@@ -277,4 +278,4 @@ std::vector<Operator> define_reinhard() {
     return {simple(), extended(), nebula(), jodie(), constant_luminance(), devlin()};
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -14,10 +14,10 @@
 // Check     mid grey 0.18 -> 0.159787895, (0.05, 0.1, 2) -> blue 1.003109218 (check_values.json).
 #include "operators/family.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-Map3Stage boring_mapping() {
+CrossTalkStage boring_mapping() {
     const std::array<Expr, 3> c = {Expr::input(0), Expr::input(1), Expr::input(2)};
     const auto t = [](const Expr& v) { return 1 - exp(-v); };
 
@@ -28,7 +28,7 @@ Map3Stage boring_mapping() {
     const Expr excess = max(0.8 * (colorfulness - 0.7), 0);
     const Expr desaturation = excess * excess;
     const Expr ratio = t(luma) / max(luma, 1e-5);
-    Map3Stage mapping{c};
+    CrossTalkStage mapping{c};
     for (std::size_t i = 0; i < 3; ++i) {
         const Expr by_luma = c[i] * ratio;
         const Expr by_channel = t(mix(c[i], luma, desaturation));
@@ -51,9 +51,9 @@ std::vector<Operator> define_somewhat_boring() {
     op.licence = "MIT or Apache-2.0";
     op.negatives = kNegativesClampAtZero;
     op.bounds = {.cube = 1.4e-2, .reason = "a cube: the desaturation starts with an edge"};
-    op.deviations = {{Deviation::Kind::never_reaches_white, 0.97, ""}};
+    op.deviations = {{DocumentedDifference::Kind::never_reaches_white, 0.97, ""}};
     op.build = [](const Params&) -> Pipeline { return {limit_to_positive(), boring_mapping()}; };
     return {op};
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -36,7 +36,7 @@
 
 #include "operators/family.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 constexpr const char* kChannelsMayClip =
@@ -88,7 +88,7 @@ Operator drago() {
                              "maximum luminance",
                              [](const SceneStatistics& s) { return s.maximum_luminance; })});
     op.warnings = {kChannelsMayClip};
-    op.deviations = {{Deviation::Kind::exceeds_white, 1.5, ""}};
+    op.deviations = {{DocumentedDifference::Kind::exceeds_white, 1.5, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const double bias = p.number("bias");
         const double maximum = p.number("maximum");
@@ -119,7 +119,7 @@ Operator ward() {
     op.negatives = kNegativesClampAtZero;
     op.parameters = with_apply("luminance", {display_max(80), log_average(0.5)});
     op.warnings = {kScenesAreLuminances};
-    op.deviations = {{Deviation::Kind::exceeds_white, kInfinity, ""}};
+    op.deviations = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const double display = p.number("display_max");
         const double threshold_ratio =
@@ -161,8 +161,8 @@ Operator tumblin_rushmeier() {
                                        "contrast of the display: white over its darkest black"),
                       log_average(0.5)});
     op.warnings = {kScenesAreLuminances};
-    op.deviations = {{Deviation::Kind::crushes_black, 0.060, ""},
-                     {Deviation::Kind::exceeds_white, kInfinity, ""}};
+    op.deviations = {{DocumentedDifference::Kind::crushes_black, 0.060, ""},
+                     {DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const double display = p.number("display_max");
         const double contrast = p.number("contrast_max");
@@ -223,7 +223,7 @@ Pipeline cones_and_rods(double cones, double rods, const Vector3& tint) {
     const std::array<Expr, 3> c = {Expr::input(0), Expr::input(1), Expr::input(2)};
     const Expr signal = max(kRods[0] * c[0] + kRods[1] * c[1] + kRods[2] * c[2], 0);
     const auto channel = [&](std::size_t i) { return cones * c[i] + rods * tint[i] * signal; };
-    return {limit_to_positive(), Map3Stage{{channel(0), channel(1), channel(2)}}};
+    return {limit_to_positive(), CrossTalkStage{{channel(0), channel(1), channel(2)}}};
 }
 
 std::vector<ParameterSpec> rod_parameters() {
@@ -279,7 +279,7 @@ Operator ferwerda() {
     op.parameters = rod_parameters();
     op.bounds = rod_bounds();
     op.warnings = {kScenesAreLuminances};
-    op.deviations = {{Deviation::Kind::exceeds_white, kInfinity, ""}};
+    op.deviations = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const double La = p.number("photopic_adaptation");
         const double k = std::clamp(1 - (La / 2 - 0.01) / (10 - 0.01), 0.0, 1.0);
@@ -310,7 +310,7 @@ Operator durand_dorsey_rods() {
     shift("green", 0.97);
     shift("blue", 1.27);
     op.warnings = {kScenesAreLuminances};
-    op.deviations = {{Deviation::Kind::exceeds_white, kInfinity, ""}};
+    op.deviations = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const double La = p.number("scotopic_adaptation");
         const double k = std::max((100 - La / 4) / (100 + La), 0.0);
@@ -327,4 +327,4 @@ std::vector<Operator> define_statistics() {
     return {drago(), ward(), tumblin_rushmeier(), ferwerda(), durand_dorsey_rods()};
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

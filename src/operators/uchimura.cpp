@@ -11,9 +11,10 @@
 // Differs   nowhere: the unused helpers L0, L1 of most ports are left out, and the shoulder is
 //           evaluated from its own start on, which it has weight 0 before.
 // Check     mid grey 0.18 -> 0.178994806 (python_check/operators/uchimura.py).
+#include "base/format_number.h"
 #include "operators/family.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 std::vector<Operator> define_uchimura() {
     Operator op;
@@ -43,7 +44,7 @@ std::vector<Operator> define_uchimura() {
                    "for a display with ten times the light of paper white",
                    {{"max_brightness", "10"}}}};
     op.warnings = {"with max_brightness above 1 an SDR display clips at paper white"};
-    op.deviations = {{Deviation::Kind::exceeds_white, 10, "hdr"}};
+    op.deviations = {{DocumentedDifference::Kind::exceeds_white, 10, "hdr"}};
     op.peak = [](const Params& params) { return params.number("max_brightness"); };
     op.build = [](const Params& params) -> Pipeline {
         const double P = params.number("max_brightness");
@@ -70,4 +71,4 @@ std::vector<Operator> define_uchimura() {
     return {op};
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -22,10 +22,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/format_number.h"
 #include "operators/color_modifiers.h"
 #include "operators/family.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 /// One s-shaped arm, level * 2u/(1 + u) with u = (x/x0)^power: a logistic function of log x. At x0
@@ -116,8 +117,8 @@ std::vector<Operator> define_unreal() {
                     {"shoulder", "0.22"},
                     {"black_clip", "0"},
                     {"white_clip", "0.025"}}}};
-    op.deviations = {{Deviation::Kind::exceeds_white, 1.04, ""},
-                     {Deviation::Kind::exceeds_white, 1.025, "legacy"}};
+    op.deviations = {{DocumentedDifference::Kind::exceeds_white, 1.04, ""},
+                     {DocumentedDifference::Kind::exceeds_white, 1.025, "legacy"}};
     op.build = [](const Params& p) -> Pipeline {
         const Expr f = film_curve(p.number("slope"), p.number("toe"), p.number("shoulder"),
                                   p.number("black_clip"), p.number("white_clip"));
@@ -135,4 +136,4 @@ std::vector<Operator> define_unreal() {
     return {op};
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

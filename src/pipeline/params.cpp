@@ -3,9 +3,11 @@
 #include <charconv>
 #include <cmath>
 
+#include "base/format_number.h"
+#include "base/strings.h"
 #include "tonewright/pipeline.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 template <class Items, class Name>
@@ -92,58 +94,20 @@ const std::string& Params::text(std::string_view name) const {
     return it->second;
 }
 
-namespace {
-
-/// Local or not.
-const Operator& find_any_operator(std::string_view id) {
-    std::vector<std::string> ids;
-    for (const std::vector<Operator>* operators : {&all_operators(), &local_operators()}) {
-        for (const Operator& op : *operators) {
-            if (op.id == id) return op;
-            ids.push_back(op.id);
-        }
-    }
-    const std::string nearest = did_you_mean(id, ids);
-    throw Error("operator is " + std::string(id) + "; expected one of `tonewright list`" + nearest);
-}
-
-}  // namespace
-
-const Operator& find_operator(std::string_view id) {
-    const Operator& op = find_any_operator(id);
-    if (op.is_local()) {
-        throw Error("operator is " + op.id +
-                    ", which looks at a pixel's surroundings: no LUT, config or color by itself "
-                    "holds it; expected an operator that `tonewright list` does not mark as local, "
-                    "or `tonewright apply` with a picture");
-    }
-    return op;
-}
-
-namespace {
-
-/// `id` or `id:preset`; the second is null where there is no colon.
-std::pair<const Operator*, const Preset*> find_preset(std::string_view name) {
-    const std::size_t colon = name.find(':');
-    const Operator& op = find_any_operator(name.substr(0, colon));
-    if (colon == std::string_view::npos) return {&op, nullptr};
-    const std::string_view wanted = name.substr(colon + 1);
+const Preset& find_preset(const Operator& op, std::string_view id) {
     for (const Preset& preset : op.presets) {
-        if (preset.id == wanted) return {&op, &preset};
+        if (preset.id == id) return preset;
     }
     const auto ids = names_of(op.presets, [](const Preset& p) { return p.id; });
-    throw Error(op.id + ": preset is " + std::string(wanted) + "; expected " +
+    throw Error(op.id + ": preset is " + std::string(id) + "; expected " +
                 (ids.empty() ? "none, it has no presets" : join_choices(ids)) +
-                did_you_mean(wanted, ids));
+                did_you_mean(id, ids));
 }
 
-}  // namespace
-
-Settings settings_for_picture(std::string_view name, const Settings& settings,
-                              const SceneStatistics& statistics) {
-    const auto [op, preset] = find_preset(name);
-    Settings all = settings;
-    for (const ParameterSpec& spec : op->parameters) {
+Settings settings_for_picture(const ResolvedOperator& resolved, const SceneStatistics& statistics) {
+    const Preset* preset = resolved.preset;
+    Settings all = resolved.settings;
+    for (const ParameterSpec& spec : resolved.op->parameters) {
         if (!spec.from_picture || (preset && preset->settings.contains(spec.name))) continue;
         const double value = spec.from_picture(statistics);
         all.try_emplace(spec.name, shortest(std::clamp(value, spec.min, spec.max)));
@@ -153,31 +117,23 @@ Settings settings_for_picture(std::string_view name, const Settings& settings,
 
 ResolvedOperator resolve_for_display(const ResolvedOperator& resolved,
                                      const DisplayFacts& display) {
-    const auto [op, preset] = find_preset(resolved.name);
+    const Preset* preset = resolved.preset;
     Settings all = resolved.settings;
-    for (const ParameterSpec& spec : op->parameters) {
+    for (const ParameterSpec& spec : resolved.op->parameters) {
         if (!spec.from_display || (preset && preset->settings.contains(spec.name))) continue;
         const std::string decided = spec.from_display(display);
         if (!decided.empty()) all.try_emplace(spec.name, decided);
     }
-    ResolvedOperator shown = resolve_picture_operator(resolved.name, all, resolved.params.look());
+    ResolvedOperator shown = resolve(*resolved.op, preset, all, resolved.params.look());
     shown.label = resolved.label;
     shown.settings = resolved.settings;
     return shown;
 }
 
-ResolvedOperator resolve_operator(std::string_view name, const Settings& settings,
-                                  std::string_view look) {
-    (void)find_operator(name.substr(0, name.find(':')));  // a local one is told what it is
-    return resolve_picture_operator(name, settings, look);
-}
-
-ResolvedOperator resolve_picture_operator(std::string_view name, const Settings& settings,
-                                          std::string_view look) {
+ResolvedOperator resolve(const Operator& op, const Preset* preset, const Settings& settings,
+                         std::string_view look) {
     using Kind = ParameterSpec::Kind;
-    const auto [found_op, preset] = find_preset(name);
-    const Operator& op = *found_op;
-    ResolvedOperator resolved{&op, {}, op.id, std::string(name), settings};
+    ResolvedOperator resolved{&op, {}, op.id, preset, settings};
 
     Settings merged;
     if (preset) {
@@ -256,4 +212,4 @@ ResolvedOperator resolve_picture_operator(std::string_view name, const Settings&
     return resolved;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

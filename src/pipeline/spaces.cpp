@@ -3,16 +3,12 @@
 #include <charconv>
 #include <optional>
 
+#include "base/format_number.h"
+#include "base/strings.h"
 #include "tonewright/view.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
-
-bool equal_ignoring_case(std::string_view a, std::string_view b) {
-    const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; };
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                      [&](char x, char y) { return lower(x) == lower(y); });
-}
 
 /// Null: there is none of that name.
 template <class Item>
@@ -241,4 +237,4 @@ const Display& find_display(std::string_view name) {
                       {std::string(kLinearOutput), std::string(kNativeOutput)});
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
+#include "base/format_number.h"
 #include "tonewright/pipeline.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 template <class... F>
@@ -42,7 +43,7 @@ std::string_view stage_kind(const Stage& stage) {
                                  [](const HuePreservingStage&) { return "hue-preserving curve"; },
                                  [](const HexconeStage&) { return "hexcone"; },
                                  [](const ClampStage&) { return "clamp"; },
-                                 [](const Map3Stage&) { return "map3"; },
+                                 [](const CrossTalkStage&) { return "map3"; },
                                  [](const LatticeStage&) { return "lattice"; }},
                       stage);
 }
@@ -57,7 +58,7 @@ bool is_identity(const Stage& stage) {
                    [](const HexconeStage&) { return false; },
                    [](const LatticeStage&) { return false; },
                    [](const ClampStage& s) { return s.lo == -kInfinity && s.hi == kInfinity; },
-                   [](const Map3Stage& s) {
+                   [](const CrossTalkStage& s) {
                        return same(s.f[0], Expr::input(0)) && same(s.f[1], Expr::input(1)) &&
                               same(s.f[2], Expr::input(2));
                    }},
@@ -80,7 +81,7 @@ bool mixes_channels(const Stage& stage) {
             [](const HuePreservingStage&) { return true; },
             [](const HexconeStage&) { return true; }, [](const LatticeStage&) { return true; },
             [](const ClampStage&) { return false; },
-            [](const Map3Stage& s) {
+            [](const CrossTalkStage& s) {
                 for (int i = 0; i < 3; ++i) {
                     for (int j = 0; j < 3; ++j) {
                         if (i != j && depends_on(s.f[static_cast<std::size_t>(i)], j)) return true;
@@ -173,7 +174,7 @@ std::array<Expr, 3> apply_stage(const Stage& stage, const std::array<Expr, 3>& r
                        }
                        return out;
                    },
-                   [&](const Map3Stage& s) {
+                   [&](const CrossTalkStage& s) {
                        return std::array<Expr, 3>{substitute(s.f[0], rgb), substitute(s.f[1], rgb),
                                                   substitute(s.f[2], rgb)};
                    }},
@@ -239,7 +240,7 @@ std::string to_string(const Pipeline& pipeline) {
                 [](const ClampStage& c) {
                     return "[" + shortest(c.lo) + ", " + shortest(c.hi) + "]";
                 },
-                [](const Map3Stage& m) {
+                [](const CrossTalkStage& m) {
                     static const std::array<std::string, 3> rgb = {"r", "g", "b"};
                     return to_string(m.f[0], rgb) + " | " + to_string(m.f[1], rgb) + " | " +
                            to_string(m.f[2], rgb);
@@ -250,4 +251,4 @@ std::string to_string(const Pipeline& pipeline) {
     return s;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

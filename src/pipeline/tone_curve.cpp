@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/tone_curve.h"
+#include "base/format_number.h"
+#include "tonewright/error.h"
 
 #include <cmath>
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 /// Mantiuk et al. 2009, table 1: constants of the fit of saturation to contrast.
@@ -36,7 +38,7 @@ Expr norm_curve(const ToneCurve& curve, const std::string& apply) {
 }
 
 /// The corrections that no norm and matrix express.
-Map3Stage corrected(const Expr& f, const Params& params, const Vector3& w) {
+CrossTalkStage corrected(const Expr& f, const Params& params, const Vector3& w) {
     const std::array<Expr, 3> c = {Expr::input(0), Expr::input(1), Expr::input(2)};
     const Expr L = w[0] * c[0] + w[1] * c[1] + w[2] * c[2];
     const Expr Lo = substitute(f, std::span(&L, 1));
@@ -126,4 +128,4 @@ Pipeline apply_tone_curve(const ToneCurve& curve, const Params& params) {
     return stages;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

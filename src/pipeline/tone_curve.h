@@ -7,7 +7,7 @@
 #include "tonewright/pipeline.h"
 
 /// How a pure tone curve meets colour: one mechanism for every operator that has one.
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 struct ToneCurve {
     /// Of input 0; defined for [0, kHalfMax].
@@ -42,4 +42,4 @@ struct ToneCurve {
 ///                has no limit at black.
 [[nodiscard]] Pipeline apply_tone_curve(const ToneCurve& curve, const Params& params);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

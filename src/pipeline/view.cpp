@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tonewright/view.h"
+#include "base/format_number.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 /// Operator output -> display light, not limited above.
@@ -106,13 +107,7 @@ Pipeline build_view(const View& view) {
 
 Pipeline build_inverse_view(const View& view) {
     const Operator& op = *view.op.op;
-    if (!op.build_inverse) {
-        std::vector<std::string> ids;
-        for (const Operator& other : all_operators()) {
-            if (other.build_inverse) ids.push_back(other.id);
-        }
-        throw Error(op.id + " has no inverse; expected " + join_choices(ids));
-    }
+    if (!op.build_inverse) throw Error(op.id + " has no inverse");
     Pipeline stages;
     const Primaries own = view.op.output_primaries();
     if (view.display == kLinearOutput) {
@@ -144,4 +139,4 @@ bool keeps_greys(const Pipeline& view) {
     return true;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -22,15 +22,15 @@
 #include <utility>
 #include <vector>
 
-#include "image/message.h"
+#include "base/strings.h"
 #include "image/picture_file.h"
 #include "image/scene_meter.h"
 #include "image/source_picture.h"
 #include "image/tonemap_arguments.h"
 #include "image/tonemap_file.h"
-#include "lut/printable.h"
+#include "tonewright/tonemap.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 namespace fs = std::filesystem;
@@ -355,7 +355,7 @@ class TonemappedInput final : public ImageInput {
 };
 
 }  // namespace
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END
 
 // NOLINTBEGIN(readability-identifier-naming): OpenImageIO looks for these names.
 OIIO_PLUGIN_EXPORTS_BEGIN

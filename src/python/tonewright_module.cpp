@@ -16,16 +16,20 @@
 #include <utility>
 #include <vector>
 
+#include "base/atomic_file.h"
 #include "image/lut_picture.h"
 #include "image/tonemap_arguments.h"
 #include "tonewright/engine.h"
-#include "tonewright/image.h"
+#include "tonewright/image_io.h"
 #include "tonewright/lut.h"
+#include "tonewright/lut_applications.h"
+#include "tonewright/registry.h"
+#include "tonewright/tonemap.h"
 #include "tonewright/view.h"
 
 namespace py = pybind11;
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 using OIIO::ImageBuf;
@@ -245,7 +249,7 @@ py::dict bake_file(const std::string& op, const std::string& file, const std::st
                    std::optional<std::string> format, std::optional<std::string> input_encoding,
                    std::optional<int> size, std::optional<int> depth, const py::kwargs& arguments) {
     TonemapOptions options = parse_options(op, arguments);
-    const LutHost* reader = host.empty() ? nullptr : &find_lut_host(host);
+    const LutApplication* reader = host.empty() ? nullptr : &find_lut_application(host);
     LutRequest request;
     request.format =
         parse_lut_format(format.value_or(reader ? name_of(reader->format) : std::string("cube")));
@@ -299,7 +303,7 @@ Keyword options, as on the command line:
 )";
 
 }  // namespace
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END
 
 PYBIND11_MODULE(tonewright, m) {
     namespace tw = tonewright;

@@ -15,34 +15,22 @@
 #include <set>
 #include <sstream>
 
+#include "base/strings.h"
 #include "ocio/gpu.h"
 #include "ocio/lower.h"
 #include "ocio/read_config.h"
 #include "tonewright/error.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 using Level = LintFinding::Level;
-
-std::string lower(const std::string& s) {
-    std::string out = s;
-    for (char& c : out)
-        c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return out;
-}
-
-std::string trimmed(const std::string& s) {
-    const auto begin = s.find_first_not_of(" \t\n");
-    return begin == std::string::npos ? ""
-                                      : s.substr(begin, s.find_last_not_of(" \t\n") - begin + 1);
-}
 
 std::vector<std::string> split(const std::string& list) {
     std::vector<std::string> items;
     std::istringstream in(list);
     for (std::string item; std::getline(in, item, ',');) {
-        if (!trimmed(item).empty()) items.push_back(trimmed(item));
+        if (!trimmed(item).empty()) items.emplace_back(trimmed(item));
     }
     return items;
 }
@@ -120,7 +108,7 @@ class Linter {
             }
         }
         if (!taken) return;
-        const auto [other, is_new] = taken->emplace(lower(name), where);
+        const auto [other, is_new] = taken->emplace(lowercase(name), where);
         if (!is_new && other->second != where)
             add(Level::error, where, "has the name " + name + ", as " + other->second + " has");
     }
@@ -129,7 +117,7 @@ class Linter {
         std::map<std::string, std::string> taken;
         for (int i = 0; i < config_->getNumRoles(); ++i) {
             const std::string role = config_->getRoleName(i);
-            taken[lower(role)] = "role " + role;
+            taken[lowercase(role)] = "role " + role;
         }
         for_each_space([&](const OCIO::ConstColorSpaceRcPtr& space) {
             const std::string where = std::string("space ") + space->getName();
@@ -220,7 +208,8 @@ class Linter {
             const auto file = OCIO_DYNAMIC_POINTER_CAST<const OCIO::FileTransform>(part);
             if (!file) return;
             const std::string source = file->getSrc();
-            const std::string extension = lower(std::filesystem::path(source).extension().string());
+            const std::string extension =
+                lowercase(std::filesystem::path(source).extension().string());
             const auto interpolation = file->getInterpolation();
             // Whatever is in a .spi1d, it is no cube.
             const bool may_be_cube = extension != ".spi1d" && extension != ".spimtx" &&
@@ -390,4 +379,4 @@ std::vector<LintFinding> lint_config(const std::string& path, bool with_gpu) {
     return Linter(path, with_gpu).run();
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

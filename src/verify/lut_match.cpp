@@ -5,13 +5,14 @@
 #include <cmath>
 #include <set>
 
-#include "engine/error_metric.h"
-#include "engine/probe.h"
+#include "measure/error_metric.h"
+#include "measure/sample_set.h"
 #include "tonewright/engine.h"
 #include "tonewright/lut.h"
 #include "tonewright/ocio.h"
+#include "tonewright/registry.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 constexpr const char* kSceneLinear = "scene-linear";
@@ -40,7 +41,7 @@ struct Candidate {
 
 /// What goes in: codes, or light for a table with a shaper.
 std::vector<float> probes_of(bool is_linear, std::size_t count) {
-    ProbeRandom random(23);
+    SampleRandom random(23);
     std::vector<float> in;
     for (std::size_t i = 0; i < count; ++i) {
         // Every fourth is a grey.
@@ -128,4 +129,4 @@ std::vector<LutMatch> match_lut(const LutFile& table, const std::vector<std::str
     return matches;
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

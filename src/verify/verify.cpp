@@ -10,16 +10,18 @@
 #include <map>
 #include <optional>
 
-#include "engine/error_metric.h"
-#include "engine/probe.h"
+#include "measure/error_metric.h"
+#include "measure/sample_set.h"
 #include "ocio/gpu.h"
 #include "ocio/lower.h"
 #include "ocio/read_config.h"
 #include "ocio/round_trip.h"
 #include "tonewright/engine.h"
+#include "tonewright/generated_files.h"
 #include "tonewright/ocio.h"
+#include "tonewright/registry.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 namespace fs = std::filesystem;
@@ -127,7 +129,7 @@ Bounds bounds_of(const Pipeline& pipeline, const Lowered& lowered, bool is_hdr,
 
 class Comparison {
   public:
-    Comparison(const View& view, const ProbeSet& probes)
+    Comparison(const View& view, const SampleSet& probes)
         : probes_(probes),
           to_working_(rgb_to_rgb(find_input_space(view.input).primaries, view.op.op->working)),
           decode_(find_display(view.display).decode),
@@ -157,7 +159,7 @@ class Comparison {
                 // A clamp in float32 can be off by a rounding of the encoding's constants.
                 row.is_total = row.is_total && v[c] >= -1e-6F && v[c] <= 1 + 1e-6F;
             }
-            if (probes_.kind[i] == ProbeKind::special) continue;
+            if (probes_.kind[i] == SampleKind::special) continue;
             const double error = channel_error(&truth_[3 * i], v);
             if (probes_.is_non_negative(i)) errors.push_back(error);
             if (!(error <= row.max_all)) {
@@ -236,7 +238,7 @@ class Comparison {
         ReferenceEngine before;
         ReferenceEngine after;
     };
-    const ProbeSet& probes_;
+    const SampleSet& probes_;
     Matrix3 to_working_;
     ReferenceEngine decode_;
     std::vector<double> truth_;
@@ -292,8 +294,9 @@ OCIO::ConstProcessorRcPtr builtin_processor(const View& view) {
 
 /// Rows of the way back from the config's output space, in the forms that applications have it.
 template <class Add>
-void add_way_back(const OCIO::ConstConfigRcPtr& config, const View& view, const std::string& space,
-                  const ProbeSet& probes, bool with_gpu, const Add& add) {
+void add_inverse_space(const OCIO::ConstConfigRcPtr& config, const View& view,
+                       const std::string& space, const SampleSet& probes, bool with_gpu,
+                       const Add& add) {
     if (!config->getColorSpace(space.c_str())) return;
     ParityRow row;
     row.op = view.op.label;
@@ -455,11 +458,11 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
     constexpr int kConfigEdge = 17;
     const int edge =
         is_of_config ? std::min(options.lattice_edge, kConfigEdge) : options.lattice_edge;
-    ProbeSet probes = make_probes(input, {edge, is_of_config ? 50000U : 100000U});
+    SampleSet probes = make_sample_set(input, {edge, is_of_config ? 50000U : 100000U});
     for (std::size_t i = 0; i + 2 < options.picture.size(); i += 3) {
         probes.add(static_cast<double>(options.picture[i]),
                    static_cast<double>(options.picture[i + 1]),
-                   static_cast<double>(options.picture[i + 2]), ProbeKind::picture);
+                   static_cast<double>(options.picture[i + 2]), SampleKind::picture);
     }
     std::optional<TemporaryConfig> fresh;
     if (!config) {
@@ -552,10 +555,11 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
             const std::string space = output_space_name(
                 config_view_name(view_name(view.op), view.op, find_display(view.display)),
                 find_display(view.display).title);
-            add_way_back(config, view, space, probes, options.with_gpu, [&](const ParityRow& row) {
-                rows.push_back(row);
-                if (on_row) on_row(rows.back());
-            });
+            add_inverse_space(config, view, space, probes, options.with_gpu,
+                              [&](const ParityRow& row) {
+                                  rows.push_back(row);
+                                  if (on_row) on_row(rows.back());
+                              });
         }
         if (!options.with_gpu) continue;
         if (const std::string reason = OcioGpu::unavailable_reason(); !reason.empty()) {
@@ -592,4 +596,4 @@ std::string format_row(const ParityRow& row) {
         row.is_ok ? "ok" : "FAILED", row.note.empty() ? "" : ", " + row.note);
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

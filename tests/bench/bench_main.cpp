@@ -18,13 +18,14 @@
 #include <string>
 #include <vector>
 
-#include "engine/probe.h"
+#include "measure/sample_set.h"
 #include "ocio/lower.h"
 #include "tonewright/engine.h"
 #include "tonewright/lut.h"
+#include "tonewright/registry.h"
 #include "tonewright/view.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 constexpr std::size_t kWidth = 3840;
@@ -35,7 +36,7 @@ constexpr std::size_t kChannels = 4;
 /// The scene: colours between -10 and +6 stops, noise, the worst for branches and tables.
 const std::vector<float>& picture() {
     static const std::vector<float> pixels = [] {
-        ProbeRandom random(1);
+        SampleRandom random(1);
         std::vector<float> made(kPixels * kChannels);
         for (float& x : made)
             x = static_cast<float>(std::exp2(random.uniform(-10, 6)));
@@ -246,7 +247,7 @@ void register_all() {
 }
 
 }  // namespace
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END
 
 int main(int argc, char** argv) {
     tonewright::register_all();

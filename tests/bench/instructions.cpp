@@ -11,8 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "engine/probe.h"
+#include "measure/sample_set.h"
 #include "tonewright/engine.h"
+#include "tonewright/registry.h"
 #include "tonewright/view.h"
 
 /// What is counted. A name and a frame of its own: neither inlined nor left by a jump.
@@ -33,7 +34,7 @@ int main(int argc, char** argv) {
     try {
         SimdEngine::use_target(kTarget);
         const std::size_t pixels = std::stoul(argc > 1 ? argv[1] : "0");
-        ProbeRandom random(1);
+        SampleRandom random(1);
         std::vector<float> in(3 * pixels), out(3 * pixels);
         for (float& x : in)
             x = static_cast<float>(std::exp2(random.uniform(-10, 6)));

@@ -8,6 +8,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "tonewright/registry.h"
+#include "tonewright/tonemap.h"
+
 int main() {
     const tonewright::ResolvedOperator hable = tonewright::resolve_operator("hable");
     const tonewright::ReferenceEngine engine(hable.build());

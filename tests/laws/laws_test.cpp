@@ -14,12 +14,14 @@
 #include <set>
 #include <thread>
 
-#include "engine/error_metric.h"
-#include "engine/probe.h"
+#include "base/format_number.h"
+#include "measure/error_metric.h"
+#include "measure/sample_set.h"
 #include "tonewright/engine.h"
+#include "tonewright/registry.h"
 #include "tonewright/verify.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// For GoogleTest: what failure messages and ctest call a variant.
 void PrintTo(const OperatorVariant& v, std::ostream* out);
@@ -70,7 +72,7 @@ std::vector<double> grey_ramp() {
 /// Log-uniform, every channel for itself: saturated ones are the rule. With `signs`, a third of the
 /// channels is negative.
 Planes random_colours(std::size_t count, double lowest, double highest, bool signs = false) {
-    ProbeRandom random(41);
+    SampleRandom random(41);
     Planes planes;
     for (std::size_t i = 0; i < count; ++i) {
         for (auto& plane : planes) {
@@ -90,7 +92,7 @@ std::string colour_text(const Planes& p, std::size_t i) {
 
 /// Every float that there is, in random order and with repetitions: subnormals, infinities and NaNs
 /// come with their share of the bit patterns.
-void fill_with_patterns(ProbeRandom& random, std::vector<float>& rgb) {
+void fill_with_patterns(SampleRandom& random, std::vector<float>& rgb) {
     for (std::size_t i = 0; i + 1 < rgb.size(); i += 2) {
         const unsigned long long bits = random.bits();
         rgb[i] = std::bit_cast<float>(static_cast<std::uint32_t>(bits));
@@ -102,7 +104,7 @@ void fill_with_patterns(ProbeRandom& random, std::vector<float>& rgb) {
 std::string check_patterns(const SimdEngine& display, const SimdEngine& native,
                            unsigned long long seed, std::size_t float_count) {
     constexpr std::size_t kBlock = 3 * 4096;
-    ProbeRandom random(seed);
+    SampleRandom random(seed);
     std::vector<float> in(kBlock);
     std::vector<float> shown(kBlock);
     std::vector<float> own(kBlock);
@@ -151,7 +153,7 @@ TEST_P(Law, SimdIsTotal) {
 TEST_P(Law, ReferenceIsTotal) {
     // A million patterns, as floats and as doubles, through the reference.
     constexpr std::size_t kCount = 1'000'000 / 6;
-    ProbeRandom random(42);
+    SampleRandom random(42);
     Planes in;
     for (auto& plane : in) {
         for (std::size_t i = 0; i < kCount; ++i)
@@ -216,11 +218,11 @@ TEST_P(Law, ExtremeExposuresAreTotal) {
 /// slope there from the others.
 constexpr double kNoise = 1e-6;
 
-using Kind = Deviation::Kind;
+using Kind = DocumentedDifference::Kind;
 
-/// What a variant does with black, greys and white: measured, as Deviation defines it.
-std::map<Kind, double> measured_deviations(const Pipeline& native, const Pipeline& light,
-                                           const Pipeline& srgb) {
+/// What a variant does with black, greys and white: measured, as DocumentedDifference defines it.
+std::map<Kind, double> measured_differences(const Pipeline& native, const Pipeline& light,
+                                            const Pipeline& srgb) {
     std::map<Kind, double> found;
     std::vector<double> ramp = grey_ramp();
     ramp.push_back(kHalfMax);
@@ -261,15 +263,15 @@ std::map<Kind, double> measured_deviations(const Pipeline& native, const Pipelin
 }
 
 /// What the operator's file declares of a variant.
-std::map<Kind, double> declared_deviations(const OperatorVariant& v) {
+std::map<Kind, double> declared_differences(const OperatorVariant& v) {
     const std::size_t colon = v.name.find(':');
     const std::string preset = colon == std::string::npos ? "" : v.name.substr(colon + 1);
-    const auto is_special = [&](const Deviation& d) {
+    const auto is_special = [&](const DocumentedDifference& d) {
         return !d.when.empty() && (d.when == preset || d.when == v.look);
     };
     std::map<Kind, double> declared;
     for (const bool special : {false, true}) {
-        for (const Deviation& d : resolve(v).op->deviations) {
+        for (const DocumentedDifference& d : resolve(v).op->deviations) {
             if (special ? is_special(d) : d.when.empty()) declared[d.kind] = d.value;
         }
     }
@@ -278,11 +280,11 @@ std::map<Kind, double> declared_deviations(const OperatorVariant& v) {
 }
 
 TEST_P(Law, DeviationsAreTrueAndComplete) {
-    const auto measured = measured_deviations(view("native"), view("linear"), view("srgb"));
-    const auto declared = declared_deviations(GetParam());
+    const auto measured = measured_differences(view("native"), view("linear"), view("srgb"));
+    const auto declared = declared_differences(GetParam());
     for (const auto& [kind, value] : measured) {
         const auto it = declared.find(kind);
-        const std::string text = to_string(Deviation{kind, value, ""});
+        const std::string text = to_string(DocumentedDifference{kind, value, ""});
         if (it == declared.end()) {
             ADD_FAILURE() << "not declared, but " << text << " (" << value << ")";
             continue;
@@ -294,9 +296,9 @@ TEST_P(Law, DeviationsAreTrueAndComplete) {
     }
     for (const auto& [kind, value] : declared) {
         EXPECT_TRUE(measured.contains(kind))
-            << "declared but not true: " << to_string(Deviation{kind, value, ""});
+            << "declared but not true: " << to_string(DocumentedDifference{kind, value, ""});
     }
-    for (const Deviation& d : op().deviations) {
+    for (const DocumentedDifference& d : op().deviations) {
         const auto names = [&](const auto& items) {
             return std::any_of(items.begin(), items.end(),
                                [&](const auto& item) { return item.id == d.when; });
@@ -309,7 +311,7 @@ TEST_P(Law, BrighterScenesAreShownBrighter) {
     if (op().is_diagnostic) GTEST_SKIP() << "shows what is in a picture, not a picture";
     // Not constant, either: between -6 and +3 stops every operator has to rise, from where it says
     // that its black ends.
-    const auto declared = declared_deviations(GetParam());
+    const auto declared = declared_differences(GetParam());
     const auto crushed = declared.find(Kind::crushes_black);
     std::vector<double> ramp;
     for (int stops = -6; stops <= 3; ++stops) {
@@ -328,7 +330,7 @@ TEST_P(Law, BrighterScenesAreShownBrighter) {
 
 TEST_P(Law, NothingIsDarkerThanBlack) {
     const Vector3 shown = ReferenceEngine(view("srgb"))({0, 0, 0});
-    if (!declared_deviations(GetParam()).contains(Kind::black)) {
+    if (!declared_differences(GetParam()).contains(Kind::black)) {
         for (const double x : shown)
             EXPECT_LT(x, 0.5 / 255) << "code 0 of 8 bits";
     }
@@ -466,7 +468,7 @@ TEST_P(CurveLaw, IsInvertedNumerically) {
 // SIMD
 
 TEST_P(Law, SimdIsWithinItsBoundOnEveryTarget) {
-    const ProbeSet probes = make_probes(find_input_space("lin_rec709"), {17, 20000});
+    const SampleSet probes = make_sample_set(find_input_space("lin_rec709"), {17, 20000});
     const Pipeline pipeline = view("srgb");
     std::vector<double> truth(probes.rgb.size());
     ReferenceEngine(pipeline).run_rgb(probes.rgb.data(), truth.data(), probes.size());
@@ -526,7 +528,7 @@ TEST_P(Law, ThreadsMayCompileAndRunTogether) {
 // Parameters
 
 /// Settings from the whole of every interval: log-uniform where it spans more than two decades.
-Settings random_settings(const Operator& op, ProbeRandom& random) {
+Settings random_settings(const Operator& op, SampleRandom& random) {
     Settings settings;
     for (const ParameterSpec& p : op.parameters) {
         if (p.kind == ParameterSpec::Kind::text) continue;  // names a file
@@ -565,7 +567,7 @@ class ParameterLaw : public ::testing::TestWithParam<std::string> {};
 /// "A bad parameter is an error, never a silent clamp": then what is no error has to work.
 TEST_P(ParameterLaw, WhatIsAcceptedIsTotal) {
     const Operator& op = find_operator(GetParam());
-    ProbeRandom random(43);
+    SampleRandom random(43);
     std::vector<float> in;
     for (int i = 0; i < 3 * 600; ++i) {
         const unsigned long long bits = random.bits();
@@ -635,7 +637,7 @@ std::vector<OperatorVariant> variants_where(const Predicate& applies) {
 std::vector<OperatorVariant> invertible_curves() {
     std::vector<OperatorVariant> chosen = variants_where(is_per_channel);
     std::erase_if(chosen, [](const OperatorVariant& v) {
-        return declared_deviations(v).contains(Kind::not_monotone);
+        return declared_differences(v).contains(Kind::not_monotone);
     });
     return chosen;
 }
@@ -681,4 +683,4 @@ TEST(Laws, CoverEveryPresetAndLook) {
 
 }  // namespace
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

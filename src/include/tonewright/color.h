@@ -6,7 +6,7 @@
 
 #include "tonewright/expr.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 using Vector3 = std::array<double, 3>;
 /// Row-major; acts on column vectors: y = M x.
@@ -14,11 +14,11 @@ using Matrix3 = std::array<std::array<double, 3>, 3>;
 
 inline constexpr Matrix3 kIdentity3 = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
-[[nodiscard]] Matrix3 multiply(const Matrix3& a, const Matrix3& b) noexcept;
-[[nodiscard]] Vector3 multiply(const Matrix3& m, const Vector3& v) noexcept;
-[[nodiscard]] Matrix3 scale(const Matrix3& m, double factor) noexcept;
+[[nodiscard]] TONEWRIGHT_API Matrix3 multiply(const Matrix3& a, const Matrix3& b) noexcept;
+[[nodiscard]] TONEWRIGHT_API Vector3 multiply(const Matrix3& m, const Vector3& v) noexcept;
+[[nodiscard]] TONEWRIGHT_API Matrix3 scale(const Matrix3& m, double factor) noexcept;
 /// @throws Error  when the determinant is 0.
-[[nodiscard]] Matrix3 inverse(const Matrix3& m);
+[[nodiscard]] TONEWRIGHT_API Matrix3 inverse(const Matrix3& m);
 
 /// CIE 1931 chromaticity.
 struct Chromaticity {
@@ -73,21 +73,21 @@ inline constexpr Primaries kDaVinciWideGamut = {
     "DaVinci Wide Gamut", {0.8000, 0.3130}, {0.1682, 0.9877}, {0.0790, -0.1155}, kD65};
 
 /// XYZ of a chromaticity with Y = 1.
-[[nodiscard]] Vector3 xyz_of(Chromaticity xy) noexcept;
+[[nodiscard]] TONEWRIGHT_API Vector3 xyz_of(Chromaticity xy) noexcept;
 
 /// Linear RGB with white (1,1,1) -> CIE XYZ of the same white with Y = 1 (SMPTE RP 177:1993). A
 /// primary may have y = 0, as X and Z themselves have.
 /// @throws Error  when the primaries lie on one line.
-[[nodiscard]] Matrix3 rgb_to_xyz(const Primaries& primaries);
+[[nodiscard]] TONEWRIGHT_API Matrix3 rgb_to_xyz(const Primaries& primaries);
 
 /// Bradford chromatic adaptation of XYZ from one white to another (Lam 1985; ICC.1:2010 annex E).
-[[nodiscard]] Matrix3 bradford_adaptation(Chromaticity from, Chromaticity to);
+[[nodiscard]] TONEWRIGHT_API Matrix3 bradford_adaptation(Chromaticity from, Chromaticity to);
 
 /// Linear RGB -> linear RGB, Bradford-adapted where the whites differ; rows sum to 1.
-[[nodiscard]] Matrix3 rgb_to_rgb(const Primaries& from, const Primaries& to);
+[[nodiscard]] TONEWRIGHT_API Matrix3 rgb_to_rgb(const Primaries& from, const Primaries& to);
 
 /// Linear RGB -> CIE XYZ under D65 (Bradford where the white differs).
-[[nodiscard]] Matrix3 rgb_to_xyz_d65(const Primaries& primaries);
+[[nodiscard]] TONEWRIGHT_API Matrix3 rgb_to_xyz_d65(const Primaries& primaries);
 
 /// Weights of relative luminance as nearly all code and papers print them for Rec.709 (ITU-R
 /// BT.709-6, item 3.2). Derived from the primaries they would be 0.2126390, 0.7151687, 0.0721923.
@@ -98,69 +98,69 @@ inline constexpr Vector3 kRec709Weights = {0.2126, 0.7152, 0.0722};
 
 /// IEC 61966-2-1:1999 display light -> code value: 12.92 L up to 0.0031308, then
 /// 1.055 L^(1/2.4) - 0.055. Negatives follow the straight part. Domain (-inf, inf).
-[[nodiscard]] Expr srgb_encode(const Expr& linear);
+[[nodiscard]] TONEWRIGHT_API Expr srgb_encode(const Expr& linear);
 /// IEC 61966-2-1:1999 code value -> display light; threshold 0.04045.
-[[nodiscard]] Expr srgb_decode(const Expr& code);
+[[nodiscard]] TONEWRIGHT_API Expr srgb_decode(const Expr& code);
 
 /// max(L, 0)^(1/exponent): display light -> code value of a pure power display.
-[[nodiscard]] Expr power_encode(const Expr& linear, double exponent);
+[[nodiscard]] TONEWRIGHT_API Expr power_encode(const Expr& linear, double exponent);
 /// max(c, 0)^exponent.
-[[nodiscard]] Expr power_decode(const Expr& code, double exponent);
+[[nodiscard]] TONEWRIGHT_API Expr power_decode(const Expr& code, double exponent);
 
 /// ITU-R BT.1886 with black at 0: the 2.4 power. Display light (1 = peak) -> code value.
-[[nodiscard]] Expr bt1886_encode(const Expr& linear);
-[[nodiscard]] Expr bt1886_decode(const Expr& code);
+[[nodiscard]] TONEWRIGHT_API Expr bt1886_encode(const Expr& linear);
+[[nodiscard]] TONEWRIGHT_API Expr bt1886_decode(const Expr& code);
 
 /// ITU-R BT.709-6, item 1.2, the other way: what a camera put out -> scene light. Negatives follow
 /// the straight part.
-[[nodiscard]] Expr bt709_inverse_oetf(const Expr& code);
+[[nodiscard]] TONEWRIGHT_API Expr bt709_inverse_oetf(const Expr& code);
 
 /// SMPTE ST 2084:2014 inverse EOTF: luminance in cd/m2 [0, 10000] -> code value [0, 1].
 /// Negatives mirror.
-[[nodiscard]] Expr pq_encode_nits(const Expr& nits);
+[[nodiscard]] TONEWRIGHT_API Expr pq_encode_nits(const Expr& nits);
 /// SMPTE ST 2084:2014 EOTF: code value -> cd/m2.
-[[nodiscard]] Expr pq_decode_nits(const Expr& code);
+[[nodiscard]] TONEWRIGHT_API Expr pq_decode_nits(const Expr& code);
 
 /// ITU-R BT.2100-2 table 5, HLG OETF: scene light [0, 1] -> code value [0, 1]. Negatives mirror.
-[[nodiscard]] Expr hlg_oetf(const Expr& scene_linear);
+[[nodiscard]] TONEWRIGHT_API Expr hlg_oetf(const Expr& scene_linear);
 /// Its inverse.
-[[nodiscard]] Expr hlg_inverse_oetf(const Expr& code);
+[[nodiscard]] TONEWRIGHT_API Expr hlg_inverse_oetf(const Expr& code);
 
 /// ITU-R BT.2100-2 table 5, HLG inverse OOTF of a display of 1000 cd/m2 (gamma 1.2), on the
 /// luminance of display light, 1 = peak: L -> scene luminance L^(1/1.2). Below 1e-4/3^1.2 it is a
 /// straight line, as in OpenColorIO's DISPLAY - CIE-XYZ-D65_to_REC.2100-HLG-1000nit: the power's
 /// gain at black has no end.
-[[nodiscard]] Expr hlg_inverse_ootf_luminance(const Expr& display_luminance);
+[[nodiscard]] TONEWRIGHT_API Expr hlg_inverse_ootf_luminance(const Expr& display_luminance);
 /// Its inverse, the OOTF: scene luminance -> display luminance.
-[[nodiscard]] Expr hlg_ootf_luminance(const Expr& scene_luminance);
+[[nodiscard]] TONEWRIGHT_API Expr hlg_ootf_luminance(const Expr& scene_luminance);
 
 /// Academy S-2016-001, ACEScct: AP1 scene-linear -> log code value. 1 is 222.86 scene-linear.
-[[nodiscard]] Expr acescct_encode(const Expr& linear);
+[[nodiscard]] TONEWRIGHT_API Expr acescct_encode(const Expr& linear);
 /// Its inverse; the clamp at 65504 of the standard is not in it.
-[[nodiscard]] Expr acescct_decode(const Expr& code);
+[[nodiscard]] TONEWRIGHT_API Expr acescct_decode(const Expr& code);
 
 // Scene-linear light -> log code value of cameras and grading systems, and back. Below their toes
 // they go on straight.
 
 /// ARRI LogC3 of exposure index 800, scene exposure: "ALEXA Log C Curve, Usage in VFX", 2017.
-[[nodiscard]] Expr arri_logc3_encode(const Expr& linear);
-[[nodiscard]] Expr arri_logc3_decode(const Expr& code);
+[[nodiscard]] TONEWRIGHT_API Expr arri_logc3_encode(const Expr& linear);
+[[nodiscard]] TONEWRIGHT_API Expr arri_logc3_decode(const Expr& code);
 /// "LogC4 Logarithmic Color Space, Specification", 2022.
-[[nodiscard]] Expr arri_logc4_encode(const Expr& linear);
-[[nodiscard]] Expr arri_logc4_decode(const Expr& code);
+[[nodiscard]] TONEWRIGHT_API Expr arri_logc4_encode(const Expr& linear);
+[[nodiscard]] TONEWRIGHT_API Expr arri_logc4_decode(const Expr& code);
 /// Sony, "Technical Summary for S-Gamut3.Cine/S-Log3 and S-Gamut3/S-Log3".
-[[nodiscard]] Expr sony_slog3_encode(const Expr& linear);
-[[nodiscard]] Expr sony_slog3_decode(const Expr& code);
+[[nodiscard]] TONEWRIGHT_API Expr sony_slog3_encode(const Expr& linear);
+[[nodiscard]] TONEWRIGHT_API Expr sony_slog3_decode(const Expr& code);
 /// Blackmagic Design, "DaVinci Resolve 17 Wide Gamut Intermediate", 2021.
-[[nodiscard]] Expr davinci_intermediate_encode(const Expr& linear);
-[[nodiscard]] Expr davinci_intermediate_decode(const Expr& code);
+[[nodiscard]] TONEWRIGHT_API Expr davinci_intermediate_encode(const Expr& linear);
+[[nodiscard]] TONEWRIGHT_API Expr davinci_intermediate_decode(const Expr& code);
 /// Unity's LogC, ALEXA's of EI 1000 without its toe: core render pipeline, Color.hlsl,
 /// LinearToLogC.
-[[nodiscard]] Expr unity_logc_encode(const Expr& linear);
-[[nodiscard]] Expr unity_logc_decode(const Expr& code);
+[[nodiscard]] TONEWRIGHT_API Expr unity_logc_encode(const Expr& linear);
+[[nodiscard]] TONEWRIGHT_API Expr unity_logc_decode(const Expr& code);
 /// Unreal Engine, TonemapCommon.ush, LinToLog: 14 stops, grey 0.18 at code 444 of 1023. Clamped at
 /// code 0.
-[[nodiscard]] Expr unreal_log_encode(const Expr& linear);
-[[nodiscard]] Expr unreal_log_decode(const Expr& code);
+[[nodiscard]] TONEWRIGHT_API Expr unreal_log_encode(const Expr& linear);
+[[nodiscard]] TONEWRIGHT_API Expr unreal_log_decode(const Expr& code);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

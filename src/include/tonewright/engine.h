@@ -9,7 +9,7 @@
 
 #include "tonewright/pipeline.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// The first step of every engine: NaN -> 0, then limited to +-kHalfMax.
 [[nodiscard]] inline double sanitise(double x) noexcept {
@@ -22,7 +22,7 @@ class Tape;
 ///
 /// It runs the expressions as they are written, without any pass that changes a value. Total:
 /// finite out for every double in, NaN and infinities included. Safe to share between threads.
-class ReferenceEngine {
+class TONEWRIGHT_API ReferenceEngine {
   public:
     explicit ReferenceEngine(const Pipeline& pipeline);
     ~ReferenceEngine();
@@ -45,7 +45,7 @@ class ReferenceEngine {
 /// Passes that change the last bits (matrices multiplied together, division by a constant as
 /// multiplication, fused multiply-add, piecewise polynomials for whole curves) are allowed here and
 /// only here. Total. Safe to share.
-class SimdEngine {
+class TONEWRIGHT_API SimdEngine {
   public:
     /// @param max_error  how far the result may be from the reference: absolute up to 1, relative
     ///                   above. What needs more than float for that is computed in double. Each
@@ -79,4 +79,4 @@ class SimdEngine {
     std::unique_ptr<const Program> program_;
 };
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -10,7 +10,9 @@
 #include <string>
 #include <vector>
 
-namespace tonewright {
+#include "tonewright/version.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// What a node of an expression computes.
 enum class ExprOp : unsigned char {
@@ -59,7 +61,7 @@ struct Table {
 
 /// Colours on a grid of edge^3 nodes over the unit cube, interpolated in tetrahedra along the grey
 /// diagonal; outside, the nearest face holds.
-class Lattice {
+class TONEWRIGHT_API Lattice {
   public:
     /// @param make  gives red, green, blue of each node, the third coordinate running fastest. It
     /// is
@@ -99,7 +101,7 @@ struct ExprNode;
 ///
 /// There is no conversion to bool: an `if` on a pixel value does not compile. `select` is the
 /// branch.
-class Expr {
+class TONEWRIGHT_API Expr {
   public:
     Expr(double value);  // NOLINT(google-explicit-constructor): constants read as numbers
 
@@ -135,75 +137,76 @@ class Expr {
 };
 
 /// Builds a node from its operation and operands, with the same folding as the functions below.
-Expr make_expr(ExprOp op, std::span<const Expr> operands,
-               std::shared_ptr<const Table> table = nullptr);
+TONEWRIGHT_API Expr make_expr(ExprOp op, std::span<const Expr> operands,
+                              std::shared_ptr<const Table> table = nullptr);
 
 [[nodiscard]] inline bool same(const Expr& a, const Expr& b) { return a.node() == b.node(); }
 
-Expr operator+(const Expr& a, const Expr& b);
-Expr operator-(const Expr& a, const Expr& b);
-Expr operator*(const Expr& a, const Expr& b);
-Expr operator/(const Expr& a, const Expr& b);
-Expr operator-(const Expr& a);
-Expr min(const Expr& a, const Expr& b);
-Expr max(const Expr& a, const Expr& b);
-Expr abs(const Expr& a);
-Expr sqrt(const Expr& a);
-Expr exp2(const Expr& a);
-Expr log2(const Expr& a);
-Expr pow(const Expr& base, const Expr& exponent);
-Expr sin(const Expr& radians);
-Expr cos(const Expr& radians);
-Expr atan2(const Expr& y, const Expr& x);
-Expr floor(const Expr& a);
-Expr less(const Expr& a, const Expr& b);
-Expr less_equal(const Expr& a, const Expr& b);
-Expr equal(const Expr& a, const Expr& b);
+TONEWRIGHT_API Expr operator+(const Expr& a, const Expr& b);
+TONEWRIGHT_API Expr operator-(const Expr& a, const Expr& b);
+TONEWRIGHT_API Expr operator*(const Expr& a, const Expr& b);
+TONEWRIGHT_API Expr operator/(const Expr& a, const Expr& b);
+TONEWRIGHT_API Expr operator-(const Expr& a);
+TONEWRIGHT_API Expr min(const Expr& a, const Expr& b);
+TONEWRIGHT_API Expr max(const Expr& a, const Expr& b);
+TONEWRIGHT_API Expr abs(const Expr& a);
+TONEWRIGHT_API Expr sqrt(const Expr& a);
+TONEWRIGHT_API Expr exp2(const Expr& a);
+TONEWRIGHT_API Expr log2(const Expr& a);
+TONEWRIGHT_API Expr pow(const Expr& base, const Expr& exponent);
+TONEWRIGHT_API Expr sin(const Expr& radians);
+TONEWRIGHT_API Expr cos(const Expr& radians);
+TONEWRIGHT_API Expr atan2(const Expr& y, const Expr& x);
+TONEWRIGHT_API Expr floor(const Expr& a);
+TONEWRIGHT_API Expr less(const Expr& a, const Expr& b);
+TONEWRIGHT_API Expr less_equal(const Expr& a, const Expr& b);
+TONEWRIGHT_API Expr equal(const Expr& a, const Expr& b);
 /// `if_true` where `condition` is not 0, else `if_false`; both are evaluated, one is taken.
-Expr select(const Expr& condition, const Expr& if_true, const Expr& if_false);
+TONEWRIGHT_API Expr select(const Expr& condition, const Expr& if_true, const Expr& if_false);
 /// @throws Error  when the table's positions are not as Table wants them.
-Expr lookup(std::shared_ptr<const Table> table, const Expr& index);
+TONEWRIGHT_API Expr lookup(std::shared_ptr<const Table> table, const Expr& index);
 /// Channel 0, 1 or 2 of the lattice at coordinates in [0, 1].
-Expr interpolate(std::shared_ptr<const Lattice> lattice, int channel, const Expr& r, const Expr& g,
-                 const Expr& b);
+TONEWRIGHT_API Expr interpolate(std::shared_ptr<const Lattice> lattice, int channel, const Expr& r,
+                                const Expr& g, const Expr& b);
 
 // Words of the papers, made of the above.
-Expr exp(const Expr& a);                                    // exp2(a * log2(e))
-Expr log(const Expr& a);                                    // log2(a) * ln(2)
-Expr clamp(const Expr& a, const Expr& lo, const Expr& hi);  // min(max(a, lo), hi)
-Expr mix(const Expr& a, const Expr& b, const Expr& t);      // a + t*(b - a)
-Expr smoothstep(const Expr& edge0, const Expr& edge1, const Expr& x);
+TONEWRIGHT_API Expr exp(const Expr& a);                                    // exp2(a * log2(e))
+TONEWRIGHT_API Expr log(const Expr& a);                                    // log2(a) * ln(2)
+TONEWRIGHT_API Expr clamp(const Expr& a, const Expr& lo, const Expr& hi);  // min(max(a, lo), hi)
+TONEWRIGHT_API Expr mix(const Expr& a, const Expr& b, const Expr& t);      // a + t*(b - a)
+TONEWRIGHT_API Expr smoothstep(const Expr& edge0, const Expr& edge1, const Expr& x);
 
 /// The expression with input i replaced by `inputs[i]`. Inputs beyond the span stay.
-[[nodiscard]] Expr substitute(const Expr& expr, std::span<const Expr> inputs);
+[[nodiscard]] TONEWRIGHT_API Expr substitute(const Expr& expr, std::span<const Expr> inputs);
 
 /// The value, in double, by plain recursion over the shared nodes: the meaning of an expression.
 /// Slow; engines compile a Tape instead, and a test holds the two equal bit for bit.
-[[nodiscard]] double evaluate(const Expr& expr, std::span<const double> inputs);
-[[nodiscard]] double evaluate(const Expr& expr, double input);
+[[nodiscard]] TONEWRIGHT_API double evaluate(const Expr& expr, std::span<const double> inputs);
+[[nodiscard]] TONEWRIGHT_API double evaluate(const Expr& expr, double input);
 
 /// d expr / d input `index`. At a kink of min, max, abs or select: the slope of the side taken
 /// there. Comparisons and floor have slope 0; a linear table has a step table as slope.
-[[nodiscard]] Expr derivative(const Expr& expr, int index = 0);
+[[nodiscard]] TONEWRIGHT_API Expr derivative(const Expr& expr, int index = 0);
 
 /// Exact text: constants are the shortest decimals that read back as the same double, brackets
 /// appear where the order of evaluation needs them.
 /// @param names  of the inputs; `x` for input 0 when there is one input, else `r`, `g`, `b`.
-[[nodiscard]] std::string to_string(const Expr& expr, std::span<const std::string> names = {});
+[[nodiscard]] TONEWRIGHT_API std::string to_string(const Expr& expr,
+                                                   std::span<const std::string> names = {});
 
 /// Number of distinct nodes reachable: what an engine has to compute.
-[[nodiscard]] std::size_t node_count(std::span<const Expr> exprs);
+[[nodiscard]] TONEWRIGHT_API std::size_t node_count(std::span<const Expr> exprs);
 
 /// True when the expression reads input `index`.
-[[nodiscard]] bool depends_on(const Expr& expr, int index);
+[[nodiscard]] TONEWRIGHT_API bool depends_on(const Expr& expr, int index);
 
 /// x in [lo, hi] with f(x) = y, for f increasing or decreasing over [lo, hi]: bracketed Newton
 /// steps on the symbolic derivative, bisection where they leave the bracket; to the last double.
 /// @throws Error  when y is outside [f(lo), f(hi)] or an end is not finite.
-[[nodiscard]] double inverse_at(const Expr& f, double y, double lo, double hi);
+[[nodiscard]] TONEWRIGHT_API double inverse_at(const Expr& f, double y, double lo, double hi);
 
 /// Where f is not smooth in (lo, hi): every x at which a comparison, min, max, abs or clamp inside
 /// f changes sides, found to the last double. Sorted.
-[[nodiscard]] std::vector<double> kinks(const Expr& f, double lo, double hi);
+[[nodiscard]] TONEWRIGHT_API std::vector<double> kinks(const Expr& f, double lo, double hi);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
-namespace tonewright {
+#include "tonewright/version.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// One thing that is wrong, or odd, with an OpenColorIO config.
 struct LintFinding {
@@ -26,6 +28,7 @@ struct LintFinding {
 /// @param path      of the config
 /// @param with_gpu  the last of these, where OpenGL can be had
 /// @throws FileError  for a config that cannot be read
-[[nodiscard]] std::vector<LintFinding> lint_config(const std::string& path, bool with_gpu);
+[[nodiscard]] TONEWRIGHT_API std::vector<LintFinding> lint_config(const std::string& path,
+                                                                  bool with_gpu);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -10,17 +10,18 @@
 
 /// Operators that look at a pixel's surroundings, on planes of floats. tonemap() of image.h runs
 /// them on pictures of any kind; this header needs no other library.
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// Calls body(begin, end) for parts that make up [0, count), each once, from any threads, and
 /// returns when all are done. What an operator computes does not depend on the parts, in any bit.
 using RowLoop = std::function<void(int count, const std::function<void(int begin, int end)>& body)>;
 
 /// One part, in the calling thread.
-void run_rows_in_turn(int count, const std::function<void(int begin, int end)>& body);
+TONEWRIGHT_API void run_rows_in_turn(int count,
+                                     const std::function<void(int begin, int end)>& body);
 
 /// A picture in memory, on which a local operator works in place.
-struct LightPicture {
+struct ScenePlanes {
     int width = 0;   // at least 1
     int height = 0;  // at least 1
     /// Red, green and blue of Rec.709, row by row without gaps: scene-linear before exposure,
@@ -38,6 +39,6 @@ struct LightPicture {
 /// Runs a local operator.
 /// @param op      as resolve_picture_operator() gives it
 /// @throws Error  the operator is not local, or the planes are not of the picture's size.
-void run_local_operator(const ResolvedOperator& op, LightPicture& picture);
+TONEWRIGHT_API void run_local_operator(const ResolvedOperator& op, ScenePlanes& picture);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -9,7 +9,7 @@
 
 #include "tonewright/view.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// How scene-linear light is put into the [0, 1] that a lookup table is indexed with.
 struct InputEncoding {
@@ -31,9 +31,9 @@ struct InputEncoding {
 /// (default 100); `log2[:LO:HI]` = log2 of scene-linear over 0.18, LO..HI stops (default -10:6.5);
 /// `linear[:LO:HI]` = scene-linear (default 0:1).
 /// @throws Error  unknown name; parameters that are no numbers or out of range.
-[[nodiscard]] InputEncoding parse_input_encoding(std::string_view text);
+[[nodiscard]] TONEWRIGHT_API InputEncoding parse_input_encoding(std::string_view text);
 /// Without parameters.
-[[nodiscard]] std::vector<std::string> input_encoding_names();
+[[nodiscard]] TONEWRIGHT_API std::vector<std::string> input_encoding_names();
 
 /// `cube` (Adobe and Resolve), `clf` (Academy S-2014-006), `ctf` (Autodesk's form of it), `spi1d`,
 /// `spi3d` (Sony Imageworks), `csp` (cineSpace: scene-linear in, its prelut encodes),
@@ -58,14 +58,14 @@ enum class LutFormat : unsigned char {
     raw
 };
 /// @throws Error with the nearest name.
-[[nodiscard]] LutFormat parse_lut_format(std::string_view text);
-[[nodiscard]] std::vector<std::string> lut_format_names();
-[[nodiscard]] std::string name_of(LutFormat format);
+[[nodiscard]] TONEWRIGHT_API LutFormat parse_lut_format(std::string_view text);
+[[nodiscard]] TONEWRIGHT_API std::vector<std::string> lut_format_names();
+[[nodiscard]] TONEWRIGHT_API std::string name_of(LutFormat format);
 /// A picture's layout, not a file of its own kind: OpenImageIO writes it.
-[[nodiscard]] bool is_strip(LutFormat format);
-[[nodiscard]] bool is_picture_format(LutFormat format);
+[[nodiscard]] TONEWRIGHT_API bool is_strip(LutFormat format);
+[[nodiscard]] TONEWRIGHT_API bool is_picture_format(LutFormat format);
 /// Scene-linear goes in, and a 1D table before the cube encodes it.
-[[nodiscard]] bool has_shaper(LutFormat format);
+[[nodiscard]] TONEWRIGHT_API bool has_shaper(LutFormat format);
 
 enum class LutDimension : unsigned char { automatic, one, three };
 
@@ -87,27 +87,6 @@ struct LutRequest {
     /// space.
     std::optional<int> decimals;
 };
-
-/// An application that reads a LUT, and what it expects.
-struct LutHost {
-    std::string id;     // resolve
-    std::string title;  // "DaVinci Resolve"
-    LutFormat format;
-    int size;  // grid points a side
-    std::string encoding;
-    /// Id of the display whose code values come out, or `linear`.
-    std::string display;
-    std::optional<int> bits;
-    /// What the application does between the nodes.
-    std::string interpolation;
-    /// What a user does with the file.
-    std::string steps;
-    /// Empty: the format was checked, the application not run.
-    std::string tested;
-};
-[[nodiscard]] const std::vector<LutHost>& all_lut_hosts();
-/// @throws Error with the nearest name.
-[[nodiscard]] const LutHost& find_lut_host(std::string_view id);
 
 /// A baked table. 1D: `size` entries of `channels` values. 3D: size^3 RGB triplets, red fastest.
 /// Half-domain: 65536 entries in the order of the half floats' bit patterns.
@@ -137,22 +116,23 @@ struct LutError {
 /// @throws Error  a 3D table of linear input (it would clip at its end and band below); a 1D table
 ///                of a view that mixes channels; a size out of range; a format without that
 ///                dimension.
-[[nodiscard]] Lut sample_lut(const LutRequest& request);
+[[nodiscard]] TONEWRIGHT_API Lut sample_lut(const LutRequest& request);
 
 /// A cube as sample_lut() makes it, with nodes that are chosen for the least error between them,
 /// for colors of pictures and beyond. It can be nearer or not: measure both.
 /// @param sampled  its sampled form
 /// @throws Error  for a 1D table.
-[[nodiscard]] Lut fit_lut(const LutRequest& request, const Lut& sampled);
+[[nodiscard]] TONEWRIGHT_API Lut fit_lut(const LutRequest& request, const Lut& sampled);
 
 /// Table output for scene-linear input that the encoding holds; `rgb` is table input in [0, 1] (for
 /// a half-domain table: scene-linear). Linear in 1D; in 3D tetrahedral, or trilinear when asked.
-[[nodiscard]] Vector3 interpolate(const Lut& lut, const Vector3& rgb, bool trilinear = false);
+[[nodiscard]] TONEWRIGHT_API Vector3 interpolate(const Lut& lut, const Vector3& rgb,
+                                                 bool trilinear = false);
 
 /// Measured on the standard probe set, as far as it lies inside the encoding's range, and on random
 /// table inputs; behind a shaper as its readers resample it.
-[[nodiscard]] LutError measure_lut(const Lut& lut, const LutRequest& request,
-                                   bool trilinear = false);
+[[nodiscard]] TONEWRIGHT_API LutError measure_lut(const Lut& lut, const LutRequest& request,
+                                                  bool trilinear = false);
 
 /// Light beyond the ends of an encoding that the operator would still show as something else than
 /// the light at the end: by more than one code of 10 bits (of `linear` and `native`: more than
@@ -169,10 +149,11 @@ struct LutClipping {
     std::optional<ClippedStops> above;
 };
 /// Of a half-domain table: nothing.
-[[nodiscard]] LutClipping measure_clipping(const LutRequest& request, const Lut& lut);
+[[nodiscard]] TONEWRIGHT_API LutClipping measure_clipping(const LutRequest& request,
+                                                          const Lut& lut);
 /// "above +6.50 stops from 0.18, up to +9.25, by up to 3.1e-02; below -10.00 stops, down to black,
 /// by up to 1.8e-03"; empty where nothing is.
-[[nodiscard]] std::string to_string(const LutClipping& clipping);
+[[nodiscard]] TONEWRIGHT_API std::string to_string(const LutClipping& clipping);
 
 /// Which values the nodes of a cube have: sampled, fitted, or of these the one that is nearer in
 /// the mean and in the 99.9th percentile.
@@ -192,76 +173,21 @@ struct BakedLut {
 ///                   a side (or what the format has of such), whose largest error is at most this,
 ///                   in code values (of `linear` and `native`: in the operator's numbers)
 /// @throws Error  as sample_lut(); with a size and a max_error; where no size meets it
-[[nodiscard]] BakedLut bake_lut(const LutRequest& request, LutNodes nodes = LutNodes::automatic,
-                                bool trilinear = false,
-                                std::optional<double> max_error = std::nullopt);
+[[nodiscard]] TONEWRIGHT_API BakedLut bake_lut(const LutRequest& request,
+                                               LutNodes nodes = LutNodes::automatic,
+                                               bool trilinear = false,
+                                               std::optional<double> max_error = std::nullopt);
 
 /// The table as its format holds it: rounded to the integers of LutRequest::bits, or to
 /// LutRequest::decimals.
-void quantize(Lut& lut, const LutRequest& request);
+TONEWRIGHT_API void quantize(Lut& lut, const LutRequest& request);
 
 /// The contents of the file: what it is, what goes in, what clips, what comes out, the measured
 /// errors and a hash of the numbers; then numbers with 9 significant digits (enough for every
 /// float), never in exponent notation. Of no picture.
 /// @param other_error  of a cube: with the other interpolation
-[[nodiscard]] std::string write_lut(const Lut& lut, const LutRequest& request,
-                                    const LutError& error,
-                                    const std::optional<LutError>& other_error = std::nullopt);
+[[nodiscard]] TONEWRIGHT_API std::string write_lut(
+    const Lut& lut, const LutRequest& request, const LutError& error,
+    const std::optional<LutError>& other_error = std::nullopt);
 
-/// One file of a generated set.
-struct GeneratedFile {
-    std::string path;  // relative to the set's folder
-    std::string contents;
-};
-
-/// Of the set of `bake --all`: the LUTs of one application.
-struct LutShelf {
-    const LutHost* host = nullptr;
-    /// Applications that the same files suit.
-    std::string also;
-    std::vector<std::string> operators;
-    /// Instead of the host's, where fewer are enough.
-    std::optional<int> size;
-};
-[[nodiscard]] const std::vector<LutShelf>& lut_shelves();
-
-/// A LUT of the set.
-struct ShippedLut {
-    const LutShelf* shelf = nullptr;
-    LutRequest request;
-    /// In the set's folder: `resolve/agx_blender_davinci_to_rec1886.cube`.
-    std::string path;
-    /// What the chart looks like through it.
-    std::string thumbnail;
-    Lut lut;
-    bool is_fitted = false;
-    LutError tetrahedral;
-    LutError trilinear;
-    /// The file. Empty for a picture, which OpenImageIO writes.
-    std::string contents;
-};
-
-/// True where the application interpolates in cubes, not in tetrahedra, unless told otherwise.
-[[nodiscard]] bool is_trilinear(const LutHost& host);
-
-/// All of them, in the order of the shelves. The same on every run, whatever the number of threads.
-[[nodiscard]] std::vector<ShippedLut> bake_shipped_luts();
-
-/// README.md and MANIFEST.csv, of LUTs that all have their contents.
-[[nodiscard]] std::vector<GeneratedFile> describe_shipped_luts(const std::vector<ShippedLut>& luts);
-
-/// Writes to a temporary name beside the target, syncs, renames: a failed run leaves the old file.
-/// @throws FileError  naming the path and the reason.
-void write_text_atomically(const std::string& path, std::string_view contents);
-
-/// Makes the folder if it is missing, and a file in it for a moment: what takes a minute to compute
-/// should not find out at its end that it cannot be written.
-/// @throws FileError  naming the path and the reason.
-void require_writable_folder(const std::string& folder);
-
-/// Writes a set into a folder (made if missing), the file named `last` at the end, and then removes
-/// what the folder's previous MANIFEST.csv named and the new set no longer has.
-void write_generated_files(const std::string& folder, const std::vector<GeneratedFile>& files,
-                           std::string_view last);
-
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -9,13 +9,13 @@
 
 #include "tonewright/lut.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// What stands between the nodes of a cube. 1D tables are linear. Automatic: what the file says
 /// (CLF and CTF can), else tetrahedral.
 enum class LutInterpolation : unsigned char { automatic, tetrahedral, trilinear };
 /// @throws Error with the nearest name.
-[[nodiscard]] LutInterpolation parse_lut_interpolation(std::string_view text);
+[[nodiscard]] TONEWRIGHT_API LutInterpolation parse_lut_interpolation(std::string_view text);
 
 /// A LUT of any format and of anybody's, ready to run.
 ///
@@ -23,7 +23,7 @@ enum class LutInterpolation : unsigned char { automatic, tetrahedral, trilinear 
 /// .spimtx, .cc), LittleCMS an ICC device link (.icc, .icm), and our
 /// own interpolation raw floats (.raw: the cube's size follows from the file's) and tables from
 /// elsewhere, such as the pictures of read_lut_picture().
-class LutFile {
+class TONEWRIGHT_API LutFile {
   public:
     /// Nothing is taken from the file before it has been looked through: sizes, numbers of rows,
     /// numbers.
@@ -45,4 +45,4 @@ class LutFile {
     std::unique_ptr<const Form> form_;
 };
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

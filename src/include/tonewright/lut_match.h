@@ -4,9 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "tonewright/lut.h"
 #include "tonewright/lut_file.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// How near a LUT is to an operator, if it is fed and shown like this.
 struct LutMatch {
@@ -25,8 +26,7 @@ struct LutMatch {
 /// @param operators  `id`, `id:preset`; empty: all, with their defaults
 /// @param count      how many, the nearest first
 /// @throws Error  for an unknown operator
-[[nodiscard]] std::vector<LutMatch> match_lut(const LutFile& lut,
-                                              const std::vector<std::string>& operators,
-                                              std::size_t count = 5);
+[[nodiscard]] TONEWRIGHT_API std::vector<LutMatch> match_lut(
+    const LutFile& lut, const std::vector<std::string>& operators, std::size_t count = 5);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -9,15 +9,15 @@
 #include <string_view>
 #include <vector>
 
-#include "tonewright/image.h"
 #include "tonewright/pipeline.h"
+#include "tonewright/tonemap.h"
 
 /// Metering: how much light a picture has, which exposure that suggests, and how the exposure of a
 /// shot follows its light.
 ///
 /// Luminance is relative (0.2126, 0.7152, 0.0722) of Rec.709 light: channels limited to +-65504,
 /// converted from `input`, negatives 0. 1 is diffuse white; EV100 takes it for 1 cd/m2.
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// What is measured of a picture, and where.
 struct MeterOptions {
@@ -50,7 +50,7 @@ struct MeterOptions {
 };
 
 /// @throws Error  a number out of its interval, or an unknown space
-void check_meter_options(const MeterOptions& options);
+TONEWRIGHT_API void check_meter_options(const MeterOptions& options);
 
 /// What was measured.
 struct Metering {
@@ -99,23 +99,25 @@ struct Metering {
 ///                  instruction set, in any bit.
 /// @throws Error    bad options; a picture that cannot be read, is deep, or has no color; a region
 ///                  beside it.
-[[nodiscard]] Metering meter(const OIIO::ImageBuf& src, const MeterOptions& options = {},
-                             int nthreads = 0);
+[[nodiscard]] TONEWRIGHT_API Metering meter(const OIIO::ImageBuf& src,
+                                            const MeterOptions& options = {}, int nthreads = 0);
 
 /// The same of a file, in the memory of some rows.
 /// @throws FileError  @see read_image
 /// @throws Error      as meter(), with the file's name.
-[[nodiscard]] Metering meter_file(const std::string& path, const MeterOptions& options = {},
-                                  int nthreads = 0);
+[[nodiscard]] TONEWRIGHT_API Metering meter_file(const std::string& path,
+                                                 const MeterOptions& options = {},
+                                                 int nthreads = 0);
 
 /// Statistics of all frames of a shot together, as if they were one picture.
-[[nodiscard]] SceneStatistics statistics_of_sequence(const std::vector<Metering>& frames);
+[[nodiscard]] TONEWRIGHT_API SceneStatistics
+statistics_of_sequence(const std::vector<Metering>& frames);
 
 // ---------------------------------------------------------------------------------------------
 // Exposure
 
 /// log2(L S/K) with S = 100 and K = 12.5 (ISO 2720): the exposure value of a reflected-light meter.
-[[nodiscard]] double ev100(double luminance);
+[[nodiscard]] TONEWRIGHT_API double ev100(double luminance);
 
 /// From what was measured to an exposure.
 struct ExposureRule {
@@ -145,17 +147,18 @@ struct ExposureRule {
 
 /// `log-average`, `histogram`, `mean` or `max`.
 /// @throws Error  for any other text, with the nearest name.
-[[nodiscard]] ExposureRule::Method parse_meter_method(std::string_view text);
+[[nodiscard]] TONEWRIGHT_API ExposureRule::Method parse_meter_method(std::string_view text);
 
 /// @throws Error  a number out of its interval
-void check_exposure_rule(const ExposureRule& rule);
+TONEWRIGHT_API void check_exposure_rule(const ExposureRule& rule);
 
 /// The luminance that a method takes of a picture; no less than `delta`.
-[[nodiscard]] double metered_luminance(const Metering& metering, ExposureRule::Method method,
-                                       double delta = MeterOptions{}.delta);
+[[nodiscard]] TONEWRIGHT_API double metered_luminance(const Metering& metering,
+                                                      ExposureRule::Method method,
+                                                      double delta = MeterOptions{}.delta);
 
 /// Exposure of a metered luminance in stops, compensation included.
-[[nodiscard]] double suggested_exposure(double luminance, const ExposureRule& rule);
+[[nodiscard]] TONEWRIGHT_API double suggested_exposure(double luminance, const ExposureRule& rule);
 
 // ---------------------------------------------------------------------------------------------
 // Adaptation over time
@@ -177,13 +180,13 @@ struct Adaptation {
 };
 
 /// @throws Error  a number out of its interval
-void check_adaptation(const Adaptation& adaptation);
+TONEWRIGHT_API void check_adaptation(const Adaptation& adaptation);
 
 /// Exposures of the frames of a shot, in stops, without compensation.
 /// @param frames   numbers, increasing: dt is their difference over fps
 /// @param targets  what each frame suggests by itself, in stops
-[[nodiscard]] std::vector<double> adapted_exposures(const std::vector<int>& frames,
-                                                    const std::vector<double>& targets,
-                                                    const Adaptation& adaptation);
+[[nodiscard]] TONEWRIGHT_API std::vector<double> adapted_exposures(
+    const std::vector<int>& frames, const std::vector<double>& targets,
+    const Adaptation& adaptation);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -5,9 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "tonewright/lut.h"
+#include "tonewright/generated_files.h"
+#include "tonewright/view.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// What goes into a config.
 struct ConfigOptions {
@@ -46,10 +47,11 @@ struct ConfigOptions {
 /// @throws Error  for unknown views, looks and displays, and for names that would break a host
 /// (over
 ///                63 bytes, twice the same).
-[[nodiscard]] std::vector<GeneratedFile> make_config(const ConfigOptions& options = {});
+[[nodiscard]] TONEWRIGHT_API std::vector<GeneratedFile> make_config(
+    const ConfigOptions& options = {});
 
 /// What make_config() would throw for the options, before anything is computed or written.
-void check_config_options(const ConfigOptions& options);
+TONEWRIGHT_API void check_config_options(const ConfigOptions& options);
 
 /// One view that was added to somebody's config, and how far its code values are from the double
 /// reference, for light of all of AP0.
@@ -77,27 +79,25 @@ struct ExtendedConfig {
 /// @throws FileError  for a config that cannot be read
 /// @throws Error  for a config without both interchange roles or such a display, for a name that is
 ///                taken
-[[nodiscard]] ExtendedConfig extend_config(const std::string& path, const ConfigOptions& options);
+[[nodiscard]] TONEWRIGHT_API ExtendedConfig extend_config(const std::string& path,
+                                                          const ConfigOptions& options);
 
 /// What the configs that make_config() writes are called inside.
 inline constexpr const char* kConfigName = "tonewright";
 
-/// `id[:preset][:parameter=value...]`. @throws Error as resolve_operator() does.
-[[nodiscard]] ResolvedOperator parse_operator(std::string_view text);
-/// The same, of local operators, too. @throws Error as resolve_picture_operator() does.
-[[nodiscard]] ResolvedOperator parse_picture_operator(std::string_view text);
-
 /// What the config calls a view of an operator on a display: the operator's name, and where its
 /// picture is brighter than white, its peak: "AgX - HDR 1000 nits".
 /// @param name  the view's, on SDR displays
-[[nodiscard]] std::string config_view_name(const std::string& name, const ResolvedOperator& op,
-                                           const Display& display);
+[[nodiscard]] TONEWRIGHT_API std::string config_view_name(const std::string& name,
+                                                          const ResolvedOperator& op,
+                                                          const Display& display);
 
 /// The color space that is such a view, for write nodes: "Output - AgX - sRGB".
-[[nodiscard]] std::string output_space_name(const std::string& view, const std::string& display);
+[[nodiscard]] TONEWRIGHT_API std::string output_space_name(const std::string& view,
+                                                           const std::string& display);
 
 /// Name of the config's space for an input space id: "lin_rec709" -> "Linear Rec.709". The config
 /// has none for a camera's.
-[[nodiscard]] std::string config_space_name(std::string_view input_id);
+[[nodiscard]] TONEWRIGHT_API std::string config_space_name(std::string_view input_id);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -15,7 +15,7 @@
 #include "tonewright/error.h"
 #include "tonewright/expr.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// Largest finite half float. Every form limits scene-linear values to +-this, because OCIO's
 /// half-domain tables end there: so all forms agree about every input.
@@ -81,7 +81,7 @@ struct FixedFunction {
 
 /// True cross-talk: three functions of red, green, blue (inputs 0, 1, 2), which no chain of the
 /// other stages expresses.
-struct Map3Stage {
+struct CrossTalkStage {
     std::array<Expr, 3> f;
     /// What OpenColorIO has of it, if anything: these one behind the other, for all inputs.
     std::vector<FixedFunction> ocio = {};
@@ -100,32 +100,33 @@ struct LatticeStage {
 };
 
 using Stage = std::variant<MatrixStage, CurveStage, ToneScaleStage, HuePreservingStage,
-                           HexconeStage, ClampStage, Map3Stage, LatticeStage>;
+                           HexconeStage, ClampStage, CrossTalkStage, LatticeStage>;
 using Pipeline = std::vector<Stage>;
 
-[[nodiscard]] MatrixStage exposure_stage(double stops);
+[[nodiscard]] TONEWRIGHT_API MatrixStage exposure_stage(double stops);
 /// One curve for all channels; `f` is of input 0.
-[[nodiscard]] CurveStage curve_stage(const Expr& f);
-[[nodiscard]] CurveStage curve_stage(const Expr& f, const Expr& inverse);
+[[nodiscard]] TONEWRIGHT_API CurveStage curve_stage(const Expr& f);
+[[nodiscard]] TONEWRIGHT_API CurveStage curve_stage(const Expr& f, const Expr& inverse);
 
 /// What the stage is called in messages and docs: "matrix", "curve", "tone scale", "hue-preserving
 /// curve", "hexcone", "clamp", "map3", "lattice".
-[[nodiscard]] std::string_view stage_kind(const Stage& stage);
+[[nodiscard]] TONEWRIGHT_API std::string_view stage_kind(const Stage& stage);
 /// True when no pixel changes.
-[[nodiscard]] bool is_identity(const Stage& stage);
+[[nodiscard]] TONEWRIGHT_API bool is_identity(const Stage& stage);
 /// True when an output channel depends on another input channel.
-[[nodiscard]] bool mixes_channels(const Stage& stage);
+[[nodiscard]] TONEWRIGHT_API bool mixes_channels(const Stage& stage);
 /// True when the three channels are treated alike and apart: a 1D table holds it.
-[[nodiscard]] bool is_per_channel(const Pipeline& pipeline);
+[[nodiscard]] TONEWRIGHT_API bool is_per_channel(const Pipeline& pipeline);
 /// The three outputs as expressions of `rgb`.
-[[nodiscard]] std::array<Expr, 3> apply_stage(const Stage& stage, const std::array<Expr, 3>& rgb);
+[[nodiscard]] TONEWRIGHT_API std::array<Expr, 3> apply_stage(const Stage& stage,
+                                                             const std::array<Expr, 3>& rgb);
 /// The whole chain as three expressions of inputs 0, 1, 2.
-[[nodiscard]] std::array<Expr, 3> compose(const Pipeline& pipeline);
+[[nodiscard]] TONEWRIGHT_API std::array<Expr, 3> compose(const Pipeline& pipeline);
 /// Drops identities, multiplies neighbouring matrices (in double), joins neighbouring clamps. The
 /// picture is the same; the reference engine does not do it, every lowering does.
-[[nodiscard]] Pipeline simplify(const Pipeline& pipeline);
+[[nodiscard]] TONEWRIGHT_API Pipeline simplify(const Pipeline& pipeline);
 /// A readable listing, one stage a line.
-[[nodiscard]] std::string to_string(const Pipeline& pipeline);
+[[nodiscard]] TONEWRIGHT_API std::string to_string(const Pipeline& pipeline);
 
 // ---------------------------------------------------------------------------------------------
 // Parameters
@@ -175,27 +176,31 @@ struct ParameterSpec {
     std::string (*from_display)(const DisplayFacts&) = nullptr;
 };
 
-[[nodiscard]] ParameterSpec number_parameter(std::string name, std::string unit, double value,
-                                             double min, double max, std::string help);
-[[nodiscard]] ParameterSpec choice_parameter(std::string name, std::vector<std::string> choices,
-                                             std::string value, std::string help);
+[[nodiscard]] TONEWRIGHT_API ParameterSpec number_parameter(std::string name, std::string unit,
+                                                            double value, double min, double max,
+                                                            std::string help);
+[[nodiscard]] TONEWRIGHT_API ParameterSpec choice_parameter(std::string name,
+                                                            std::vector<std::string> choices,
+                                                            std::string value, std::string help);
 /// Free text: a file, a name in it. Empty by default.
-[[nodiscard]] ParameterSpec text_parameter(std::string name, std::string help);
+[[nodiscard]] TONEWRIGHT_API ParameterSpec text_parameter(std::string name, std::string help);
 /// A number with a default, and a value of its own for every picture.
-[[nodiscard]] ParameterSpec statistic_parameter(ParameterSpec number, std::string statistic,
-                                                double (*from_picture)(const SceneStatistics&));
+[[nodiscard]] TONEWRIGHT_API ParameterSpec statistic_parameter(
+    ParameterSpec number, std::string statistic, double (*from_picture)(const SceneStatistics&));
 
 /// A parameter with a default, and a value of its own for every display.
-[[nodiscard]] ParameterSpec display_parameter(ParameterSpec spec,
-                                              std::string (*from_display)(const DisplayFacts&));
+[[nodiscard]] TONEWRIGHT_API ParameterSpec
+display_parameter(ParameterSpec spec, std::string (*from_display)(const DisplayFacts&));
 
 /// Text as typed by a user: name -> value.
 using Settings = std::map<std::string, std::string>;
 
+struct Operator;
+struct Preset;
 struct ResolvedOperator;
 
 /// Complete, checked values of an operator's parameters, and its look.
-class Params {
+class TONEWRIGHT_API Params {
   public:
     /// @pre the operator declares a number parameter of this name
     [[nodiscard]] double number(std::string_view name) const;
@@ -207,8 +212,8 @@ class Params {
     [[nodiscard]] const std::string& look() const { return look_; }
 
   private:
-    friend ResolvedOperator resolve_picture_operator(std::string_view, const Settings&,
-                                                     std::string_view);
+    friend ResolvedOperator resolve(const Operator&, const Preset*, const Settings&,
+                                    std::string_view);
     std::map<std::string, double, std::less<>> numbers_;
     std::map<std::string, std::string, std::less<>> choices_;
     std::map<std::string, std::string, std::less<>> texts_;
@@ -233,7 +238,7 @@ struct Preset {
 
 /// Where an operator departs from what every tone curve is expected to do. Declared in its file and
 /// held to be true by the law tests; lists and docs warn with it.
-struct Deviation {
+struct DocumentedDifference {
     enum class Kind : unsigned char {
         black,                // native value of black: value
         crushes_black,        // greys up to value are shown as black
@@ -248,7 +253,7 @@ struct Deviation {
 };
 
 /// "lifts black to 0.0029".
-[[nodiscard]] std::string to_string(const Deviation& deviation);
+[[nodiscard]] TONEWRIGHT_API std::string to_string(const DocumentedDifference& deviation);
 
 /// What SimdEngine keeps to unless told otherwise.
 inline constexpr double kSimdError = 1e-6;
@@ -271,7 +276,7 @@ enum class OutputKind : unsigned char {
     code_value,      // already encoded with a pure power: decode before any display's encoding
 };
 
-struct LightPicture;  // local.h
+struct ScenePlanes;  // local.h
 
 /// One tone mapping operator: everything that any form of it needs to know.
 struct Operator {
@@ -292,7 +297,7 @@ struct Operator {
     std::vector<Look> looks;
     /// What else a user should know; sentences without a full stop.
     std::vector<std::string> warnings;
-    std::vector<Deviation> deviations;
+    std::vector<DocumentedDifference> deviations;
     DeclaredBounds bounds;
     /// Operators of one name and different pictures: "AgX". Docs compare them. Empty: none.
     std::string dialects;
@@ -311,18 +316,10 @@ struct Operator {
     std::string (*ocio_builtin)(const Params& params) = nullptr;
     /// Not null: what a pixel becomes depends on its surroundings, and this is the operator, for
     /// whole pictures (local.h). build() is what is left for a pixel by itself: nothing.
-    void (*run_local)(LightPicture& picture, const Params& params) = nullptr;
+    void (*run_local)(ScenePlanes& picture, const Params& params) = nullptr;
 
     [[nodiscard]] bool is_local() const { return run_local != nullptr; }
 };
-
-/// Every operator of a pixel by itself, sorted by id. The table is generated from the files of
-/// src/operators/.
-[[nodiscard]] const std::vector<Operator>& all_operators();
-/// Those that look at a pixel's surroundings, sorted by id: no form but a picture holds them.
-[[nodiscard]] const std::vector<Operator>& local_operators();
-/// @throws Error  naming the nearest id when there is none such; a local operator.
-[[nodiscard]] const Operator& find_operator(std::string_view id);
 
 /// An operator with its parameters fixed.
 struct ResolvedOperator {
@@ -330,9 +327,12 @@ struct ResolvedOperator {
     Params params;
     /// `id`, `id:preset`, or with the settings that differ from the defaults: names it in reports.
     std::string label;
-    /// What it was resolved from.
-    std::string name;
+    /// The preset and settings that it was resolved from; null: no preset.
+    const Preset* preset = nullptr;
     Settings settings;
+
+    /// `id` or `id:preset`.
+    [[nodiscard]] std::string name() const { return preset ? op->id + ":" + preset->id : op->id; }
 
     [[nodiscard]] Pipeline build() const { return op->build(params); }
     /// Primaries of the output.
@@ -347,31 +347,28 @@ struct ResolvedOperator {
     }
 };
 
-/// Looks up `id` or `id:preset` and checks the settings against the operator's parameters.
+/// @throws Error  naming the nearest id when the operator has no such preset.
+[[nodiscard]] TONEWRIGHT_API const Preset& find_preset(const Operator& op, std::string_view id);
+
+/// Checks settings against an operator's parameters and completes them.
 ///
-/// @param name      operator id, optionally `:preset`.
+/// @param preset    of the operator; null: none.
 /// @param settings  parameter name -> text; they win over the preset's.
 /// @param look      look id, or empty.
-/// @throws Error    unknown operator, preset, parameter, look or choice (with the nearest name);
-///                  a value that is no number or outside the parameter's interval. Never a clamp.
-///                  A local operator: @see resolve_picture_operator
-[[nodiscard]] ResolvedOperator resolve_operator(std::string_view name,
-                                                const Settings& settings = {},
-                                                std::string_view look = {});
+/// @throws Error    unknown parameter, look or choice (with the nearest name); a value that is no
+///                  number or outside the parameter's interval. Values are never clamped.
+[[nodiscard]] TONEWRIGHT_API ResolvedOperator resolve(const Operator& op, const Preset* preset,
+                                                      const Settings& settings,
+                                                      std::string_view look);
 
-/// The same for whole pictures, which local operators may be used on, too.
-[[nodiscard]] ResolvedOperator resolve_picture_operator(std::string_view name,
-                                                        const Settings& settings = {},
-                                                        std::string_view look = {});
-
-/// `settings` and, of the parameters that neither they nor the preset of `name` set, those that a
-/// picture has, from its statistics.
-[[nodiscard]] Settings settings_for_picture(std::string_view name, const Settings& settings,
-                                            const SceneStatistics& statistics);
+/// The operator's settings, and the values that a picture's statistics give to parameters that
+/// neither the settings nor the preset set.
+[[nodiscard]] TONEWRIGHT_API Settings settings_for_picture(const ResolvedOperator& resolved,
+                                                           const SceneStatistics& statistics);
 
 /// The same operator for a display: parameters that neither the user nor the preset set and that a
-/// display decides have its values. The label stays.
-[[nodiscard]] ResolvedOperator resolve_for_display(const ResolvedOperator& resolved,
-                                                   const DisplayFacts& display);
+/// display decides get its values. The label stays.
+[[nodiscard]] TONEWRIGHT_API ResolvedOperator resolve_for_display(const ResolvedOperator& resolved,
+                                                                  const DisplayFacts& display);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

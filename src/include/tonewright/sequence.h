@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "tonewright/image.h"
+#include "tonewright/tonemap.h"
 
 /// The frames of a shot.
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// A frame of a shot, and what became of it.
 struct FrameFiles {
@@ -50,7 +50,7 @@ struct SequenceOptions {
 /// this machine that are no more, and those that are older than a day.
 ///
 /// @param frames  gets what became of each.
-void tonemap_files(const Tonemapper& tonemapper, std::vector<FrameFiles>& frames,
-                   const SequenceOptions& options = {});
+TONEWRIGHT_API void tonemap_files(const Tonemapper& tonemapper, std::vector<FrameFiles>& frames,
+                                  const SequenceOptions& options = {});
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

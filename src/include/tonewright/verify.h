@@ -7,7 +7,7 @@
 
 #include "tonewright/view.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// What to compare with the reference.
 struct VerifyOptions {
@@ -55,7 +55,7 @@ struct ParityRow {
 };
 
 /// @throws Error  unknown operators, displays, spaces; FileError for the config folder.
-[[nodiscard]] std::vector<ParityRow> verify(
+[[nodiscard]] TONEWRIGHT_API std::vector<ParityRow> verify(
     const VerifyOptions& options, const std::function<void(const ParityRow&)>& on_row = {});
 
 /// Every operator, operator:preset, and operator with look, as (name, look) pairs.
@@ -63,10 +63,10 @@ struct OperatorVariant {
     std::string name;
     std::string look;
 };
-[[nodiscard]] std::vector<OperatorVariant> all_variants();
+[[nodiscard]] TONEWRIGHT_API std::vector<OperatorVariant> all_variants();
 
 /// Lines of a table for the terminal: a heading, one row each.
-[[nodiscard]] std::string parity_heading();
-[[nodiscard]] std::string format_row(const ParityRow& row);
+[[nodiscard]] TONEWRIGHT_API std::string parity_heading();
+[[nodiscard]] TONEWRIGHT_API std::string format_row(const ParityRow& row);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

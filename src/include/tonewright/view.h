@@ -7,7 +7,7 @@
 
 #include "tonewright/pipeline.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// A scene-linear space that pictures come in.
 struct InputSpace {
@@ -39,11 +39,11 @@ struct Display {
     double largest_light = 1;
 };
 
-[[nodiscard]] const std::vector<InputSpace>& all_input_spaces();
-[[nodiscard]] const std::vector<Display>& all_displays();
+[[nodiscard]] TONEWRIGHT_API const std::vector<InputSpace>& all_input_spaces();
+[[nodiscard]] TONEWRIGHT_API const std::vector<Display>& all_displays();
 /// By id, title or alias; letters' case does not matter. @throws Error with the nearest name.
-[[nodiscard]] const InputSpace& find_input_space(std::string_view name);
-[[nodiscard]] const Display& find_display(std::string_view name);
+[[nodiscard]] TONEWRIGHT_API const InputSpace& find_input_space(std::string_view name);
+[[nodiscard]] TONEWRIGHT_API const Display& find_display(std::string_view name);
 
 /// What the numbers of a picture mean: light of some primaries, as it is or through a curve.
 struct SourceColor {
@@ -57,7 +57,7 @@ struct SourceColor {
 /// primaries by the Color Interop Forum's pattern (`srgb_ap1_scene`, `g22_rec709_scene`).
 /// Letters' case does not matter.
 /// @throws Error  with the nearest name.
-[[nodiscard]] SourceColor find_source_color(std::string_view name);
+[[nodiscard]] TONEWRIGHT_API SourceColor find_source_color(std::string_view name);
 
 /// What OpenColorIO's HDR displays show light 1 at, cd/m2.
 inline constexpr double kReferenceWhite = 100;
@@ -90,14 +90,16 @@ struct View {
 ///                  203 as Report ITU-R BT.2408 has it. SDR displays, `linear` and
 ///                  `native` know only the default.
 /// @throws Error    unknown input space or display; exposure or reference white out of range.
-[[nodiscard]] View make_view(ResolvedOperator op, std::string_view input, double exposure_stops,
-                             std::string_view display, double reference_white = kReferenceWhite);
+[[nodiscard]] TONEWRIGHT_API View make_view(ResolvedOperator op, std::string_view input,
+                                            double exposure_stops, std::string_view display,
+                                            double reference_white = kReferenceWhite);
 /// The same for a picture whose color may be of no input space.
-[[nodiscard]] View make_view(ResolvedOperator op, SourceColor input, double exposure_stops,
-                             std::string_view display, double reference_white = kReferenceWhite);
+[[nodiscard]] TONEWRIGHT_API View make_view(ResolvedOperator op, SourceColor input,
+                                            double exposure_stops, std::string_view display,
+                                            double reference_white = kReferenceWhite);
 
 /// True when light of `gamut` needs no negative light of `display`: no color of it is lost there.
-[[nodiscard]] bool is_inside(const Primaries& gamut, const Primaries& display);
+[[nodiscard]] TONEWRIGHT_API bool is_inside(const Primaries& gamut, const Primaries& display);
 
 /// Where a display's colors are limited: the gamut that light leaves the operator in, and its
 /// largest value.
@@ -107,24 +109,26 @@ struct DisplayLimit {
 };
 /// The operator's own gamut where all of it is inside the display's, so that all such displays show
 /// the same colors; else the display's. White, or more where both operator and display have more.
-[[nodiscard]] DisplayLimit display_limit(const ResolvedOperator& op, const Display& display);
+[[nodiscard]] TONEWRIGHT_API DisplayLimit display_limit(const ResolvedOperator& op,
+                                                        const Display& display);
 
 /// Operator output -> display-linear in the limit's primaries, limited to [0, peak]: code values
 /// are decoded with the operator's own power, so that nothing is encoded twice.
-[[nodiscard]] Pipeline display_light_stages(const ResolvedOperator& op, const DisplayLimit& limit);
+[[nodiscard]] TONEWRIGHT_API Pipeline display_light_stages(const ResolvedOperator& op,
+                                                           const DisplayLimit& limit);
 
 /// The whole view as stages. Its input is sanitised: scene-linear in the view's input space, or
 /// what the view decodes.
 /// @see sanitise in engine.h: NaN -> 0, then each channel to +-kHalfMax
-[[nodiscard]] Pipeline build_view(const View& view);
+[[nodiscard]] TONEWRIGHT_API Pipeline build_view(const View& view);
 
 /// The way back: what the view shows -> scene-linear in the view's input primaries. What the view
 /// limits is not brought back.
 /// @throws Error  when the operator has no inverse.
-[[nodiscard]] Pipeline build_inverse_view(const View& view);
+[[nodiscard]] TONEWRIGHT_API Pipeline build_inverse_view(const View& view);
 
 /// True when R = G = B stays so within half a code value of 10 bits, over -16..+16 stops: such a
 /// view shows a grey picture as a grey picture.
-[[nodiscard]] bool keeps_greys(const Pipeline& view);
+[[nodiscard]] TONEWRIGHT_API bool keeps_greys(const Pipeline& view);
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -3,7 +3,7 @@
 // What a new operator takes: this file, dropped into src/operators/. See new_operator.sh.
 #include "operators/family.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 std::vector<Operator> define_toy() {
     Operator op;
@@ -24,4 +24,4 @@ std::vector<Operator> define_toy() {
     return {op};
 }
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

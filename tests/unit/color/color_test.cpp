@@ -7,7 +7,7 @@
 
 #include "tonewright/error.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 void expect_matrix(const Matrix3& actual, const Matrix3& expected, double tolerance) {
@@ -161,4 +161,4 @@ TEST(Pq, DecodesCodesBeyondTheStandardAsItsLargest) {
 }
 
 }  // namespace
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -11,9 +11,10 @@
 #include "engine/simd_kernels.h"
 #include "engine/simd_program.h"
 #include "tonewright/engine.h"
+#include "tonewright/registry.h"
 #include "tonewright/view.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 struct Function {
@@ -227,4 +228,4 @@ TEST(CompiledCurve, AWholeChannelIsOneInstruction) {
 }
 
 }  // namespace
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -14,12 +14,13 @@
 #include <string>
 #include <vector>
 
-#include "engine/probe.h"
 #include "engine/simd_program.h"
+#include "measure/sample_set.h"
 #include "tonewright/engine.h"
+#include "tonewright/registry.h"
 #include "tonewright/view.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 /// Why there is no machine code here, or nothing.
@@ -31,7 +32,7 @@ const char* missing() {
 
 /// Every number that a float can be, and light.
 std::vector<float> floats(std::size_t count) {
-    ProbeRandom random(7);
+    SampleRandom random(7);
     std::vector<float> result(count);
     for (std::size_t i = 0; i < count; ++i) {
         if (i % 3 == 0) {
@@ -104,7 +105,7 @@ TEST(MachineCode, ComputesEveryOperation) {
         {{select(less(r, Expr(0.5)) * less(g, Expr(0.5)), b, g), r - g * b, g * b - r}},
     };
     for (std::size_t i = 0; i < programs.size(); ++i) {
-        const Map3Stage stage{.f = programs[i]};
+        const CrossTalkStage stage{.f = programs[i]};
         for (const double max_error : {1e-6, 1e-12}) {  // the second computes in double
             simd::Code code = simd::compile(Pipeline{stage}, max_error, false);
             ASSERT_TRUE(code.machine) << i;
@@ -122,11 +123,11 @@ TEST(MachineCode, IsNotMadeOfMoreValuesThanATileHolds) {
         for (Expr& channel : rgb)
             channel = sin(channel);
     }
-    const simd::Code code = simd::compile(Pipeline{Map3Stage{.f = rgb}}, 1e-6, false);
+    const simd::Code code = simd::compile(Pipeline{CrossTalkStage{.f = rgb}}, 1e-6, false);
     EXPECT_FALSE(code.machine);
     const std::vector<float> in = floats(3 * 64);
     std::vector<double> expected(in.size());
-    ReferenceEngine(Pipeline{Map3Stage{.f = rgb}}).run_rgb(in.data(), expected.data(), 64);
+    ReferenceEngine(Pipeline{CrossTalkStage{.f = rgb}}).run_rgb(in.data(), expected.data(), 64);
     std::vector<float> got(in.size());
     simd::run(code, {in.data(), in.data() + 1, in.data() + 2}, 3,
               {got.data(), got.data() + 1, got.data() + 2}, 3, 64);
@@ -185,4 +186,4 @@ TEST(MachineCode, WritesInPlaceAndBetweenLayouts) {
 }
 
 }  // namespace
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -13,10 +13,12 @@
 #include <fstream>
 #include <set>
 
+#include "base/format_number.h"
 #include "tonewright/engine.h"
+#include "tonewright/registry.h"
 #include "tonewright/view.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 constexpr const char* kFile = TONEWRIGHT_TEST_DATA "/operators.csv";
@@ -249,4 +251,4 @@ TEST(OperatorsCsvFile, EveryPresetAndLookHasRows) {
 }
 
 }  // namespace
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

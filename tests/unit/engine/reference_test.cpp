@@ -9,13 +9,15 @@
 #include <numeric>
 #include <set>
 
-#include "engine/error_metric.h"
-#include "engine/probe.h"
+#include "base/format_number.h"
 #include "engine/tape.h"
+#include "measure/error_metric.h"
+#include "measure/sample_set.h"
 #include "tonewright/engine.h"
+#include "tonewright/registry.h"
 #include "tonewright/verify.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 const Expr kX = Expr::input(0);
@@ -26,7 +28,7 @@ using Planes = std::array<std::vector<double>, 3>;
 /// Colours as pictures and accidents have them: log-uniform, saturated, negative, zero of both
 /// signs, denormal, huge, not a number.
 Planes random_colours(std::size_t count, unsigned long long seed) {
-    ProbeRandom random(seed);
+    SampleRandom random(seed);
     Planes planes;
     for (auto& plane : planes) {
         for (std::size_t i = 0; i < count; ++i) {
@@ -140,7 +142,7 @@ TEST(Reference, RunsEveryOperation) {
     const Planes in = random_colours(500, 2);
     for (const Expr& e : all) {
         covered.insert(e.op());
-        const Pipeline pipeline = {Map3Stage{{e, a, b}}};
+        const Pipeline pipeline = {CrossTalkStage{{e, a, b}}};
         const Planes out = run(ReferenceEngine(pipeline), in);
         for (std::size_t i = 0; i < in[0].size(); ++i) {
             const Vector3 rgb = {sanitise(in[0][i]), sanitise(in[1][i]), sanitise(in[2][i])};
@@ -293,7 +295,7 @@ struct Program {
     std::vector<std::uint32_t> pinned;
 };
 
-Program random_program(ProbeRandom& random, std::size_t size) {
+Program random_program(SampleRandom& random, std::size_t size) {
     Program p;
     for (std::size_t i = 0; i < size; ++i) {
         std::array<std::int64_t, 4> operands = {-1, -1, -1, -1};
@@ -353,7 +355,7 @@ std::size_t simulate(const Program& p, const RegisterAllocation& a) {
 }
 
 TEST(Registers, OverlappingLifetimesNeverShare) {
-    ProbeRandom random(11);
+    SampleRandom random(11);
     for (int round = 0; round < 300; ++round) {
         const Program p = random_program(random, 2 + random.bits() % 80);
         const RegisterAllocation a = allocate_registers(p.operands, p.needs_register, p.pinned);
@@ -400,7 +402,7 @@ TEST(Registers, SmallCases) {
 // ---------------------------------------------------------------------------------------------
 // Probes
 
-std::size_t count_of(const ProbeSet& set, ProbeKind kind) {
+std::size_t count_of(const SampleSet& set, SampleKind kind) {
     return static_cast<std::size_t>(std::count(set.kind.begin(), set.kind.end(), kind));
 }
 
@@ -414,29 +416,29 @@ std::vector<std::uint32_t> bits_of(const std::vector<float>& values) {
 
 TEST(Probes, AreTheSameOnEveryCall) {
     const InputSpace& input = find_input_space("lin_ap1");
-    const ProbeSet a = make_probes(input, {5, 3000});
-    const ProbeSet b = make_probes(input, {5, 3000});
+    const SampleSet a = make_sample_set(input, {5, 3000});
+    const SampleSet b = make_sample_set(input, {5, 3000});
     EXPECT_EQ(bits_of(a.rgb), bits_of(b.rgb));
     EXPECT_EQ(a.kind, b.kind);
 }
 
 TEST(Probes, CountsAreAsAsked) {
-    const ProbeSet set = make_probes(find_input_space("lin_rec709"), {7, 2000});
+    const SampleSet set = make_sample_set(find_input_space("lin_rec709"), {7, 2000});
     EXPECT_EQ(set.rgb.size(), 3 * set.size());
-    EXPECT_EQ(count_of(set, ProbeKind::lattice), 3U * 5 * 7 * 7 * 7) << "3 gamuts, 5 exposures";
-    EXPECT_EQ(count_of(set, ProbeKind::random), 2000U);
-    EXPECT_EQ(count_of(set, ProbeKind::picture), 0U);
-    for (const ProbeKind kind :
-         {ProbeKind::grey, ProbeKind::near_black, ProbeKind::negative, ProbeKind::special}) {
+    EXPECT_EQ(count_of(set, SampleKind::lattice), 3U * 5 * 7 * 7 * 7) << "3 gamuts, 5 exposures";
+    EXPECT_EQ(count_of(set, SampleKind::random), 2000U);
+    EXPECT_EQ(count_of(set, SampleKind::picture), 0U);
+    for (const SampleKind kind :
+         {SampleKind::grey, SampleKind::near_black, SampleKind::negative, SampleKind::special}) {
         EXPECT_GT(count_of(set, kind), 20U) << static_cast<int>(kind);
     }
-    const ProbeSet standard = make_probes(find_input_space("lin_rec709"));
-    EXPECT_EQ(count_of(standard, ProbeKind::lattice), 3U * 5 * 33 * 33 * 33);
-    EXPECT_EQ(count_of(standard, ProbeKind::random), 100000U);
+    const SampleSet standard = make_sample_set(find_input_space("lin_rec709"));
+    EXPECT_EQ(count_of(standard, SampleKind::lattice), 3U * 5 * 33 * 33 * 33);
+    EXPECT_EQ(count_of(standard, SampleKind::random), 100000U);
 }
 
 TEST(Probes, KindsAreWhatTheyAreCalled) {
-    const ProbeSet set = make_probes(find_input_space("lin_rec2020"), {9, 20000});
+    const SampleSet set = make_sample_set(find_input_space("lin_rec2020"), {9, 20000});
     double grey_lo = 1;
     double grey_hi = 0;
     double random_lo = 1;
@@ -454,13 +456,13 @@ TEST(Probes, KindsAreWhatTheyAreCalled) {
         const auto [lo, hi] = std::minmax({rgb[0], rgb[1], rgb[2]});
         const auto below = std::count_if(rgb, rgb + 3, [](float x) { return x < 0; });
         switch (set.kind[i]) {
-            case ProbeKind::grey:
+            case SampleKind::grey:
                 ASSERT_EQ(lo, hi);
                 has_black = has_black || hi == 0;
                 if (hi > 0) grey_lo = std::min(grey_lo, static_cast<double>(lo));
                 grey_hi = std::max(grey_hi, static_cast<double>(hi));
                 break;
-            case ProbeKind::random:
+            case SampleKind::random:
                 ASSERT_TRUE(set.is_non_negative(i));
                 with_zero += lo == 0 ? 1 : 0;
                 for (std::size_t c = 0; c < 3; ++c) {
@@ -468,17 +470,17 @@ TEST(Probes, KindsAreWhatTheyAreCalled) {
                 }
                 random_hi = std::max(random_hi, static_cast<double>(hi));
                 break;
-            case ProbeKind::near_black:
+            case SampleKind::near_black:
                 ASSERT_TRUE(set.is_non_negative(i));
                 ASSERT_LE(hi, 0x1p-10F);
                 if (hi > 0) smallest = std::min(smallest, static_cast<double>(lo));
                 break;
-            case ProbeKind::negative:
+            case SampleKind::negative:
                 ASSERT_FALSE(set.is_non_negative(i));
                 ++negatives[static_cast<std::size_t>(below)];
                 has_mixed_thousands = has_mixed_thousands || (lo < -1000 && hi > 1000);
                 break;
-            case ProbeKind::special:
+            case SampleKind::special:
                 for (std::size_t c = 0; c < 3; ++c) {
                     has_nan = has_nan || std::isnan(rgb[c]);
                     has_infinity = has_infinity || std::isinf(rgb[c]);
@@ -510,12 +512,12 @@ TEST(Probes, KindsAreWhatTheyAreCalled) {
 TEST(Probes, LatticesReachTheCornersOfTheirGamuts) {
     // In Rec.2020 the red corner of Rec.2020 is (g, 0, 0) at each of five exposures, and that of
     // Rec.709 is g times BT.2087's first column.
-    const ProbeSet set = make_probes(find_input_space("lin_rec2020"), {3, 10});
+    const SampleSet set = make_sample_set(find_input_space("lin_rec2020"), {3, 10});
     for (const double gain : {1.0 / 64, 0.25, 1.0, 8.0, 64.0}) {
         for (const Vector3& corner : {Vector3{1, 0, 0}, {0.6274, 0.0691, 0.0164}}) {
             bool found = false;
             for (std::size_t i = 0; i < set.size(); ++i) {
-                if (set.kind[i] != ProbeKind::lattice) continue;
+                if (set.kind[i] != SampleKind::lattice) continue;
                 double away = 0;
                 for (std::size_t c = 0; c < 3; ++c) {
                     away = std::max(away, std::fabs(static_cast<double>(set.rgb[3 * i + c]) -
@@ -529,11 +531,11 @@ TEST(Probes, LatticesReachTheCornersOfTheirGamuts) {
 }
 
 TEST(Probes, NonNegativeMeansFiniteToo) {
-    ProbeSet set;
+    SampleSet set;
     for (const double x : {0.0, -0.0, 1.0, -1e-30, kNan, kInfinity}) {
-        set.add(x, 1, 1, ProbeKind::picture);
-        set.add(1, x, 1, ProbeKind::picture);
-        set.add(1, 1, x, ProbeKind::picture);
+        set.add(x, 1, 1, SampleKind::picture);
+        set.add(1, x, 1, SampleKind::picture);
+        set.add(1, 1, x, SampleKind::picture);
     }
     ASSERT_EQ(set.size(), 18U);
     for (std::size_t i = 0; i < 18; ++i)
@@ -542,7 +544,7 @@ TEST(Probes, NonNegativeMeansFiniteToo) {
 
 TEST(Probes, RandomIsSplitMix64) {
     // The published outputs for seed 1234567 (Vigna's splitmix64.c; Rosetta Code).
-    ProbeRandom random(1234567);
+    SampleRandom random(1234567);
     for (const unsigned long long expected :
          {6457827717110365317ULL, 3203168211198807973ULL, 9817491932198370423ULL,
           4593380528125082431ULL, 16408922859458223821ULL}) {
@@ -621,7 +623,7 @@ TEST(Summary, RoundedUpIsNeverLess) {
     EXPECT_EQ(rounded_up(0.001), "1.0e-03");
     EXPECT_EQ(rounded_up(25.1), "2.6e+01");
     EXPECT_EQ(rounded_up(kInfinity), "inf");
-    ProbeRandom random(12);
+    SampleRandom random(12);
     for (int i = 0; i < 10000; ++i) {
         const double x = std::exp2(random.uniform(-60, 20));
         const double printed = std::stod(rounded_up(x));
@@ -727,4 +729,4 @@ TEST(DeltaEItp, IsOfLightNotOfCodes) {
 }
 
 }  // namespace
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

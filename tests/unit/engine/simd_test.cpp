@@ -14,12 +14,14 @@
 #include <thread>
 #include <vector>
 
-#include "engine/probe.h"
+#include "base/format_number.h"
 #include "engine/simd_program.h"
+#include "measure/sample_set.h"
 #include "tonewright/engine.h"
+#include "tonewright/registry.h"
 #include "tonewright/view.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 constexpr double kBound = 1e-6;
@@ -287,7 +289,7 @@ TEST_F(Simd, OperationsMeanWhatExpressionsMean) {
         Expr(0.25F),
         a,
     };
-    ProbeRandom random(3);
+    SampleRandom random(3);
     std::vector<float> rgb;
     for (int i = 0; i < 2000; ++i) {
         const bool whole = i % 3 == 0;  // equal values, zeros of both signs, table nodes
@@ -300,7 +302,7 @@ TEST_F(Simd, OperationsMeanWhatExpressionsMean) {
     for (const std::string& target : SimdEngine::targets()) {
         SimdEngine::use_target(target);
         for (const Expr& e : expressions) {
-            const Pipeline pipeline = {Map3Stage{{e, a, b}}};
+            const Pipeline pipeline = {CrossTalkStage{{e, a, b}}};
             const std::vector<float> out = run(SimdEngine(pipeline), rgb);
             const std::vector<double> truth = run(ReferenceEngine(pipeline), rgb);
             for (std::size_t i = 0; i < out.size(); ++i) {
@@ -316,7 +318,7 @@ TEST_F(Simd, OperationsMeanWhatExpressionsMean) {
 /// Positions at all distances, many of them nearer to each other than two floats are, and as many
 /// samples as powers of two need filling up or not.
 TEST_F(Simd, UnevenTablesAreExact) {
-    ProbeRandom random(5);
+    SampleRandom random(5);
     for (const std::size_t count : {1U, 2U, 3U, 4U, 5U, 8U, 9U, 31U, 1024U, 1025U}) {
         auto table = std::make_shared<Table>();
         std::vector<float> inputs;
@@ -379,7 +381,7 @@ TEST_F(Simd, WhatASteepTableIsIndexedWithIsNoCompiledCurve) {
     const auto f = [](const Expr& x) { return pow(max(x, 0) + 0.5, 0.42); };
     const Expr index = (f(Expr::input(0)) + f(Expr::input(1))) / 2;
     const Expr y = lookup(table, index);
-    const Pipeline pipeline = {Map3Stage{{y, index, y}}};
+    const Pipeline pipeline = {CrossTalkStage{{y, index, y}}};
     std::vector<float> rgb;
     // 1.65134^0.42 = 1.23450...: no probe of the compiler lies in that cell.
     for (float x = 1.1512F; x < 1.1516F; x = std::nextafterf(x, 2))
@@ -404,14 +406,14 @@ class SimdOperator : public ::testing::TestWithParam<std::string> {
 /// The standard probes, and colours of huge mixed signs: what is left of them after a matrix is the
 /// difference of large numbers.
 std::vector<float> test_colours() {
-    ProbeSet set = make_probes(find_input_space("lin_rec709"), {7, 20000});
-    ProbeRandom random(99);
-    set.add(-280, 3000, 0.1, ProbeKind::negative);
+    SampleSet set = make_sample_set(find_input_space("lin_rec709"), {7, 20000});
+    SampleRandom random(99);
+    set.add(-280, 3000, 0.1, SampleKind::negative);
     for (int i = 0; i < 40000; ++i) {
         Vector3 v;
         for (double& x : v)
             x = std::exp2(random.uniform(-18, 16.5)) * (random.bits() % 3 == 0 ? -1 : 1);
-        set.add(v[0], v[1], v[2], ProbeKind::negative);
+        set.add(v[0], v[1], v[2], SampleKind::negative);
     }
     return set.rgb;
 }
@@ -420,7 +422,7 @@ TEST_F(Simd, LatticesAreInterpolatedAsTheReferenceDoes) {
     // Three channels of their own at places whose fractions have every order; one channel read
     // alone; coordinates and results that are double (steep) and float.
     const auto lattice = std::make_shared<const Lattice>(5, [] {
-        ProbeRandom random(3);
+        SampleRandom random(3);
         std::vector<double> nodes(3 * 125);
         for (double& x : nodes)
             x = random.uniform(0, 1);
@@ -429,14 +431,14 @@ TEST_F(Simd, LatticesAreInterpolatedAsTheReferenceDoes) {
     const Expr x = Expr::input();
     const LatticeStage stage{(log2(max(x, 0x1p-8)) + 8) / 16, lattice};
     std::vector<float> rgb = {0, 0, 0, 1, 1, 1, 256, 256, 256, 1e4F, -1, 7};
-    ProbeRandom random(4);
+    SampleRandom random(4);
     for (int i = 0; i < 3 * 5000; ++i)
         rgb.push_back(static_cast<float>(std::exp2(random.uniform(-9, 9))));
     const std::array<Expr, 3> c = {Expr::input(0), Expr::input(1), Expr::input(2)};
     for (const Pipeline& pipeline :
-         {Pipeline{stage}, Pipeline{stage, Map3Stage{{c[2], c[2], 0.5}}},
+         {Pipeline{stage}, Pipeline{stage, CrossTalkStage{{c[2], c[2], 0.5}}},
           Pipeline{stage, curve_stage(exp2(x * 12)), curve_stage(x / 4096)},
-          Pipeline{stage, Map3Stage{{exp2(20 * c[0]) / 0x1p20, c[1], sqrt(c[2])}}}}) {
+          Pipeline{stage, CrossTalkStage{{exp2(20 * c[0]) / 0x1p20, c[1], sqrt(c[2])}}}}) {
         const std::vector<double> truth = run(ReferenceEngine(pipeline), rgb);
         for (const std::string& target : SimdEngine::targets()) {
             SimdEngine::use_target(target);
@@ -495,7 +497,7 @@ TEST_P(SimdOperator, IsTotal) {
             engine.emplace(view_of(GetParam()), goal);
             linear.emplace(view_of(GetParam(), "linear"), goal);
         }
-        ProbeRandom random(17);
+        SampleRandom random(17);
         std::vector<float> rgb(3 * scaled_count(target, 1000000));
         for (float& x : rgb)
             x = std::bit_cast<float>(static_cast<std::uint32_t>(random.bits() >> 32));
@@ -546,7 +548,7 @@ TEST_F(Simd, MatrixOfMixedSignsBeforeAPowerDisplay) {
     const Matrix3 m = {{{1.6, -0.53, -0.07}, {-0.1, 1.1, 0.0}, {-0.003, -0.07, 1.073}}};
     const Pipeline view = {MatrixStage{m}, ClampStage{0, 1},
                            curve_stage(pow(Expr::input(), 1 / 2.4))};
-    ProbeRandom random(5);
+    SampleRandom random(5);
     std::vector<float> rgb;
     for (int i = 0; i < 20000; ++i) {
         const double r = random.uniform(0, 1);
@@ -573,7 +575,7 @@ TEST_F(Simd, AnyStrideAndCountAndNothingOutsideThePixels) {
     constexpr float kGuard = -123.5F;
     constexpr std::size_t kEdge = 8;  // guard floats around
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
-    ProbeRandom random(23);
+    SampleRandom random(23);
     const auto check = [&](const std::string& target, const SimdEngine& engine) {
         for (const std::size_t count :
              {0, 1, 2, 3, 15, 16, 17, 31, 255, 256, 257, 511, 513, 1000}) {
@@ -712,7 +714,7 @@ TEST_F(Simd, PowersAboutTheFractionWhereTheExponentChanges) {
     // is no constant.
     const Expr x = 1 * Expr::input(0) + -1 * Expr::input(1);
     const Expr f = pow(x, Expr::input(2));
-    const SimdEngine engine({Map3Stage{{f, f, f}}});
+    const SimdEngine engine({CrossTalkStage{{f, f, f}}});
     for (const std::string& target : SimdEngine::targets()) {
         SimdEngine::use_target(target);
         for (int k = -12; k <= 12; ++k) {
@@ -733,4 +735,4 @@ TEST_F(Simd, PowersAboutTheFractionWhereTheExponentChanges) {
 }
 
 }  // namespace
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -7,10 +7,12 @@
 #include <limits>
 #include <thread>
 
+#include "base/format_number.h"
+#include "base/strings.h"
 #include "tonewright/error.h"
 #include "tonewright/view.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 const Expr kX = Expr::input(0);
@@ -276,4 +278,4 @@ TEST(Names, NearestNameHelpsWithSlipsOnly) {
 }
 
 }  // namespace
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

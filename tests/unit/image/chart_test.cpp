@@ -7,9 +7,9 @@
 #include <cstring>
 #include <utility>
 
-#include "tonewright/image.h"
+#include "tonewright/chart.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 using OIIO::ImageBuf;
@@ -91,4 +91,4 @@ TEST(Chart, AnySize) {
 }
 
 }  // namespace
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/comparison.h"
+#include "tonewright/error.h"
 
 #include <OpenImageIO/imagebufalgo.h>
 #include <gtest/gtest.h>
@@ -7,9 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tonewright/image.h"
-
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 using OIIO::ImageBuf;
@@ -217,4 +216,4 @@ TEST(ChooseColumns, LooksLikeAScreenAndFillsRows) {
 }
 
 }  // namespace
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "image/canvas.h"
-#include "tonewright/image.h"
+#include "tonewright/contact_sheet.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 using OIIO::ImageBuf;
@@ -127,7 +127,7 @@ TEST(ContactSheet, WordsAndPatchesAround) {
     const ImageBuf plain = make_contact_sheet({{"Title", flat(100, 100, red)}}, 1, 200);
     const ImageBuf two_lines = make_contact_sheet(one, 1, 200);
     EXPECT_GT(two_lines.spec().height, plain.spec().height);
-    SheetSurround around;
+    SheetAnnotations around;
     around.heading = "picture.exr";
     around.remark = "exposure 0";
     around.legend = {{"-1", {0.9F, 0, 0}}, {"0", {0, 0.9F, 0}}, {"+1", {0, 0, 0.9F}}};
@@ -235,4 +235,4 @@ TEST(Canvas, NothingIsDrawnOutside) {
 }
 
 }  // namespace
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -12,10 +12,12 @@
 #include <fstream>
 #include <iterator>
 
-#include "tonewright/image.h"
+#include "tonewright/error.h"
+#include "tonewright/image_io.h"
 
 #if defined(__SANITIZE_ADDRESS__)
 #include <sanitizer/lsan_interface.h>
+
 using ScopedLeaksOfOthers = __lsan::ScopedDisabler;
 #else
 struct ScopedLeaksOfOthers {
@@ -23,7 +25,7 @@ struct ScopedLeaksOfOthers {
 };
 #endif
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 namespace fs = std::filesystem;
@@ -369,4 +371,4 @@ TEST(PixelType, Names) {
 }
 
 }  // namespace
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -10,9 +10,10 @@
 #include <tuple>
 
 #include "tonewright/engine.h"
+#include "tonewright/tonemap.h"
 #include "unit/image/pictures.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 using OIIO::ImageBuf;
@@ -493,4 +494,4 @@ TEST(Meter, ErrorsNameWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

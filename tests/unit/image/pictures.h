@@ -11,8 +11,10 @@
 #include <string>
 #include <vector>
 
+#include "tonewright/version.h"
+
 /// Small pictures for tests.
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// 0..1, different everywhere, the same on every machine.
 inline float noise(std::uint32_t i) {
@@ -87,4 +89,4 @@ class TemporaryFolder {
     std::filesystem::path path_;
 };
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -13,7 +13,7 @@
 
 #include "tonewright/engine.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 /// Numbers of all magnitudes, and halfway between two halves.
@@ -94,4 +94,4 @@ TEST(PixelAccess, RunsOfIntegersAreTheSameAsOneByOne) {
 }
 
 }  // namespace
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -8,10 +8,10 @@
 #include <filesystem>
 #include <limits>
 
-#include "tonewright/image.h"
+#include "tonewright/tonemap.h"
 #include "unit/image/pictures.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 using OIIO::ImageBuf;
@@ -309,4 +309,4 @@ TEST(SceneStatistics, ErrorsAreThrown) {
 }
 
 }  // namespace
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -12,9 +12,11 @@
 #include <set>
 
 #include "image/picture_file.h"
+#include "tonewright/image_io.h"
+#include "tonewright/tonemap.h"
 #include "unit/image/pictures.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 namespace fs = std::filesystem;
@@ -223,4 +225,4 @@ TEST_F(Sequence, FilesThatMayNotBeWrittenStay) {
 }
 
 }  // namespace
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -15,10 +15,11 @@
 
 #include "image/picture_file.h"
 #include "image/tonemap_file.h"
-#include "tonewright/image.h"
+#include "tonewright/image_io.h"
+#include "tonewright/tonemap.h"
 #include "unit/image/pictures.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 namespace fs = std::filesystem;
@@ -262,4 +263,4 @@ TEST_F(TonemapFile, PicturesThatCannotBeToneMappedAreNamed) {
 }
 
 }  // namespace
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -15,12 +15,14 @@
 #include <new>
 #include <stdexcept>
 
+#include "base/format_number.h"
 #include "tonewright/engine.h"
-#include "tonewright/image.h"
+#include "tonewright/registry.h"
+#include "tonewright/tonemap.h"
 #include "tonewright/view.h"
 #include "unit/image/pictures.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 using OIIO::ImageBuf;
@@ -208,7 +210,8 @@ TEST(Tonemap, TakesStatisticsFromThePicture) {
     for (const char* op : {"exponential", "linear", "drago", "reinhard_devlin"}) {
         for (const char* input : {"lin_rec709", "lin_ap1"}) {
             const TonemapOptions options = {.op = op, .input = input};
-            const Settings settings = settings_for_picture(op, {}, measure_scene(src, input));
+            const Settings settings =
+                settings_for_picture(resolve_picture_operator(op), measure_scene(src, input));
             EXPECT_FALSE(settings.empty());
             expect_same_picture(tonemap(src, options), options, src, settings);
         }
@@ -259,8 +262,9 @@ TEST(Tonemap, OneTonemapperMeasuresEachPicture) {
         ImageBuf dst;
         ASSERT_TRUE(tonemapper(dst, src)) << dst.geterror();
         EXPECT_TRUE(same_bits(dst, tonemap(src, options)));
-        expect_same_picture(dst, options, src,
-                            settings_for_picture(options.op, {}, measure_scene(src)));
+        expect_same_picture(
+            dst, options, src,
+            settings_for_picture(resolve_picture_operator(options.op), measure_scene(src)));
     }
 }
 
@@ -1015,4 +1019,4 @@ TEST(Tonemap, AnySubimageAndLevel) {
 }
 
 }  // namespace
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

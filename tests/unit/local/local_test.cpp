@@ -9,18 +9,20 @@
 #include <cstring>
 #include <limits>
 
-#include "tonewright/image.h"
+#include "tonewright/image_io.h"
 #include "tonewright/local.h"
+#include "tonewright/registry.h"
+#include "tonewright/tonemap.h"
 #include "unit/image/pictures.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 using OIIO::ImageBuf;
 using OIIO::ROI;
 
-LightPicture make_light(int width, int height, float peak = 20) {
-    LightPicture picture;
+ScenePlanes make_light(int width, int height, float peak = 20) {
+    ScenePlanes picture;
     picture.width = width;
     picture.height = height;
     const auto count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
@@ -34,7 +36,7 @@ LightPicture make_light(int width, int height, float peak = 20) {
     return picture;
 }
 
-std::array<std::vector<float>, 3> run(const Operator& op, LightPicture picture,
+std::array<std::vector<float>, 3> run(const Operator& op, ScenePlanes picture,
                                       const Settings& settings = {}) {
     run_local_operator(resolve_picture_operator(op.id, settings), picture);
     return picture.rgb;
@@ -93,11 +95,11 @@ TEST(LocalOperators, WhatCannotHoldThemSaysWhy) {
 }
 
 TEST(LocalOperators, WrongPlanesAndOperatorsAreRefused) {
-    LightPicture picture = make_light(4, 3);
+    ScenePlanes picture = make_light(4, 3);
     EXPECT_THROW(run_local_operator(resolve_operator("hable"), picture), Error);
     picture.rgb[1].pop_back();
     EXPECT_THROW(run_local_operator(resolve_picture_operator("reinhard_local"), picture), Error);
-    LightPicture empty;
+    ScenePlanes empty;
     EXPECT_THROW(run_local_operator(resolve_picture_operator("reinhard_local"), empty), Error);
 }
 
@@ -112,10 +114,10 @@ TEST(LocalOperators, WholeNumbersOnly) {
 
 TEST_P(Local, PartsDoNotMatter) {
     // Wider than the strips that the operators work in, and odd.
-    const LightPicture picture = make_light(1301, 71);
+    const ScenePlanes picture = make_light(1301, 71);
     const auto whole = run(op(), picture);
     for (const int step : {1, 7, 32}) {
-        LightPicture parts = picture;
+        ScenePlanes parts = picture;
         parts.for_rows = [step](int count, const std::function<void(int, int)>& body) {
             // From the last to the first: none relies on another.
             for (int begin = (count - 1) / step * step; begin >= 0; begin -= step)
@@ -169,7 +171,7 @@ TEST_P(Local, BlackStaysBlackAndSmallPicturesAreNoError) {
     for (const auto& [width, height] :
          {std::pair(1, 1), std::pair(1, 9), std::pair(9, 1), std::pair(2, 2), std::pair(7, 5)}) {
         for (const float peak : {0.0F, 3.0F}) {
-            LightPicture picture = make_light(width, height, peak);
+            ScenePlanes picture = make_light(width, height, peak);
             for (const std::vector<float>& plane : run(op(), picture)) {
                 for (std::size_t i = 0; i < plane.size(); ++i) {
                     EXPECT_TRUE(std::isfinite(plane[i]) && plane[i] >= 0) << plane[i];
@@ -236,7 +238,7 @@ TEST_P(Local, GreyStaysGrey) {
 
 TEST_P(Local, ExposureIsACorrectionOnTop) {
     // A uniform picture: brighter with exposure, whatever was measured.
-    LightPicture picture;
+    ScenePlanes picture;
     picture.width = picture.height = 8;
     for (std::vector<float>& plane : picture.rgb)
         plane.assign(64, 0.1F);
@@ -270,7 +272,7 @@ TEST_P(Local, FilesAreThoseOfTheLibrary) {
 
 TEST(ReinhardLocal, UniformPictureIsTheGlobalOperator) {
     // L/(1 + L) on luminance, key and log average as given; a saturated color keeps its ratios.
-    LightPicture picture;
+    ScenePlanes picture;
     picture.width = 70;
     picture.height = 40;
     const std::array<float, 3> color = {0.4F, 0.01F, 3};
@@ -289,10 +291,10 @@ TEST(ReinhardLocal, UniformPictureIsTheGlobalOperator) {
 
 TEST(ReinhardLocal, PixelsWithoutCoverAreNotMeasured) {
     const Operator& op = *resolve_picture_operator("reinhard_local").op;
-    LightPicture picture = make_light(24, 10);
+    ScenePlanes picture = make_light(24, 10);
     for (std::vector<float>& plane : picture.rgb)
         std::fill(plane.begin(), plane.begin() + 120, 0.0F);
-    LightPicture covered = picture;
+    ScenePlanes covered = picture;
     covered.counts.assign(240, 1);
     EXPECT_EQ(run(op, covered), run(op, picture));
     std::fill(covered.counts.begin(), covered.counts.begin() + 120, std::uint8_t{0});
@@ -318,7 +320,7 @@ TEST(ExposureFusion, WithoutOtherExposuresItIsItsCurve) {
 
 TEST(LocalLaplacian, SaturatedColorsKeepTheirChromaticityWhereTheyAreToldTo) {
     const Operator& op = *resolve_picture_operator("local_laplacian").op;
-    const LightPicture picture = make_light(40, 30);
+    const ScenePlanes picture = make_light(40, 30);
     const auto result = run(op, picture, {{"saturation", "1"}});
     for (std::size_t i = 0; i < picture.rgb[0].size(); ++i) {
         const double sum = static_cast<double>(picture.rgb[0][i]) +
@@ -336,7 +338,7 @@ TEST(LocalLaplacian, SaturatedColorsKeepTheirChromaticityWhereTheyAreToldTo) {
 TEST(LocalLaplacian, NothingToCompressIsLeftAlone) {
     // base = detail = 1 keeps all differences: the picture, but for its white.
     const Operator& op = *resolve_picture_operator("local_laplacian").op;
-    LightPicture picture = make_light(65, 33, 2);
+    ScenePlanes picture = make_light(65, 33, 2);
     for (std::vector<float>& plane : picture.rgb) {
         for (float& v : plane)
             v = 0.2F + v;
@@ -359,4 +361,4 @@ INSTANTIATE_TEST_SUITE_P(Every, Local, testing::ValuesIn(ids()),
                          [](const auto& of) { return of.param; });
 
 }  // namespace
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/probe.h"
+#include "measure/sample_set.h"
 #include "tonewright/engine.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 const Expr kX = Expr::input();
@@ -43,7 +43,7 @@ Errors errors_of(const InverseCubeProblem& problem, const std::vector<double>& n
     const ReferenceEngine place({curve_stage(problem.place)});
     const ReferenceEngine encode({curve_stage(problem.code)});
     // Other colours than those of the fit, log-uniform as lights of a scene are.
-    ProbeRandom random(77);
+    SampleRandom random(77);
     constexpr int kCount = 20000;
     Errors errors;
     for (int i = 0; i < kCount; ++i) {
@@ -111,4 +111,4 @@ TEST(FitInverse, IsTheSameOnEveryRun) {
 }
 
 }  // namespace
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -6,11 +6,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/probe.h"
+#include "measure/sample_set.h"
 #include "tonewright/engine.h"
 #include "tonewright/lut.h"
+#include "tonewright/registry.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 const Expr kX = Expr::input();
@@ -23,7 +24,7 @@ CubeProblem problem_of(const char* name, int edge, double top, double peak) {
     problem.axis = make_log_axis(top, edge);
     problem.primaries = op.op->working;
     for (const Stage& stage : op.build()) {
-        if (std::holds_alternative<Map3Stage>(stage)) problem.pipeline.push_back(stage);
+        if (std::holds_alternative<CrossTalkStage>(stage)) problem.pipeline.push_back(stage);
     }
     EXPECT_EQ(problem.pipeline.size(), 1);
     problem.pipeline.push_back(curve_stage(srgb_encode(kX)));
@@ -85,7 +86,7 @@ Errors errors_of(const CubeProblem& problem, const std::vector<double>& nodes,
 /// Colours that no fit has seen: log-uniform inside Rec.709, a tenth with a channel at 0.
 std::vector<float> unseen_colors(const CubeProblem& problem) {
     const Matrix3 m = rgb_to_rgb(kRec709, problem.primaries);
-    ProbeRandom random(424242);
+    SampleRandom random(424242);
     std::vector<float> rgb;
     for (std::size_t i = 0; i < 20000; ++i) {
         Vector3 color{};
@@ -239,4 +240,4 @@ TEST(LogAxis, IsChosenForWhatTheOperatorHasToDoWithLights) {
 }
 
 }  // namespace
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -17,18 +17,22 @@
 #include <set>
 #include <sstream>
 
-#include "engine/error_metric.h"
-#include "engine/probe.h"
+#include "base/atomic_file.h"
+#include "base/format_number.h"
+#include "base/strings.h"
 #include "lut/clf.h"
 #include "lut/half_domain.h"
 #include "lut/icc.h"
-#include "lut/numbers.h"
+#include "measure/error_metric.h"
+#include "measure/sample_set.h"
 #include "tonewright/engine.h"
+#include "tonewright/generated_files.h"
+#include "tonewright/registry.h"
 
 namespace OCIO = OCIO_NAMESPACE;
 namespace fs = std::filesystem;
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 const Expr kX = Expr::input();
@@ -441,7 +445,7 @@ Lut cube_of(int size, const F& f) {
 
 /// Table inputs over the cube, with equal fractions (the tetrahedra's faces) among them.
 std::vector<Vector3> table_inputs(std::size_t count) {
-    ProbeRandom random(21);
+    SampleRandom random(21);
     std::vector<Vector3> inputs = {{0, 0, 0}, {1, 1, 1}, {1, 0, 0.5}, {0.3, 0.3, 0.3}};
     for (std::size_t i = 0; i < count; ++i) {
         Vector3 v = {random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)};
@@ -495,7 +499,7 @@ TEST(Interpolate, AxesAreNotSwapped) {
 }
 
 TEST(Interpolate, TrilinearAndTetrahedralAgreeAtNodes) {
-    ProbeRandom random(22);
+    SampleRandom random(22);
     const Lut lut = cube_of(17, [&](const Vector3&) {
         return Vector3{random.uniform(-1, 2), random.uniform(-1, 2), random.uniform(-1, 2)};
     });
@@ -663,7 +667,7 @@ TEST(MeasureLut, IsNeverBelowTheErrorAtTheProbes) {
                                 request_for("hable", "linear", LutFormat::clf)}) {
         const Lut lut = sample_lut(r);
         const LutError measured = measure_lut(lut, r);
-        const ProbeSet probes = make_probes(find_input_space(r.view.input), {17, 2000});
+        const SampleSet probes = make_sample_set(find_input_space(r.view.input), {17, 2000});
         std::vector<double> truth(probes.rgb.size());
         ReferenceEngine(build_view(r.view)).run_rgb(probes.rgb.data(), truth.data(), probes.size());
         std::vector<double> code(probes.rgb.begin(), probes.rgb.end());
@@ -675,7 +679,8 @@ TEST(MeasureLut, IsNeverBelowTheErrorAtTheProbes) {
         int inside = 0;
         for (std::size_t i = 0; i < probes.size(); ++i) {
             // The lattices and greys are the same whatever the number of random colours.
-            if (probes.kind[i] != ProbeKind::lattice && probes.kind[i] != ProbeKind::grey) continue;
+            if (probes.kind[i] != SampleKind::lattice && probes.kind[i] != SampleKind::grey)
+                continue;
             const float* v = &probes.rgb[3 * i];
             const bool is_inside =
                 lut.is_half_domain || std::all_of(v, v + 3, [&](float x) {
@@ -755,7 +760,7 @@ std::vector<float> hard_floats(std::size_t count) {
         values.push_back(std::nextafterf(ten, 0));
         values.push_back(std::nextafterf(ten, 1e30F));
     }
-    ProbeRandom random(23);
+    SampleRandom random(23);
     while (values.size() < count) {
         const auto x = std::bit_cast<float>(static_cast<std::uint32_t>(random.bits() >> 32));
         if (std::isfinite(x)) values.push_back(x);
@@ -1315,4 +1320,4 @@ TEST(WriteFiles, TheLastFileComesLast) {
 }
 
 }  // namespace
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <set>
 
-#include "lut/numbers.h"
+#include "base/format_number.h"
+#include "lut/shipped_set.h"
 #include "tonewright/lut.h"
+#include "tonewright/registry.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 LutRequest hable_cube(std::optional<int> decimals) {
@@ -23,7 +25,7 @@ LutRequest hable_cube(std::optional<int> decimals) {
 TEST(ShippedSet, ItsShelvesAreApplicationsWithOperatorsThatThereAre) {
     std::set<std::string> hosts;
     std::set<std::string> operators;
-    for (const LutShelf& shelf : lut_shelves()) {
+    for (const LutPresetSet& shelf : lut_preset_sets()) {
         EXPECT_TRUE(hosts.insert(shelf.host->id).second) << shelf.host->id;
         EXPECT_FALSE(shelf.operators.empty());
         for (const std::string& id : shelf.operators)
@@ -75,4 +77,4 @@ TEST(ShippedSet, DecimalsAreRefusedWhereTheyMeanNothing) {
 }
 
 }  // namespace
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

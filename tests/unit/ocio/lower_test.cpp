@@ -15,16 +15,18 @@
 #include <limits>
 #include <set>
 
-#include "engine/error_metric.h"
-#include "engine/probe.h"
+#include "base/format_number.h"
 #include "lut/clf.h"
 #include "lut/half_domain.h"
+#include "measure/error_metric.h"
+#include "measure/sample_set.h"
 #include "ocio/gpu.h"
 #include "ocio/model.h"
 #include "tonewright/engine.h"
 #include "tonewright/ocio.h"
+#include "tonewright/registry.h"
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 const Expr kX = Expr::input();
@@ -68,7 +70,7 @@ std::vector<double> reference(const Pipeline& pipeline, const std::vector<float>
 
 /// Greys, lattices, saturated and dark colours; all channels >= 0 and finite.
 std::vector<float> positive_colours() {
-    const ProbeSet set = make_probes(find_input_space("lin_rec709"), {9, 20000});
+    const SampleSet set = make_sample_set(find_input_space("lin_rec709"), {9, 20000});
     std::vector<float> rgb;
     for (std::size_t i = 0; i < set.size(); ++i) {
         if (!set.is_non_negative(i)) continue;
@@ -79,10 +81,10 @@ std::vector<float> positive_colours() {
 
 /// The same with negative channels.
 std::vector<float> mixed_colours() {
-    const ProbeSet set = make_probes(find_input_space("lin_rec709"), {9, 20000});
+    const SampleSet set = make_sample_set(find_input_space("lin_rec709"), {9, 20000});
     std::vector<float> rgb;
     for (std::size_t i = 0; i < set.size(); ++i) {
-        if (set.kind[i] == ProbeKind::special) continue;
+        if (set.kind[i] == SampleKind::special) continue;
         rgb.insert(rgb.end(), {set.rgb[3 * i], set.rgb[3 * i + 1], set.rgb[3 * i + 2]});
     }
     return rgb;
@@ -565,7 +567,7 @@ Pipeline shown(const HexconeStage& stage) { return {kPositive, stage, kSdr, srgb
 
 TEST(LowerHexcone, PbrNeutralNeedsNoCube) {
     // On the whole probe set: CPU 7.3e-6, llvmpipe 1.7e-5.
-    const ProbeSet set = make_probes(find_input_space("lin_rec709"), {});
+    const SampleSet set = make_sample_set(find_input_space("lin_rec709"), {});
     std::vector<float> in;
     for (std::size_t i = 0; i < set.size(); ++i) {
         if (set.is_non_negative(i))
@@ -760,7 +762,7 @@ TEST(LowerMap3, AxesAreNotSwapped) {
     const Expr r = Expr::input(0);
     const Expr g = Expr::input(1);
     const Expr b = Expr::input(2);
-    const Map3Stage map = {{r / (1 + r + g), g / (1 + g + 0.5 * b), b / (1 + b + 0.25 * r)}};
+    const CrossTalkStage map = {{r / (1 + r + g), g / (1 + g + 0.5 * b), b / (1 + b + 0.25 * r)}};
     const Pipeline pipeline = {kPositive, map, kSdr, srgb()};
     expect_close(pipeline,
                  {1, 0.1F, 0.3F, 0.1F, 1, 0.3F, 0.1F, 0.3F, 1, 3, 2, 0.5F, 0.5F, 3, 2, 2, 0.5F, 3},
@@ -769,7 +771,7 @@ TEST(LowerMap3, AxesAreNotSwapped) {
 
 TEST(LowerMap3, SaysWhenACubeLosesNegatives) {
     const Expr r = Expr::input(0);
-    const Map3Stage map = {{r, r, r}};
+    const CrossTalkStage map = {{r, r, r}};
     EXPECT_TRUE(lower_to_ocio({map}).loses_negatives);
     EXPECT_TRUE(
         lower_to_ocio({kPositive, MatrixStage{rgb_to_rgb(kRec2020, kRec709)}, map}).loses_negatives)
@@ -783,7 +785,7 @@ TEST(LowerMap3, LightAboveThePeakIsKeptOrRefused) {
     std::array<Expr, 3> f = {Expr::input(0), Expr::input(1), Expr::input(2)};
     for (Expr& c : f)
         c = 12 * c / (1 + c);
-    const Pipeline pipeline = {kPositive, Map3Stage{f}};
+    const Pipeline pipeline = {kPositive, CrossTalkStage{f}};
     const std::vector<float> in = {0.25F, 0.25F, 0.25F, 1, 1, 1, 3, 3, 3, 9, 0.5F, 0.1F};
     try {
         (void)lower_to_ocio(pipeline);
@@ -799,10 +801,10 @@ TEST(LowerMap3, LightAboveThePeakIsKeptOrRefused) {
 
 /// NaN, infinities, the largest float, alone and together.
 std::vector<float> special_colours() {
-    const ProbeSet set = make_probes(find_input_space("lin_rec709"), {2, 10});
+    const SampleSet set = make_sample_set(find_input_space("lin_rec709"), {2, 10});
     std::vector<float> rgb;
     for (std::size_t i = 0; i < set.size(); ++i) {
-        if (set.kind[i] != ProbeKind::special) continue;
+        if (set.kind[i] != SampleKind::special) continue;
         rgb.insert(rgb.end(), {set.rgb[3 * i], set.rgb[3 * i + 1], set.rgb[3 * i + 2]});
     }
     return rgb;
@@ -864,7 +866,7 @@ TEST(LowerView, ConvertedInputsAndDisplays) {
     const Pipeline view =
         build_view(make_view(resolve_operator("hable"), "lin_ap1", -1, "display_p3"));
     std::vector<float> in;
-    ProbeRandom random(31);
+    SampleRandom random(31);
     const Matrix3 to_ap1 = rgb_to_rgb(kRec709, kAP1);
     for (int i = 0; i < 20000; ++i) {
         const double light = std::exp2(random.uniform(-8, 6));
@@ -1011,4 +1013,4 @@ TEST(ConfigModel, HasEveryOperatorDisplayAndSpace) {
 }
 
 }  // namespace
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

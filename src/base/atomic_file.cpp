@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/atomic_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <regex>
+#include <set>
+#include <system_error>
+#include <utility>
+
+#include "base/strings.h"
+#include "tonewright/error.h"
+#include "tonewright/generated_files.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace fs = std::filesystem;
+
+std::string reason_of(int error_number) { return std::generic_category().message(error_number); }
+
+namespace {
+
+/// Where the bytes go in the end: symbolic links are followed.
+/// @returns  empty, and the reason in `why`, when that is no place for a file.
+fs::path resolve_target(const std::string& path, std::string& why) {
+    std::error_code error;
+    fs::path target = path;
+    if (fs::is_symlink(fs::symlink_status(target, error))) {
+        target = fs::weakly_canonical(target, error);
+        if (error) why = error.message();
+    }
+    // Renaming over a device or a directory would destroy it, or fail late.
+    const fs::file_status status = fs::status(target, error);
+    if (fs::exists(status) && !fs::is_regular_file(status)) {
+        why = fs::is_directory(status) ? "it is a directory" : "it is no regular file";
+    }
+    return target;
+}
+
+/// Stem and extension of the temporary names of a target. Names have at most 255 bytes.
+std::pair<std::string, std::string> name_parts(const fs::path& target) {
+    return {target.stem().string().substr(0, 200), target.extension().string()};
+}
+
+/// Identifies the machine and the container, within which a process id means one process.
+const std::string& machine_tag() {
+    static const std::string tag = [] {
+        std::array<char, 256> host{};
+        (void)::gethostname(host.data(), host.size() - 1);
+        std::error_code none;
+        return content_hash(host.data() + fs::read_symlink("/proc/self/ns/pid", none).string());
+    }();
+    return tag;
+}
+
+/// The names of the unfinished temporary files, for the signal handler. The one that takes a name
+/// out removes the file.
+std::array<std::atomic<const char*>, 256> unfinished_names;
+static_assert(std::atomic<const char*>::is_always_lock_free);
+
+/// The signal handler is removing them: a file that is created after this would stay behind.
+std::atomic<bool> is_ending = false;
+
+/// Null where so many files are unfinished at once that this one would stay after a signal.
+std::atomic<const char*>* register_unfinished(const std::string& path) {
+    auto name = std::make_unique<char[]>(path.size() + 1);
+    std::copy(path.begin(), path.end(), name.get());
+    for (std::atomic<const char*>& place : unfinished_names) {
+        const char* none = nullptr;
+        if (!place.compare_exchange_strong(none, name.get())) continue;
+        (void)name.release();
+        return &place;
+    }
+    return nullptr;
+}
+
+void release_unfinished(std::atomic<const char*>*& place) {
+    if (place) delete[] place->exchange(nullptr);
+    place = nullptr;
+}
+
+void remove_unfinished(int number) {
+    is_ending = true;
+    for (std::atomic<const char*>& place : unfinished_names) {
+        if (const char* name = place.exchange(nullptr)) ::unlink(name);
+    }
+    ::signal(number, SIG_DFL);
+    ::raise(number);
+}
+
+}  // namespace
+
+void remove_unfinished_files_on_signals() {
+    for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+        // nohup stays in force.
+        if (::signal(number, remove_unfinished) == SIG_IGN) ::signal(number, SIG_IGN);
+    }
+}
+
+void remove_leftovers(const std::vector<std::string>& paths) {
+    std::map<fs::path, std::set<std::pair<std::string, std::string>>> names_of_folders;
+    for (const std::string& path : paths) {
+        std::string why;
+        const fs::path target = resolve_target(path, why);
+        const fs::path folder = target.parent_path();
+        names_of_folders[folder.empty() ? "." : folder].insert(name_parts(target));
+    }
+    static const std::regex pattern(R"(\.(.+)\.([0-9a-f]{8})\.(\d{1,9})\.\d+\.tmp(\..*)?)");
+    const auto yesterday = fs::file_time_type::clock::now() - std::chrono::hours(24);
+    for (const auto& [folder, names] : names_of_folders) {
+        std::error_code error;
+        for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+             entry.increment(error)) {
+            const std::string name = entry->path().filename().string();
+            std::smatch match;
+            if (!name.starts_with('.') || !std::regex_match(name, match, pattern) ||
+                !names.contains({match[1], match[4]})) {
+                continue;
+            }
+            const bool is_of_nobody =
+                match[2] == machine_tag() && ::kill(std::stoi(match[3]), 0) != 0 && errno == ESRCH;
+            std::error_code unknown, ignored;
+            const bool is_old = fs::last_write_time(entry->path(), unknown) < yesterday && !unknown;
+            if (is_of_nobody || is_old) fs::remove(entry->path(), ignored);
+        }
+    }
+}
+
+AtomicFile::AtomicFile(const std::string& path) {
+    static std::atomic<unsigned> count = 0;
+    target_ = resolve_target(path, refusal_);
+    const auto [stem, extension] = name_parts(target_);
+    path_ = target_.parent_path() /
+            fmt::format(".{}.{}.{}.{}.tmp{}", stem, machine_tag(), ::getpid(), count++, extension);
+    unfinished_ = register_unfinished(path_.string());
+}
+
+AtomicFile::~AtomicFile() {
+    if (!path_.empty()) {
+        std::error_code ignored;
+        fs::remove(path_, ignored);
+    }
+    release_unfinished(unfinished_);
+}
+
+int AtomicFile::check_target() const {
+    return ::access(target_.c_str(), W_OK) == 0 || errno == ENOENT ? 0 : errno;
+}
+
+void AtomicFile::settle() {
+    if (!is_ending) return;
+    ::unlink(path_.c_str());
+    while (true)
+        ::pause();
+}
+
+int AtomicFile::keep() {
+    const int file = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC);
+    if (file < 0) return errno;
+    struct stat old {};
+    if (::stat(target_.c_str(), &old) == 0) (void)::fchmod(file, old.st_mode & 07777);
+    const int error = ::fsync(file) == 0 ? 0 : errno;
+    ::close(file);
+    if (error) return error;
+    if (::rename(path_.c_str(), target_.c_str()) != 0) return errno;
+    path_.clear();
+    release_unfinished(unfinished_);
+    // The new name is on the disk when its directory is. Some file systems cannot sync one.
+    const fs::path folder = target_.has_parent_path() ? target_.parent_path() : fs::path(".");
+    const int directory = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (directory >= 0) {
+        (void)::fsync(directory);
+        ::close(directory);
+    }
+    return 0;
+}
+
+void write_text_atomically(const std::string& path, std::string_view contents) {
+    const auto refuse = [&](const std::string& reason) {
+        throw FileError("write: " + path + ": " + reason);
+    };
+    const auto fail = [&](int error) { refuse(reason_of(error)); };
+    AtomicFile target(path);
+    if (!target.refusal().empty()) refuse(target.refusal());
+    if (const int error = target.check_target()) fail(error);
+    const int file =
+        ::open(target.path().c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
+    if (file < 0) fail(errno);
+    target.settle();
+    std::size_t written = 0;
+    int error = 0;
+    while (written < contents.size() && error == 0) {
+        const ssize_t n = ::write(file, contents.data() + written, contents.size() - written);
+        if (n > 0) {
+            written += static_cast<std::size_t>(n);
+        } else if (errno != EINTR) {
+            error = errno;
+        }
+    }
+    if (::close(file) != 0 && error == 0) error = errno;
+    if (error == 0) error = target.keep();
+    if (error != 0) fail(error);
+}
+
+namespace {
+void make_folder(const fs::path& folder) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) throw FileError("write: " + folder.string() + ": " + error.message());
+}
+}  // namespace
+
+void require_writable_folder(const std::string& folder) {
+    const fs::path root(folder);
+    make_folder(root);
+    const fs::path probe = root / ".tonewright";
+    write_text_atomically(probe.string(), "");
+    std::error_code error;
+    fs::remove(probe, error);
+}
+
+void write_generated_files(const std::string& folder, const std::vector<GeneratedFile>& files,
+                           std::string_view last) {
+    const fs::path root(folder);
+    std::set<std::string> stale;
+    if (std::ifstream manifest(root / "MANIFEST.csv"); manifest) {
+        std::string line;
+        std::getline(manifest, line);  // column names; the first column is the path
+        while (std::getline(manifest, line)) {
+            stale.insert(fs::path(line.substr(0, line.find(','))).lexically_normal().string());
+        }
+    }
+    const auto write = [&](const GeneratedFile& file) {
+        const fs::path path = root / file.path;
+        make_folder(path.parent_path());
+        write_text_atomically(path.string(), file.contents);
+        stale.erase(fs::path(file.path).lexically_normal().string());
+    };
+    for (const GeneratedFile& file : files) {
+        if (file.path != last) write(file);
+    }
+    for (const GeneratedFile& file : files) {
+        if (file.path == last) write(file);
+    }
+    // Anyone can edit a manifest, so nothing outside the folder is touched, not even through a link
+    // in it.
+    std::error_code error;
+    const fs::path inside = fs::canonical(root, error);
+    for (const std::string& path : stale) {
+        const fs::path parent = fs::canonical((root / path).parent_path(), error);
+        if (error) continue;  // its folder is gone already
+        const auto differ =
+            std::mismatch(inside.begin(), inside.end(), parent.begin(), parent.end());
+        if (differ.first != inside.end()) continue;
+        if (fs::is_regular_file(root / path, error)) fs::remove(root / path, error);
+    }
+}
+
+TONEWRIGHT_NAMESPACE_END

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tonewright/version.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+
+/// The message of an errno.
+[[nodiscard]] TONEWRIGHT_API std::string reason_of(int error_number);
+
+/// A file that is written under a temporary name beside its target and gets the target's name when
+/// it is complete. A failed or killed run leaves the old file whole.
+///
+/// The temporary name is `.<stem>.<machine>.<pid>.<n>.tmp.<extension>`. The extension comes last
+/// because it selects the format.
+class TONEWRIGHT_API AtomicFile {
+  public:
+    /// Touches nothing yet. Follows symbolic links.
+    explicit AtomicFile(const std::string& path);
+    /// Removes the temporary file unless it was kept.
+    ~AtomicFile();
+    AtomicFile(const AtomicFile&) = delete;
+    AtomicFile& operator=(const AtomicFile&) = delete;
+
+    /// The temporary name.
+    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+    /// Where the bytes go in the end.
+    [[nodiscard]] const std::filesystem::path& target() const { return target_; }
+    /// Why no file can be written there (a directory, a device, a broken link); empty if one can.
+    [[nodiscard]] const std::string& refusal() const { return refusal_; }
+    /// Renaming asks only the folder for permission, and would replace a write-protected file.
+    /// @returns  0 or an errno.
+    [[nodiscard]] int check_target() const;
+    /// Call after the temporary file was created. If a signal is removing unfinished files at this
+    /// moment, removes this one too and waits for the end of the process.
+    void settle();
+    /// Gives the temporary file the permissions of the old one, syncs it and renames it.
+    /// @returns  0 or an errno.
+    [[nodiscard]] int keep();
+
+  private:
+    std::string refusal_;
+    std::filesystem::path target_;
+    std::filesystem::path path_;  // empty once kept
+    std::atomic<const char*>* unfinished_ = nullptr;
+};
+
+/// Writes a whole file. @throws FileError  "write: <path>: <reason>"
+TONEWRIGHT_API void write_text_atomically(const std::string& path, std::string_view contents);
+
+/// Creates the folder if it is missing, and a file in it for a moment, so that a long computation
+/// does not find out at its end that it cannot write.
+/// @throws FileError  naming the path and the reason.
+TONEWRIGHT_API void require_writable_folder(const std::string& folder);
+
+/// Removes the temporary files of these targets that killed runs left: those of processes of this
+/// machine that no longer exist, and those that are older than a day (processes of other machines
+/// cannot be asked). Files that cannot be removed stay.
+TONEWRIGHT_API void remove_leftovers(const std::vector<std::string>& paths);
+
+/// On SIGINT, SIGTERM and SIGHUP, removes unfinished files before the process ends. For a program
+/// to call once.
+TONEWRIGHT_API void remove_unfinished_files_on_signals();
+
+TONEWRIGHT_NAMESPACE_END

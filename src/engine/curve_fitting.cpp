@@ -1,0 +1,466 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/curve_fitting.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "engine/precision.h"
+#include "expr/scalar_ops.h"
+#include "tonewright/pipeline.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::int64_t kNone = -1;
+/// What the error of a curve may add to an output, where that is more than a float's own rounding.
+constexpr double kOutputFloor = 0x1p-26;
+/// What rounding of coefficients, steps and the result leaves room for.
+constexpr double kHalfUlps = 3;
+constexpr double kPreciseHalfUlps = 1.5;
+
+constexpr int kCheap = 3;
+constexpr int kCheapestCurve = 20;
+/// Steps computed while looking for curves of one program, at some 10 ns each. What has not been
+/// looked at by then stays as it is.
+constexpr std::size_t kMostWork = 10'000'000;
+
+/// What an instruction costs, in those of a processor and with its loads and stores; roughly.
+int cost_of(const TapeInstruction& step) {
+    switch (step.op) {
+        case ExprOp::constant:
+        case ExprOp::input:
+            return 0;
+        case ExprOp::power:
+            return 35;
+        case ExprOp::log2:
+            return 20;
+        case ExprOp::exp2:
+            return 15;
+        case ExprOp::sine:
+        case ExprOp::cosine:
+        case ExprOp::atan2:
+            return 60;
+        case ExprOp::lookup:
+            return 25;
+        case ExprOp::lattice:
+            return 100;
+        case ExprOp::divide:
+        case ExprOp::square_root:
+            return 8;
+        default:
+            return kCheap;
+    }
+}
+
+struct Interval {
+    double lo = -kInfinity;
+    double hi = kInfinity;
+};
+
+Interval hull(std::initializer_list<double> values) {
+    Interval r{kInfinity, -kInfinity};
+    for (const double v : values) {
+        if (std::isnan(v)) return {};
+        r = {std::min(r.lo, v), std::max(r.hi, v)};
+    }
+    return r;
+}
+
+/// Between which values a result lies; both infinities where that is not looked into.
+Interval interval_of(const TapeInstruction& step, const Interval& a, const Interval& b,
+                     const Interval& c) {
+    const auto rising = [&] {
+        return hull({scalar_op(step.op, a.lo, 0, 0, step.table),
+                     scalar_op(step.op, a.hi, 0, 0, step.table)});
+    };
+    switch (step.op) {
+        case ExprOp::constant:
+            return {step.value, step.value};
+        case ExprOp::input:
+            return {-kHalfMax, kHalfMax};
+        case ExprOp::add:
+            return hull({a.lo + b.lo, a.hi + b.hi});
+        case ExprOp::subtract:
+            return hull({a.lo - b.hi, a.hi - b.lo});
+        case ExprOp::multiply:
+            return hull({a.lo * b.lo, a.lo * b.hi, a.hi * b.lo, a.hi * b.hi});
+        case ExprOp::divide:
+            if (b.lo <= 0 && b.hi >= 0) return {};
+            return hull({a.lo / b.lo, a.lo / b.hi, a.hi / b.lo, a.hi / b.hi});
+        case ExprOp::minimum:
+            return {std::min(a.lo, b.lo), std::min(a.hi, b.hi)};
+        case ExprOp::maximum:
+            return {std::max(a.lo, b.lo), std::max(a.hi, b.hi)};
+        case ExprOp::power:
+            if (a.lo < 0 || b.lo != b.hi) return {};
+            return hull({std::pow(a.lo, b.lo), std::pow(a.hi, b.lo)});
+        case ExprOp::negate:
+            return {-a.hi, -a.lo};
+        case ExprOp::absolute:
+            return {0, std::max(std::fabs(a.lo), std::fabs(a.hi))};
+        case ExprOp::square_root:
+            return a.lo < 0 ? Interval{} : rising();
+        case ExprOp::exp2:
+        case ExprOp::floor:
+            return rising();
+        case ExprOp::log2:
+            return a.lo < 0 ? Interval{} : rising();
+        case ExprOp::less:
+        case ExprOp::less_equal:
+        case ExprOp::equal:
+            return {0, 1};
+        case ExprOp::sine:
+        case ExprOp::cosine:
+            return {-1, 1};
+        case ExprOp::select:
+            return {std::min(b.lo, c.lo), std::max(b.hi, c.hi)};
+        case ExprOp::lookup: {
+            const auto [lo, hi] =
+                std::minmax_element(step.table->samples.begin(), step.table->samples.end());
+            return {*lo, *hi};
+        }
+        case ExprOp::atan2:
+            return {-4, 4};
+        case ExprOp::lattice: {
+            const std::vector<double>& nodes = step.lattice->nodes();
+            const auto [lo, hi] = std::minmax_element(nodes.begin(), nodes.end());
+            return {*lo, *hi};
+        }
+    }
+    return {};
+}
+
+class CurveFitter {
+  public:
+    CurveFitter(std::vector<TapeInstruction>& code, std::array<std::uint32_t, 3>& outputs,
+                const Sensitivity& sensitivity, CurveCache& cache, CurveForm form)
+        : code_(code),
+          outputs_(outputs),
+          influence_(sensitivity),
+          cache_(cache),
+          form_(form),
+          value_(code.size()) {
+        uses_.resize(code_.size());
+        for (std::size_t i = 0; i < code_.size(); ++i) {
+            for (const std::uint32_t operand : operands_of(i))
+                ++uses_[operand];
+        }
+        for (std::size_t i = 0; i < code_.size(); ++i) {
+            const TapeInstruction& step = code_[i];
+            const auto of = [&](std::uint32_t v) { return v < i ? interval_[v] : Interval{}; };
+            interval_.push_back(interval_of(step, of(step.a), of(step.b), of(step.c)));
+            dominator_.push_back(dominator_of(i));
+        }
+        tried_.resize(code_.size());
+    }
+
+    void fold() {
+        for (const std::uint32_t output : outputs_)
+            fold_value(output);
+        drop_unread();
+    }
+
+  private:
+    [[nodiscard]] std::vector<std::uint32_t> operands_of(std::size_t i) const {
+        const TapeInstruction& step = code_[i];
+        std::vector<std::uint32_t> result = {step.a, step.b, step.c};
+        result.resize(static_cast<std::size_t>(operand_count(step.op)));
+        std::erase_if(result, [&](std::uint32_t v) { return code_[v].op == ExprOp::constant; });
+        return result;
+    }
+
+    /// The last value that all of i's inputs pass through on their way to i.
+    [[nodiscard]] std::int64_t dominator_of(std::size_t i) const {
+        const std::vector<std::uint32_t> operands = operands_of(i);
+        if (operands.empty()) return kNone;
+        std::int64_t common = operands.front();
+        for (const std::uint32_t operand : operands) {
+            std::int64_t other = operand;
+            while (common != other) {  // dominators have smaller indices
+                std::int64_t& later = common > other ? common : other;
+                later = dominator_[static_cast<std::size_t>(later)];
+                if (later == kNone) return kNone;
+            }
+        }
+        return common;
+    }
+
+    /// What lies between `root` and i, with i, in order.
+    [[nodiscard]] std::vector<std::uint32_t> between(std::uint32_t root, std::uint32_t i) const {
+        std::vector<bool> is_inside(i + 1);
+        is_inside[i] = true;
+        std::vector<std::uint32_t> result;
+        for (std::uint32_t k = i; k > root; --k) {
+            if (!is_inside[k]) continue;
+            result.push_back(k);
+            for (const std::uint32_t operand : operands_of(k))
+                is_inside[operand] = true;
+        }
+        std::reverse(result.begin(), result.end());
+        return result;
+    }
+
+    void fold_value(std::uint32_t i) {
+        if (tried_[i]) return;
+        tried_[i] = true;
+        // The coefficients of a matrix on one and the same curve: one curve, not three.
+        const std::vector<std::uint32_t> operands = operands_of(i);
+        if (operands.size() == 1 && uses_[operands[0]] > 1 && cost_of(code_[i]) <= kCheap)
+            return fold_value(operands[0]);
+        std::vector<std::uint32_t> roots;  // the farthest last
+        for (std::int64_t r = dominator_[i]; r != kNone;
+             r = dominator_[static_cast<std::size_t>(r)])
+            roots.push_back(static_cast<std::uint32_t>(r));
+        for (auto root = roots.rbegin(); root != roots.rend(); ++root) {
+            const std::vector<std::uint32_t> steps = between(*root, i);
+            int cost = 0;
+            for (const std::uint32_t k : steps)
+                cost += cost_of(code_[k]);
+            if (cost < kCheapestCurve) break;
+            const FittedCurve& found = find_curve(*root, steps, cost);
+            // The value is too much for a float, whatever it is a function of.
+            if (found.is_rejected) break;
+            const CompiledCurve* curve = found.curve.get();
+            if (!curve) continue;
+            TapeInstruction fitted;
+            fitted.op = ExprOp::lookup;
+            fitted.a = *root;
+            fitted.curve = curve;
+            fitted.node = code_[i].node;
+            code_[i] = fitted;
+            return fold_value(*root);
+        }
+        for (const std::uint32_t operand : operands)
+            fold_value(operand);
+    }
+
+    /// The steps between a root and a value as text, the same for channels that are treated alike.
+    [[nodiscard]] std::string text_of(std::uint32_t root,
+                                      const std::vector<std::uint32_t>& steps) const {
+        std::map<std::uint32_t, std::size_t> number = {{root, 0}};
+        std::string text;
+        const auto append = [&](const auto& value) {
+            text.append(reinterpret_cast<const char*>(&value), sizeof(value));
+        };
+        for (const std::uint32_t i : steps) {
+            const TapeInstruction& step = code_[i];
+            append(step.op);
+            append(step.table);
+            append(step.lattice);
+            append(step.curve);
+            const std::array<std::uint32_t, 3> operands = {step.a, step.b, step.c};
+            for (int k = 0; k < operand_count(step.op); ++k) {
+                const std::uint32_t v = operands[static_cast<std::size_t>(k)];
+                const bool is_constant = code_[v].op == ExprOp::constant;
+                append(is_constant);
+                if (is_constant) {
+                    append(code_[v].value);
+                } else {
+                    append(number.at(v));
+                }
+            }
+            number.emplace(i, number.size());
+        }
+        return text;
+    }
+
+    double run(const std::vector<std::uint32_t>& steps, std::uint32_t root, double x) {
+        work_ += steps.size();
+        value_[root] = x;
+        for (const std::uint32_t i : steps) {
+            const TapeInstruction& step = code_[i];
+            value_[i] = scalar_op(step.op, operand_value(step.a), operand_value(step.b),
+                                  operand_value(step.c), step.table);
+        }
+        return value_[steps.back()];
+    }
+    [[nodiscard]] double operand_value(std::uint32_t i) const {
+        return code_[i].op == ExprOp::constant ? code_[i].value : value_[i];
+    }
+
+    /// What the error of value i may be, by the exponent of `root`, so that it does not show.
+    [[nodiscard]] std::array<float, CurveTolerance::kExponents> floor_of(std::uint32_t root,
+                                                                         std::uint32_t i) const {
+        constexpr std::size_t n = CurveTolerance::kExponents;
+        std::array<double, n> largest{};
+        for (std::size_t p = 0; p < influence_.value.size(); ++p) {
+            double& here = largest[CurveTolerance::exponent_of(influence_.value[p][root])];
+            here = std::max(here, influence_.sensitivity[p][i]);
+        }
+        // Neighbours count, too; where there is no probe, the nearest ones on both sides.
+        std::array<double, n> below{}, above{};
+        for (std::size_t e = 1; e < n; ++e)
+            below[e] = largest[e - 1] > 0 ? largest[e - 1] : below[e - 1];
+        for (std::size_t e = n - 1; e-- > 0;)
+            above[e] = largest[e + 1] > 0 ? largest[e + 1] : above[e + 1];
+        std::array<float, n> floor{};
+        for (std::size_t e = 0; e < n; ++e) {
+            const double sensitivity = std::max({largest[e], below[e], above[e], 1e-3});
+            // Rounded to powers of 8, so that channels that are treated alike share a curve.
+            floor[e] = static_cast<float>(
+                std::exp2(std::floor(std::log2(kOutputFloor / sensitivity) / 3) * 3));
+        }
+        return floor;
+    }
+
+    const FittedCurve& find_curve(std::uint32_t root, const std::vector<std::uint32_t>& steps,
+                                  int cost) {
+        static const FittedCurve none;
+        for (const std::uint32_t i : steps) {
+            if (code_[i].op == ExprOp::lattice || code_[i].curve) return none;
+        }
+        // Rounded to powers, so that channels that are treated alike share a curve.
+        const Interval range = {interval_[root].lo < 0 ? -kInfinity : 0,
+                                std::exp2(16 * std::ceil(std::log2(interval_[root].hi) / 16))};
+        CurveTolerance tolerance;
+        tolerance.floor = floor_of(root, steps.back());
+        std::string key = text_of(root, steps);
+        for (const double part : {range.lo, range.hi})
+            key.append(reinterpret_cast<const char*>(&part), sizeof(part));
+        key.append(reinterpret_cast<const char*>(tolerance.floor.data()), sizeof(tolerance.floor));
+        FittedCurve& fitted = cache_[key];
+        if (!fitted.is_tried && work_ < kMostWork) {
+            fitted.is_tried = true;
+            const auto f = [&](double x) { return run(steps, root, x); };
+            tolerance.half_ulps = fitted.is_precise ? kPreciseHalfUlps : kHalfUlps;
+            std::optional<CompiledCurve> curve;
+            if (const auto kinks = find_kinks(root, steps)) {
+                curve = compile_curve(f, {range.lo, range.hi}, *kinks, tolerance, form_,
+                                      fitted.is_precise);
+            }
+            // What a precise curve stands for would be in double.
+            if (curve && curve->cost() < (fitted.is_precise ? 2.5 * cost : cost))
+                fitted.curve = std::make_unique<const CompiledCurve>(*curve);
+        }
+        return fitted;
+    }
+
+    /// Which side every branch of the steps takes at x.
+    void sides(const std::vector<std::uint32_t>& steps, std::uint32_t root, double x,
+               std::vector<bool>& result) {
+        run(steps, root, x);
+        result.clear();
+        for (const std::uint32_t i : steps) {
+            const TapeInstruction& step = code_[i];
+            const double a = operand_value(step.a);
+            const double b = operand_value(step.b);
+            switch (step.op) {
+                case ExprOp::minimum:
+                case ExprOp::maximum:
+                case ExprOp::less:
+                    result.push_back(a < b);
+                    break;
+                case ExprOp::less_equal:
+                    result.push_back(a <= b);
+                    break;
+                case ExprOp::absolute:
+                    result.push_back(a < 0);
+                    break;
+                default:
+                    break;
+            }
+        }
+    }
+
+    /// Where a branch changes sides for x > 0; nothing when a step has more corners than that.
+    std::optional<std::vector<double>> find_kinks(std::uint32_t root,
+                                                  const std::vector<std::uint32_t>& steps) {
+        for (const std::uint32_t i : steps) {
+            if (code_[i].op == ExprOp::floor || code_[i].op == ExprOp::lookup) return std::nullopt;
+        }
+        std::vector<double> kinks;
+        // What is not found is found out by the fit, which then fails.
+        const double top = std::min(interval_[root].hi, 1e12);
+        std::vector<bool> left, right, middle;
+        double x = 1e-12;
+        sides(steps, root, x, left);
+        while (x < top) {
+            const double next = std::min(x * 1.2, top);
+            sides(steps, root, next, right);
+            if (left != right) split(root, steps, x, left, next, right, kinks, middle);
+            x = next;
+            left = right;
+        }
+        return kinks;
+    }
+
+    void split(std::uint32_t root, const std::vector<std::uint32_t>& steps, double lo,
+               const std::vector<bool>& at_lo, double hi, const std::vector<bool>& at_hi,
+               std::vector<double>& kinks, std::vector<bool>& at_middle) {
+        const double middle = 0.5 * (lo + hi);
+        // Floats are what a curve is asked for: nothing is nearer together.
+        if (!(hi - lo > 1e-9 * hi) || !(middle > lo && middle < hi)) {
+            kinks.push_back(hi);
+            return;
+        }
+        sides(steps, root, middle, at_middle);
+        const std::vector<bool> here = at_middle;
+        if (here != at_lo) split(root, steps, lo, at_lo, middle, here, kinks, at_middle);
+        if (here != at_hi) split(root, steps, middle, here, hi, at_hi, kinks, at_middle);
+    }
+
+    void drop_unread() {
+        std::vector<bool> is_read(code_.size());
+        for (const std::uint32_t output : outputs_)
+            is_read[output] = true;
+        for (std::size_t i = code_.size(); i-- > 0;) {
+            if (!is_read[i]) continue;
+            const TapeInstruction& step = code_[i];
+            const std::array<std::uint32_t, 3> operands = {step.a, step.b, step.c};
+            for (int k = 0; k < operand_count(step.op); ++k)
+                is_read[operands[static_cast<std::size_t>(k)]] = true;
+        }
+        std::vector<std::uint32_t> moved(code_.size());
+        std::vector<TapeInstruction> kept;
+        for (std::size_t i = 0; i < code_.size(); ++i) {
+            if (!is_read[i]) continue;
+            TapeInstruction step = code_[i];
+            if (operand_count(step.op) > 0) {
+                step.a = moved[step.a];
+                step.b = moved[step.b];
+                step.c = moved[step.c];
+            }
+            moved[i] = static_cast<std::uint32_t>(kept.size());
+            kept.push_back(step);
+        }
+        for (std::uint32_t& output : outputs_)
+            output = moved[output];
+        code_ = std::move(kept);
+    }
+
+    std::vector<TapeInstruction>& code_;
+    std::array<std::uint32_t, 3>& outputs_;
+    const Sensitivity& influence_;
+    CurveCache& cache_;
+    CurveForm form_;
+    std::vector<Interval> interval_;
+    std::vector<std::int64_t> dominator_;
+    std::vector<int> uses_;
+    std::vector<bool> tried_;
+    std::vector<double> value_;
+    std::size_t work_ = 0;
+};
+
+}  // namespace
+
+void reject_curve(CurveCache& cache, const CompiledCurve* curve) {
+    for (auto& [description, fitted] : cache) {
+        if (fitted.curve.get() != curve) continue;
+        fitted.is_rejected = fitted.is_precise;
+        fitted.is_tried = fitted.is_rejected;
+        fitted.is_precise = true;
+        fitted.curve.reset();
+        return;
+    }
+}
+
+void fit_curves(std::vector<TapeInstruction>& code, std::array<std::uint32_t, 3>& outputs,
+                const Sensitivity& sensitivity, CurveCache& cache, CurveForm form) {
+    CurveFitter(code, outputs, sensitivity, cache, form).fold();
+}
+
+TONEWRIGHT_NAMESPACE_END

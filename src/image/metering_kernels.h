@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "tonewright/pipeline.h"
+
+/// What metering does to every pixel, as vector code. Sums go into eight lanes on every instruction
+/// set, without fused operations: the results are the same bits on all of them.
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace light {
+
+/// Pixels that are worked on at a time: four double planes of them stay in the first-level cache.
+inline constexpr std::size_t kSpan = 512;
+/// Planes hold whole blocks of this many pixels.
+inline constexpr std::size_t kBlock = 64;
+
+[[nodiscard]] constexpr std::size_t padded(std::size_t count) {
+    return (count + kBlock - 1) / kBlock * kBlock;
+}
+
+/// r, g, b, alpha.
+using Planes = std::array<std::array<double, kSpan>, 4>;
+
+/// Interleaved floats into planes.
+/// @param channels  3 or 4, of each pixel in memory and of `to`
+void split(const float* pixels, int channels, std::size_t count, Planes& to) noexcept;
+
+/// What is special among the pixels.
+struct Kinds {
+    bool all_finite;  // r, g, b
+    bool all_cover;   // alpha is finite and not 0
+    bool all_opaque;  // alpha is 1
+};
+/// Fills the last block up. Without `has_alpha` all are opaque.
+[[nodiscard]] Kinds kinds(Planes& planes, std::size_t count, bool has_alpha) noexcept;
+
+/// True where nothing is: all of interleaved floats are finite, and opaque.
+/// @param channels  3 or 4; without `has_alpha` a fourth says nothing.
+[[nodiscard]] bool are_plain(const float* pixels, int channels, std::size_t count,
+                             bool has_alpha) noexcept;
+
+/// Color divided by alpha, of whole blocks.
+void divide_by_alpha(Planes& planes, std::size_t count) noexcept;
+
+/// The sum of logarithms of a span as the logarithm of a product: mantissa 2^exponent.
+struct Product {
+    double mantissa = 1;
+    std::int64_t exponent = 0;
+};
+
+/// A sum and what its roundings lost.
+struct CompensatedSum {
+    double sum = 0;
+    double lost = 0;
+};
+
+/// What a span adds up to.
+struct SpanLight {
+    std::array<CompensatedSum, 3> rgb;
+    Vector3 maximum_rgb{};
+    double maximum = 0;
+    double minimum_lit = 0;  // infinity: all is black
+    std::size_t lit_count = 0;
+    Product lit;         // of luminances above 0
+    Product with_delta;  // of luminances and delta
+};
+/// How colors count.
+struct Weighing {
+    const Matrix3* to_rec709;  // null: they are of Rec.709
+    double delta;              // added to luminances inside the logarithm, [1e-12, 1]
+};
+/// Of colors without NaN, which become colors of Rec.709, [0, kHalfMax].
+/// @param luminance  of each pixel
+[[nodiscard]] SpanLight add_up(Planes& planes, std::size_t count, const Weighing& weighing,
+                               std::array<double, kSpan>& luminance) noexcept;
+/// The same of interleaved floats, to the same bits.
+[[nodiscard]] SpanLight add_up(const float* pixels, int channels, std::size_t count,
+                               const Weighing& weighing,
+                               std::array<double, kSpan>& luminance) noexcept;
+
+/// Product of any positive numbers.
+[[nodiscard]] Product product_of(const double* values, std::size_t count) noexcept;
+
+}  // namespace light
+TONEWRIGHT_NAMESPACE_END

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What applications expect of a LUT. Sources: their manuals, as far as nothing else stands beside
+// an entry.
+#include "base/strings.h"
+#include "tonewright/lut.h"
+#include "tonewright/lut_applications.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+
+const std::vector<LutApplication>& all_lut_applications() {
+    static const std::vector<LutApplication> hosts = {
+        {"resolve",
+         "DaVinci Resolve",
+         LutFormat::cube,
+         33,
+         "davinci",
+         "rec1886",
+         {},
+         "trilinear, tetrahedral by choice",
+         "Project Settings > Color Management > Open LUT Folder, copy, Update Lists; in a node of "
+         "a "
+         "timeline in DaVinci WG/Intermediate: LUTs, the file",
+         ""},
+        {"nuke",
+         "Nuke",
+         LutFormat::cube,
+         33,
+         "acescct",
+         "srgb",
+         {},
+         "trilinear",
+         "OCIOFileTransform or Vectorfield with the file, behind a conversion to ACEScct",
+         ""},
+        {"ffmpeg",
+         "ffmpeg",
+         LutFormat::cube,
+         33,
+         "pq",
+         "rec1886",
+         {},
+         "tetrahedral",
+         "ffmpeg -i hdr10.mkv -vf zscale=matrix=gbr,format=gbrp16le,"
+         "lut3d=FILE:interp=tetrahedral -pix_fmt gbrp16le out.mkv: PQ, Rec.2020, in RGB",
+         "ffmpeg 5.1"},
+        {"premiere",
+         "Premiere Pro",
+         LutFormat::cube,
+         33,
+         "logc3",
+         "rec1886",
+         {},
+         "tetrahedral",
+         "Lumetri Color > Basic Correction > Input LUT > Browse, on a clip in ARRI LogC3",
+         ""},
+        {"photoshop",
+         "Photoshop",
+         LutFormat::cube,
+         33,
+         "srgb",
+         "srgb",
+         {},
+         "tetrahedral",
+         "Layer > New Adjustment Layer > Color Lookup > Load 3D LUT, in a document in sRGB",
+         ""},
+        {"affinity",
+         "Affinity Photo",
+         LutFormat::cube,
+         33,
+         "srgb",
+         "srgb",
+         {},
+         "trilinear",
+         "Layer > New Adjustment Layer > LUT Adjustment > Load LUT, in a document in sRGB",
+         ""},
+        {"unreal", "Unreal Engine", LutFormat::strip, 16, "srgb", "srgb", 8, "trilinear",
+         "import as texture, Mip Gen Settings NoMipmaps, Texture Group ColorLookupTable; Post "
+         "Process Volume > Color Grading > Misc > Color Grading LUT: works on what is shown",
+         ""},
+        {"unity",
+         "Unity HDRP",
+         LutFormat::cube,
+         32,
+         "unity_logc",
+         "linear",
+         {},
+         "trilinear",
+         "import the .cube; Volume > Tonemapping > Mode External > Lookup Texture. Its size must "
+         "be "
+         "the HDRP Asset's Grading LUT Size, 32 unless changed: --size",
+         ""},
+        // Core RP Library, Color.hlsl, ApplyLut2D: the slice by blue, in it u by red and v by
+        // green; Unity's textures have v 0 at the bottom.
+        {"unity_urp", "Unity URP", LutFormat::strip_up, 32, "srgb", "srgb", 8, "trilinear",
+         "import with sRGB off, no mip maps, no compression; Volume > Color Lookup > Lookup "
+         "Texture. Its height must be the URP Asset's Grading LUT Size, 32 unless changed: --size. "
+         "Works on what is shown",
+         ""},
+        {"godot", "Godot", LutFormat::strip, 32, "srgb", "srgb", 8, "trilinear",
+         "import as Texture3D with 32 horizontal slices; Environment > Adjustments > Color "
+         "Correction: works on what is shown",
+         ""},
+        {"obs",
+         "OBS Studio",
+         LutFormat::cube,
+         33,
+         "srgb",
+         "srgb",
+         {},
+         "tetrahedral",
+         "Filters > + > Apply LUT > Path",
+         ""},
+        {"mpv",
+         "mpv",
+         LutFormat::cube,
+         33,
+         "pq",
+         "srgb",
+         {},
+         "trilinear",
+         "mpv --vo=gpu-next --lut=FILE --lut-type=conversion --target-trc=srgb "
+         "--target-prim=bt.709 hdr10.mkv",
+         "mpv 0.35.1"},
+        {"gmic",
+         "G'MIC, GIMP with G'MIC",
+         LutFormat::cube,
+         33,
+         "srgb",
+         "srgb",
+         {},
+         "trilinear",
+         "gmic in.tif FILE div[1] 255 'fill[0]' 'I(#1,R/255*32,G/255*32,B/255*32,1,0)*255' keep[0] "
+         "-o out.tif; in GIMP: Filters > G'MIC-Qt > Colors > Apply External CLUT",
+         "G'MIC 2.9.4"},
+        {"darktable",
+         "darktable",
+         LutFormat::cube,
+         33,
+         "srgb",
+         "srgb",
+         {},
+         "tetrahedral",
+         "preferences > processing > 3D LUT root folder; module LUT 3D, application color space "
+         "sRGB",
+         "darktable 4.2.1"},
+        {"rawtherapee", "RawTherapee", LutFormat::hald, 64, "srgb", "srgb", 16, "trilinear",
+         "Preferences > Image Processing > HaldCLUT directory; Color > Film Simulation",
+         "RawTherapee 5.9"},
+        {"imagemagick", "ImageMagick, GraphicsMagick", LutFormat::hald, 64, "srgb", "srgb", 16,
+         "trilinear", "convert in.png FILE -hald-clut out.png",
+         "ImageMagick 6.9.11, GraphicsMagick 1.3.40"},
+        {"flame", "Flame, Lustre", LutFormat::threedl, 33, "acescct", "rec1886", 12, "trilinear",
+         "LUT Editor > Import, on a picture in ACEScct", ""},
+        {"houdini",
+         "Houdini",
+         LutFormat::houdini,
+         64,
+         "acescct",
+         "srgb",
+         {},
+         "trilinear",
+         "in a compositing network: Lookup COP with the file, behind a conversion to ACEScct; to "
+         "look "
+         "only: right mouse button on the viewer's LUT button, load it",
+         ""},
+        {"icc", "ICC device link: Photoshop, ImageMagick, LittleCMS", LutFormat::icc, 33, "srgb",
+         "srgb", 16, "tetrahedral",
+         "Photoshop, on a picture in sRGB: Layer > New Adjustment Layer > Color Lookup > Device "
+         "Link > Load; convert in.png -profile FILE +profile '*' out.png; tificc -l FILE -c 0 -w "
+         "16 in.tif out.tif",
+         "LittleCMS 2.14 and ImageMagick 6.9.11, 16 bits"},
+        {"ocio",
+         "OpenColorIO",
+         LutFormat::clf,
+         33,
+         "acescct",
+         "srgb",
+         {},
+         "tetrahedral",
+         "FileTransform with the file and interpolation tetrahedral, behind ACEScct; the config "
+         "has "
+         "no such step",
+         "OpenColorIO 2.1.2"},
+        {"threejs",
+         "three.js",
+         LutFormat::cube,
+         33,
+         "srgb",
+         "srgb",
+         {},
+         "trilinear",
+         "new LUTCubeLoader().setType(FloatType), which by itself cuts numbers off to 8 bits; then "
+         "LUTPass behind OutputPass: works on what is shown",
+         "three.js r187 in Chromium 156"},
+    };
+    return hosts;
+}
+
+const LutApplication& find_lut_application(std::string_view id) {
+    std::vector<std::string> ids;
+    for (const LutApplication& host : all_lut_applications()) {
+        if (host.id == id) return host;
+        ids.push_back(host.id);
+    }
+    throw Error("bake: host is " + std::string(id) + "; expected " + join_choices(ids) +
+                did_you_mean(id, ids));
+}
+
+TONEWRIGHT_NAMESPACE_END

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tonewright/generated_files.h"
+#include "tonewright/lut.h"
+#include "tonewright/lut_applications.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+
+/// Of the set of `bake --all`: the LUTs of one application.
+struct LutPresetSet {
+    const LutApplication* host = nullptr;
+    /// Applications that the same files suit.
+    std::string also;
+    std::vector<std::string> operators;
+    /// Instead of the host's, where fewer are enough.
+    std::optional<int> size;
+};
+[[nodiscard]] TONEWRIGHT_API const std::vector<LutPresetSet>& lut_preset_sets();
+
+/// A LUT of the set.
+struct ShippedLut {
+    const LutPresetSet* shelf = nullptr;
+    LutRequest request;
+    /// In the set's folder: `resolve/agx_blender_davinci_to_rec1886.cube`.
+    std::string path;
+    /// What the chart looks like through it.
+    std::string thumbnail;
+    Lut lut;
+    bool is_fitted = false;
+    LutError tetrahedral;
+    LutError trilinear;
+    /// The file. Empty for a picture, which OpenImageIO writes.
+    std::string contents;
+};
+
+/// All of them, in the order of the shelves. The same on every run, whatever the number of threads.
+[[nodiscard]] TONEWRIGHT_API std::vector<ShippedLut> bake_shipped_luts();
+
+/// README.md and MANIFEST.csv, of LUTs that all have their contents.
+[[nodiscard]] TONEWRIGHT_API std::vector<GeneratedFile> describe_shipped_luts(
+    const std::vector<ShippedLut>& luts);
+
+TONEWRIGHT_NAMESPACE_END

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "tonewright/color.h"
+#include "tonewright/view.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+
+/// Which part of the probe set a colour belongs to.
+enum class SampleKind : unsigned char {
+    grey,        // R = G = B, -12..+12 stops around 0.18, and black
+    lattice,     // gamut lattices of Rec.709, Rec.2020 and AP1 at five exposures
+    random,      // log-uniform, 2^-16..2^12 per channel, a tenth with a channel at 0
+    near_black,  // down to denormals
+    negative,    // one or two channels below 0, up to mixed signs of thousands
+    picture,     // pixels given by the caller
+    special,     // NaN, infinities, the largest float
+};
+
+/// The colours that every form of a view is measured on. Scene-linear float, interleaved RGB.
+struct TONEWRIGHT_API SampleSet {
+    std::vector<float> rgb;
+    std::vector<SampleKind> kind;
+
+    [[nodiscard]] std::size_t size() const { return kind.size(); }
+    /// All three channels >= 0 and finite.
+    [[nodiscard]] bool is_non_negative(std::size_t i) const;
+    void add(double r, double g, double b, SampleKind k);
+};
+
+struct SampleSetOptions {
+    int lattice_edge = 33;
+    std::size_t random_count = 100000;
+};
+
+/// The standard set in the given input space; the same on every machine (fixed seed).
+[[nodiscard]] TONEWRIGHT_API SampleSet make_sample_set(const InputSpace& input,
+                                                       const SampleSetOptions& options = {});
+
+/// Fixed-seed generator (SplitMix64, Steele et al. 2014): the same numbers with every compiler,
+/// which std::uniform_real_distribution does not promise.
+class TONEWRIGHT_API SampleRandom {
+  public:
+    explicit SampleRandom(unsigned long long seed) : state_(seed) {}
+    unsigned long long bits();
+    double uniform(double lo, double hi);  // [lo, hi)
+
+  private:
+    unsigned long long state_;
+};
+
+TONEWRIGHT_NAMESPACE_END

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/random.h"
 #include "expr/scalar_ops.h"
-#include "measure/sample_set.h"
 #include "tonewright/pipeline.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN

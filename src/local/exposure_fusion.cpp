@@ -26,9 +26,11 @@
 #include "local/operators.h"
 #include "local/scene_luminance.h"
 #include "tonewright/engine.h"
-#include "tonewright/registry.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
+
+std::vector<Operator> define_aces_fits();  // operators/aces_fits.cpp
+
 namespace {
 
 constexpr Vector3 kLightness = {0.1, 0.7, 0.2};
@@ -91,10 +93,18 @@ void resample_row(const float* above, const float* below, float fraction,
 constexpr std::size_t kExposures = 3;
 constexpr std::size_t kMiddle = 1;
 
-/// The tone curve of an exposure.
+/// `aces_hill:threejs`, the tone curve of the source.
+Pipeline tone_curve() {
+    const std::vector<Operator> family = define_aces_fits();
+    const auto op = std::find_if(family.begin(), family.end(),
+                                 [](const Operator& o) { return o.id == "aces_hill"; });
+    return resolve(*op, &find_preset(*op, "threejs"), {}, "").build();
+}
+
+/// The tone curve at an exposure.
 SimdEngine engine_of(double gain) {
     Pipeline stages = {MatrixStage{scale(kIdentity3, gain)}};
-    for (const Stage& stage : resolve_operator("aces_hill:threejs").build())
+    for (const Stage& stage : tone_curve())
         stages.push_back(stage);
     return SimdEngine(stages);
 }

@@ -1,17 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "local/operators.h"
 #include "base/format_number.h"
-#include "tonewright/registry.h"
 
 #include <cmath>
 
 TONEWRIGHT_NAMESPACE_BEGIN
-
-const std::vector<Operator>& local_operators() {
-    static const std::vector<Operator> all = {define_exposure_fusion(), define_local_laplacian(),
-                                              define_reinhard_local()};
-    return all;
-}
 
 void run_rows_in_turn(int count, const std::function<void(int begin, int end)>& body) {
     body(0, count);

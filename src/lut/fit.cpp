@@ -6,10 +6,10 @@
 #include <cmath>
 #include <cstdint>
 
+#include "base/random.h"
 #include "lut/in_parallel.h"
 #include "lut/picture_color.h"
 #include "lut/tetrahedron.h"
-#include "measure/sample_set.h"
 #include "tonewright/engine.h"
 #include "tonewright/lut.h"
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/random.h"
 #include "lut/half_domain.h"
 #include "lut/shaper.h"
 #include "measure/error_metric.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "measure/sample_set.h"
+#include "base/random.h"
 #include "tonewright/color.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN

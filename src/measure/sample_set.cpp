@@ -1,22 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "measure/sample_set.h"
+#include "base/random.h"
 
 #include <array>
 #include <cmath>
 #include <limits>
 
 TONEWRIGHT_NAMESPACE_BEGIN
-
-unsigned long long SampleRandom::bits() {
-    unsigned long long z = state_ += 0x9E3779B97F4A7C15ULL;
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
-    return z ^ (z >> 31);
-}
-
-double SampleRandom::uniform(double lo, double hi) {
-    return lo + (hi - lo) * (static_cast<double>(bits() >> 11) * 0x1p-53);
-}
 
 bool SampleSet::is_non_negative(std::size_t i) const {
     for (std::size_t c = 0; c < 3; ++c) {

@@ -40,16 +40,4 @@ struct SampleSetOptions {
 [[nodiscard]] TONEWRIGHT_API SampleSet make_sample_set(const InputSpace& input,
                                                        const SampleSetOptions& options = {});
 
-/// Fixed-seed generator (SplitMix64, Steele et al. 2014): the same numbers with every compiler,
-/// which std::uniform_real_distribution does not promise.
-class TONEWRIGHT_API SampleRandom {
-  public:
-    explicit SampleRandom(unsigned long long seed) : state_(seed) {}
-    unsigned long long bits();
-    double uniform(double lo, double hi);  // [lo, hi)
-
-  private:
-    unsigned long long state_;
-};
-
 TONEWRIGHT_NAMESPACE_END

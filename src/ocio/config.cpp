@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "base/random.h"
 #include "base/strings.h"
 #include "ocio/config_builder.h"
 #include "tonewright/engine.h"

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/strings.h"
+#include "local/operators.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -45,6 +46,12 @@ ResolvedOperator resolve_by_name(const Operator& op, std::string_view name,
 std::string_view id_of(std::string_view name) { return name.substr(0, name.find(':')); }
 
 }  // namespace
+
+const std::vector<Operator>& local_operators() {
+    static const std::vector<Operator> all = {define_exposure_fusion(), define_local_laplacian(),
+                                              define_reinhard_local()};
+    return all;
+}
 
 const Operator& find_picture_operator(std::string_view id) {
     std::vector<std::string> ids;

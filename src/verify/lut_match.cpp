@@ -5,8 +5,8 @@
 #include <cmath>
 #include <set>
 
+#include "base/random.h"
 #include "measure/error_metric.h"
-#include "measure/sample_set.h"
 #include "tonewright/engine.h"
 #include "tonewright/lut.h"
 #include "tonewright/ocio.h"

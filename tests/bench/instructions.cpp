@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "measure/sample_set.h"
+#include "base/random.h"
 #include "tonewright/engine.h"
 #include "tonewright/registry.h"
 #include "tonewright/view.h"

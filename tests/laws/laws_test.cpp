@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "base/format_number.h"
+#include "base/random.h"
 #include "measure/error_metric.h"
 #include "measure/sample_set.h"
 #include "tonewright/engine.h"

@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
+#include "base/random.h"
 #include "engine/simd_program.h"
-#include "measure/sample_set.h"
 #include "tonewright/engine.h"
 #include "tonewright/registry.h"
 #include "tonewright/view.h"

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "base/format_number.h"
+#include "base/random.h"
 #include "engine/tape.h"
 #include "measure/error_metric.h"
 #include "measure/sample_set.h"

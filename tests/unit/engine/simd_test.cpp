@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "base/format_number.h"
+#include "base/random.h"
 #include "engine/simd_program.h"
 #include "measure/sample_set.h"
 #include "tonewright/engine.h"

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "measure/sample_set.h"
+#include "base/random.h"
 #include "tonewright/engine.h"
 #include "tonewright/lut.h"
 #include "tonewright/registry.h"

@@ -19,6 +19,7 @@
 
 #include "base/atomic_file.h"
 #include "base/format_number.h"
+#include "base/random.h"
 #include "base/strings.h"
 #include "lut/clf.h"
 #include "lut/half_domain.h"

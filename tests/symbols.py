@@ -1,0 +1,50 @@
+#!/usr/bin/env python3
+"""Folders of src/ depend on each other in one direction by linkage, too: reads the compiled symbols.
+
+An object file may leave a symbol of Tonewright undefined only if an object of its own folder or of a
+folder below it (layers.py) defines the symbol.
+
+Usage: symbols.py BUILD
+"""
+import pathlib
+import subprocess
+import sys
+
+from layers import BELOW
+
+NAMESPACE = "10tonewright"  # as it is mangled
+
+
+def main(build: pathlib.Path) -> int:
+    objects = sorted(build.glob("src/CMakeFiles/tonewright_*.dir/**/*.o"))
+    defined, wanted = {}, []
+    listing = subprocess.run(["nm", "--print-file-name", *map(str, objects)], capture_output=True, text=True,
+                             check=True).stdout
+    for line in listing.splitlines():
+        name, _, rest = line.partition(":")
+        kind, symbol = rest.split()[-2:]
+        if NAMESPACE not in symbol:
+            continue
+        path = pathlib.Path(name)
+        library = next(i for i, part in enumerate(path.parts) if part.endswith(".dir"))
+        folder = path.parts[library + 1]
+        if kind == "U":
+            wanted.append((path.name, folder, symbol))
+        else:
+            defined.setdefault(symbol, set()).add(folder)
+    failures = []
+    for name, folder, symbol in wanted:
+        homes = defined.get(symbol, set())
+        if not homes & {folder, *BELOW[folder]}:
+            readable = subprocess.run(["c++filt", symbol], capture_output=True, text=True).stdout.strip()
+            failures.append(f"{folder}/{name}: needs {readable}, of {', '.join(sorted(homes)) or 'no folder'}")
+    for failure in sorted(set(failures)):
+        print(failure)
+    print(f"symbols: {len(objects)} objects, {len(wanted)} symbols of other files read")
+    passed = bool(wanted) and not failures
+    print(f"{int(passed)} passed, {len(set(failures)) if failures else int(not passed)} failed")
+    return 0 if passed else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(pathlib.Path(sys.argv[1])))

@@ -988,7 +988,7 @@ TEST(View, LinearAndNativeAreNotLimited) {
 
 /// Operator output -> light of the display, as a view of it has it.
 Pipeline light_of(const Operator& op, const Display& display) {
-    const ResolvedOperator resolved{&op, {}, "", "", {}};
+    const ResolvedOperator resolved{&op, {}, "", nullptr, {}};
     const DisplayLimit limit = display_limit(resolved, display);
     Pipeline stages = display_light_stages(resolved, limit);
     if (!(limit.primaries == display.primaries))
@@ -1011,7 +1011,7 @@ TEST(View, LightAboveWhiteNeedsAnOperatorAndADisplayThatHaveIt) {
     const Display& srgb = find_display("srgb");
     const Display& pq = find_display("rec2100_pq");
     const auto peak = [&](const Display& display) {
-        return display_limit({&op, {}, "", "", {}}, display).peak;
+        return display_limit({&op, {}, "", nullptr, {}}, display).peak;
     };
     EXPECT_EQ(peak(srgb), 1);
     EXPECT_EQ(peak(pq), 1) << "an SDR picture on an HDR display";

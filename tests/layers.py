@@ -29,7 +29,7 @@ for folder, direct in {
     BELOW[folder] = sorted(set(direct).union(*(BELOW[d] for d in direct)))
 # Public header -> the folder that it belongs to.
 PUBLIC = {
-    "version": "base", "error": "base", "generated_files": "base", "expr": "expr", "color": "color",
+    "version": "base", "error": "base", "span": "base", "generated_files": "base", "expr": "expr", "color": "color",
     "pipeline": "pipeline", "view": "pipeline", "engine": "engine", "local": "local", "registry": "registry",
     "lut": "lut", "lut_applications": "lut", "ocio": "ocio", "lut_file": "ocio", "tonemap": "image",
     "image_io": "image", "chart": "image", "contact_sheet": "image", "sequence": "image", "meter": "image",

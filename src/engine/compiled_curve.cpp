@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {

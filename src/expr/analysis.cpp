@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -169,7 +170,7 @@ double sign_change(const Expr& f, double lo, double hi) {
 
 }  // namespace
 
-Expr substitute(const Expr& expr, std::span<const Expr> inputs) {
+Expr substitute(const Expr& expr, Span<const Expr> inputs) {
     std::unordered_map<const ExprNode*, Expr> done;
     return rebuild(
         expr,
@@ -180,19 +181,21 @@ Expr substitute(const Expr& expr, std::span<const Expr> inputs) {
         done);
 }
 
-double evaluate(const Expr& expr, std::span<const double> inputs) {
+double evaluate(const Expr& expr, Span<const double> inputs) {
     std::unordered_map<const ExprNode*, double> done;
     return evaluate_node(expr, inputs, done);
 }
 
-double evaluate(const Expr& expr, double input) { return evaluate(expr, std::span(&input, 1)); }
+double evaluate(const Expr& expr, double input) {
+    return evaluate(expr, Span<const double>(&input, 1));
+}
 
 Expr derivative(const Expr& expr, int index) {
     std::unordered_map<const ExprNode*, Expr> done;
     return differentiate(expr, index, done);
 }
 
-std::size_t node_count(std::span<const Expr> exprs) {
+std::size_t node_count(Span<const Expr> exprs) {
     std::unordered_set<const ExprNode*> seen;
     std::vector<Expr> order;
     for (const Expr& e : exprs)

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <mutex>
 #include <numbers>
+#include <span>
 #include <unordered_map>
 #include <utility>
 
@@ -262,7 +263,7 @@ int Expr::channel() const noexcept { return node_->input; }
 int Expr::operand_count() const noexcept { return static_cast<int>(node_->operands.size()); }
 Expr Expr::operand(int i) const { return node_->operands[static_cast<std::size_t>(i)]; }
 
-Expr make_expr(ExprOp op, std::span<const Expr> in, std::shared_ptr<const Table> table) {
+Expr make_expr(ExprOp op, Span<const Expr> in, std::shared_ptr<const Table> table) {
     bool all_constant = true;
     for (const Expr& e : in)
         all_constant = all_constant && e.is_constant();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
+#include <span>
 
 #include "base/format_number.h"
 #include "tonewright/error.h"
@@ -98,7 +99,7 @@ Text print(const Expr& e, std::span<const std::string> names) {
 
 }  // namespace
 
-std::string to_string(const Expr& expr, std::span<const std::string> names) {
+std::string to_string(const Expr& expr, Span<const std::string> names) {
     if (!names.empty()) return print(expr, names).text;
     if (depends_on(expr, 1) || depends_on(expr, 2)) {
         static const std::array<std::string, 3> rgb = {"r", "g", "b"};

@@ -25,6 +25,7 @@
 //           (bt2446a), 10.5269722 (spline) (check_values.json).
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "base/format_number.h"
 #include "operators/family.h"

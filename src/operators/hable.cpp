@@ -29,6 +29,7 @@
 //           (hable_piecewise:film) (python_check/operators/hable.py).
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "base/format_number.h"
 #include "operators/family.h"

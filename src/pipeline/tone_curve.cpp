@@ -4,6 +4,7 @@
 #include "tonewright/error.h"
 
 #include <cmath>
+#include <span>
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {

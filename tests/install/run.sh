@@ -1,16 +1,55 @@
-#!/bin/sh
-# Installs a build into a folder of its own, then builds and runs the consumer project against it.
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Installs a build into a folder of its own, moves that folder, and uses it as people outside the tree do:
+# through pkg-config and through CMake, core alone and all of it, and the command.
 # Usage: run.sh BUILD_DIR WORK_DIR
-set -eu
+set -euo pipefail
 build=$1
 work=$2
 here=$(cd "$(dirname "$0")" && pwd)
 rm -rf "$work"
-cmake --install "$build" --prefix "$work/prefix" >/dev/null
-cmake -S "$here" -B "$work/build" -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$work/prefix"
-cmake --build "$work/build"
-"$work/build/consumer"
-# The command becomes the whole program for pictures, from where it is installed.
-"$work/prefix/bin/tonewright" chart -o "$work/chart.exr" --width 320 --height 180
-"$work/prefix/bin/tonewright" apply "$work/chart.exr" "$work/chart.png" --operator hable
-test -s "$work/chart.png"
+cmake --install "$build" --prefix "$work/first" >/dev/null
+mv "$work/first" "$work/prefix" # an installation finds its parts by its own place
+prefix=$work/prefix
+PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name tonewright-core.pc)")
+LD_LIBRARY_PATH=$(dirname "$PKG_CONFIG_PATH")
+export PKG_CONFIG_PATH
+failed=0
+expect() { # WHAT COMMAND...
+    local what=$1
+    shift
+    if "$@" >"$work/log" 2>&1; then echo "ok: $what"; else echo "FAILED: $what" && cat "$work/log" && failed=1; fi
+}
+without() { # PROGRAM PATTERN: the program loads no library of that name
+    local loaded
+    loaded=$(LD_LIBRARY_PATH=$LD_LIBRARY_PATH ldd "$1") && ! grep -iE "$2|not found" <<<"$loaded"
+}
+
+# Every public header stands alone, in C++17.
+for header in "$prefix"/include/tonewright/*.h; do
+    name=${header##*/}
+    # shellcheck disable=SC2046 # flags are words
+    expect "$name is C++17" g++ -std=c++17 -Wall -Wextra -Wpedantic -fsyntax-only -x c++ \
+        $(pkg-config --cflags tonewright-image) "$header" -Wno-pragma-once-outside-header
+done
+
+# shellcheck disable=SC2046
+expect "core through pkg-config: compile" g++ "$here/core/main.cpp" \
+    $(pkg-config --cflags --libs tonewright-core) -o "$work/plain"
+expect "core through pkg-config: run" env LD_LIBRARY_PATH="$LD_LIBRARY_PATH" "$work/plain"
+expect "core has no OpenImageIO, OpenColorIO, Qt, GDAL" without "$work/plain" 'OpenImageIO|OpenColorIO|Qt|gdal'
+
+for consumer in core image; do
+    expect "$consumer through CMake: configure" cmake -S "$here/$consumer" -B "$work/$consumer" \
+        -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$prefix"
+    expect "$consumer through CMake: build" cmake --build "$work/$consumer"
+    expect "$consumer through CMake: run" "$work/$consumer/${consumer}_consumer"
+done
+expect "core through CMake has no OpenImageIO, OpenColorIO" \
+    without "$work/core/core_consumer" 'OpenImageIO|OpenColorIO'
+
+expect "the command: chart" "$prefix/bin/tonewright" chart -o "$work/chart.exr" --width 320 --height 180
+expect "the command: apply" "$prefix/bin/tonewright" apply "$work/chart.exr" "$work/chart.png" --operator hable
+expect "the command: bake" "$prefix/bin/tonewright" bake hable -o "$work/hable.cube"
+expect "the picture" test -s "$work/chart.png"
+exit $failed

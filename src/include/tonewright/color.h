@@ -24,7 +24,9 @@ inline constexpr Matrix3 kIdentity3 = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 struct Chromaticity {
     double x;
     double y;
-    friend bool operator==(const Chromaticity&, const Chromaticity&) = default;
+    friend constexpr bool operator==(const Chromaticity& a, const Chromaticity& b) {
+        return a.x == b.x && a.y == b.y;
+    }
 };
 
 /// Chromaticities of red, green, blue and the whitepoint.

@@ -6,11 +6,10 @@
 #include <functional>
 #include <memory>
 #include <mutex>
-#include <span>
 #include <string>
 #include <vector>
 
-#include "tonewright/version.h"
+#include "tonewright/span.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
@@ -128,8 +127,7 @@ class TONEWRIGHT_API Expr {
     [[nodiscard]] const ExprNode* node() const noexcept { return node_.get(); }
 
   private:
-    friend Expr make_expr(ExprOp op, std::span<const Expr> operands,
-                          std::shared_ptr<const Table> table);
+    friend Expr make_expr(ExprOp op, Span<const Expr> operands, std::shared_ptr<const Table> table);
     friend Expr interpolate(std::shared_ptr<const Lattice> lattice, int channel, const Expr& r,
                             const Expr& g, const Expr& b);
     explicit Expr(std::shared_ptr<const ExprNode> node) : node_(std::move(node)) {}
@@ -137,7 +135,7 @@ class TONEWRIGHT_API Expr {
 };
 
 /// Builds a node from its operation and operands, with the same folding as the functions below.
-TONEWRIGHT_API Expr make_expr(ExprOp op, std::span<const Expr> operands,
+TONEWRIGHT_API Expr make_expr(ExprOp op, Span<const Expr> operands,
                               std::shared_ptr<const Table> table = nullptr);
 
 [[nodiscard]] inline bool same(const Expr& a, const Expr& b) { return a.node() == b.node(); }
@@ -177,11 +175,11 @@ TONEWRIGHT_API Expr mix(const Expr& a, const Expr& b, const Expr& t);      // a 
 TONEWRIGHT_API Expr smoothstep(const Expr& edge0, const Expr& edge1, const Expr& x);
 
 /// The expression with input i replaced by `inputs[i]`. Inputs beyond the span stay.
-[[nodiscard]] TONEWRIGHT_API Expr substitute(const Expr& expr, std::span<const Expr> inputs);
+[[nodiscard]] TONEWRIGHT_API Expr substitute(const Expr& expr, Span<const Expr> inputs);
 
 /// The value, in double, by plain recursion over the shared nodes: the meaning of an expression.
 /// Slow; engines compile a Tape instead, and a test holds the two equal bit for bit.
-[[nodiscard]] TONEWRIGHT_API double evaluate(const Expr& expr, std::span<const double> inputs);
+[[nodiscard]] TONEWRIGHT_API double evaluate(const Expr& expr, Span<const double> inputs);
 [[nodiscard]] TONEWRIGHT_API double evaluate(const Expr& expr, double input);
 
 /// d expr / d input `index`. At a kink of min, max, abs or select: the slope of the side taken
@@ -192,10 +190,10 @@ TONEWRIGHT_API Expr smoothstep(const Expr& edge0, const Expr& edge1, const Expr&
 /// appear where the order of evaluation needs them.
 /// @param names  of the inputs; `x` for input 0 when there is one input, else `r`, `g`, `b`.
 [[nodiscard]] TONEWRIGHT_API std::string to_string(const Expr& expr,
-                                                   std::span<const std::string> names = {});
+                                                   Span<const std::string> names = {});
 
 /// Number of distinct nodes reachable: what an engine has to compute.
-[[nodiscard]] TONEWRIGHT_API std::size_t node_count(std::span<const Expr> exprs);
+[[nodiscard]] TONEWRIGHT_API std::size_t node_count(Span<const Expr> exprs);
 
 /// True when the expression reads input `index`.
 [[nodiscard]] TONEWRIGHT_API bool depends_on(const Expr& expr, int index);

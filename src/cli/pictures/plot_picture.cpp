@@ -6,7 +6,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "cli/picture_output.h"
+#include "cli/pictures/commands.h"
 #include "cli/plot_surface.h"
 #include "image/canvas.h"
 #include "tonewright/image_io.h"

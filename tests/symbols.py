@@ -10,13 +10,13 @@ import pathlib
 import subprocess
 import sys
 
-from layers import BELOW
+from layers import BELOW, folder_of
 
 NAMESPACE = "10tonewright"  # as it is mangled
 
 
 def main(build: pathlib.Path) -> int:
-    objects = sorted(build.glob("src/CMakeFiles/tonewright_*.dir/**/*.o"))
+    objects = sorted(build.glob("src/CMakeFiles/tonewright[_-]*.dir/**/*.o"))
     defined, wanted = {}, []
     listing = subprocess.run(["nm", "--print-file-name", *map(str, objects)], capture_output=True, text=True,
                              check=True).stdout
@@ -27,7 +27,7 @@ def main(build: pathlib.Path) -> int:
             continue
         path = pathlib.Path(name)
         library = next(i for i, part in enumerate(path.parts) if part.endswith(".dir"))
-        folder = path.parts[library + 1]
+        folder = folder_of(path.parts[library + 1:])
         if kind == "U":
             wanted.append((path.name, folder, symbol))
         else:

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "tonewright/view.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
+
+class CommandLine;
 
 /// Exit codes of the command.
 enum ExitCode { kOk = 0, kCheckFailed = 1, kUsage = 2, kFile = 3 };
@@ -21,6 +23,8 @@ struct ViewOptions {
     std::string input = "lin_rec709";
     std::string display = "srgb";
     double reference_white = kReferenceWhite;
+    /// Names of the options that the command line has, such as `--input`.
+    std::set<std::string> given = {};
 
     /// `name=value` texts as settings. @throws Error for one without `=`.
     [[nodiscard]] Settings settings() const;
@@ -28,20 +32,17 @@ struct ViewOptions {
     [[nodiscard]] View view() const;
 };
 
-/// --set, --look, --exposure, --input, --display, --reference-white.
-void add_view_options(CLI::App& command, ViewOptions& options);
-
-/// Each subcommand lives in its own file and puts itself under the program.
-void add_list(CLI::App& program, int& exit_code);
-void add_eval(CLI::App& program, int& exit_code);
-void add_apply(CLI::App& program, int& exit_code);
-void add_meter(CLI::App& program, int& exit_code);
-void add_bake(CLI::App& program, int& exit_code);
-void add_config(CLI::App& program, int& exit_code);
-void add_verify(CLI::App& program, int& exit_code);
-void add_chart(CLI::App& program, int& exit_code);
-void add_sheet(CLI::App& program, int& exit_code);
-void add_compare(CLI::App& program, int& exit_code);
-void add_plot(CLI::App& program, int& exit_code);
+/// Each subcommand lives in its own file and puts itself on the command line.
+void add_list(CommandLine& program);
+void add_eval(CommandLine& program);
+void add_apply(CommandLine& program);
+void add_meter(CommandLine& program);
+void add_bake(CommandLine& program);
+void add_config(CommandLine& program);
+void add_verify(CommandLine& program);
+void add_chart(CommandLine& program);
+void add_sheet(CommandLine& program);
+void add_compare(CommandLine& program);
+void add_plot(CommandLine& program);
 
 TONEWRIGHT_NAMESPACE_END

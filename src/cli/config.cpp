@@ -2,16 +2,27 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <memory>
 
 #include "base/atomic_file.h"
 #include "cli/archive.h"
 #include "cli/command.h"
+#include "cli/options.h"
 #include "tonewright/generated_files.h"
 #include "tonewright/ocio.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
 namespace {
+
+struct Options {
+    std::string folder;
+    std::string into;
+    std::string archive;
+    ConfigOptions config;
+    std::vector<std::string> operators;
+    std::vector<std::string> names;
+};
 
 /// In place, when everything has been checked; else the config stays as it was.
 void extend(const std::string& path, const ConfigOptions& options) {
@@ -46,67 +57,90 @@ void extend(const std::string& path, const ConfigOptions& options) {
         fmt::print("{:<28} {:<40} {:>9.1e} {:>9.1e}\n", v.display, v.view, v.max, v.p999);
 }
 
+int run_config(Options& options) {
+    ConfigOptions& wanted = options.config;
+    if (options.operators.size() != options.names.size()) {
+        throw Error(fmt::format("config: {} --operator and {} --name; expected one name for each",
+                                options.operators.size(), options.names.size()));
+    }
+    for (std::size_t i = 0; i < options.operators.size(); ++i)
+        wanted.custom.push_back({options.names[i], options.operators[i]});
+    if (!options.into.empty()) {
+        extend(options.into, wanted);
+        return kOk;
+    }
+    if (options.folder.empty() && options.archive.empty())
+        throw Error("config: -o is missing; expected -o, --archive or --into");
+    wanted.working = find_input_space(wanted.working).id;
+    const std::filesystem::path archive(options.archive);
+    if (!options.archive.empty() && archive.extension() != ".ocioz") {
+        throw Error("config: archive is " + options.archive +
+                    "; expected a name that ends in .ocioz: OpenColorIO knows it by that");
+    }
+    check_config_options(wanted);
+    if (!options.folder.empty()) require_writable_folder(options.folder);
+    if (!options.archive.empty())
+        require_writable_folder(std::filesystem::absolute(archive).parent_path().string());
+    const std::vector<GeneratedFile> files = make_config(wanted);
+    if (!options.folder.empty()) write_generated_files(options.folder, files, "config.ocio");
+    if (options.archive.empty()) return kOk;
+    std::vector<GeneratedFile> packed;
+    for (const GeneratedFile& file : files) {
+        if (file.path == "config.ocio" || file.path.starts_with("luts/")) packed.push_back(file);
+    }
+    write_text_atomically(options.archive, make_archive(packed));
+    return kOk;
+}
+
 }  // namespace
 
-void add_config(CLI::App& program, int&) {
-    struct Options {
-        std::string folder;
-        std::string into;
-        std::string archive;
-        ConfigOptions config;
-        std::vector<std::string> operators;
-        std::vector<std::string> names;
-    };
+void add_config(CommandLine& program) {
     auto options = std::make_shared<Options>();
-    CLI::App* command =
-        program.add_subcommand("config", "an OpenColorIO config of operators, for any application");
-    auto* out = command->add_option("-o", options->folder,
-                                    "folder to write: config.ocio, luts/, probe.csv");
-    auto* into = command->add_option("--into", options->into,
-                                     "a config of yours to add to: views, looks and output spaces, "
-                                     "with their tables in tonewright/ beside it");
-    out->excludes(into);
+    const Command command =
+        program.add("config", "an OpenColorIO config of operators, for any application");
+    const Option out =
+        command.add("-o", options->folder, "folder to write: config.ocio, luts/, probe.csv");
+    const Option into = command.add("--into", options->into,
+                                    "a config of yours to add to: views, looks and output spaces, "
+                                    "with their tables in tonewright/ beside it");
+    out.excludes(into);
     command
-        ->add_option("--archive", options->archive,
-                     "file.ocioz to write, with or without -o: a config and its tables in one, for "
-                     "OpenColorIO 2.2 and newer")
-        ->excludes(into);
+        .add("--archive", options->archive,
+             "file.ocioz to write, with or without -o: a config and its tables in one, for "
+             "OpenColorIO 2.2 and newer")
+        .excludes(into);
     ConfigOptions& config = options->config;
     command
-        ->add_option("--profile", config.profiles,
-                     "of OpenColorIO: 2.0, 2.1 and 2.5, comma separated; the first is config.ocio "
-                     "(and --archive's), the others config-2.0.ocio and so on")
-        ->delimiter(',')
-        ->default_str("2.1,2.0,2.5")
-        ->excludes(into);
+        .add("--profile", config.profiles,
+             "of OpenColorIO: 2.0, 2.1 and 2.5, comma separated; the first is config.ocio "
+             "(and --archive's), the others config-2.0.ocio and so on")
+        .separated_by(',')
+        .show_default("2.1,2.0,2.5")
+        .excludes(into);
     command
-        ->add_option(
-            "--views", config.views,
-            "views (\"AgX Punchy\") or operators, comma separated, in order, standard or all; "
-            "default: standard, a dozen, without the large HDR forms")
-        ->delimiter(',');
-    command->add_option("--displays", config.displays, "displays, comma separated; default: all")
-        ->delimiter(',');
+        .add("--views", config.views,
+             "views (\"AgX Punchy\") or operators, comma separated, in order, standard or all; "
+             "default: standard, a dozen, without the large HDR forms")
+        .separated_by(',');
+    command.add("--displays", config.displays, "displays, comma separated; default: all")
+        .separated_by(',');
     command
-        ->add_option(
-            "--looks", config.looks,
-            "looks (\"AgX - Punchy\"), comma separated, or none; default: all of the views")
-        ->delimiter(',');
-    command->add_option("--working", config.working, "space that applications compute in")
-        ->capture_default_str();
+        .add("--looks", config.looks,
+             "looks (\"AgX - Punchy\"), comma separated, or none; default: all of the views")
+        .separated_by(',');
+    command.add("--working", config.working, "space that applications compute in").show_default();
     command
-        ->add_option("--operator", options->operators,
-                     "a view of your own: ID[:PRESET][:PARAMETER=VALUE...]; repeat for more")
-        ->allow_extra_args(false);
+        .add("--operator", options->operators,
+             "a view of your own: ID[:PRESET][:PARAMETER=VALUE...]; repeat for more")
+        .one_value_each();
+    command.add("--name", options->names, "its name, one for each --operator, in their order")
+        .one_value_each();
     command
-        ->add_option("--name", options->names, "its name, one for each --operator, in their order")
-        ->allow_extra_args(false);
-    command
-        ->add_option("--exposure-views", config.exposure_stops,
-                     "every view once more with so many stops more light, comma separated")
-        ->delimiter(',')
-        ->check(CLI::Range(-16.0, 16.0));
-    command->footer(
+        .add("--exposure-views", config.exposure_stops,
+             "every view once more with so many stops more light, comma separated")
+        .separated_by(',')
+        .range(-16.0, 16.0);
+    command.footer(
         "Examples:\n  tonewright config -o ocio_config\n"
         "  tonewright config -o everything --views all\n"
         "  tonewright config -o studio --working acescg --views AgX,aces_20 --displays "
@@ -116,38 +150,7 @@ void add_config(CLI::App& program, int&) {
         "  tonewright config --into studio.ocio --views AgX,hable\n"
         "  oiiotool --colorconfig ocio_config/config.ocio in.exr --ociodisplay sRGB Hable \\\n"
         "    --iscolorspace sRGB -o out.png");
-    command->callback([options] {
-        ConfigOptions& wanted = options->config;
-        if (options->operators.size() != options->names.size()) {
-            throw Error(
-                fmt::format("config: {} --operator and {} --name; expected one name for each",
-                            options->operators.size(), options->names.size()));
-        }
-        for (std::size_t i = 0; i < options->operators.size(); ++i)
-            wanted.custom.push_back({options->names[i], options->operators[i]});
-        if (!options->into.empty()) return extend(options->into, wanted);
-        if (options->folder.empty() && options->archive.empty())
-            throw Error("config: -o is missing; expected -o, --archive or --into");
-        wanted.working = find_input_space(wanted.working).id;
-        const std::filesystem::path archive(options->archive);
-        if (!options->archive.empty() && archive.extension() != ".ocioz") {
-            throw Error("config: archive is " + options->archive +
-                        "; expected a name that ends in .ocioz: OpenColorIO knows it by that");
-        }
-        check_config_options(wanted);
-        if (!options->folder.empty()) require_writable_folder(options->folder);
-        if (!options->archive.empty())
-            require_writable_folder(std::filesystem::absolute(archive).parent_path().string());
-        const std::vector<GeneratedFile> files = make_config(wanted);
-        if (!options->folder.empty()) write_generated_files(options->folder, files, "config.ocio");
-        if (options->archive.empty()) return;
-        std::vector<GeneratedFile> packed;
-        for (const GeneratedFile& file : files) {
-            if (file.path == "config.ocio" || file.path.starts_with("luts/"))
-                packed.push_back(file);
-        }
-        write_text_atomically(options->archive, make_archive(packed));
-    });
+    command.action([options] { return run_config(*options); });
 }
 
 TONEWRIGHT_NAMESPACE_END

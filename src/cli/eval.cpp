@@ -4,10 +4,11 @@
 #include <charconv>
 #include <iostream>
 #include <iterator>
+#include <memory>
 
 #include "base/strings.h"
-#include "cli/command.h"
-#include "cli/lut_input.h"
+#include "cli/picture_commands.h"
+#include "cli/shared_options.h"
 #include "ocio/gpu.h"
 #include "ocio/lower.h"
 #include "tonewright/engine.h"
@@ -15,6 +16,13 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
+
+struct Options : ViewOptions {
+    std::string engine = "reference";
+    int digits = 9;
+    bool inverse = false;
+    LutOptions lut;
+};
 
 /// Triplets of numbers, one a line; comma or space between; `#` begins a comment.
 std::vector<double> parse_triplets(std::string_view text) {
@@ -98,92 +106,91 @@ void eval_lut(const LutFile& lut, const Pipeline& before, int digits) {
     }
 }
 
+int run_eval(const Options& options) {
+    if (!options.lut.file.empty()) {
+        const InputSpace& input = find_input_space(options.input);
+        const Pipeline before =
+            before_lut("eval", options.lut, options, {input.id, input.primaries});
+        eval_lut(
+            open_lut(options.lut.file, options.lut.interpolation,
+                     [](const std::string& path) { return picture_commands().read_lut(path); }),
+            before, options.digits);
+        return kOk;
+    }
+    if (options.op.empty()) {
+        throw Error(
+            "eval: operator is missing; expected an id of `tonewright list`, or --lut FILE");
+    }
+    const std::vector<std::string> engines = {"reference", "simd", "ocio", "ocio-gpu"};
+    if (std::find(engines.begin(), engines.end(), options.engine) == engines.end()) {
+        throw Error("eval: engine is " + options.engine + "; expected " + join_choices(engines) +
+                    did_you_mean(options.engine, engines));
+    }
+    const View view = options.view();
+    if (options.inverse && !view.op.op->build_inverse) {
+        throw Error(view.op.op->id + " has no inverse; expected " +
+                    join_choices(invertible_operators()));
+    }
+    const Pipeline pipeline = options.inverse ? build_inverse_view(view) : build_view(view);
+    const std::vector<double> values = read_triplets();
+    const std::size_t count = values.size() / 3;
+    if (options.engine == "reference") {
+        const ReferenceEngine engine(pipeline);
+        std::array<std::vector<double>, 3> plane;
+        for (std::size_t i = 0; i < values.size(); ++i)
+            plane[i % 3].push_back(values[i]);
+        const std::array<double*, 3> p = {plane[0].data(), plane[1].data(), plane[2].data()};
+        engine.run({p[0], p[1], p[2]}, p, count);
+        for (std::size_t i = 0; i < count; ++i)
+            print(p[0][i], p[1][i], p[2][i], options.digits);
+        return kOk;
+    }
+    const std::vector<float> in(values.begin(), values.end());
+    std::vector<float> out(in.size());
+    if (options.engine == "simd") {
+        SimdEngine(pipeline, view.op.op->bounds.simd_goal).run_rgb(in.data(), out.data(), count);
+    } else {
+        const auto processor = make_processor(lower_to_ocio(pipeline));
+        if (options.engine == "ocio") {
+            OcioCpu(processor).run_rgb(in.data(), out.data(), count);
+        } else {
+            OcioGpu(processor).run_rgb(in.data(), out.data(), count);
+        }
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        print(static_cast<double>(out[3 * i]), static_cast<double>(out[3 * i + 1]),
+              static_cast<double>(out[3 * i + 2]), options.digits);
+    }
+    return kOk;
+}
+
 }  // namespace
 
-void add_eval(CLI::App& program, int&) {
-    struct Options : ViewOptions {
-        std::string engine = "reference";
-        int digits = 9;
-        bool inverse = false;
-        LutOptions lut;
-    };
+void add_eval(CommandLine& program) {
     auto options = std::make_shared<Options>();
-    CLI::App* command =
-        program.add_subcommand("eval", "RGB triplets on stdin -> RGB triplets on stdout");
-    CLI::Option* op = command->add_option("operator", options->op, "operator, or operator:preset");
-    add_view_options(*command, *options);
-    command->add_option("--engine", options->engine, "reference (double), simd, ocio or ocio-gpu")
-        ->capture_default_str();
-    command->add_option("--digits", options->digits, "significant digits of the output")
-        ->capture_default_str()
-        ->check(CLI::Range(1, 17));
-    command->add_flag(
-        "--inverse", options->inverse,
-        "from what the display shows back to scene-linear; for operators that have an "
-        "inverse");
-    add_lut_options(*command, options->lut, op,
+    const Command command = program.add("eval", "RGB triplets on stdin -> RGB triplets on stdout");
+    const Option op = command.add("operator", options->op, "operator, or operator:preset");
+    add_view_options(command, *options);
+    command.add("--engine", options->engine, "reference (double), simd, ocio or ocio-gpu")
+        .show_default();
+    command.add("--digits", options->digits, "significant digits of the output")
+        .show_default()
+        .range(1, 17);
+    command.add_flag("--inverse", options->inverse,
+                     "from what the display shows back to scene-linear; for operators that have an "
+                     "inverse");
+    add_lut_options(command, options->lut, op,
                     {"--set", "--look", "--display", "--reference-white", "--engine", "--inverse"});
-    command->footer(
+    command.footer(
         "One colour a line: r g b or r,g,b; nan and inf are numbers; # begins a comment.\n"
         "The engines other than reference take the numbers as floats. There is no picture: "
         "parameters\nthat `apply` takes from it have their defaults.\n"
         "Examples:\n  printf '0.18 0.18 0.18\\n4,2,0.5\\n' | tonewright eval agx_sobotka --display "
         "srgb\n"
         "  echo 0.18 0.18 0.18 | tonewright eval --lut agx.cube --input-encoding acescct");
-    command->callback([options, command] {
-        if (!options->lut.file.empty()) {
-            const InputSpace& input = find_input_space(options->input);
-            const Pipeline before =
-                before_lut(*command, options->lut, *options, {input.id, input.primaries});
-            eval_lut(open_lut(options->lut.file, options->lut.interpolation), before,
-                     options->digits);
-            return;
-        }
-        if (options->op.empty()) {
-            throw Error(
-                "eval: operator is missing; expected an id of `tonewright list`, or --lut FILE");
-        }
-        const std::vector<std::string> engines = {"reference", "simd", "ocio", "ocio-gpu"};
-        if (std::find(engines.begin(), engines.end(), options->engine) == engines.end()) {
-            throw Error("eval: engine is " + options->engine + "; expected " +
-                        join_choices(engines) + did_you_mean(options->engine, engines));
-        }
-        const View view = options->view();
-        if (options->inverse && !view.op.op->build_inverse) {
-            throw Error(view.op.op->id + " has no inverse; expected " +
-                        join_choices(invertible_operators()));
-        }
-        const Pipeline pipeline = options->inverse ? build_inverse_view(view) : build_view(view);
-        const std::vector<double> values = read_triplets();
-        const std::size_t count = values.size() / 3;
-        if (options->engine == "reference") {
-            const ReferenceEngine engine(pipeline);
-            std::array<std::vector<double>, 3> plane;
-            for (std::size_t i = 0; i < values.size(); ++i)
-                plane[i % 3].push_back(values[i]);
-            const std::array<double*, 3> p = {plane[0].data(), plane[1].data(), plane[2].data()};
-            engine.run({p[0], p[1], p[2]}, p, count);
-            for (std::size_t i = 0; i < count; ++i)
-                print(p[0][i], p[1][i], p[2][i], options->digits);
-            return;
-        }
-        const std::vector<float> in(values.begin(), values.end());
-        std::vector<float> out(in.size());
-        if (options->engine == "simd") {
-            SimdEngine(pipeline, view.op.op->bounds.simd_goal)
-                .run_rgb(in.data(), out.data(), count);
-        } else {
-            const auto processor = make_processor(lower_to_ocio(pipeline));
-            if (options->engine == "ocio") {
-                OcioCpu(processor).run_rgb(in.data(), out.data(), count);
-            } else {
-                OcioGpu(processor).run_rgb(in.data(), out.data(), count);
-            }
-        }
-        for (std::size_t i = 0; i < count; ++i) {
-            print(static_cast<double>(out[3 * i]), static_cast<double>(out[3 * i + 1]),
-                  static_cast<double>(out[3 * i + 2]), options->digits);
-        }
+    command.action([options, command] {
+        options->given = command.given();
+        return run_eval(*options);
     });
 }
 

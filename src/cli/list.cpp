@@ -3,20 +3,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
+#include <memory>
 
 #include "base/format_number.h"
 #include "base/strings.h"
 #include "cli/catalogue.h"
 #include "cli/command.h"
+#include "cli/json.h"
+#include "cli/options.h"
 #include "tonewright/lut.h"
 #include "tonewright/lut_applications.h"
 #include "tonewright/registry.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string output_of(const Operator& op) {
     if (op.output == OutputKind::display_linear) return "display-linear";
@@ -67,16 +67,16 @@ Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : 
 Json to_json(const ParameterSpec& p) {
     Json j = {{"name", p.name}, {"kind", kind_name(p.kind)}, {"unit", p.unit}};
     if (p.kind == Kind::number) {
-        j["default"] = p.default_value;
-        j["min"] = number_or_null(p.min);
-        j["max"] = number_or_null(p.max);
+        j.add("default", p.default_value);
+        j.add("min", number_or_null(p.min));
+        j.add("max", number_or_null(p.max));
     } else {
-        j["default"] = p.default_choice;
+        j.add("default", p.default_choice);
     }
-    j["choices"] = p.choices;
-    j["help"] = p.help;
-    if (p.from_picture) j["statistic"] = p.statistic;
-    j["decided_by_display"] = p.from_display != nullptr;
+    j.add("choices", p.choices);
+    j.add("help", p.help);
+    if (p.from_picture) j.add("statistic", p.statistic);
+    j.add("decided_by_display", p.from_display != nullptr);
     return j;
 }
 
@@ -116,20 +116,26 @@ Json to_json(const Operator& op) {
             {"is_local", op.is_local()}};
 }
 
+Json to_json(const std::vector<Operator>& operators) {
+    Json all = Json::array();
+    for (const Operator& op : operators)
+        all.push_back(to_json(op));
+    return all;
+}
+
 Json spaces_to_json() {
-    Json all;
-    for (const Operator& op : all_operators())
-        all["operators"].push_back(to_json(op));
-    for (const Operator& op : local_operators())
-        all["local_operators"].push_back(to_json(op));
+    Json displays = Json::array();
     for (const Display& d : all_displays()) {
-        all["displays"].push_back(
+        displays.push_back(
             {{"id", d.id}, {"title", d.title}, {"aliases", d.aliases}, {"source", d.source}});
     }
-    for (const InputSpace& s : all_input_spaces()) {
-        all["spaces"].push_back({{"id", s.id}, {"title", s.title}, {"aliases", s.aliases}});
-    }
-    return all;
+    Json spaces = Json::array();
+    for (const InputSpace& s : all_input_spaces())
+        spaces.push_back({{"id", s.id}, {"title", s.title}, {"aliases", s.aliases}});
+    return {{"operators", to_json(all_operators())},
+            {"local_operators", to_json(local_operators())},
+            {"displays", displays},
+            {"spaces", spaces}};
 }
 
 std::string range_of(const ParameterSpec& p) {
@@ -262,6 +268,8 @@ std::string operator_section(const Operator& op, std::string_view after_characte
     return text + "\n";
 }
 
+namespace {
+
 std::string format_of(const LutApplication& host) {
     std::string text = fmt::format("{} {}", name_of(host.format), host.size);
     if (host.bits) text += fmt::format(", {} bit", *host.bits);
@@ -292,7 +300,7 @@ Json hosts_to_json() {
                        {"title", host.title},
                        {"format", name_of(host.format)},
                        {"size", host.size},
-                       {"bits", host.bits ? Json(*host.bits) : Json()},
+                       {"bits", host.bits},
                        {"input_encoding", host.encoding},
                        {"input", parse_input_encoding(host.encoding).default_input},
                        {"display", host.display},
@@ -303,80 +311,85 @@ Json hosts_to_json() {
     return all;
 }
 
-void add_list(CLI::App& program, int&) {
-    struct Options {
-        std::string op;
-        bool json = false;
-        bool markdown = false;
-        bool views = false;
-        bool hosts = false;
-        std::string catalogue;
-    };
+struct Options {
+    std::string op;
+    bool json = false;
+    bool markdown = false;
+    bool views = false;
+    bool hosts = false;
+    std::string catalogue;
+};
+
+int run_list(const Options& options) {
+    if (!options.catalogue.empty()) {
+        if (!options.op.empty())
+            throw Error("list: operator is " + options.op + "; expected none with --catalogue");
+        write_catalogue(options.catalogue);
+    } else if (options.hosts) {
+        if (!options.op.empty())
+            throw Error("list: operator is " + options.op + "; expected none with --hosts");
+        if (options.json) {
+            fmt::print("{}\n", hosts_to_json().dump(2));
+        } else {
+            print_hosts();
+        }
+    } else if (!options.op.empty()) {
+        const Operator& op = find_listed(options.op);
+        if (options.json) {
+            fmt::print("{}\n", to_json(op).dump(2));
+        } else if (options.markdown) {
+            fmt::print("{}", operator_section(op));
+        } else {
+            print_operator(op);
+        }
+    } else if (options.views) {
+        for (const Operator& op : all_operators())
+            fmt::print("{}\t{}\n", op.id, op.view);
+    } else if (options.json) {
+        fmt::print("{}\n", spaces_to_json().dump(2));
+    } else if (options.markdown) {
+        for (const std::vector<Operator>* operators : {&all_operators(), &local_operators()}) {
+            for (const Operator& op : *operators)
+                fmt::print("{}", operator_section(op));
+        }
+    } else {
+        print_overview();
+    }
+    return kOk;
+}
+
+}  // namespace
+
+void add_list(CommandLine& program) {
     auto options = std::make_shared<Options>();
-    CLI::App* command = program.add_subcommand(
-        "list", "operators with their parameters and looks; displays; spaces");
-    command->add_option("operator", options->op, "one operator in full");
-    CLI::Option* json = command->add_flag("--json", options->json, "for programs");
-    CLI::Option* markdown =
-        command->add_flag("--markdown", options->markdown, "for documents")->excludes(json);
-    CLI::Option* views =
+    const Command command =
+        program.add("list", "operators with their parameters and looks; displays; spaces");
+    command.add("operator", options->op, "one operator in full");
+    const Option json = command.add_flag("--json", options->json, "for programs");
+    const Option markdown =
+        command.add_flag("--markdown", options->markdown, "for documents").excludes(json);
+    const Option views =
         command
-            ->add_flag(
+            .add_flag(
                 "--views", options->views,
                 "each operator's id and its view in the config, with a tab between: for scripts")
-            ->excludes(json)
-            ->excludes(markdown);
-    CLI::Option* hosts =
+            .excludes(json)
+            .excludes(markdown);
+    const Option hosts =
         command
-            ->add_flag("--hosts", options->hosts,
-                       "applications that read LUTs, what each expects, and what to do there")
-            ->excludes(markdown)
-            ->excludes(views);
+            .add_flag("--hosts", options->hosts,
+                      "applications that read LUTs, what each expects, and what to do there")
+            .excludes(markdown)
+            .excludes(views);
     command
-        ->add_option("--catalogue", options->catalogue,
-                     "write operators.md and curves/, every operator with a plot, into this folder")
-        ->excludes(json)
-        ->excludes(markdown)
-        ->excludes(views)
-        ->excludes(hosts);
-    command->footer("Example:\n  tonewright list hable --json");
-    command->callback([options] {
-        if (!options->catalogue.empty()) {
-            if (!options->op.empty())
-                throw Error("list: operator is " + options->op +
-                            "; expected none with --catalogue");
-            write_catalogue(options->catalogue);
-        } else if (options->hosts) {
-            if (!options->op.empty())
-                throw Error("list: operator is " + options->op + "; expected none with --hosts");
-            if (options->json) {
-                fmt::print("{}\n", hosts_to_json().dump(2));
-            } else {
-                print_hosts();
-            }
-        } else if (!options->op.empty()) {
-            const Operator& op = find_listed(options->op);
-            if (options->json) {
-                fmt::print("{}\n", to_json(op).dump(2));
-            } else if (options->markdown) {
-                fmt::print("{}", operator_section(op));
-            } else {
-                print_operator(op);
-            }
-        } else if (options->views) {
-            for (const Operator& op : all_operators())
-                fmt::print("{}\t{}\n", op.id, op.view);
-        } else if (options->json) {
-            fmt::print("{}\n", spaces_to_json().dump(2));
-        } else if (options->markdown) {
-            for (const std::vector<Operator>* operators : {&all_operators(), &local_operators()}) {
-                for (const Operator& op : *operators)
-                    fmt::print("{}", operator_section(op));
-            }
-        } else {
-            print_overview();
-        }
-    });
+        .add("--catalogue", options->catalogue,
+             "write operators.md and curves/, every operator with a plot, into this folder")
+        .excludes(json)
+        .excludes(markdown)
+        .excludes(views)
+        .excludes(hosts);
+    command.footer("Example:\n  tonewright list hable --json");
+    command.action([options] { return run_list(*options); });
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include <functional>
 #include <string>
+#include <vector>
 
 #include "cli/command.h"
 #include "tonewright/lut_file.h"
@@ -17,21 +18,17 @@ struct LutOptions {
     std::string space;
 };
 
-/// --lut, --interpolation, --input-encoding, --lut-space, for a command that has an operator and
-/// add_view_options().
-/// @param op      the option of the operator
-/// @param others  options that say something of operators only
-void add_lut_options(CLI::App& command, LutOptions& options, CLI::Option* op,
-                     const std::vector<std::string>& others);
-
+/// @param read_picture  reads a LUT that is a picture
 /// @throws Error      for trilinear where there is no such
 /// @throws FileError  for a file that is missing or malformed
-[[nodiscard]] LutFile open_lut(const std::string& path, const std::string& interpolation = "auto");
+[[nodiscard]] LutFile open_lut(const std::string& path, const std::string& interpolation,
+                               const std::function<Lut(const std::string&)>& read_picture);
 
 /// What stands before the LUT: light of `input`, with --exposure, as --input-encoding in the
 /// primaries of --lut-space. Empty without --input-encoding: colors go in as they are.
+/// @param command  its name, for the message
 /// @throws Error  unknown names; --input, --exposure or --lut-space without --input-encoding.
-[[nodiscard]] Pipeline before_lut(const CLI::App& command, const LutOptions& options,
+[[nodiscard]] Pipeline before_lut(const char* command, const LutOptions& options,
                                   const ViewOptions& view, const SourceColor& input);
 
 TONEWRIGHT_NAMESPACE_END

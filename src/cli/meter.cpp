@@ -1,324 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tonewright/meter.h"
+#include <memory>
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <nlohmann/json.hpp>
-#include <optional>
-
-#include "base/format_number.h"
-#include "cli/command.h"
-#include "cli/exposure_options.h"
-#include "cli/frames.h"
-#include "cli/meter_cache.h"
-#include "cli/picture_input.h"
-#include "tonewright/tonemap.h"
+#include "cli/picture_commands.h"
+#include "cli/shared_options.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
-namespace {
 
-using Json = nlohmann::ordered_json;
-using Method = ExposureRule::Method;
-
-struct NamedMethod {
-    Method method;
-    const char* name;   // on the command line
-    const char* title;  // in the table
-};
-constexpr std::array<NamedMethod, 4> kMethods = {
-    {{Method::log_average, "log-average", "log average"},
-     {Method::histogram, "histogram", "histogram"},
-     {Method::mean, "mean", "mean"},
-     {Method::maximum, "max", "maximum"}}};
-
-/// A picture, and what was asked of it.
-struct Metered {
-    MeteredPicture picture;
-    std::optional<int> frame;
-    std::optional<double> adapted;  // stops
-};
-
-struct Options {
-    std::vector<std::string> in;
-    std::string frames;
-    std::string input = std::string(kAutoInput);
-    bool json = false;
-    PictureInput picture;
-    ExposureOptions metering;
-    ShotOptions shot;
-
-    Options() { metering.method = kMethods[0].name; }
-};
-
-/// What an exposure is made of.
-struct Suggestion {
-    double luminance;
-    double stops;
-};
-
-Suggestion suggestion(const Metering& metering, ExposureRule rule, Method method, double delta) {
-    rule.method = method;
-    const double luminance = metered_luminance(metering, method, delta);
-    return {luminance, suggested_exposure(luminance, rule)};
-}
-
-// ---------------------------------------------------------------------------------------------
-// For people
-
-/// The terminal draws more than ASCII.
-bool is_utf8() {
-    for (const char* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
-        const char* value = std::getenv(name);
-        if (!value || !*value) continue;
-        std::string text = value;
-        std::transform(text.begin(), text.end(), text.begin(),
-                       [](unsigned char c) { return std::tolower(c); });
-        return text.find("utf-8") != std::string::npos || text.find("utf8") != std::string::npos;
-    }
-    return false;
-}
-
-/// Bins side by side under each other's share, log2 of luminance from left to right.
-void draw_histogram(const Metering& metering, const MeterOptions& options, double metered) {
-    constexpr std::size_t kColumns = 76;
-    constexpr std::size_t kRows = 8;
-    const std::vector<std::uint64_t>& bins = metering.histogram;
-    std::array<double, kColumns> columns{};
-    const double per_bin = static_cast<double>(kColumns) / static_cast<double>(bins.size() - 1);
-    for (std::size_t i = 1; i < bins.size(); ++i) {
-        // A bin may be wider or narrower than a column.
-        const double begin = static_cast<double>(i - 1) * per_bin;
-        const double end = begin + per_bin;
-        for (auto c = static_cast<std::size_t>(begin); c < kColumns && static_cast<double>(c) < end;
-             ++c) {
-            const double overlap =
-                std::min(end, static_cast<double>(c + 1)) - std::max(begin, static_cast<double>(c));
-            columns[c] += static_cast<double>(bins[i]) * std::max(overlap, 0.0) / per_bin;
-        }
-    }
-    const double most = *std::max_element(columns.begin(), columns.end());
-    if (most == 0) return;
-    const bool has_blocks = is_utf8();
-    static constexpr std::array kBlocks = {" ", "▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"};
-    fmt::print("\n");
-    for (std::size_t row = 0; row < kRows; ++row) {
-        std::string line = "  ";
-        for (const double column : columns) {
-            const double height =
-                column / most * static_cast<double>(kRows) - static_cast<double>(kRows - 1 - row);
-            // What is there is seen.
-            const double least = column > 0 && row == kRows - 1 ? 1 : 0;
-            const double eighths = std::clamp(std::max(std::round(height * 8), least), 0.0, 8.0);
-            line += has_blocks      ? kBlocks[static_cast<std::size_t>(eighths)]
-                    : eighths > 3.5 ? "#"
-                    : eighths > 0   ? "."
-                                    : " ";
-        }
-        line.erase(line.find_last_not_of(' ') + 1);
-        fmt::print("{}\n", line);
-    }
-    const double range = options.histogram_max - options.histogram_min;
-    const auto column_of = [&](double log2_luminance) {
-        return 2 + static_cast<std::ptrdiff_t>(
-                       std::floor((log2_luminance - options.histogram_min) / range * kColumns));
-    };
-    std::string ticks(kColumns + 4, ' ');
-    std::string labels(kColumns + 4, ' ');
-    const int step = std::max(1, static_cast<int>(std::ceil(range / 12)));
-    const int first = static_cast<int>(std::ceil(options.histogram_min / step)) * step;
-    for (int stop = first; stop <= options.histogram_max; stop += step) {
-        const std::string label = stop == 0 ? "0" : fmt::format("{:+}", stop);
-        const auto at =
-            std::min<std::size_t>(static_cast<std::size_t>(column_of(stop)), kColumns + 1);
-        ticks[at] = '|';
-        const std::size_t from = std::min(at - 1, kColumns + 4 - label.size());
-        labels.replace(from, label.size(), label);
-    }
-    const auto mark = column_of(std::log2(metered));
-    if (mark >= 2 && mark < static_cast<std::ptrdiff_t>(kColumns) + 2)
-        ticks[static_cast<std::size_t>(mark)] = '^';
-    for (std::string* line : {&ticks, &labels}) {
-        line->erase(line->find_last_not_of(' ') + 1);
-        fmt::print("{}\n", *line);
-    }
-    fmt::print("  log2 of luminance, 0 = diffuse white, -2.47 = mid grey; ^ metered\n");
-}
-
-void print_picture(const Metered& metered, const Options& options, const MeterOptions& how,
-                   const ExposureRule& rule) {
-    const Metering& m = metered.picture.metering;
-    fmt::print("{}\n\n", metered.picture.path);
-    fmt::print("  pixels      {} counted, {} of them black", m.counted, m.black);
-    for (const auto& [count, what] : {std::pair(m.nan, "NaN"), std::pair(m.infinite, "infinite"),
-                                      std::pair(m.uncovered, "without cover")}) {
-        if (count > 0) fmt::print("; {} {} left out", count, what);
-    }
-    fmt::print("\n\n  {:<14}{:>12}{:>9}{:>11}\n", "", "luminance", "EV100", "exposure");
-    double chosen = 0;
-    for (const NamedMethod& method : kMethods) {
-        const Suggestion s = suggestion(m, rule, method.method, options.metering.delta);
-        const bool is_chosen = method.method == rule.method;
-        if (is_chosen) chosen = s.luminance;
-        fmt::print("  {:<14}{:>12.5g}{:>9.2f}{:>+11.2f}{}\n", method.title, s.luminance,
-                   ev100(s.luminance), s.stops, is_chosen ? "  <" : "");
-    }
-    if (m.counted > m.black) {
-        fmt::print("  {:<14}{:>12.5g}\n  {:<14}{:>12.5g}\n", "no delta", m.geometric_mean,
-                   "minimum", m.minimum);
-    }
-    if (!m.percentiles.empty()) {
-        fmt::print("\n  {:<12}", "percentile");
-        for (const double percent : Metering::kPercents)
-            fmt::print("{:>9}", shortest(percent) + " %");
-        fmt::print("\n  {:<12}", "luminance");
-        for (const double luminance : m.percentiles)
-            fmt::print("{:>9.3g}", luminance);
-        fmt::print("\n");
-    }
-    draw_histogram(m, how, chosen);
-    if (metered.adapted) fmt::print("\n  adapted exposure {:+.2f}\n", *metered.adapted);
-}
-
-void print_table(const std::vector<Metered>& all, const Options& options,
-                 const ExposureRule& rule) {
-    std::size_t width = 7;
-    for (const Metered& metered : all) {
-        width = std::max(width, metered.frame ? std::to_string(*metered.frame).size()
-                                              : metered.picture.path.size());
-    }
-    width = std::min<std::size_t>(width, 28);
-    const bool adapts = options.shot.adapt;
-    fmt::print("{:<{}}{:>12}{:>12}{:>10}{:>10}{:>8}{:>10}{}\n",
-               all.front().frame ? "frame" : "picture", width, "log average", "histogram", "mean",
-               "max", "EV100", "exposure", adapts ? "   adapted" : "");
-    for (const Metered& metered : all) {
-        if (!metered.picture.error.empty()) continue;
-        const Metering& m = metered.picture.metering;
-        std::string name = metered.frame ? std::to_string(*metered.frame) : metered.picture.path;
-        if (name.size() > width) name = "..." + name.substr(name.size() - width + 3);
-        const Suggestion s = suggestion(m, rule, rule.method, options.metering.delta);
-        fmt::print("{:<{}}{:>12.4g}{:>12.4g}{:>10.4g}{:>10.4g}{:>8.2f}{:>+10.3f}", name, width,
-                   m.log_average, m.histogram_average, m.mean, m.maximum, ev100(s.luminance),
-                   s.stops);
-        if (metered.adapted) fmt::print("{:>+10.3f}", *metered.adapted);
-        fmt::print("\n");
-    }
-}
-
-// ---------------------------------------------------------------------------------------------
-// For programs
-
-Json to_json(const Metered& metered, const Options& options, const ExposureRule& rule) {
-    Json j = {{"file", metered.picture.path}};
-    if (metered.frame) j["frame"] = *metered.frame;
-    if (!metered.picture.error.empty()) {
-        j["error"] = metered.picture.error;
-        return j;
-    }
-    j.update(tonewright::to_json(metered.picture.metering));
-    Json suggested;
-    for (const NamedMethod& method : kMethods) {
-        const Suggestion s =
-            suggestion(metered.picture.metering, rule, method.method, options.metering.delta);
-        suggested[method.name] = {
-            {"luminance", s.luminance}, {"ev100", ev100(s.luminance)}, {"exposure", s.stops}};
-    }
-    j["suggested"] = suggested;
-    j["exposure"] = suggested[options.metering.method]["exposure"];
-    if (metered.adapted) j["adapted_exposure"] = *metered.adapted;
-    return j;
-}
-
-// ---------------------------------------------------------------------------------------------
-
-std::vector<Metered> meter_all(const Options& options, const CLI::App& command,
-                               const MeterOptions& how, const ExposureRule& rule) {
-    const QuietStderr quiet;
-    std::vector<Metered> all;
-    if (options.frames.empty()) {
-        for (MeteredPicture& picture :
-             meter_pictures(options.in, how, options.shot.cache, options.picture.threads))
-            all.push_back({std::move(picture), {}, {}});
-        return all;
-    }
-    if (options.in.size() != 1) {
-        throw Error(
-            fmt::format("meter: --frames is {} with {} pictures; expected one name with a "
-                        "place for the number",
-                        options.frames, options.in.size()));
-    }
-    const Adaptation adaptation = options.shot.adaptation(command);
-    const MeteredShot shot = meter_shot(options.in.front(), parse_frames(options.frames), how,
-                                        options.shot.cache, options.picture.threads);
-    std::map<int, double> adapted;
-    if (options.shot.adapt) adapted = shot.exposures(rule, options.metering.delta, &adaptation);
-    for (std::size_t i = 0; i < shot.numbers.size(); ++i) {
-        const int number = shot.numbers[i];
-        all.push_back({shot.pictures[i], number, {}});
-        if (const auto found = adapted.find(number); found != adapted.end())
-            all.back().adapted = found->second;
-    }
-    return all;
-}
-
-}  // namespace
-
-void add_meter(CLI::App& program, int& exit_code) {
-    auto options = std::make_shared<Options>();
-    CLI::App* command = program.add_subcommand(
-        "meter", "how much light a picture has, and which exposure that suggests");
-    command->add_option("in", options->in, "pictures, any format that OpenImageIO reads")
-        ->required();
-    command->add_flag("--json", options->json, "for programs: all figures, with all digits");
-    command->add_option("--method", options->metering.method, "log-average, histogram, mean or max")
-        ->capture_default_str()
-        ->group("Metering");
-    CLI::Option* frames =
-        command->add_option("--frames", options->frames,
-                            "frames of a shot, such as 1001-1100: `in` has %04d or #### where the "
-                            "number stands");
+void add_meter(CommandLine& program) {
+    auto options = std::make_shared<MeterCommandOptions>();
+    options->metering.method = "log-average";
+    const Command command =
+        program.add("meter", "how much light a picture has, and which exposure that suggests");
+    command.add("in", options->in, "pictures, any format that OpenImageIO reads").required();
+    command.add_flag("--json", options->json, "for programs: all figures, with all digits");
+    command.add("--method", options->metering.method, "log-average, histogram, mean or max")
+        .show_default()
+        .group("Metering");
+    const Option frames =
+        command.add("--frames", options->frames,
+                    "frames of a shot, such as 1001-1100: `in` has %04d or #### where the "
+                    "number stands");
     command
-        ->add_option("--input", options->input,
-                     "what the input's numbers are: `auto`, what the picture says, or a name as in "
-                     "`apply`")
-        ->capture_default_str();
-    add_picture_input(*command, options->picture);
-    add_exposure_options(*command, options->metering, nullptr);
-    add_shot_options(*command, options->shot, frames, nullptr);
-    command->footer(
+        .add("--input", options->input,
+             "what the input's numbers are: `auto`, what the picture says, or a name as in "
+             "`apply`")
+        .show_default();
+    add_picture_input(command, options->picture);
+    add_exposure_options(command, options->metering, nullptr);
+    add_shot_options(command, options->shot, frames, nullptr);
+    command.footer(
         "Examples:\n"
         "  tonewright meter render.exr\n"
         "  tonewright meter render.exr --json --method histogram --percentiles 40,95\n"
         "  tonewright meter shot.####.exr --frames 1001-1100 --adapt --meter-cache shot.json");
-    command->callback([options, command, &exit_code] {
-        options->picture.use_threads();
-        const ExposureRule rule = options->metering.rule();
-        const MeterOptions how = options->metering.meter_options(
-            options->input, options->picture.alpha(), options->picture.subimage);
-        const std::vector<Metered> all = meter_all(*options, *command, how, rule);
-        if (options->json) {
-            Json pictures = Json::array();
-            for (const Metered& metered : all)
-                pictures.push_back(to_json(metered, *options, rule));
-            fmt::print("{}\n",
-                       Json{{"options", tonewright::to_json(how)}, {"pictures", pictures}}.dump(2));
-        } else if (all.size() > 1) {
-            print_table(all, *options, rule);
-        } else if (all.front().picture.error.empty()) {
-            print_picture(all.front(), *options, how, rule);
-        }
-        for (const Metered& metered : all) {
-            const MeteredPicture& picture = metered.picture;
-            if (picture.error.empty()) continue;
-            exit_code = std::max<int>(exit_code, picture.is_file_error ? kFile : kUsage);
-            fmt::print(stderr, "tonewright: meter: {}\n", picture.error);
-        }
-    });
+    command.action([options] { return picture_commands().meter(*options); });
 }
 
 TONEWRIGHT_NAMESPACE_END

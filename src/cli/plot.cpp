@@ -3,14 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "base/atomic_file.h"
 #include "base/format_number.h"
 #include "base/strings.h"
-#include "cli/command.h"
 #include "cli/curve_plot.h"
 #include "cli/grey_curve.h"
-#include "cli/picture_output.h"
+#include "cli/picture_commands.h"
+#include "cli/shared_options.h"
 #include "tonewright/lut.h"
 #include "tonewright/ocio.h"
 #include "tonewright/registry.h"
@@ -255,29 +256,38 @@ CurvePlot plot_of(const Options& options) {
     return plot;
 }
 
+int run_plot(const Options& options) {
+    const CurvePlot plot = plot_of(options);
+    if (extension_of(options.file) != ".svg") {
+        picture_commands().write_plot(plot, options.file, options.width > 0 ? options.width : 1280);
+        return kOk;
+    }
+    write_text_atomically(options.file, to_svg(plot, options.width > 0 ? options.width : 640));
+    return kOk;
+}
+
 }  // namespace
 
-void add_plot(CLI::App& program, int&) {
+void add_plot(CommandLine& program) {
     auto options = std::make_shared<Options>();
-    CLI::App* command =
-        program.add_subcommand("plot", "the curves of operators in one plot, SVG or a picture");
+    const Command command =
+        program.add("plot", "the curves of operators in one plot, SVG or a picture");
     command
-        ->add_option("operators", options->operators,
-                     "operator[:preset][:name=value...], look=ID among the values")
-        ->required();
-    command->add_option("-o", options->file, "file to write: .svg, or a picture such as .png")
-        ->required();
+        .add("operators", options->operators,
+             "operator[:preset][:name=value...], look=ID among the values")
+        .required();
+    command.add("-o", options->file, "file to write: .svg, or a picture such as .png").required();
     command
-        ->add_option("--y", options->y,
-                     "code: display code values; light: what they stand for, of white or in "
-                     "cd/m2; log: the same in decades")
-        ->capture_default_str();
-    add_view_options(*command, *options);
-    command->add_option("--title", options->title, "over the plot");
-    command->add_option("--width", options->width, "pixels; default 640, of a picture 1280")
-        ->check(CLI::Range(320, 16384));
-    command->add_flag("--dark", options->is_dark, "for dark pages");
-    command->footer(
+        .add("--y", options->y,
+             "code: display code values; light: what they stand for, of white or in "
+             "cd/m2; log: the same in decades")
+        .show_default();
+    add_view_options(command, *options);
+    command.add("--title", options->title, "over the plot");
+    command.add("--width", options->width, "pixels; default 640, of a picture 1280")
+        .range(320, 16384);
+    command.add_flag("--dark", options->is_dark, "for dark pages");
+    command.footer(
         "Plotted are greys from -10 to +10 stops around 0.18; where a grey is not shown as one, "
         "the grey\nof the same luminance. --set and --look go to all operators.\n"
         "Examples:\n"
@@ -285,15 +295,7 @@ void add_plot(CLI::App& program, int&) {
         "  tonewright plot reinhard_extended:white=2 reinhard_extended:white=8 --y log -o "
         "white.png\n"
         "  tonewright plot aces_20 gt7 --display rec2100_pq -o hdr.svg");
-    command->callback([options] {
-        const CurvePlot plot = plot_of(*options);
-        if (extension_of(options->file) != ".svg") {
-            write_plot_picture(plot, options->file, options->width > 0 ? options->width : 1280);
-            return;
-        }
-        write_text_atomically(options->file,
-                              to_svg(plot, options->width > 0 ? options->width : 640));
-    });
+    command.action([options] { return run_plot(*options); });
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -170,17 +170,17 @@ def check_pixels(report, command, folder):
     report.check("jpg: a JPEG file", (folder / "same.jpg").read_bytes()[:3] == b"\xff\xd8\xff")
 
 
-def check_light_program(report, command, folder):
-    """SVG files need no OpenImageIO: the program for pictures is not even there."""
+def check_program_alone(report, command, folder):
+    """SVG files need no OpenImageIO: the picture commands are not even there."""
     alone = folder / "alone"
     alone.mkdir()
     shutil.copy(command, alone / "tonewright")
     done = subprocess.run([alone / "tonewright", "plot", "hable", "-o", folder / "alone.svg"], capture_output=True,
                           text=True, check=False)
-    report.check("the light program writes SVG", done.returncode == 0 and (folder / "alone.svg").exists(), done.stderr)
+    report.check("the program alone writes SVG", done.returncode == 0 and (folder / "alone.svg").exists(), done.stderr)
     done = subprocess.run([alone / "tonewright", "plot", "hable", "-o", folder / "alone.png"], capture_output=True,
                           text=True, check=False)
-    report.check("and needs the other for pixels", done.returncode == FILE and "tonewright-pictures" in done.stderr,
+    report.check("and needs its module for pixels", done.returncode == FILE and "picture_commands.so" in done.stderr,
                  done.stderr)
 
 
@@ -231,7 +231,7 @@ def main():
         check_hdr(report, command, folder)
         check_one(report, command, folder)
         check_pixels(report, command, folder)
-        check_light_program(report, command, folder)
+        check_program_alone(report, command, folder)
         check_errors(report, command, folder)
     return report.finish()
 

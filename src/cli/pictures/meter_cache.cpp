@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/meter_cache.h"
-#include "base/atomic_file.h"
-#include "base/format_number.h"
-#include "tonewright/tonemap.h"
+#include "cli/pictures/meter_cache.h"
 
 #include <fmt/format.h>
 
@@ -14,11 +11,13 @@
 #include <system_error>
 #include <utility>
 
+#include "base/atomic_file.h"
+#include "base/format_number.h"
+
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "tonewright_meter_cache";
 constexpr int kVersion = 1;
@@ -44,8 +43,8 @@ Metering metering_from(const Json& j) {
     luminance.at("minimum").get_to(m.minimum);
     luminance.at("maximum").get_to(m.maximum);
     luminance.at("histogram_average").get_to(m.histogram_average);
-    for (const auto& [percent, value] : luminance.at("percentiles").items())
-        m.percentiles.push_back(value.get<double>());
+    for (const auto& [percent, value] : luminance.at("percentiles").members())
+        value.get_to(m.percentiles.emplace_back());
     j.at("histogram").get_to(m.histogram);
     const Json& scene = j.at("statistics");
     scene.at("log_average").get_to(m.scene.log_average);
@@ -78,7 +77,7 @@ Json to_json(const MeterOptions& options) {
     using Unpremult = TonemapOptions::Unpremult;
     Json region = nullptr;
     if (const OIIO::ROI& r = options.region; r.defined())
-        region = {r.xbegin, r.ybegin, r.width(), r.height()};
+        region = Json::array({r.xbegin, r.ybegin, r.width(), r.height()});
     return {{"input", options.input},
             {"subimage", options.subimage},
             {"unpremult", options.unpremult == Unpremult::automatic
@@ -86,16 +85,16 @@ Json to_json(const MeterOptions& options) {
                               : Json(options.unpremult == Unpremult::yes)},
             {"region", region},
             {"delta", options.delta},
-            {"histogram_range", {options.histogram_min, options.histogram_max}},
+            {"histogram_range", Json::array({options.histogram_min, options.histogram_max})},
             {"bins", options.bins},
-            {"percentiles", {options.low_percentile, options.high_percentile}},
+            {"percentiles", Json::array({options.low_percentile, options.high_percentile})},
             {"exact", options.exact}};
 }
 
 Json to_json(const Metering& m) {
     Json percentiles = Json::object();
     for (std::size_t i = 0; i < m.percentiles.size(); ++i)
-        percentiles[shortest(Metering::kPercents[i])] = m.percentiles[i];
+        percentiles.add(shortest(Metering::kPercents[i]), m.percentiles[i]);
     return {{"pixels",
              {{"counted", m.counted},
               {"black", m.black},
@@ -123,7 +122,7 @@ Json to_json(const Metering& m) {
 }
 
 MeterCache::MeterCache(std::string path, const MeterOptions& options)
-    : path_(std::move(path)), options_(to_json(options)) {
+    : path_(std::move(path)), options_(to_json(options).dump()) {
     std::error_code error;
     if (path_.empty() || (!fs::exists(path_, error) && !error)) return;
     const auto fail = [&](const std::string& reason) {
@@ -135,13 +134,16 @@ MeterCache::MeterCache(std::string path, const MeterOptions& options)
     const std::string text{std::istreambuf_iterator<char>(file), {}};
     try {
         const Json all = Json::parse(text);
-        if (all.at(kFormat) != kVersion || all.at("options") != options_) return;
-        for (const auto& [picture, entry] : all.at("pictures").items()) {
-            entries_[picture] = {
-                {entry.at("bytes").get<std::uint64_t>(), entry.at("modified").get<std::int64_t>()},
-                metering_from(entry.at("metering"))};
+        std::int64_t version = 0;
+        all.at(kFormat).get_to(version);
+        if (version != kVersion || all.at("options").dump() != options_) return;
+        for (const auto& [picture, entry] : all.at("pictures").members()) {
+            Entry& known = entries_[picture];
+            entry.at("bytes").get_to(known.stamp.bytes);
+            entry.at("modified").get_to(known.stamp.modified);
+            known.metering = metering_from(entry.at("metering"));
         }
-    } catch (const Json::exception&) {
+    } catch (const JsonError&) {
         fail("is not a meter cache; expected one that --meter-cache wrote, or no file");
     }
 }
@@ -162,11 +164,12 @@ void MeterCache::save() const {
     all.insert(entries_.begin(), entries_.end());
     Json pictures = Json::object();
     for (const auto& [picture, entry] : all) {
-        pictures[picture] = {{"bytes", entry.stamp.bytes},
-                             {"modified", entry.stamp.modified},
-                             {"metering", to_json(entry.metering)}};
+        pictures.add(picture, {{"bytes", entry.stamp.bytes},
+                               {"modified", entry.stamp.modified},
+                               {"metering", to_json(entry.metering)}});
     }
-    const Json file = {{kFormat, kVersion}, {"options", options_}, {"pictures", pictures}};
+    const Json file = {
+        {kFormat, kVersion}, {"options", Json::parse(options_)}, {"pictures", pictures}};
     write_text_atomically(path_, file.dump() + "\n");
 }
 

@@ -3,9 +3,9 @@
 
 #include <cstdint>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 
+#include "cli/json.h"
 #include "tonewright/meter.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -19,8 +19,8 @@ struct FileStamp {
 /// Zeros of a file that is not there.
 [[nodiscard]] FileStamp stamp_of(const std::string& path);
 
-[[nodiscard]] nlohmann::ordered_json to_json(const MeterOptions& options);
-[[nodiscard]] nlohmann::ordered_json to_json(const Metering& metering);
+[[nodiscard]] Json to_json(const MeterOptions& options);
+[[nodiscard]] Json to_json(const Metering& metering);
 
 /// What was metered, kept in a file.
 class MeterCache {
@@ -42,7 +42,7 @@ class MeterCache {
         Metering metering;
     };
     std::string path_;
-    nlohmann::ordered_json options_;
+    std::string options_;                   // as JSON
     std::map<std::string, Entry> entries_;  // by absolute name
     std::map<std::string, Entry> added_;
 };

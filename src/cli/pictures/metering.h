@@ -1,62 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "cli/picture_options.h"
 #include "tonewright/meter.h"
 #include "tonewright/tonemap.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// How pictures are metered, and which exposure follows: of `apply` and `meter`.
-struct ExposureOptions {
-    /// Empty: no metering.
-    std::string method;
-    std::string region;
-    double delta = MeterOptions{}.delta;
-    std::string percentiles = "0,100";
-    std::string histogram_range = "-8,3.5";
-    int histogram_bins = MeterOptions{}.bins;
-    bool exact = false;
-    std::string key;
-    std::string calibration = "key";
-    double compensation = 0;
-    std::string limits = "-20,20";
-
-    /// @throws Error
-    [[nodiscard]] MeterOptions meter_options(const std::string& input,
-                                             TonemapOptions::Unpremult unpremult,
-                                             int subimage) const;
-    /// @throws Error
-    [[nodiscard]] ExposureRule rule() const;
-};
-
-/// How the exposure of a shot follows its light.
-struct ShotOptions {
-    bool adapt = false;
-    std::string form = "exponential";
-    double up = 0;
-    double down = 0;
-    double fps = Adaptation{}.fps;
-    double start = 0;
-    std::string meter_frames;
-    std::string cache;
-
-    /// @throws Error
-    [[nodiscard]] Adaptation adaptation(const CLI::App& command) const;
-};
-
-/// --delta, --percentiles, --key, ... and --meter-region.
-/// @param method  the option that says how to meter, which they need; null: they need none.
-void add_exposure_options(CLI::App& command, ExposureOptions& options, CLI::Option* method);
-/// --adapt, --fps, ..., --meter-frames, --meter-cache.
-/// @param method  what --adapt needs; null: nothing
-void add_shot_options(CLI::App& command, ShotOptions& options, CLI::Option* frames,
-                      CLI::Option* method);
+/// @throws Error
+[[nodiscard]] MeterOptions meter_options_of(const ExposureOptions& options,
+                                            const std::string& input, const PictureInput& picture);
+/// @throws Error
+[[nodiscard]] ExposureRule rule_of(const ExposureOptions& options);
+/// @throws Error
+[[nodiscard]] Adaptation adaptation_of(const ShotOptions& options);
 
 /// One picture that was metered.
 struct MeteredPicture {

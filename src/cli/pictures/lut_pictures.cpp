@@ -1,29 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/picture_output.h"
-
-#include <fmt/format.h>
-
 #include "base/atomic_file.h"
-#include "base/strings.h"
-#include "cli/picture_input.h"
+#include "cli/pictures/commands.h"
+
+#include "cli/pictures/picture_input.h"
 #include "image/lut_picture.h"
 #include "image/shipped_pictures.h"
+
 #include "lut/shipped_set.h"
 #include "tonewright/generated_files.h"
 #include "tonewright/image_io.h"
 #include "tonewright/lut.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
-
-void require_lut_picture(const std::string& path, int bits) {
-    const std::string extension = extension_of(path);
-    const bool is_tiff = extension == ".tif" || extension == ".tiff";
-    const bool is_held = is_tiff || (bits == 32 ? extension == ".exr" : extension == ".png");
-    if (!is_held) {
-        throw Error(fmt::format("bake: file is {}; expected {} or .tif for {} bits", path,
-                                bits == 32 ? ".exr" : ".png", bits));
-    }
-}
 
 void write_shipped_luts(const std::string& folder) {
     require_writable_folder(folder);

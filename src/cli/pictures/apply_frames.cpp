@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/apply_frames.h"
+#include "cli/pictures/apply_frames.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -13,12 +13,9 @@
 #include <vector>
 
 #include "base/strings.h"
-#include "cli/command.h"
-#include "cli/frames.h"
-#include "cli/picture_input.h"
-#include "cli/progress_bar.h"
-#include "tonewright/sequence.h"
-#include "tonewright/tonemap.h"
+#include "cli/pictures/frames.h"
+#include "cli/pictures/picture_input.h"
+#include "cli/pictures/progress_bar.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -135,39 +132,6 @@ void print_summary(const Plan& plan, bool is_terminal) {
 }
 
 }  // namespace
-
-CLI::Option* add_frame_options(CLI::App& command, FrameOptions& options) {
-    CLI::Option* frames = command.add_option(
-        "--frames", options.frames,
-        "frames such as 1001-1100, 1-9x2 (every second) or 1,5,10-20: `in` and `out` "
-        "have %04d, #### (# is four digits, too) or @@@@ (as many digits; in the file's name) "
-        "where "
-        "the number stands. The exit code is 1 if any failed; the others are whole");
-    command
-        .add_option(
-            "--missing", options.missing,
-            "frames whose `in` is not there: `error` (they fail), `skip` (they are left out) or "
-            "`hold` (the nearest earlier frame that is there stands for them, as in players; it "
-            "need not be of --frames; without one in the 1000 before they fail)")
-        ->capture_default_str()
-        ->needs(frames);
-    command
-        .add_flag(
-            "--skip-existing", options.skip_existing,
-            "leave frames whose `out` is newer than `in`, has the size and pixel type that it "
-            "would get and can be read to its end: goes on where a run was stopped. It does "
-            "not know the options of that run: after a change of operator, exposure, display "
-            "... leave it out, or remove the files")
-        ->needs(frames);
-    command
-        .add_option("--jobs", options.jobs,
-                    "frames at a time, each with memory of its own; the --threads are shared among "
-                    "them. 0 = as many as threads")
-        ->capture_default_str()
-        ->check(CLI::Range(0, 256))
-        ->needs(frames);
-    return frames;
-}
 
 int apply_to_frames(
     const Tonemapper& tonemapper, const std::string& in, const std::string& out,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/exposure_options.h"
+#include "cli/pictures/metering.h"
 
 #include <fmt/format.h>
 
@@ -9,10 +9,10 @@
 #include <set>
 #include <thread>
 
-#include "cli/frames.h"
-#include "cli/meter_cache.h"
+#include "cli/pictures/frames.h"
+#include "cli/pictures/meter_cache.h"
+#include "cli/pictures/picture_input.h"
 #include "lut/in_parallel.h"
-#include "tonewright/tonemap.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -55,131 +55,73 @@ OIIO::ROI parse_region(const std::string& text) {
 
 }  // namespace
 
-MeterOptions ExposureOptions::meter_options(const std::string& input,
-                                            TonemapOptions::Unpremult unpremult,
-                                            int subimage) const {
+// The options that `--help` shows have the library's defaults.
+static_assert(ExposureOptions{}.delta == MeterOptions{}.delta &&
+              ExposureOptions{}.histogram_bins == MeterOptions{}.bins &&
+              ShotOptions{}.fps == Adaptation{}.fps);
+
+MeterOptions meter_options_of(const ExposureOptions& options, const std::string& input,
+                              const PictureInput& picture) {
     MeterOptions o;
     o.input = input;
-    o.subimage = subimage;
-    o.unpremult = unpremult;
-    if (!region.empty()) o.region = parse_region(region);
-    o.delta = delta;
-    const auto range = parse_numbers("--histogram-range", histogram_range, 2,
+    o.subimage = picture.subimage;
+    o.unpremult = alpha_of(picture);
+    if (!options.region.empty()) o.region = parse_region(options.region);
+    o.delta = options.delta;
+    const auto range = parse_numbers("--histogram-range", options.histogram_range, 2,
                                      "log2 of two luminances, such as -8,3.5");
     o.histogram_min = range[0];
     o.histogram_max = range[1];
-    o.bins = histogram_bins;
+    o.bins = options.histogram_bins;
     const auto percents =
-        parse_numbers("--percentiles", percentiles, 2, "two percentages, such as 40,95");
+        parse_numbers("--percentiles", options.percentiles, 2, "two percentages, such as 40,95");
     o.low_percentile = percents[0];
     o.high_percentile = percents[1];
-    o.exact = exact;
+    o.exact = options.exact;
     check_meter_options(o);
     return o;
 }
 
-ExposureRule ExposureOptions::rule() const {
+ExposureRule rule_of(const ExposureOptions& options) {
     ExposureRule r;
-    r.method = parse_meter_method(method);
+    r.method = parse_meter_method(options.method);
+    const std::string& key = options.key;
     if (key == "auto") {
         r.auto_key = true;
     } else if (!key.empty()) {
         r.key = parse_numbers("--key", key, 1, "[0.001, 16] or auto")[0];
     }
-    if (calibration == "9.6") {
+    if (options.calibration == "9.6") {
         r.calibration = ExposureRule::Calibration::saturation;
         if (!key.empty()) {
             throw Error("meter: --key is " + key +
                         "; expected none with --calibration 9.6, which has a key of its own");
         }
-    } else if (calibration != "key") {
-        throw Error("meter: --calibration is " + calibration + "; expected key or 9.6");
+    } else if (options.calibration != "key") {
+        throw Error("meter: --calibration is " + options.calibration + "; expected key or 9.6");
     }
-    r.compensation = compensation;
-    const auto stops = parse_numbers("--exposure-limits", limits, 2, "two stops, such as -4,6");
+    r.compensation = options.compensation;
+    const auto stops =
+        parse_numbers("--exposure-limits", options.limits, 2, "two stops, such as -4,6");
     r.min_stops = stops[0];
     r.max_stops = stops[1];
     check_exposure_rule(r);
     return r;
 }
 
-Adaptation ShotOptions::adaptation(const CLI::App& command) const {
+Adaptation adaptation_of(const ShotOptions& options) {
     Adaptation a;
-    if (form == "0.98") {
+    if (options.form == "0.98") {
         a.form = Adaptation::Form::power_098;
-    } else if (form != "exponential") {
-        throw Error("meter: --adapt-form is " + form + "; expected exponential or 0.98");
+    } else if (options.form != "exponential") {
+        throw Error("meter: --adapt-form is " + options.form + "; expected exponential or 0.98");
     }
-    if (command.count("--adapt-up") > 0) a.up = up;
-    if (command.count("--adapt-down") > 0) a.down = down;
-    if (command.count("--adapt-start") > 0) a.start = start;
-    a.fps = fps;
+    a.up = options.up;
+    a.down = options.down;
+    a.start = options.start;
+    a.fps = options.fps;
     check_adaptation(a);
     return a;
-}
-
-void add_exposure_options(CLI::App& command, ExposureOptions& options, CLI::Option* method) {
-    const auto add = [&](const char* name, auto& value, const char* help) {
-        CLI::Option* option = command.add_option(name, value, help);
-        if (method) option->needs(method);
-        option->group("Metering");
-        return option;
-    };
-    add(method ? "--meter-region" : "--region,--meter-region", options.region,
-        "pixels that count: x,y,width,height; default: all");
-    add("--delta", options.delta,
-        "added to each luminance inside the logarithm of the log average, and the least metered "
-        "luminance")
-        ->capture_default_str();
-    add("--percentiles", options.percentiles,
-        "the histogram's average is that of the pixels between, such as 40,95")
-        ->capture_default_str();
-    add("--histogram-range", options.histogram_range, "log2 of luminance")->capture_default_str();
-    add("--histogram-bins", options.histogram_bins, "the first is black")->capture_default_str();
-    CLI::Option* exact = command.add_flag(
-        "--exact", options.exact,
-        "percentiles and the average between them from all luminances, not from bins");
-    exact->group("Metering");
-    if (method) exact->needs(method);
-    add("--key", options.key,
-        "what the metered luminance becomes, or `auto`; default: 0.18, of max: 1");
-    add("--calibration", options.calibration,
-        "`key`, or `9.6`: as a camera that saturates at 9.6 times the metered luminance")
-        ->capture_default_str();
-    add("--compensation", options.compensation, "stops on top of what is metered")
-        ->capture_default_str();
-    add("--exposure-limits", options.limits,
-        "stops that the metered exposure is held between, before compensation")
-        ->capture_default_str();
-}
-
-void add_shot_options(CLI::App& command, ShotOptions& options, CLI::Option* frames,
-                      CLI::Option* method) {
-    const char* const group = "Metering of shots";
-    CLI::Option* adapt = command.add_flag("--adapt", options.adapt,
-                                          "exposure follows the light of the shot, as an eye does");
-    adapt->needs(frames)->group(group);
-    if (method) adapt->needs(method);
-    const auto add = [&](const char* name, auto& value, const char* help, CLI::Option* needed) {
-        return command.add_option(name, value, help)->needs(needed)->group(group);
-    };
-    add("--adapt-up", options.up,
-        "speed towards more light, per second; default: 1.1, of 0.98: a factor, 1", adapt);
-    add("--adapt-down", options.down, "speed towards less light; default: as --adapt-up's", adapt);
-    add("--adapt-form", options.form,
-        "`exponential`: 1 - e^(-speed dt), or `0.98`: 1 - 0.98^(30 speed dt)", adapt)
-        ->capture_default_str();
-    add("--fps", options.fps, "frames per second", adapt)->capture_default_str();
-    add("--adapt-start", options.start,
-        "exposure of the first frame, stops; default: what it is metered at", adapt);
-    add("--meter-frames", options.meter_frames,
-        "the whole shot, where --frames is a part of it: all parts have the same exposures",
-        frames);
-    command
-        .add_option("--meter-cache", options.cache,
-                    "file to keep what was metered in; frames that have changed since are metered "
-                    "again")
-        ->group(group);
 }
 
 std::vector<MeteredPicture> meter_pictures(const std::vector<std::string>& paths,

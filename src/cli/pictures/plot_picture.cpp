@@ -7,7 +7,7 @@
 #include <span>
 #include <sstream>
 
-#include "cli/picture_output.h"
+#include "cli/pictures/commands.h"
 #include "cli/plot_surface.h"
 #include "image/canvas.h"
 #include "tonewright/image_io.h"

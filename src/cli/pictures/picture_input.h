@@ -3,9 +3,9 @@
 
 #include <OpenImageIO/imagebuf.h>
 
-#include <CLI/CLI.hpp>
 #include <string>
 
+#include "cli/picture_options.h"
 #include "tonewright/tonemap.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -27,21 +27,10 @@ class QuietStderr {
     int saved_;
 };
 
-/// Which part of a picture is read, what its alpha means, by how many threads: of `apply` and
-/// `meter`.
-struct PictureInput {
-    int subimage = 0;
-    int threads = 0;
-    bool unpremult = false;
-    bool no_unpremult = false;
+[[nodiscard]] TonemapOptions::Unpremult alpha_of(const PictureInput& input);
 
-    [[nodiscard]] TonemapOptions::Unpremult alpha() const;
-    /// Tells OpenImageIO and OpenEXR how many threads.
-    void use_threads() const;
-};
-
-/// --subimage, --threads, --unpremult, --no-unpremult.
-void add_picture_input(CLI::App& command, PictureInput& options);
+/// Tells OpenImageIO and OpenEXR how many threads.
+void use_threads(const PictureInput& input);
 
 /// read_image() with the terminal kept clean.
 [[nodiscard]] OIIO::ImageBuf read_picture(const std::string& path);

@@ -1,26 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "cli/picture_options.h"
 #include "tonewright/sequence.h"
 #include "tonewright/tonemap.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
-
-/// What `apply` does with the frames of a shot.
-struct FrameOptions {
-    std::string frames;
-    std::string missing = "error";
-    bool skip_existing = false;
-    int jobs = 0;
-};
-
-/// --frames, --missing, --skip-existing, --jobs. @returns  the first
-CLI::Option* add_frame_options(CLI::App& command, FrameOptions& options);
 
 /// Every frame, whatever becomes of the others: how far it is on a terminal, and at the end what
 /// became of them, on standard error.

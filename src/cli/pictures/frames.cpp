@@ -2,7 +2,6 @@
 //
 // OpenImageIO has functions for this, too. In 2.4 a step of 0 never ends in them, and a % that is
 // no number ends the process.
-#include "cli/frames.h"
 
 #include <fmt/format.h>
 

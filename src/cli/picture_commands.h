@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The seam between the program and OpenImageIO. OpenImageIO brings some 250 shared libraries, which
+// take a fifth of a second to load. So everything that reads or writes a picture is in a module of
+// its own (the folder pictures/), and the program loads it when a command needs a picture.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/curve_plot.h"
+#include "cli/picture_options.h"
+#include "tonewright/lut.h"
+#include "tonewright/version.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+
+/// Functions that return int return the exit code. All throw Error and FileError as the library
+/// does.
+class PictureCommands {
+  public:
+    PictureCommands() = default;
+    PictureCommands(const PictureCommands&) = delete;
+    PictureCommands& operator=(const PictureCommands&) = delete;
+    virtual ~PictureCommands() = default;
+
+    [[nodiscard]] virtual int apply(const ApplyOptions& options) const = 0;
+    [[nodiscard]] virtual int meter(const MeterCommandOptions& options) const = 0;
+    virtual void compare(const CompareOptions& options) const = 0;
+    virtual void chart(const ChartOptions& options) const = 0;
+    virtual void sheet(const SheetOptions& options) const = 0;
+
+    /// Scene-linear RGB of a picture: every pixel up to a million, then every n-th.
+    [[nodiscard]] virtual std::vector<float> read_pixels(const std::string& path) const = 0;
+    /// @param width  pixels
+    virtual void write_plot(const CurvePlot& plot, const std::string& path, int width) const = 0;
+    [[nodiscard]] virtual Lut read_lut(const std::string& path) const = 0;
+    /// @param bits  8, 16 or 32 (float)
+    virtual void write_lut(const Lut& lut, LutFormat format, const std::string& path,
+                           int bits) const = 0;
+    /// The set of `bake --all`: LUTs by application, thumbnails, README.md, MANIFEST.csv.
+    virtual void write_shipped_luts(const std::string& folder) const = 0;
+};
+
+/// Loads the module at the first call.
+/// @throws FileError  it is not there, cannot be loaded, or is of another build
+[[nodiscard]] const PictureCommands& picture_commands();
+
+/// Entry point of the module.
+/// @param build   kPictureCommandsBuild of the program
+/// @returns       null where the module was built from another interface or version
+extern "C" const PictureCommands* tonewright_picture_commands(const char* build);
+inline constexpr const char* kPictureCommandsEntry = "tonewright_picture_commands";
+/// The release, and the number of this interface: increase it with every change of the interface
+/// or of the options.
+inline constexpr const char* kPictureCommandsBuild = TONEWRIGHT_VERSION " interface 1";
+
+TONEWRIGHT_NAMESPACE_END

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What the commands that read or write pictures are asked to do. No type of OpenImageIO is here:
+// the program fills these in, and the picture commands, which it loads, act on them.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/command.h"
+#include "cli/lut_input.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+
+/// Which part of a picture is read, how its alpha is understood, and by how many threads.
+struct PictureInput {
+    int subimage = 0;
+    int threads = 0;
+    bool unpremult = false;
+    bool no_unpremult = false;
+};
+
+/// What `apply` does with the frames of a shot.
+struct FrameOptions {
+    std::string frames;
+    std::string missing = "error";
+    bool skip_existing = false;
+    int jobs = 0;
+};
+
+/// How pictures are metered, and which exposure follows.
+struct ExposureOptions {
+    /// Empty: no metering.
+    std::string method;
+    std::string region;
+    double delta = 1e-3;
+    std::string percentiles = "0,100";
+    std::string histogram_range = "-8,3.5";
+    int histogram_bins = 256;
+    bool exact = false;
+    std::string key;
+    std::string calibration = "key";
+    double compensation = 0;
+    std::string limits = "-20,20";
+};
+
+/// How the exposure of a shot follows its light.
+struct ShotOptions {
+    bool adapt = false;
+    std::string form = "exponential";
+    std::optional<double> up;
+    std::optional<double> down;
+    double fps = 24;
+    std::optional<double> start;
+    std::string meter_frames;
+    std::string cache;
+};
+
+struct ApplyOptions : ViewOptions {
+    std::string in;
+    std::string out;
+    FrameOptions frames;
+    std::string type;
+    std::string statistics = "picture";
+    bool is_false_color = false;
+    bool dither = false;
+    PictureInput picture;
+    LutOptions lut;
+    ExposureOptions metering;
+    ShotOptions shot;
+};
+
+struct MeterCommandOptions {
+    std::vector<std::string> in;
+    std::string frames;
+    std::string input = "auto";
+    bool json = false;
+    PictureInput picture;
+    ExposureOptions metering;
+    ShotOptions shot;
+};
+
+struct CompareOptions {
+    std::string in;
+    std::vector<std::string> operators;
+    std::string file;
+    double exposure = 0;
+    std::string input = "auto";
+    int columns = 0;
+    int cell_width = 480;
+    bool has_false_color = false;
+    std::optional<double> difference;
+    std::optional<double> split;
+    bool is_horizontal = false;
+    bool has_no_labels = false;
+};
+
+struct ChartOptions {
+    std::string file;
+    std::string type = "float";
+    int width = 1536;
+    int height = 864;
+};
+
+struct SheetOptions {
+    std::string file;
+    std::vector<std::string> pictures;
+    int columns = 4;
+    int cell_width = 480;
+};
+
+TONEWRIGHT_NAMESPACE_END

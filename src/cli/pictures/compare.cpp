@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "cli/pictures/commands.h"
+#include "cli/pictures/picture_input.h"
+#include "image/comparison.h"
+#include "image/source_picture.h"
+#include "ocio/model.h"
+#include "tonewright/contact_sheet.h"
+#include "tonewright/engine.h"
+#include "tonewright/image_io.h"
+#include "tonewright/lut.h"
+#include "tonewright/ocio.h"
+#include "tonewright/registry.h"
+#include "tonewright/tonemap.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace {
+
+constexpr const char* kDiagnostic = "false_color";
+
+/// One picture of the comparison.
+struct Rendering {
+    ResolvedOperator op;
+    Tonemapper tonemapper;
+
+    [[nodiscard]] std::string label() const { return op.op->title + "\n" + operator_text(op); }
+};
+
+Rendering rendering_of(const ResolvedOperator& op, const CompareOptions& options) {
+    TonemapOptions tonemap;
+    tonemap.op = op.name();
+    tonemap.settings = op.settings;
+    tonemap.look = op.params.look();
+    tonemap.exposure_stops = options.exposure;
+    tonemap.input = options.input;
+    return {op, Tonemapper(tonemap)};
+}
+
+/// The named ones, or the views that the config offers.
+std::vector<Rendering> renderings_of(const CompareOptions& options) {
+    std::vector<Rendering> all;
+    for (const std::string& text : options.operators)
+        all.push_back(rendering_of(parse_picture_operator(text), options));
+    if (options.operators.empty()) {
+        for (const ConfigModel::View& view : make_config_model().views) {
+            if (!view.op.op->is_diagnostic) all.push_back(rendering_of(view.op, options));
+        }
+    }
+    if (options.has_false_color)
+        all.push_back(rendering_of(resolve_operator(kDiagnostic), options));
+    return all;
+}
+
+/// Those that measure the picture measure all of it, once.
+void take_statistics(std::vector<Rendering>& renderings, const OIIO::ImageBuf& picture,
+                     const std::string& input) {
+    const auto takes = [](const Rendering& r) { return r.tonemapper.takes_statistics(); };
+    if (!std::any_of(renderings.begin(), renderings.end(), takes)) return;
+    const SceneStatistics statistics = measure_scene(picture, input);
+    for (Rendering& r : renderings) {
+        if (takes(r)) r.tonemapper = r.tonemapper.with_statistics(statistics);
+    }
+}
+
+OIIO::ImageBuf render(const Rendering& rendering, const OIIO::ImageBuf& scene,
+                      const std::string& path) {
+    OIIO::ImageBuf shown;
+    if (!rendering.tonemapper(shown, scene))
+        throw Error("compare: " + path + ": " + shown.geterror());
+    return shown;
+}
+
+std::string name_of(const std::string& path) {
+    return std::filesystem::path(path).filename().string();
+}
+
+std::string exposure_text(double stops) {
+    if (stops == 0) return "exposure 0";
+    return fmt::format("exposure {:+g} {}", stops, std::fabs(stops) == 1 ? "stop" : "stops");
+}
+
+std::string title_of(const SourceColor& source) {
+    for (const InputSpace& space : all_input_spaces()) {
+        if (space.id == source.name) return space.title;
+    }
+    return source.name;
+}
+
+/// Scene-linear Rec.709.
+OIIO::ImageBuf decoded(const OIIO::ImageBuf& picture, const SourceColor& source,
+                       const std::string& path) {
+    Pipeline stages = source.decode;
+    stages.emplace_back(MatrixStage{rgb_to_rgb(source.primaries, kRec709)});
+    const SimdEngine engine(stages);
+    OIIO::ImageBuf scene;
+    const auto run = [&](const float* in, float* out, std::size_t n) {
+        engine.run_rgb(in, out, n);
+    };
+    if (!map_colors(scene, picture, run)) throw Error("compare: " + path + ": " + scene.geterror());
+    return scene;
+}
+
+/// What its colors mean, as the operator makes them.
+void add_legend(SheetAnnotations& around) {
+    const ReferenceEngine engine(
+        build_view(make_view(resolve_operator(kDiagnostic), "lin_rec709", 0, "srgb")));
+    constexpr int kStops = 7;
+    for (int stop = -kStops; stop <= kStops; ++stop) {
+        const auto grey = static_cast<float>(0.18 * std::exp2(stop));
+        const std::array<float, 3> scene = {grey, grey, grey};
+        std::array<double, 3> code{};
+        engine.run_rgb(scene.data(), code.data(), 1);
+        around.legend.push_back({fmt::format("{}{}", stop > 0 ? "+" : "", stop),
+                                 {static_cast<float>(code[0]), static_cast<float>(code[1]),
+                                  static_cast<float>(code[2])}});
+    }
+    around.legend_heading =
+        "False color: stops of luminance from mid grey (0.18), after exposure; both ends are open";
+}
+
+void write_sheet(const CompareOptions& options, const std::vector<Rendering>& renderings,
+                 const OIIO::ImageBuf& picture, const std::string& remark) {
+    const OIIO::ImageBuf scene = resize_scene(picture, options.cell_width);
+    std::vector<std::pair<std::string, OIIO::ImageBuf>> cells;
+    SheetAnnotations around;
+    around.heading = name_of(options.in);
+    around.remark = remark;
+    for (const Rendering& r : renderings) {
+        cells.emplace_back(r.label(), render(r, scene, options.in));
+        if (r.op.op->id == kDiagnostic && around.legend.empty()) add_legend(around);
+    }
+    if (options.difference) {
+        PictureDifference difference =
+            difference_of(cells[0].second, cells[1].second, *options.difference);
+        cells.emplace_back(
+            fmt::format("Difference x {:g}\nlargest {:.1f}, mean {:.2f} codes of 8 bits",
+                        *options.difference, 255 * difference.largest, 255 * difference.mean),
+            std::move(difference.picture));
+    }
+    const int columns = options.columns > 0
+                            ? options.columns
+                            : choose_columns(static_cast<int>(cells.size()), scene.spec().width,
+                                             scene.spec().height);
+    write_image_atomically(make_contact_sheet(cells, columns, options.cell_width, around),
+                           options.file, OIIO::TypeUInt8);
+}
+
+void write_split(const CompareOptions& options, const std::vector<Rendering>& renderings,
+                 const OIIO::ImageBuf& picture) {
+    SplitOptions split;
+    split.before = {renderings[0].op.op->title, operator_text(renderings[0].op)};
+    split.after = {renderings[1].op.op->title, operator_text(renderings[1].op)};
+    split.remark = fmt::format("{}, {}", name_of(options.in), exposure_text(options.exposure));
+    split.position = *options.split;
+    split.is_horizontal = options.is_horizontal;
+    split.has_labels = !options.has_no_labels;
+    write_image_atomically(make_split(render(renderings[0], picture, options.in),
+                                      render(renderings[1], picture, options.in), split),
+                           options.file, OIIO::TypeUInt8);
+}
+
+}  // namespace
+
+void run_compare(CompareOptions options) {
+    std::vector<Rendering> renderings = renderings_of(options);
+    if (options.split || options.difference) {
+        if (options.operators.size() != 2 || options.has_false_color) {
+            throw Error(fmt::format("compare: {} has {} operators; expected two{}",
+                                    options.split ? "--split" : "--difference",
+                                    options.operators.size(),
+                                    options.has_false_color ? ", without --false-color" : ""));
+        }
+    }
+    OIIO::ImageBuf picture = read_picture(options.in);
+    const QuietStderr quiet;
+    const SourceColor source = source_color(picture.spec(), options.input);
+    const std::string remark =
+        fmt::format("{}, {}, shown on sRGB", exposure_text(options.exposure), title_of(source));
+    if (!options.split && !source.decode.empty()) {
+        // Code values are no light to scale.
+        picture = decoded(picture, source, options.in);
+        options.input = "lin_rec709";
+        renderings = renderings_of(options);
+    }
+    take_statistics(renderings, picture, options.input);
+    if (options.split) {
+        write_split(options, renderings, picture);
+    } else {
+        write_sheet(options, renderings, picture, remark);
+    }
+}
+
+TONEWRIGHT_NAMESPACE_END

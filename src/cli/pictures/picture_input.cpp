@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/pictures/picture_input.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+#include "cli/pictures/commands.h"
+#include "tonewright/image_io.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+
+QuietStderr::QuietStderr() : saved_(::dup(STDERR_FILENO)) {
+    std::fflush(stderr);
+    const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+    if (saved_ >= 0 && nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
+    if (nowhere >= 0) ::close(nowhere);
+}
+
+QuietStderr::~QuietStderr() {
+    std::fflush(stderr);
+    if (saved_ < 0) return;
+    ::dup2(saved_, STDERR_FILENO);
+    ::close(saved_);
+}
+
+TonemapOptions::Unpremult alpha_of(const PictureInput& input) {
+    if (input.unpremult) return TonemapOptions::Unpremult::yes;
+    if (input.no_unpremult) return TonemapOptions::Unpremult::no;
+    return TonemapOptions::Unpremult::automatic;
+}
+
+void use_threads(const PictureInput& input) {
+    OIIO::attribute("threads", input.threads);
+    // OpenEXR has threads of its own; there, 0 is all cores and less is none.
+    OIIO::attribute("exr_threads", input.threads == 1 ? -1 : input.threads);
+}
+
+OIIO::ImageBuf read_picture(const std::string& path) {
+    const QuietStderr quiet;
+    return read_image(path);
+}
+
+std::vector<float> read_picture_pixels(const std::string& path) {
+    const OIIO::ImageBuf image = read_picture(path);
+    const int channels = image.nchannels();
+    if (channels < 3)
+        throw Error("verify: picture " + path + " has " + std::to_string(channels) +
+                    " channels; expected 3");
+    const auto& spec = image.spec();
+    const auto step = static_cast<int>(spec.image_pixels() / 1000000 + 1);
+    std::vector<float> pixel(static_cast<std::size_t>(channels));
+    std::vector<float> rgb;
+    int index = 0;
+    for (int y = spec.y; y < spec.y + spec.height; ++y) {
+        for (int x = spec.x; x < spec.x + spec.width; ++x) {
+            if (index++ % step) continue;
+            image.getpixel(x, y, pixel.data(), channels);
+            rgb.insert(rgb.end(), pixel.begin(), pixel.begin() + 3);
+        }
+    }
+    return rgb;
+}
+
+TONEWRIGHT_NAMESPACE_END

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/pictures/commands.h"
+#include "cli/pictures/picture_input.h"
+#include "tonewright/contact_sheet.h"
+#include "tonewright/image_io.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+
+void run_sheet(const SheetOptions& options) {
+    std::vector<std::pair<std::string, OIIO::ImageBuf>> labelled;
+    for (const std::string& text : options.pictures) {
+        const std::size_t equals = text.find('=');
+        const std::string path = equals == std::string::npos ? text : text.substr(equals + 1);
+        labelled.emplace_back(equals == std::string::npos ? text : text.substr(0, equals),
+                              read_picture(path));
+    }
+    write_image_atomically(make_contact_sheet(labelled, options.columns, options.cell_width),
+                           options.file, OIIO::TypeUInt8);
+}
+
+TONEWRIGHT_NAMESPACE_END

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Options that several commands share.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/command.h"
+#include "cli/options.h"
+#include "cli/picture_options.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+
+/// --set, --look, --exposure, --input, --display, --reference-white.
+void add_view_options(const Command& command, ViewOptions& options);
+
+/// --lut, --interpolation, --input-encoding, --lut-space, for a command that has an operator and
+/// add_view_options().
+/// @param op      the option of the operator
+/// @param others  options that apply to operators only
+void add_lut_options(const Command& command, LutOptions& options, const Option& op,
+                     const std::vector<std::string>& others);
+
+/// --subimage, --threads, --unpremult, --no-unpremult.
+void add_picture_input(const Command& command, PictureInput& options);
+
+/// --delta, --percentiles, --key, ... and --meter-region.
+/// @param method  the option that says how to meter, which they need; null: they need none.
+void add_exposure_options(const Command& command, ExposureOptions& options, const Option* method);
+
+/// --adapt, --fps, ..., --meter-frames, --meter-cache.
+/// @param method  what --adapt needs; null: nothing
+void add_shot_options(const Command& command, ShotOptions& options, const Option& frames,
+                      const Option* method);
+
+TONEWRIGHT_NAMESPACE_END

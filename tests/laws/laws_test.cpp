@@ -17,8 +17,6 @@
 #include "base/format_number.h"
 #include "base/random.h"
 #include "full_counts.h"
-#include "measure/error_metric.h"
-#include "measure/sample_set.h"
 #include "tonewright/engine.h"
 #include "tonewright/registry.h"
 #include "tonewright/verify.h"

@@ -20,6 +20,10 @@ void add_compare(CommandLine& program) {
         .add("--input", options->input,
              "what the picture's numbers are: `auto`, what it says, or a name as in `apply`")
         .show_default();
+    const Option pictures =
+        command.add("--pictures", options->pictures,
+                    "folder for the pictures at full size: 8-bit PNG files with the names of the "
+                    "operators");
     const Option columns =
         command.add("--columns", options->columns, "pictures a row; default: as fits")
             .range(1, 100);
@@ -47,7 +51,7 @@ void add_compare(CommandLine& program) {
         .needs(split);
     command.add_flag("--no-labels", options->has_no_labels, "the split without its line and labels")
         .needs(split);
-    for (const Option& other : {columns, cell_width, false_color, difference})
+    for (const Option& other : {pictures, columns, cell_width, false_color, difference})
         split.excludes(other);
     command.footer(
         "The sheet's scene is scaled to the cells in linear light before the operators see it; "

@@ -85,6 +85,7 @@ struct CompareOptions {
     std::string in;
     std::vector<std::string> operators;
     std::string file;
+    std::string pictures;
     double exposure = 0;
     std::string input = "auto";
     int columns = 0;

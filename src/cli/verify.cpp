@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -23,6 +24,7 @@ struct Options {
     std::string lut;
     bool json = false;
     bool quick = false;
+    bool summary = false;
     bool no_gpu = false;
 };
 
@@ -74,6 +76,49 @@ void print_matches(const std::string& path, const std::vector<LutMatch>& matches
     }
 }
 
+/// Codes of 8 bits, two digits.
+std::string codes_text(double error) {
+    const double codes = 255 * error;
+    return codes < 1e-4 ? "<0.0001" : fmt::format("{:.2g}", codes);
+}
+
+/// One line for each operator and display: the engine as it runs on this processor, and OpenColorIO
+/// as applications use it.
+void print_summary(const std::vector<ParityRow>& rows) {
+    fmt::print(
+        "Errors of encoded values against the double-precision reference\n\n"
+        "{0:<25}in 8-bit codes (1 is one step of an 8-bit picture)    largest, from 0 to 1\n"
+        "{0:<25}{1:<18}{2:<18}{3:<18}\n"
+        "{4:<25}{5:<9}{6:<9}{5:<9}{6:<9}{5:<9}{6:<9}{7:>9}{8:>9}{9:>9}\n",
+        "", "our engine", "OpenColorIO CPU", "OpenColorIO GPU", "operator", "largest", "typical",
+        "engine", "CPU", "GPU");
+    std::string notes;
+    for (auto first = rows.begin(), last = first; first != rows.end(); first = last) {
+        last = std::find_if(first, rows.end(), [&](const ParityRow& r) {
+            return r.op != first->op || r.display != first->display;
+        });
+        std::string codes;
+        std::string values;
+        for (const char* form : {"simd", "ocio cpu default", "ocio gpu"}) {
+            const auto row = std::find_if(
+                first, last, [&](const ParityRow& r) { return r.form.starts_with(form); });
+            if (row == last || row->bound == 0) {
+                codes += fmt::format("{:<18}", "-");
+                values += fmt::format("{:>9}", "-");
+                if (row != last) notes = row->form + ": " + row->note + "\n";
+                continue;
+            }
+            codes += fmt::format("{:<9}{:<9}", codes_text(row->max), codes_text(row->mean));
+            values += fmt::format("{:>9.1e}", row->max);
+        }
+        fmt::print("{:<24} {}{}\n", first->op, codes, values);
+    }
+    for (const ParityRow& row : rows) {
+        if (!row.is_ok) notes += format_row(row);
+    }
+    fmt::print("{}", notes);
+}
+
 int run_verify(Options& options) {
     int exit_code = kOk;
     VerifyOptions& verify_options = options.verify;
@@ -88,7 +133,10 @@ int run_verify(Options& options) {
         return kOk;
     }
     verify_options.with_gpu = !options.no_gpu;
-    if (options.quick) verify_options.lattice_edge = 9;
+    if (options.quick) {
+        verify_options.lattice_edge = 9;
+        verify_options.random_count = 10000;
+    }
     Json lint = Json::array();
     const bool is_of_config = !verify_options.config.empty() && verify_options.operators.empty();
     if (is_of_config) {
@@ -106,7 +154,7 @@ int run_verify(Options& options) {
         verify_options.picture = picture_commands().read_pixels(options.picture);
     bool has_heading = false;  // not before the names have proved good
     const auto print = [&](const ParityRow& row) {
-        if (options.json) return;
+        if (options.json || options.summary) return;
         if (!has_heading) fmt::print("{}", parity_heading());
         has_heading = true;
         fmt::print("{}", format_row(row));
@@ -116,6 +164,7 @@ int run_verify(Options& options) {
     std::size_t failed = 0;
     for (const ParityRow& row : rows)
         failed += row.is_ok ? 0 : 1;
+    if (options.summary) print_summary(rows);
     if (options.json) {
         Json all = Json::array();
         for (const ParityRow& r : rows) {
@@ -162,7 +211,9 @@ void add_verify(CommandLine& program) {
                 "a config to check, or its folder: any, ours or not; default: a fresh one");
     command.add("--picture", options->picture, "picture whose pixels join the probes");
     command.add_flag("--quick", options->quick,
-                     "gamut lattices of 9 instead of 33 points a side (of a config 17)");
+                     "smaller sample sets: grids of 9 instead of 33 points a side, 10,000 random "
+                     "colors instead of 100,000");
+    command.add_flag("--summary", options->summary, "a short table: one line for each operator");
     command.add_flag("--no-gpu", options->no_gpu, "leave OCIO's GPU path out");
     command.add_flag("--json", options->json, "for programs");
     const Option lut = command.add(

@@ -493,6 +493,14 @@ def check_verify(report, command, scratch, folder, picture):
                  out + err)
     rows = json.loads(run(command, *arguments, "--json"))
     report.check("verify --json", rows and all(row["ok"] and 0 <= row["max"] <= row["bound"] for row in rows))
+    code, out, err = call(command, ["verify", "hable", "reinhard:look=none", "--summary"])
+    report.check("verify --summary: a bad operator", code == USAGE and "look is none" in err and not out, out + err)
+    code, out, err = call(command, ["verify", "hable", "hable:white=4", "--quick", "--summary", "--config", folder])
+    rows = [line.split() for line in out.splitlines() if line.startswith("hable")]
+    report.check("verify --summary: a line for each operator, errors within the bounds", code == OK and not err
+                 and [row[:-9] for row in rows] == [["hable"], ["hable", "white=4"]]
+                 and all(row[-9:-3:2] == ["<0.0001"] * 3 and float(row[-3]) <= 1e-6 and float(row[-2]) <= 3e-7
+                         for row in rows), out + err)
     table = next(folder.glob("luts/hable_curve*"))
     text = table.read_text()
     # 0.18 is no half float: this is the table's entry just below it.

@@ -90,6 +90,18 @@ def check_sheet(bench):
     bench.report.check("drago without statistics is another picture", not places(bench.sheet("drago"), statistics))
 
 
+def check_pictures(bench):
+    """Full size, whatever the cells; the files are those of `apply`."""
+    cells = {"hable": ["hable"], "agx_blender:look=punchy": ["agx_blender", "--look", "punchy"], "drago": ["drago"]}
+    folder = bench.folder / "whole"
+    bench.compared("--cell-width", 16, *cells, "--pictures", folder, "--exposure", "1")
+    names = ["agx_blender_look_punchy.png", "drago.png", "hable.png"]
+    bench.report.check("--pictures: a file for each operator", sorted(p.name for p in folder.iterdir()) == names)
+    for (operator, arguments), name in zip(cells.items(), ("hable.png", "agx_blender_look_punchy.png", "drago.png")):
+        expected = bench.applied("--operator", *arguments, "--exposure", "1")
+        bench.report.check(f"--pictures: {operator} is what apply writes", (bench.bytes_of(folder / name) == expected).all())
+
+
 def check_scaled(bench):
     """A wide picture of one colour with one light: the operator that measures takes the light of the whole picture."""
     rgb = np.full((64, 192, 3), 0.3, np.float32) * [1, 0.5, 0.25]
@@ -254,6 +266,7 @@ def main():
         check_sheet(bench)
         check_scaled(bench)
         check_default(bench)
+        check_pictures(bench)
         check_false_color(bench)
         check_difference(bench)
         check_split(bench)

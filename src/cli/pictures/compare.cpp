@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "base/atomic_file.h"
 #include "cli/pictures/commands.h"
 #include "cli/pictures/picture_input.h"
 #include "image/comparison.h"
@@ -73,6 +74,21 @@ OIIO::ImageBuf render(const Rendering& rendering, const OIIO::ImageBuf& scene,
     if (!rendering.tonemapper(shown, scene))
         throw Error("compare: " + path + ": " + shown.geterror());
     return shown;
+}
+
+/// Each picture at full size, in a file with its operator's name.
+void write_pictures(const CompareOptions& options, const std::vector<Rendering>& renderings,
+                    const OIIO::ImageBuf& picture) {
+    require_writable_folder(options.pictures);
+    for (const Rendering& r : renderings) {
+        std::string name = operator_text(r.op);
+        for (char& c : name) {
+            const bool is_plain = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
+            if (!is_plain) c = '_';
+        }
+        write_image_atomically(render(r, picture, options.in),
+                               options.pictures + "/" + name + ".png", OIIO::TypeUInt8);
+    }
 }
 
 std::string name_of(const std::string& path) {
@@ -192,6 +208,7 @@ void run_compare(CompareOptions options) {
         write_split(options, renderings, picture);
     } else {
         write_sheet(options, renderings, picture, remark);
+        if (!options.pictures.empty()) write_pictures(options, renderings, picture);
     }
 }
 

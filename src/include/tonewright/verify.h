@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <vector>
@@ -11,8 +12,8 @@ TONEWRIGHT_NAMESPACE_BEGIN
 
 /// What to compare with the reference.
 struct VerifyOptions {
-    /// `id`, `id:preset`; empty or `all` = every operator, preset and look;
-    /// empty, with a config: those that it has views of.
+    /// As parse_operator() takes them. Empty or `all`: every operator, preset and look. Empty, with a
+    /// config: those that it has views of.
     std::vector<std::string> operators;
     /// Empty = sRGB; of a config without operators named, all that it has.
     std::vector<std::string> displays;
@@ -22,6 +23,8 @@ struct VerifyOptions {
     std::string config;
     /// Grid points a side of the gamut lattices.
     int lattice_edge = 33;
+    /// Random colors; colors near black and with negative channels in proportion.
+    std::size_t random_count = 100000;
     bool with_gpu = true;
     /// Scene-linear RGB pixels to add to the probe set, in the input space.
     std::vector<float> picture;

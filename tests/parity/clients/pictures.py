@@ -17,6 +17,7 @@ from pathlib import Path
 import numpy as np
 
 SKIPPED = 77  # exit status that ctest counts as skipped
+ALL = os.environ.get("TONEWRIGHT_TEST_ALL") == "1"  # `./run test --all`: full sample sets
 PROJECT = Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(PROJECT / "python_check"))
 from lut_encodings import acescct_decode, acescct_encode  # noqa: E402, F401  (with the other codes below)
@@ -71,6 +72,22 @@ def skip(reason):
     """Ends the whole script as skipped."""
     print(f"skipped: {reason}")
     sys.exit(SKIPPED)
+
+
+def share_of(items, parts):
+    """Every parts-th of the items, by the commit's hash: a few commits test all of them. All with `./run test --all`.
+
+    TONEWRIGHT_TEST_SHARE=N selects a share by hand.
+    """
+    if ALL:
+        return list(items)
+    number = os.environ.get("TONEWRIGHT_TEST_SHARE")
+    if number is None:
+        done = subprocess.run(["git", "-C", str(PROJECT), "rev-parse", "HEAD"], capture_output=True, text=True, check=False)
+        number = int(done.stdout[:8] or "0", 16)
+    number = int(number) % parts
+    print(f"share {number} of {parts} (TONEWRIGHT_TEST_SHARE={number}; `./run test --all` takes all)")
+    return list(items)[number::parts]
 
 
 def need_program(name, package):

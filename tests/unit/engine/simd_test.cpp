@@ -17,6 +17,7 @@
 #include "base/format_number.h"
 #include "base/random.h"
 #include "engine/simd_program.h"
+#include "full_counts.h"
 #include "measure/sample_set.h"
 #include "tonewright/engine.h"
 #include "tonewright/registry.h"
@@ -407,10 +408,10 @@ class SimdOperator : public ::testing::TestWithParam<std::string> {
 /// The standard probes, and colours of huge mixed signs: what is left of them after a matrix is the
 /// difference of large numbers.
 std::vector<float> test_colours() {
-    SampleSet set = make_sample_set(find_input_space("lin_rec709"), {7, 20000});
+    SampleSet set = make_sample_set(find_input_space("lin_rec709"), {7, count_of(20000U, 4000U)});
     SampleRandom random(99);
     set.add(-280, 3000, 0.1, SampleKind::negative);
-    for (int i = 0; i < 40000; ++i) {
+    for (std::size_t i = 0; i < count_of(40000U, 8000U); ++i) {
         Vector3 v;
         for (double& x : v)
             x = std::exp2(random.uniform(-18, 16.5)) * (random.bits() % 3 == 0 ? -1 : 1);
@@ -454,11 +455,17 @@ TEST_F(Simd, LatticesAreInterpolatedAsTheReferenceDoes) {
     }
 }
 
+/// parity.verify has the others on every target, too.
+std::vector<std::string> bound_displays() {
+    if (takes_full_counts()) return {"srgb", "rec1886", "display_p3"};
+    return {"rec1886"};
+}
+
 TEST_P(SimdOperator, IsWithinBoundOfReference) {
     const double bound = resolve_operator(GetParam()).op->bounds.simd;
     const double goal = resolve_operator(GetParam()).op->bounds.simd_goal;
     const std::vector<float> rgb = test_colours();
-    for (const std::string display : {"srgb", "rec1886", "display_p3"}) {
+    for (const std::string& display : bound_displays()) {
         const Pipeline view = view_of(GetParam(), display);
         const ReferenceEngine decode(find_display(display).decode);
         const std::vector<double> truth = run(ReferenceEngine(view), rgb);
@@ -471,6 +478,7 @@ TEST_P(SimdOperator, IsWithinBoundOfReference) {
             std::size_t at = 0;
             for (std::size_t i = 0; i < out.size(); ++i) {
                 const auto code = static_cast<double>(out[i]);
+                if (std::fabs(code - truth[i]) <= worst) continue;
                 // Near black a pure power has no end of slope: light counts, as code of sRGB.
                 const double light = std::fabs(decode({code, code, code})[0] -
                                                decode({truth[i], truth[i], truth[i]})[0]);
@@ -499,7 +507,7 @@ TEST_P(SimdOperator, IsTotal) {
             linear.emplace(view_of(GetParam(), "linear"), goal);
         }
         SampleRandom random(17);
-        std::vector<float> rgb(3 * scaled_count(target, 1000000));
+        std::vector<float> rgb(3 * scaled_count(target, count_of(1000000U, 100000U)));
         for (float& x : rgb)
             x = std::bit_cast<float>(static_cast<std::uint32_t>(random.bits() >> 32));
         for (const SimdEngine* e : {&*engine, &*linear}) {

@@ -16,14 +16,13 @@ TONEWRIGHT_NAMESPACE_BEGIN
     return x != x ? 0.0 : (x < -kHalfMax ? -kHalfMax : (x > kHalfMax ? kHalfMax : x));
 }
 
-class Tape;
-
 /// Double-precision evaluation of a pipeline: the truth that every other form is held to.
 ///
 /// It runs the expressions as they are written, without any pass that changes a value. Total:
 /// finite out for every double in, NaN and infinities included. Safe to share between threads.
 class TONEWRIGHT_API ReferenceEngine {
   public:
+    /// @throws Error  when more than 4096 values live at the same time; Lattice::nodes() as well
     explicit ReferenceEngine(const Pipeline& pipeline);
     ~ReferenceEngine();
     ReferenceEngine(ReferenceEngine&&) noexcept;
@@ -37,7 +36,8 @@ class TONEWRIGHT_API ReferenceEngine {
     void run_rgb(const float* in, double* out, std::size_t pixel_count) const noexcept;
 
   private:
-    std::unique_ptr<const Tape> tape_;
+    struct Program;
+    std::unique_ptr<const Program> program_;
 };
 
 /// Single-precision SIMD evaluation of a pipeline, chosen at run time for the processor.

@@ -503,16 +503,13 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
             if (on_row) on_row(rows.back());
         };
 
-        std::optional<SimdEngine> simd;
         // Of a config the engine says nothing.
         for (const std::string& target :
              is_of_config ? std::vector<std::string>{} : SimdEngine::targets()) {
-            SimdEngine::use_target(target);
-            if (!simd || !simd->is_made_for_target()) simd.emplace(pipeline, declared.simd_goal);
+            const SimdEngine simd(pipeline, declared.simd_goal, target);
             add("simd " + target, bounds.simd, declared.simd != DeclaredBounds{}.simd, false, "",
-                [&] { simd->run_rgb(probes.rgb.data(), shown.data(), probes.size()); });
+                [&] { simd.run_rgb(probes.rgb.data(), shown.data(), probes.size()); });
         }
-        SimdEngine::use_target("");
 
         OCIO::ConstProcessorRcPtr processor;
         std::string lowering = lowered.summary;

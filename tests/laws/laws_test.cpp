@@ -45,8 +45,6 @@ ResolvedOperator resolve(const OperatorVariant& v) { return resolve_operator(v.n
 
 class Law : public ::testing::TestWithParam<OperatorVariant> {
   protected:
-    void TearDown() override { SimdEngine::use_target(""); }
-
     [[nodiscard]] static const Operator& op() { return *resolve(GetParam()).op; }
     [[nodiscard]] static Pipeline view(std::string_view display, double stops = 0,
                                        std::string_view input = "lin_rec709") {
@@ -473,10 +471,9 @@ TEST_P(Law, SimdIsWithinItsBoundOnEveryTarget) {
     const Pipeline pipeline = view("srgb");
     std::vector<double> truth(probes.rgb.size());
     ReferenceEngine(pipeline).run_rgb(probes.rgb.data(), truth.data(), probes.size());
-    const SimdEngine engine(pipeline, op().bounds.simd_goal);
     std::vector<float> out(probes.rgb.size());
     for (const std::string& target : SimdEngine::targets()) {
-        SimdEngine::use_target(target);
+        const SimdEngine engine(pipeline, op().bounds.simd_goal, target);
         engine.run_rgb(probes.rgb.data(), out.data(), probes.size());
         double worst = 0;
         std::size_t at = 0;

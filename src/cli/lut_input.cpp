@@ -41,6 +41,7 @@ void add_lut_options(CLI::App& command, LutOptions& options, CLI::Option* op,
 }
 
 LutFile open_lut(const std::string& path, const std::string& interpolation) {
+    silence_opencolorio();
     const LutInterpolation between = parse_lut_interpolation(interpolation);
     const std::string extension = extension_of(path);
     constexpr const char* kPictures[] = {".png", ".tif", ".tiff", ".exr", ".tga", ".bmp", ".dpx"};

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "measure/sample_set.h"
+#include "base/random.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {

@@ -12,6 +12,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 
 LutFile open_lut(const std::string& path, const std::string& interpolation,
                  const std::function<Lut(const std::string&)>& read_picture) {
+    silence_opencolorio();
     const LutInterpolation between = parse_lut_interpolation(interpolation);
     const std::string extension = extension_of(path);
     constexpr const char* kPictures[] = {".png", ".tif", ".tiff", ".exr", ".tga", ".bmp", ".dpx"};

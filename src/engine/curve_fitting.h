@@ -35,7 +35,7 @@ void reject_curve(CurveCache& cache, const CompiledCurve* curve);
 /// @param outputs  indices into it
 /// @param sensitivity  of the values of the code
 /// @param cache    owns the curves that the code refers to afterwards
-/// @param form  see simd::curve_form()
+/// @param form  see simd::Target
 void fit_curves(std::vector<TapeInstruction>& code, std::array<std::uint32_t, 3>& outputs,
                 const Sensitivity& sensitivity, CurveCache& cache, CurveForm form);
 

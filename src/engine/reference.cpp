@@ -1,15 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
+#include <string>
 #include <vector>
 
 #include "engine/tape.h"
 #include "expr/scalar_ops.h"
 #include "tonewright/engine.h"
+#include "tonewright/error.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-constexpr std::size_t kTile = 256;  // pixels per pass: a tile of every value stays in the cache
+/// Pixels of a tile, where the values that live at the same time leave room for so many.
+constexpr std::size_t kTile = 128;
+/// Doubles of a tile, on the stack of the running thread: its 32 KiB stay in the cache. The
+/// operators of the catalog have at most 35 values at a time.
+constexpr std::size_t kTileDoubles = 4096;
 
 /// One operation over a tile. The switch is outside the loop, so that the plain operations become
 /// vector code; each computes exactly scalar_op().
@@ -78,36 +85,95 @@ void run_instruction(const TapeInstruction& step, double* out, const double* a, 
 
 }  // namespace
 
+/// The tape with a register for each value. run() allocates no memory.
+struct ReferenceEngine::Program {
+    /// A tile of one value: among the constants, or among the registers on the stack.
+    struct Row {
+        std::size_t offset = 0;
+        bool is_constant = false;
+    };
+    struct Step {
+        const TapeInstruction* instruction;
+        Row out, a, b, c;
+    };
+
+    Tape tape;
+    std::size_t tile = 0;
+    std::vector<double> constants;
+    std::vector<Step> steps;
+    std::array<Row, 3> outputs;
+
+    explicit Program(const Pipeline& pipeline) : tape(compose(pipeline)) {
+        const std::vector<TapeInstruction>& code = tape.code();
+        std::vector<std::array<std::int64_t, 4>> operands;
+        std::vector<bool> needs_register;
+        for (const TapeInstruction& step : code) {
+            // run() must not throw, so the functions of users run here.
+            if (step.lattice) (void)step.lattice->nodes();
+            std::array<std::int64_t, 4> read = {-1, -1, -1, -1};
+            const std::array<std::uint32_t, 3> all = {step.a, step.b, step.c};
+            for (std::size_t k = 0; k < static_cast<std::size_t>(operand_count(step.op)); ++k)
+                read[k] = all[k];
+            operands.push_back(read);
+            needs_register.push_back(step.op != ExprOp::constant);
+        }
+        const RegisterAllocation registers = allocate_registers(
+            operands, needs_register, {tape.outputs().begin(), tape.outputs().end()});
+        const std::size_t live = std::max<std::size_t>(registers.register_count, 1);
+        if (live > kTileDoubles) {
+            throw Error("reference engine: live values are " + std::to_string(live) +
+                        "; expected at most " + std::to_string(kTileDoubles));
+        }
+        tile = std::min(kTile, kTileDoubles / live);
+
+        std::vector<Row> rows;
+        for (std::size_t i = 0; i < code.size(); ++i) {
+            const TapeInstruction& step = code[i];
+            if (step.op == ExprOp::constant) {
+                rows.push_back({constants.size(), true});
+                constants.insert(constants.end(), tile, step.value);
+                continue;
+            }
+            rows.push_back({registers.register_of[i] * tile, false});
+            // An operand that the operation does not have is the first one once more.
+            const int count = operand_count(step.op);
+            const Row a = count > 0 ? rows[step.a] : rows[i];
+            steps.push_back(
+                {&step, rows[i], a, count > 1 ? rows[step.b] : a, count > 2 ? rows[step.c] : a});
+        }
+        for (std::size_t c = 0; c < 3; ++c)
+            outputs[c] = rows[tape.outputs()[c]];
+    }
+};
+
 ReferenceEngine::ReferenceEngine(const Pipeline& pipeline)
-    : tape_(std::make_unique<const Tape>(compose(pipeline))) {}
+    : program_(std::make_unique<const Program>(pipeline)) {}
 ReferenceEngine::~ReferenceEngine() = default;
 ReferenceEngine::ReferenceEngine(ReferenceEngine&&) noexcept = default;
 ReferenceEngine& ReferenceEngine::operator=(ReferenceEngine&&) noexcept = default;
 
 void ReferenceEngine::run(const std::array<const double*, 3>& in, const std::array<double*, 3>& out,
                           std::size_t count) const noexcept {
-    const auto& code = tape_->code();
-    const std::size_t tile = std::min(kTile, count);
-    std::vector<double> values(code.size() * tile);
-    const auto row = [&](std::uint32_t i) { return values.data() + i * tile; };
-    for (std::uint32_t i = 0; i < code.size(); ++i) {
-        if (code[i].op == ExprOp::constant) std::fill_n(row(i), tile, code[i].value);
-    }
-    for (std::size_t begin = 0; begin < count; begin += tile) {
-        const std::size_t n = std::min(tile, count - begin);
-        for (std::uint32_t i = 0; i < code.size(); ++i) {
-            const TapeInstruction& step = code[i];
-            if (step.op == ExprOp::input) {
-                const double* plane = in[static_cast<std::size_t>(step.input)] + begin;
+    const Program& program = *program_;
+    alignas(64) std::array<double, kTileDoubles> registers;
+    const auto read = [&](const Program::Row& row) -> const double* {
+        return (row.is_constant ? program.constants.data() : registers.data()) + row.offset;
+    };
+    for (std::size_t begin = 0; begin < count; begin += program.tile) {
+        const std::size_t n = std::min(program.tile, count - begin);
+        for (const Program::Step& step : program.steps) {
+            double* const result = registers.data() + step.out.offset;
+            if (step.instruction->op == ExprOp::input) {
+                const double* plane = in[static_cast<std::size_t>(step.instruction->input)] + begin;
                 for (std::size_t k = 0; k < n; ++k)
-                    row(i)[k] = sanitise(plane[k]);
+                    result[k] = sanitise(plane[k]);
             } else {
-                run_instruction(step, row(i), row(step.a), row(step.b), row(step.c), n);
+                run_instruction(*step.instruction, result, read(step.a), read(step.b), read(step.c),
+                                n);
             }
         }
-        for (std::size_t c = 0; c < 3; ++c) {
-            std::copy_n(row(tape_->outputs()[c]), n, out[c] + begin);
-        }
+        for (std::size_t c = 0; c < 3; ++c)
+            std::copy_n(read(program.outputs[c]), n, out[c] + begin);
     }
 }
 
@@ -119,10 +185,9 @@ Vector3 ReferenceEngine::operator()(const Vector3& rgb) const noexcept {
 
 void ReferenceEngine::run_rgb(const float* in, double* out,
                               std::size_t pixel_count) const noexcept {
-    constexpr std::size_t kChunk = 4096;
-    std::vector<double> planes(3 * kChunk);
-    const std::array<double*, 3> plane = {planes.data(), planes.data() + kChunk,
-                                          planes.data() + 2 * kChunk};
+    constexpr std::size_t kChunk = kTile;
+    std::array<std::array<double, kChunk>, 3> planes;
+    const std::array<double*, 3> plane = {planes[0].data(), planes[1].data(), planes[2].data()};
     for (std::size_t begin = 0; begin < pixel_count; begin += kChunk) {
         const std::size_t n = std::min(kChunk, pixel_count - begin);
         for (std::size_t i = 0; i < n; ++i) {

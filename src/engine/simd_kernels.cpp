@@ -15,10 +15,27 @@
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif
 
+#include "base/strings.h"
+#include "engine/kernel_targets.h"
+#include "tonewright/error.h"
+
+#ifndef TONEWRIGHT_SIMD_KERNELS_ONCE
+#define TONEWRIGHT_SIMD_KERNELS_ONCE
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace simd {
+namespace {
+/// See kernels_of_this_machine().
+struct Compiled {
+    template <std::int64_t kTarget>
+    static constexpr const Target* kernels = nullptr;
+};
+}  // namespace
+}  // namespace simd
+TONEWRIGHT_NAMESPACE_END
+#endif
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "engine/simd_kernels.cpp"
-// Processors without SSE4 (before 2008) run the scalar code.
-#define HWY_DISABLED_TARGETS HWY_SSSE3
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 
 #include "engine/machine_code.h"
@@ -344,20 +361,6 @@ HWY_INLINE Vec<DF> load_narrow(DF d, const Source& source, std::size_t i) {
 #endif
 }
 
-/// An engine made for another instruction set computes the same here, slowly.
-HWY_NOINLINE void curve_of_other_form(const Frame& frame, const Instruction& step,
-                                      const CompiledCurve& curve) {
-    for (std::size_t i = 0; i < frame.count; ++i) {
-        double y = 0;
-        with_number(frame, step.in[0], i, [&](auto& x) {
-            y = curve(curve.is_precise ? static_cast<double>(x)
-                                       : static_cast<double>(static_cast<float>(x)));
-        });
-        with_number(frame, step.out, i,
-                    [&](auto& out) { out = static_cast<std::decay_t<decltype(out)>>(y); });
-    }
-}
-
 #if HWY_TARGET <= HWY_AVX3
 
 /// The curve's degree as a constant.
@@ -536,7 +539,6 @@ HWY_INLINE void run_curve(const Frame& frame, const Instruction& step, const Com
 }
 
 HWY_NOINLINE void curve(const Frame& frame, const Instruction& step, const CompiledCurve& curve) {
-    if (curve.rows) return curve_of_other_form(frame, step, curve);
     if (curve.cells == 0) {
         if (curve.segments <= 16) return run_curve<0, 16>(frame, step, curve);
         if (curve.segments <= 32) return run_curve<0, 32>(frame, step, curve);
@@ -552,8 +554,7 @@ HWY_NOINLINE void curve(const Frame& frame, const Instruction& step, const Compi
     return run_curve<64, 64>(frame, step, curve);
 }
 
-CurveForm curve_form() { return CurveForm::segments; }
-bool runs_machine_code() { return true; }
+constexpr CurveForm kCurveForm = CurveForm::segments;
 
 #elif HWY_TARGET <= HWY_SSE4
 
@@ -727,12 +728,7 @@ HWY_NOINLINE void run_precise_rows(const Frame& frame, const Instruction& step,
     }
 }
 
-HWY_INLINE bool is_of_this_form(const CompiledCurve& curve) {
-    return curve.rows && curve.rows->is_fused == (HWY_NATIVE_FMA != 0);
-}
-
 HWY_NOINLINE void curve(const Frame& frame, const Instruction& step, const CompiledCurve& curve) {
-    if (!is_of_this_form(curve)) return curve_of_other_form(frame, step, curve);
     const bool has_restarts = !curve.rows->restarts.empty();
     if (curve.is_precise) {
         return has_restarts ? run_precise_rows<8, true>(frame, step, curve)
@@ -781,17 +777,17 @@ HWY_INLINE void run_flat(const CompiledCurve& curve, const float* in, float* out
                         : run_flat<4, false>(curve, in, out, count, is_rgba);
 }
 
-CurveForm curve_form() { return HWY_NATIVE_FMA ? CurveForm::rows : CurveForm::rows_unfused; }
-bool runs_machine_code() { return false; }
+constexpr CurveForm kCurveForm = HWY_NATIVE_FMA ? CurveForm::rows : CurveForm::rows_unfused;
 
 #else
 
-HWY_NOINLINE void curve(const Frame& frame, const Instruction& step, const CompiledCurve& curve) {
-    curve_of_other_form(frame, step, curve);
+/// Programs for this instruction set have no compiled curves.
+HWY_INLINE void curve(const Frame& /*frame*/, const Instruction& /*step*/,
+                      const CompiledCurve& /*curve*/) {
+    HWY_ABORT("a compiled curve on an instruction set without them");
 }
 
-CurveForm curve_form() { return CurveForm::none; }
-bool runs_machine_code() { return false; }
+constexpr CurveForm kCurveForm = CurveForm::none;
 
 #endif
 
@@ -1178,9 +1174,9 @@ void run_parts(const Code& code, PixelLayout layout, unsigned char* tile, const 
     }
 }
 
-void run_machine(const Code& code, const std::array<const float*, 3>& in, std::ptrdiff_t in_stride,
-                 const std::array<float*, 3>& out, std::ptrdiff_t out_stride, std::size_t count) {
-    alignas(kVectorBytes) unsigned char tile[kRegisterFileBytes];
+void run_machine(const Code& code, unsigned char* tile, const std::array<const float*, 3>& in,
+                 std::ptrdiff_t in_stride, const std::array<float*, 3>& out,
+                 std::ptrdiff_t out_stride, std::size_t count) {
     const VectorProgram& program = code.machine->program();
     if (in_stride == out_stride && are_interleaved(in, in_stride) &&
         are_interleaved(out, out_stride)) {
@@ -1229,7 +1225,6 @@ bool run_without_tiles(const Code& code, const std::array<const float*, 3>& in,
                        std::ptrdiff_t out_stride, std::size_t count) {
     if (!code.only_curve || in_stride != out_stride || count == 0) return false;
     const CompiledCurve& curve = code.curves[*code.only_curve];
-    if (!is_of_this_form(curve)) return false;
     if (in_stride == 1) {
         // One after the other: planes that change places have to go through a tile.
         for (std::size_t c = 0; c < 3; ++c) {
@@ -1249,13 +1244,14 @@ bool run_without_tiles(const Code& code, const std::array<const float*, 3>& in,
 #endif
 
 void run(const Code& code, const std::array<const float*, 3>& in, std::ptrdiff_t in_stride,
-         const std::array<float*, 3>& out, std::ptrdiff_t out_stride, std::size_t count) {
-#if HWY_TARGET <= HWY_AVX3
-    if (code.machine) return run_machine(code, in, in_stride, out, out_stride, count);
-#elif HWY_TARGET <= HWY_SSE4
+         const std::array<float*, 3>& out, std::ptrdiff_t out_stride, std::size_t count) noexcept {
+#if HWY_TARGET > HWY_AVX3 && HWY_TARGET <= HWY_SSE4
     if (run_without_tiles(code, in, in_stride, out, out_stride, count)) return;
 #endif
     alignas(kVectorBytes) unsigned char registers[kRegisterFileBytes];
+#if HWY_TARGET <= HWY_AVX3
+    if (code.machine) return run_machine(code, registers, in, in_stride, out, out_stride, count);
+#endif
     const auto* constants = reinterpret_cast<const unsigned char*>(code.constants.data());
     for (std::size_t begin = 0; begin < count; begin += code.tile) {
         const std::size_t n = HWY_MIN(code.tile, count - begin);
@@ -1273,8 +1269,15 @@ void run(const Code& code, const std::array<const float*, 3>& in, std::ptrdiff_t
     }
 }
 
+constexpr Target kTarget = {
+    .curve_form = kCurveForm, .runs_machine_code = HWY_TARGET <= HWY_AVX3, .run = run};
+
 // NOLINTNEXTLINE(google-readability-namespace-comments)
 }  // namespace HWY_NAMESPACE
+
+template <>
+constexpr const Target* Compiled::kernels<HWY_TARGET> = &HWY_NAMESPACE::kTarget;
+
 }  // namespace simd
 TONEWRIGHT_NAMESPACE_END
 HWY_AFTER_NAMESPACE();
@@ -1282,43 +1285,21 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace simd {
-namespace {
 
-HWY_EXPORT(run);
-HWY_EXPORT(curve_form);
-HWY_EXPORT(runs_machine_code);
-
-/// Highway's bits of the targets compiled in that the machine has, best (lowest bit) first.
-const std::vector<std::int64_t>& targets() {
-    // Before use_target() can have restricted them.
-    static const std::vector<std::int64_t> all = hwy::SupportedAndGeneratedTargets();
+const std::vector<Target>& targets() {
+    static const std::vector<Target> all = kernels_of_this_machine<Compiled>();
     return all;
 }
 
-}  // namespace
-
-void run(const Code& code, const std::array<const float*, 3>& in, std::ptrdiff_t in_stride,
-         const std::array<float*, 3>& out, std::ptrdiff_t out_stride, std::size_t count) noexcept {
-    HWY_DYNAMIC_DISPATCH(run)(code, in, in_stride, out, out_stride, count);
-}
-
-CurveForm curve_form() { return HWY_DYNAMIC_DISPATCH(curve_form)(); }
-
-bool runs_machine_code() { return HWY_DYNAMIC_DISPATCH(runs_machine_code)(); }
-
-const std::vector<std::string>& target_names() {
-    static const std::vector<std::string> names = [] {
-        std::vector<std::string> result;
-        for (const std::int64_t target : targets())
-            result.emplace_back(hwy::TargetName(target));
-        return result;
-    }();
-    return names;
-}
-
-void use_target(int index) {
-    hwy::SetSupportedTargetsForTest(index < 0 ? 0 : targets()[static_cast<std::size_t>(index)]);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+const Target& find_target(std::string_view name) {
+    if (name.empty()) return targets().front();
+    std::vector<std::string> names;
+    for (const Target& target : targets()) {
+        if (target.target == name) return target;
+        names.emplace_back(target.target);
+    }
+    throw Error("simd engine: target is " + std::string(name) + "; expected " +
+                join_choices(names) + did_you_mean(name, names));
 }
 
 }  // namespace simd

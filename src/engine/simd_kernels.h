@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/compiled_curve.h"
@@ -135,8 +135,28 @@ struct TilePorts {
 };
 
 class MachineCode;
+struct Code;
+
+/// An instruction set, and the kernels that are compiled for it.
+struct Target {
+    const char* target = nullptr;  // its name
+    /// The form of compiled curves that is fastest there.
+    CurveForm curve_form = CurveForm::none;
+    /// True for the instruction set that machine code is made for.
+    bool runs_machine_code = false;
+    void (*run)(const Code& code, const std::array<const float*, 3>& in, std::ptrdiff_t in_stride,
+                const std::array<float*, 3>& out, std::ptrdiff_t out_stride,
+                std::size_t count) noexcept = nullptr;
+};
+/// Instruction sets that are compiled in and that this machine has, best first.
+[[nodiscard]] const std::vector<Target>& targets();
+/// @param name  "" for the best
+/// @throws Error  when this machine has no such target
+[[nodiscard]] const Target& find_target(std::string_view name = {});
 
 struct Code : TilePorts {
+    /// The one that it is compiled for, and that runs it.
+    const Target* target = nullptr;
     std::vector<Instruction> instructions;
     std::vector<ConstantVector> constants;
     std::vector<SampledTable> tables;
@@ -157,19 +177,12 @@ struct Code : TilePorts {
     Code& operator=(Code&&) = default;
 };
 
-/// Runs the code over `count` pixels, with the best instruction set that is not switched off.
-void run(const Code& code, const std::array<const float*, 3>& in, std::ptrdiff_t in_stride,
-         const std::array<float*, 3>& out, std::ptrdiff_t out_stride, std::size_t count) noexcept;
-
-/// The form of compiled curves that pays on the instruction set that runs now. The other form and
-/// instruction sets that have none compute the same, slowly.
-[[nodiscard]] CurveForm curve_form();
-/// True when that is the one that machine code is made for.
-[[nodiscard]] bool runs_machine_code();
-/// Instruction sets compiled in that this machine has, best first.
-const std::vector<std::string>& target_names();
-/// @param index  into target_names(), or -1 for the best.
-void use_target(int index);
+/// Runs the code over `count` pixels.
+inline void run(const Code& code, const std::array<const float*, 3>& in, std::ptrdiff_t in_stride,
+                const std::array<float*, 3>& out, std::ptrdiff_t out_stride,
+                std::size_t count) noexcept {
+    code.target->run(code, in, in_stride, out, out_stride, count);
+}
 
 }  // namespace simd
 TONEWRIGHT_NAMESPACE_END

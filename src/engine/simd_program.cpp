@@ -44,8 +44,8 @@ class FloatTape {
     }
 
     /// @param cache  owns the curves
-    void fold(const Sensitivity& sensitivity, CurveCache& cache) {
-        fit_curves(code_, outputs_, sensitivity, cache, curve_form());
+    void fold(const Sensitivity& sensitivity, CurveCache& cache, CurveForm form) {
+        fit_curves(code_, outputs_, sensitivity, cache, form);
     }
 
     [[nodiscard]] const std::vector<TapeInstruction>& code() const { return code_; }
@@ -388,9 +388,10 @@ class Assembler {
         }
     }
 
-    Code assemble() {
+    Code assemble(const Target& target) {
         allocate();
         Code code;
+        code.target = &target;
         code.tile = tile_;
         for (std::size_t slot = 0; slot < steps_.size(); ++slot) {
             const Selected& s = steps_[slot];
@@ -437,7 +438,7 @@ class Assembler {
         code.lattices = std::move(lattices_);
         code.curves = std::move(curves_);
         code.only_curve = only_curve(code);
-        if (runs_machine_code()) code.machine = MachineCode::make(code);
+        if (target.runs_machine_code) code.machine = MachineCode::make(code);
         return code;
     }
 
@@ -657,7 +658,8 @@ class Assembler {
 
 }  // namespace
 
-Code compile(const Pipeline& pipeline, double max_error, bool has_curves) {
+Code compile(const Pipeline& pipeline, double max_error, const Target& target, bool has_curves) {
+    has_curves = has_curves && target.curve_form != CurveForm::none;
     const Tape source(compose(simplify(pipeline)));
     const FloatTape plain(source);
     Sensitivity sensitivity;
@@ -665,7 +667,7 @@ Code compile(const Pipeline& pipeline, double max_error, bool has_curves) {
     CurveCache curves;
     while (true) {
         FloatTape tape = plain;
-        if (has_curves) tape.fold(sensitivity, curves);
+        if (has_curves) tape.fold(sensitivity, curves, target.curve_form);
         const Precision precision = choose_precision(tape.code(), tape.outputs(), max_error);
         // Exact enough where it stands, or compiled again or not at all.
         for (const CompiledCurve* curve : precision.too_coarse)
@@ -673,7 +675,7 @@ Code compile(const Pipeline& pipeline, double max_error, bool has_curves) {
         if (!precision.too_coarse.empty()) continue;
         const std::vector<bool>& in_double = precision.in_double;
         const std::vector<Selected> selected = Selector(tape, in_double).select();
-        return Assembler(tape, in_double, selected).assemble();
+        return Assembler(tape, in_double, selected).assemble(target);
     }
 }
 
@@ -681,12 +683,11 @@ Code compile(const Pipeline& pipeline, double max_error, bool has_curves) {
 
 struct SimdEngine::Program {
     simd::Code code;
-    CurveForm curve_form;  // of the target that it is made for
 };
 
-SimdEngine::SimdEngine(const Pipeline& pipeline, double max_error)
+SimdEngine::SimdEngine(const Pipeline& pipeline, double max_error, std::string_view target)
     : program_(std::make_unique<const Program>(
-          Program{simd::compile(pipeline, max_error), simd::curve_form()})) {}
+          Program{simd::compile(pipeline, max_error, simd::find_target(target))})) {}
 SimdEngine::~SimdEngine() = default;
 SimdEngine::SimdEngine(SimdEngine&&) noexcept = default;
 SimdEngine& SimdEngine::operator=(SimdEngine&&) noexcept = default;
@@ -701,21 +702,11 @@ void SimdEngine::run_rgb(const float* in, float* out, std::size_t pixel_count) c
     run({in, in + 1, in + 2}, 3, {out, out + 1, out + 2}, 3, pixel_count);
 }
 
-std::vector<std::string> SimdEngine::targets() { return simd::target_names(); }
-
-bool SimdEngine::is_made_for_target() const noexcept {
-    return program_->curve_form == simd::curve_form();
-}
-
-void SimdEngine::use_target(const std::string& name) {
-    if (name.empty()) return simd::use_target(-1);
-    const std::vector<std::string>& names = simd::target_names();
-    const auto it = std::find(names.begin(), names.end(), name);
-    if (it == names.end()) {
-        throw Error("simd engine: target is " + name + "; expected " + join_choices(names) +
-                    did_you_mean(name, names));
-    }
-    simd::use_target(static_cast<int>(it - names.begin()));
+std::vector<std::string> SimdEngine::targets() {
+    std::vector<std::string> names;
+    for (const simd::Target& target : simd::targets())
+        names.emplace_back(target.target);
+    return names;
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -12,17 +12,16 @@ namespace simd {
 ///
 /// 1. neighbouring matrices multiplied; division by a constant as multiplication by its reciprocal;
 ///    small whole powers as products;
-/// 2. what is a function of one value compiled to piecewise polynomials, where that is faster on
-/// the
-///    instruction set that runs now (curve_folding.h);
+/// 2. functions of one value compiled to piecewise polynomials, on instruction sets where that is
+///    faster (curve_fitting.h);
 /// 3. the values that float is too coarse for are kept in double (precision.h);
 /// 4. products and sums contracted to fused multiply-adds and dot products, comparisons joined to
 ///    their selects;
 /// 5. registers allocated, and the tile made as large as the first-level cache allows;
 /// 6. for AVX-512, machine code of the same (machine_code.h).
-/// @param has_curves  whether to do 2, to test what is compiled without.
+/// @param has_curves  false leaves 2 out, to test the kernels that curves replace
 [[nodiscard]] Code compile(const Pipeline& pipeline, double max_error = kSimdError,
-                           bool has_curves = curve_form() != CurveForm::none);
+                           const Target& target = find_target(), bool has_curves = true);
 
 }  // namespace simd
 TONEWRIGHT_NAMESPACE_END

@@ -96,18 +96,19 @@ Lattice::Lattice(int edge, std::function<std::vector<double>()> make)
 
 const std::vector<double>& Lattice::nodes() const {
     std::call_once(made_, [this] {
-        nodes_ = make_();
-        make_ = nullptr;
+        std::vector<double> nodes = make_();
         const auto n = static_cast<std::size_t>(edge_);
-        if (nodes_.size() != 3 * n * n * n) {
-            throw Error("lattice: it has " + std::to_string(nodes_.size()) +
+        if (nodes.size() != 3 * n * n * n) {
+            throw Error("lattice: it has " + std::to_string(nodes.size()) +
                         " numbers; expected 3 of each of " + std::to_string(edge_) + "^3 nodes");
         }
+        nodes_ = std::move(nodes);
+        make_ = nullptr;
     });
     return nodes_;
 }
 
-double Lattice::operator()(int channel, double r, double g, double b) const noexcept {
+double Lattice::operator()(int channel, double r, double g, double b) const {
     const Tetrahedron t(edge_, {r, g, b});
     const auto c = static_cast<std::size_t>(channel);
     const std::vector<double>& node = nodes();
@@ -117,11 +118,11 @@ double Lattice::operator()(int channel, double r, double g, double b) const noex
     return sum;
 }
 
-std::array<double, 3> Lattice::operator()(double r, double g, double b) const noexcept {
+std::array<double, 3> Lattice::operator()(double r, double g, double b) const {
     return {(*this)(0, r, g, b), (*this)(1, r, g, b), (*this)(2, r, g, b)};
 }
 
-std::array<double, 3> Lattice::gradient(int channel, double r, double g, double b) const noexcept {
+std::array<double, 3> Lattice::gradient(int channel, double r, double g, double b) const {
     const std::array<double, 3> at = {r, g, b};
     const Tetrahedron t(edge_, at);
     const auto c = static_cast<std::size_t>(channel);

@@ -11,10 +11,25 @@
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif
 
+#include "engine/kernel_targets.h"
+
+#ifndef TONEWRIGHT_HALF_FLOAT_ONCE
+#define TONEWRIGHT_HALF_FLOAT_ONCE
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace {
+/// See kernels_of_this_machine().
+struct CompiledHalfKernels {
+    template <std::int64_t kTarget>
+    static constexpr const HalfKernels* kernels = nullptr;
+};
+}  // namespace
+TONEWRIGHT_NAMESPACE_END
+#endif
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "image/half_float.cpp"
-#define HWY_DISABLED_TARGETS HWY_SSSE3
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
+
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -44,7 +59,7 @@ HWY_INLINE void in_vectors(const From* from, To* to, std::size_t count, F conver
     std::memcpy(to + i, converted, (count - i) * sizeof(To));
 }
 
-bool to_float(const void* from, float* to, std::size_t count) {
+bool to_float(const void* from, float* to, std::size_t count) noexcept {
     in_vectors(static_cast<const hwy::float16_t*>(from), to, count,
                [](const hwy::float16_t* halves, float* floats) HWY_ATTR {
                    const Floats d;
@@ -52,7 +67,7 @@ bool to_float(const void* from, float* to, std::size_t count) {
                });
     return true;
 }
-bool to_half(const float* from, void* to, std::size_t count) {
+bool to_half(const float* from, void* to, std::size_t count) noexcept {
     in_vectors(from, static_cast<hwy::float16_t*>(to), count,
                [](const float* floats, hwy::float16_t* halves) HWY_ATTR {
                    const Halves d;
@@ -63,30 +78,38 @@ bool to_half(const float* from, void* to, std::size_t count) {
 
 #else
 
-bool to_float(const void*, float*, std::size_t) { return false; }
-bool to_half(const float*, void*, std::size_t) { return false; }
+bool to_float(const void*, float*, std::size_t) noexcept { return false; }
+bool to_half(const float*, void*, std::size_t) noexcept { return false; }
 
 #endif
 
+constexpr HalfKernels kHalfKernels = {.to_float = to_float, .to_half = to_half};
+
 // NOLINTNEXTLINE(google-readability-namespace-comments)
 }  // namespace HWY_NAMESPACE
+
+template <>
+constexpr const HalfKernels* CompiledHalfKernels::kernels<HWY_TARGET> =
+    &HWY_NAMESPACE::kHalfKernels;
+
 TONEWRIGHT_NAMESPACE_END
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 TONEWRIGHT_NAMESPACE_BEGIN
-namespace {
 
-HWY_EXPORT(to_float);
-HWY_EXPORT(to_half);
-
-}  // namespace
-
-bool half_to_float(const void* from, float* to, std::size_t count) noexcept {
-    return HWY_DYNAMIC_DISPATCH(to_float)(from, to, count);
+const std::vector<HalfKernels>& half_kernels() {
+    static const std::vector<HalfKernels> all = kernels_of_this_machine<CompiledHalfKernels>();
+    return all;
 }
-bool float_to_half(const float* from, void* to, std::size_t count) noexcept {
-    return HWY_DYNAMIC_DISPATCH(to_half)(from, to, count);
+
+bool half_to_float(const void* from, float* to, std::size_t count,
+                   const HalfKernels& with) noexcept {
+    return with.to_float(from, to, count);
+}
+bool float_to_half(const float* from, void* to, std::size_t count,
+                   const HalfKernels& with) noexcept {
+    return with.to_half(from, to, count);
 }
 
 TONEWRIGHT_NAMESPACE_END

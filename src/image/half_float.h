@@ -3,15 +3,28 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "tonewright/version.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
+/// The functions of one instruction set.
+struct HalfKernels {
+    const char* target = nullptr;  // its name
+    bool (*to_float)(const void* from, float* to, std::size_t count) noexcept = nullptr;
+    bool (*to_half)(const float* from, void* to, std::size_t count) noexcept = nullptr;
+};
+/// For each instruction set of this machine, best first.
+[[nodiscard]] const std::vector<HalfKernels>& half_kernels();
+
 /// Half floats, as their 16 bits, that processors convert themselves: nearest, ties to even, beyond
 /// the range infinity. Numbers follow each other in memory, which may have any alignment.
+/// @param with   the functions of one instruction set
 /// @returns  false, with nothing done, where the processor has no such instructions (before AVX2).
-[[nodiscard]] bool half_to_float(const void* from, float* to, std::size_t count) noexcept;
-[[nodiscard]] bool float_to_half(const float* from, void* to, std::size_t count) noexcept;
+[[nodiscard]] bool half_to_float(const void* from, float* to, std::size_t count,
+                                 const HalfKernels& with = half_kernels().front()) noexcept;
+[[nodiscard]] bool float_to_half(const float* from, void* to, std::size_t count,
+                                 const HalfKernels& with = half_kernels().front()) noexcept;
 
 TONEWRIGHT_NAMESPACE_END

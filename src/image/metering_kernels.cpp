@@ -11,10 +11,25 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/kernel_targets.h"
+
+#ifndef TONEWRIGHT_METERING_KERNELS_ONCE
+#define TONEWRIGHT_METERING_KERNELS_ONCE
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace light {
+namespace {
+/// See kernels_of_this_machine().
+struct Compiled {
+    template <std::int64_t kTarget>
+    static constexpr const Kernels* kernels = nullptr;
+};
+}  // namespace
+}  // namespace light
+TONEWRIGHT_NAMESPACE_END
+#endif
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "image/metering_kernels.cpp"
-// As simd_kernels.cpp.
-#define HWY_DISABLED_TARGETS HWY_SSSE3
 #include "hwy/foreach_target.h"  // IWYU pragma: keep
 
 #include "hwy/highway.h"
@@ -35,7 +50,7 @@ using DU = hn::RebindToUnsigned<DD>;
 using VD = hn::Vec<DD>;
 using VU = hn::Vec<DU>;
 
-void split(const float* pixels, int channels, std::size_t count, Planes& to) {
+void split(const float* pixels, int channels, std::size_t count, Planes& to) noexcept {
     const DD dd;
     const DF df;
     const std::size_t lanes = hn::Lanes(dd);
@@ -60,7 +75,7 @@ void split(const float* pixels, int channels, std::size_t count, Planes& to) {
     }
 }
 
-Kinds kinds(Planes& planes, std::size_t count, bool has_alpha) {
+Kinds kinds(Planes& planes, std::size_t count, bool has_alpha) noexcept {
     const DD d;
     const std::size_t lanes = hn::Lanes(d);
     const VD zero = hn::Zero(d);
@@ -83,7 +98,7 @@ Kinds kinds(Planes& planes, std::size_t count, bool has_alpha) {
     return {hn::AllTrue(d, hn::Eq(bad, zero)), hn::AllFalse(d, clear), hn::AllFalse(d, veiled)};
 }
 
-bool are_plain(const float* pixels, int channels, std::size_t count, bool has_alpha) {
+bool are_plain(const float* pixels, int channels, std::size_t count, bool has_alpha) noexcept {
     const std::size_t all = count * static_cast<std::size_t>(channels);
     std::size_t i = 0;
 #if HWY_TARGET != HWY_SCALAR
@@ -109,7 +124,7 @@ bool are_plain(const float* pixels, int channels, std::size_t count, bool has_al
     return true;
 }
 
-void divide_by_alpha(Planes& planes, std::size_t count) {
+void divide_by_alpha(Planes& planes, std::size_t count) noexcept {
     const DD d;
     for (std::size_t i = 0; i < padded(count); i += hn::Lanes(d)) {
         const VD a = hn::LoadU(d, planes[3].data() + i);
@@ -314,18 +329,30 @@ HWY_INLINE void add_up_any(const Pixels& pixels, std::size_t count, const Weighi
 }
 
 void add_up_planes(const Planes& planes, std::size_t count, const Weighing& weighing,
-                   double* luminance, SpanLight& light) {
+                   double* luminance, SpanLight& light) noexcept {
     add_up_any(PlanePixels{planes}, count, weighing, luminance, light);
 }
 
 void add_up_packed(const float* pixels, int channels, std::size_t count, const Weighing& weighing,
-                   double* luminance, SpanLight& light) {
+                   double* luminance, SpanLight& light) noexcept {
     if (channels == 4)
         return add_up_any(PackedPixels<4>(pixels, count), count, weighing, luminance, light);
     add_up_any(PackedPixels<3>(pixels, count), count, weighing, luminance, light);
 }
 
+constexpr Kernels kKernels = {.split = split,
+                              .kinds = kinds,
+                              .are_plain = are_plain,
+                              .divide_by_alpha = divide_by_alpha,
+                              .add_up_planes = add_up_planes,
+                              .add_up_packed = add_up_packed};
+
+// NOLINTNEXTLINE(google-readability-namespace-comments)
 }  // namespace HWY_NAMESPACE
+
+template <>
+constexpr const Kernels* Compiled::kernels<HWY_TARGET> = &HWY_NAMESPACE::kKernels;
+
 }  // namespace light
 TONEWRIGHT_NAMESPACE_END
 HWY_AFTER_NAMESPACE();
@@ -334,13 +361,6 @@ HWY_AFTER_NAMESPACE();
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace light {
 namespace {
-
-HWY_EXPORT(split);
-HWY_EXPORT(kinds);
-HWY_EXPORT(are_plain);
-HWY_EXPORT(divide_by_alpha);
-HWY_EXPORT(add_up_planes);
-HWY_EXPORT(add_up_packed);
 
 void fill_up(std::array<double, kSpan>& plane, std::size_t count, double with) {
     std::fill(plane.begin() + static_cast<std::ptrdiff_t>(count),
@@ -361,38 +381,48 @@ SpanLight in_range(SpanLight light, const std::array<double, kSpan>& luminance,
 
 }  // namespace
 
-void split(const float* pixels, int channels, std::size_t count, Planes& to) noexcept {
-    HWY_DYNAMIC_DISPATCH(split)(pixels, channels, count, to);
+const std::vector<Kernels>& kernels() {
+    static const std::vector<Kernels> all = kernels_of_this_machine<Compiled>();
+    return all;
+}
+const Kernels& best_kernels() {
+    static const Kernels& best = kernels().front();
+    return best;
 }
 
-Kinds kinds(Planes& planes, std::size_t count, bool has_alpha) noexcept {
+void split(const float* pixels, int channels, std::size_t count, Planes& to,
+           const Kernels& with) noexcept {
+    with.split(pixels, channels, count, to);
+}
+
+Kinds kinds(Planes& planes, std::size_t count, bool has_alpha, const Kernels& with) noexcept {
     for (std::size_t c = 0; c < 4; ++c)
         fill_up(planes[c], count, c < 3 ? 0 : 1);
-    return HWY_DYNAMIC_DISPATCH(kinds)(planes, count, has_alpha);
+    return with.kinds(planes, count, has_alpha);
 }
 
-bool are_plain(const float* pixels, int channels, std::size_t count, bool has_alpha) noexcept {
-    return HWY_DYNAMIC_DISPATCH(are_plain)(pixels, channels, count, has_alpha);
+bool are_plain(const float* pixels, int channels, std::size_t count, bool has_alpha,
+               const Kernels& with) noexcept {
+    return with.are_plain(pixels, channels, count, has_alpha);
 }
 
-void divide_by_alpha(Planes& planes, std::size_t count) noexcept {
-    HWY_DYNAMIC_DISPATCH(divide_by_alpha)(planes, count);
+void divide_by_alpha(Planes& planes, std::size_t count, const Kernels& with) noexcept {
+    with.divide_by_alpha(planes, count);
 }
 
 SpanLight add_up(Planes& planes, std::size_t count, const Weighing& weighing,
-                 std::array<double, kSpan>& luminance) noexcept {
+                 std::array<double, kSpan>& luminance, const Kernels& with) noexcept {
     for (std::size_t c = 0; c < 3; ++c)
         fill_up(planes[c], count, 0);
     SpanLight light;
-    HWY_DYNAMIC_DISPATCH(add_up_planes)(planes, count, weighing, luminance.data(), light);
+    with.add_up_planes(planes, count, weighing, luminance.data(), light);
     return in_range(light, luminance, count);
 }
 
 SpanLight add_up(const float* pixels, int channels, std::size_t count, const Weighing& weighing,
-                 std::array<double, kSpan>& luminance) noexcept {
+                 std::array<double, kSpan>& luminance, const Kernels& with) noexcept {
     SpanLight light;
-    HWY_DYNAMIC_DISPATCH(add_up_packed)
-    (pixels, channels, count, weighing, luminance.data(), light);
+    with.add_up_packed(pixels, channels, count, weighing, luminance.data(), light);
     return in_range(light, luminance, count);
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "tonewright/pipeline.h"
 
@@ -24,9 +25,16 @@ inline constexpr std::size_t kBlock = 64;
 /// r, g, b, alpha.
 using Planes = std::array<std::array<double, kSpan>, 4>;
 
+struct Kernels;
+/// For each instruction set of this machine, best first. All give the same bits. The functions
+/// below take the best by default, and tests compare the others with it.
+[[nodiscard]] const std::vector<Kernels>& kernels();
+[[nodiscard]] const Kernels& best_kernels();
+
 /// Interleaved floats into planes.
 /// @param channels  3 or 4, of each pixel in memory and of `to`
-void split(const float* pixels, int channels, std::size_t count, Planes& to) noexcept;
+void split(const float* pixels, int channels, std::size_t count, Planes& to,
+           const Kernels& with = best_kernels()) noexcept;
 
 /// What is special among the pixels.
 struct Kinds {
@@ -35,15 +43,17 @@ struct Kinds {
     bool all_opaque;  // alpha is 1
 };
 /// Fills the last block up. Without `has_alpha` all are opaque.
-[[nodiscard]] Kinds kinds(Planes& planes, std::size_t count, bool has_alpha) noexcept;
+[[nodiscard]] Kinds kinds(Planes& planes, std::size_t count, bool has_alpha,
+                          const Kernels& with = best_kernels()) noexcept;
 
 /// True where nothing is: all of interleaved floats are finite, and opaque.
 /// @param channels  3 or 4; without `has_alpha` a fourth says nothing.
-[[nodiscard]] bool are_plain(const float* pixels, int channels, std::size_t count,
-                             bool has_alpha) noexcept;
+[[nodiscard]] bool are_plain(const float* pixels, int channels, std::size_t count, bool has_alpha,
+                             const Kernels& with = best_kernels()) noexcept;
 
 /// Color divided by alpha, of whole blocks.
-void divide_by_alpha(Planes& planes, std::size_t count) noexcept;
+void divide_by_alpha(Planes& planes, std::size_t count,
+                     const Kernels& with = best_kernels()) noexcept;
 
 /// The sum of logarithms of a span as the logarithm of a product: mantissa 2^exponent.
 struct Product {
@@ -75,14 +85,28 @@ struct Weighing {
 /// Of colors without NaN, which become colors of Rec.709, [0, kHalfMax].
 /// @param luminance  of each pixel
 [[nodiscard]] SpanLight add_up(Planes& planes, std::size_t count, const Weighing& weighing,
-                               std::array<double, kSpan>& luminance) noexcept;
+                               std::array<double, kSpan>& luminance,
+                               const Kernels& with = best_kernels()) noexcept;
 /// The same of interleaved floats, to the same bits.
 [[nodiscard]] SpanLight add_up(const float* pixels, int channels, std::size_t count,
-                               const Weighing& weighing,
-                               std::array<double, kSpan>& luminance) noexcept;
+                               const Weighing& weighing, std::array<double, kSpan>& luminance,
+                               const Kernels& with = best_kernels()) noexcept;
 
 /// Product of any positive numbers.
 [[nodiscard]] Product product_of(const double* values, std::size_t count) noexcept;
+
+/// The functions of one instruction set.
+struct Kernels {
+    const char* target = nullptr;  // its name
+    void (*split)(const float*, int, std::size_t, Planes&) noexcept = nullptr;
+    Kinds (*kinds)(Planes&, std::size_t, bool) noexcept = nullptr;
+    bool (*are_plain)(const float*, int, std::size_t, bool) noexcept = nullptr;
+    void (*divide_by_alpha)(Planes&, std::size_t) noexcept = nullptr;
+    void (*add_up_planes)(const Planes&, std::size_t, const Weighing&, double*,
+                          SpanLight&) noexcept = nullptr;
+    void (*add_up_packed)(const float*, int, std::size_t, const Weighing&, double*,
+                          SpanLight&) noexcept = nullptr;
+};
 
 }  // namespace light
 TONEWRIGHT_NAMESPACE_END

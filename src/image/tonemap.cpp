@@ -26,6 +26,7 @@
 #include <string>
 #include <vector>
 
+#include "base/bounded_cache.h"
 #include "base/strings.h"
 #include "image/color_tags.h"
 #include "image/scene_planes.h"
@@ -207,8 +208,7 @@ struct Tonemapper::State {
 
     /// Pictures of one shot are of one kind.
     static constexpr std::size_t kMostPrepared = 8;
-    mutable std::mutex mutex_;
-    mutable std::vector<std::shared_ptr<const Prepared>> prepared_;  // the oldest first
+    mutable BoundedCache<std::string, Prepared> prepared_{kMostPrepared};  // by input space
 };
 
 namespace {
@@ -515,14 +515,8 @@ void Tonemapper::State::run(ImageBuf& dst, const ImageBuf& src, ROI roi, int nth
 }
 
 std::shared_ptr<const Prepared> Tonemapper::State::prepared_for(const SourceColor& source) const {
-    const std::lock_guard lock(mutex_);
-    for (const std::shared_ptr<const Prepared>& known : prepared_) {
-        if (known->view.input == source.name) return known;
-    }
-    auto made = std::make_shared<const Prepared>(view_of(options, options.settings, source));
-    if (prepared_.size() == kMostPrepared) prepared_.erase(prepared_.begin());
-    prepared_.push_back(made);
-    return made;
+    return prepared_.get(source.name,
+                         [&] { return Prepared(view_of(options, options.settings, source)); });
 }
 
 void Tonemapper::State::run(const Prepared& with, ImageBuf& dst, const ImageBuf& src, ROI roi,

@@ -2,15 +2,21 @@
 #include "tonewright/lut_file.h"
 
 #include <fmt/format.h>
+#include <stdlib.h>  // mkstemps()
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstring>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <map>
+#include <mutex>
 #include <optional>
 
+#include "base/atomic_file.h"
 #include "base/strings.h"
 #include "lut/icc.h"
 #include "lut/lut_text.h"
@@ -55,9 +61,9 @@ std::string read_bytes(const std::string& path) {
         fail(fmt::format("has {} bytes; expected up to {}", size, kLargestFile));
     std::ifstream file(path, std::ios::binary);
     std::string bytes(static_cast<std::size_t>(size), '\0');
-    if (!file) fail(std::strerror(errno));
+    if (!file) fail(tonewright::reason_of(errno));
     file.read(bytes.data(), static_cast<std::streamsize>(size));
-    if (file.bad()) fail(std::strerror(errno));
+    if (file.bad()) fail(tonewright::reason_of(errno));
     if (!file) fail(fmt::format("ends early, after {} of {} bytes", file.gcount(), size));
     return bytes;
 }
@@ -131,6 +137,68 @@ OCIO::GroupTransformRcPtr group_of(const CubeText& file) {
     return group;
 }
 
+/// Checked bytes under a name of their own, for as long as OpenColorIO reads them.
+///
+/// OpenColorIO remembers for the whole process what it has read under a name, so it would not see
+/// that a file has changed, and clearing its memory would clear that of the application. Therefore
+/// the name is made of the bytes. OpenColorIO remembers equal bytes once, and it parses exactly
+/// those that were checked.
+class PrivateCopy {
+  public:
+    /// @throws FileError  naming `path`, the file that the bytes are of.
+    PrivateCopy(const std::string& path, const std::string& bytes) {
+        std::error_code error;
+        const fs::path folder = fs::temp_directory_path(error);
+        const std::string extension = extension_of(path);
+        std::string unfinished = (folder / ("tonewright-XXXXXX" + extension)).string();
+        path_ = (folder / fmt::format("tonewright-{}-{:x}-{:x}{}", ::getpid(),
+                                      std::hash<std::string>()(bytes), bytes.size(), extension))
+                    .string();
+        if (!error) error.assign(write(unfinished, bytes), std::generic_category());
+        if (error) {
+            throw FileError("read: " + path + ": the temporary copy " + unfinished +
+                            " cannot be written: " + error.message());
+        }
+    }
+    ~PrivateCopy() {
+        const std::lock_guard lock(mutex_);
+        if (--users_[path_] > 0) return;
+        users_.erase(path_);
+        ::unlink(path_.c_str());
+    }
+    PrivateCopy(const PrivateCopy&) = delete;
+    PrivateCopy& operator=(const PrivateCopy&) = delete;
+
+    [[nodiscard]] const std::string& path() const { return path_; }
+
+  private:
+    /// @param unfinished  a pattern, which becomes the name that the file has at first
+    /// @returns  0 or an errno.
+    [[nodiscard]] int write(std::string& unfinished, const std::string& bytes) const {
+        const int extension = static_cast<int>(fs::path(unfinished).extension().string().size());
+        const int file = ::mkstemps(unfinished.data(), extension);
+        if (file < 0) return errno;
+        int error = 0;
+        for (std::size_t written = 0; written < bytes.size() && !error;) {
+            const ssize_t n = ::write(file, bytes.data() + written, bytes.size() - written);
+            if (n > 0) written += static_cast<std::size_t>(n);
+            if (n < 0 && errno != EINTR) error = errno;
+        }
+        if (::close(file) != 0 && !error) error = errno;
+        // Threads that read equal bytes at the same time share one file.
+        const std::lock_guard lock(mutex_);
+        if (!error && !users_.contains(path_) && std::rename(unfinished.c_str(), path_.c_str()) != 0)
+            error = errno;
+        if (!error) ++users_[path_];
+        if (error || users_[path_] > 1) ::unlink(unfinished.c_str());
+        return error;
+    }
+
+    static inline std::mutex mutex_;
+    static inline std::map<std::string, int> users_;  // of the files that there are now
+    std::string path_;
+};
+
 OCIO::GroupTransformRcPtr group_of(const std::string& path) {
     const OCIO::FileTransformRcPtr file = OCIO::FileTransform::Create();
     file->setSrc(path.c_str());
@@ -141,25 +209,12 @@ OCIO::GroupTransformRcPtr group_of(const std::string& path) {
     return group;
 }
 
-/// What OpenColorIO says about a file is thrown; its log would say it once more.
-class QuietOcio {
-  public:
-    QuietOcio() { OCIO::SetLoggingLevel(OCIO::LOGGING_LEVEL_NONE); }
-    ~QuietOcio() { OCIO::SetLoggingLevel(level_); }
-    QuietOcio(const QuietOcio&) = delete;
-    QuietOcio& operator=(const QuietOcio&) = delete;
-
-  private:
-    OCIO::LoggingLevel level_ = OCIO::GetLoggingLevel();
-};
-
-OcioCpu make_cpu(const std::string& path, const OCIO::GroupTransformRcPtr& group,
-                 LutInterpolation interpolation) {
-    const QuietOcio quiet;
+/// @param name  of the file for OpenColorIO
+OcioCpu make_cpu(const std::string& path, const std::string& name,
+                 const OCIO::GroupTransformRcPtr& group, LutInterpolation interpolation) {
     Lowered lowered;
     lowered.transform = group;
     try {
-        OCIO::ClearAllCaches();  // a file that was written anew is read anew
         OCIO::ConstProcessorRcPtr processor = make_processor(lowered);
         if (interpolation != LutInterpolation::automatic) {
             lowered.transform = processor->createGroupTransform();
@@ -170,11 +225,13 @@ OcioCpu make_cpu(const std::string& path, const OCIO::GroupTransformRcPtr& group
         }
         return {processor, OCIO::OPTIMIZATION_LOSSLESS};
     } catch (const OCIO::Exception& e) {
-        throw FileError("read: " + path + ": " + reason_of(e, path));
+        throw FileError("read: " + path + ": " + reason_of(e, name));
     }
 }
 
 }  // namespace
+
+void silence_opencolorio() { OCIO::SetLoggingLevel(OCIO::LOGGING_LEVEL_NONE); }
 
 LutInterpolation parse_lut_interpolation(std::string_view text) {
     const std::vector<std::string> names = {"auto", "tetrahedral", "trilinear"};
@@ -207,14 +264,14 @@ LutFile::LutFile(const std::string& path, LutInterpolation interpolation) {
     } else if (extension == ".raw") {
         form->table = parse_raw_lut(path, bytes);
     } else {
-        OCIO::GroupTransformRcPtr group;
         if (extension == ".cube") {
-            group = group_of(parse_cube(path, bytes));
+            form->ocio.emplace(
+                make_cpu(path, path, group_of(parse_cube(path, bytes)), interpolation));
         } else {
             check_lut_text(path, bytes);
-            group = group_of(path);
+            const PrivateCopy copy(path, bytes);
+            form->ocio.emplace(make_cpu(path, copy.path(), group_of(copy.path()), interpolation));
         }
-        form->ocio.emplace(make_cpu(path, group, interpolation));
     }
     form_ = std::move(form);
 }

@@ -32,7 +32,6 @@ int main(int argc, char** argv) {
         return 77;
     }
     try {
-        SimdEngine::use_target(kTarget);
         const std::size_t pixels = std::stoul(argc > 1 ? argv[1] : "0");
         SampleRandom random(1);
         std::vector<float> in(3 * pixels), out(3 * pixels);
@@ -40,7 +39,7 @@ int main(int argc, char** argv) {
             x = static_cast<float>(std::exp2(random.uniform(-10, 6)));
         for (int i = 2; i < argc; ++i) {
             const View view = make_view(resolve_operator(argv[i]), "lin_rec709", 0, "srgb");
-            const SimdEngine engine(build_view(view), view.op.op->bounds.simd_goal);
+            const SimdEngine engine(build_view(view), view.op.op->bounds.simd_goal, kTarget);
             counted_run(engine, in.data(), out.data(), pixels);
         }
     } catch (const std::exception& e) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstdlib>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -37,8 +38,6 @@ ResolvedOperator resolve(const OperatorVariant& v) { return resolve_operator(v.n
 
 class Law : public ::testing::TestWithParam<OperatorVariant> {
   protected:
-    void TearDown() override { SimdEngine::use_target(""); }
-
     [[nodiscard]] static const Operator& op() { return *resolve(GetParam()).op; }
     [[nodiscard]] static Pipeline view(std::string_view display, double stops = 0,
                                        std::string_view input = "lin_rec709") {
@@ -465,6 +464,35 @@ TEST_P(CurveLaw, IsInvertedNumerically) {
 
 // ---------------------------------------------------------------------------------------------
 // SIMD
+
+/// parity.verify checks the same on more displays; builds of core alone have only this.
+TEST_P(Law, SimdIsWithinItsBoundOnEveryTarget) {
+    if (!std::getenv("TONEWRIGHT_TEST_ALL"))
+        GTEST_SKIP() << "parity.verify checks it; ./run test --all runs this one, too";
+    const SampleSet probes = make_sample_set(find_input_space("lin_rec709"), {17, 20000});
+    const Pipeline pipeline = view("srgb");
+    std::vector<double> truth(probes.rgb.size());
+    ReferenceEngine(pipeline).run_rgb(probes.rgb.data(), truth.data(), probes.size());
+    std::vector<float> out(probes.rgb.size());
+    for (const std::string& target : SimdEngine::targets()) {
+        const SimdEngine engine(pipeline, op().bounds.simd_goal, target);
+        engine.run_rgb(probes.rgb.data(), out.data(), probes.size());
+        double worst = 0;
+        std::size_t at = 0;
+        for (std::size_t i = 0; i < out.size(); ++i) {
+            const double error = std::fabs(static_cast<double>(out[i]) - truth[i]);
+            if (error <= worst) continue;
+            worst = std::isnan(error) ? kInfinity : error;
+            at = i;
+        }
+        const float* rgb = &probes.rgb[at / 3 * 3];
+        EXPECT_LE(worst, op().bounds.simd)
+            << target << " of (" << rgb[0] << ", " << rgb[1] << ", " << rgb[2] << "): " << out[at]
+            << ", expected " << shortest(truth[at]) << "; " << worst / op().bounds.simd
+            << " times the bound";
+        RecordProperty(target, rounded_up(worst));
+    }
+}
 
 class ThreadLaw : public Law {};
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tonewright/pipeline.h"
@@ -16,14 +17,13 @@ TONEWRIGHT_NAMESPACE_BEGIN
     return x != x ? 0.0 : (x < -kHalfMax ? -kHalfMax : (x > kHalfMax ? kHalfMax : x));
 }
 
-class Tape;
-
 /// Double-precision evaluation of a pipeline: the truth that every other form is held to.
 ///
 /// It runs the expressions as they are written, without any pass that changes a value. Total:
 /// finite out for every double in, NaN and infinities included. Safe to share between threads.
 class TONEWRIGHT_API ReferenceEngine {
   public:
+    /// @throws Error  when more than 4096 values live at the same time; Lattice::nodes() as well
     explicit ReferenceEngine(const Pipeline& pipeline);
     ~ReferenceEngine();
     ReferenceEngine(ReferenceEngine&&) noexcept;
@@ -37,10 +37,11 @@ class TONEWRIGHT_API ReferenceEngine {
     void run_rgb(const float* in, double* out, std::size_t pixel_count) const noexcept;
 
   private:
-    std::unique_ptr<const Tape> tape_;
+    struct Program;
+    std::unique_ptr<const Program> program_;
 };
 
-/// Single-precision SIMD evaluation of a pipeline, chosen at run time for the processor.
+/// Single-precision SIMD evaluation of a pipeline.
 ///
 /// Passes that change the last bits (matrices multiplied together, division by a constant as
 /// multiplication, fused multiply-add, piecewise polynomials for whole curves) are allowed here and
@@ -50,7 +51,11 @@ class TONEWRIGHT_API SimdEngine {
     /// @param max_error  how far the result may be from the reference: absolute up to 1, relative
     ///                   above. What needs more than float for that is computed in double. Each
     ///                   operator declares what its views are made for (DeclaredBounds::simd_goal).
-    explicit SimdEngine(const Pipeline& pipeline, double max_error = kSimdError);
+    /// @param target  the instruction set, one of targets(); "" for the best
+    /// @throws Error  when the machine has no such target, or when the pipeline has more values at
+    ///                a time than a tile holds; Lattice::nodes() as well
+    explicit SimdEngine(const Pipeline& pipeline, double max_error = kSimdError,
+                        std::string_view target = {});
     ~SimdEngine();
     SimdEngine(SimdEngine&&) noexcept;
     SimdEngine& operator=(SimdEngine&&) noexcept;
@@ -66,13 +71,6 @@ class TONEWRIGHT_API SimdEngine {
 
     /// Names of the instruction sets compiled in that this machine has, best first ("AVX3", ...).
     [[nodiscard]] static std::vector<std::string> targets();
-    /// Restricts all engines to one of targets(), or back to the best with "". An engine is made
-    /// for the target that is set then: on another one it computes the same, but not as fast as
-    /// could be. For tests.
-    /// @throws Error  when the machine has no such target.
-    static void use_target(const std::string& name);
-    /// False where an engine made now, for the target that is set, would compute otherwise.
-    [[nodiscard]] bool is_made_for_target() const noexcept;
 
   private:
     struct Program;

@@ -70,16 +70,16 @@ class TONEWRIGHT_API Lattice {
 
     [[nodiscard]] int edge() const noexcept { return edge_; }
     /// Safe to call from several threads.
-    /// @throws Error  when `make` has not given 3 edge^3 numbers.
+    /// @throws Error  when `make` has not given 3 edge^3 numbers; and whatever `make` throws. The
+    ///                next call tries again.
     [[nodiscard]] const std::vector<double>& nodes() const;
 
-    /// NaN counts as 0.
-    [[nodiscard]] std::array<double, 3> operator()(double r, double g, double b) const noexcept;
-    [[nodiscard]] double operator()(int channel, double r, double g, double b) const noexcept;
+    /// NaN counts as 0. These throw what nodes() throws, and nothing once it has returned.
+    [[nodiscard]] std::array<double, 3> operator()(double r, double g, double b) const;
+    [[nodiscard]] double operator()(int channel, double r, double g, double b) const;
     /// d channel / d each coordinate, in the tetrahedron that holds the place; 0 along a coordinate
     /// that is outside.
-    [[nodiscard]] std::array<double, 3> gradient(int channel, double r, double g,
-                                                 double b) const noexcept;
+    [[nodiscard]] std::array<double, 3> gradient(int channel, double r, double g, double b) const;
 
   private:
     int edge_;

@@ -27,8 +27,12 @@ class TONEWRIGHT_API LutFile {
   public:
     /// Nothing is taken from the file before it has been looked through: sizes, numbers of rows,
     /// numbers.
+    ///
+    /// Formats that OpenColorIO reads go through a temporary copy: a file that was rewritten is read
+    /// again, and OpenColorIO's caches, log and settings stay those of the application.
     /// @throws FileError  missing, malformed, of unknown format, or of a size that its reader has
-    ///                    not; with path, line where there are lines, and reason.
+    ///                    not; with path, line where there are lines, and reason. Also when the
+    ///                    temporary folder cannot be written.
     /// @throws Error      trilinear for an ICC device link.
     explicit LutFile(const std::string& path,
                      LutInterpolation interpolation = LutInterpolation::automatic);
@@ -44,5 +48,9 @@ class TONEWRIGHT_API LutFile {
     struct Form;
     std::unique_ptr<const Form> form_;
 };
+
+/// Turns off OpenColorIO's log for the whole process. For a program to call: LutFile throws errors,
+/// and OpenColorIO's warnings about the file go to the log.
+TONEWRIGHT_API void silence_opencolorio();
 
 TONEWRIGHT_NAMESPACE_END

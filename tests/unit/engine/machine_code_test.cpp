@@ -26,7 +26,7 @@ namespace {
 /// Why there is no machine code here, or nothing.
 const char* missing() {
     if (!simd::MachineCode::is_built_in()) return "built without xbyak";
-    if (!simd::runs_machine_code()) return "this processor has no AVX-512";
+    if (!simd::find_target().runs_machine_code) return "this processor has no AVX-512";
     return nullptr;
 }
 
@@ -107,7 +107,7 @@ TEST(MachineCode, ComputesEveryOperation) {
     for (std::size_t i = 0; i < programs.size(); ++i) {
         const CrossTalkStage stage{.f = programs[i]};
         for (const double max_error : {1e-6, 1e-12}) {  // the second computes in double
-            simd::Code code = simd::compile(Pipeline{stage}, max_error, false);
+            simd::Code code = simd::compile(Pipeline{stage}, max_error, simd::find_target(), false);
             ASSERT_TRUE(code.machine) << i;
             expect_same_bits(code, "program " + std::to_string(i));
             if (HasFatalFailure()) return;
@@ -123,7 +123,8 @@ TEST(MachineCode, IsNotMadeOfMoreValuesThanATileHolds) {
         for (Expr& channel : rgb)
             channel = sin(channel);
     }
-    const simd::Code code = simd::compile(Pipeline{CrossTalkStage{.f = rgb}}, 1e-6, false);
+    const simd::Code code =
+        simd::compile(Pipeline{CrossTalkStage{.f = rgb}}, 1e-6, simd::find_target(), false);
     EXPECT_FALSE(code.machine);
     const std::vector<float> in = floats(3 * 64);
     std::vector<double> expected(in.size());

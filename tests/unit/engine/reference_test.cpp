@@ -8,6 +8,7 @@
 #include <limits>
 #include <numeric>
 #include <set>
+#include <stdexcept>
 
 #include "base/format_number.h"
 #include "base/random.h"
@@ -242,6 +243,70 @@ TEST(Reference, MovesWithItsTables) {
     ReferenceEngine other(Pipeline{});
     other = std::move(engine);
     EXPECT_EQ(other({0.5, 0.25, 2}), (Vector3{5, 2.5, 10}));
+}
+
+/// Bad input reaches an exception, never std::terminate.
+TEST(Reference, EnginesThrowWhatALatticeThrows) {
+    int calls = 0;
+    const auto lattice = std::make_shared<const Lattice>(2, [&]() -> std::vector<double> {
+        if (++calls == 1) throw std::runtime_error("no file");
+        if (calls == 2) return {1, 2, 3};
+        return std::vector<double>(24, 0.25);
+    });
+    const Pipeline pipeline = {LatticeStage{kX, lattice}};
+    EXPECT_THROW(ReferenceEngine{pipeline}, std::runtime_error);
+    EXPECT_THROW(SimdEngine{pipeline}, Error) << "three numbers are too few";
+    // After a failure the next call tries again.
+    EXPECT_EQ(ReferenceEngine(pipeline)({0.1, 0.2, 0.3}), (Vector3{0.25, 0.25, 0.25}));
+    EXPECT_EQ((*lattice)(0, 0.5, 0.5, 0.5), 0.25);
+    EXPECT_EQ(calls, 3);
+
+    const Lattice broken(2, [] { return std::vector<double>(); });
+    EXPECT_THROW((void)broken(0, 0.5, 0.5, 0.5), Error);
+    EXPECT_THROW((void)broken(0.5, 0.5, 0.5), Error);
+    EXPECT_THROW((void)broken.gradient(0, 0.5, 0.5, 0.5), Error);
+}
+
+/// @returns  sums of products that all have to wait for the sum of their first factors
+Pipeline waiting(int count) {
+    std::vector<Expr> values;
+    for (int i = 0; i < count; ++i)
+        values.push_back(sqrt(abs(kX) + i));
+    const auto sum = [&](const auto& term) {
+        std::vector<Expr> parts;
+        for (const Expr& value : values)
+            parts.push_back(term(value));
+        while (parts.size() > 1) {
+            std::vector<Expr> pairs;
+            for (std::size_t i = 0; i + 1 < parts.size(); i += 2)
+                pairs.push_back(parts[i] + parts[i + 1]);
+            if (parts.size() % 2) pairs.push_back(parts.back());
+            parts = std::move(pairs);
+        }
+        return parts[0];
+    };
+    const Expr total = sum([](const Expr& value) { return value; });
+    const Expr shares = sum([&](const Expr& value) { return value / total; });
+    return {curve_stage(shares)};
+}
+
+TEST(Reference, RunsAsManyValuesAsATileHolds) {
+    // A tile of one pixel, of a few and of many.
+    for (const int count : {3, 100, 1000, 3000}) {
+        const Pipeline pipeline = waiting(count);
+        const Expr f = compose(pipeline)[0];
+        const Planes in = random_colours(20, 3);
+        const Planes out = run(ReferenceEngine(pipeline), in);
+        for (std::size_t i = 0; i < in[0].size(); ++i)
+            EXPECT_EQ(out[0][i], evaluate(f, sanitise(in[0][i]))) << count << " values";
+    }
+    try {
+        const ReferenceEngine engine(waiting(5000));
+        FAIL();
+    } catch (const Error& e) {
+        EXPECT_EQ(std::string(e.what()).rfind("reference engine: live values are 500", 0), 0U)
+            << e.what();
+    }
 }
 
 // ---------------------------------------------------------------------------------------------

@@ -10,7 +10,6 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <optional>
 #include <thread>
 #include <vector>
 
@@ -27,12 +26,6 @@ TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 constexpr double kBound = 1e-6;
-
-/// Restores the choice of instruction set.
-class Simd : public ::testing::Test {
-  protected:
-    void TearDown() override { SimdEngine::use_target(""); }
-};
 
 /// "SCALAR" runs some 30 times slower than the others: fewer colours for it.
 std::size_t scaled_count(const std::string& target, std::size_t count) {
@@ -171,22 +164,23 @@ std::vector<float> sweep(double lo, double hi, std::size_t count) {
 }
 
 /// A curve by the kernels of its operations.
-std::vector<float> run_kernels(const Expr& curve, const std::vector<float>& rgb) {
-    const simd::Code code = simd::compile({curve_stage(curve)}, kBound, false);
+std::vector<float> run_kernels(const Expr& curve, const std::vector<float>& rgb,
+                               const std::string& target) {
+    const simd::Code code =
+        simd::compile({curve_stage(curve)}, kBound, simd::find_target(target), false);
     std::vector<float> out(rgb.size());
     simd::run(code, {rgb.data(), rgb.data() + 1, rgb.data() + 2}, 3,
               {out.data(), out.data() + 1, out.data() + 2}, 3, rgb.size() / 3);
     return out;
 }
 
-TEST_F(Simd, ElementaryFunctionsAreWithinTwoUlp) {
+TEST(Simd, ElementaryFunctionsAreWithinTwoUlp) {
     for (const std::string& target : SimdEngine::targets()) {
-        SimdEngine::use_target(target);
         for (const Function& f : functions()) {
             const std::vector<float> x = sweep(f.lo, f.hi, scaled_count(target, 300000));
             const Expr argument =
                 clamp(Expr::input(), static_cast<float>(f.lo), static_cast<float>(f.hi));
-            const std::vector<float> out = run_kernels(f.build(argument), grey(x));
+            const std::vector<float> out = run_kernels(f.build(argument), grey(x), target);
             double worst = 0;
             float at = 0;
             for (std::size_t i = 0; i < x.size(); ++i) {
@@ -203,12 +197,11 @@ TEST_F(Simd, ElementaryFunctionsAreWithinTwoUlp) {
     }
 }
 
-TEST_F(Simd, ElementaryFunctionsInDouble) {
+TEST(Simd, ElementaryFunctionsInDouble) {
     // What is left of f(x) 2^30 after its whole part: float shows the digits of f from 2^-30 on,
     // and the engine has to compute f in double for it.
     constexpr double kGain = 0x1p30;
     for (const std::string& target : SimdEngine::targets()) {
-        SimdEngine::use_target(target);
         for (const Function& f : functions()) {
             if (f.name == "floor") continue;
             // Where f is about 1, so that the digits shown are its last ones.
@@ -220,7 +213,7 @@ TEST_F(Simd, ElementaryFunctionsInDouble) {
             const Expr argument =
                 clamp(Expr::input(), static_cast<float>(lo), static_cast<float>(hi));
             const Expr y = f.build(argument) * kGain;
-            const std::vector<float> out = run_kernels(y - floor(y), grey(x));
+            const std::vector<float> out = run_kernels(y - floor(y), grey(x), target);
             double worst = 0;
             for (std::size_t i = 0; i < x.size(); ++i) {
                 const double truth = f.truth(static_cast<double>(x[i]));
@@ -235,7 +228,7 @@ TEST_F(Simd, ElementaryFunctionsInDouble) {
     }
 }
 
-TEST_F(Simd, OperationsMeanWhatExpressionsMean) {
+TEST(Simd, OperationsMeanWhatExpressionsMean) {
     const Expr a = Expr::input(0);
     const Expr b = Expr::input(1);
     const auto table =
@@ -302,10 +295,9 @@ TEST_F(Simd, OperationsMeanWhatExpressionsMean) {
         rgb.insert(rgb.end(), {draw(), i % 7 == 0 ? -0.0F : draw(), 0});
     }
     for (const std::string& target : SimdEngine::targets()) {
-        SimdEngine::use_target(target);
         for (const Expr& e : expressions) {
             const Pipeline pipeline = {CrossTalkStage{{e, a, b}}};
-            const std::vector<float> out = run(SimdEngine(pipeline), rgb);
+            const std::vector<float> out = run(SimdEngine(pipeline, kSimdError, target), rgb);
             const std::vector<double> truth = run(ReferenceEngine(pipeline), rgb);
             for (std::size_t i = 0; i < out.size(); ++i) {
                 const double error = std::fabs(static_cast<double>(out[i]) - truth[i]);
@@ -319,7 +311,7 @@ TEST_F(Simd, OperationsMeanWhatExpressionsMean) {
 
 /// Positions at all distances, many of them nearer to each other than two floats are, and as many
 /// samples as powers of two need filling up or not.
-TEST_F(Simd, UnevenTablesAreExact) {
+TEST(Simd, UnevenTablesAreExact) {
     SampleRandom random(5);
     for (const std::size_t count : {1U, 2U, 3U, 4U, 5U, 8U, 9U, 31U, 1024U, 1025U}) {
         auto table = std::make_shared<Table>();
@@ -346,8 +338,8 @@ TEST_F(Simd, UnevenTablesAreExact) {
                 const Pipeline pipeline = {curve_stage(lookup(copy, index))};
                 const std::vector<double> truth = run(ReferenceEngine(pipeline), rgb);
                 for (const std::string& target : SimdEngine::targets()) {
-                    SimdEngine::use_target(target);
-                    const std::vector<float> out = run(SimdEngine(pipeline), rgb);
+                    const std::vector<float> out =
+                        run(SimdEngine(pipeline, kSimdError, target), rgb);
                     for (std::size_t i = 0; i < out.size(); ++i) {
                         ASSERT_NEAR(static_cast<double>(out[i]), truth[i], 3e-7)
                             << count << " samples, " << target << ", " << rgb[i];
@@ -359,7 +351,7 @@ TEST_F(Simd, UnevenTablesAreExact) {
 }
 
 /// A jump of an even table, in a cell that no probe comes near to.
-TEST_F(Simd, SteepTablesAreIndexedInDouble) {
+TEST(Simd, SteepTablesAreIndexedInDouble) {
     auto table = std::make_shared<Table>();
     for (int i = 0; i <= 4096; ++i)
         table->samples.push_back(i < 3001 ? 0.0 : 1.0);
@@ -370,14 +362,13 @@ TEST_F(Simd, SteepTablesAreIndexedInDouble) {
     const std::vector<float> rgb = grey(inputs);
     const std::vector<double> truth = run(ReferenceEngine(pipeline), rgb);
     for (const std::string& target : SimdEngine::targets()) {
-        SimdEngine::use_target(target);
-        const std::vector<float> out = run(SimdEngine(pipeline), rgb);
+        const std::vector<float> out = run(SimdEngine(pipeline, kSimdError, target), rgb);
         for (std::size_t i = 0; i < out.size(); ++i)
             ASSERT_NEAR(static_cast<double>(out[i]), truth[i], 1e-7) << target << ", " << rgb[i];
     }
 }
 
-TEST_F(Simd, WhatASteepTableIsIndexedWithIsNoCompiledCurve) {
+TEST(Simd, WhatASteepTableIsIndexedWithIsNoCompiledCurve) {
     const auto table = std::make_shared<const Table>(
         Table{{0, 0, 1, 1}, Table::Interpolation::linear, {0, 1.2345, 1.23451, 3}});
     const auto f = [](const Expr& x) { return pow(max(x, 0) + 0.5, 0.42); };
@@ -390,8 +381,7 @@ TEST_F(Simd, WhatASteepTableIsIndexedWithIsNoCompiledCurve) {
         rgb.insert(rgb.end(), {x, 1.15134F, 1.0F});
     const std::vector<double> truth = run(ReferenceEngine(pipeline), rgb);
     for (const std::string& target : SimdEngine::targets()) {
-        SimdEngine::use_target(target);
-        const std::vector<float> out = run(SimdEngine(pipeline), rgb);
+        const std::vector<float> out = run(SimdEngine(pipeline, kSimdError, target), rgb);
         for (std::size_t i = 0; i < out.size(); ++i)
             ASSERT_NEAR(static_cast<double>(out[i]), truth[i], kBound) << target << " " << rgb[i];
     }
@@ -400,10 +390,7 @@ TEST_F(Simd, WhatASteepTableIsIndexedWithIsNoCompiledCurve) {
 // ---------------------------------------------------------------------------------------------
 // Operators
 
-class SimdOperator : public ::testing::TestWithParam<std::string> {
-  protected:
-    void TearDown() override { SimdEngine::use_target(""); }
-};
+class SimdOperator : public ::testing::TestWithParam<std::string> {};
 
 /// The standard probes, and colours of huge mixed signs: what is left of them after a matrix is the
 /// difference of large numbers.
@@ -420,7 +407,7 @@ std::vector<float> test_colours() {
     return set.rgb;
 }
 
-TEST_F(Simd, LatticesAreInterpolatedAsTheReferenceDoes) {
+TEST(Simd, LatticesAreInterpolatedAsTheReferenceDoes) {
     // Three channels of their own at places whose fractions have every order; one channel read
     // alone; coordinates and results that are double (steep) and float.
     const auto lattice = std::make_shared<const Lattice>(5, [] {
@@ -443,15 +430,13 @@ TEST_F(Simd, LatticesAreInterpolatedAsTheReferenceDoes) {
           Pipeline{stage, CrossTalkStage{{exp2(20 * c[0]) / 0x1p20, c[1], sqrt(c[2])}}}}) {
         const std::vector<double> truth = run(ReferenceEngine(pipeline), rgb);
         for (const std::string& target : SimdEngine::targets()) {
-            SimdEngine::use_target(target);
-            const std::vector<float> out = run(SimdEngine(pipeline), rgb);
+            const std::vector<float> out = run(SimdEngine(pipeline, kSimdError, target), rgb);
             for (std::size_t i = 0; i < out.size(); ++i) {
                 ASSERT_NEAR(static_cast<double>(out[i]), truth[i], kBound)
                     << target << " of channel " << i % 3 << " of pixel " << i / 3 << "\n"
                     << to_string(pipeline);
             }
         }
-        SimdEngine::use_target("");
     }
 }
 
@@ -469,11 +454,8 @@ TEST_P(SimdOperator, IsWithinBoundOfReference) {
         const Pipeline view = view_of(GetParam(), display);
         const ReferenceEngine decode(find_display(display).decode);
         const std::vector<double> truth = run(ReferenceEngine(view), rgb);
-        std::optional<SimdEngine> engine;
         for (const std::string& target : SimdEngine::targets()) {
-            SimdEngine::use_target(target);
-            if (!engine || !engine->is_made_for_target()) engine.emplace(view, goal);
-            const std::vector<float> out = run(*engine, rgb);
+            const std::vector<float> out = run(SimdEngine(view, goal, target), rgb);
             double worst = 0;
             std::size_t at = 0;
             for (std::size_t i = 0; i < out.size(); ++i) {
@@ -499,18 +481,14 @@ TEST_P(SimdOperator, IsWithinBoundOfReference) {
 
 TEST_P(SimdOperator, IsTotal) {
     const double goal = resolve_operator(GetParam()).op->bounds.simd_goal;
-    std::optional<SimdEngine> engine, linear;
     for (const std::string& target : SimdEngine::targets()) {
-        SimdEngine::use_target(target);
-        if (!engine || !engine->is_made_for_target()) {
-            engine.emplace(view_of(GetParam()), goal);
-            linear.emplace(view_of(GetParam(), "linear"), goal);
-        }
+        const SimdEngine engine(view_of(GetParam()), goal, target);
+        const SimdEngine linear(view_of(GetParam(), "linear"), goal, target);
         SampleRandom random(17);
         std::vector<float> rgb(3 * scaled_count(target, count_of(1000000U, 100000U)));
         for (float& x : rgb)
             x = std::bit_cast<float>(static_cast<std::uint32_t>(random.bits() >> 32));
-        for (const SimdEngine* e : {&*engine, &*linear}) {
+        for (const SimdEngine* e : {&engine, &linear}) {
             const std::vector<float> out = run(*e, rgb);
             for (std::size_t i = 0; i < out.size(); ++i) {
                 ASSERT_TRUE(std::isfinite(out[i]))
@@ -530,7 +508,7 @@ INSTANTIATE_TEST_SUITE_P(Operators, SimdOperator, ::testing::ValuesIn(all_operat
                              return name;
                          });
 
-TEST_F(Simd, CurvesOfFilesAreWithinBound) {
+TEST(Simd, CurvesOfFilesAreWithinBound) {
     const std::string data = TONEWRIGHT_TEST_DATA "/";
     const std::vector<float> rgb = test_colours();
     for (const Settings& settings : std::vector<Settings>{
@@ -550,7 +528,7 @@ TEST_F(Simd, CurvesOfFilesAreWithinBound) {
     }
 }
 
-TEST_F(Simd, MatrixOfMixedSignsBeforeAPowerDisplay) {
+TEST(Simd, MatrixOfMixedSignsBeforeAPowerDisplay) {
     // The slope of a power display has no bound at black: whatever the float rounding of the
     // difference is, some colour makes it visible. Such a matrix has to run in double. (With
     // colours of thousands the reference's own rounding shows.)
@@ -568,8 +546,7 @@ TEST_F(Simd, MatrixOfMixedSignsBeforeAPowerDisplay) {
     }
     const std::vector<double> truth = run(ReferenceEngine(view), rgb);
     for (const std::string& target : SimdEngine::targets()) {
-        SimdEngine::use_target(target);
-        const std::vector<float> out = run(SimdEngine(view), rgb);
+        const std::vector<float> out = run(SimdEngine(view, kSimdError, target), rgb);
         for (std::size_t i = 0; i < out.size(); ++i) {
             ASSERT_NEAR(static_cast<double>(out[i]), truth[i], kBound)
                 << target << " pixel " << i / 3;
@@ -580,7 +557,7 @@ TEST_F(Simd, MatrixOfMixedSignsBeforeAPowerDisplay) {
 // ---------------------------------------------------------------------------------------------
 // Memory
 
-TEST_F(Simd, AnyStrideAndCountAndNothingOutsideThePixels) {
+TEST(Simd, AnyStrideAndCountAndNothingOutsideThePixels) {
     constexpr float kGuard = -123.5F;
     constexpr std::size_t kEdge = 8;  // guard floats around
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -640,16 +617,14 @@ TEST_F(Simd, AnyStrideAndCountAndNothingOutsideThePixels) {
         }
     };
     for (const std::string& target : SimdEngine::targets()) {
-        SimdEngine::use_target(target);
-        check(target, SimdEngine(view_of("aces_hill")));
-        check(target, SimdEngine(view_of("uchimura")));  // each channel alone
+        check(target, SimdEngine(view_of("aces_hill"), kSimdError, target));
+        check(target, SimdEngine(view_of("uchimura"), kSimdError, target));  // each channel alone
     }
 }
 
-TEST_F(Simd, PlanesMayChangePlaces) {
+TEST(Simd, PlanesMayChangePlaces) {
     for (const std::string& target : SimdEngine::targets()) {
-        SimdEngine::use_target(target);
-        const SimdEngine engine(view_of("hable"));  // each channel alone
+        const SimdEngine engine(view_of("hable"), kSimdError, target);  // each channel alone
         const std::vector<float> rgb = {0.1F, 0.2F, 0.4F, 0.8F, 1.6F, 3.2F};
         const std::vector<float> expected = run(engine, rgb);
         std::vector<float> x = {0.1F, 0.8F}, y = {0.2F, 1.6F}, z = {0.4F, 3.2F};
@@ -660,11 +635,10 @@ TEST_F(Simd, PlanesMayChangePlaces) {
     }
 }
 
-TEST_F(Simd, PixelsMayEndWithTheBuffer) {
+TEST(Simd, PixelsMayEndWithTheBuffer) {
     // Exactly as many floats as there are; an address sanitizer sees any access beyond.
-    const SimdEngine engine(view_of("hable"));
     for (const std::string& target : SimdEngine::targets()) {
-        SimdEngine::use_target(target);
+        const SimdEngine engine(view_of("hable"), kSimdError, target);
         for (const std::size_t count : {1, 16, 64, 257}) {
             for (const std::size_t stride : {3, 4}) {
                 std::vector<float> in((count - 1) * stride + 3, 0.18F);
@@ -678,7 +652,29 @@ TEST_F(Simd, PixelsMayEndWithTheBuffer) {
     }
 }
 
-TEST_F(Simd, ThreadsShareAnEngine) {
+TEST(Simd, EnginesOfTwoTargetsWorkSideBySide) {
+    // Neither engine knows of the other: each gives the bits that it gives alone.
+    const std::vector<std::string> targets = SimdEngine::targets();
+    if (targets.size() < 2) GTEST_SKIP() << "this machine has one instruction set";
+    const Pipeline view = view_of("agx_sobotka");
+    const std::vector<float> rgb = test_colours();
+    std::vector<std::vector<float>> alone;
+    for (const std::string& target : targets)
+        alone.push_back(run(SimdEngine(view, kSimdError, target), rgb));
+    EXPECT_NE(alone.front(), alone.back()) << "the instruction sets round differently";
+    EXPECT_EQ(run(SimdEngine(view), rgb), alone.front()) << "the best one is the default";
+    std::vector<std::vector<float>> together(targets.size());
+    std::vector<std::thread> threads;
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+        threads.emplace_back(
+            [&, i] { together[i] = run(SimdEngine(view, kSimdError, targets[i]), rgb); });
+    }
+    for (std::thread& t : threads)
+        t.join();
+    EXPECT_EQ(together, alone);
+}
+
+TEST(Simd, ThreadsShareAnEngine) {
     const SimdEngine engine(view_of("agx_sobotka"));
     const std::vector<float> rgb = test_colours();
     const std::vector<float> expected = run(engine, rgb);
@@ -696,7 +692,7 @@ TEST_F(Simd, ThreadsShareAnEngine) {
         EXPECT_EQ(result, expected);
 }
 
-TEST_F(Simd, EmptyPipelineOnlySanitises) {
+TEST(Simd, EmptyPipelineOnlySanitises) {
     const SimdEngine engine(Pipeline{});
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const float inf = std::numeric_limits<float>::infinity();
@@ -705,11 +701,11 @@ TEST_F(Simd, EmptyPipelineOnlySanitises) {
               (std::vector<float>{0, 65504, -65504, 65504, -65504, 65504, 1e-45F, 0, 0.25F}));
 }
 
-TEST_F(Simd, TargetsAreNamed) {
+TEST(Simd, TargetsAreNamed) {
     const std::vector<std::string> targets = SimdEngine::targets();
     ASSERT_FALSE(targets.empty());
     try {
-        SimdEngine::use_target("AVX");
+        const SimdEngine engine(Pipeline{}, kSimdError, "AVX");
         FAIL();
     } catch (const Error& e) {
         EXPECT_EQ(std::string(e.what()).rfind("simd engine: target is AVX; expected ", 0), 0U)
@@ -718,14 +714,13 @@ TEST_F(Simd, TargetsAreNamed) {
 }
 
 /// The kernels take a number apart into [3/4, 3/2) and a power of two: about 3/2, in double.
-TEST_F(Simd, PowersAboutTheFractionWhereTheExponentChanges) {
+TEST(Simd, PowersAboutTheFractionWhereTheExponentChanges) {
     // r - b is the row of a matrix that cancels, which is double; and so is a power whose exponent
     // is no constant.
     const Expr x = 1 * Expr::input(0) + -1 * Expr::input(1);
     const Expr f = pow(x, Expr::input(2));
-    const SimdEngine engine({CrossTalkStage{{f, f, f}}});
     for (const std::string& target : SimdEngine::targets()) {
-        SimdEngine::use_target(target);
+        const SimdEngine engine({CrossTalkStage{{f, f, f}}}, kSimdError, target);
         for (int k = -12; k <= 12; ++k) {
             for (int steps = -3; steps <= 3; ++steps) {
                 const auto r = static_cast<float>(std::ldexp(1.5, k));
@@ -740,7 +735,6 @@ TEST_F(Simd, PowersAboutTheFractionWhereTheExponentChanges) {
             }
         }
     }
-    SimdEngine::use_target("");
 }
 
 }  // namespace

@@ -9,9 +9,11 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <functional>
+#include <string>
 #include <vector>
 
-#include "tonewright/engine.h"
+#include "image/half_float.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -42,39 +44,76 @@ void in_runs(std::size_t count, Run run) {
 }
 
 TEST(PixelAccess, RunsOfHalvesAreThoseOfOpenImageIO) {
-    for (const std::string& target : SimdEngine::targets()) {
-        SimdEngine::use_target(target);
-        const PixelAccess& access = *pixel_access(OIIO::TypeHalf);
-        std::vector<std::uint16_t> halves(65536);
-        for (std::size_t i = 0; i < halves.size(); ++i)
-            halves[i] = static_cast<std::uint16_t>(i);
-        std::vector<float> result(halves.size());
+    const PixelAccess& access = *pixel_access(OIIO::TypeHalf);
+    std::vector<std::uint16_t> halves(65536);
+    for (std::size_t i = 0; i < halves.size(); ++i)
+        halves[i] = static_cast<std::uint16_t>(i);
+    const std::vector<float> x = floats();
+    // What a picture's pixels go through, its fallback, and every instruction set.
+    struct Way {
+        std::string name;
+        std::function<bool(const std::uint16_t*, float*, std::size_t)> to_float;
+        std::function<bool(const float*, std::uint16_t*, std::size_t)> to_half;
+    };
+    const auto bytes = [](const auto* p) { return reinterpret_cast<const std::byte*>(p); };
+    const auto to_bytes = [](auto* p) { return reinterpret_cast<std::byte*>(p); };
+    std::vector<Way> ways = {{"runs",
+                              [&](const std::uint16_t* from, float* to, std::size_t n) {
+                                  access.run_to_float(bytes(from), to, n);
+                                  return true;
+                              },
+                              [&](const float* from, std::uint16_t* to, std::size_t n) {
+                                  access.run_from_float(from, to_bytes(to), n);
+                                  return true;
+                              }},
+                             {"one by one",
+                              [&](const std::uint16_t* from, float* to, std::size_t n) {
+                                  access.load_float(bytes(from), sizeof(half), to, n);
+                                  return true;
+                              },
+                              [&](const float* from, std::uint16_t* to, std::size_t n) {
+                                  access.store_float(from, to_bytes(to), sizeof(half), n);
+                                  return true;
+                              }}};
+    for (const HalfKernels& kernels : half_kernels()) {
+        ways.push_back({kernels.target,
+                        [&](const std::uint16_t* from, float* to, std::size_t n) {
+                            return half_to_float(from, to, n, kernels);
+                        },
+                        [&](const float* from, std::uint16_t* to, std::size_t n) {
+                            return float_to_half(from, to, n, kernels);
+                        }});
+    }
+    for (const Way& way : ways) {
+        std::vector<float> result(halves.size(), -7.0F);
+        std::vector<std::uint16_t> back(x.size(), 0xFFFF);
+        bool is_done = true;
         in_runs(halves.size(), [&](std::size_t begin, std::size_t n) {
-            access.run_to_float(reinterpret_cast<const std::byte*>(&halves[begin]), &result[begin],
-                                n);
+            is_done = way.to_float(&halves[begin], &result[begin], n);
         });
+        in_runs(x.size(), [&](std::size_t begin, std::size_t n) {
+            EXPECT_EQ(way.to_half(&x[begin], &back[begin], n), is_done) << way.name;
+        });
+        if (!is_done) {
+            EXPECT_EQ(result, std::vector<float>(halves.size(), -7.0F)) << way.name;
+            EXPECT_EQ(back, std::vector<std::uint16_t>(x.size(), 0xFFFF)) << way.name;
+            continue;
+        }
         for (std::size_t i = 0; i < halves.size(); ++i) {
             half h;
             h.setBits(halves[i]);
             const auto expected = static_cast<float>(h);
             ASSERT_TRUE(result[i] == expected || (std::isnan(result[i]) && std::isnan(expected)))
-                << i << " on " << target;
+                << i << ", " << way.name;
         }
-
-        const std::vector<float> x = floats();
-        std::vector<std::uint16_t> back(x.size());
-        in_runs(x.size(), [&](std::size_t begin, std::size_t n) {
-            access.run_from_float(&x[begin], reinterpret_cast<std::byte*>(&back[begin]), n);
-        });
         for (std::size_t i = 0; i < x.size(); ++i) {
             const half expected(x[i]);
             half h;
             h.setBits(back[i]);
             ASSERT_TRUE(h.bits() == expected.bits() || (h.isNan() && expected.isNan()))
-                << x[i] << " on " << target;
+                << x[i] << ", " << way.name;
         }
     }
-    SimdEngine::use_target("");
 }
 
 TEST(PixelAccess, RunsOfIntegersAreTheSameAsOneByOne) {

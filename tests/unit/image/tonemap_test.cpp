@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -14,6 +15,9 @@
 #include <memory>
 #include <new>
 #include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
 
 #include "base/format_number.h"
 #include "tonewright/engine.h"
@@ -177,6 +181,37 @@ TEST(Tonemap, OneTonemapperServesManyPictures) {
         EXPECT_TRUE(same_bits(dst, tonemap(src, hable())));
     }
     EXPECT_THROW(Tonemapper({.op = "habel"}), Error);
+}
+
+TEST(Tonemap, ThreadsShareATonemapperOfPicturesInManySpaces) {
+    // Every thread asks for the engine of a space while another one compiles it; there are more
+    // spaces than the tonemapper keeps engines for.
+    const std::vector<std::string> spaces = {"Linear",   "sRGB",    "Gamma1.8", "Gamma2.0",
+                                             "Gamma2.2", "ACEScg",  "Gamma2.4", "Gamma2.6",
+                                             "Gamma1.5", "Gamma3.0"};
+    std::vector<ImageBuf> sources, expected;
+    for (const std::string& space : spaces) {
+        sources.push_back(make_rgb(40, 3));
+        sources.back().specmod().attribute("oiio:ColorSpace", space);
+        expected.push_back(tonemap(sources.back(), hable(), {}, 1));
+        ASSERT_FALSE(expected.back().has_error()) << expected.back().geterror();
+    }
+    const Tonemapper tonemapper(hable());
+    std::atomic<int> differences = 0;
+    {
+        std::vector<std::jthread> threads;
+        for (std::size_t t = 0; t < 4; ++t) {
+            threads.emplace_back([&, t] {
+                for (std::size_t i = 0; i < 2 * spaces.size(); ++i) {
+                    const std::size_t k = (i + t / 2) % spaces.size();
+                    ImageBuf dst;
+                    if (!tonemapper(dst, sources[k], {}, 1) || !same_bits(dst, expected[k]))
+                        ++differences;
+                }
+            });
+        }
+    }
+    EXPECT_EQ(differences, 0);
 }
 
 // ---------------------------------------------------------------------------------------------

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+// Processors without SSE4 (before 2008) run the scalar code.
+#define HWY_DISABLED_TARGETS HWY_SSSE3
+#include "hwy/targets.h"
+#include "tonewright/version.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+
+/// The functions of a file that Highway compiles once for each instruction set. Only the
+/// instruction sets of this machine, best first.
+///
+/// Highway's own dispatch keeps one choice for the whole process. With this list each engine makes
+/// its own choice.
+/// @tparam Compiled  its variable template `kernels<HWY_TARGET>` points to the functions of one
+///                   instruction set, a struct with a member `target` for the name; null where the
+///                   file is not compiled for it
+template <class Compiled>
+[[nodiscard]] auto kernels_of_this_machine() {
+    using Kernels = std::remove_cvref_t<decltype(*Compiled::template kernels<0>)>;
+    std::vector<Kernels> result;
+    const std::int64_t supported = hwy::SupportedTargets();
+    // Highway 1.0 leaves its own choice without the restrictions of the application: write it
+    // again, with them.
+    hwy::GetChosenTarget().Update(supported);
+    const auto add = [&](std::int64_t target, const Kernels* kernels) {
+        if (!kernels || (supported & target) == 0) return;
+        result.push_back(*kernels);
+        result.back().target = hwy::TargetName(target);
+    };
+    // The lower bit is the better instruction set.
+    [&]<std::size_t... kBit>(std::index_sequence<kBit...>) {
+        (add(std::int64_t{1} << kBit, Compiled::template kernels<(std::int64_t{1} << kBit)>), ...);
+    }
+    (std::make_index_sequence<63>());
+    return result;
+}
+
+TONEWRIGHT_NAMESPACE_END

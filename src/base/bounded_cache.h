@@ -12,7 +12,9 @@
 #include <memory>
 #include <mutex>
 
-namespace tonewright {
+#include "tonewright/version.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
 
 /// Values that take long to make, by key. The cache keeps the keys that were asked for last.
 ///
@@ -96,4 +98,4 @@ class BoundedCache {
     std::uint64_t last_id_ = 0;
 };
 
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

@@ -15,7 +15,7 @@
 #include "lut/icc.h"
 #include "lut/lut_text.h"
 #include "lut/raw.h"
-#include "ocio/lower.h"
+#include "ocio/transforms.h"
 #include "tonewright/lut.h"
 #include "tonewright/lut_applications.h"
 
@@ -153,20 +153,18 @@ class QuietOcio {
     OCIO::LoggingLevel level_ = OCIO::GetLoggingLevel();
 };
 
-OcioCpu make_cpu(const std::string& path, const OCIO::GroupTransformRcPtr& group,
+OcioCpu make_cpu(const std::string& path, OCIO::GroupTransformRcPtr group,
                  LutInterpolation interpolation) {
     const QuietOcio quiet;
-    Lowered lowered;
-    lowered.transform = group;
     try {
         OCIO::ClearAllCaches();  // a file that was written anew is read anew
-        OCIO::ConstProcessorRcPtr processor = make_processor(lowered);
+        OCIO::ConstProcessorRcPtr processor = make_processor(group);
         if (interpolation != LutInterpolation::automatic) {
-            lowered.transform = processor->createGroupTransform();
-            set_interpolation(lowered.transform, interpolation == LutInterpolation::trilinear
-                                                     ? OCIO::INTERP_LINEAR
-                                                     : OCIO::INTERP_TETRAHEDRAL);
-            processor = make_processor(lowered);
+            group = processor->createGroupTransform();
+            set_interpolation(group, interpolation == LutInterpolation::trilinear
+                                         ? OCIO::INTERP_LINEAR
+                                         : OCIO::INTERP_TETRAHEDRAL);
+            processor = make_processor(group);
         }
         return {processor, OCIO::OPTIMIZATION_LOSSLESS};
     } catch (const OCIO::Exception& e) {

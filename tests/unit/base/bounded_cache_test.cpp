@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-namespace tonewright {
+TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 TEST(BoundedCache, ThreadsThatAskForOneKeyShareOneComputation) {
@@ -129,4 +129,4 @@ TEST(BoundedCache, HoldsValuesThatCannotMove) {
 }
 
 }  // namespace
-}  // namespace tonewright
+TONEWRIGHT_NAMESPACE_END

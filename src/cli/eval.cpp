@@ -10,7 +10,8 @@
 #include "cli/picture_commands.h"
 #include "cli/shared_options.h"
 #include "ocio/gpu.h"
-#include "ocio/lower.h"
+#include "ocio/operator_facts.h"
+#include "ocio/transforms.h"
 #include "tonewright/engine.h"
 #include "tonewright/registry.h"
 
@@ -150,7 +151,8 @@ int run_eval(const Options& options) {
     if (options.engine == "simd") {
         SimdEngine(pipeline, view.op.op->bounds.simd_goal).run_rgb(in.data(), out.data(), count);
     } else {
-        const auto processor = make_processor(lower_to_ocio(pipeline));
+        const LowerOptions lowering{.fits_cubes = lower_options(*view.op.op).fits_cubes};
+        const auto processor = make_processor(lower_to_ocio(pipeline, lowering).ops);
         if (options.engine == "ocio") {
             OcioCpu(processor).run_rgb(in.data(), out.data(), count);
         } else {

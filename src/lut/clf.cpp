@@ -18,7 +18,7 @@ std::string write_clf(const ClfTable& table, const std::string& name,
                       const std::vector<std::string>& description) {
     // `id` must be unique to the contents; the hash of the numbers is.
     std::string numbers;
-    const std::vector<float>& v = *table.values;
+    const std::span<const float> v = table.values;
     const auto per_line = static_cast<std::size_t>(table.dimension == 3 ? 3 : table.channels);
     for (std::size_t i = 0; i < v.size(); ++i) {
         const std::size_t begin = numbers.size();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,7 @@ struct ClfTable {
     /// A .ctf all the same.
     bool is_ctf = false;
     /// 1D: entry by entry. 3D: RGB triplets, BLUE fastest, as CLF has them.
-    const std::vector<float>* values = nullptr;
+    std::span<const float> values;
     /// How its numbers are written.
     /// All but the first without a zero before the point.
     enum class Numbers : unsigned char {

@@ -9,7 +9,6 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
-constexpr unsigned kHalfCount = 65536;
 constexpr unsigned kSignBit = 0x8000;
 constexpr unsigned kLargestFinite = 0x7BFF;
 }  // namespace

@@ -7,6 +7,9 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
+inline constexpr unsigned kHalfCount = 65536;
+inline constexpr double kSmallestHalf = 0x1p-24;
+
 /// 65536 samples of f at the half floats, in the order of their bit patterns; entry -0 equals +0,
 /// NaN is f(0), infinities are f(+-65504). Outside [lo, hi] (by more than one half step) the value
 /// at the end is held.

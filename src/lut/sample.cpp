@@ -13,7 +13,6 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-constexpr int kHalfCount = 65536;
 constexpr int kDefaultCubeSize = 33;
 constexpr int kDefaultCurveSize = 4096;
 
@@ -97,7 +96,7 @@ std::string at_most_one_dimension(const LutRequest& request) {
 Lut sample_half_curve(const LutRequest& request) {
     Lut lut;
     lut.dimension = 1;
-    lut.size = kHalfCount;
+    lut.size = static_cast<int>(kHalfCount);
     lut.channels = 1;
     lut.is_half_domain = true;
     // A view limits its own input; that limit is where the table holds its end values.
@@ -159,7 +158,7 @@ Lut sample_lut(const LutRequest& request) {
     Lut lut;
     lut.dimension = one ? 1 : 3;
     lut.channels = one ? 1 : 3;
-    lut.size = one ? checked_size(request, kDefaultCurveSize, 2, kHalfCount)
+    lut.size = one ? checked_size(request, kDefaultCurveSize, 2, static_cast<int>(kHalfCount))
                    : checked_size(request, traits.default_size, traits.smallest, traits.largest);
     if (!one && request.format == LutFormat::threedl && lut.size != 17 && lut.size != 33 &&
         lut.size != 65) {

@@ -267,7 +267,7 @@ std::string write_clf_file(const Lut& lut, const LutRequest& r, const Lines& hea
     table.size = lut.size;
     table.channels = lut.channels;
     table.is_half_domain = lut.is_half_domain;
-    table.values = &nodes;
+    table.values = nodes;
     table.is_ctf = r.format == LutFormat::ctf;
     return write_clf(table, title_of(r), header);
 }

@@ -8,11 +8,13 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <optional>
 #include <sstream>
 #include <utility>
 
 #include "lut/in_parallel.h"
 #include "ocio/inverse.h"
+#include "ocio/operator_facts.h"
 #include "ocio/profile_2_5.h"
 #include "ocio/read_config.h"
 #include "ocio/round_trip.h"
@@ -25,7 +27,7 @@ OCIO::GroupTransformRcPtr lower_part(LutFiles& luts, const Pipeline& stages,
                                      const std::string& stem, const std::string& what,
                                      const Primaries& primaries = kRec709) {
     const Lowered lowered = lower_to_ocio(stages, {.primaries = primaries});
-    return luts.externalise(lowered.transform, stem, what, lowered.is_exact);
+    return luts.to_ocio(lowered.ops, stem, what, lowered.is_exact);
 }
 
 /// The scene reference of our configs is AP0, the display reference XYZ D65.
@@ -169,40 +171,36 @@ const InputSpace& space_of(const Primaries& primaries) {
     throw Error("config: no space has the primaries " + std::string(primaries.name));
 }
 
+/// Nothing for identities.
 void append(OCIO::GroupTransformRcPtr& group, const Pipeline& stages) {
-    const Lowered lowered = lower_to_ocio(stages);  // nothing, of identities
-    for (int i = 0; i < lowered.transform->getNumTransforms(); ++i)
-        group->appendTransform(lowered.transform->getTransform(i));
+    append(group, lower_to_ocio(stages).ops);
 }
 
-/// Display reference -> scene reference, of what the view transform makes; null where OpenColorIO's
-/// own inversion of the view transform is as good: its tables and cubes, on the CPU.
-OCIO::GroupTransformRcPtr inverse_space(const ConfigModel::View& view, const DisplayedView& shown) {
+/// Display reference -> scene reference, for light that the view transform makes. Nothing where
+/// OpenColorIO's own inversion of the view transform is as good: its tables and cubes, on the CPU.
+std::optional<LoweredOps> inverse_space(const ConfigModel::View& view, const DisplayedView& shown) {
     const DisplayLimit limit = display_limit(shown.op, *shown.display);
-    const OCIO::GroupTransformRcPtr inverted = invert_light(shown.op, limit);
-    if (!inverted) return nullptr;
-    OCIO::GroupTransformRcPtr group = OCIO::GroupTransform::Create();
-    append(group, {MatrixStage{inverse(rgb_to_xyz_d65(limit.primaries))}});
-    for (int i = 0; i < inverted->getNumTransforms(); ++i)
-        group->appendTransform(inverted->getTransform(i));
-    append(
-        group,
-        {MatrixStage{scale(to_reference(shown.op.op->working), std::exp2(-view.exposure_stops))}});
-    return group;
+    std::optional<LoweredOps> inverted = invert_light(shown.op, limit);
+    if (!inverted) return std::nullopt;
+    LoweredOps ops = lower_to_ocio({MatrixStage{inverse(rgb_to_xyz_d65(limit.primaries))}}).ops;
+    append(ops, std::move(*inverted));
+    append(ops, lower_to_ocio({MatrixStage{scale(to_reference(shown.op.op->working),
+                                                 std::exp2(-view.exposure_stops))}})
+                    .ops);
+    return ops;
 }
 
 /// @param back  display reference -> scene reference
-ErrorStats measure_round_trip(const View& view, const OCIO::GroupTransformRcPtr& back,
+ErrorStats measure_round_trip(const View& view, const LoweredOps& back,
                               OCIO::OptimizationFlags flags, const SampleSet& probes) {
     const Display& display = find_display(view.display);
-    Lowered whole;
-    whole.transform = OCIO::GroupTransform::Create();
-    append(whole.transform,
-           joined(display.decode, {MatrixStage{rgb_to_xyz_d65(display.primaries)}}));
-    whole.transform->appendTransform(back);
-    append(whole.transform,
-           {MatrixStage{rgb_to_rgb(kAP0, find_input_space(view.input).primaries)}});
-    const OcioCpu cpu(make_processor(whole), flags);
+    LoweredOps ops =
+        lower_to_ocio(joined(display.decode, {MatrixStage{rgb_to_xyz_d65(display.primaries)}})).ops;
+    append(ops, back);
+    append(
+        ops,
+        lower_to_ocio({MatrixStage{rgb_to_rgb(kAP0, find_input_space(view.input).primaries)}}).ops);
+    const OcioCpu cpu(make_processor(ops), flags);
     return RoundTrip(view, probes)
         .measure([&](const float* in, float* out, std::size_t n) { cpu.run_rgb(in, out, n); })
         .errors;
@@ -239,11 +237,11 @@ std::string yaml_of(const OCIO::Config& config) {
 /// OCIO's CPU path of the view against the reference, for colors of the input space >= 0.
 ViewError measure_view(const View& view, const SampleSet& probes) {
     const Pipeline stages = build_view(view);
-    const Lowered lowered = lower_to_ocio(stages, {.primaries = view.op.op->working});
+    const Lowered lowered = lower_to_ocio(stages, lower_options(*view.op.op));
     std::vector<double> truth(probes.rgb.size());
     ReferenceEngine(stages).run_rgb(probes.rgb.data(), truth.data(), probes.size());
     std::vector<float> shown(probes.rgb.size());
-    OcioCpu(make_processor(lowered)).run_rgb(probes.rgb.data(), shown.data(), probes.size());
+    OcioCpu(make_processor(lowered.ops)).run_rgb(probes.rgb.data(), shown.data(), probes.size());
     std::vector<double> errors;
     std::vector<double> a;
     std::vector<double> b;
@@ -325,7 +323,7 @@ void ConfigBuilder::add_untonemapped() {
 
 struct ConfigBuilder::LoweredView {
     Lowered forward;
-    OCIO::GroupTransformRcPtr back;  // null: none of our own
+    std::optional<LoweredOps> back;  // nothing: none of our own
     ViewError error;
     ErrorStats wide;  // colors of all of AP1, of a view that is not exact
 };
@@ -501,7 +499,7 @@ void ConfigBuilder::add_file_rules() {
 void ConfigBuilder::use_builtins(const OCIO::ConfigRcPtr& config) const {
     for (const auto& view : model_.views) {
         for (const DisplayedView& shown : displayed_.at(view.name)) {
-            const std::string style = shown.op.ocio_builtin();
+            const std::string style = builtin_style(shown.op);
             if (style.empty() || !cubes_.contains(shown.transform)) continue;
             const DisplayLimit limit = display_limit(shown.op, *shown.display);
             const Matrix3 to_xyz = rgb_to_xyz_d65(limit.primaries);
@@ -573,21 +571,15 @@ ConfigBuilder::LoweredView ConfigBuilder::lower_view(const ConfigModel::View& vi
     const View measured = make_view(view.op, "lin_rec709", view.exposure_stops, shown.display->id);
     ViewError& error = result.error;
     error = measure_view(measured, probes_);
-    result.forward = lower_to_ocio(shown.stages, {.primaries = view.op.op->working});
+    result.forward = lower_to_ocio(shown.stages, lower_options(*view.op.op));
     result.back = inverse_space(view, shown);
-    OCIO::GroupTransformRcPtr back = result.back;
-    if (!back) {
-        back = OCIO::GroupTransform::Create();
-        for (int i = 0; i < result.forward.transform->getNumTransforms(); ++i)
-            back->appendTransform(result.forward.transform->getTransform(i));
-        back->setDirection(OCIO::TRANSFORM_DIR_INVERSE);
-    }
     // OpenColorIO takes seconds to invert a cube: once for a view, and of few colors.
     const bool is_slow = !result.back && !result.forward.is_exact;
     WayBackError& round_trip = error.back;
     round_trip.is_measured = !view.op.op->is_diagnostic && (is_first || !is_slow);
     if (round_trip.is_measured) {
         const SampleSet& probes = is_slow ? few_probes_ : probes_;
+        const LoweredOps back = result.back ? *result.back : inverse(result.forward.ops);
         round_trip.lossless =
             measure_round_trip(measured, back, OCIO::OPTIMIZATION_LOSSLESS, probes);
         round_trip.by_default =
@@ -626,15 +618,14 @@ void ConfigBuilder::add_view_transform(const ConfigModel::View& view, const Disp
     OCIO::ViewTransformRcPtr vt = OCIO::ViewTransform::Create(OCIO::REFERENCE_SPACE_SCENE);
     vt->setName(shown.transform.c_str());
     vt->setDescription(text.c_str());
-    vt->setTransform(
-        between_references(luts_.externalise(lowered.forward.transform, view.op.op->id,
-                                             view.op.op->title, lowered.forward.is_exact),
-                           OCIO::TRANSFORM_DIR_FORWARD),
-        OCIO::VIEWTRANSFORM_DIR_FROM_REFERENCE);
+    vt->setTransform(between_references(luts_.to_ocio(lowered.forward.ops, view.op.op->id,
+                                                      view.op.op->title, lowered.forward.is_exact),
+                                        OCIO::TRANSFORM_DIR_FORWARD),
+                     OCIO::VIEWTRANSFORM_DIR_FROM_REFERENCE);
     if (lowered.back && error.back.exists) {
         vt->setTransform(
-            between_references(luts_.externalise(lowered.back, view.op.op->id + "_inverse",
-                                                 view.op.op->title + ", inverse", false),
+            between_references(luts_.to_ocio(*lowered.back, view.op.op->id + "_inverse",
+                                             view.op.op->title + ", inverse", false),
                                OCIO::TRANSFORM_DIR_INVERSE),
             OCIO::VIEWTRANSFORM_DIR_TO_REFERENCE);
     }

@@ -7,16 +7,14 @@
 #include <utility>
 #include <vector>
 
+#include "ocio/fixed_functions.h"
 #include "ocio/inverse_cube.h"
+#include "ocio/operator_facts.h"
+#include "ocio/transforms.h"
 #include "tonewright/engine.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
-
-void append(OCIO::GroupTransformRcPtr& group, const Lowered& lowered) {
-    for (int i = 0; i < lowered.transform->getNumTransforms(); ++i)
-        group->appendTransform(lowered.transform->getTransform(i));
-}
 
 // ---------------------------------------------------------------------------------------------
 // Channels apart
@@ -68,7 +66,7 @@ void solve(const ChannelCurve& f, std::vector<double>& y, double lo, double hi) 
 
 /// Tables of the inverses of a run, at equal distances over what it puts out.
 /// @return false where a channel falls somewhere
-bool append_inverse(const Pipeline& run, OCIO::GroupTransformRcPtr& group) {
+bool append_inverse(const Pipeline& run, LoweredOps& ops) {
     std::array<double, 3> first{};
     std::array<double, 3> last{};
     std::array<std::vector<double>, 3> inverse;
@@ -98,25 +96,17 @@ bool append_inverse(const Pipeline& run, OCIO::GroupTransformRcPtr& group) {
         }
         solve(f, inverse[c], lo, kHalfMax);
     }
-    const auto to_table = OCIO::MatrixTransform::Create();
-    std::array<double, 16> m{};
-    std::array<double, 4> offset{};
+    MatrixOp to_table{};
+    std::array<std::vector<float>, 3> tables;
     for (std::size_t c = 0; c < 3; ++c) {
-        m[5 * c] = 1 / (last[c] - first[c]);
-        offset[c] = -first[c] * m[5 * c];
+        to_table.m[c][c] = 1 / (last[c] - first[c]);
+        to_table.offset[c] = -first[c] * to_table.m[c][c];
+        tables[c].assign(inverse[c].begin(), inverse[c].end());
     }
-    m[15] = 1;
-    to_table->setMatrix(m.data());
-    to_table->setOffset(offset.data());
-    group->appendTransform(to_table);
-    const auto lut = OCIO::Lut1DTransform::Create(inverse[0].size(), false);
-    lut->setInterpolation(OCIO::INTERP_LINEAR);
-    lut->setFileOutputBitDepth(OCIO::BIT_DEPTH_F32);
-    for (unsigned long i = 0; i < inverse[0].size(); ++i) {
-        lut->setValue(i, static_cast<float>(inverse[0][i]), static_cast<float>(inverse[1][i]),
-                      static_cast<float>(inverse[2][i]));
-    }
-    group->appendTransform(lut);
+    Lut1DOp lut = lut_1d(tables);
+    lut.is_half_domain = false;
+    ops.push_back({to_table});
+    ops.push_back({std::move(lut)});
     return true;
 }
 
@@ -125,12 +115,12 @@ bool treats_channels_apart(const Stage& stage) {
 }
 
 /// Stage by stage, from the last on.
-OCIO::GroupTransformRcPtr invert_stages(const Pipeline& stages) {
-    OCIO::GroupTransformRcPtr group = OCIO::GroupTransform::Create();
+std::optional<LoweredOps> invert_stages(const Pipeline& stages) {
+    LoweredOps ops;
     std::size_t end = stages.size();
     while (end > 0) {
         if (const auto* m = std::get_if<MatrixStage>(&stages[end - 1])) {
-            append(group, lower_to_ocio({MatrixStage{inverse(m->m)}}));
+            append(ops, lower_to_ocio({MatrixStage{inverse(m->m)}}).ops);
             --end;
             continue;
         }
@@ -140,74 +130,64 @@ OCIO::GroupTransformRcPtr invert_stages(const Pipeline& stages) {
             --begin;
             has_curve = has_curve || std::holds_alternative<CurveStage>(stages[begin]);
         }
-        if (begin == end) return nullptr;
+        if (begin == end) return std::nullopt;
         const Pipeline run(stages.begin() + static_cast<std::ptrdiff_t>(begin),
                            stages.begin() + static_cast<std::ptrdiff_t>(end));
         if (!has_curve) {
-            append(group, lower_to_ocio(run));
-        } else if (!append_inverse(run, group)) {
-            return nullptr;
+            append(ops, lower_to_ocio(run).ops);
+        } else if (!append_inverse(run, ops)) {
+            return std::nullopt;
         }
         end = begin;
     }
-    return group;
+    return ops;
 }
 
-/// Every transform inverted by OpenColorIO, of an operator that shows no light as white; else null:
-/// it does that by itself.
-OCIO::GroupTransformRcPtr invert_lowered(const Pipeline& forward, double peak) {
+/// Every transform inverted by OpenColorIO, of an operator that shows no light as white; else
+/// nothing: it does that by itself.
+std::optional<LoweredOps> invert_lowered(const Pipeline& forward, double peak) {
     const Vector3 brightest = ReferenceEngine(forward)({kHalfMax, kHalfMax, kHalfMax});
-    if (!(*std::max_element(brightest.begin(), brightest.end()) < peak)) return nullptr;
+    if (!(*std::max_element(brightest.begin(), brightest.end()) < peak)) return std::nullopt;
     // Next to white, where light grows without end, tables over half floats have no entries, and
     // what is interpolated there is far too bright.
     const double last = peak * (1 - 0x1p-11);
-    OCIO::GroupTransformRcPtr group = lower_to_ocio({ClampStage{0, last}}).transform;
-    const OCIO::GroupTransformRcPtr lowered = lower_to_ocio(forward).transform;
-    for (int i = lowered->getNumTransforms() - 1; i >= 0; --i) {
-        const OCIO::TransformRcPtr part = lowered->getTransform(i)->createEditableCopy();
-        part->setDirection(
-            OCIO::CombineTransformDirections(part->getDirection(), OCIO::TRANSFORM_DIR_INVERSE));
-        group->appendTransform(part);
-    }
-    return group;
+    LoweredOps ops = lower_to_ocio({ClampStage{0, last}}).ops;
+    append(ops, inverse(lower_to_ocio(forward).ops));
+    return ops;
 }
 
 /// True where a cube stands for it, or a part of it.
 bool needs_cube(const Pipeline& stages) {
     return std::any_of(stages.begin(), stages.end(), [](const Stage& stage) {
         const auto* map = std::get_if<CrossTalkStage>(&stage);
-        return std::holds_alternative<LatticeStage>(stage) || (map && map->ocio.empty());
+        return std::holds_alternative<LatticeStage>(stage) || (map && !find_fixed_functions(*map));
     });
 }
 
-/// OpenColorIO's own, where it has one that the operator equals; null where it has none.
-OCIO::GroupTransformRcPtr invert_builtin(const ResolvedOperator& op, const DisplayLimit& limit) {
-    const std::string style = op.ocio_builtin();
+/// OpenColorIO's own, where it has one that the operator equals.
+std::optional<LoweredOps> invert_builtin(const ResolvedOperator& op, const DisplayLimit& limit) {
+    const std::string style = builtin_style(op);
     const auto registry = OCIO::BuiltinTransformRegistry::Get();
     for (std::size_t i = 0; i < registry->getNumBuiltins(); ++i) {
         if (style.empty() || style != registry->getBuiltinStyle(i)) continue;
-        const auto builtin = OCIO::BuiltinTransform::Create();
-        builtin->setStyle(style.c_str());
-        builtin->setDirection(OCIO::TRANSFORM_DIR_INVERSE);
-        OCIO::GroupTransformRcPtr group = OCIO::GroupTransform::Create();
-        append(group, lower_to_ocio({MatrixStage{rgb_to_xyz_d65(limit.primaries)}}));
-        group->appendTransform(builtin);
-        append(group, lower_to_ocio({MatrixStage{rgb_to_rgb(kAP0, op.op->working)}}));
-        return group;
+        LoweredOps ops = lower_to_ocio({MatrixStage{rgb_to_xyz_d65(limit.primaries)}}).ops;
+        ops.push_back({BuiltinOp{style}, true});
+        append(ops, lower_to_ocio({MatrixStage{rgb_to_rgb(kAP0, op.op->working)}}).ops);
+        return ops;
     }
-    return nullptr;
+    return std::nullopt;
 }
 
 }  // namespace
 
-OCIO::GroupTransformRcPtr invert_light(const ResolvedOperator& op, const DisplayLimit& limit) {
-    if (const auto group = invert_builtin(op, limit)) return group;
+std::optional<LoweredOps> invert_light(const ResolvedOperator& op, const DisplayLimit& limit) {
+    if (auto ops = invert_builtin(op, limit)) return ops;
     Pipeline forward = op.build();
     const Pipeline light = display_light_stages(op, limit);
     forward.insert(forward.end(), light.begin(), light.end());
     forward = simplify(forward);
-    if (auto group = invert_stages(forward)) return group;
-    if (op.op->is_diagnostic) return nullptr;
+    if (auto ops = invert_stages(forward)) return ops;
+    if (op.op->is_diagnostic) return std::nullopt;
     if (!needs_cube(forward)) return invert_lowered(forward, limit.peak);
     // Of the operator's own gamut, so that displays of other gamuts have the same table.
     const Primaries primaries = op.output_primaries();
@@ -217,12 +197,12 @@ OCIO::GroupTransformRcPtr invert_light(const ResolvedOperator& op, const Display
     };
     if (op.op->build_inverse) {
         append_stages(back, op.op->build_inverse(op.params));
-        return lower_to_ocio(sampled_inverse(back, limit.peak)).transform;
+        return lower_to_ocio(sampled_inverse(back, limit.peak)).ops;
     }
     Pipeline own = op.build();
     append_stages(own, display_light_stages(op, {primaries, limit.peak}));
     append_stages(back, fitted_inverse(own, op.op->working, limit.peak));
-    return lower_to_ocio(back).transform;
+    return lower_to_ocio(back).ops;
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "ocio/lower.h"
+#include <optional>
+
+#include "ocio/lowered_op.h"
 #include "tonewright/view.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -18,9 +20,9 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// - every transform of the view inverted by OpenColorIO, with light limited to the last half float
 ///   below white, where only infinite light is white.
 ///
-/// @return null where there is none of these: of a diagnostic view, in which many lights are shown
-///         as one, and where OpenColorIO's inversion of the view needs nothing of ours.
-[[nodiscard]] OCIO::GroupTransformRcPtr invert_light(const ResolvedOperator& op,
+/// @return nothing where there is none of these: of a diagnostic view, in which many lights are
+///         shown as one, and where OpenColorIO's inversion of the view needs nothing of ours.
+[[nodiscard]] std::optional<LoweredOps> invert_light(const ResolvedOperator& op,
                                                      const DisplayLimit& limit);
 
 TONEWRIGHT_NAMESPACE_END

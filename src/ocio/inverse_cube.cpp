@@ -5,9 +5,9 @@
 #include <array>
 #include <cmath>
 #include <memory>
-#include <mutex>
 #include <vector>
 
+#include "base/bounded_cache.h"
 #include "lut/fit_inverse.h"
 #include "tonewright/color.h"
 #include "tonewright/engine.h"
@@ -82,23 +82,21 @@ Pipeline sampled_inverse(const Pipeline& back, double peak) {
 
 Pipeline fitted_inverse(const Pipeline& forward, const Primaries& primaries, double peak) {
     // The same for displays of the same gamut and peak.
-    struct Entry {
+    struct Key {
         std::array<Expr, 3> forward;  // equal expressions are the same node, as long as one lives
         Primaries primaries;
         double peak;
-        std::shared_ptr<const Lattice> cube;
+
+        bool operator==(const Key& b) const {
+            return std::equal(forward.begin(), forward.end(), b.forward.begin(), same) &&
+                   primaries == b.primaries && peak == b.peak;
+        }
     };
-    static std::mutex mutex;
-    static std::vector<Entry> entries;
-    const std::array<Expr, 3> composed = compose(forward);
+    static BoundedCache<Key, Lattice> cache(64);  // of 0.9 MB each
     const Expr x = Expr::input();
     const Expr place = place_of(x, peak);
-    const std::lock_guard lock(mutex);
-    auto entry = std::find_if(entries.begin(), entries.end(), [&](const Entry& e) {
-        return std::equal(e.forward.begin(), e.forward.end(), composed.begin(), same) &&
-               e.primaries == primaries && e.peak == peak;
-    });
-    if (entry == entries.end()) {
+    // The lattice computes its nodes when they are asked for.
+    const auto cube = cache.get({compose(forward), primaries, peak}, [&] {
         const auto make_nodes = [=] {
             InverseCubeProblem problem;
             problem.edge = kFittedEdge;
@@ -114,11 +112,9 @@ Pipeline fitted_inverse(const Pipeline& forward, const Primaries& primaries, dou
                 code = std::clamp(code, -1.0, 1.0);
             return nodes;
         };
-        entry = entries.insert(
-            entries.end(),
-            {composed, primaries, peak, std::make_shared<const Lattice>(kFittedEdge, make_nodes)});
-    }
-    return {ClampStage{0, peak}, LatticeStage{place, entry->cube}, ClampStage{0, 1},
+        return Lattice(kFittedEdge, make_nodes);
+    });
+    return {ClampStage{0, peak}, LatticeStage{place, cube}, ClampStage{0, 1},
             curve_stage(light_of(x))};
 }
 

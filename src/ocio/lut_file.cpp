@@ -21,7 +21,7 @@
 #include "lut/icc.h"
 #include "lut/lut_text.h"
 #include "lut/raw.h"
-#include "ocio/lower.h"
+#include "ocio/transforms.h"
 #include "tonewright/lut.h"
 #include "tonewright/lut_applications.h"
 
@@ -187,7 +187,8 @@ class PrivateCopy {
         if (::close(file) != 0 && !error) error = errno;
         // Threads that read equal bytes at the same time share one file.
         const std::lock_guard lock(mutex_);
-        if (!error && !users_.contains(path_) && std::rename(unfinished.c_str(), path_.c_str()) != 0)
+        if (!error && !users_.contains(path_) &&
+            std::rename(unfinished.c_str(), path_.c_str()) != 0)
             error = errno;
         if (!error) ++users_[path_];
         if (error || users_[path_] > 1) ::unlink(unfinished.c_str());
@@ -210,18 +211,16 @@ OCIO::GroupTransformRcPtr group_of(const std::string& path) {
 }
 
 /// @param name  of the file for OpenColorIO
-OcioCpu make_cpu(const std::string& path, const std::string& name,
-                 const OCIO::GroupTransformRcPtr& group, LutInterpolation interpolation) {
-    Lowered lowered;
-    lowered.transform = group;
+OcioCpu make_cpu(const std::string& path, const std::string& name, OCIO::GroupTransformRcPtr group,
+                 LutInterpolation interpolation) {
     try {
-        OCIO::ConstProcessorRcPtr processor = make_processor(lowered);
+        OCIO::ConstProcessorRcPtr processor = make_processor(group);
         if (interpolation != LutInterpolation::automatic) {
-            lowered.transform = processor->createGroupTransform();
-            set_interpolation(lowered.transform, interpolation == LutInterpolation::trilinear
-                                                     ? OCIO::INTERP_LINEAR
-                                                     : OCIO::INTERP_TETRAHEDRAL);
-            processor = make_processor(lowered);
+            group = processor->createGroupTransform();
+            set_interpolation(group, interpolation == LutInterpolation::trilinear
+                                         ? OCIO::INTERP_LINEAR
+                                         : OCIO::INTERP_TETRAHEDRAL);
+            processor = make_processor(group);
         }
         return {processor, OCIO::OPTIMIZATION_LOSSLESS};
     } catch (const OCIO::Exception& e) {

@@ -1,89 +1,56 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ocio/lut_files.h"
-#include "base/strings.h"
 
-#include <array>
+#include <optional>
+
+#include "base/strings.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-std::vector<float> values_of(const OCIO::Lut1DTransform& lut, ClfTable& table) {
-    const unsigned long n = lut.getLength();
-    std::array<std::vector<float>, 3> channel;
-    for (unsigned long i = 0; i < n; ++i) {
-        float r = 0;
-        float g = 0;
-        float b = 0;
-        lut.getValue(i, r, g, b);
-        channel[0].push_back(r);
-        channel[1].push_back(g);
-        channel[2].push_back(b);
+/// The table of an operation that has one.
+std::optional<ClfTable> table_of(const LoweredOp& op, bool is_exact) {
+    if (const auto* lut = std::get_if<Lut1DOp>(&op.op)) {
+        return ClfTable{.dimension = 1,
+                        .size = lut->size(),
+                        .channels = lut->channels,
+                        .is_half_domain = lut->is_half_domain,
+                        .is_hue_preserving = lut->keeps_hue,
+                        .values = lut->values,
+                        .numbers = ClfTable::Numbers::compact};
     }
-    std::vector<float> values;
-    const bool one = channel[0] == channel[1] && channel[1] == channel[2];
-    for (unsigned long i = 0; i < n; ++i) {
-        for (std::size_t c = 0; c < (one ? 1U : 3U); ++c)
-            values.push_back(channel[c][i]);
+    if (const auto* lut = std::get_if<Lut3DOp>(&op.op)) {
+        // 8e-6, a thirtieth of what interpolating between the nodes of a sampled operator costs in
+        // the mean. A lattice has nothing else to be wrong in: 5e-8.
+        return ClfTable{
+            .dimension = 3,
+            .size = lut->edge,
+            .channels = 3,
+            .values = lut->values,
+            .numbers = is_exact ? ClfTable::Numbers::decimals_7 : ClfTable::Numbers::codes};
     }
-    table.size = static_cast<int>(n);
-    table.channels = one ? 1 : 3;
-    table.is_half_domain = lut.getInputHalfDomain();
-    table.is_hue_preserving = lut.getHueAdjust() == OCIO::HUE_DW3;
-    return values;
-}
-
-std::vector<float> values_of(const OCIO::Lut3DTransform& cube, ClfTable& table) {
-    const unsigned long n = cube.getGridSize();
-    std::vector<float> values;
-    values.reserve(3 * n * n * n);
-    for (unsigned long r = 0; r < n; ++r) {
-        for (unsigned long g = 0; g < n; ++g) {
-            for (unsigned long b = 0; b < n; ++b) {
-                std::array<float, 3> v{};
-                cube.getValue(r, g, b, v[0], v[1], v[2]);
-                values.insert(values.end(), v.begin(), v.end());
-            }
-        }
-    }
-    table.dimension = 3;
-    table.size = static_cast<int>(n);
-    table.channels = 3;
-    return values;
+    return std::nullopt;
 }
 
 }  // namespace
 
-OCIO::GroupTransformRcPtr LutFiles::externalise(const OCIO::GroupTransformRcPtr& group,
-                                                const std::string& stem, const std::string& what,
-                                                bool is_exact) {
+OCIO::GroupTransformRcPtr LutFiles::to_ocio(const LoweredOps& ops, const std::string& stem,
+                                            const std::string& what, bool is_exact) {
     OCIO::GroupTransformRcPtr out = OCIO::GroupTransform::Create();
     int count = 0;
-    for (int i = 0; i < group->getNumTransforms(); ++i) {
-        const OCIO::TransformRcPtr t = group->getTransform(i);
-        ClfTable table;
-        table.numbers = ClfTable::Numbers::compact;
-        std::vector<float> values;
-        std::string part;
-        if (const auto lut = OCIO_DYNAMIC_POINTER_CAST<OCIO::Lut1DTransform>(t)) {
-            values = values_of(*lut, table);
-            part = "curve";
-        } else if (const auto cube = OCIO_DYNAMIC_POINTER_CAST<OCIO::Lut3DTransform>(t)) {
-            values = values_of(*cube, table);
-            // 8e-6, a thirtieth of what interpolating between the nodes of a sampled operator
-            // costs in the mean. A lattice has nothing else to be wrong in: 5e-8.
-            table.numbers = is_exact ? ClfTable::Numbers::decimals_7 : ClfTable::Numbers::codes;
-            part = "cube";
-        } else {
-            out->appendTransform(t);
+    for (const LoweredOp& op : ops) {
+        const auto table = table_of(op, is_exact);
+        if (!table) {
+            out->appendTransform(tonewright::to_ocio(op));
             continue;
         }
-        table.values = &values;
-        part += count++ ? std::to_string(count) : "";
-        OCIO::FileTransformRcPtr file = OCIO::FileTransform::Create();
-        file->setSrc(file_for(table, stem + "_" + part, what).c_str());
-        file->setInterpolation(table.dimension == 3 ? OCIO::INTERP_TETRAHEDRAL
-                                                    : OCIO::INTERP_LINEAR);
-        file->setDirection(t->getDirection());
+        std::string part = table->dimension == 3 ? "cube" : "curve";
+        if (count++) part += std::to_string(count);
+        const OCIO::FileTransformRcPtr file = OCIO::FileTransform::Create();
+        file->setSrc(file_for(*table, stem + "_" + part, what).c_str());
+        file->setInterpolation(table->dimension == 3 ? OCIO::INTERP_TETRAHEDRAL
+                                                     : OCIO::INTERP_LINEAR);
+        if (op.is_inverse) file->setDirection(OCIO::TRANSFORM_DIR_INVERSE);
         out->appendTransform(file);
     }
     return out;
@@ -91,8 +58,8 @@ OCIO::GroupTransformRcPtr LutFiles::externalise(const OCIO::GroupTransformRcPtr&
 
 std::string LutFiles::file_for(const ClfTable& table, const std::string& stem,
                                const std::string& what) {
-    std::string key(reinterpret_cast<const char*>(table.values->data()),
-                    table.values->size() * sizeof(float));
+    std::string key(reinterpret_cast<const char*>(table.values.data()),
+                    table.values.size() * sizeof(float));
     key += std::to_string(table.size) + (table.is_half_domain ? "half" : "") +
            (table.is_hue_preserving ? "hue" : "");
     const auto [it, is_new] =

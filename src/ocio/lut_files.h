@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lut/clf.h"
-#include "ocio/lower.h"
+#include "ocio/transforms.h"
 #include "tonewright/generated_files.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -17,10 +17,9 @@ class LutFiles {
     /// @param folder  that they are in, beside the config
     explicit LutFiles(std::string folder) : folder_(std::move(folder)) {}
 
-    /// The same chain with every table replaced by a file of its numbers.
-    OCIO::GroupTransformRcPtr externalise(const OCIO::GroupTransformRcPtr& group,
-                                          const std::string& stem, const std::string& what,
-                                          bool is_exact);
+    /// The transforms of the operations, with a file for every table.
+    OCIO::GroupTransformRcPtr to_ocio(const LoweredOps& ops, const std::string& stem,
+                                      const std::string& what, bool is_exact);
 
     [[nodiscard]] const std::vector<GeneratedFile>& files() const { return files_; }
 

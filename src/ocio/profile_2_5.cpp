@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "ocio/interop.h"
+#include "ocio/operator_facts.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -105,7 +106,7 @@ std::string to_profile_2_5(const std::string& yaml, const ConfigModel& model,
     for (const auto& view : model.views) {
         if (view.exposure_stops != 0) continue;  // not the Academy's
         for (const DisplayedView& shown : displayed.at(view.name)) {
-            const std::string style = shown.op.ocio_builtin();
+            const std::string style = builtin_style(shown.op);
             if (style.empty()) continue;
             for (const std::string& id : amf_ids_of_output(style, shown.display->id))
                 ids[shown.transform].insert(id);

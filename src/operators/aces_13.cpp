@@ -45,8 +45,6 @@ namespace {
 /// A form of the standard: what `output` chooses.
 struct Form {
     const char* id;
-    /// In the names of OpenColorIO's built-in transforms.
-    const char* style;
     bool is_hdr;
     bool is_video;
     double peak;     // cd/m2 of the curve's largest light
@@ -56,12 +54,12 @@ struct Form {
 };
 
 constexpr std::array<Form, 6> kForms = {{
-    {"sdr_video", "SDR-VIDEO", false, true, 48},
-    {"sdr_cinema", "SDR-CINEMA", false, false, 48},
-    {"hdr_1000", "HDR-VIDEO-1000nit-15nit", true, true, 1000, 15, true},
-    {"hdr_2000", "HDR-VIDEO-2000nit-15nit", true, true, 2000, 15},
-    {"hdr_4000", "HDR-VIDEO-4000nit-15nit", true, true, 4000, 15},
-    {"hdr_cinema", "HDR-CINEMA-108nit-7.2nit", true, false, 108, 7.2, true},
+    {"sdr_video", false, true, 48},
+    {"sdr_cinema", false, false, 48},
+    {"hdr_1000", true, true, 1000, 15, true},
+    {"hdr_2000", true, true, 2000, 15},
+    {"hdr_4000", true, true, 4000, 15},
+    {"hdr_cinema", true, false, 108, 7.2, true},
 }};
 
 const Form& form_of(const Params& p) {
@@ -260,59 +258,6 @@ Expr tone_curve(const Form& form, bool is_ocio) {
 }
 
 // ---------------------------------------------------------------------------------------------
-// Before the curve
-
-/// In AP1. The distance of a channel from the largest, D = max - c, is left alone up to u0 = thr a,
-/// a = |max|; with u = D - u0 beyond it becomes u0 + u/(1 + (u/s)^p)^(1/p), s = scale a: the
-/// standard's formula, times a, which needs no division by it.
-CrossTalkStage compress_gamut() {
-    constexpr double power = 1.2;
-    constexpr std::array limit = {1.147, 1.264, 1.312};  // cyan, magenta, yellow
-    constexpr std::array threshold = {0.815, 0.803, 0.880};
-    const std::array<Expr, 3> c = {Expr::input(0), Expr::input(1), Expr::input(2)};
-    const Expr achromatic = max(max(c[0], c[1]), c[2]);
-    const Expr a = abs(achromatic);
-    CrossTalkStage stage{c};
-    stage.ocio = {
-        {"ACES_GamutComp13",
-         {limit[0], limit[1], limit[2], threshold[0], threshold[1], threshold[2], power}}};
-    for (std::size_t i = 0; i < 3; ++i) {
-        const double range = limit[i] - threshold[i];
-        const double scale =
-            range / std::pow(std::pow((1 - threshold[i]) / range, -power) - 1, 1 / power);
-        const Expr u = achromatic - c[i] - threshold[i] * a;
-        const Expr s = scale * a;
-        // The same in u and s: with the ratio of the smaller to the larger nothing overflows.
-        const Expr beyond = max(u, 0);
-        constexpr double tiny = 1e-30;
-        const Expr ratio = min(beyond, s) / max(max(beyond, s), tiny);
-        const Expr compressed = min(beyond, s) * pow(1 + pow(ratio, power), -1 / power);
-        stage.f[i] = select(less(u, 0), c[i], achromatic - threshold[i] * a - compressed);
-    }
-    return stage;
-}
-
-/// The first two steps of the RRT, in AP0; also of negatives.
-CrossTalkStage glow_and_red_modifier(bool is_ocio) {
-    constexpr double floor = 1e-10;
-    const std::array<Expr, 3> rgb = {Expr::input(0), Expr::input(1), Expr::input(2)};
-    const Expr saturation = rrt_saturation(rgb, floor);
-    const std::array<Expr, 3> glowing = rrt_glow(rgb, saturation);
-    // The cubic B-spline over 135 degrees about red, as a sum of two truncated powers: 1 at red.
-    constexpr double interval = 135.0 / 4 * std::numbers::pi / 180;
-    const Expr distance = abs(rrt_hue(glowing) / interval);
-    const Expr outer = max(2 - distance, 0);
-    const Expr inner = max(1 - distance, 0);
-    const Expr weight = 0.25 * (outer * outer * outer) - inner * inner * inner;
-    CrossTalkStage stage{
-        rrt_red_modifier(glowing, weight, is_ocio ? rrt_saturation(glowing, floor) : saturation)};
-    stage.ocio = {{"ACES_Glow10"}, {"ACES_RedMod10"}};
-    // The saturation of the dark: where all channels are below 0.01.
-    stage.is_ocio_exact = is_ocio;
-    return stage;
-}
-
-// ---------------------------------------------------------------------------------------------
 // Behind it
 
 /// Limited in the primaries under the ACES white, then adapted to D65, in units of 100 cd/m2.
@@ -342,10 +287,11 @@ Pipeline build(const Params& p) {
     Pipeline stages = {ClampStage{-kHalfMax, kHalfMax}};
     if (p.choice("gamut_compression") == "yes") {
         stages.push_back(MatrixStage{rgb_to_rgb(kAP0, kAP1)});
-        stages.push_back(compress_gamut());
+        stages.push_back(reference_gamut_compression());
         stages.push_back(MatrixStage{rgb_to_rgb(kAP1, kAP0)});
     }
-    stages.push_back(glow_and_red_modifier(is_ocio));
+    stages.push_back(rrt_glow_and_red_modifier(is_ocio ? RrtSaturation::after_glow
+                                                       : RrtSaturation::before_glow));
     stages.push_back(ClampStage{0, kInfinity});
     stages.push_back(MatrixStage{rgb_to_rgb(kAP0, kAP1)});
     stages.push_back(ClampStage{0, is_ocio ? kInfinity : kHalfMax});
@@ -362,19 +308,6 @@ Pipeline build(const Params& p) {
         stages.push_back(ClampStage{0, 1});
     }
     return stages;
-}
-
-std::string ocio_builtin(const Params& p) {
-    if (p.choice("spline") != "ocio" || p.choice("gamut_compression") != "no") return "";
-    const Form& form = form_of(p);
-    const std::string& limit = p.choice("limit");
-    std::string kind;
-    if (limit == "none" && !form.is_hdr) kind = "_1.0";
-    if (limit == "rec709" && !form.is_hdr) kind = "-REC709lim_1.1";
-    if (limit == "p3d65" && (form.is_hdr || form.is_video)) kind = "-P3lim_1.1";
-    if (limit == "rec2020" && form.is_hdr && form.is_video) kind = "-REC2020lim_1.1";
-    if (kind.empty()) return "";
-    return std::string("ACES-OUTPUT - ACES2065-1_to_CIE-XYZ-D65 - ") + form.style + kind;
 }
 
 }  // namespace
@@ -449,7 +382,6 @@ std::vector<Operator> define_aces_13() {
         const Form& form = form_of(p);
         return form.is_hdr ? bluest * form.peak / 100 : 1;
     };
-    op.ocio_builtin = ocio_builtin;
     return {op};
 }
 

@@ -600,9 +600,7 @@ class OutputTransform {
                                        achromatic, hue);
 
         const auto [moved_j, moved_m] = move_along_line(j, m, j, hue, false);
-        CrossTalkStage stage{rgb_of(display_, achromatic_of(moved_j), moved_m, hue)};
-        stage.is_cube_fitted = true;
-        return stage;
+        return {rgb_of(display_, achromatic_of(moved_j), moved_m, hue)};
     }
 
     /// The display's RGB, limited to its range, to AP1, not limited.
@@ -804,22 +802,6 @@ Primaries primaries_of(const Params& params) {
     return p;
 }
 
-std::string builtin_of(const Params& params) {
-    const Primaries limiting = primaries_of(params);
-    const double peak = params.number("peak");
-    const bool is_p3 = limiting == kP3D65;
-    std::string name;
-    if (peak == 100 && (is_p3 || limiting == kRec709)) {
-        name = is_p3 ? "SDR-100nit-P3-D65" : "SDR-100nit-REC709";
-    } else if ((peak == 500 || peak == 1000 || peak == 2000 || peak == 4000) &&
-               (is_p3 || limiting == kRec2020)) {
-        name = "HDR-" + shortest(peak) + "nit-" + (is_p3 ? "P3-D65" : "REC2020");
-    } else {
-        return "";
-    }
-    return "ACES-OUTPUT - ACES2065-1_to_CIE-XYZ-D65 - " + name + "_2.0";
-}
-
 OutputTransform transform_of(const Params& params) {
     return {params.number("peak"), primaries_of(params)};
 }
@@ -876,7 +858,6 @@ std::vector<Operator> define_aces_20() {
         "D60 variants, which are not, are left out"};
     op.output_primaries = primaries_of;
     op.peak = [](const Params& p) { return p.number("peak") / 100; };
-    op.ocio_builtin = builtin_of;
     op.build = [](const Params& p) -> Pipeline {
         const OutputTransform output = transform_of(p);
         const Constants& k = output.constants();

@@ -249,12 +249,6 @@ Vector3 weights_of(const Primaries& gamut, const Vector3& weights) {
     return out;
 }
 
-CrossTalkStage as_one(const Pipeline& chain) {
-    CrossTalkStage stage{compose(chain)};
-    stage.is_cube_fitted = true;
-    return stage;
-}
-
 /// The formula up to the guard rail of the limit, behind a look's stages: one stage of cross-talk,
 /// so that where it has to be sampled it is sampled once. It takes channels below 0.
 Pipeline sdr_formula(const Pipeline& look, const Primaries& limit) {
@@ -266,7 +260,7 @@ Pipeline sdr_formula(const Pipeline& look, const Primaries& limit) {
         chain.push_back(MatrixStage{rgb_to_rgb(kRec2020, limit)});
         chain.push_back(CrossTalkStage{display_rail(inputs(), weights_of(limit, kRailWeights))});
     }
-    return {as_one(chain), ClampStage{0, 1}};
+    return {CrossTalkStage{compose(chain)}, ClampStage{0, 1}};
 }
 
 Pipeline hdr_formula(const Pipeline& look) {
@@ -278,8 +272,8 @@ Pipeline hdr_formula(const Pipeline& look) {
                  MatrixStage{kAgxOutsetRec2020},
                  MatrixStage{rgb_to_rgb(kRec2020, kP3D65)},
                  CrossTalkStage{display_rail(inputs(), weights_of(kP3D65, kRailWeights2025))}};
-    return {as_one(chain), MatrixStage{rgb_to_rgb(kP3D65, kRec2020)}, ClampStage{0, 1},
-            MatrixStage{scale(kIdentity3, kHdrPeak)}};
+    return {CrossTalkStage{compose(chain)}, MatrixStage{rgb_to_rgb(kP3D65, kRec2020)},
+            ClampStage{0, 1}, MatrixStage{scale(kIdentity3, kHdrPeak)}};
 }
 
 // ---------------------------------------------------------------------------------------------

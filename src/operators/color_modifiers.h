@@ -59,6 +59,29 @@ inline std::array<Expr, 3> rrt_red_modifier(const std::array<Expr, 3>& ap0, cons
     return {ap0[0] + weight * saturation * (0.03 - ap0[0]) * (1 - 0.82), ap0[1], ap0[2]};
 }
 
+/// Which colors the red modifier takes the saturation of.
+enum class RrtSaturation : unsigned char {
+    before_glow,  // the Academy's CTL
+    after_glow,   // OpenColorIO
+};
+
+/// The first two steps of the RRT, from AP0 to AP0; also of negatives.
+inline CrossTalkStage rrt_glow_and_red_modifier(RrtSaturation choice) {
+    constexpr double floor = 1e-10;
+    const std::array<Expr, 3> rgb = {Expr::input(0), Expr::input(1), Expr::input(2)};
+    const Expr saturation = rrt_saturation(rgb, floor);
+    const std::array<Expr, 3> glowing = rrt_glow(rgb, saturation);
+    // The cubic B-spline over 135 degrees about red, as a sum of two truncated powers: 1 at red.
+    constexpr double interval = 135.0 / 4 * std::numbers::pi / 180;
+    const Expr distance = abs(rrt_hue(glowing) / interval);
+    const Expr outer = max(2 - distance, 0);
+    const Expr inner = max(1 - distance, 0);
+    const Expr weight = 0.25 * (outer * outer * outer) - inner * inner * inner;
+    return {rrt_red_modifier(
+        glowing, weight,
+        choice == RrtSaturation::after_glow ? rrt_saturation(glowing, floor) : saturation)};
+}
+
 /// Both, of light >= 0, with the hue weight smoothstep(1 - |2h/135|)^2 that Filament and Unreal
 /// have in place of the CTL's B-spline. As in the CTL the saturation is the one before the glow.
 inline std::array<Expr, 3> glow_and_red_modifier(const std::array<Expr, 3>& ap0, double floor) {
@@ -74,6 +97,42 @@ inline std::array<Expr, 3> glow_and_red_modifier(const std::array<Expr, 3>& ap0,
 inline CrossTalkStage ap1_glow_and_red_modifier(double floor) {
     const std::array<Expr, 3> ap0 = compose({MatrixStage{rgb_to_rgb(kAP1, kAP0)}});
     return {apply_stage(MatrixStage{rgb_to_rgb(kAP0, kAP1)}, glow_and_red_modifier(ap0, floor))};
+}
+
+/// Constants of the reference gamut compression (LMT.Academy.ReferenceGamutCompress): of cyan,
+/// magenta, yellow.
+struct ReferenceGamutCompression {
+    static constexpr std::array<double, 3> limit = {1.147, 1.264, 1.312};
+    static constexpr std::array<double, 3> threshold = {0.815, 0.803, 0.880};
+    static constexpr double power = 1.2;
+};
+
+/// The reference gamut compression, in AP1. The distance of a channel from the largest,
+/// D = max - c, is left alone up to u0 = thr a, a = |max|; with u = D - u0 beyond it becomes
+/// u0 + u/(1 + (u/s)^p)^(1/p), s = scale a: the standard's formula, times a, which needs no
+/// division by it.
+inline CrossTalkStage reference_gamut_compression() {
+    constexpr auto& limit = ReferenceGamutCompression::limit;
+    constexpr auto& threshold = ReferenceGamutCompression::threshold;
+    constexpr double power = ReferenceGamutCompression::power;
+    const std::array<Expr, 3> c = {Expr::input(0), Expr::input(1), Expr::input(2)};
+    const Expr achromatic = max(max(c[0], c[1]), c[2]);
+    const Expr a = abs(achromatic);
+    CrossTalkStage stage{c};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double range = limit[i] - threshold[i];
+        const double scale =
+            range / std::pow(std::pow((1 - threshold[i]) / range, -power) - 1, 1 / power);
+        const Expr u = achromatic - c[i] - threshold[i] * a;
+        const Expr s = scale * a;
+        // The same in u and s: with the ratio of the smaller to the larger nothing overflows.
+        const Expr beyond = max(u, 0);
+        constexpr double tiny = 1e-30;
+        const Expr ratio = min(beyond, s) / max(max(beyond, s), tiny);
+        const Expr compressed = min(beyond, s) * pow(1 + pow(ratio, power), -1 / power);
+        stage.f[i] = select(less(u, 0), c[i], achromatic - threshold[i] * a - compressed);
+    }
+    return stage;
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -17,8 +17,8 @@
 
 #include "base/strings.h"
 #include "ocio/gpu.h"
-#include "ocio/lower.h"
 #include "ocio/read_config.h"
+#include "ocio/transforms.h"
 #include "tonewright/error.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN

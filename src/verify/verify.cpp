@@ -13,9 +13,10 @@
 #include "measure/error_metric.h"
 #include "measure/sample_set.h"
 #include "ocio/gpu.h"
-#include "ocio/lower.h"
+#include "ocio/operator_facts.h"
 #include "ocio/read_config.h"
 #include "ocio/round_trip.h"
+#include "ocio/transforms.h"
 #include "tonewright/engine.h"
 #include "tonewright/generated_files.h"
 #include "tonewright/ocio.h"
@@ -273,7 +274,7 @@ double round_trip_bound(const OCIO::ConstProcessorRcPtr& back, const ResolvedOpe
 /// OpenColorIO's built-in transform that the view's operator equals, on its display; null where
 /// there is none, or this OpenColorIO has it not.
 OCIO::ConstProcessorRcPtr builtin_processor(const View& view) {
-    const std::string style = view.op.ocio_builtin();
+    const std::string style = builtin_style(view.op);
     const auto registry = OCIO::BuiltinTransformRegistry::Get();
     bool is_known = false;
     for (std::size_t i = 0; i < registry->getNumBuiltins(); ++i)
@@ -284,12 +285,10 @@ OCIO::ConstProcessorRcPtr builtin_processor(const View& view) {
                        ClampStage{0, display_limit(view.op, display).peak}};
     behind.insert(behind.end(), display.encode.begin(), display.encode.end());
     const Matrix3 to_aces = rgb_to_rgb(find_input_space(view.input).primaries, kAP0);
-    Lowered whole = lower_to_ocio({MatrixStage{to_aces}});
-    const auto builtin = OCIO::BuiltinTransform::Create();
-    builtin->setStyle(style.c_str());
-    whole.transform->appendTransform(builtin);
-    whole.transform->appendTransform(lower_to_ocio(behind).transform);
-    return make_processor(whole);
+    LoweredOps ops = lower_to_ocio({MatrixStage{to_aces}}).ops;
+    ops.push_back({BuiltinOp{style}});
+    append(ops, lower_to_ocio(behind).ops);
+    return make_processor(ops);
 }
 
 /// Rows of the way back from the config's output space, in the forms that applications have it.
@@ -354,14 +353,13 @@ double rounded_to_half(double x) {
 /// The processor with tables as Blender's viewport has them, which uploads every table as textures
 /// of half floats: a model, in which everything else is exact.
 OCIO::ConstProcessorRcPtr with_half_textures(const OCIO::ConstProcessorRcPtr& processor) {
-    Lowered lowered;
-    lowered.transform =
+    const OCIO::GroupTransformRcPtr group =
         processor->getOptimizedProcessor(OCIO::OPTIMIZATION_DEFAULT)->createGroupTransform();
     const auto half = [](float x) {
         return static_cast<float>(rounded_to_half(static_cast<double>(x)));
     };
-    for (int i = 0; i < lowered.transform->getNumTransforms(); ++i) {
-        const OCIO::TransformRcPtr part = lowered.transform->getTransform(i);
+    for (int i = 0; i < group->getNumTransforms(); ++i) {
+        const OCIO::TransformRcPtr part = group->getTransform(i);
         float r = 0;
         float g = 0;
         float b = 0;
@@ -379,7 +377,7 @@ OCIO::ConstProcessorRcPtr with_half_textures(const OCIO::ConstProcessorRcPtr& pr
             }
         }
     }
-    return make_processor(lowered);
+    return make_processor(group);
 }
 
 /// What a config calls the operator as it is, or with a look; empty where it has other settings.
@@ -499,7 +497,7 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
         const Comparison comparison(view, probes);
         const Comparison few_compared(view, few);
         const DeclaredBounds& declared = view.op.op->bounds;
-        const Lowered lowered = lower_to_ocio(pipeline, {.primaries = view.op.op->working});
+        const Lowered lowered = lower_to_ocio(pipeline, lower_options(*view.op.op));
         const bool is_hdr = find_display(view.display).is_hdr;
         const Bounds bounds = bounds_of(pipeline, lowered, is_hdr, declared);
         const auto add = [&](const Comparison& compared, const std::string& form, double bound,
@@ -543,7 +541,7 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
                                                  name.c_str(), OCIO::TRANSFORM_DIR_FORWARD);
                 lowering = "config: " + lowering;
             } else {
-                processor = make_processor(lowered);
+                processor = make_processor(lowered.ops);
                 lowering = "chain: " + lowering;
             }
         } catch (const OCIO::Exception& e) {
@@ -558,7 +556,7 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
             bounds.is_mixed_metric, lowering, [&] { cpu(OCIO::OPTIMIZATION_DEFAULT); });
         if (const auto builtin = builtin_processor(view)) {
             // Not our lowering: OpenColorIO's, in float32 throughout.
-            add(comparison, "ocio builtin", 1e-3, false, true, view.op.ocio_builtin(), [&] {
+            add(comparison, "ocio builtin", 1e-3, false, true, builtin_style(view.op), [&] {
                 OcioCpu(builtin, OCIO::OPTIMIZATION_LOSSLESS)
                     .run_rgb(probes.rgb.data(), shown.data(), probes.size());
             });

@@ -20,7 +20,8 @@
 
 #include "base/random.h"
 #include "measure/sample_set.h"
-#include "ocio/lower.h"
+#include "ocio/operator_facts.h"
+#include "ocio/transforms.h"
 #include "tonewright/engine.h"
 #include "tonewright/lut.h"
 #include "tonewright/registry.h"
@@ -147,9 +148,9 @@ void simd_size(benchmark::State& state, const std::string& name) {
     report(state, pixels);
 }
 
-void run_ocio(benchmark::State& state, const std::string& name, const Lowered& lowered,
-              OCIO::OptimizationFlags flags) {
-    const OCIO::ConstCPUProcessorRcPtr cpu = make_processor(lowered)->getOptimizedCPUProcessor(
+void run_ocio(benchmark::State& state, const std::string& name,
+              const OCIO::ConstTransformRcPtr& transform, OCIO::OptimizationFlags flags) {
+    const OCIO::ConstCPUProcessorRcPtr cpu = make_processor(transform)->getOptimizedCPUProcessor(
         OCIO::BIT_DEPTH_F32, OCIO::BIT_DEPTH_F32, flags);
     // What it takes as constant has no const in its interface.
     auto* in = const_cast<float*>(picture().data());  // NOLINT(*-const-cast)
@@ -164,7 +165,9 @@ void run_ocio(benchmark::State& state, const std::string& name, const Lowered& l
 /// The most exact route that OpenColorIO has.
 void ocio(benchmark::State& state, const std::string& name, OCIO::OptimizationFlags flags) {
     try {
-        run_ocio(state, name, lower_to_ocio(simplify(view_of(name))), flags);
+        const LowerOptions options{.fits_cubes =
+                                       lower_options(*resolve_operator(name).op).fits_cubes};
+        run_ocio(state, name, to_ocio(lower_to_ocio(view_of(name), options).ops), flags);
     } catch (const std::exception& e) {
         state.SkipWithError(e.what());
     }
@@ -197,11 +200,10 @@ void lut65(benchmark::State& state, const std::string& name) {
                 cube->setValue(r, g, b, lut.values[i], lut.values[i + 1], lut.values[i + 2]);
         }
     }
-    Lowered lowered;
-    lowered.transform = OCIO::GroupTransform::Create();
-    lowered.transform->appendTransform(logarithm);
-    lowered.transform->appendTransform(cube);
-    run_ocio(state, name, lowered, OCIO::OPTIMIZATION_DEFAULT);
+    const OCIO::GroupTransformRcPtr group = OCIO::GroupTransform::Create();
+    group->appendTransform(logarithm);
+    group->appendTransform(cube);
+    run_ocio(state, name, group, OCIO::OPTIMIZATION_DEFAULT);
 }
 
 void reference(benchmark::State& state, const std::string& name) {

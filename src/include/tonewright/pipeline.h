@@ -73,23 +73,10 @@ struct ClampStage {
     double hi = kInfinity;
 };
 
-/// One of OpenColorIO's FixedFunctionTransforms: "ACES_GLOW_10".
-struct FixedFunction {
-    std::string style;
-    std::vector<double> parameters = {};
-};
-
 /// True cross-talk: three functions of red, green, blue (inputs 0, 1, 2), which no chain of the
 /// other stages expresses.
 struct CrossTalkStage {
     std::array<Expr, 3> f;
-    /// What OpenColorIO has of it, if anything: these one behind the other, for all inputs.
-    std::vector<FixedFunction> ocio = {};
-    /// False where they differ from f a little.
-    bool is_ocio_exact = true;
-    /// Where a cube has to hold it: its nodes are chosen for the least error between them, not
-    /// sampled. For what bends in many directions; it takes seconds.
-    bool is_cube_fitted = false;
 };
 
 /// A picture that a host defines by a cube: every channel placed on the cube's axes by one curve,
@@ -211,6 +198,8 @@ class TONEWRIGHT_API Params {
     /// Id of the look, or empty.
     [[nodiscard]] const std::string& look() const { return look_; }
 
+    friend bool operator==(const Params&, const Params&) = default;
+
   private:
     friend ResolvedOperator resolve(const Operator&, const Preset*, const Settings&,
                                     std::string_view);
@@ -311,9 +300,6 @@ struct Operator {
     Primaries (*output_primaries)(const Params& params) = nullptr;
     /// Largest light of the output on a display that can show more than white. Null: 1.
     double (*peak)(const Params& params) = nullptr;
-    /// The style of OpenColorIO's BuiltinTransform from ACES2065-1 to CIE XYZ D65 that this equals;
-    /// empty: none. Null: never.
-    std::string (*ocio_builtin)(const Params& params) = nullptr;
     /// Not null: what a pixel becomes depends on its surroundings, and this is the operator, for
     /// whole pictures (local.h). build() is what is left for a pixel by itself: nothing.
     void (*run_local)(ScenePlanes& picture, const Params& params) = nullptr;
@@ -341,10 +327,6 @@ struct ResolvedOperator {
     }
     /// Largest light of the output that a display should show; 1 is white.
     [[nodiscard]] double peak() const { return op->peak ? op->peak(params) : 1; }
-    /// @see Operator::ocio_builtin
-    [[nodiscard]] std::string ocio_builtin() const {
-        return op->ocio_builtin ? op->ocio_builtin(params) : "";
-    }
 };
 
 /// @throws Error  naming the nearest id when the operator has no such preset.

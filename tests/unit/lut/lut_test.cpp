@@ -1123,7 +1123,7 @@ std::string half_table(const Expr& f, bool is_hue_preserving, std::string* exten
     table.size = static_cast<int>(values.size());
     table.is_half_domain = true;
     table.is_hue_preserving = is_hue_preserving;
-    table.values = &values;
+    table.values = values;
     if (extension) *extension = file_extension(table);
     return write_clf(table, "a < b", {"one & two"});
 }

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ocio/cross_talk_cube.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/bounded_cache.h"
+#include "lut/fit.h"
+#include "tonewright/engine.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace {
+
+/// Smallest power of two t such that limiting every channel to [0, t] moves no color of a ramp to
+/// 65504 (grays, primaries and secondaries, saturated and not) by more than a quarter of a 10-bit
+/// code: where the operator saturates, a cube's nodes beyond would be wasted.
+/// @param codes  light -> the code values that are stored, limited as behind the cube
+double saturation_point(const Pipeline& codes) {
+    const ReferenceEngine engine(codes);
+    const auto moved = [&](double top) {
+        double worst = 0;
+        for (int direction = 1; direction < 8; ++direction) {
+            for (const double low : {0.0, 0.1, 0.5}) {
+                for (double light = top; light <= kHalfMax; light *= 2) {
+                    Vector3 v{};
+                    Vector3 limited{};
+                    for (std::size_t c = 0; c < 3; ++c) {
+                        v[c] = (direction >> c & 1) ? light : low * light;
+                        limited[c] = std::min(v[c], top);
+                    }
+                    const Vector3 a = engine(v);
+                    const Vector3 b = engine(limited);
+                    for (std::size_t c = 0; c < 3; ++c)
+                        worst = std::max(worst, std::fabs(a[c] - b[c]));
+                }
+            }
+        }
+        return worst;
+    };
+    double top = 1;
+    while (top < 65536 && moved(top) > 0.25 / 1023)
+        top *= 2;
+    return std::min(top, kHalfMax);
+}
+
+/// Smooth and signed: negatives follow the straight part of sRGB's curve.
+Expr node_code() { return srgb_encode(Expr::input()); }
+
+ClampStage limited_to_halves(const ClampStage& clamp) {
+    return {std::max(clamp.lo, -kHalfMax), std::min(clamp.hi, kHalfMax)};
+}
+
+struct Key {
+    std::array<Expr, 3> codes;  // equal expressions are the same node, as long as one lives
+    double lo, hi, top;
+    CrossTalkCubeOptions options;
+
+    friend bool operator==(const Key& a, const Key& b) {
+        return std::equal(a.codes.begin(), a.codes.end(), b.codes.begin(), same) && a.lo == b.lo &&
+               a.hi == b.hi && a.top == b.top && a.options.edge == b.options.edge &&
+               a.options.primaries == b.options.primaries &&
+               a.options.is_fitted == b.options.is_fitted;
+    }
+};
+
+}  // namespace
+
+double cross_talk_top(const CrossTalkStage& stage, const ClampStage& behind, double largest,
+                      bool is_fitted) {
+    Pipeline seen = {stage, curve_stage(node_code())};
+    // A fitted cube may hold anything where the display clips; for a sampled one the corners of the
+    // clip would be a fault like any other.
+    if (is_fitted) seen.insert(seen.begin() + 1, limited_to_halves(behind));
+    return std::min(saturation_point(seen), largest);
+}
+
+std::shared_ptr<const CrossTalkCube> cross_talk_cube(const CrossTalkStage& stage,
+                                                     const ClampStage& behind, double top,
+                                                     const CrossTalkCubeOptions& options) {
+    // A cube of 65 nodes a side has 3.3 MB.
+    static BoundedCache<Key, CrossTalkCube> cache(64);
+    const ClampStage limit = limited_to_halves(behind);
+    CubeProblem problem;
+    problem.edge = options.edge;
+    problem.pipeline = {stage, curve_stage(node_code())};
+    problem.primaries = options.primaries;
+    problem.lo = evaluate(node_code(), limit.lo);
+    problem.hi = evaluate(node_code(), limit.hi);
+    const Key key = {compose(problem.pipeline), problem.lo, problem.hi, top, options};
+    return cache.get(key, [&] {
+        problem.axis =
+            options.is_fitted ? choose_log_axis(problem, top) : make_log_axis(top, problem.edge);
+        const std::vector<double> nodes =
+            options.is_fitted ? fit_cube(problem) : sample_cube(problem);
+        return CrossTalkCube{problem.axis.place, {nodes.begin(), nodes.end()}};
+    });
+}
+
+TONEWRIGHT_NAMESPACE_END

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "tonewright/color.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+
+// Lowering produces these operations. They hold numbers and names only: to_ocio() makes
+// OpenColorIO transforms of them, LutFiles writes their tables as LUT files.
+
+/// y = m x + offset.
+struct MatrixOp {
+    Matrix3 m;
+    Vector3 offset{};
+};
+
+/// min(max(x, lo), hi) per channel; an infinite end is open.
+struct RangeOp {
+    double lo;
+    double hi;
+};
+
+/// A 1D table of each channel, linear between its entries, which are at the half floats in the
+/// order of their bit patterns, or at equal distances over [0, 1].
+struct Lut1DOp {
+    int channels;               // 1: one table for all channels, or 3
+    std::vector<float> values;  // entry by entry
+    bool is_half_domain = true;
+    /// Only the largest and the smallest channel are looked up; the middle one keeps its place
+    /// between them. OpenColorIO calls this hue adjustment DW3.
+    bool keeps_hue = false;
+
+    [[nodiscard]] int size() const { return static_cast<int>(values.size()) / channels; }
+};
+
+/// A 3D table over [0, 1], interpolated in tetrahedra.
+struct Lut3DOp {
+    int edge;
+    std::vector<float> values;  // RGB triplets, blue fastest
+};
+
+/// One of OpenColorIO's FixedFunctionTransforms.
+struct FixedFunctionOp {
+    std::string style;  // "ACES_Glow10"
+    std::vector<double> parameters = {};
+};
+
+/// One of OpenColorIO's BuiltinTransforms.
+struct BuiltinOp {
+    std::string style;
+};
+
+struct LoweredOp {
+    std::variant<MatrixOp, RangeOp, Lut1DOp, Lut3DOp, FixedFunctionOp, BuiltinOp> op;
+    bool is_inverse = false;
+};
+using LoweredOps = std::vector<LoweredOp>;
+
+/// One table if the three are equal, else three.
+[[nodiscard]] Lut1DOp lut_1d(const std::array<std::vector<float>, 3>& channels);
+
+/// The operations backwards, each in its other direction.
+[[nodiscard]] TONEWRIGHT_API LoweredOps inverse(LoweredOps ops);
+
+/// Appends `more` to `ops`.
+void append(LoweredOps& ops, LoweredOps more);
+
+TONEWRIGHT_NAMESPACE_END

@@ -6,7 +6,9 @@ folder below it (layers.py) defines the symbol.
 
 Usage: symbols.py BUILD
 """
+import json
 import pathlib
+import re
 import subprocess
 import sys
 
@@ -16,7 +18,14 @@ NAMESPACE = "10tonewright"  # as it is mangled
 
 
 def main(build: pathlib.Path) -> int:
-    objects = sorted(build.glob("src/CMakeFiles/tonewright[_-]*.dir/**/*.o"))
+    # Only what the build is made of now: the folder may hold objects of files that have moved.
+    commands = json.loads((build / "compile_commands.json").read_text())
+    outputs = (re.search(r" -o (\S+)", command["command"]).group(1) for command in commands)
+    objects = sorted({build / output for output in outputs if output.startswith("src/")})
+    missing = [path for path in objects if not path.exists()]
+    if missing:
+        print(f"symbols: {missing[0]} is not built")
+        return 1
     defined, wanted = {}, []
     listing = subprocess.run(["nm", "--print-file-name", *map(str, objects)], capture_output=True, text=True,
                              check=True).stdout

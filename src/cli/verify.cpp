@@ -214,14 +214,16 @@ void add_verify(CommandLine& program) {
                      "smaller sample sets: grids of 9 instead of 33 points a side, 10,000 random "
                      "colors instead of 100,000");
     command.add_flag("--summary", options->summary, "a short table: one line for each operator");
+    command.add_flag("--best-target", options->verify.only_best_target,
+                     "measure our engine only with the instruction set that it takes here");
     command.add_flag("--no-gpu", options->no_gpu, "leave OCIO's GPU path out");
     command.add_flag("--json", options->json, "for programs");
     const Option lut = command.add(
         "--lut", options->lut,
         "a LUT, ours or not, of any format of `apply --lut`: which of the operators it is, "
         "with which input encoding, and how far from it; nothing is held to a bound");
-    for (const char* other :
-         {"--display", "--input", "--config", "--picture", "--quick", "--no-gpu"})
+    for (const char* other : {"--display", "--input", "--config", "--picture", "--quick",
+                              "--summary", "--best-target", "--no-gpu"})
         lut.excludes(command.option(other));
     command.footer(
         "max, 99.9 % and mean: errors of display code values over probes >= 0; max all: negatives "

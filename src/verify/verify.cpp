@@ -492,6 +492,9 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
     std::vector<ParityRow> rows;
     std::vector<float> shown(probes.rgb.size());
     const SampleSet few = every_nth(probes, 20);
+    std::vector<std::string> targets = SimdEngine::targets();  // the best one first
+    if (options.only_best_target) targets.resize(1);
+    if (is_of_config) targets.clear();  // our engine does not read it
     for (const View& view : views) {
         const Pipeline pipeline = build_view(view);
         const Comparison comparison(view, probes);
@@ -520,9 +523,7 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
             if (on_row) on_row(rows.back());
         };
 
-        // Of a config the engine says nothing.
-        for (const std::string& target :
-             is_of_config ? std::vector<std::string>{} : SimdEngine::targets()) {
+        for (const std::string& target : targets) {
             const SimdEngine simd(pipeline, declared.simd_goal, target);
             // SCALAR takes thirty times as long as the others, with the same code.
             const bool is_slow = target == "SCALAR";

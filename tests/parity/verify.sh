@@ -1,8 +1,13 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# `tonewright verify`, with smaller sample sets unless `./run test --all` runs it.
-#   verify.sh TONEWRIGHT ARGS...
+# `tonewright verify` of operators on displays, or of a config; `./run test --all` measures more samples, and more views
+# with every instruction set.
+#   verify.sh TONEWRIGHT [--best-target] ARGS...
 command=$1
 shift
-[ "$TONEWRIGHT_TEST_ALL" = 1 ] || set -- --quick "$@"
+if [ "$TONEWRIGHT_TEST_ALL" != 1 ]; then
+    set -- --quick "$@"
+elif [ "$1" = --best-target ]; then
+    shift
+fi
 exec "$command" verify "$@"

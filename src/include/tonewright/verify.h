@@ -26,6 +26,8 @@ struct VerifyOptions {
     /// Random colors; colors near black and with negative channels in proportion.
     std::size_t random_count = 100000;
     bool with_gpu = true;
+    /// Our engine only with the instruction set that it takes on this processor.
+    bool only_best_target = false;
     /// Scene-linear RGB pixels to add to the probe set, in the input space.
     std::vector<float> picture;
 };

@@ -58,17 +58,24 @@ struct ChannelPlan {
 
 [[noreturn]] void fail(const std::string& message) { throw Error(message); }
 
-/// Of the exception that is being handled: callers' functions may throw anything.
-std::string what_is_thrown() {
+/// Gives the picture the message of the exception that is being handled; callers' functions may
+/// throw anything. Without the memory for a message the picture has none.
+/// @returns  false
+bool report_thrown(ImageBuf& dst, const char* prefix = "tonemap: ") noexcept {
     try {
-        throw;
-    } catch (const std::bad_alloc&) {
-        return "not enough memory";
-    } catch (const std::exception& e) {
-        return e.what();
-    } catch (...) {
-        return "unknown error";
+        try {
+            throw;
+        } catch (const std::bad_alloc&) {
+            dst.errorfmt("{}not enough memory", prefix);
+        } catch (const std::exception& e) {
+            dst.errorfmt("{}{}", prefix, e.what());
+        } catch (...) {
+            dst.errorfmt("{}unknown error", prefix);
+        }
+    } catch (const std::exception&) {
+        return false;
     }
+    return false;
 }
 
 /// The spec of a destination that does not exist yet.
@@ -562,8 +569,7 @@ bool Tonemapper::operator()(ImageBuf& dst, const ImageBuf& src, ROI roi, int nth
         state_->run(dst, src, roi, nthreads, told);
         return true;
     } catch (...) {
-        dst.errorfmt("tonemap: {}", what_is_thrown());
-        return false;
+        return report_thrown(dst);
     }
 }
 
@@ -573,8 +579,7 @@ bool tonemap(ImageBuf& dst, const ImageBuf& src, const TonemapOptions& options, 
     try {
         tonemapper.emplace(options);
     } catch (...) {
-        dst.errorfmt("tonemap: {}", what_is_thrown());
-        return false;
+        return report_thrown(dst);
     }
     return (*tonemapper)(dst, src, roi, nthreads, progress, progress_data);
 }
@@ -603,8 +608,7 @@ bool map_colors(ImageBuf& dst, const ImageBuf& src,
         tag_as_unknown(dst.specmod());
         return true;
     } catch (...) {
-        dst.errorfmt("{}", what_is_thrown());
-        return false;
+        return report_thrown(dst, "");
     }
 }
 

@@ -223,14 +223,18 @@ class TonemappedInput final : public ImageInput {
     template <class Step>
     bool guarded(const Step& step) noexcept {
         try {
-            step();
-            return true;
-        } catch (const std::bad_alloc&) {
-            errorfmt("tonewright: {}: not enough memory", path_);
-        } catch (const std::exception& e) {
-            errorfmt("tonewright: {}", e.what());
-        } catch (...) {
-            errorfmt("tonewright: unknown error");
+            try {
+                step();
+                return true;
+            } catch (const std::bad_alloc&) {
+                errorfmt("tonewright: {}: not enough memory", path_);
+            } catch (const std::exception& e) {
+                errorfmt("tonewright: {}", e.what());
+            } catch (...) {
+                errorfmt("tonewright: unknown error");
+            }
+        } catch (const std::exception&) {
+            return false;  // no memory for the message
         }
         return false;
     }

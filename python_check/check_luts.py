@@ -4,7 +4,7 @@
     python3 python_check/check_luts.py build/release/bin/tonewright luts
 
 Light, its encoding, the interpolation and the operator are NumPy's: lut_encodings.py, lut_tables.py, operators/. The
-light is the probe set as src/engine/probe.h describes it, drawn anew. Some of it goes through `tonewright eval` as well.
+light is the probe set as src/measure/sample_set.h describes it, drawn anew. Some of it goes through `tonewright eval` as well.
 Pictures are read by oiiotool. The last line is `N passed, M failed`.
 """
 

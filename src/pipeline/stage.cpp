@@ -44,7 +44,7 @@ std::string_view stage_kind(const Stage& stage) {
                                  [](const HuePreservingStage&) { return "hue-preserving curve"; },
                                  [](const HexconeStage&) { return "hexcone"; },
                                  [](const ClampStage&) { return "clamp"; },
-                                 [](const CrossTalkStage&) { return "map3"; },
+                                 [](const CrossTalkStage&) { return "cross-talk"; },
                                  [](const LatticeStage&) { return "lattice"; }},
                       stage);
 }

@@ -96,7 +96,7 @@ using Pipeline = std::vector<Stage>;
 [[nodiscard]] TONEWRIGHT_API CurveStage curve_stage(const Expr& f, const Expr& inverse);
 
 /// What the stage is called in messages and docs: "matrix", "curve", "tone scale", "hue-preserving
-/// curve", "hexcone", "clamp", "map3", "lattice".
+/// curve", "hexcone", "clamp", "cross-talk", "lattice".
 [[nodiscard]] TONEWRIGHT_API std::string_view stage_kind(const Stage& stage);
 /// True when no pixel changes.
 [[nodiscard]] TONEWRIGHT_API bool is_identity(const Stage& stage);

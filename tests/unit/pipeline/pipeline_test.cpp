@@ -73,7 +73,7 @@ TEST(Stage, KindsHaveNames) {
     EXPECT_EQ(stage_kind(HuePreservingStage{kX}), "hue-preserving curve");
     EXPECT_EQ(stage_kind(HexconeStage{kX, kX, kX}), "hexcone");
     EXPECT_EQ(stage_kind(ClampStage{}), "clamp");
-    EXPECT_EQ(stage_kind(CrossTalkStage{{kR, kG, kB}}), "map3");
+    EXPECT_EQ(stage_kind(CrossTalkStage{{kR, kG, kB}}), "cross-talk");
 }
 
 TEST(Stage, KnowsThatItIsAnIdentity) {
@@ -316,7 +316,7 @@ TEST(Pipeline, PrintsOneStageALine) {
               "tone scale: of max(r, g, b): x*x\n"
               "hue-preserving curve: x*x\n"
               "hexcone: offset x*0.5, value x/(1 + x), chroma 1/(1 + x)\n"
-              "map3: g | b | r\n");
+              "cross-talk: g | b | r\n");
 }
 
 // ---------------------------------------------------------------------------------------------

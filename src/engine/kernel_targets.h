@@ -7,8 +7,10 @@
 #include <utility>
 #include <vector>
 
-// Processors without SSE4 (before 2008) run the scalar code.
-#define HWY_DISABLED_TARGETS HWY_SSSE3
+// x86 processors without SSE4 (before 2008) run the scalar code. Vectors of SVE and RISC-V have no
+// size at compile time, so the kernels cannot hold them in structs and arrays; Arm processors run
+// NEON.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #include "hwy/targets.h"
 #include "tonewright/version.h"
 

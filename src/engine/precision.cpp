@@ -52,8 +52,11 @@ std::vector<Vector3> probe_colours() {
     }
     for (int i = 0; i < 500; ++i) {  // of wider gamuts, where rows cancel nearly, not wholly
         const double peak = log_uniform(-6, 6);
-        add(peak * random.uniform(-0.3, 1), peak * random.uniform(-0.3, 1),
-            peak * random.uniform(-0.3, 1));
+        // One statement for each channel: compilers evaluate arguments in different orders.
+        const double b = peak * random.uniform(-0.3, 1);
+        const double g = peak * random.uniform(-0.3, 1);
+        const double r = peak * random.uniform(-0.3, 1);
+        add(r, g, b);
     }
     for (std::size_t i = 0; i < 120; ++i) {
         Vector3 v = {log_uniform(-149, -20), log_uniform(-149, -20), log_uniform(-149, -20)};

@@ -886,7 +886,8 @@ HWY_INLINE void interpolate(D d, const Frame& frame, const Instruction& step, in
                                                hn::Load(d, pixels + 4 * p + 1),
                                                hn::Load(d, pixels + 4 * p + 2)};
 #else
-            std::array<Vec<D>, 3> rgb;
+            // On NEON, std::array's own constructor cannot inline that of a vector.
+            Vec<D> rgb[3];
             auto unused = hn::Undefined(d);
             hn::LoadInterleaved4(d, pixels + 4 * p, rgb[0], rgb[1], rgb[2], unused);
 #endif

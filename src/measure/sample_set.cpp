@@ -58,8 +58,11 @@ SampleSet make_sample_set(const InputSpace& input, const SampleSetOptions& optio
         set.add(v[0], v[1], v[2], SampleKind::random);
     }
     for (std::size_t i = 0; i < options.random_count / 20; ++i) {
-        set.add(log_uniform(-148, -10), log_uniform(-148, -10), log_uniform(-148, -10),
-                SampleKind::near_black);
+        // One statement for each channel: compilers evaluate arguments in different orders.
+        const double b = log_uniform(-148, -10);
+        const double g = log_uniform(-148, -10);
+        const double r = log_uniform(-148, -10);
+        set.add(r, g, b, SampleKind::near_black);
     }
     for (std::size_t i = 0; i < options.random_count / 5; ++i) {
         Vector3 v = {log_uniform(-12, 12), log_uniform(-12, 12), log_uniform(-12, 12)};

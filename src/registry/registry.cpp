@@ -110,4 +110,16 @@ std::vector<std::string> invertible_operators() {
     return ids;
 }
 
+std::vector<OperatorVariant> all_variants() {
+    std::vector<OperatorVariant> all;
+    for (const Operator& op : all_operators()) {
+        all.push_back({op.id, ""});
+        for (const Preset& preset : op.presets)
+            all.push_back({op.id + ":" + preset.id, ""});
+        for (const Look& look : op.looks)
+            all.push_back({op.id, look.id});
+    }
+    return all;
+}
+
 TONEWRIGHT_NAMESPACE_END

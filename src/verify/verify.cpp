@@ -425,18 +425,6 @@ SampleSet every_nth(const SampleSet& all, std::size_t n) {
 
 }  // namespace
 
-std::vector<OperatorVariant> all_variants() {
-    std::vector<OperatorVariant> all;
-    for (const Operator& op : all_operators()) {
-        all.push_back({op.id, ""});
-        for (const Preset& preset : op.presets)
-            all.push_back({op.id + ":" + preset.id, ""});
-        for (const Look& look : op.looks)
-            all.push_back({op.id, look.id});
-    }
-    return all;
-}
-
 std::vector<ParityRow> verify(const VerifyOptions& options,
                               const std::function<void(const ParityRow&)>& on_row) {
     // The views of a config, on its displays; of nobody else's: its AgX may be another.

@@ -43,4 +43,12 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// Ids of the operators that have an inverse.
 [[nodiscard]] TONEWRIGHT_API std::vector<std::string> invertible_operators();
 
+/// An operator, `operator:preset`, or an operator with a look.
+struct OperatorVariant {
+    std::string name;
+    std::string look;
+};
+/// Every operator, each with every preset and with every look.
+[[nodiscard]] TONEWRIGHT_API std::vector<OperatorVariant> all_variants();
+
 TONEWRIGHT_NAMESPACE_END

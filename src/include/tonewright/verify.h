@@ -63,13 +63,6 @@ struct ParityRow {
 [[nodiscard]] TONEWRIGHT_API std::vector<ParityRow> verify(
     const VerifyOptions& options, const std::function<void(const ParityRow&)>& on_row = {});
 
-/// Every operator, operator:preset, and operator with look, as (name, look) pairs.
-struct OperatorVariant {
-    std::string name;
-    std::string look;
-};
-[[nodiscard]] TONEWRIGHT_API std::vector<OperatorVariant> all_variants();
-
 /// Lines of a table for the terminal: a heading, one row each.
 [[nodiscard]] TONEWRIGHT_API std::string parity_heading();
 [[nodiscard]] TONEWRIGHT_API std::string format_row(const ParityRow& row);

@@ -17,7 +17,6 @@
 #include "measure/sample_set.h"
 #include "tonewright/engine.h"
 #include "tonewright/registry.h"
-#include "tonewright/verify.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {

@@ -12,16 +12,10 @@
 #include <vector>
 
 #include "tonewright/version.h"
+#include "unit/noise.h"
 
 /// Small pictures for tests.
 TONEWRIGHT_NAMESPACE_BEGIN
-
-/// 0..1, different everywhere, the same on every machine.
-inline float noise(std::uint32_t i) {
-    i = (i ^ 61U ^ (i >> 16U)) * 9U;
-    i = (i ^ (i >> 4U)) * 0x27d4eb2dU;
-    return static_cast<float>((i ^ (i >> 15U)) & 0xffffU) / 65535.0F;
-}
 
 inline OIIO::ImageSpec make_spec(int width, int height, std::vector<std::string> channels,
                                  OIIO::TypeDesc type) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tonewright/lut.h"
 
-#include <OpenColorIO/OpenColorIO.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -23,14 +22,13 @@
 #include "base/strings.h"
 #include "lut/clf.h"
 #include "lut/half_domain.h"
-#include "lut/icc.h"
 #include "measure/error_metric.h"
 #include "measure/sample_set.h"
 #include "tonewright/engine.h"
 #include "tonewright/generated_files.h"
 #include "tonewright/registry.h"
+#include "unit/lut/lut_cases.h"
 
-namespace OCIO = OCIO_NAMESPACE;
 namespace fs = std::filesystem;
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -49,57 +47,6 @@ std::string error_of(const F& f) {
         return e.what();
     }
     return "no error";
-}
-
-/// A folder that goes with the test.
-class Folder {
-  public:
-    Folder() {
-        std::string pattern = (fs::temp_directory_path() / "tonewright-test-XXXXXX").string();
-        if (!::mkdtemp(pattern.data())) throw FileError("write: " + pattern);
-        path_ = pattern;
-    }
-    ~Folder() {
-        std::error_code ignored;
-        fs::remove_all(path_, ignored);
-    }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-    [[nodiscard]] std::string operator/(const std::string& name) const {
-        return (path_ / name).string();
-    }
-    [[nodiscard]] std::string path() const { return path_.string(); }
-    /// Names of all files below, sorted.
-    [[nodiscard]] std::vector<std::string> files() const {
-        std::vector<std::string> names;
-        for (const auto& entry : fs::recursive_directory_iterator(path_)) {
-            if (!entry.is_directory()) names.push_back(fs::relative(entry, path_).string());
-        }
-        std::sort(names.begin(), names.end());
-        return names;
-    }
-
-  private:
-    fs::path path_;
-};
-
-void write(const std::string& path, const std::string& text) {
-    std::ofstream(path, std::ios::binary) << text;
-}
-
-std::string read(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
-
-LutRequest request_for(const char* op, const char* encoding, LutFormat format = LutFormat::cube,
-                       std::optional<int> size = std::nullopt, const char* display = "srgb") {
-    LutRequest r;
-    r.encoding = parse_input_encoding(encoding);
-    r.view = make_view(resolve_operator(op), r.encoding.default_input, 0, display);
-    r.format = format;
-    r.size = size;
-    return r;
 }
 
 // ---------------------------------------------------------------------------------------------
@@ -442,18 +389,6 @@ Lut cube_of(int size, const F& f) {
         }
     }
     return lut;
-}
-
-/// Table inputs over the cube, with equal fractions (the tetrahedra's faces) among them.
-std::vector<Vector3> table_inputs(std::size_t count) {
-    SampleRandom random(21);
-    std::vector<Vector3> inputs = {{0, 0, 0}, {1, 1, 1}, {1, 0, 0.5}, {0.3, 0.3, 0.3}};
-    for (std::size_t i = 0; i < count; ++i) {
-        Vector3 v = {random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)};
-        if (i % 5 == 0) v[i % 3] = v[(i + 1) % 3];
-        inputs.push_back(v);
-    }
-    return inputs;
 }
 
 void expect_near(const Vector3& actual, const Vector3& expected, double tolerance,
@@ -1008,126 +943,6 @@ TEST(Clipping, SaysWhichStops) {
     EXPECT_GT(reinhard.above->last, 12);
 }
 
-TEST(DeviceLink, IsWhatItWasMadeOf) {
-    for (const int version : {2, 4}) {
-        LutRequest r = request_for("agx_sobotka", "log2", LutFormat::icc, 17);
-        r.icc_version = version;
-        Lut lut = sample_lut(r);
-        quantize(lut, r);
-        const std::string bytes = write_lut(lut, r, {});
-        EXPECT_EQ(bytes, write_lut(lut, r, {})) << "the same on every run";
-        EXPECT_EQ(bytes[8], version);
-        EXPECT_EQ(bytes.substr(12, 12), "linkRGB RGB ");
-        EXPECT_EQ(bytes.substr(36, 4), "acsp");
-        const DeviceLink link("x.icc", bytes);
-        for (const Vector3& v : table_inputs(2000)) {
-            std::array<float, 3> in{};
-            std::array<float, 3> out{};
-            for (std::size_t c = 0; c < 3; ++c)
-                in[c] = static_cast<float>(v[c]);
-            link.run_rgb(in.data(), out.data(), 1);
-            const Vector3 expected =
-                interpolate(lut, {static_cast<double>(in[0]), static_cast<double>(in[1]),
-                                  static_cast<double>(in[2])});
-            // LittleCMS works in 16 bits: half a step of the input, twice as steep here, and half
-            // of the output.
-            for (std::size_t c = 0; c < 3; ++c)
-                EXPECT_NEAR(static_cast<double>(out[c]), expected[c], 2.5e-5);
-        }
-    }
-}
-
-// ---------------------------------------------------------------------------------------------
-// OCIO reads what we write
-
-/// What OCIO makes of a file, for interleaved RGB.
-std::vector<float> through_ocio(const std::string& path, std::vector<float> rgb, int dimension) {
-    const OCIO::FileTransformRcPtr file = OCIO::FileTransform::Create();
-    file->setSrc(path.c_str());
-    file->setInterpolation(dimension == 3 ? OCIO::INTERP_TETRAHEDRAL : OCIO::INTERP_LINEAR);
-    const OCIO::ConfigRcPtr config = OCIO::Config::CreateRaw()->createEditableCopy();
-    config->setProcessorCacheFlags(OCIO::PROCESSOR_CACHE_OFF);
-    const auto cpu =
-        config->getProcessor(file)->getOptimizedCPUProcessor(OCIO::OPTIMIZATION_LOSSLESS);
-    OCIO::PackedImageDesc image(rgb.data(), static_cast<long>(rgb.size() / 3), 1, 3);
-    cpu->apply(image);
-    return rgb;
-}
-
-struct FileCase {
-    const char* name;
-    const char* op;
-    const char* encoding;
-    LutFormat format;
-    int size;
-};
-
-/// Both dimensions of every format; AgX mixes channels, so a swapped axis shows.
-const FileCase kFileCases[] = {
-    {"cube3d.cube", "agx_sobotka", "acescct", LutFormat::cube, 33},
-    {"cube1d.cube", "hable", "log2", LutFormat::cube, 4096},
-    {"clf3d.clf", "agx_sobotka", "acescct", LutFormat::clf, 17},
-    {"clf1d.clf", "hable", "log2", LutFormat::clf, 1024},
-    {"half.clf", "hable", "linear", LutFormat::clf, 0},
-    {"curve.spi1d", "hable", "log2", LutFormat::spi1d, 4096},
-    {"cube.spi3d", "agx_sobotka", "acescct", LutFormat::spi3d, 33},
-    {"cube.ctf", "agx_sobotka", "acescct", LutFormat::ctf, 17},
-    {"half.ctf", "hable", "linear", LutFormat::ctf, 0},
-    {"cube.lut", "agx_sobotka", "acescct", LutFormat::houdini, 33},
-};
-
-class LutFile : public ::testing::TestWithParam<FileCase> {};
-
-TEST_P(LutFile, IsReadByOcioAsWeInterpolate) {
-    const FileCase& test = GetParam();
-    const LutRequest r = request_for(test.op, test.encoding, test.format,
-                                     test.size ? std::optional(test.size) : std::nullopt);
-    const Lut lut = sample_lut(r);
-    const Folder folder;
-    const std::string path = folder / test.name;
-    write(path, write_lut(lut, r, measure_lut(lut, r)));
-
-    std::vector<float> in;
-    for (const Vector3& v : table_inputs(20000)) {
-        for (const double x : v) {
-            // A half-domain table takes scene light: -1 to 2^16, with the shadows well covered.
-            const double scene = x < 0.1 ? -10 * x : std::exp2(40 * x - 24);
-            in.push_back(static_cast<float>(lut.is_half_domain ? scene : x));
-        }
-    }
-    const std::vector<float> out = through_ocio(path, in, lut.dimension);
-    double worst = 0;
-    for (std::size_t i = 0; i + 2 < in.size(); i += 3) {
-        const Vector3 expected =
-            interpolate(lut, {static_cast<double>(in[i]), static_cast<double>(in[i + 1]),
-                              static_cast<double>(in[i + 2])});
-        for (std::size_t c = 0; c < 3; ++c)
-            worst = std::max(worst, std::fabs(static_cast<double>(out[i + c]) - expected[c]));
-    }
-    // OCIO interpolates in float32: positions of up to 4095 to 2^-12 of a step, steps of up to
-    // 0.02.
-    EXPECT_LE(worst, 1e-6);
-    RecordProperty("worst", shortest(worst));
-}
-
-INSTANTIATE_TEST_SUITE_P(Formats, LutFile, ::testing::ValuesIn(kFileCases), [](const auto& test) {
-    std::string name = test.param.name;
-    std::replace(name.begin(), name.end(), '.', '_');
-    return name;
-});
-
-/// A table of f over the half floats that keeps hue, or not.
-std::string half_table(const Expr& f, bool is_hue_preserving, std::string* extension = nullptr) {
-    const std::vector<float> values = sample_half_domain(f, 0, kHalfMax);
-    ClfTable table;
-    table.size = static_cast<int>(values.size());
-    table.is_half_domain = true;
-    table.is_hue_preserving = is_hue_preserving;
-    table.values = values;
-    if (extension) *extension = file_extension(table);
-    return write_clf(table, "a < b", {"one & two"});
-}
-
 TEST(WriteClf, HasTheVersionOfOneFormat) {
     // OCIO refuses a file with both.
     std::string extension;
@@ -1143,34 +958,6 @@ TEST(WriteClf, HasTheVersionOfOneFormat) {
     EXPECT_EQ(ctf.find("compCLFversion"), std::string::npos);
     EXPECT_NE(ctf.find("halfDomain=\"true\" hueAdjust=\"dw3\""), std::string::npos);
     EXPECT_NE(ctf.find("<Description>one &amp; two</Description>"), std::string::npos);
-}
-
-TEST(WriteClf, HuePreservingTablesKeepHueInOcio) {
-    const Folder folder;
-    write(folder / "hue.ctf", half_table(kX * kX, true));
-    write(folder / "curve.clf", half_table(kX * kX, false));
-    // By hand: the middle channel of (1, 2, 3) stays in the middle of 1 and 9.
-    const std::vector<float> in = {1, 2, 3, 3, 1, 2, 2, 3, 1, 2, 2, 2, 0, 0, 0};
-    EXPECT_EQ(through_ocio(folder / "hue.ctf", in, 1),
-              (std::vector<float>{1, 5, 9, 9, 1, 5, 5, 9, 1, 4, 4, 4, 0, 0, 0}));
-    EXPECT_EQ(through_ocio(folder / "curve.clf", in, 1),
-              (std::vector<float>{1, 4, 9, 9, 1, 4, 4, 9, 1, 4, 4, 4, 0, 0, 0}));
-}
-
-TEST(WriteLut, HostileTitlesSurviveXml) {
-    Operator op = find_operator("clamp");
-    op.title = R"(<b>"A" & 'B'</b> ]]>)";
-    LutRequest r = request_for("clamp", "log2", LutFormat::clf, 17);
-    r.view.op.op = &op;
-    Lut lut;
-    lut.dimension = 1;
-    lut.size = 2;
-    lut.channels = 1;
-    lut.values = {0, 1};
-    const Folder folder;
-    write(folder / "hostile.clf", write_lut(lut, r, {}));
-    EXPECT_EQ(through_ocio(folder / "hostile.clf", {0, 0.5F, 1}, 1),
-              (std::vector<float>{0, 0.5F, 1}));
 }
 
 // ---------------------------------------------------------------------------------------------

@@ -1,0 +1,60 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Cross-compiles the core library and its tests for 64-bit Arm, runs tests in QEMU's user mode, and prints the largest
+# error of the NEON engine against the reference for each operator.
+#   aarch64.sh SOURCE_TREE BUILD_FOLDER
+set -euo pipefail
+source=$1 build=$2
+skip() { echo "skipped: $*"; exit 77; }
+for program in aarch64-linux-gnu-g++ qemu-aarch64-static; do
+    command -v $program >/dev/null ||
+        skip "$program is not installed (Debian: g++-aarch64-linux-gnu qemu-user-static)"
+done
+command -v apt-get >/dev/null || skip "apt-get is missing; it downloads Debian's libraries for arm64"
+
+# The arm64 libraries go into a folder: the system gets no second architecture, and no package of its own changes.
+mkdir -p "$build/sysroot"/apt/{lists/partial,archives/partial}
+sysroot=$(realpath "$build/sysroot")
+if [ ! -f "$sysroot/complete" ]; then
+    packages=(libhwy1 libhwy-dev libfmt9 libfmt-dev libgtest-dev)
+    : >"$sysroot/apt/status"
+    apt=(apt-get -qq -o APT::Architecture=arm64 -o APT::Architectures=arm64 -o APT::Sandbox::User=root
+        -o Acquire::Retries=3 -o Acquire::Languages=none -o Dir::State="$sysroot/apt"
+        -o Dir::State::status="$sysroot/apt/status" -o Dir::Cache="$sysroot/apt")
+    { "${apt[@]}" update && (cd "$sysroot/apt" && "${apt[@]}" download "${packages[@]}"); } ||
+        skip "apt-get cannot download for arm64: ${packages[*]}"
+    for package in "$sysroot"/apt/*.deb; do dpkg -x "$package" "$sysroot"; done
+    touch "$sysroot/complete"
+fi
+
+cmake -S "$source" -B "$build/core" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+    -DCMAKE_TOOLCHAIN_FILE="$source/tests/platforms/aarch64.cmake" -DCMAKE_PREFIX_PATH="$sysroot/usr" \
+    -DTONEWRIGHT_BUILD_OCIO=OFF -DTONEWRIGHT_BUILD_IMAGE=OFF -DTONEWRIGHT_WITH_ICC=OFF \
+    -DTONEWRIGHT_WARNINGS_AS_ERRORS=ON
+cmake --build "$build/core"
+
+# QEMU takes ten to thirty times as long as a processor: small sample sets, whatever the caller asks for.
+export TONEWRIGHT_TEST_ALL=0
+run() { qemu-aarch64-static -L /usr/aarch64-linux-gnu "$build/core/bin/$1" --gtest_brief=1 "${@:2}"; }
+bound='*/Law.SimdIsWithinItsBound/*'
+# These compare every view of every operator, or fit LUTs: minutes each in QEMU. None of them depends on the vectors.
+slow='Reference.IsEvaluateBitForBit:*Fit*:*Shipped*:*SimdOperator.IsTotal*'
+shares=16
+share=${TONEWRIGHT_TEST_SHARE:-$((16#$(git -C "$source" rev-parse HEAD | cut -c1-8)))}
+share=$((share % shares))
+cat <<TEXT
+Left out: unit tests of ocio/ and image/ and of ICC files, whose libraries are not built; unit tests that take minutes
+in QEMU ($slow); all but share $share of $shares of the other laws (TONEWRIGHT_TEST_SHARE=$share).
+TEXT
+failed=0
+run unit_tests --gtest_filter="-$slow" & unit=$!
+run law_tests --gtest_filter="$bound" --gtest_output="xml:$build/bound.xml" || failed=1
+GTEST_TOTAL_SHARDS=$shares GTEST_SHARD_INDEX=$share run law_tests --gtest_filter="-$bound" || failed=1
+wait $unit || failed=1
+
+echo "Largest error of the NEON engine against the reference, in sRGB code values:"
+tr -d '\n' <"$build/bound.xml" | sed 's/<testcase/\n&/g' |
+    sed -n 's/.*name="SimdIsWithinItsBound\/\([^"]*\)".*name="NEON" value="\([^"]*\)".*/\2 \1/p' |
+    sort -rg | awk '{ printf "  %-8s %s\n", $1, $2; n++ } END { print n + 0, "operators, presets and looks"; exit n == 0 }' ||
+    failed=1
+exit $failed

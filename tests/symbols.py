@@ -21,7 +21,7 @@ def main(build: pathlib.Path) -> int:
     # Only what the build is made of now: the folder may hold objects of files that have moved.
     commands = json.loads((build / "compile_commands.json").read_text())
     outputs = (re.search(r" -o (\S+)", command["command"]).group(1) for command in commands)
-    objects = sorted({build / output for output in outputs if output.startswith("src/")})
+    objects = sorted({build / output for output in outputs if output.startswith("src/") and output.endswith(".o")})
     missing = [path for path in objects if not path.exists()]
     if missing:
         print(f"symbols: {missing[0]} is not built")

@@ -30,7 +30,7 @@ for header in "$prefix"/include/tonewright/*.h; do
     name=${header##*/}
     # shellcheck disable=SC2046 # flags are words
     expect "$name is C++17" g++ -std=c++17 -Wall -Wextra -Wpedantic -fsyntax-only -x c++ \
-        $(pkg-config --cflags tonewright-image) "$header" -Wno-pragma-once-outside-header
+        $(pkg-config --cflags tonewright-image) -include "$header" /dev/null
 done
 
 # shellcheck disable=SC2046

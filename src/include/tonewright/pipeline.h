@@ -198,7 +198,10 @@ class TONEWRIGHT_API Params {
     /// Id of the look, or empty.
     [[nodiscard]] const std::string& look() const { return look_; }
 
-    friend bool operator==(const Params&, const Params&) = default;
+    friend bool operator==(const Params& a, const Params& b) {
+        return a.numbers_ == b.numbers_ && a.choices_ == b.choices_ && a.texts_ == b.texts_ &&
+               a.look_ == b.look_;
+    }
 
   private:
     friend ResolvedOperator resolve(const Operator&, const Preset*, const Settings&,

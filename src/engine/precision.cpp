@@ -227,7 +227,22 @@ class PrecisionChooser {
           in_double_(code.size()),
           value_(code.size()),
           adjoint_(code.size()),
-          has_pole_(code.size()) {}
+          has_pole_(code.size()),
+          partials_(code.size()),
+          partials_are_of_(code.size()) {
+        for (std::size_t i = 0; i < code.size(); ++i) {
+            const TapeInstruction& step = code[i];
+            nodes_.push_back({{step.a, step.b, step.c},
+                              static_cast<std::size_t>(operand_count(step.op)),
+                              is_exact(step.op),
+                              half_ulps(step.op)});
+            if (step.op == ExprOp::constant) {
+                value_[i] = step.value;
+            } else {
+                computed_.push_back(i);
+            }
+        }
+    }
 
     Sensitivity sensitivity() {
         Sensitivity result;
@@ -298,6 +313,13 @@ class PrecisionChooser {
     }
 
   private:
+    /// What is asked of an instruction again and again.
+    struct Node {
+        std::array<std::uint32_t, 3> operand;
+        std::size_t operands;
+        bool is_exact;
+        double half_ulps;
+    };
     struct Share {
         double error;
         std::size_t index;
@@ -359,11 +381,11 @@ class PrecisionChooser {
 
     /// The first `count` values.
     void evaluate(const Vector3& rgb, std::size_t count) {
-        for (std::size_t i = 0; i < count; ++i) {
+        ++evaluation_;
+        for (const std::size_t i : computed_) {
+            if (i >= count) break;
             const TapeInstruction& step = code_[i];
-            if (step.op == ExprOp::constant) {
-                value_[i] = step.value;
-            } else if (step.op == ExprOp::input) {
+            if (step.op == ExprOp::input) {
                 value_[i] = rgb[static_cast<std::size_t>(step.input)];
             } else if (step.op == ExprOp::lattice) {
                 value_[i] =
@@ -461,24 +483,28 @@ class PrecisionChooser {
     /// Adjoints of all values for one output, relative to its size above 1.
     void accumulate(std::uint32_t output) {
         std::fill(adjoint_.begin(), adjoint_.end(), 0.0);
-        std::fill(has_pole_.begin(), has_pole_.end(), false);
+        std::fill(has_pole_.begin(), has_pole_.end(), '\0');
         adjoint_[output] = 1 / std::max(1.0, std::fabs(value_[output]));
-        for (std::size_t i = output + 1; i-- > 0;) {
+        for (auto it = computed_.rbegin(); it != computed_.rend(); ++it) {
+            const std::size_t i = *it;
+            const Node& node = nodes_[i];
+            if (adjoint_[i] == 0 || node.operands == 0) continue;
             const TapeInstruction& step = code_[i];
-            const int operands = operand_count(step.op);
-            if (adjoint_[i] == 0 || operands == 0) continue;
-            const auto partial =
-                partials(step, value_[i], value_[step.a], value_[step.b], value_[step.c]);
-            const std::array<std::uint32_t, 3> operand = {step.a, step.b, step.c};
-            for (std::size_t k = 0; k < static_cast<std::size_t>(operands); ++k) {
+            // The outputs share most of the program.
+            std::array<double, 3>& partial = partials_[i];
+            if (partials_are_of_[i] != evaluation_) {
+                partials_are_of_[i] = evaluation_;
+                partial = partials(step, value_[i], value_[step.a], value_[step.b], value_[step.c]);
+            }
+            for (std::size_t k = 0; k < node.operands; ++k) {
                 // Kernels take a constant exponent in double.
                 if (k == 1 && step.op == ExprOp::power && code_[step.b].op == ExprOp::constant)
                     continue;
                 const double added = adjoint_[i] * partial[k];
                 if (std::isfinite(added)) {  // not at a pole
-                    adjoint_[operand[k]] += added;
+                    adjoint_[node.operand[k]] += added;
                 } else {
-                    has_pole_[operand[k]] = true;
+                    has_pole_[node.operand[k]] = 1;
                 }
             }
         }
@@ -498,12 +524,12 @@ class PrecisionChooser {
                 error += std::fabs(step.curve->slope(x) * x) * kHalfUlp;
             return i == output ? std::max(0.0, error - kHalfUlp * std::fabs(v)) : error;
         }
-        double units = half_ulps(step.op);
-        if (is_exact(step.op)) {
-            const std::array<std::uint32_t, 3> operand = {step.a, step.b, step.c};
+        const Node& node = nodes_[i];
+        double units = node.half_ulps;
+        if (node.is_exact) {
             units = 0;
-            for (std::size_t k = 0; k < static_cast<std::size_t>(operand_count(step.op)); ++k) {
-                if (in_double_[operand[k]]) units = 1;
+            for (std::size_t k = 0; k < node.operands; ++k) {
+                if (in_double_[node.operand[k]]) units = 1;
             }
         }
         double of_position = 0;
@@ -520,8 +546,8 @@ class PrecisionChooser {
             const std::array<double, 3> slope =
                 step.lattice->gradient(step.input, at[0], at[1], at[2]);
             for (std::size_t k = 0; k < 3; ++k) {
-                const std::array<std::uint32_t, 3> operand = {step.a, step.b, step.c};
-                if (!in_double_[operand[k]]) of_position += std::fabs(slope[k] * at[k]) * kHalfUlp;
+                if (!in_double_[node.operand[k]])
+                    of_position += std::fabs(slope[k] * at[k]) * kHalfUlp;
             }
         }
         if (i == output) units = std::max(0.0, units - 1);  // that one there is in any case
@@ -583,7 +609,12 @@ class PrecisionChooser {
     std::vector<const CompiledCurve*> too_coarse_;
     std::vector<double> value_;
     std::vector<double> adjoint_;
-    std::vector<bool> has_pole_;
+    std::vector<char> has_pole_;
+    std::vector<std::array<double, 3>> partials_;
+    std::vector<std::size_t> partials_are_of_;  // the evaluation, counted from 1
+    std::size_t evaluation_ = 0;
+    std::vector<Node> nodes_;
+    std::vector<std::size_t> computed_;  // all values but constants
     std::vector<Share> shares_, curves_;
     std::vector<Branch> branches_;
     SampleRandom random_{11};

@@ -455,25 +455,35 @@ TEST_P(SimdOperator, IsWithinBoundOfReference) {
         const ReferenceEngine decode(find_display(display).decode);
         const std::vector<double> truth = run(ReferenceEngine(view), rgb);
         for (const std::string& target : SimdEngine::targets()) {
-            const std::vector<float> out = run(SimdEngine(view, goal, target), rgb);
+            // Every n-th color, so that there are some of each kind.
+            const std::size_t step = rgb.size() / scaled_count(target, rgb.size());
+            std::vector<float> in;
+            std::vector<double> expected;
+            for (std::size_t i = 0; i + 3 <= rgb.size(); i += 3 * step) {
+                in.insert(in.end(), &rgb[i], &rgb[i] + 3);
+                expected.insert(expected.end(), &truth[i], &truth[i] + 3);
+            }
+            const std::vector<float> out = run(SimdEngine(view, goal, target), in);
             double worst = 0;
             std::size_t at = 0;
             for (std::size_t i = 0; i < out.size(); ++i) {
                 const auto code = static_cast<double>(out[i]);
-                if (std::fabs(code - truth[i]) <= worst) continue;
+                const double truth_code = expected[i];
+                if (std::fabs(code - truth_code) <= worst) continue;
                 // Near black a pure power has no end of slope: light counts, as code of sRGB.
                 const double light = std::fabs(decode({code, code, code})[0] -
-                                               decode({truth[i], truth[i], truth[i]})[0]);
-                const double error = std::min(std::fabs(code - truth[i]), 12.92 * light);
+                                               decode({truth_code, truth_code, truth_code})[0]);
+                const double error = std::min(std::fabs(code - truth_code), 12.92 * light);
                 if (std::isnan(code) || error > worst) {
                     worst = std::isnan(code) ? kInfinity : error;
                     at = i;
                 }
             }
-            const float* in = rgb.data() + at / 3 * 3;
-            EXPECT_LE(worst, bound) << display << " on " << target << " of (" << in[0] << ", "
-                                    << in[1] << ", " << in[2] << "): " << out[at] << ", expected "
-                                    << truth[at] << "; " << worst / bound << " times the bound";
+            const float* color = in.data() + at / 3 * 3;
+            EXPECT_LE(worst, bound)
+                << display << " on " << target << " of (" << color[0] << ", " << color[1] << ", "
+                << color[2] << "): " << out[at] << ", expected " << expected[at] << "; "
+                << worst / bound << " times the bound";
             RecordProperty(display + " " + target, shortest(worst));
         }
     }

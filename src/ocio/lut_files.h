@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -11,25 +12,45 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
+/// The parts of a LUT file's name before the word that tells a curve from a cube, in the order of
+/// the name. Any text; only letters, digits and underscores of it are used.
+struct LutStem {
+    std::string subject;         // "agx_blender"
+    std::string qualifier = "";  // "Rec.2020, 1000 nit": which of several forms
+    std::string purpose = "";    // "inverse"
+};
+
 /// Collects the LUT files that transforms need: OCIO configs cannot hold tables themselves.
 class LutFiles {
   public:
+    enum class Names : unsigned char {
+        /// The same from release to release, so that a changed digit is a small diff.
+        stable,
+        /// With a hash of the contents, for a folder that may hold files of other releases.
+        hashed
+    };
+
     /// @param folder  that they are in, beside the config
-    explicit LutFiles(std::string folder) : folder_(std::move(folder)) {}
+    explicit LutFiles(std::string folder, Names names = Names::stable)
+        : folder_(std::move(folder)), style_(names) {}
 
     /// The transforms of the operations, with a file for every table.
-    OCIO::GroupTransformRcPtr to_ocio(const LoweredOps& ops, const std::string& stem,
-                                      const std::string& what, bool is_exact);
+    /// @param title  the name inside the files
+    OCIO::GroupTransformRcPtr to_ocio(const LoweredOps& ops, const LutStem& stem,
+                                      const std::string& title, bool is_exact);
 
     [[nodiscard]] const std::vector<GeneratedFile>& files() const { return files_; }
 
   private:
-    /// Equal tables are one file; its name has the hash of its numbers, because OCIO caches by
-    /// name.
-    std::string file_for(const ClfTable& table, const std::string& stem, const std::string& what);
+    /// Equal tables are one file, named after the first use.
+    /// @param part  "curve"
+    std::string file_for(const ClfTable& table, const LutStem& stem, const std::string& part,
+                         const std::string& title);
 
     std::string folder_;
-    std::map<std::string, std::string> names_;
+    Names style_;
+    std::map<std::string, std::string> names_;  // of each table
+    std::set<std::string> taken_;
     std::vector<GeneratedFile> files_;
 };
 

@@ -27,7 +27,8 @@ OCIO::GroupTransformRcPtr lower_part(LutFiles& luts, const Pipeline& stages, con
                                      const std::string& title,
                                      const Primaries& primaries = kRec709) {
     const Lowered lowered = lower_to_ocio(stages, {.primaries = primaries});
-    return luts.to_ocio(lowered.ops, stem, title, lowered.is_exact);
+    return luts.to_ocio(lowered.ops, stem, title,
+                        {.is_exact = lowered.is_exact, .makes_codes = stem.purpose == "encode"});
 }
 
 /// The scene reference of our configs is AP0, the display reference XYZ D65.
@@ -628,16 +629,20 @@ void ConfigBuilder::add_view_transform(const ConfigModel::View& view, const Disp
     vt->setDescription(text.c_str());
     const LutStem stem = {view.op.op->id + " " + without(view.name, view.op.op->view),
                           without(shown.transform, view.name)};
+    const bool has_inverse = lowered.back && error.back.exists;
     vt->setTransform(between_references(luts_.to_ocio(lowered.forward.ops, stem, view.op.op->title,
-                                                      lowered.forward.is_exact),
+                                                      {.is_exact = lowered.forward.is_exact,
+                                                       .is_inverted = !has_inverse}),
                                         OCIO::TRANSFORM_DIR_FORWARD),
                      OCIO::VIEWTRANSFORM_DIR_FROM_REFERENCE);
-    if (lowered.back && error.back.exists) {
-        vt->setTransform(between_references(
-                             luts_.to_ocio(*lowered.back, {stem.subject, stem.qualifier, "inverse"},
-                                           view.op.op->title + ", inverse", false),
-                             OCIO::TRANSFORM_DIR_INVERSE),
-                         OCIO::VIEWTRANSFORM_DIR_TO_REFERENCE);
+    if (has_inverse) {
+        vt->setTransform(
+            between_references(
+                luts_.to_ocio(*lowered.back, {stem.subject, stem.qualifier, "inverse"},
+                              view.op.op->title + ", inverse",
+                              {.is_exact = false, .is_inverted = false, .is_inverse = true}),
+                OCIO::TRANSFORM_DIR_INVERSE),
+            OCIO::VIEWTRANSFORM_DIR_TO_REFERENCE);
     }
     config_->addViewTransform(vt);
 }

@@ -83,7 +83,7 @@ class ConfigBuilder {
     /// @param profile  2.0, 2.1 or 2.5
     [[nodiscard]] std::string text(const std::string& profile) const;
 
-    [[nodiscard]] const std::vector<GeneratedFile>& tables() const { return luts_.files(); }
+    [[nodiscard]] std::vector<GeneratedFile> tables() const { return luts_.files(); }
     [[nodiscard]] const std::vector<DisplayedView>& displayed(const std::string& view) const {
         return displayed_.at(view);
     }

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <set>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "lut/clf.h"
@@ -34,24 +36,42 @@ class LutFiles {
     explicit LutFiles(std::string folder, Names names = Names::stable)
         : folder_(std::move(folder)), style_(names) {}
 
+    /// What the transforms are for.
+    struct Use {
+        bool is_exact = true;
+        /// OpenColorIO may have to invert them: there are no transforms of the inverse beside them.
+        bool is_inverted = true;
+        bool is_inverse = false;   // of a view
+        bool makes_codes = false;  // of a display or texture: nothing is behind them
+    };
+
     /// The transforms of the operations, with a file for every table.
     /// @param title  the name inside the files
     OCIO::GroupTransformRcPtr to_ocio(const LoweredOps& ops, const LutStem& stem,
-                                      const std::string& title, bool is_exact);
+                                      const std::string& title, const Use& use);
 
-    [[nodiscard]] const std::vector<GeneratedFile>& files() const { return files_; }
+    [[nodiscard]] std::vector<GeneratedFile> files() const;
 
   private:
+    struct File {
+        std::string name;
+        std::string title;
+        std::variant<Lut1DOp, Lut3DOp> table;
+        Use use;  // of all that use it
+        double least_precision = 0;
+    };
+
+    [[nodiscard]] static std::string contents_of(const File& file);
+
     /// Equal tables are one file, named after the first use.
     /// @param part  "curve"
-    std::string file_for(const ClfTable& table, const LutStem& stem, const std::string& part,
-                         const std::string& title);
+    std::string file_for(File file, const LutStem& stem, const std::string& part);
 
     std::string folder_;
     Names style_;
-    std::map<std::string, std::string> names_;  // of each table
+    std::map<std::string, std::size_t> index_;  // of each table, by its numbers
     std::set<std::string> taken_;
-    std::vector<GeneratedFile> files_;
+    std::vector<File> files_;
 };
 
 TONEWRIGHT_NAMESPACE_END

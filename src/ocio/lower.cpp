@@ -74,6 +74,12 @@ class Lowering {
 
     void lower(const ToneScaleStage& stage) {
         flush_curves();
+        if (auto ops = domain_.lo >= 0 ? find_fixed_function(stage) : std::nullopt) {
+            append(result_.ops, std::move(*ops));
+            note("fixed function");
+            domain_ = largest_scaled(stage, evaluate(stage.f, domain_.hi));
+            return;
+        }
         const Expr x = Expr::input();
         // The norm of what the domain holds is in the domain too (weights of a luminance sum to 1).
         // Of light, hue and saturation are in [0, 1], and so are x and y.

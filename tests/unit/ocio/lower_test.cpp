@@ -342,6 +342,46 @@ TEST(LowerToneScale, OnLuminanceUsesItsOwnWeights) {
     }
 }
 
+TEST(LowerToneScale, FixedFunctionWhereItEqualsOne) {
+    // The OOTF of HLG, and the dim surround of ACES, both straight below a floor.
+    const auto floored_power = [](double gain, double floor, double gamma) {
+        return gain * kX * pow(max(kX, floor), gamma - 1);
+    };
+    const Vector3 rec2020 = {0.2627, 0.6780, 0.0593};
+    struct Case {
+        ToneScaleStage stage;
+        Types types;
+    };
+    const std::vector<Case> cases = {
+        {{Norm::luminance, rec2020, floored_power(1, 1e-4, 1.2)}, {kRangeType, kFixed}},
+        {{Norm::luminance, rec2020, floored_power(3, 2e-5, 1 / 1.2)},
+         {kRangeType, kMatrixType, kFixed, kMatrixType}},
+        {{Norm::luminance, rgb_to_xyz(kAP1)[1], floored_power(1, 1e-10, 0.9811)},
+         {kRangeType, kFixed}},
+    };
+    for (const Case& c : cases) {
+        const Pipeline pipeline = {kPositive, c.stage};
+        expect_no_cube(pipeline);
+        EXPECT_EQ(types_of(lower_to_ocio(pipeline)), c.types);
+        expect_close({kPositive, c.stage, kSdr, srgb()}, positive_colours(), 1e-6, 5e-6);
+    }
+}
+
+TEST(LowerToneScale, TableWhereAFixedFunctionDiffers) {
+    const auto has_table = [](const ToneScaleStage& stage, double lo) {
+        const Types types = types_of(lower_to_ocio({ClampStage{lo, kHalfMax}, stage}));
+        return std::find(types.begin(), types.end(), kLut1D) != types.end();
+    };
+    const Vector3 rec2020 = {0.2627, 0.6780, 0.0593};
+    const Expr power = kX * pow(max(kX, 1e-4), 0.2);
+    EXPECT_FALSE(has_table({Norm::luminance, rec2020, power}, 0));
+    EXPECT_TRUE(has_table({Norm::luminance, rec2020, power}, -1)) << "colors of no luminance";
+    EXPECT_TRUE(has_table({Norm::luminance, kRec709Weights, power}, 0)) << "other weights";
+    EXPECT_TRUE(has_table({Norm::max_rgb, rec2020, power}, 0)) << "another norm";
+    EXPECT_TRUE(has_table({Norm::luminance, rec2020, pow(kX, 1.2)}, 0)) << "no floor";
+    EXPECT_TRUE(has_table({Norm::luminance, rec2020, kX / (1 + kX)}, 0)) << "no power";
+}
+
 TEST(LowerToneScale, OnLuminanceOfRec2020IsAsExact) {
     // ITU-R BT.2020 table 4. Measured: 6.5e-6 on the CPU, 1.9e-5 in llvmpipe.
     const Vector3 weights = {0.2627, 0.6780, 0.0593};

@@ -348,23 +348,17 @@ TEST(LowerToneScale, FixedFunctionWhereItEqualsOne) {
         return gain * kX * pow(max(kX, floor), gamma - 1);
     };
     const Vector3 rec2020 = {0.2627, 0.6780, 0.0593};
-    struct Case {
-        ToneScaleStage stage;
-        Types types;
-    };
-    const std::vector<Case> cases = {
-        {{Norm::luminance, rec2020, floored_power(1, 1e-4, 1.2)}, {kRangeType, kFixed}},
-        {{Norm::luminance, rec2020, floored_power(3, 2e-5, 1 / 1.2)},
-         {kRangeType, kMatrixType, kFixed, kMatrixType}},
-        {{Norm::luminance, rgb_to_xyz(kAP1)[1], floored_power(1, 1e-10, 0.9811)},
-         {kRangeType, kFixed}},
-    };
-    for (const Case& c : cases) {
-        const Pipeline pipeline = {kPositive, c.stage};
+    const auto expect_fixed = [](const ToneScaleStage& stage, const Types& types) {
+        const Pipeline pipeline = {kPositive, stage};
         expect_no_cube(pipeline);
-        EXPECT_EQ(types_of(lower_to_ocio(pipeline)), c.types);
-        expect_close({kPositive, c.stage, kSdr, srgb()}, positive_colours(), 1e-6, 5e-6);
-    }
+        EXPECT_EQ(types_of(lower_to_ocio(pipeline)), types);
+        expect_close({kPositive, stage, kSdr, srgb()}, positive_colours(), 1e-6, 5e-6);
+    };
+    expect_fixed({Norm::luminance, rec2020, floored_power(1, 1e-4, 1.2)}, {kRangeType, kFixed});
+    expect_fixed({Norm::luminance, rec2020, floored_power(3, 2e-5, 1 / 1.2)},
+                 {kRangeType, kMatrixType, kFixed, kMatrixType});
+    expect_fixed({Norm::luminance, rgb_to_xyz(kAP1)[1], floored_power(1, 1e-10, 0.9811)},
+                 {kRangeType, kFixed});
 }
 
 TEST(LowerToneScale, TableWhereAFixedFunctionDiffers) {

@@ -29,11 +29,12 @@ except ImportError:
     ocio = None
 
 # Tables hold floats of double results: one libm's last digit can move a float by a unit (6e-8 of it), and where the
-# operator subtracts (Hable's toe), by some more. Relative above 1: decoding curves go on to 65504 and its powers.
-TABLE = 2e-6
-# The config's cubes are written with five decimals, the shipped ones with four; a last digit of libm can decide how the
-# last is rounded. In pictures of 8 bits, how a number is.
-CUBE_FIVE_DECIMALS, CUBE_FOUR_DECIMALS, BYTE = 1.1e-5, 1.1e-4, 1.01 / 255
+# operator subtracts (Hable's toe), by some more. Relative above 1: decoding curves go on to 65504 and its powers, with
+# three digits beyond it.
+TABLE, BEYOND_HALVES = 2e-6, 1.1e-3
+# The config's cubes are whole numbers of 1e-4, or have five decimals and more, the shipped ones four; a last digit of
+# libm can decide how the last is rounded. In pictures of 8 bits, how a number is.
+CUBE_FIVE_DECIMALS, CUBE_FOUR_DECIMALS, BYTE = 1.6e-5, 1.1e-4, 1.01 / 255
 # Nine digits of double results, of code values.
 PROBE = 1e-9
 # Figures in texts are measured errors, two digits, rounded up; those of exact forms are float rounding.
@@ -72,7 +73,7 @@ def figures_differ(is_, expected, relative=FIGURE_RELATIVE, absolute=FIGURE_ABSO
 
 
 def split_table(text):
-    """(the lines of numbers as an array, the rest): .cube, .clf."""
+    """(the lines of numbers as an array, the rest): .cube."""
     lines = text.splitlines()
     is_row = [bool(re.fullmatch(r"[-+0-9.e ]+", line)) for line in lines]
     rows = " ".join(line for line, row in zip(lines, is_row) if row).split()
@@ -86,6 +87,35 @@ def compare_table(report, what, committed, fresh, tolerance):
         report.check(what, False, difference or f"has {old.size} numbers, expected {new.size}")
         return
     error = np.abs(old - new) / np.maximum(np.abs(new), 1)
+    report.bound(f"{what} ({new.size})", error.max(initial=0), tolerance)
+
+
+def read_clf(text):
+    """(numbers as the table means them, which of them have one digit, the rest). One digit: nothing looks them up, or a
+    clamp is behind them."""
+    head, array, rest = re.fullmatch(r"(.*?<Array dim=[^>]*>)(.*?)(</Array>.*)", text, re.S).groups()
+    words = array.split()
+    channels = 3 if "<LUT3D" in head else int(re.search(r"dim=\"\d+ (\d)\"", head)[1])
+    numbers = np.array(words, float).reshape(-1, channels)
+    matrix = re.search(r"<Matrix.*?<Array dim=\"3 3\">(.*?)</Array>", rest, re.S)
+    if matrix:
+        numbers = numbers * np.diag(np.array(matrix[1].split(), float).reshape(3, 3))[:channels]
+        rest = rest.replace(matrix[1], "")
+    if "outBitDepth=\"16i\"" in head:
+        numbers = numbers / 65535
+    is_short = np.array([bool(re.fullmatch(r"-?\.?0*\d(e-?\d+|0*)", word)) for word in words]).reshape(-1, channels)
+    return numbers, is_short, head + rest
+
+
+def compare_clf(report, what, committed, fresh, tolerance):
+    (old, old_short, old_text), (new, new_short, new_text) = read_clf(committed), read_clf(fresh)
+    difference = figures_differ(old_text, new_text)
+    if difference or old.shape != new.shape:
+        report.check(what, False, difference or f"has {old.size} numbers, expected {new.size}")
+        return
+    error = np.abs(old - new) / np.maximum(np.abs(new), 1)
+    error[np.abs(new) > 65504] *= tolerance / BEYOND_HALVES
+    error[old_short & new_short & (np.abs(old - new) <= 0.51 * np.maximum(np.abs(old), np.abs(new)))] = 0
     report.bound(f"{what} ({new.size})", error.max(initial=0), tolerance)
 
 
@@ -227,7 +257,9 @@ def compare_folder(report, committed, fresh, is_part=False):
         if name.endswith(".cube"):
             compare_table(report, what, *texts, CUBE_FOUR_DECIMALS)
         elif name.endswith((".clf", ".ctf")):
-            compare_table(report, what, *texts, CUBE_FIVE_DECIMALS if "_cube" in name else TABLE)
+            whole = "<Matrix" in texts[1] and "<LUT3D" in texts[1]
+            cube = CUBE_FOUR_DECIMALS if whole else CUBE_FIVE_DECIMALS
+            compare_clf(report, what, *texts, cube if "<LUT3D" in texts[1] else TABLE)
         elif name == "probe.csv":
             compare_csv(report, what, *texts, (PROBE, PROBE), is_part)
         elif name.endswith(".csv"):

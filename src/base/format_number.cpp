@@ -7,6 +7,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -28,15 +29,77 @@ void append_number(std::string& text, float value) {
     append_decimals(text, value, std::max(0, 8 - leading));
 }
 
-void append_compact(std::string& text, float value) {
-    const float magnitude = std::fabs(value);
-    const int leading = magnitude > 0 ? static_cast<int>(std::floor(std::log10(magnitude))) : 0;
-    constexpr float kNothing = 1e-14F;
-    const std::string exact = fmt::format("{}", value);
-    std::string number =
-        fmt::format("{:.{}g}", magnitude < kNothing ? 0.0F : value, std::clamp(9 + leading, 6, 9));
-    if (exact.size() < number.size()) number = exact;
-    text += number;
+namespace {
+
+constexpr int kLowestExponent = -60;
+constexpr int kHighestExponent = 40;
+
+double power_of_ten(int exponent) {
+    static const auto powers = [] {
+        std::array<double, kHighestExponent - kLowestExponent + 1> all{};
+        for (int e = kLowestExponent; e <= kHighestExponent; ++e)
+            all[static_cast<std::size_t>(e - kLowestExponent)] = std::pow(10.0, e);
+        return all;
+    }();
+    return powers.at(static_cast<std::size_t>(exponent - kLowestExponent));
+}
+
+/// Appends digits 10^exponent in the shortest way.
+void append_decimal(std::string& text, std::int64_t digits, int exponent) {
+    if (digits == 0) {
+        text += '0';
+        return;
+    }
+    while (digits % 10 == 0) {
+        digits /= 10;
+        ++exponent;
+    }
+    const std::string number = std::to_string(digits);
+    const auto count = static_cast<int>(number.size());
+    std::string with_exponent = number;
+    with_exponent += 'e';
+    with_exponent += std::to_string(exponent);
+    std::string fixed;
+    if (exponent >= 0) {
+        fixed = number;
+        fixed.append(static_cast<std::size_t>(exponent), '0');
+    } else if (-exponent < count) {
+        fixed = number;
+        fixed.insert(static_cast<std::size_t>(count + exponent), 1, '.');
+    } else {
+        fixed = '.';
+        fixed.append(static_cast<std::size_t>(-exponent - count), '0');
+        fixed += number;
+    }
+    text += fixed.size() <= with_exponent.size() ? fixed : with_exponent;
+}
+
+}  // namespace
+
+void append_near(std::string& text, double value, double tolerance) {
+    const double magnitude = std::fabs(value);
+    int exponent = static_cast<int>(std::floor(std::log10(tolerance))) + 1;
+    std::int64_t digits = 0;
+    for (;; --exponent) {
+        const double unit = power_of_ten(exponent);
+        digits = std::llround(magnitude / unit);
+        if (std::fabs(static_cast<double>(digits) * unit - magnitude) <= tolerance) break;
+    }
+    if (value < 0 && digits != 0) text += '-';
+    append_decimal(text, digits, exponent);
+}
+
+void append_one_digit(std::string& text, double value, bool is_up) {
+    const double magnitude = std::fabs(value);
+    if (magnitude == 0 || is_up != (value > 0)) {
+        text += '0';
+        return;
+    }
+    const int exponent = static_cast<int>(std::floor(std::log10(magnitude)));
+    const double digits = magnitude / power_of_ten(exponent);
+    constexpr double kRounding = 1e-12;
+    if (value < 0) text += '-';
+    append_decimal(text, std::llround(std::ceil(digits - kRounding)), exponent);
 }
 
 void drop_zero_before_point(std::string& text, std::size_t begin) {

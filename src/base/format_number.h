@@ -16,11 +16,13 @@ TONEWRIGHT_NAMESPACE_BEGIN
 TONEWRIGHT_API void append_number(std::string& text, float value);
 /// The same with a fixed number of decimals.
 TONEWRIGHT_API void append_decimals(std::string& text, float value, int decimals);
-/// Appends 8 decimals or 6 significant digits, whichever is finer, or fewer that read back as the
-/// same float; with an exponent where that is shorter. Half a unit of the last place is below a
-/// tenth of what float32 operations leave of light in [0, 1] behind sRGB's curve, in two thirds of
-/// the space. Below 1e-14 only the rounding of doubles near 1 is left, so the text is 0.
-TONEWRIGHT_API void append_compact(std::string& text, float value);
+/// Appends the shortest number that is within `tolerance` (positive) of the value: fixed, without a
+/// zero before the point, or with an exponent.
+/// @pre both are within 10^-50 and 10^40, or the value is 0.
+TONEWRIGHT_API void append_near(std::string& text, double value, double tolerance);
+/// Appends 0 or one digit, with an exponent where that is shorter: a number that is not less than
+/// the value, or not more than it.
+TONEWRIGHT_API void append_one_digit(std::string& text, double value, bool is_up);
 /// Turns the 0.25 that begins at `begin` and ends the text into .25.
 TONEWRIGHT_API void drop_zero_before_point(std::string& text, std::size_t begin);
 

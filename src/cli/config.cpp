@@ -35,7 +35,7 @@ void extend(const std::string& path, const ConfigOptions& options) {
     try {
         for (const GeneratedFile& file : extended.files) {
             const fs::path table = folder / file.path;
-            if (fs::exists(table)) continue;  // named by its contents
+            if (fs::exists(table)) continue;  // its name has the hash of its contents
             fs::create_directories(table.parent_path());
             write_text_atomically(table.string(), file.contents);
             written.push_back(table);

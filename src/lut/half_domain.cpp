@@ -27,6 +27,38 @@ double half_value(unsigned bits) noexcept {
     return bits & kSignBit ? -magnitude : magnitude;
 }
 
+std::vector<signed char> unused_entries(const std::vector<float>& table, double lo, double hi) {
+    std::vector<signed char> slack(kHalfCount);
+    if (lo <= -kHalfMax && hi >= kHalfMax) return slack;
+    const auto is_used = [&](unsigned bits) {
+        const double h = half_value(bits);
+        return h >= lo && h <= hi;
+    };
+    float at_lo = 0;
+    float at_hi = 0;
+    double lowest = kInfinity;
+    double highest = -kInfinity;
+    for (unsigned bits = 0; bits < kHalfCount; ++bits) {
+        if (!is_used(bits)) continue;
+        if (half_value(bits) < lowest) {
+            lowest = half_value(bits);
+            at_lo = table[bits];
+        }
+        if (half_value(bits) > highest) {
+            highest = half_value(bits);
+            at_hi = table[bits];
+        }
+    }
+    const signed char above = at_lo <= at_hi ? 1 : -1;
+    for (unsigned bits = 0; bits < kHalfCount; ++bits) {
+        const bool is_next =
+            (bits > 0 && is_used(bits - 1)) || (bits + 1 < kHalfCount && is_used(bits + 1));
+        if (is_used(bits) || is_next || bits == kSignBit || bits == 0) continue;
+        slack[bits] = static_cast<signed char>(half_value(bits) < lo ? -above : above);
+    }
+    return slack;
+}
+
 std::vector<float> sample_half_domain(const Expr& f, double lo, double hi) {
     lo = std::max(lo, -kHalfMax);
     hi = std::min(hi, kHalfMax);

@@ -18,6 +18,12 @@ inline constexpr double kSmallestHalf = 0x1p-24;
 [[nodiscard]] TONEWRIGHT_API std::vector<float> sample_half_domain(const Expr& f, double lo,
                                                                    double hi);
 
+/// Of a table over half floats that is asked for nothing outside [lo, hi]: 0 for the entries that
+/// are used, interpolated with or -0; 1 and -1 for the others, which may be larger or smaller: away
+/// from the values inside, so that a table that rises still does.
+[[nodiscard]] TONEWRIGHT_API std::vector<signed char> unused_entries(
+    const std::vector<float>& table, double lo, double hi);
+
 /// The half float of a bit pattern, as a double; NaN patterns give NaN.
 [[nodiscard]] TONEWRIGHT_API double half_value(unsigned bits) noexcept;
 

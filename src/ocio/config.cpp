@@ -201,7 +201,7 @@ std::vector<GeneratedFile> make_config(const ConfigOptions& options) {
     double luma[3] = {kRec709Weights[0], kRec709Weights[1], kRec709Weights[2]};
     config->setDefaultLumaCoefs(luma);
 
-    ConfigBuilder builder(model, config, kLutFolder);
+    ConfigBuilder builder(model, config, LutFiles(kLutFolder));
     builder.add_spaces();
     // First in the list: what libraries before 2.3.1 take as the default.
     builder.add_untonemapped();

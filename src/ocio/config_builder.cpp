@@ -23,11 +23,12 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-OCIO::GroupTransformRcPtr lower_part(LutFiles& luts, const Pipeline& stages,
-                                     const std::string& stem, const std::string& what,
+OCIO::GroupTransformRcPtr lower_part(LutFiles& luts, const Pipeline& stages, const LutStem& stem,
+                                     const std::string& title,
                                      const Primaries& primaries = kRec709) {
     const Lowered lowered = lower_to_ocio(stages, {.primaries = primaries});
-    return luts.to_ocio(lowered.ops, stem, what, lowered.is_exact);
+    return luts.to_ocio(lowered.ops, stem, title,
+                        {.is_exact = lowered.is_exact, .makes_codes = stem.purpose == "encode"});
 }
 
 /// The scene reference of our configs is AP0, the display reference XYZ D65.
@@ -37,6 +38,11 @@ Matrix3 to_reference(const Primaries& p) { return rgb_to_rgb(p, kAP0); }
 Pipeline joined(Pipeline a, const Pipeline& b) {
     a.insert(a.end(), b.begin(), b.end());
     return a;
+}
+
+/// What a name has behind its beginning, or all of another name.
+std::string without(const std::string& name, const std::string& beginning) {
+    return name.starts_with(beginning) ? name.substr(beginning.size()) : name;
 }
 
 /// sRGB's straight part goes on below 0; powers do not, and of PQ and HLG only light is shown.
@@ -60,13 +66,16 @@ OCIO::ColorSpaceRcPtr make_space(const ConfigModel::Space& space, LutFiles& luts
         cs->addCategory(category.c_str());
     cs->setIsData(space.kind == Kind::data);
 
-    const auto set = [&](const Pipeline& to, const Pipeline& from, const std::string& stem) {
+    const auto set = [&](const Pipeline& to, const Pipeline& from) {
+        const auto stem = [&](const char* purpose) {
+            return LutStem{space.display->id, is_display ? "display" : "texture", purpose};
+        };
         if (!simplify(to).empty()) {
-            cs->setTransform(lower_part(luts, to, stem + "_decode", space.name + " to reference"),
+            cs->setTransform(lower_part(luts, to, stem("decode"), space.name + " to reference"),
                              OCIO::COLORSPACE_DIR_TO_REFERENCE);
         }
         if (!simplify(from).empty()) {
-            cs->setTransform(lower_part(luts, from, stem + "_encode", "reference to " + space.name),
+            cs->setTransform(lower_part(luts, from, stem("encode"), "reference to " + space.name),
                              OCIO::COLORSPACE_DIR_FROM_REFERENCE);
         }
     };
@@ -75,7 +84,7 @@ OCIO::ColorSpaceRcPtr make_space(const ConfigModel::Space& space, LutFiles& luts
             // One matrix; OCIO inverts it.
             if (!simplify({MatrixStage{to_reference(*space.primaries)}}).empty()) {
                 cs->setTransform(
-                    lower_part(luts, {MatrixStage{to_reference(*space.primaries)}}, "", space.name),
+                    lower_part(luts, {MatrixStage{to_reference(*space.primaries)}}, {}, space.name),
                     OCIO::COLORSPACE_DIR_TO_REFERENCE);
             }
             break;
@@ -87,8 +96,7 @@ OCIO::ColorSpaceRcPtr make_space(const ConfigModel::Space& space, LutFiles& luts
         }
         case Kind::texture:
             set(joined(space.display->decode, {MatrixStage{to_reference(*space.primaries)}}),
-                joined({MatrixStage{from_reference(*space.primaries)}}, space.display->encode),
-                space.display->id);
+                joined({MatrixStage{from_reference(*space.primaries)}}, space.display->encode));
             break;
         case Kind::display: {
             const Matrix3 to_xyz = rgb_to_xyz_d65(*space.primaries);
@@ -98,7 +106,7 @@ OCIO::ColorSpaceRcPtr make_space(const ConfigModel::Space& space, LutFiles& luts
             if (!has_code_below_black(*space.display))
                 from.push_back(ClampStage{0, 2 * space.display->largest_light});
             set(joined(space.display->decode, {MatrixStage{to_xyz}}),
-                joined(from, space.display->encode), space.display->id);
+                joined(from, space.display->encode));
             break;
         }
         case Kind::data:
@@ -315,7 +323,7 @@ void ConfigBuilder::add_untonemapped() {
     plain->setName(kUntonemappedView);
     plain->setDescription("Scene light shown as it is, not limited: 1 is display white.");
     plain->setTransform(
-        lower_part(luts_, {MatrixStage{rgb_to_xyz_d65(kAP0)}}, "", kUntonemappedView),
+        lower_part(luts_, {MatrixStage{rgb_to_xyz_d65(kAP0)}}, {}, kUntonemappedView),
         OCIO::VIEWTRANSFORM_DIR_FROM_REFERENCE);
     config_->addViewTransform(plain);
     config_->setDefaultViewTransformName(kUntonemappedView);
@@ -363,8 +371,9 @@ void ConfigBuilder::add_looks() {
         OCIO::LookRcPtr added = OCIO::Look::Create();
         added->setName(look.name.c_str());
         added->setDescription(look.description.c_str());
-        const OCIO::GroupTransformRcPtr transform =
-            lower_part(luts_, look.stages, look.op->id + "_look", look.name, look.op->working);
+        const OCIO::GroupTransformRcPtr transform = lower_part(
+            luts_, look.stages, {look.op->id + "_look" + without(look.name, look.op->view)},
+            look.name, look.op->working);
         if (!scene_) {
             added->setProcessSpace(space_of(look.op->working).title.c_str());
             added->setTransform(transform);
@@ -618,15 +627,21 @@ void ConfigBuilder::add_view_transform(const ConfigModel::View& view, const Disp
     OCIO::ViewTransformRcPtr vt = OCIO::ViewTransform::Create(OCIO::REFERENCE_SPACE_SCENE);
     vt->setName(shown.transform.c_str());
     vt->setDescription(text.c_str());
-    vt->setTransform(between_references(luts_.to_ocio(lowered.forward.ops, view.op.op->id,
-                                                      view.op.op->title, lowered.forward.is_exact),
+    const LutStem stem = {view.op.op->id + " " + without(view.name, view.op.op->view),
+                          without(shown.transform, view.name)};
+    const bool has_inverse = lowered.back && error.back.exists;
+    vt->setTransform(between_references(luts_.to_ocio(lowered.forward.ops, stem, view.op.op->title,
+                                                      {.is_exact = lowered.forward.is_exact,
+                                                       .is_inverted = !has_inverse}),
                                         OCIO::TRANSFORM_DIR_FORWARD),
                      OCIO::VIEWTRANSFORM_DIR_FROM_REFERENCE);
-    if (lowered.back && error.back.exists) {
+    if (has_inverse) {
         vt->setTransform(
-            between_references(luts_.to_ocio(*lowered.back, view.op.op->id + "_inverse",
-                                             view.op.op->title + ", inverse", false),
-                               OCIO::TRANSFORM_DIR_INVERSE),
+            between_references(
+                luts_.to_ocio(*lowered.back, {stem.subject, stem.qualifier, "inverse"},
+                              view.op.op->title + ", inverse",
+                              {.is_exact = false, .is_inverted = false, .is_inverse = true}),
+                OCIO::TRANSFORM_DIR_INVERSE),
             OCIO::VIEWTRANSFORM_DIR_TO_REFERENCE);
     }
     config_->addViewTransform(vt);

@@ -52,8 +52,8 @@ struct ViewError {
 /// somebody's.
 class ConfigBuilder {
   public:
-    ConfigBuilder(const ConfigModel& model, OCIO::ConfigRcPtr config, std::string lut_folder)
-        : model_(model), config_(std::move(config)), luts_(std::move(lut_folder)) {}
+    ConfigBuilder(const ConfigModel& model, OCIO::ConfigRcPtr config, LutFiles luts)
+        : model_(model), config_(std::move(config)), luts_(std::move(luts)) {}
 
     /// The config is somebody's, with references of its own.
     /// @param scene, display  what its interchange spaces are of its references
@@ -83,7 +83,7 @@ class ConfigBuilder {
     /// @param profile  2.0, 2.1 or 2.5
     [[nodiscard]] std::string text(const std::string& profile) const;
 
-    [[nodiscard]] const std::vector<GeneratedFile>& tables() const { return luts_.files(); }
+    [[nodiscard]] std::vector<GeneratedFile> tables() const { return luts_.files(); }
     [[nodiscard]] const std::vector<DisplayedView>& displayed(const std::string& view) const {
         return displayed_.at(view);
     }

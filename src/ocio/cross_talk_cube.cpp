@@ -51,6 +51,35 @@ ClampStage limited_to_halves(const ClampStage& clamp) {
     return {std::max(clamp.lo, -kHalfMax), std::min(clamp.hi, kHalfMax)};
 }
 
+/// Holds the limit at the nodes that are beyond it together with all nodes that they are
+/// interpolated with: the clamp behind the cube makes the same of it, and a file has short numbers
+/// there.
+void hold_limits(std::vector<float>& nodes, int edge, float lo, float hi) {
+    const auto n = static_cast<std::size_t>(edge);
+    // Along one axis after the other, the least and the largest of a node and those beside it.
+    std::vector<float> least = nodes;
+    std::vector<float> most = nodes;
+    for (const std::size_t step : {3 * n * n, 3 * n, std::size_t{3}}) {
+        const std::vector<float> least_before = least;
+        const std::vector<float> most_before = most;
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            const std::size_t place = i / step % n;
+            if (place > 0) {
+                least[i] = std::min(least[i], least_before[i - step]);
+                most[i] = std::max(most[i], most_before[i - step]);
+            }
+            if (place + 1 < n) {
+                least[i] = std::min(least[i], least_before[i + step]);
+                most[i] = std::max(most[i], most_before[i + step]);
+            }
+        }
+    }
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        if (most[i] <= lo) nodes[i] = lo;
+        if (least[i] >= hi) nodes[i] = hi;
+    }
+}
+
 struct Key {
     std::array<Expr, 3> codes;  // equal expressions are the same node, as long as one lives
     double lo, hi, top;
@@ -93,7 +122,10 @@ std::shared_ptr<const CrossTalkCube> cross_talk_cube(const CrossTalkStage& stage
             options.is_fitted ? choose_log_axis(problem, top) : make_log_axis(top, problem.edge);
         const std::vector<double> nodes =
             options.is_fitted ? fit_cube(problem) : sample_cube(problem);
-        return CrossTalkCube{problem.axis.place, {nodes.begin(), nodes.end()}};
+        CrossTalkCube cube = {problem.axis.place, {nodes.begin(), nodes.end()}};
+        hold_limits(cube.nodes, problem.edge, static_cast<float>(problem.lo),
+                    static_cast<float>(problem.hi));
+        return cube;
     });
 }
 

@@ -175,7 +175,8 @@ ExtendedConfig extend_config(const std::string& path, const ConfigOptions& optio
     }
 
     constexpr const char* kFolder = "tonewright";
-    ConfigBuilder builder(model, config, kFolder);
+    // The folder may hold tables of another release, and another config beside it may need them.
+    ConfigBuilder builder(model, config, LutFiles(kFolder, LutFiles::Names::hashed));
     builder.set_references(config->getColorSpace("aces_interchange"),
                            config->getColorSpace("cie_xyz_d65_interchange"));
     config->addSearchPath(kFolder);

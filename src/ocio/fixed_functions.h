@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "ocio/lowered_op.h"
 #include "tonewright/pipeline.h"
 
@@ -18,5 +20,12 @@ struct FixedFunctions {
 
 /// Those of the stage that has the same expressions; null where there is none.
 [[nodiscard]] const FixedFunctions* find_fixed_functions(const CrossTalkStage& stage);
+
+/// The fixed function that a tone scale of colors without negative channels equals, with a gain
+/// before and behind it: f(n) = c n max(n, floor)^(gamma - 1), of the weights that the function
+/// has. OpenColorIO computes it with the precision of floats in every build. Nothing where there is
+/// none.
+[[nodiscard]] TONEWRIGHT_API std::optional<LoweredOps> find_fixed_function(
+    const ToneScaleStage& stage);
 
 TONEWRIGHT_NAMESPACE_END

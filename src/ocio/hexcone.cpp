@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ocio/hexcone.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <utility>
 #include <vector>
 
@@ -62,25 +59,23 @@ std::vector<float> to_table(const Column& column) {
     return table;
 }
 
-/// The table, which is asked for nothing outside [lo, hi] and holds the values at the ends there:
-/// as short numbers, for smaller files. The next half float on either side is interpolated with.
-std::vector<float> with_short_ends(std::vector<float> table, double lo, double hi) {
-    const Column& x = halves();
-    const auto is_outside = [&](unsigned bits) { return x[bits] < lo || x[bits] > hi; };
-    for (unsigned bits = 1; bits < kHalfCount; ++bits) {
-        const bool is_next =
-            !is_outside(bits - 1) || (bits + 1 < kHalfCount && !is_outside(bits + 1));
-        if (is_outside(bits) && !is_next && bits != 0x8000)
-            table[bits] = std::strtof(fmt::format("{:.3g}", table[bits]).c_str(), nullptr);
-    }
-    return table;
+/// Numbers at the half floats, and which of them may be others, @see Lut1DOp::slack.
+struct HalfTable {
+    std::vector<float> values;
+    std::vector<signed char> slack;
+};
+
+/// The table, which is asked for nothing outside [lo, hi].
+HalfTable within(std::vector<float> values, double lo, double hi) {
+    std::vector<signed char> slack = unused_entries(values, lo, hi);
+    return {std::move(values), std::move(slack)};
 }
 
 /// A table of f, which is asked for nothing outside [lo, hi]: there the value at the end is held.
 template <class F>
-std::vector<float> table_of(double lo, double hi, const F& f) {
-    return with_short_ends(
-        to_table(map(halves(), [&](double x) { return f(std::clamp(x, lo, hi)); })), lo, hi);
+HalfTable table_of(double lo, double hi, const F& f) {
+    return within(to_table(map(halves(), [&](double x) { return f(std::clamp(x, lo, hi)); })), lo,
+                  hi);
 }
 
 /// Light in stops below `unit`: positive where it is darker. Below the smallest half float, where a
@@ -116,9 +111,9 @@ class Stops {
 /// n -> value; take times sign again, and subtract k value.
 struct AddedFunction {
     double k = 0;
-    double sign = 1;              // such that n falls: it is positive where value is negative
-    std::vector<float> forward;   // value -> n
-    std::vector<float> backward;  // n -> value
+    double sign = 1;     // such that n falls: it is positive where value is negative
+    HalfTable forward;   // value -> n
+    HalfTable backward;  // n -> value
 
     /// `value` as the tables give it back: near the half floats, if n is steep enough.
     [[nodiscard]] Column round_trip() const {
@@ -127,8 +122,8 @@ struct AddedFunction {
         lut.size = static_cast<int>(kHalfCount);
         lut.channels = 1;
         lut.is_half_domain = true;
-        lut.values = backward;
-        return map(Column(forward.begin(), forward.end()), [&](double n) {
+        lut.values = backward.values;
+        return map(Column(forward.values.begin(), forward.values.end()), [&](double n) {
             return interpolate(lut, {n, n, n})[0];
         });
     }
@@ -166,13 +161,13 @@ AddedFunction add_function(const Column& h, double lo, double hi, double margin)
         n[bits] =
             result.sign * (result.k * std::clamp(value[bits], lo - kStop, hi + kStop) + h[bits]);
     }
-    result.forward = with_short_ends(to_table(n), lo - kStop, hi + kStop);
+    result.forward = within(to_table(n), lo - kStop, hi + kStop);
 
     // The inverse of what the table holds, its float roundings included.
     std::vector<std::pair<double, double>> pairs;
     pairs.reserve(ascending.size());
     for (const unsigned bits : ascending)
-        pairs.emplace_back(static_cast<double>(result.forward[bits]), value[bits]);
+        pairs.emplace_back(static_cast<double>(result.forward.values[bits]), value[bits]);
     std::reverse(pairs.begin(), pairs.end());
     const auto is_less = [](const auto& a, const auto& b) { return a.first < b.first; };
     result.backward = table_of(pairs.front().first, pairs.back().first, [&](double x) {
@@ -287,10 +282,10 @@ LoweredOps lower_hexcone(const HexconeStage& stage, double hi) {
 
     // Each table reaches as far as it is used, and some more.
     const auto same_number = [](double x) { return x; };
-    const std::vector<float> hue = table_of(0, 1, same_number);
+    const HalfTable hue = table_of(0, 1, same_number);
     LoweredOps ops;
-    const auto lut = [&](const std::vector<float>& s, const std::vector<float>& v) {
-        ops.push_back({lut_1d({s, v, hue})});
+    const auto lut = [&](const HalfTable& s, const HalfTable& v) {
+        ops.push_back({lut_1d({s.values, v.values, hue.values}, {s.slack, v.slack, hue.slack})});
     };
     // What saturation and value become of themselves and each other.
     const auto mix = [&](double ss, double sv, double vs, double vv, double s_offset = 0) {
@@ -300,7 +295,7 @@ LoweredOps lower_hexcone(const HexconeStage& stage, double hi) {
     const auto lost = [&](double s) {
         return added.sign * kStop * (s > 0 ? -std::log2(s) : kNone);
     };
-    const std::vector<float> to_p_stops =
+    const HalfTable to_p_stops =
         table_of(0, kHalfMax, [&](double x) { return columns.stops.of(x); });
 
     ops.push_back({FixedFunctionOp{"RGB_TO_HSV"}});
@@ -323,12 +318,12 @@ LoweredOps lower_hexcone(const HexconeStage& stage, double hi) {
         lut(table_of(0, 1, [&](double x) { return x > 0 ? to_stops(x) : kStop * kNone; }),
             table_of(0, kHalfMax, to_stops));
         mix(1, 1, 0, 1);
-        const std::vector<float> to_light = table_of(
-            -17 * kStop, kUnseen * kStop, [&](double x) { return stops.light(x / kStop); });
+        const HalfTable to_light = table_of(-17 * kStop, kUnseen * kStop,
+                                            [&](double x) { return stops.light(x / kStop); });
         lut(to_light, to_light);
         // -> (min, max - min) -> (m, max - min) -> (m, p)
         mix(1, 0, -1, 1);
-        lut(sample_half_domain(Expr::input() - stage.offset, 0, hi),
+        lut(within(sample_half_domain(Expr::input() - stage.offset, 0, hi), 0, hi),
             table_of(0, kHalfMax, same_number));
         mix(1, 0, 1, 1);
         // -> stops -> (stops of m/p, stops of p)
@@ -349,7 +344,7 @@ LoweredOps lower_hexcone(const HexconeStage& stage, double hi) {
                      const double stops = at_bend + x / kStop;
                      return stops < kAllLost - 0.5 ? std::exp2(-std::max(stops, 0.0)) : 0;
                  }),
-        to_table(columns.value));
+        within(to_table(columns.value), -kHalfMax, kHalfMax));
     ops.push_back({MatrixOp{inverse(hue_last)}});
     ops.push_back({FixedFunctionOp{"RGB_TO_HSV"}, true});
     return ops;

@@ -56,7 +56,7 @@ class Lowering {
     }
 
     void lower(const ClampStage& stage) {
-        flush_curves();
+        flush_curves(stage);
         // NaN must not survive the first clamp: Range takes it to its lower end, if it has one.
         emit(RangeOp{stage.lo, stage.hi}, "range");
         domain_.lo = std::max(domain_.lo, stage.lo);
@@ -74,18 +74,28 @@ class Lowering {
 
     void lower(const ToneScaleStage& stage) {
         flush_curves();
+        if (auto ops = domain_.lo >= 0 ? find_fixed_function(stage) : std::nullopt) {
+            append(result_.ops, std::move(*ops));
+            note("fixed function");
+            domain_ = largest_scaled(stage, evaluate(stage.f, domain_.hi));
+            return;
+        }
         const Expr x = Expr::input();
         // The norm of what the domain holds is in the domain too (weights of a luminance sum to 1).
         // Of light, hue and saturation are in [0, 1], and so are x and y.
         const auto identity = domain_.lo >= 0 ? sample_half_domain(x, 0, 1)
                                               : sample_half_domain(x, -kHalfMax, kHalfMax);
         const auto f = sample_half_domain(stage.f, std::max(domain_.lo, 0.0), domain_.hi);
+        const auto kept = domain_.lo >= 0 ? unused_entries(identity, 0, 1)
+                                          : unused_entries(identity, -kHalfMax, kHalfMax);
+        const Lut1DOp table = lut_1d({identity, identity, f},
+                                     {kept, kept, unused_entries(f, domain_.lo, domain_.hi)});
         const bool is_max = stage.norm == ToneScaleStage::Norm::max_rgb;
         if (is_max) {
             // HSV of a negative channel loses it.
             require_clamp_at_0("tone scale on the largest channel");
             emit(FixedFunctionOp{"RGB_TO_HSV"}, "HSV");
-            emit(lut_1d({identity, identity, f}), "half LUT on V");
+            emit(table, "half LUT on V");
             emit(FixedFunctionOp{"RGB_TO_HSV"}, "HSV inverse", true);
         } else {
             // xyY scales all three by Y'/Y whatever the other two rows are; of the bases tried,
@@ -94,15 +104,20 @@ class Lowering {
                 {{0.5, 0, 0}, {stage.weights[0], stage.weights[1], stage.weights[2]}, {0, 0, 1}}};
             emit(MatrixOp{basis}, "matrix to (R/2, L, B)");
             emit(FixedFunctionOp{"XYZ_TO_xyY"}, "xyY");
-            emit(lut_1d({identity, identity, f}), "half LUT on Y");
+            emit(table, "half LUT on Y");
             emit(FixedFunctionOp{"XYZ_TO_xyY"}, "xyY inverse", true);
             emit(MatrixOp{inverse(basis)}, "matrix back");
         }
-        // A channel is at most the norm divided by its weight; so is what it is scaled to.
-        const auto largest = static_cast<double>(*std::max_element(f.begin(), f.end()));
-        const double weight =
-            is_max ? 1 : *std::min_element(stage.weights.begin(), stage.weights.end());
-        domain_ = domain_.lo >= 0 && weight > 0 ? Domain{0, largest / weight} : Domain{};
+        domain_ = largest_scaled(stage, static_cast<double>(*std::max_element(f.begin(), f.end())));
+    }
+
+    /// The domain behind a tone scale that makes norms up to `largest`: a channel is at most the
+    /// norm divided by its weight.
+    [[nodiscard]] Domain largest_scaled(const ToneScaleStage& stage, double largest) const {
+        const double weight = stage.norm == ToneScaleStage::Norm::max_rgb
+                                  ? 1
+                                  : *std::min_element(stage.weights.begin(), stage.weights.end());
+        return domain_.lo >= 0 && weight > 0 ? Domain{0, largest / weight} : Domain{};
     }
 
     void lower(const HuePreservingStage& stage) {
@@ -168,7 +183,9 @@ class Lowering {
             stage, behind, top,
             {.edge = options_.cube_edge, .primaries = options_.primaries, .is_fitted = is_fitted});
         emit(RangeOp{0, top}, "range");
-        emit(Lut1DOp{1, sample_half_domain(cube->shaper, 0, top)}, "half LUT shaper");
+        const std::vector<float> shaper = sample_half_domain(cube->shaper, 0, top);
+        const std::vector<signed char> slack = unused_entries(shaper, 0, top);
+        emit(lut_1d({shaper, shaper, shaper}, {slack, slack, slack}), "half LUT shaper");
         emit(Lut3DOp{options_.cube_edge, cube->nodes}, std::to_string(options_.cube_edge) +
                                                            "^3 cube to " + shortest(top) +
                                                            (is_fitted ? ", fitted" : ""));
@@ -192,14 +209,15 @@ class Lowering {
         result_.summary += (result_.summary.empty() ? "" : ", ") + what;
     }
 
-    void flush_curves() {
+    /// @param behind  what limits the result
+    void flush_curves(const ClampStage& behind = kUnlimited) {
         if (!pending_) return;
         const std::array<Expr, 3> f = *pending_;
         pending_.reset();
-        emit_curve(f, false);
+        emit_curve(f, false, behind);
     }
 
-    void emit_curve(std::array<Expr, 3> f, bool keeps_hue) {
+    void emit_curve(std::array<Expr, 3> f, bool keeps_hue, const ClampStage& behind = kUnlimited) {
         Domain domain = domain_;
         // Where the slope at black is infinite (the power of a display), the first cells of a table
         // over half floats are too coarse. Their exponents go much further below 1 than above what
@@ -213,6 +231,7 @@ class Lowering {
             domain = {domain.lo * gain, domain.hi * gain};
         }
         std::array<std::vector<float>, 3> tables;
+        std::array<std::vector<signed char>, 3> slack;
         domain_ = {kHalfMax, -kHalfMax};
         for (std::size_t c = 0; c < 3; ++c) {
             const bool known = c > 0 && same(f[c], f[0]);
@@ -220,10 +239,30 @@ class Lowering {
             const auto [lo, hi] = std::minmax_element(tables[c].begin(), tables[c].end());
             domain_.lo = std::min(domain_.lo, static_cast<double>(*lo));
             domain_.hi = std::max(domain_.hi, static_cast<double>(*hi));
+            slack[c] = unused_entries(tables[c], domain.lo, domain.hi);
         }
-        Lut1DOp lut = lut_1d(tables);
+        for (std::size_t c = 0; c < 3; ++c)
+            clip(tables[c], slack[c], behind);
+        Lut1DOp lut = lut_1d(tables, slack);
         lut.keeps_hue = keeps_hue;
         emit(std::move(lut), keeps_hue ? "half LUT keeping hue" : "half LUT");
+    }
+
+    /// Holds the limit where an entry and those next to it are beyond it.
+    static void clip(std::vector<float>& table, std::vector<signed char>& slack,
+                     const ClampStage& limit) {
+        const auto lo = static_cast<float>(limit.lo);
+        const auto hi = static_cast<float>(limit.hi);
+        // Next to -0 is the smallest number below it; entry by entry, next to it is the infinity.
+        std::vector<signed char> beyond(table.size());
+        for (std::size_t i = 0; i < table.size(); ++i)
+            beyond[i] = static_cast<signed char>((table[i] >= hi) - (table[i] <= lo));
+        for (std::size_t i = 1; i + 1 < table.size(); ++i) {
+            const bool is_alone = beyond[i - 1] != beyond[i] || beyond[i] != beyond[i + 1];
+            if (beyond[i] == 0 || is_alone || i == 0x8000 || slack[i] != 0) continue;
+            table[i] = beyond[i] > 0 ? hi : lo;
+            slack[i] = beyond[i];
+        }
     }
 
     /// From half float to half float of the domain, but for rounding.

@@ -32,14 +32,15 @@ struct LowerOptions {
 /// Lowers stage by stage; the kind of a stage alone decides:
 ///
 /// matrix -> matrix; clamp -> range, never baked into a table; every run of neighboring curves ->
-/// one half-domain 1D LUT of 65536 entries, stored unclamped; a tone scale -> a matrix to
-/// (R/2, L, B), xyY (or HSV for the largest channel), a half LUT on the norm, and back; a
-/// hue-preserving curve -> a half LUT with hue adjustment (a 3D LUT if the curve falls); a hexcone
-/// stage -> HSV, half LUTs of logarithms with matrices that add one channel to the other, and back;
-/// a channel-mixing stage -> OpenColorIO's fixed functions where it equals some, else a shaper with
-/// a linear toe, a tetrahedral 3D LUT of unclipped smooth output, and the decoding; a lattice -> a
-/// half LUT of its shaper and the same 3D LUT. Native log, power and sRGB operations are not used:
-/// OCIO builds with SSE evaluate them with 15 bits, and OCIO's sRGB is 1e-5 off IEC 61966-2-1.
+/// one half-domain 1D LUT of 65536 entries, stored unclamped; a tone scale -> OpenColorIO's fixed
+/// function where it equals one, else a matrix to (R/2, L, B), xyY (or HSV for the largest
+/// channel), a half LUT on the norm, and back; a hue-preserving curve -> a half LUT with hue
+/// adjustment (a 3D LUT if the curve falls); a hexcone stage -> HSV, half LUTs of logarithms with
+/// matrices that add one channel to the other, and back; a channel-mixing stage -> OpenColorIO's
+/// fixed functions where it equals some, else a shaper with a linear toe, a tetrahedral 3D LUT of
+/// unclipped smooth output, and the decoding; a lattice -> a half LUT of its shaper and the same 3D
+/// LUT. Native log, power and sRGB operations are not used: OCIO builds with SSE evaluate them with
+/// 15 bits, and OCIO's sRGB is 1e-5 off IEC 61966-2-1.
 ///
 /// @throws Error  when a stage has no lowering.
 [[nodiscard]] TONEWRIGHT_API Lowered lower_to_ocio(const Pipeline& pipeline,

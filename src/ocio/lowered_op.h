@@ -34,6 +34,8 @@ struct Lut1DOp {
     /// Only the largest and the smallest channel are looked up; the middle one keeps its place
     /// between them. OpenColorIO calls this hue adjustment DW3.
     bool keeps_hue = false;
+    /// @see ClfTable::slack
+    std::vector<signed char> slack = {};
 
     [[nodiscard]] int size() const { return static_cast<int>(values.size()) / channels; }
 };
@@ -62,7 +64,9 @@ struct LoweredOp {
 using LoweredOps = std::vector<LoweredOp>;
 
 /// One table if the three are equal, else three.
-[[nodiscard]] Lut1DOp lut_1d(const std::array<std::vector<float>, 3>& channels);
+/// @param slack  of each; empty: none
+[[nodiscard]] Lut1DOp lut_1d(const std::array<std::vector<float>, 3>& channels,
+                             const std::array<std::vector<signed char>, 3>& slack = {});
 
 /// The operations backwards, each in its other direction.
 [[nodiscard]] TONEWRIGHT_API LoweredOps inverse(LoweredOps ops);

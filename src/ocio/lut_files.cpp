@@ -1,76 +1,183 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ocio/lut_files.h"
 
-#include <optional>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
 
 #include "base/strings.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// The table of an operation that has one.
-std::optional<ClfTable> table_of(const LoweredOp& op, bool is_exact) {
-    if (const auto* lut = std::get_if<Lut1DOp>(&op.op)) {
-        return ClfTable{.dimension = 1,
-                        .size = lut->size(),
-                        .channels = lut->channels,
-                        .is_half_domain = lut->is_half_domain,
-                        .is_hue_preserving = lut->keeps_hue,
-                        .values = lut->values,
-                        .numbers = ClfTable::Numbers::compact};
+/// What the table of an operation is, for its file's name.
+std::string part_name(const LoweredOps& ops, std::size_t index) {
+    if (std::holds_alternative<Lut3DOp>(ops[index].op)) return "cube";
+    const bool is_shaper =
+        index + 1 < ops.size() && std::holds_alternative<Lut3DOp>(ops[index + 1].op);
+    return is_shaper ? "shaper" : "curve";
+}
+
+ClfTable table_of(const Lut1DOp& lut, double least_precision = 0) {
+    return {.dimension = 1,
+            .size = lut.size(),
+            .channels = lut.channels,
+            .is_half_domain = lut.is_half_domain,
+            .is_hue_preserving = lut.keeps_hue,
+            .values = lut.values,
+            .slack = lut.slack,
+            .numbers = ClfTable::Numbers::compact,
+            .least_precision = least_precision};
+}
+
+ClfTable table_of(const Lut3DOp& lut, bool is_exact, bool is_inverted) {
+    ClfTable table = {.dimension = 3, .size = lut.edge, .channels = 3, .values = lut.values};
+    // A lattice has nothing else to be wrong in: 5e-8. Interpolating between the nodes of a sampled
+    // operator costs much more than its numbers: in the mean 30 times the 8e-6 of codes, and 5
+    // times the 5e-5 of whole numbers.
+    using Numbers = ClfTable::Numbers;
+    table.numbers = is_exact      ? Numbers::decimals_7
+                    : is_inverted ? Numbers::codes
+                                  : Numbers::multiples;
+    table.unit = 1e-4;
+    return table;
+}
+
+/// How far the numbers of a 1D table may be from its values, at least. What is behind a cube that
+/// is not exact, or before it, is seen through its error of 1e-3 and more.
+double least_precision_of(const LoweredOps& ops, std::size_t index, const LutFiles::Use& use) {
+    constexpr double kOfCubes = 2e-7;
+    constexpr double kOfCodes = 7.5e-9;
+    const bool has_cube = std::any_of(ops.begin(), ops.end(), [](const LoweredOp& op) {
+        return std::holds_alternative<Lut3DOp>(op.op);
+    });
+    const bool is_shaper = part_name(ops, index) == "shaper";
+    if (!use.is_exact && has_cube && (is_shaper || use.is_inverse)) return kOfCubes;
+    const bool is_last =
+        std::none_of(ops.begin() + static_cast<std::ptrdiff_t>(index) + 1, ops.end(),
+                     [](const LoweredOp& op) { return std::holds_alternative<Lut1DOp>(op.op); });
+    return use.makes_codes && is_last ? kOfCodes : 0;
+}
+
+/// All that tells a table from others.
+std::string key_of(const std::variant<Lut1DOp, Lut3DOp>& table) {
+    const auto bytes = [](const auto& numbers) {
+        return std::string(reinterpret_cast<const char*>(numbers.data()),
+                           numbers.size() * sizeof(numbers[0]));
+    };
+    if (const auto* cube = std::get_if<Lut3DOp>(&table)) return bytes(cube->values);
+    const auto& lut = std::get<Lut1DOp>(table);
+    return bytes(lut.values) + bytes(lut.slack) + std::to_string(lut.channels) +
+           (lut.is_half_domain ? "half" : "") + (lut.keeps_hue ? "hue" : "");
+}
+
+/// "Rec.2020, 1000 nit" -> "rec2020_1000_nit".
+std::string word(const std::string& text) {
+    const auto is_alnum = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'); };
+    const std::string name = lowercase(text);
+    std::string result;
+    for (std::size_t i = 0; i < name.size(); ++i) {
+        const bool is_first = i == 0 || !is_alnum(name[i - 1]);
+        const bool is_next = i + 1 < name.size() && is_alnum(name[i + 1]);
+        const bool is_joint = (name[i] == '.' || name[i] == '-') && is_next;
+        if (is_alnum(name[i])) {
+            result += name[i];
+        } else if (is_first && is_next && (name[i] == '-' || name[i] == '+')) {
+            result += name[i] == '-' ? "minus" : "plus";
+        } else if ((is_first || !is_joint) && !result.empty() && result.back() != '_') {
+            result += '_';
+        }
     }
-    if (const auto* lut = std::get_if<Lut3DOp>(&op.op)) {
-        // 8e-6, a thirtieth of what interpolating between the nodes of a sampled operator costs in
-        // the mean. A lattice has nothing else to be wrong in: 5e-8.
-        return ClfTable{
-            .dimension = 3,
-            .size = lut->edge,
-            .channels = 3,
-            .values = lut->values,
-            .numbers = is_exact ? ClfTable::Numbers::decimals_7 : ClfTable::Numbers::codes};
+    while (!result.empty() && result.back() == '_')
+        result.pop_back();
+    return result;
+}
+
+/// The words that are not empty, with an underscore between them.
+std::string joined(const std::vector<std::string>& words) {
+    std::string result;
+    for (const std::string& part : words) {
+        if (!part.empty() && !result.empty()) result += '_';
+        result += part;
     }
-    return std::nullopt;
+    return result;
 }
 
 }  // namespace
 
-OCIO::GroupTransformRcPtr LutFiles::to_ocio(const LoweredOps& ops, const std::string& stem,
-                                            const std::string& what, bool is_exact) {
+OCIO::GroupTransformRcPtr LutFiles::to_ocio(const LoweredOps& ops, const LutStem& stem,
+                                            const std::string& title, const Use& use) {
     OCIO::GroupTransformRcPtr out = OCIO::GroupTransform::Create();
-    int count = 0;
-    for (const LoweredOp& op : ops) {
-        const auto table = table_of(op, is_exact);
-        if (!table) {
-            out->appendTransform(tonewright::to_ocio(op));
+    std::map<std::string, int> counts;
+    for (std::size_t i = 0; i < ops.size(); ++i) {
+        const auto* curve = std::get_if<Lut1DOp>(&ops[i].op);
+        const auto* cube = std::get_if<Lut3DOp>(&ops[i].op);
+        if (!curve && !cube) {
+            out->appendTransform(tonewright::to_ocio(ops[i]));
             continue;
         }
-        std::string part = table->dimension == 3 ? "cube" : "curve";
-        if (count++) part += std::to_string(count);
+        std::string part = part_name(ops, i);
+        if (const int count = ++counts[part]; count > 1) part += std::to_string(count);
+        File table = {"", title, {}, use, least_precision_of(ops, i, use)};
+        if (curve) table.table = *curve;
+        if (cube) table.table = *cube;
+        table.use.is_inverted = use.is_inverted || ops[i].is_inverse;
         const OCIO::FileTransformRcPtr file = OCIO::FileTransform::Create();
-        file->setSrc(file_for(*table, stem + "_" + part, what).c_str());
-        file->setInterpolation(table->dimension == 3 ? OCIO::INTERP_TETRAHEDRAL
-                                                     : OCIO::INTERP_LINEAR);
-        if (op.is_inverse) file->setDirection(OCIO::TRANSFORM_DIR_INVERSE);
+        file->setSrc(file_for(std::move(table), stem, part).c_str());
+        file->setInterpolation(cube ? OCIO::INTERP_TETRAHEDRAL : OCIO::INTERP_LINEAR);
+        if (ops[i].is_inverse) file->setDirection(OCIO::TRANSFORM_DIR_INVERSE);
         out->appendTransform(file);
     }
     return out;
 }
 
-std::string LutFiles::file_for(const ClfTable& table, const std::string& stem,
-                               const std::string& what) {
-    std::string key(reinterpret_cast<const char*>(table.values.data()),
-                    table.values.size() * sizeof(float));
-    key += std::to_string(table.size) + (table.is_half_domain ? "half" : "") +
-           (table.is_hue_preserving ? "hue" : "");
-    const auto [it, is_new] =
-        names_.emplace(key, stem + "_" + content_hash(key) + file_extension(table));
-    if (is_new) {
-        const std::string note =
-            table.dimension == 1 ? ": one entry for every half float" : ": behind its shaper";
-        files_.push_back(
-            {folder_ + "/" + it->second, write_clf(table, what, {"Tonewright, " + what + note})});
+std::string LutFiles::file_for(File file, const LutStem& stem, const std::string& part) {
+    const auto [it, is_new] = index_.emplace(key_of(file.table), files_.size());
+    if (!is_new) {
+        File& known = files_[it->second];
+        known.use.is_exact = known.use.is_exact || file.use.is_exact;
+        known.use.is_inverted = known.use.is_inverted || file.use.is_inverted;
+        known.least_precision = std::min(known.least_precision, file.least_precision);
+        return known.name;
     }
-    return it->second;
+    const std::string subject = word(stem.subject);
+    const std::string purpose = word(stem.purpose);
+    const std::string qualified = joined({subject, word(stem.qualifier), purpose, part});
+    // Forms of an operator often share curves and never cubes.
+    const auto* curve = std::get_if<Lut1DOp>(&file.table);
+    std::string name = curve ? joined({subject, purpose, part}) : qualified;
+    if (style_ == Names::hashed) {
+        // Another use would change the contents.
+        file.use.is_inverted = true;
+        file.least_precision = 0;
+        name = joined({name, content_hash(contents_of(file))});
+    } else {
+        if (taken_.contains(name)) name = qualified;
+        for (int number = 2; taken_.contains(name); ++number)
+            name = joined({qualified, std::to_string(number)});
+    }
+    taken_.insert(name);
+    file.name = name + file_extension(curve ? table_of(*curve) : ClfTable{});
+    files_.push_back(std::move(file));
+    return files_.back().name;
+}
+
+std::string LutFiles::contents_of(const File& file) {
+    const auto* curve = std::get_if<Lut1DOp>(&file.table);
+    const std::string note = curve ? ": one entry for every half float" : ": behind its shaper";
+    const ClfTable table =
+        curve ? table_of(*curve, file.least_precision)
+              : table_of(std::get<Lut3DOp>(file.table), file.use.is_exact, file.use.is_inverted);
+    return write_clf(table, file.title, {fmt::format("Tonewright, {}{}", file.title, note)});
+}
+
+std::vector<GeneratedFile> LutFiles::files() const {
+    std::vector<GeneratedFile> written;
+    for (const File& file : files_)
+        written.push_back({fmt::format("{}/{}", folder_, file.name), contents_of(file)});
+    return written;
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <map>
+#include <set>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "lut/clf.h"
@@ -11,26 +14,64 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
+/// The parts of a LUT file's name before the word that tells a curve from a cube, in the order of
+/// the name. Any text; only letters, digits and underscores of it are used.
+struct LutStem {
+    std::string subject;         // "agx_blender"
+    std::string qualifier = "";  // "Rec.2020, 1000 nit": which of several forms
+    std::string purpose = "";    // "inverse"
+};
+
 /// Collects the LUT files that transforms need: OCIO configs cannot hold tables themselves.
 class LutFiles {
   public:
+    enum class Names : unsigned char {
+        /// The same from release to release, so that a changed digit is a small diff.
+        stable,
+        /// With a hash of the contents, for a folder that may hold files of other releases.
+        hashed
+    };
+
     /// @param folder  that they are in, beside the config
-    explicit LutFiles(std::string folder) : folder_(std::move(folder)) {}
+    explicit LutFiles(std::string folder, Names names = Names::stable)
+        : folder_(std::move(folder)), style_(names) {}
+
+    /// What the transforms are for.
+    struct Use {
+        bool is_exact = true;
+        /// OpenColorIO may have to invert them: there are no transforms of the inverse beside them.
+        bool is_inverted = true;
+        bool is_inverse = false;   // of a view
+        bool makes_codes = false;  // of a display or texture: nothing is behind them
+    };
 
     /// The transforms of the operations, with a file for every table.
-    OCIO::GroupTransformRcPtr to_ocio(const LoweredOps& ops, const std::string& stem,
-                                      const std::string& what, bool is_exact);
+    /// @param title  the name inside the files
+    OCIO::GroupTransformRcPtr to_ocio(const LoweredOps& ops, const LutStem& stem,
+                                      const std::string& title, const Use& use);
 
-    [[nodiscard]] const std::vector<GeneratedFile>& files() const { return files_; }
+    [[nodiscard]] std::vector<GeneratedFile> files() const;
 
   private:
-    /// Equal tables are one file; its name has the hash of its numbers, because OCIO caches by
-    /// name.
-    std::string file_for(const ClfTable& table, const std::string& stem, const std::string& what);
+    struct File {
+        std::string name;
+        std::string title;
+        std::variant<Lut1DOp, Lut3DOp> table;
+        Use use;  // of all that use it
+        double least_precision = 0;
+    };
+
+    [[nodiscard]] static std::string contents_of(const File& file);
+
+    /// Equal tables are one file, named after the first use.
+    /// @param part  "curve"
+    std::string file_for(File file, const LutStem& stem, const std::string& part);
 
     std::string folder_;
-    std::map<std::string, std::string> names_;
-    std::vector<GeneratedFile> files_;
+    Names style_;
+    std::map<std::string, std::size_t> index_;  // of each table, by its numbers
+    std::set<std::string> taken_;
+    std::vector<File> files_;
 };
 
 TONEWRIGHT_NAMESPACE_END

@@ -222,6 +222,9 @@ def main():
             report.check(f"{kind}: all of theirs makes the same numbers", not changed, changed)
             report.check(f"{kind}: nothing is left behind", sorted(p.name for p in folder.iterdir())
                          == ["mine.ocio", "tonewright"], list(folder.iterdir()))
+            tables = sorted(p.name for p in (folder / "tonewright").iterdir())
+            unhashed = [n for n in tables if not re.fullmatch(r"[a-z0-9_]+_[0-9a-f]{8}\.clf", n)]
+            report.check(f"{kind}: {len(tables)} tables whose names have a hash", tables and not unhashed, unhashed)
             for display, option in displays.items():
                 hdr = " - HDR 1000 nits" if option == "rec2100_pq" else ""
                 check_picture(report, command, path, display, "AgX" + hdr, ["agx_blender"], option, space)

@@ -735,19 +735,59 @@ TEST(Numbers, AreShortAndHaveNoMinusZero) {
     EXPECT_EQ(text, "0 0.12346");
 }
 
-TEST(Numbers, CompactOnesAreWithinTheirPrecision) {
-    for (const float x : hard_floats(200000)) {
+TEST(Numbers, NearOnesAreTheShortestWithinTheTolerance) {
+    const auto text_of = [](double value, double tolerance) {
         std::string text;
-        append_compact(text, x);
-        const double size = std::fabs(static_cast<double>(x));
-        // Half of the last place: six digits, or eight decimals up to 1, or as many as a float has.
-        double bound = 5e-6 * size;
-        if (size >= 1e-3) bound = 5e-9;
-        if (size >= 1) bound = size * 0x1p-24;
-        EXPECT_NEAR(static_cast<double>(std::strtof(text.c_str(), nullptr)), static_cast<double>(x),
-                    bound * 1.001 + size * 0x1p-24 + 1e-14)
-            << text;
+        append_near(text, value, tolerance);
+        return text;
+    };
+    EXPECT_EQ(text_of(0.123456, 1e-7), ".123456");
+    EXPECT_EQ(text_of(0.123456, 1e-3), ".123");
+    EXPECT_EQ(text_of(0.1996, 1e-3), ".2");
+    EXPECT_EQ(text_of(-0.25, 1e-9), "-.25");
+    EXPECT_EQ(text_of(4096, 1e-3), "4096");
+    EXPECT_EQ(text_of(1234.5, 0.01), "1234.5");
+    EXPECT_EQ(text_of(65504, 100), "65500") << "as long as 655e2";
+    EXPECT_EQ(text_of(65504, 1000), "66e3");
+    EXPECT_EQ(text_of(1.2e-12, 1e-14), "12e-13");
+    EXPECT_EQ(text_of(-1e-9, 1e-8), "0");
+    EXPECT_EQ(text_of(0, 1e-8), "0");
+    for (const float x : hard_floats(200000)) {
+        const auto value = static_cast<double>(x);
+        const double tolerance = precision_of(value);
+        const double read = std::strtod(text_of(value, tolerance).c_str(), nullptr);
+        EXPECT_NEAR(read, value, tolerance * (1 + 1e-9)) << text_of(value, tolerance);
     }
+}
+
+TEST(Numbers, OneDigitGoesTheWayThatItIsTold) {
+    const auto text_of = [](double value, bool is_up) {
+        std::string text;
+        append_one_digit(text, value, is_up);
+        return text;
+    };
+    EXPECT_EQ(text_of(8192, true), "9e3");
+    EXPECT_EQ(text_of(8192, false), "0");
+    EXPECT_EQ(text_of(-8192, true), "0");
+    EXPECT_EQ(text_of(-8192, false), "-9e3");
+    EXPECT_EQ(text_of(0.95, true), "1");
+    EXPECT_EQ(text_of(0.5, true), ".5");
+    EXPECT_EQ(text_of(0.5, false), "0");
+    EXPECT_EQ(text_of(0, true), "0");
+}
+
+TEST(HalfDomain, EntriesThatNothingAsksForMayBeOthers) {
+    const std::vector<float> table = sample_half_domain(kX * 2, 0, 1);
+    const std::vector<signed char> slack = unused_entries(table, 0, 1);
+    const unsigned one = 0x3C00;
+    EXPECT_EQ(slack[0], 0);
+    EXPECT_EQ(slack[0x8000], 0) << "-0";
+    EXPECT_EQ(slack[0x8001], 0) << "interpolated with";
+    EXPECT_EQ(slack[one + 1], 0) << "interpolated with";
+    EXPECT_EQ(slack[one + 2], 1) << "larger, since the table rises";
+    EXPECT_EQ(slack[0x8002], -1);
+    const std::vector<signed char> all = unused_entries(table, -kHalfMax, kHalfMax);
+    EXPECT_TRUE(std::all_of(all.begin(), all.end(), [](signed char s) { return s == 0; }));
 }
 
 TEST(Numbers, LoseTheZeroBeforeThePoint) {

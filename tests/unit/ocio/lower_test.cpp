@@ -342,6 +342,40 @@ TEST(LowerToneScale, OnLuminanceUsesItsOwnWeights) {
     }
 }
 
+TEST(LowerToneScale, FixedFunctionWhereItEqualsOne) {
+    // The OOTF of HLG, and the dim surround of ACES, both straight below a floor.
+    const auto floored_power = [](double gain, double floor, double gamma) {
+        return gain * kX * pow(max(kX, floor), gamma - 1);
+    };
+    const Vector3 rec2020 = {0.2627, 0.6780, 0.0593};
+    const auto expect_fixed = [](const ToneScaleStage& stage, const Types& types) {
+        const Pipeline pipeline = {kPositive, stage};
+        expect_no_cube(pipeline);
+        EXPECT_EQ(types_of(lower_to_ocio(pipeline)), types);
+        expect_close({kPositive, stage, kSdr, srgb()}, positive_colours(), 1e-6, 5e-6);
+    };
+    expect_fixed({Norm::luminance, rec2020, floored_power(1, 1e-4, 1.2)}, {kRangeType, kFixed});
+    expect_fixed({Norm::luminance, rec2020, floored_power(3, 2e-5, 1 / 1.2)},
+                 {kRangeType, kMatrixType, kFixed, kMatrixType});
+    expect_fixed({Norm::luminance, rgb_to_xyz(kAP1)[1], floored_power(1, 1e-10, 0.9811)},
+                 {kRangeType, kFixed});
+}
+
+TEST(LowerToneScale, TableWhereAFixedFunctionDiffers) {
+    const auto has_table = [](const ToneScaleStage& stage, double lo) {
+        const Types types = types_of(lower_to_ocio({ClampStage{lo, kHalfMax}, stage}));
+        return std::find(types.begin(), types.end(), kLut1D) != types.end();
+    };
+    const Vector3 rec2020 = {0.2627, 0.6780, 0.0593};
+    const Expr power = kX * pow(max(kX, 1e-4), 0.2);
+    EXPECT_FALSE(has_table({Norm::luminance, rec2020, power}, 0));
+    EXPECT_TRUE(has_table({Norm::luminance, rec2020, power}, -1)) << "colors of no luminance";
+    EXPECT_TRUE(has_table({Norm::luminance, kRec709Weights, power}, 0)) << "other weights";
+    EXPECT_TRUE(has_table({Norm::max_rgb, rec2020, power}, 0)) << "another norm";
+    EXPECT_TRUE(has_table({Norm::luminance, rec2020, pow(kX, 1.2)}, 0)) << "no floor";
+    EXPECT_TRUE(has_table({Norm::luminance, rec2020, kX / (1 + kX)}, 0)) << "no power";
+}
+
 TEST(LowerToneScale, OnLuminanceOfRec2020IsAsExact) {
     // ITU-R BT.2020 table 4. Measured: 6.5e-6 on the CPU, 1.9e-5 in llvmpipe.
     const Vector3 weights = {0.2627, 0.6780, 0.0593};
@@ -543,6 +577,63 @@ TEST(LowerHuePreserving, SurvivesAFile) {
     std::filesystem::remove(path);
     for (std::size_t i = 0; i < from_file.size(); ++i)
         EXPECT_EQ(from_file[i].out, from_memory[i].out) << from_file[i].name << ": bit for bit";
+}
+
+/// What OpenColorIO makes of colors with a table from a file.
+std::vector<float> through_file(const ClfTable& table, std::vector<float> rgb) {
+    const std::filesystem::path path =
+        std::filesystem::temp_directory_path() /
+        ("tonewright-table-" + std::to_string(::getpid()) + file_extension(table));
+    std::ofstream(path) << write_clf(table, "table", {"a test"});
+    const OCIO::FileTransformRcPtr file = OCIO::FileTransform::Create();
+    file->setSrc(path.c_str());
+    file->setInterpolation(table.dimension == 3 ? OCIO::INTERP_TETRAHEDRAL : OCIO::INTERP_LINEAR);
+    OcioCpu(make_processor(file)).run_rgb(rgb.data(), rgb.data(), rgb.size() / 3);
+    std::filesystem::remove(path);
+    OCIO::ClearAllCaches();
+    return rgb;
+}
+
+TEST(LutFileNumbers, AreReadBackByOpenColorIO) {
+    const Expr f = kX / (1 + kX);
+    std::vector<float> values = sample_half_domain(f, 0, 4);
+    const std::vector<signed char> slack = unused_entries(values, 0, 4);
+    std::vector<float> in;
+    for (const float x : positive_colours())
+        in.push_back(std::min(x, 4.0F));
+    ClfTable table;
+    table.size = 65536;
+    table.is_half_domain = true;
+    table.values = values;
+    table.slack = slack;
+    table.numbers = ClfTable::Numbers::compact;
+    const std::string text = write_clf(table, "table", {});
+    EXPECT_NE(text.find("<Matrix"), std::string::npos) << "of a power of two";
+    for (const bool is_ctf : {false, true}) {
+        table.is_ctf = is_ctf;
+        const std::vector<float> out = through_file(table, in);
+        for (std::size_t i = 0; i < in.size(); ++i) {
+            const double x = static_cast<double>(in[i]);
+            EXPECT_NEAR(static_cast<double>(out[i]), x / (1 + x), 2e-7) << x;
+        }
+    }
+}
+
+TEST(LutFileNumbers, WholeOnesOfACubeAreReadBack) {
+    const std::vector<float> nodes = {0, 0, 0, 0, 0, 1, 0, 1, 0, 0, 1, 1,
+                                      1, 0, 0, 1, 0, 1, 1, 1, 0, 1, 1, 1};
+    ClfTable table;
+    table.dimension = 3;
+    table.size = 2;
+    table.channels = 3;
+    table.values = nodes;
+    table.numbers = ClfTable::Numbers::multiples;
+    table.unit = 1e-4;
+    EXPECT_NE(write_clf(table, "cube", {}).find("\n1e4 0 1e4\n"), std::string::npos);
+    const std::vector<float> in = {0.25F, 0.5F, 1, 0, 0.125F, 0.75F};
+    const std::vector<float> out = through_file(table, in);
+    for (std::size_t i = 0; i < in.size(); ++i)
+        EXPECT_NEAR(static_cast<double>(out[i]), static_cast<double>(in[i]), 2e-7);
 }
 
 // ---------------------------------------------------------------------------------------------

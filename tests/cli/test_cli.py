@@ -488,7 +488,7 @@ def check_archive(report, command, scratch):
     for view in ("Hable", "ACES Narkowicz"):
         run(command, "config", "-o", scratch / "readme", "--views", view)
         shown = re.search(r"^oiiotool (?:.*\\\n)*.*", (scratch / "readme/README.md").read_text(), re.M).group(0)
-        words = shlex.split(shown)
+        words = shlex.split(shown.replace("\\\n", " "))
         at = words.index("--ociodisplay")
         report.check(f"config: README.md shows {view}", words[at + 1:at + 4] == ["sRGB", view, "--iscolorspace"], shown)
     behind_empty_lines = (scratch / "readme/config-2.5.ocio").read_text().split("\n\n")[1:]

@@ -243,7 +243,7 @@ SCRIPTS = {
 # Files with the unit tests of a folder.
 UNITS = {
     "operators": ["operators/*", "engine/operators_csv*", "pipeline/*"],
-    "color": ["color/*", "engine/operators_csv*", "pipeline/*"],
+    "color": ["color/*", "engine/operators_csv*", "pipeline/*", "lut/lut_test*"],
     "engine": ["engine/*"],
     "ocio": ["ocio/*"],
     "lut": ["lut/*"],

@@ -236,10 +236,12 @@ SCRIPTS = {
     "operators": ["python_check.eval"],
     "color": ["python_check.eval"],
     "engine": ["python_check.eval", "bench.instructions"],
-    "ocio": ["parity.profiles", "parity.verify_config", "parity.builtins", "cli.lut_files", "parity.into"],
-    "lut": ["cli.lut_files", "parity.luts", "python_check.luts", "clients.ffmpeg", "clients.tificc"],
+    "ocio": ["parity.into", "cli", "parity.artifacts", "parity.verify_config", "cli.lut_files"],
+    "lut": ["cli.lut_files", "parity.luts", "parity.artifacts", "cli", "clients.tificc"],
     "image": ["cli.pictures", "cli.meter", "cli.compare", "cli.plot", "cli.sequences", "clients.plugin"],
 }
+# What a script needs that is less than everything.
+TARGETS = {"python_check.eval": "tonewright-cli", "bench.instructions": "tonewright_instructions"}
 # Files with the unit tests of a folder.
 UNITS = {
     "operators": ["operators/*", "engine/operators_csv*", "pipeline/*"],
@@ -325,17 +327,14 @@ class Tree:
 
         own = unit_filter(folder)
         scripts = [f"^{re.escape(name)}$" for name in SCRIPTS[folder]]
-        done = ["^unit_tests", "^law_tests", *scripts]
         yield "unit_tests", "unit_tests", gtest("unit_tests", own), 600
-        if folder in ("operators", "color", "engine"):
-            yield SCRIPTS[folder][0], "tonewright-cli", ctest("-R", scripts.pop(0)), 300
-            yield "law_tests", "law_tests", gtest("law_tests", "*"), 1200
-        for name, script in zip(SCRIPTS[folder][-len(scripts):], scripts):
-            yield name, "all", ctest("-R", script), 900
-        yield "unit_tests", "unit_tests", gtest("unit_tests", f"-{own}"), 1200
-        if folder not in ("operators", "color", "engine"):
-            yield "law_tests", "law_tests", gtest("law_tests", "*"), 1200
-        yield "ctest", "all", ctest("-j", str(self.jobs), "-E", "|".join(done)), 5400
+        for name, script in zip(SCRIPTS[folder], scripts):
+            yield name, TARGETS.get(name, "all"), ctest("-R", script), 900
+        others = [("law_tests", gtest("law_tests", "*")), ("unit_tests", gtest("unit_tests", f"-{own}"))]
+        for name, command in others if folder in ("operators", "color", "engine") else reversed(others):
+            yield name, name, command, 1200
+        done = "|".join(["^unit_tests", "^law_tests", *scripts])
+        yield "ctest", "all", ctest("-j", str(self.jobs), "-E", done), 5400
 
 
 def has_avx512():

@@ -675,6 +675,14 @@ def check_xml(report, command, folder):
         path = folder / "wild.clf"
         path.write_text(text)
         report.compare(f".clf: {what}", evaluate_lut(command, path, COLORS), truth, FLOAT32)
+    # Inputs at indices of the table: Common LUT Format 2 (Academy S-2014-006); version 3 has it no more.
+    for lowest, highest in ((0, 0.5), (-0.25, 0.75)):
+        path = folder / f"indices{highest}.clf"
+        path.write_text(cube.replace('"3"', '"2.0"', 1).replace(
+            "<Array", f'<IndexMap dim="2">{lowest}@0 {highest}@{SIZE - 1}</IndexMap>\n<Array'))
+        report.compare(f".clf: IndexMap {lowest} to {highest}", evaluate_lut(command, path, COLORS),
+                       interpolate(CUBE, (COLORS - lowest) / (highest - lowest)), FLOAT32)
+    path = folder / "wild.clf"
     path.write_text(cube.replace("<LUT3D", "<Unknown/>\n<LUT3D"))
     status, out, err, _ = peak_of([command, "eval", "--lut", path], "0.1 0.2 0.3\n")
     report.check(".clf: an element that OpenColorIO warns of, without its warning",

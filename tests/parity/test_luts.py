@@ -156,6 +156,12 @@ def check_formats(report, command, folder):
     run(command, "bake", *OPERATOR, "--nodes", "sampled", "--format", "strip", "--size", 16, "--depth", 32, "-o", path)
     truth_16 = expected_of(command, nodes_of(16), "acescct", "srgb")
     report.compare("strip: float", nodes_in_picture(path, "strip", 16, folder), truth_16, EXACT)
+    # 8 bits would be coarser than a code of 10 bits: who wants them says so.
+    for layout in ("strip", "strip_up", "hald"):
+        path = folder / f"default_{layout}.png"
+        run(command, "bake", *OPERATOR, "--nodes", "sampled", "--format", layout, "--size", 16, "-o", path)
+        report.compare(f"{layout}: 16 bits by default", nodes_in_picture(path, layout, 16, folder), truth_16,
+                       0.5 / 65535 + EXACT)
     # A saturated code through the file, whichever way up it stands: `eval --lut` knows from the file.
     for layout, suffix in (("strip", "png"), ("strip_up", "png"), ("strip_up", "tif"), ("strip_up", "exr")):
         path = folder / f"way_up_{layout}.{suffix}"

@@ -69,6 +69,13 @@ TEST(Color, EGamutAsFilmLightPrintsIt) {
                   1e-9);
 }
 
+TEST(Color, PrimariesWithoutLuminance) {
+    // The primaries of CIE XYZ itself: X and Z have no luminance, and white is that of illuminant
+    // E.
+    expect_matrix(rgb_to_xyz({"CIE XYZ", {1, 0}, {0, 1}, {0, 0}, {1.0 / 3, 1.0 / 3}}), kIdentity3,
+                  1e-15);
+}
+
 TEST(Color, Rec709LuminanceRow) {
     const Matrix3 m = rgb_to_xyz(kRec709);
     EXPECT_NEAR(m[1][0], 0.2126390059, 5e-11);

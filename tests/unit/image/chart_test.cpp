@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <utility>
 
 #include "tonewright/chart.h"
+#include "tonewright/color.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -63,6 +65,44 @@ TEST(Chart, HoldsWhatItsTitlesSay) {
     // White patch of the ColorChecker, sRGB 243, 243, 242.
     EXPECT_NEAR(chart.getchannel(60, 700, 0, 0), 0.896269, 1e-5);
     EXPECT_NEAR(chart.getchannel(60, 700, 0, 2), 0.887923, 1e-5);
+}
+
+TEST(Chart, PatchesHaveTheColorsOfAColorChecker) {
+    // CIE L*a*b* for D50 of the 24 patches, as X-Rite publishes them for charts made before
+    // November 2014.
+    constexpr std::array<std::array<double, 3>, 24> kPublished = {{
+        {37.986, 13.555, 14.059},  {65.711, 18.13, 17.81},    {49.927, -4.88, -21.925},
+        {43.139, -13.095, 21.905}, {55.112, 8.844, -25.399},  {70.719, -33.397, -0.199},
+        {62.661, 36.067, 57.096},  {40.02, 10.41, -45.964},   {51.124, 48.239, 16.248},
+        {30.325, 22.976, -21.587}, {72.532, -23.709, 57.255}, {71.941, 19.363, 67.857},
+        {28.778, 14.179, -50.297}, {55.261, -38.342, 31.37},  {42.101, 53.378, 28.19},
+        {81.733, 4.039, 79.819},   {51.935, 49.986, -14.574}, {51.038, -28.631, -28.638},
+        {96.539, -0.425, 1.186},   {81.257, -0.638, -0.335},  {66.766, -0.734, -0.504},
+        {50.867, -0.153, -0.27},   {35.656, -0.421, -1.231},  {20.461, -0.079, -0.973},
+    }};
+    // Linear Rec.709 to XYZ for D50 by Bradford (B. Lindbloom, RGB/XYZ Matrices).
+    constexpr Matrix3 kToXyz = {{{0.4360747, 0.3850649, 0.1430804},
+                                 {0.2225045, 0.7168786, 0.0606169},
+                                 {0.0139322, 0.0971045, 0.7141733}}};
+    const ImageBuf chart = make_chart();
+    for (int i = 0; i < 24; ++i) {
+        const int x = 24 + (i % 6) * 484 / 6 + 40;
+        const int y = 526 + (i / 6) * 198 / 4 + 25;
+        Vector3 ratio{};
+        for (std::size_t row = 0; row < 3; ++row) {
+            for (int c = 0; c < 3; ++c)
+                ratio[row] += kToXyz[row][static_cast<std::size_t>(c)] *
+                              static_cast<double>(chart.getchannel(x, y, 0, c));
+        }
+        const Vector3 f = {std::cbrt(ratio[0] / 0.96422), std::cbrt(ratio[1]),
+                           std::cbrt(ratio[2] / 0.82521)};
+        const auto& lab = kPublished[static_cast<std::size_t>(i)];
+        // The published 8-bit sRGB values and these are averages of different charts: up to 1.3
+        // apart in lightness, and 6.3 in a* and b*. Patches differ by more than that.
+        EXPECT_NEAR(116 * f[1] - 16, lab[0], 2) << i;
+        EXPECT_NEAR(500 * (f[0] - f[1]), lab[1], 7) << i;
+        EXPECT_NEAR(200 * (f[1] - f[2]), lab[2], 7) << i;
+    }
 }
 
 TEST(Chart, IsTheSameEveryTime) {

@@ -2,7 +2,11 @@
 #include <OpenImageIO/imagebufalgo.h>
 #include <gtest/gtest.h>
 
+#include <cctype>
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "image/canvas.h"
 #include "tonewright/contact_sheet.h"
@@ -202,6 +206,100 @@ TEST(Canvas, EveryPrintableCharacterIsDrawn) {
         EXPECT_GT(sum, 1.5) << c;
         EXPECT_LT(sum, 200) << c;
     }
+}
+
+/// How many connected parts a picture has where it is light (or dark): 8 neighbors where it is
+/// light, 4 where it is dark.
+int parts_of(Canvas& canvas, bool is_light) {
+    const int width = canvas.width();
+    const int height = canvas.height();
+    std::vector<bool> is_seen(static_cast<std::size_t>(width * height));
+    const auto is_new = [&](int x, int y) {
+        return x >= 0 && y >= 0 && x < width && y < height &&
+               (canvas.at(x, y)[0] > 0.5F) == is_light &&
+               !is_seen[static_cast<std::size_t>(y * width + x)];
+    };
+    int parts = 0;
+    for (int start = 0; start < width * height; ++start) {
+        std::vector<std::pair<int, int>> open;
+        const auto visit = [&](int x, int y) {
+            if (!is_new(x, y)) return;
+            is_seen[static_cast<std::size_t>(y * width + x)] = true;
+            open.emplace_back(x, y);
+        };
+        visit(start % width, start / width);
+        parts += open.empty() ? 0 : 1;
+        while (!open.empty()) {
+            const auto [x, y] = open.back();
+            open.pop_back();
+            for (int dy = -1; dy <= 1; ++dy) {
+                for (int dx = -1; dx <= 1; ++dx) {
+                    if (is_light || dx == 0 || dy == 0) visit(x + dx, y + dy);
+                }
+            }
+        }
+    }
+    return parts;
+}
+
+// What everybody knows of the Latin letters and digits, however they are drawn.
+TEST(Canvas, LettersHaveTheHolesAndPartsOfTheirShapes) {
+    const std::string one_hole = "ADOPRabdegopq0469#";
+    const std::string two_holes = "B8%";
+    const std::string two_parts = "ij:;!?=\"";
+    for (char c = '!'; c <= '~'; ++c) {
+        if (std::string("$&@Q").find(c) != std::string::npos) continue;  // drawn in several ways
+        Canvas canvas(160, 200, grey_of(0));
+        canvas.text(std::string(1, c), 20, 150, 112, grey_of(1));
+        const auto is_in = [&](const std::string& set) { return set.find(c) != std::string::npos; };
+        EXPECT_EQ(parts_of(canvas, false) - 1, is_in(two_holes) ? 2 : is_in(one_hole) ? 1 : 0) << c;
+        EXPECT_EQ(parts_of(canvas, true), c == '%' ? 3 : is_in(two_parts) ? 2 : 1) << c;
+    }
+}
+
+TEST(Canvas, LettersAreSymmetricWhereTheirShapesAre) {
+    // The strokes of one letter, mirrored, are those of the other. y up.
+    const auto looks_like = [](char letter, char other, bool mirrors_y) {
+        const auto draw = [](char c) {
+            Canvas canvas(160, 200, grey_of(0));
+            canvas.text(std::string(1, c), 80, 130, 56, grey_of(1), Canvas::Align::center);
+            return canvas;
+        };
+        Canvas a = draw(letter);
+        Canvas b = draw(other);
+        const auto is_small = [](char c) {
+            return std::islower(static_cast<unsigned char>(c)) != 0;
+        };
+        const int axis =
+            is_small(letter) ? 130 - 20 : 130 - 28;  // half of 5 or 7 units of 8 pixels
+        double common = 0;
+        double all = 0;
+        for (int y = 10; y < 190; ++y) {
+            for (int x = 0; x < 160; ++x) {
+                const bool in_a = a.at(x, y)[0] > 0.5F;
+                const int other_y = mirrors_y ? 2 * axis - 1 - y : y;
+                const int other_x = mirrors_y ? x : 159 - x;
+                const bool in_b = other_y >= 0 && other_y < 200 && b.at(other_x, other_y)[0] > 0.5F;
+                common += in_a && in_b ? 1 : 0;
+                all += in_a || in_b ? 1 : 0;
+            }
+        }
+        return common / all > 0.8;  // an edge of antialiased strokes 7 pixels wide
+    };
+    for (const char c : std::string("AHIMOTUVWXYovwx0+-=_|^*!\":.'"))
+        EXPECT_TRUE(looks_like(c, c, false)) << c;
+    for (const auto& [left, right] : {std::pair{'(', ')'},
+                                      {'[', ']'},
+                                      {'<', '>'},
+                                      {'{', '}'},
+                                      {'/', '\\'},
+                                      {'b', 'd'},
+                                      {'p', 'q'}})
+        EXPECT_TRUE(looks_like(left, right, false)) << left << right;
+    for (const char c : std::string("CDEHIOX0oxc"))
+        EXPECT_TRUE(looks_like(c, c, true)) << c;
+    for (const char c : std::string("BCDEFGJKLNPQRSZ"))
+        EXPECT_FALSE(looks_like(c, c, false)) << c;
 }
 
 TEST(Canvas, StrokesAreOneShape) {

@@ -184,6 +184,22 @@ TEST_F(ImageFile, FormatsWithoutDisplayWindowHoldTheDisplayWindow) {
     write_image_atomically(picture, file("a.exr"));
     EXPECT_EQ(read_image(file("a.exr")).roi(), picture.roi());
     EXPECT_EQ(read_image(file("a.exr")).roi_full(), picture.roi_full());
+    // Windows that differ on one side only.
+    for (int side = 0; side < 4; ++side) {
+        ImageSpec one(10, 8, 3, TypeDesc::FLOAT);
+        one.full_x = side == 0 ? -1 : 0;
+        one.full_y = side == 1 ? -1 : 0;
+        one.full_width = side % 2 == 0 ? 11 : 10;
+        one.full_height = side % 2 == 1 ? 9 : 8;
+        ImageBuf filled(one);
+        OIIO::ImageBufAlgo::fill(filled, {1.0F, 1.0F, 1.0F});
+        write_image_atomically(filled, file("one.png"));
+        const ImageBuf read = read_image(file("one.png"));
+        EXPECT_EQ(read.roi(), OIIO::ROI(0, one.full_width, 0, one.full_height, 0, 1, 0, 3)) << side;
+        EXPECT_EQ(read.getchannel(0, 0, 0, 0), side < 2 ? 0 : 1) << side;
+        EXPECT_EQ(read.getchannel(one.full_width - 1, one.full_height - 1, 0, 0), side < 2 ? 1 : 0)
+            << side;
+    }
 }
 
 TEST_F(ImageFile, PngHasColorThatIsNotMultiplied) {

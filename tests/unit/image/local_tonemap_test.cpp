@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "tonewright/image_io.h"
 #include "tonewright/registry.h"
@@ -74,6 +75,22 @@ TEST_P(LocalPicture, RegionIsThatOfTheWholePicture) {
     for (int y = roi.ybegin; y < roi.yend; ++y) {
         for (int x = roi.xbegin; x < roi.xend; ++x)
             EXPECT_EQ(pixel(part, x, y), pixel(whole, x, y));
+    }
+}
+
+TEST_P(LocalPicture, DataWindowBeginsAnywhere) {
+    const ImageBuf source = make_rgb(40, 30, OIIO::TypeDesc::FLOAT, 10);
+    const ImageBuf expected = tonemap(source, options_of(op(), "srgb"));
+    for (const auto& [x0, y0] : {std::pair{-7, 11}, {5, -3}}) {
+        ImageBuf moved(source);
+        moved.set_origin(x0, y0);
+        const ImageBuf result = tonemap(moved, options_of(op(), "srgb"));
+        ASSERT_FALSE(result.has_error()) << result.geterror();
+        ASSERT_EQ(result.roi(), moved.roi());
+        for (int y = 0; y < 30; ++y) {
+            for (int x = 0; x < 40; ++x)
+                EXPECT_EQ(pixel(result, x0 + x, y0 + y), pixel(expected, x, y));
+        }
     }
 }
 

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <csignal>
@@ -887,6 +888,23 @@ TEST(WriteLut, CubeReadsBackBitForBit) {
           "222.861", "trilinear interpolation, inside the input range: max 2.34e-02",
           "Clips nothing", "Cube, size 17, numbers "}) {
         EXPECT_NE(header.find(what), std::string::npos) << what << " is not in\n" << header;
+    }
+}
+
+TEST(WriteLut, HeaderSaysWhatItsNumbersAre) {
+    const auto header_of = [](const char* op, const char* display) {
+        const LutRequest r = request_for(op, "log2", LutFormat::cube, 17, display);
+        return write_lut(sample_lut(r), r, {});
+    };
+    // Unreal Engine 3's curve has a power of 2.2 baked in, Hable's gives light.
+    for (const auto& [op, display, what] :
+         {std::array{"ue3", "native", "Output: the operator's own code values, power 2.2"},
+          {"hable", "native", "Output: the operator's own display-linear values"},
+          {"ue3", "linear", "Output: display-linear Rec.709, unclamped"},
+          {"hable", "rec1886", "BT.1886"}}) {
+        const std::string header = header_of(op, display);
+        EXPECT_NE(header.find(what), std::string::npos)
+            << op << " " << display << header.substr(0, 900);
     }
 }
 

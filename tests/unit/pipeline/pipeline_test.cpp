@@ -412,6 +412,23 @@ TEST(Resolve, RefusesSettingsThatContradictEachOther) {
     EXPECT_NE(message.find("; expected above 0 (toe_numerator below toe_denominator"),
               std::string::npos)
         << message;
+    // Lottes' curve x^a/(b x^(ad) + c) has a shoulder for b > 0, which is mid_out >
+    // (mid_in/hdr_max)^a, and a toe for c > 0, which is mid_out < (mid_in/hdr_max)^(a(1 - d)).
+    // Filament's has d = 1.
+    const auto refuses_mid_out = [](const char* name, const char* mid_out,
+                                    const std::string& expected) {
+        const std::string said = resolve_error(name, {{"contrast", "1"}, {"mid_out", mid_out}});
+        EXPECT_EQ(said.rfind(std::string(name) + ": mid_out is " + mid_out + expected, 0), 0U)
+            << said;
+    };
+    refuses_mid_out("filament_generic", "0.0179", "; expected between 0.018");  // 0.18 / 10
+    refuses_mid_out("filament_generic", "1", "; expected between 0.018");
+    refuses_mid_out("lottes", "0.0224", "; expected above 0.0225");  // 0.18 / 8
+    refuses_mid_out("lottes", "0.92", "; expected below 0.916");     // (0.18 / 8)^0.023
+    EXPECT_EQ(resolve_error("filament_generic", {{"contrast", "1"}, {"mid_out", "0.0181"}}),
+              "no error");
+    EXPECT_EQ(resolve_error("lottes", {{"contrast", "1"}, {"mid_out", "0.0226"}}), "no error");
+    EXPECT_EQ(resolve_error("lottes", {{"contrast", "1"}, {"mid_out", "0.91"}}), "no error");
     // E = F: h(x) = (x(Ax + CB) + DF)/(x(Ax + B) + DF) - 1 < 0, for C below 1.
     EXPECT_NE(resolve_error("hable", {{"toe_numerator", "0.3"}}), "no error");
     EXPECT_EQ(resolve_error("hable", {{"toe_numerator", "0.05"}}), "no error");

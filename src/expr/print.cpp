@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <array>
 #include <span>
 
@@ -54,7 +56,7 @@ Text print(const Expr& e, std::span<const std::string> names) {
         case ExprOp::divide:
             return binary("/", kProduct);
         case ExprOp::negate:
-            return {"-" + bracketed(part(0), kUnary), kUnary};
+            return {fmt::format("-{}", bracketed(part(0), kUnary)), kUnary};
         case ExprOp::minimum:
             return call("min");
         case ExprOp::maximum:
@@ -86,13 +88,12 @@ Text print(const Expr& e, std::span<const std::string> names) {
         case ExprOp::select:
             return call("select");
         case ExprOp::lookup:
-            return {"lookup[" + std::to_string(e.table()->samples.size()) +
-                        (e.table()->positions.empty() ? "](" : " uneven](") + part(0).text + ")",
+            return {fmt::format("lookup[{}{}]({})", e.table()->samples.size(),
+                                e.table()->positions.empty() ? "" : " uneven", part(0).text),
                     kAtom};
         case ExprOp::lattice:
             return call(
-                ("lattice[" + std::to_string(e.lattice()->edge()) + "^3]." + "rgb"[e.channel()])
-                    .c_str());
+                fmt::format("lattice[{}^3].{}", e.lattice()->edge(), "rgb"[e.channel()]).c_str());
     }
     return {"", kAtom};
 }

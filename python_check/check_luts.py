@@ -5,7 +5,8 @@
 
 Light, its encoding, the interpolation and the operator are NumPy's: lut_encodings.py, lut_tables.py, operators/. The
 light is the probe set as src/measure/sample_set.h describes it, drawn anew. Some of it goes through `tonewright eval` as well.
-Pictures are read by oiiotool. The last line is `N passed, M failed`.
+Pictures are read by OpenImageIO. Each run takes half of the files, which the commit picks; `./run test --all` takes all.
+The last line is `N passed, M failed`.
 """
 
 import argparse
@@ -25,7 +26,7 @@ from operators.pq import pq_encode
 from operators.spaces import PRIMARIES, rgb_to_rgb
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "parity" / "clients"))
-from pictures import LIGHT, Report, evaluate, need_program, read_rgb  # noqa: E402
+from pictures import LIGHT, Report, evaluate, need_program, read_rgb, share_of  # noqa: E402
 
 # What is printed is rounded up to three digits: 1 % at most. The rest is for colours that another order of arithmetic
 # puts on the other side of an end of the encoding, or another compiler's order of near-black channels.
@@ -160,7 +161,7 @@ def main():
                  sorted(listed ^ there)[:5])
     with tempfile.TemporaryDirectory(prefix="tonewright-") as folder, ThreadPoolExecutor(os.cpu_count()) as pool:
         list(pool.map(lambda rows: check_luts(report, arguments.command.resolve(), arguments.luts, rows, Path(folder)),
-                      groups.values()))
+                      share_of(groups.values(), 2)))
     return report.finish()
 
 

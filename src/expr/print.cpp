@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <array>
 #include <span>
 
@@ -56,7 +54,7 @@ Text print(const Expr& e, std::span<const std::string> names) {
         case ExprOp::divide:
             return binary("/", kProduct);
         case ExprOp::negate:
-            return {fmt::format("-{}", bracketed(part(0), kUnary)), kUnary};
+            return {"-" + bracketed(part(0), kUnary), kUnary};
         case ExprOp::minimum:
             return call("min");
         case ExprOp::maximum:
@@ -88,12 +86,13 @@ Text print(const Expr& e, std::span<const std::string> names) {
         case ExprOp::select:
             return call("select");
         case ExprOp::lookup:
-            return {fmt::format("lookup[{}{}]({})", e.table()->samples.size(),
-                                e.table()->positions.empty() ? "" : " uneven", part(0).text),
+            return {"lookup[" + std::to_string(e.table()->samples.size()) +
+                        (e.table()->positions.empty() ? "](" : " uneven](") + part(0).text + ")",
                     kAtom};
         case ExprOp::lattice:
             return call(
-                fmt::format("lattice[{}^3].{}", e.lattice()->edge(), "rgb"[e.channel()]).c_str());
+                ("lattice[" + std::to_string(e.lattice()->edge()) + "^3]." + "rgb"[e.channel()])
+                    .c_str());
     }
     return {"", kAtom};
 }

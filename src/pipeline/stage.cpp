@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <cmath>
 #include <span>
 
@@ -218,36 +216,36 @@ Pipeline simplify(const Pipeline& pipeline) {
 std::string to_string(const Pipeline& pipeline) {
     std::string s;
     for (const Stage& stage : pipeline) {
-        s += fmt::format("{}: ", stage_kind(stage));
+        s += std::string(stage_kind(stage)) + ": ";
         s += std::visit(
-            Overloaded{[](const MatrixStage& m) { return to_text(m.m); },
-                       [](const CurveStage& c) {
-                           if (c.is_uniform()) return to_string(c.f[0]);
-                           return to_string(c.f[0]) + " | " + to_string(c.f[1]) + " | " +
-                                  to_string(c.f[2]);
-                       },
-                       [](const ToneScaleStage& t) {
-                           return std::string(t.norm == ToneScaleStage::Norm::max_rgb
-                                                  ? "of max(r, g, b): "
-                                                  : "of luminance: ") +
-                                  to_string(t.f);
-                       },
-                       [](const HuePreservingStage& h) { return to_string(h.f); },
-                       [](const HexconeStage& h) {
-                           return fmt::format("offset {}, value {}, chroma {}", to_string(h.offset),
-                                              to_string(h.value), to_string(h.chroma));
-                       },
-                       [](const LatticeStage& l) {
-                           return fmt::format("{}^3 at {}", l.lattice->edge(), to_string(l.shaper));
-                       },
-                       [](const ClampStage& c) {
-                           return fmt::format("[{}, {}]", shortest(c.lo), shortest(c.hi));
-                       },
-                       [](const CrossTalkStage& m) {
-                           static const std::array<std::string, 3> rgb = {"r", "g", "b"};
-                           return to_string(m.f[0], rgb) + " | " + to_string(m.f[1], rgb) + " | " +
-                                  to_string(m.f[2], rgb);
-                       }},
+            Overloaded{
+                [](const MatrixStage& m) { return to_text(m.m); },
+                [](const CurveStage& c) {
+                    if (c.is_uniform()) return to_string(c.f[0]);
+                    return to_string(c.f[0]) + " | " + to_string(c.f[1]) + " | " +
+                           to_string(c.f[2]);
+                },
+                [](const ToneScaleStage& t) {
+                    return std::string(t.norm == ToneScaleStage::Norm::max_rgb ? "of max(r, g, b): "
+                                                                               : "of luminance: ") +
+                           to_string(t.f);
+                },
+                [](const HuePreservingStage& h) { return to_string(h.f); },
+                [](const HexconeStage& h) {
+                    return "offset " + to_string(h.offset) + ", value " + to_string(h.value) +
+                           ", chroma " + to_string(h.chroma);
+                },
+                [](const LatticeStage& l) {
+                    return std::to_string(l.lattice->edge()) + "^3 at " + to_string(l.shaper);
+                },
+                [](const ClampStage& c) {
+                    return "[" + shortest(c.lo) + ", " + shortest(c.hi) + "]";
+                },
+                [](const CrossTalkStage& m) {
+                    static const std::array<std::string, 3> rgb = {"r", "g", "b"};
+                    return to_string(m.f[0], rgb) + " | " + to_string(m.f[1], rgb) + " | " +
+                           to_string(m.f[2], rgb);
+                }},
             stage);
         s += "\n";
     }

@@ -22,7 +22,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity"))
 from test_artifacts import compare_folder, page_differs  # noqa: E402
-from pictures import PROJECT, Report, evaluate, run  # noqa: E402
+from pictures import PROJECT, Report, evaluate, run, share_of  # noqa: E402
 
 SVG = "{http://www.w3.org/2000/svg}"
 MID_GREY = 0.18
@@ -482,7 +482,7 @@ def main():
         check_files(report, folder, operators, groups)
         check_formulas(report, folder)
         check_errors(report, command, Path(scratch))
-        jobs = [(check_operator, op["id"], (op,)) for op in operators]
+        jobs = [(check_operator, op["id"], (op,)) for op in share_of(operators, 2)]
         jobs += [(check_group, name, (name, members)) for name, members in groups.items()]
 
         def run_job(job):

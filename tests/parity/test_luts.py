@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent / "clients"))
-from pictures import Report, evaluate, log2_decode, need_program, pq_light, read_rgb, run, skip  # noqa: E402
+from pictures import Report, evaluate, log2_decode, need_program, pq_light, read_rgb, run, share_of, skip  # noqa: E402
 from lut_encodings import acescct_decode, davinci_decode, srgb_decode, unity_logc_decode  # noqa: E402
 from lut_encodings import logc3_decode as logc3  # noqa: E402
 
@@ -306,7 +306,7 @@ def main():
     hosts = json.loads(run(command, "list", "--hosts", "--json"))
     report.check("hosts", len(hosts) >= 18, len(hosts))
     with tempfile.TemporaryDirectory(prefix="tonewright-") as name:
-        for host in hosts:
+        for host in share_of(hosts, 2):
             check_host(report, command, host, Path(name))
         check_formats(report, command, Path(name))
         check_fit(report, command, Path(name))

@@ -440,7 +440,8 @@ TEST(Simd, LatticesAreInterpolatedAsTheReferenceDoes) {
     }
 }
 
-/// Without full counts, parity.verify has sRGB on every target, parity.verify_displays Display P3.
+/// Every target. Without full counts, parity.verify has sRGB on the best one,
+/// parity.verify_displays Display P3.
 std::vector<std::string> bound_displays() {
     if (takes_full_counts()) return {"srgb", "rec1886", "display_p3"};
     return {"rec1886"};

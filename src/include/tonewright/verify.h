@@ -12,8 +12,8 @@ TONEWRIGHT_NAMESPACE_BEGIN
 
 /// What to compare with the reference.
 struct VerifyOptions {
-    /// As parse_operator() takes them. Empty or `all`: every operator, preset and look. Empty, with a
-    /// config: those that it has views of.
+    /// As parse_operator() takes them. Empty or `all`: every operator, preset and look. Empty, with
+    /// a config: those that it has views of.
     std::vector<std::string> operators;
     /// Empty = sRGB; of a config without operators named, all that it has.
     std::vector<std::string> displays;

@@ -466,8 +466,8 @@ TEST_P(CurveLaw, IsInvertedNumerically) {
 // ---------------------------------------------------------------------------------------------
 // SIMD
 
-/// parity.verify measures the same on more displays and samples, on every instruction set; builds
-/// of core alone have only this.
+/// parity.verify measures the same on more displays and samples, with full counts on every
+/// instruction set; builds of core alone have only this.
 TEST_P(Law, SimdIsWithinItsBound) {
     const SampleSet probes = make_sample_set(find_input_space("lin_rec709"),
                                              {count_of(17, 9), count_of<std::size_t>(20000, 2000)});

@@ -656,10 +656,21 @@ class Assembler {
     std::map<const CompiledCurve*, std::uint32_t> curve_index_;
 };
 
-}  // namespace
+/// What a pipeline's programs for the targets of one curve form share.
+struct Form {
+    Tape source;
+    FloatTape tape;
+    CurveCache curves;  // owns what the tape refers to
+    std::vector<bool> in_double;
+    std::vector<Selected> selected;
 
-Code compile(const Pipeline& pipeline, double max_error, const Target& target, bool has_curves) {
-    has_curves = has_curves && target.curve_form != CurveForm::none;
+    [[nodiscard]] Code assemble(const Target& target) const {
+        return Assembler(tape, in_double, selected).assemble(target);
+    }
+};
+
+Form make_form(const Pipeline& pipeline, double max_error, CurveForm curve_form) {
+    const bool has_curves = curve_form != CurveForm::none;
     const Tape source(compose(simplify(pipeline)));
     const FloatTape plain(source);
     Sensitivity sensitivity;
@@ -667,16 +678,38 @@ Code compile(const Pipeline& pipeline, double max_error, const Target& target, b
     CurveCache curves;
     while (true) {
         FloatTape tape = plain;
-        if (has_curves) tape.fold(sensitivity, curves, target.curve_form);
-        const Precision precision = choose_precision(tape.code(), tape.outputs(), max_error);
+        if (has_curves) tape.fold(sensitivity, curves, curve_form);
+        Precision precision = choose_precision(tape.code(), tape.outputs(), max_error);
         // Exact enough where it stands, or compiled again or not at all.
         for (const CompiledCurve* curve : precision.too_coarse)
             reject_curve(curves, curve);
         if (!precision.too_coarse.empty()) continue;
-        const std::vector<bool>& in_double = precision.in_double;
-        const std::vector<Selected> selected = Selector(tape, in_double).select();
-        return Assembler(tape, in_double, selected).assemble(target);
+        std::vector<Selected> selected = Selector(tape, precision.in_double).select();
+        return {source, std::move(tape), std::move(curves), std::move(precision.in_double),
+                std::move(selected)};
     }
+}
+
+std::vector<Code> compile_for_all_targets(const Pipeline& pipeline, double max_error) {
+    std::map<CurveForm, Form> forms;
+    std::vector<Code> codes;
+    for (const Target& target : targets()) {
+        auto form = forms.find(target.curve_form);
+        if (form == forms.end()) {
+            form =
+                forms.emplace(target.curve_form, make_form(pipeline, max_error, target.curve_form))
+                    .first;
+        }
+        codes.push_back(form->second.assemble(target));
+    }
+    return codes;
+}
+
+}  // namespace
+
+Code compile(const Pipeline& pipeline, double max_error, const Target& target, bool has_curves) {
+    return make_form(pipeline, max_error, has_curves ? target.curve_form : CurveForm::none)
+        .assemble(target);
 }
 
 }  // namespace simd
@@ -684,6 +717,8 @@ Code compile(const Pipeline& pipeline, double max_error, const Target& target, b
 struct SimdEngine::Program {
     simd::Code code;
 };
+
+SimdEngine::SimdEngine(std::unique_ptr<const Program> program) : program_(std::move(program)) {}
 
 SimdEngine::SimdEngine(const Pipeline& pipeline, double max_error, std::string_view target)
     : program_(std::make_unique<const Program>(
@@ -707,6 +742,14 @@ std::vector<std::string> SimdEngine::targets() {
     for (const simd::Target& target : simd::targets())
         names.emplace_back(target.target);
     return names;
+}
+
+std::vector<SimdEngine> SimdEngine::of_all_targets(const Pipeline& pipeline, double max_error) {
+    std::vector<SimdEngine> engines;
+    for (simd::Code& code : simd::compile_for_all_targets(pipeline, max_error)) {
+        engines.push_back(SimdEngine(std::make_unique<const Program>(Program{std::move(code)})));
+    }
+    return engines;
 }
 
 TONEWRIGHT_NAMESPACE_END

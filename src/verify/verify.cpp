@@ -511,14 +511,20 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
             if (on_row) on_row(rows.back());
         };
 
-        for (const std::string& target : targets) {
-            const SimdEngine simd(pipeline, declared.simd_goal, target);
+        std::vector<SimdEngine> engines;
+        if (targets.size() > 1) {
+            engines = SimdEngine::of_all_targets(pipeline, declared.simd_goal);
+        } else if (!targets.empty()) {
+            engines.emplace_back(pipeline, declared.simd_goal);
+        }
+        for (std::size_t t = 0; t < engines.size(); ++t) {
+            const std::string& target = targets[t];
             // SCALAR takes thirty times as long as the others, with the same code.
             const bool is_slow = target == "SCALAR";
             const SampleSet& taken = is_slow ? few : probes;
             add(is_slow ? few_compared : comparison, "simd " + target, bounds.simd,
                 declared.simd != DeclaredBounds{}.simd, false, "",
-                [&] { simd.run_rgb(taken.rgb.data(), shown.data(), taken.size()); });
+                [&] { engines[t].run_rgb(taken.rgb.data(), shown.data(), taken.size()); });
         }
 
         OCIO::ConstProcessorRcPtr processor;

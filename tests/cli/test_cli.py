@@ -26,7 +26,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
 from pictures import (Report, acescct_decode, evaluate, files_of, log2_decode, need_program, read_planes,  # noqa: E402
-                      read_rgb, run, stack, unstack, views, write_exr)
+                      read_rgb, run, share_of_refusals, stack, unstack, views, write_exr)
 
 try:
     import PyOpenColorIO as ocio
@@ -849,7 +849,7 @@ def main():
             add(check, in_folder=False)
         errors = [(USAGE, *case) for case in usage_errors(bad, picture)]
         errors += [(FILE, *case) for case in file_errors(bad, picture, scratch)]
-        for number, case in enumerate(errors):
+        for number, case in enumerate(share_of_refusals(errors, lambda case: case[1])):
             add(check_error, scratch, number, *case, in_folder=False)
         for number, case in enumerate(old_files(bad, picture)):
             add(check_old_file, scratch, number, *case, in_folder=False)

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import PROJECT, Report, read_rgb, run, unstack, views, write_exr  # noqa: E402
+from pictures import PROJECT, Report, read_rgb, run, share_of_refusals, unstack, views, write_exr  # noqa: E402
 
 USAGE, FILE = 2, 3
 WIDTH, HEIGHT = 48, 32
@@ -246,7 +246,7 @@ def check_errors(bench):
         (USAGE, ["apply", picture, out, "--false-color", "--lut", "x.cube"], ["--false-color"]),
         (USAGE, ["apply", picture, out, "--false-color", "--look", "punchy"], ["look is punchy"]),
     ]
-    for expected, arguments, words in cases:
+    for expected, arguments, words in share_of_refusals(cases, lambda case: case[1]):
         arguments = [str(a) for a in arguments]
         if arguments[0] == "compare" and "-o" not in arguments:
             arguments += ["-o", str(out)]

@@ -27,7 +27,7 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import Report, read_exr, run, stack, unstack, write_exr  # noqa: E402
+from pictures import Report, read_exr, run, share_of, stack, unstack, write_exr  # noqa: E402
 
 from lut_encodings import acescct_encode  # noqa: E402  (python_check/, which pictures.py puts on the path)
 from lut_tables import linear, tetrahedral, trilinear  # noqa: E402
@@ -468,7 +468,9 @@ def refuse(command, folder, index, case):
 
 
 def check_corpus(report, command, folder):
-    cases = list(text_corpus()) + list(foreign_corpus()) + list(binary_corpus(command, folder))
+    corpus = list(text_corpus()) + list(foreign_corpus()) + list(binary_corpus(command, folder))
+    report.check(f"{len(corpus)} malformed files", len(corpus) >= 200, len(corpus))
+    cases = share_of(corpus, 3)
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         faults = list(pool.map(lambda c: refuse(command, folder, *c), enumerate(cases)))
     kinds = {}
@@ -477,7 +479,6 @@ def check_corpus(report, command, folder):
     for name, found in kinds.items():
         bad = [fault for fault in found if fault]
         report.check(f"{name}: {len(found)} malformed files are refused, each in one line", not bad, "\n     ".join(bad))
-    report.check(f"{len(cases)} malformed files", len(cases) >= 200, len(cases))
 
 
 def check_noise(report, command, folder):

@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import Report, read_exr, read_planes, shared_picture, write_exr  # noqa: E402
+from pictures import Report, read_exr, read_planes, share_of_refusals, shared_picture, write_exr  # noqa: E402
 
 WEIGHTS = np.array([0.2126, 0.7152, 0.0722])
 FPS, UP, DOWN = 12, 3.0, 0.8
@@ -308,7 +308,8 @@ def refusals(tool, report):
         "lin_rec709": ("meter", "a.exr", "--input", "lin_rec708"),
     }
     with ThreadPoolExecutor(4) as pool:  # starting a program is all that takes time here
-        list(pool.map(lambda item: tool.refused(f"refused: {item[0]}", 2, item[0], *item[1]), refused.items()))
+        list(pool.map(lambda item: tool.refused(f"refused: {item[0]}", 2, item[0], *item[1]),
+                      share_of_refusals(refused.items(), lambda item: item[1])))
     report.check("nothing was written", not list(tool.folder.glob("bad*")))
     tool.refused("no picture", 3, "none.exr", "meter", "none.exr")
     (tool.folder / "cut.exr").write_bytes((tool.folder / "a.exr").read_bytes()[:-20])

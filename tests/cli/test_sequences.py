@@ -22,7 +22,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 from shots import DATE, apply, contents, leftovers, make_shot  # noqa: E402
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import Report  # noqa: E402
+from pictures import Report, share_of  # noqa: E402
 
 OK, FAILED, USAGE = 0, 1, 2  # exit codes
 HABLE = ["--operator", "hable"]
@@ -389,8 +389,9 @@ def main():
     report = Report()
     with tempfile.TemporaryDirectory(prefix="tonewright-") as folder:
         shots = Shots(command, report, Path(folder))
-        for check in (check_names, check_jobs, check_missing, check_skip_existing, check_in_place, check_summary,
-                      check_progress, check_vanishing, check_stopped, check_disks, check_unwritable):
+        checks = [check_names, check_jobs, check_missing, check_skip_existing, check_in_place, check_summary,
+                  check_progress, check_vanishing, check_stopped, check_disks, check_unwritable]
+        for check in share_of(checks, 2):
             check(shots)
     return report.finish()
 

@@ -41,7 +41,7 @@ expect "core has no OpenImageIO, OpenColorIO, Qt, GDAL" without "$work/plain" 'O
 
 for consumer in core image; do
     expect "$consumer through CMake: configure" cmake -S "$here/$consumer" -B "$work/$consumer" \
-        -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$prefix"
+        -DCMAKE_BUILD_TYPE=Debug -DCMAKE_PREFIX_PATH="$prefix"
     expect "$consumer through CMake: build" cmake --build "$work/$consumer"
     expect "$consumer through CMake: run" "$work/$consumer/${consumer}_consumer"
 done

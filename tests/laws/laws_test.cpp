@@ -16,6 +16,7 @@
 
 #include "base/format_number.h"
 #include "base/random.h"
+#include "engine/tape.h"
 #include "full_counts.h"
 #include "measure/error_metric.h"
 #include "measure/sample_set.h"
@@ -120,13 +121,49 @@ std::string check_patterns(const SimdEngine& display, const SimdEngine& native,
     return "";
 }
 
-/// Random bit patterns, 10^8 an operator with full counts, shared between its presets and looks.
-TEST_P(Law, SimdIsTotal) {
+/// The worst error of an engine over probes, against the operator's bound.
+void expect_within_bound(const SimdEngine& engine, const std::string& target,
+                         const Pipeline& pipeline, double bound) {
+    const SampleSet probes = make_sample_set(find_input_space("lin_rec709"),
+                                             {count_of(17, 9), count_of<std::size_t>(20000, 2000)});
+    std::vector<double> truth(probes.rgb.size());
+    ReferenceEngine(pipeline).run_rgb(probes.rgb.data(), truth.data(), probes.size());
+    std::vector<float> out(probes.rgb.size());
+    engine.run_rgb(probes.rgb.data(), out.data(), probes.size());
+    double worst = 0;
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        const double error = std::fabs(static_cast<double>(out[i]) - truth[i]);
+        if (error <= worst) continue;
+        worst = std::isnan(error) ? kInfinity : error;
+        at = i;
+    }
+    const float* rgb = &probes.rgb[at / 3 * 3];
+    EXPECT_LE(worst, bound) << target << " of (" << rgb[0] << ", " << rgb[1] << ", " << rgb[2]
+                            << "): " << out[at] << ", expected " << shortest(truth[at]) << "; "
+                            << worst / bound << " times the bound";
+    ::testing::Test::RecordProperty(target, rounded_up(worst));
+}
+
+/// Compiling an engine is the larger part of these tests, so both are of one. Random bit patterns,
+/// 10^8 an operator with full counts, shared between its presets and looks. parity.verify measures
+/// the errors on more displays and samples; builds of core alone have only these.
+TEST_P(Law, SimdIsTotalAndWithinItsBound) {
     std::size_t sharers = 0;
     for (const OperatorVariant& v : all_variants())
         sharers += resolve(v).op->id == op().id ? 1 : 0;
     const std::size_t float_count = count_of(100'000'000U, 1'000'000U) / sharers;
-    const SimdEngine display(view("srgb"), op().bounds.simd_goal);
+    const Pipeline shown = view("srgb");
+    const std::vector<std::string> targets = SimdEngine::targets();
+    std::vector<SimdEngine> engines;
+    if (takes_full_counts()) {
+        engines = SimdEngine::of_all_targets(shown, op().bounds.simd_goal);
+    } else {
+        engines.emplace_back(shown, op().bounds.simd_goal);
+    }
+    for (std::size_t t = 0; t < engines.size(); ++t)
+        expect_within_bound(engines[t], targets[t], shown, op().bounds.simd);
+    const SimdEngine& display = engines.front();
     const SimdEngine native(view("native"), op().bounds.simd_goal);
     constexpr std::size_t kThreads = 2;
     std::array<std::string, kThreads> failure;
@@ -466,37 +503,6 @@ TEST_P(CurveLaw, IsInvertedNumerically) {
 // ---------------------------------------------------------------------------------------------
 // SIMD
 
-/// parity.verify measures the same on more displays and samples, with full counts on every
-/// instruction set; builds of core alone have only this.
-TEST_P(Law, SimdIsWithinItsBound) {
-    const SampleSet probes = make_sample_set(find_input_space("lin_rec709"),
-                                             {count_of(17, 9), count_of<std::size_t>(20000, 2000)});
-    const Pipeline pipeline = view("srgb");
-    std::vector<double> truth(probes.rgb.size());
-    ReferenceEngine(pipeline).run_rgb(probes.rgb.data(), truth.data(), probes.size());
-    std::vector<float> out(probes.rgb.size());
-    std::vector<std::string> targets = SimdEngine::targets();
-    if (!takes_full_counts()) targets.resize(1);
-    for (const std::string& target : targets) {
-        const SimdEngine engine(pipeline, op().bounds.simd_goal, target);
-        engine.run_rgb(probes.rgb.data(), out.data(), probes.size());
-        double worst = 0;
-        std::size_t at = 0;
-        for (std::size_t i = 0; i < out.size(); ++i) {
-            const double error = std::fabs(static_cast<double>(out[i]) - truth[i]);
-            if (error <= worst) continue;
-            worst = std::isnan(error) ? kInfinity : error;
-            at = i;
-        }
-        const float* rgb = &probes.rgb[at / 3 * 3];
-        EXPECT_LE(worst, op().bounds.simd)
-            << target << " of (" << rgb[0] << ", " << rgb[1] << ", " << rgb[2] << "): " << out[at]
-            << ", expected " << shortest(truth[at]) << "; " << worst / op().bounds.simd
-            << " times the bound";
-        RecordProperty(target, rounded_up(worst));
-    }
-}
-
 class ThreadLaw : public Law {};
 
 TEST_P(ThreadLaw, ThreadsMayCompileAndRunTogether) {
@@ -509,15 +515,15 @@ TEST_P(ThreadLaw, ThreadsMayCompileAndRunTogether) {
     const SimdEngine shared(view("srgb"));
     std::vector<float> expected(in.size());
     shared.run_rgb(in.data(), expected.data(), in.size() / 3);
-    constexpr std::size_t kThreads = 4;
-    std::array<std::vector<float>, 2 * kThreads> results;
+    const std::size_t thread_count = count_of<std::size_t>(4, 2);
+    std::vector<std::vector<float>> results(2 * thread_count);
     std::vector<std::thread> threads;
-    for (std::size_t t = 0; t < kThreads; ++t) {
+    for (std::size_t t = 0; t < thread_count; ++t) {
         threads.emplace_back([&, t] {
             // One engine for all, and one of its own that is compiled meanwhile.
             const SimdEngine own(
                 build_view(make_view(resolve(GetParam()), "lin_rec709", 0, "srgb")));
-            for (const auto& [engine, slot] : {std::pair{&shared, t}, {&own, kThreads + t}}) {
+            for (const auto& [engine, slot] : {std::pair{&shared, t}, {&own, thread_count + t}}) {
                 results[slot].resize(in.size());
                 engine->run_rgb(in.data(), results[slot].data(), in.size() / 3);
             }
@@ -585,9 +591,14 @@ TEST_P(ParameterLaw, WhatIsAcceptedIsTotal) {
     std::vector<float> simd(in.size());
     std::set<Settings> tried;
     std::size_t accepted = 0;
-    // Preparing an engine for the largest operators takes a good part of a second.
-    const Pipeline usual = build_view(make_view(resolve_operator(op.id), "lin_rec709", 0, "srgb"));
-    const bool is_large = node_count(compose(usual)) > 300;
+    // Preparing an engine for the largest operators takes a good part of a second, and so does a
+    // lattice.
+    const Tape usual(
+        compose(build_view(make_view(resolve_operator(op.id), "lin_rec709", 0, "srgb"))));
+    const bool is_large =
+        usual.code().size() > 300 ||
+        std::any_of(usual.code().begin(), usual.code().end(),
+                    [](const TapeInstruction& step) { return step.op == ExprOp::lattice; });
     const std::size_t wanted = is_large ? count_of(8U, 2U) : count_of(50U, 6U);
     // Of two peaks and two blacks hardly one random set in twenty is in order.
     for (int round = 0; round < 600 && accepted < wanted; ++round) {

@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent / "clients"))
-from pictures import Report, skip  # noqa: E402
+from pictures import ALL, Report, skip  # noqa: E402
 
 try:
     import PyOpenColorIO as ocio
@@ -174,7 +174,10 @@ def check_theirs(report, command, folder, path, views):
 def check_published(report, command, root):
     """The ACES CG and Studio configs of profile 2.1, which OpenColorIO 2.2 and newer have built in, and our own."""
     own = root / "ours"
-    shutil.copytree("ocio_config", own)
+    if ALL:
+        shutil.copytree("ocio_config", own)
+    else:  # all of its files, loaded three times, are ten seconds
+        subprocess.run([command, "config", "-o", own, "--views", "clamp,khronos_neutral"], check=True)
     before = numbers_of(own / "config.ocio")
     done = call(command, "--into", own / "config.ocio", "--operator", "hable", "--name", "Mine", "--views", "reinhard",
                 "--looks", "none")

@@ -29,7 +29,7 @@ except ImportError:
     skip("PyOpenColorIO is not installed (Debian: python3-pyopencolorio)")
 
 # A view whose picture of every colour is another one, so that no axis can be taken for another.
-OPERATOR = ("agx_blender", "--look", "punchy")
+OPERATOR = ("agx_sobotka", "--look", "punchy")
 # Half a unit of the last of 9 digits, in float32.
 EXACT = 1e-7
 # OpenColorIO's tetrahedra, in float32, at the nodes themselves.

@@ -71,9 +71,15 @@ class TONEWRIGHT_API SimdEngine {
 
     /// Names of the instruction sets compiled in that this machine has, best first ("AVX3", ...).
     [[nodiscard]] static std::vector<std::string> targets();
+    /// An engine for each of targets(), in their order, sooner than one by one: what several
+    /// targets share is compiled once.
+    /// @throws Error  as the constructor does
+    [[nodiscard]] static std::vector<SimdEngine> of_all_targets(const Pipeline& pipeline,
+                                                                double max_error = kSimdError);
 
   private:
     struct Program;
+    explicit SimdEngine(std::unique_ptr<const Program> program);
     std::unique_ptr<const Program> program_;
 };
 

@@ -13,6 +13,7 @@
 #include "base/format_number.h"
 #include "base/random.h"
 #include "engine/tape.h"
+#include "full_counts.h"
 #include "measure/error_metric.h"
 #include "measure/sample_set.h"
 #include "tonewright/engine.h"
@@ -85,7 +86,7 @@ std::vector<Pipeline> all_views(const OperatorVariant& variant) {
 }
 
 TEST(Reference, IsEvaluateBitForBit) {
-    const Planes in = random_colours(300, 1);
+    const Planes in = random_colours(count_of(300U, 60U), 1);
     for (const OperatorVariant& variant : all_variants()) {
         for (const Pipeline& view : all_views(variant)) {
             const std::array<Expr, 3> f = compose(view);

@@ -455,7 +455,9 @@ TEST_P(SimdOperator, IsWithinBoundOfReference) {
         const Pipeline view = view_of(GetParam(), display);
         const ReferenceEngine decode(find_display(display).decode);
         const std::vector<double> truth = run(ReferenceEngine(view), rgb);
-        for (const std::string& target : SimdEngine::targets()) {
+        const std::vector<SimdEngine> engines = SimdEngine::of_all_targets(view, goal);
+        for (std::size_t t = 0; t < engines.size(); ++t) {
+            const std::string target = SimdEngine::targets()[t];
             // Every n-th color, so that there are some of each kind.
             const std::size_t step = rgb.size() / scaled_count(target, rgb.size());
             std::vector<float> in;
@@ -464,7 +466,7 @@ TEST_P(SimdOperator, IsWithinBoundOfReference) {
                 in.insert(in.end(), &rgb[i], &rgb[i] + 3);
                 expected.insert(expected.end(), &truth[i], &truth[i] + 3);
             }
-            const std::vector<float> out = run(SimdEngine(view, goal, target), in);
+            const std::vector<float> out = run(engines[t], in);
             double worst = 0;
             std::size_t at = 0;
             for (std::size_t i = 0; i < out.size(); ++i) {
@@ -492,18 +494,20 @@ TEST_P(SimdOperator, IsWithinBoundOfReference) {
 
 TEST_P(SimdOperator, IsTotal) {
     const double goal = resolve_operator(GetParam()).op->bounds.simd_goal;
-    // Law.SimdIsTotal has sRGB on the best target.
+    // Law.SimdIsTotalAndWithinItsBound has sRGB on the best target.
     const std::vector<std::string> displays = takes_full_counts()
                                                   ? std::vector<std::string>{"srgb", "linear"}
                                                   : std::vector<std::string>{"linear"};
-    for (const std::string& target : SimdEngine::targets()) {
-        SampleRandom random(17);
-        std::vector<float> rgb(3 * scaled_count(target, count_of(1000000U, 100000U)));
-        for (float& x : rgb)
-            x = std::bit_cast<float>(static_cast<std::uint32_t>(random.bits() >> 32));
-        for (const std::string& display : displays) {
-            const std::vector<float> out =
-                run(SimdEngine(view_of(GetParam(), display), goal, target), rgb);
+    for (const std::string& display : displays) {
+        const std::vector<SimdEngine> engines =
+            SimdEngine::of_all_targets(view_of(GetParam(), display), goal);
+        for (std::size_t t = 0; t < engines.size(); ++t) {
+            const std::string target = SimdEngine::targets()[t];
+            SampleRandom random(17);
+            std::vector<float> rgb(3 * scaled_count(target, count_of(1000000U, 100000U)));
+            for (float& x : rgb)
+                x = std::bit_cast<float>(static_cast<std::uint32_t>(random.bits() >> 32));
+            const std::vector<float> out = run(engines[t], rgb);
             for (std::size_t i = 0; i < out.size(); ++i) {
                 ASSERT_TRUE(std::isfinite(out[i]))
                     << out[i] << " on " << target << " of (" << rgb[i / 3 * 3] << ", "
@@ -662,6 +666,19 @@ TEST(Simd, PixelsMayEndWithTheBuffer) {
                            {out.data(), out.data() + 1, out.data() + 2}, s, count);
                 EXPECT_EQ(out.back(), out[2]);
             }
+        }
+    }
+}
+
+TEST(Simd, EnginesOfAllTargetsAreTheOnesMadeOneByOne) {
+    const std::vector<float> rgb = test_colours();
+    for (const char* op : {"agx_sobotka", "hable", "aces_13"}) {
+        const std::vector<SimdEngine> engines = SimdEngine::of_all_targets(view_of(op), 1e-6);
+        const std::vector<std::string> targets = SimdEngine::targets();
+        ASSERT_EQ(engines.size(), targets.size());
+        for (std::size_t t = 0; t < targets.size(); ++t) {
+            EXPECT_EQ(run(engines[t], rgb), run(SimdEngine(view_of(op), 1e-6, targets[t]), rgb))
+                << op << " on " << targets[t];
         }
     }
 }

@@ -158,7 +158,8 @@ class Writer {
         Number e, f;
     };
     Split split(bool w, Number x) {
-        const Number up = w ? k(true, 0x1.5555555555555p+0) : k(false, 1.33333337F);
+        const Number up =
+            w ? k(true, 0x1.5555555555555p+0) : k(false, static_cast<double>(1.33333337F));
         const Number e = op(VectorOp::exponent, w, mul(w, x, up));
         return {e, sub(w, op(VectorOp::mantissa, w, x), k(w, 1))};
     }
@@ -203,8 +204,10 @@ class Writer {
     }
     Number log2(bool w, Number x) {
         const auto [e, f] = split(w, x);
-        const Number result = w ? add(true, e, log2_fraction(f))
-                                : add(false, fma(false, f, k(false, kLog2e), e), log2_curvature(f));
+        const Number result =
+            w ? add(true, e, log2_fraction(f))
+              : add(false, fma(false, f, k(false, static_cast<double>(kLog2e)), e),
+                    log2_curvature(f));
         const std::int32_t is_positive = compare(VectorOp::greater, w, x, k(w, 0));
         return blend(w, is_positive, result, k(w, -kInfinity));
     }
@@ -218,7 +221,8 @@ class Writer {
         const Number vy = k(false, y);
         const auto [e, f] = split(false, x);
         const Number curvature = log2_curvature(f);
-        const Number log2_x = add(false, e, fma(false, f, k(false, kLog2e), curvature));
+        const Number log2_x =
+            add(false, e, fma(false, f, k(false, static_cast<double>(kLog2e)), curvature));
         const Number n = op(VectorOp::round, false, mul(false, log2_x, vy));
         Number r =
             op(VectorOp::multiply_subtract, false, k(false, static_cast<double>(y_hi)), e, n);
@@ -508,7 +512,7 @@ class Writer {
 
     Number sanitised(Number x) {
         const Number number = zero_unless(false, compare(VectorOp::equal, false, x, x), x);
-        return limited(false, number, kLargestInput);
+        return limited(false, number, static_cast<double>(kLargestInput));
     }
 
     Number shuffle(Number a, Number b, const std::array<std::int32_t, 16>& from) {

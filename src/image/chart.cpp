@@ -191,7 +191,9 @@ void draw_gamuts(Sheet& sheet, double left, double top, double bottom) {
         sheet.label(kNames[g], panel - 6, y + step_y / 2 + 3, Canvas::Align::right);
         for (std::size_t h = 0; h < 6; ++h) {
             const Rgb own = hue_color(static_cast<double>(h) / 6, 1, 1);
-            const Rgb color = rgb_of(multiply(to_rec709, Vector3{own[0], own[1], own[2]}));
+            const Vector3 light = {static_cast<double>(own[0]), static_cast<double>(own[1]),
+                                   static_cast<double>(own[2])};
+            const Rgb color = rgb_of(multiply(to_rec709, light));
             const double x = panel + static_cast<double>(h) * step_x + 3;
             const double part = (step_x - 6) / kExposures.size();
             for (std::size_t e = 0; e < kExposures.size(); ++e) {

@@ -40,7 +40,9 @@ bool is_no_name(std::string_view name) {
 }
 
 /// Linear light of the primaries of an OpenEXR file.
-SourceColor color_of_chromaticities(const float* xy) {
+SourceColor color_of_chromaticities(const float* floats) {
+    std::array<double, 8> xy{};
+    std::copy_n(floats, xy.size(), xy.begin());
     const Primaries primaries = {
         "chromaticities", {xy[0], xy[1]}, {xy[2], xy[3]}, {xy[4], xy[5]}, {xy[6], xy[7]}};
     // The file has floats: those of a known space are that space.
@@ -58,8 +60,8 @@ SourceColor color_of_chromaticities(const float* xy) {
     std::string text;
     bool are_numbers = true;
     for (int i = 0; i < 8; ++i) {
-        text += fmt::format("{}{}", i > 0 ? "," : "", xy[i]);
-        if (!(std::fabs(xy[i]) <= 10)) are_numbers = false;
+        text += fmt::format("{}{}", i > 0 ? "," : "", floats[i]);
+        if (!(std::fabs(floats[i]) <= 10)) are_numbers = false;
     }
     // Three primaries on a line make no colors, and a white without luminance no white.
     const double area =

@@ -366,7 +366,7 @@ void check_csp(Text& text) {
         const int points = text.size("prelut's size", text.word(), 0, kLargestTable);
         only("one size");
         if (points < 2) continue;
-        double last = -INFINITY;
+        double last = -std::numeric_limits<double>::infinity();
         for (const bool is_input : {true, false}) {
             next("the numbers of a prelut");
             int found = 0;

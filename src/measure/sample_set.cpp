@@ -74,7 +74,7 @@ SampleSet make_sample_set(const InputSpace& input, const SampleSetOptions& optio
 
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const double inf = std::numeric_limits<double>::infinity();
-    const double huge = std::numeric_limits<float>::max();
+    const auto huge = static_cast<double>(std::numeric_limits<float>::max());
     constexpr double kPlain = 0.18;
     for (const double s : {nan, inf, -inf, huge, -huge}) {
         set.add(s, s, s, SampleKind::special);

@@ -4,7 +4,7 @@
     python3 python_check/check_luts.py build/release/bin/tonewright luts
 
 Light, its encoding, the interpolation and the operator are NumPy's: lut_encodings.py, lut_tables.py, operators/. The
-light is the probe set as src/measure/sample_set.h describes it, drawn anew. Some of it goes through `tonewright eval` as well.
+light is the sample set as src/measure/sample_set.h describes it, drawn anew. Some of it goes through `tonewright eval` as well.
 Pictures are read by OpenImageIO. Each run takes half of the files, which the commit picks; `./run test --all` takes all.
 The last line is `N passed, M failed`.
 """
@@ -55,7 +55,7 @@ class SplitMix64:
         return lo + (hi - lo) * ((z >> np.uint64(11)).astype(float) * 2.0**-53)
 
 
-def probes(encoding, count=50000, edge=17):
+def samples(encoding, count=50000, edge=17):
     """Scene-linear light in the encoding's primaries that the encoding holds, as float32: (n, 3)."""
     parts = [[[0, 0, 0]], np.repeat(0.18 * 2.0 ** (np.arange(-768, 769) / 64)[:, None], 3, axis=1)]
     lattice = np.stack(np.meshgrid(*3 * [np.arange(edge)], indexing="ij"), axis=-1).reshape(-1, 3) / (edge - 1)
@@ -116,7 +116,7 @@ def check_luts(report, command, folder, rows, scratch):
     """All LUTs of one operator, encoding and output: of the same light."""
     first = rows[0]
     encoding, name = ENCODINGS[first["input_encoding"].split(":")[0]], first["operator"]
-    light = probes(encoding)
+    light = samples(encoding)
     to_rec709 = rgb_to_rgb(encoding.primaries, PRIMARIES["rec709"])
     truth = operators.view(name, light @ to_rec709.T, display=first["output"])
     some = np.random.default_rng(2).choice(len(light), 200, replace=False)

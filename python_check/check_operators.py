@@ -217,7 +217,7 @@ VIEWS = [
 ]
 
 
-def probes(count=2000):
+def samples(count=2000):
     """Colours as (count, 3): greys, hues, out of gamut, beyond every limit, random."""
     grey = 0.18 * 2.0 ** np.arange(-12, 12.01, 0.5)
     hues = [(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 0), (0, 1, 1), (1, 0, 1), (0.8, 0.1, 0.05), (0.05, 0.1, 2)]
@@ -332,7 +332,7 @@ def main(arguments):
         print("usage: check_operators.py TONEWRIGHT [OPERATOR ...]", file=sys.stderr)
         return 2
     binary, *chosen = arguments
-    rgb = probes()
+    rgb = samples()
     jobs = [lambda view=view: compare(binary, view, rgb) for view in runs() if not chosen or view["operator"] in chosen]
     jobs += [lambda case=case: refuse(binary, *case) for case in REFUSED if not chosen or case[0] in chosen]
     print(f"{'operator settings':110s} {'N':>5s} {'max error':>9s} {'x toler.':>9s}")

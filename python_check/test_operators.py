@@ -89,7 +89,7 @@ def check_parts():
 
 def check_extremes():
     """Every run of check_operators.py without a warning of NumPy, an infinity or a NaN; the refused are refused."""
-    rgb = check_operators.probes()
+    rgb = check_operators.samples()
     views = [{k: v for k, v in view.items() if k != "preset"} for view in check_operators.runs()]
     with warnings.catch_warnings():
         warnings.simplefilter("error")

@@ -144,7 +144,7 @@ struct Dialect {
     std::string op;
     std::string help;
     View view;
-    /// Of the probes; interleaved RGB.
+    /// Of the samples; interleaved RGB.
     std::vector<double> codes = {};
     std::vector<double> ictcp = {};
 };
@@ -282,13 +282,13 @@ struct Distance {
     ErrorStats delta_e;
 };
 
-/// The standard probe colors that have no negative channel.
-std::vector<float> non_negative_probes() {
-    const SampleSet probes = make_sample_set(find_input_space("lin_rec709"));
+/// The standard samples that have no negative channel.
+std::vector<float> non_negative_samples() {
+    const SampleSet samples = make_sample_set(find_input_space("lin_rec709"));
     std::vector<float> rgb;
-    for (std::size_t i = 0; i < probes.size(); ++i) {
-        if (probes.is_non_negative(i))
-            rgb.insert(rgb.end(), &probes.rgb[3 * i], &probes.rgb[3 * i] + 3);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        if (samples.is_non_negative(i))
+            rgb.insert(rgb.end(), &samples.rgb[3 * i], &samples.rgb[3 * i] + 3);
     }
     return rgb;
 }
@@ -304,11 +304,11 @@ Distance distance_of(const DialectGroup& group, std::size_t a, std::size_t b) {
 }
 
 /// Every pair of the group.
-std::vector<Distance> distances_of(DialectGroup& group, const std::vector<float>& probes) {
+std::vector<Distance> distances_of(DialectGroup& group, const std::vector<float>& samples) {
     for (Dialect& d : group.dialects) {
-        d.codes.resize(probes.size());
+        d.codes.resize(samples.size());
         ReferenceEngine(build_view(d.view))
-            .run_rgb(probes.data(), d.codes.data(), probes.size() / 3);
+            .run_rgb(samples.data(), d.codes.data(), samples.size() / 3);
         d.ictcp = ictcp_of_codes(find_display("srgb"), d.codes);
     }
     std::vector<Distance> all;
@@ -490,8 +490,8 @@ std::string distance_matrix(const DialectGroup& group, const std::vector<Distanc
     return text + "\n";
 }
 
-std::string dialect_section(DialectGroup& group, const std::vector<float>& probes) {
-    const std::vector<Distance> distances = distances_of(group, probes);
+std::string dialect_section(DialectGroup& group, const std::vector<float>& samples) {
+    const std::vector<Distance> distances = distances_of(group, samples);
     std::string text = fmt::format(
         "<a id=\"dialects_{0}\"></a>\n\n### {1}\n\n![Grey curves of {1}]"
         "(curves/dialects_{0}.svg)\n\n![Colours of {1}](curves/dialects_{0}_colors.svg)\n\n"
@@ -547,20 +547,20 @@ std::string introduction() {
         kOrange.numbers, kBlue.numbers);
 }
 
-std::string dialect_introduction(std::size_t probe_count) {
+std::string dialect_introduction(std::size_t sample_count) {
     return fmt::format(
         "## Dialects\n\n"
         "Operators of one name that show different pictures, with their presets; looks are meant "
         "to "
         "differ and are left out. How\nfar apart two of them are is measured on the {} colours "
-        "of the [probe set](conventions.md) that have no negative\nchannel, in linear Rec.709, on "
+        "of the [sample set](conventions.md) that have no negative\nchannel, in linear Rec.709, on "
         "an sRGB display: differences of code values in codes of 8 bits (code value \u00d7 255; of "
         "each\ncolour the worst channel), and \u0394E ITP (ITU-R BT.2124, white at 100 "
-        "cd/m\u00b2), where 1 is about the smallest difference\nthat can be seen. Most probes are "
+        "cd/m\u00b2), where 1 is about the smallest difference\nthat can be seen. Most samples are "
         "saturated, and many are far above white: the largest figures are of colours "
         "that\npictures "
         "seldom have, and the means are for comparison with each other.\n\n",
-        probe_count);
+        sample_count);
 }
 
 }  // namespace
@@ -584,12 +584,12 @@ std::vector<GeneratedFile> make_catalogue() {
     for (const Operator& op : local_operators())
         page += fmt::format("<a id=\"{}\"></a>\n\n", op.id) + operator_section(op);
     if (!groups.empty()) {
-        const std::vector<float> probes = non_negative_probes();
-        page += dialect_introduction(probes.size() / 3);
+        const std::vector<float> samples = non_negative_samples();
+        page += dialect_introduction(samples.size() / 3);
         for (DialectGroup& group : groups) {
             add("dialects_" + group.slug + ".svg", group.name, to_svg(plot_of(group)));
             add("dialects_" + group.slug + "_colors.svg", group.name, to_svg(colors_of(group)));
-            page += dialect_section(group, probes);
+            page += dialect_section(group, samples);
         }
     }
     while (page.size() > 1 && page[page.size() - 2] == '\n')

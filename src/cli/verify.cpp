@@ -205,11 +205,11 @@ void add_verify(CommandLine& program) {
         .add("--display", options->verify.displays,
              "displays; repeat for more; default: srgb, of a config all")
         .one_value_each();
-    command.add("--input", options->verify.input, "scene-linear space of the probes")
+    command.add("--input", options->verify.input, "scene-linear space of the samples")
         .show_default();
     command.add("--config", options->verify.config,
                 "a config to check, or its folder: any, ours or not; default: a fresh one");
-    command.add("--picture", options->picture, "picture whose pixels join the probes");
+    command.add("--picture", options->picture, "picture whose pixels join the samples");
     command.add_flag("--quick", options->quick,
                      "smaller sample sets: grids of 9 instead of 33 points a side, 10,000 random "
                      "colors instead of 100,000");
@@ -226,7 +226,7 @@ void add_verify(CommandLine& program) {
                               "--summary", "--best-target", "--no-gpu"})
         lut.excludes(command.option(other));
     command.footer(
-        "max, 99.9 % and mean: errors of display code values over probes >= 0; max all: negatives "
+        "max, 99.9 % and mean: errors of display code values over samples >= 0; max all: negatives "
         "and mixed\n"
         "signs included. beyond f32: where an error is beyond the bound, how far it exceeds what "
         "float32\n"

@@ -114,7 +114,7 @@ Vector3 interpolate(const Lut& lut, const Vector3& rgb, bool trilinear) {
 
 LutError measure_lut(const Lut& lut, const LutRequest& request, bool trilinear) {
     const InputSpace& space = find_input_space(request.view.input);
-    SampleSet probes = make_sample_set(space, {17, 50000});
+    SampleSet samples = make_sample_set(space, {17, 50000});
     // And table inputs over the whole cube: the corners that no scene colour of the set reaches.
     constexpr std::size_t kRandomCount = 50000;
     SampleRandom random(7);
@@ -127,30 +127,30 @@ LutError measure_lut(const Lut& lut, const LutRequest& request, bool trilinear) 
     ReferenceEngine({curve_stage(request.encoding.decode)})
         .run({planes[0], planes[1], planes[2]}, planes, kRandomCount);
     for (std::size_t i = 0; i < kRandomCount; ++i) {
-        probes.add(inputs[0][i], inputs[1][i], inputs[2][i], SampleKind::random);
+        samples.add(inputs[0][i], inputs[1][i], inputs[2][i], SampleKind::random);
     }
     // Table input as a client has it: float, of the float colour.
-    std::vector<double> code(probes.rgb.size());
+    std::vector<double> code(samples.rgb.size());
     {
         const ReferenceEngine encode({curve_stage(request.encoding.encode)});
         if (lut.is_half_domain) {
-            std::copy(probes.rgb.begin(), probes.rgb.end(), code.begin());
+            std::copy(samples.rgb.begin(), samples.rgb.end(), code.begin());
         } else if (has_shaper(request.format)) {
-            run_shaper(request.encoding, probes.rgb, code);
+            run_shaper(request.encoding, samples.rgb, code);
         } else {
-            encode.run_rgb(probes.rgb.data(), code.data(), probes.size());
+            encode.run_rgb(samples.rgb.data(), code.data(), samples.size());
         }
     }
     const ReferenceEngine engine(build_view(request.view));
-    std::vector<double> truth(probes.rgb.size());
-    engine.run_rgb(probes.rgb.data(), truth.data(), probes.size());
+    std::vector<double> truth(samples.rgb.size());
+    engine.run_rgb(samples.rgb.data(), truth.data(), samples.size());
 
     std::vector<double> errors;
     std::vector<double> shown;
     std::vector<double> wanted;
-    for (std::size_t i = 0; i < probes.size(); ++i) {
-        if (probes.kind[i] == SampleKind::special) continue;
-        const float* v = &probes.rgb[3 * i];
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        if (samples.kind[i] == SampleKind::special) continue;
+        const float* v = &samples.rgb[3 * i];
         bool inside = true;
         for (std::size_t c = 0; c < 3; ++c) {
             const auto x = static_cast<double>(v[c]);

@@ -110,7 +110,7 @@ std::string probe_csv(const ConfigModel& model,
     // in another order and get the rest. What was measured of the others is of random colors: there
     // is more between them.
     constexpr double exact = 1e-6;
-    constexpr double between_probes = 3;
+    constexpr double between_samples = 3;
     const InputSpace& space = find_input_space("lin_rec709");
     std::vector<Vector3> colors;
     for (int stops = -12; stops <= 12; stops += 2) {
@@ -148,7 +148,7 @@ std::string probe_csv(const ConfigModel& model,
             for (const Vector3& v : colors) {
                 const Vector3 out = engine(v);
                 double bound =
-                    std::max(exact, between_probes * errors.at(view.name).at(display->title));
+                    std::max(exact, between_samples * errors.at(view.name).at(display->title));
                 // With a negative channel, matrices subtract numbers of the size of the brightest
                 // channel, in float32.
                 if (std::min({v[0], v[1], v[2]}) < 0)

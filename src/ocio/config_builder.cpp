@@ -200,7 +200,7 @@ std::optional<LoweredOps> inverse_space(const ConfigModel::View& view, const Dis
 
 /// @param back  display reference -> scene reference
 ErrorStats measure_round_trip(const View& view, const LoweredOps& back,
-                              OCIO::OptimizationFlags flags, const SampleSet& probes) {
+                              OCIO::OptimizationFlags flags, const SampleSet& samples) {
     const Display& display = find_display(view.display);
     LoweredOps ops =
         lower_to_ocio(joined(display.decode, {MatrixStage{rgb_to_xyz_d65(display.primaries)}})).ops;
@@ -209,7 +209,7 @@ ErrorStats measure_round_trip(const View& view, const LoweredOps& back,
         ops,
         lower_to_ocio({MatrixStage{rgb_to_rgb(kAP0, find_input_space(view.input).primaries)}}).ops);
     const OcioCpu cpu(make_processor(ops), flags);
-    return RoundTrip(view, probes)
+    return RoundTrip(view, samples)
         .measure([&](const float* in, float* out, std::size_t n) { cpu.run_rgb(in, out, n); })
         .errors;
 }
@@ -243,18 +243,18 @@ std::string yaml_of(const OCIO::Config& config) {
 }
 
 /// OCIO's CPU path of the view against the reference, for colors of the input space >= 0.
-ViewError measure_view(const View& view, const SampleSet& probes) {
+ViewError measure_view(const View& view, const SampleSet& samples) {
     const Pipeline stages = build_view(view);
     const Lowered lowered = lower_to_ocio(stages, lower_options(*view.op.op));
-    std::vector<double> truth(probes.rgb.size());
-    ReferenceEngine(stages).run_rgb(probes.rgb.data(), truth.data(), probes.size());
-    std::vector<float> shown(probes.rgb.size());
-    OcioCpu(make_processor(lowered.ops)).run_rgb(probes.rgb.data(), shown.data(), probes.size());
+    std::vector<double> truth(samples.rgb.size());
+    ReferenceEngine(stages).run_rgb(samples.rgb.data(), truth.data(), samples.size());
+    std::vector<float> shown(samples.rgb.size());
+    OcioCpu(make_processor(lowered.ops)).run_rgb(samples.rgb.data(), shown.data(), samples.size());
     std::vector<double> errors;
     std::vector<double> a;
     std::vector<double> b;
-    for (std::size_t i = 0; i < probes.size(); ++i) {
-        if (!probes.is_non_negative(i) || probes.kind[i] == SampleKind::special) continue;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        if (!samples.is_non_negative(i) || samples.kind[i] == SampleKind::special) continue;
         errors.push_back(channel_error(&truth[3 * i], &shown[3 * i]));
         for (std::size_t c = 0; c < 3; ++c) {
             a.push_back(truth[3 * i + c]);
@@ -579,7 +579,7 @@ ConfigBuilder::LoweredView ConfigBuilder::lower_view(const ConfigModel::View& vi
     LoweredView result;
     const View measured = make_view(view.op, "lin_rec709", view.exposure_stops, shown.display->id);
     ViewError& error = result.error;
-    error = measure_view(measured, probes_);
+    error = measure_view(measured, samples_);
     result.forward = lower_to_ocio(shown.stages, lower_options(*view.op.op));
     result.back = inverse_space(view, shown);
     // OpenColorIO takes seconds to invert a cube: once for a view, and of few colors.
@@ -587,18 +587,18 @@ ConfigBuilder::LoweredView ConfigBuilder::lower_view(const ConfigModel::View& vi
     WayBackError& round_trip = error.back;
     round_trip.is_measured = !view.op.op->is_diagnostic && (is_first || !is_slow);
     if (round_trip.is_measured) {
-        const SampleSet& probes = is_slow ? few_probes_ : probes_;
+        const SampleSet& samples = is_slow ? few_samples_ : samples_;
         const LoweredOps back = result.back ? *result.back : inverse(result.forward.ops);
         round_trip.lossless =
-            measure_round_trip(measured, back, OCIO::OPTIMIZATION_LOSSLESS, probes);
+            measure_round_trip(measured, back, OCIO::OPTIMIZATION_LOSSLESS, samples);
         round_trip.by_default =
-            measure_round_trip(measured, back, OCIO::OPTIMIZATION_DEFAULT, probes);
+            measure_round_trip(measured, back, OCIO::OPTIMIZATION_DEFAULT, samples);
         round_trip.exists = is_inverse_space(round_trip.lossless);
     }
     if (!error.is_exact) {
         result.wide =
             measure_view(make_view(view.op, "lin_ap1", view.exposure_stops, shown.display->id),
-                         wide_probes_)
+                         wide_samples_)
                 .in_gamut;
     }
     return result;

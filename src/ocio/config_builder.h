@@ -128,9 +128,9 @@ class ConfigBuilder {
     std::set<std::string> cubes_;
     /// Of each view transform, what its way back is.
     std::map<std::string, std::string> ways_back_;
-    SampleSet probes_ = make_sample_set(find_input_space("lin_rec709"), {9, 40000});
-    SampleSet wide_probes_ = make_sample_set(find_input_space("lin_ap1"), {9, 40000});
-    SampleSet few_probes_ = make_sample_set(find_input_space("lin_rec709"), {3, 1000});
+    SampleSet samples_ = make_sample_set(find_input_space("lin_rec709"), {9, 40000});
+    SampleSet wide_samples_ = make_sample_set(find_input_space("lin_ap1"), {9, 40000});
+    SampleSet few_samples_ = make_sample_set(find_input_space("lin_rec709"), {3, 1000});
 };
 
 TONEWRIGHT_NAMESPACE_END

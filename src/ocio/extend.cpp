@@ -212,7 +212,7 @@ ExtendedConfig extend_config(const std::string& path, const ConfigOptions& optio
             if (!is_same) throw Error("config: the result changes " + name + " of " + path);
         }
         std::vector<ExtendedView> views;
-        const SampleSet probes = make_sample_set(find_input_space("lin_ap0"), {5, 4000});
+        const SampleSet samples = make_sample_set(find_input_space("lin_ap0"), {5, 4000});
         for (const auto& view : model.views) {
             for (const HostDisplay& host : hosts) {
                 if (!view.is_on(*host.ours)) continue;
@@ -220,9 +220,9 @@ ExtendedConfig extend_config(const std::string& path, const ConfigOptions& optio
                     make_view(view.op, "lin_ap0", view.exposure_stops, host.ours->id);
                 const std::string name = config_view_name(view.name, shown.op, *host.ours);
                 std::vector<float> in;
-                for (std::size_t i = 0; i < probes.size(); ++i) {
-                    if (probes.is_non_negative(i) && probes.kind[i] != SampleKind::special)
-                        in.insert(in.end(), &probes.rgb[3 * i], &probes.rgb[3 * i] + 3);
+                for (std::size_t i = 0; i < samples.size(); ++i) {
+                    if (samples.is_non_negative(i) && samples.kind[i] != SampleKind::special)
+                        in.insert(in.end(), &samples.rgb[3 * i], &samples.rgb[3 * i] + 3);
                 }
                 std::vector<double> truth(in.size());
                 ReferenceEngine(build_view(shown)).run_rgb(in.data(), truth.data(), in.size() / 3);

@@ -11,11 +11,11 @@ double visible_error(double code, double light) {
     return std::min(code, kSrgbSlopeAtBlack * light);
 }
 
-RoundTrip::RoundTrip(const View& view, const SampleSet& probes, std::size_t one_of)
+RoundTrip::RoundTrip(const View& view, const SampleSet& samples, std::size_t one_of)
     : engine_(build_view(view)), decode_(find_display(view.display).decode) {
-    for (std::size_t i = 0; i < probes.size(); i += one_of) {
-        if (!probes.is_non_negative(i) || probes.kind[i] == SampleKind::special) continue;
-        codes_.insert(codes_.end(), &probes.rgb[3 * i], &probes.rgb[3 * i] + 3);
+    for (std::size_t i = 0; i < samples.size(); i += one_of) {
+        if (!samples.is_non_negative(i) || samples.kind[i] == SampleKind::special) continue;
+        codes_.insert(codes_.end(), &samples.rgb[3 * i], &samples.rgb[3 * i] + 3);
     }
     const std::vector<double> codes = show(codes_);
     codes_.assign(codes.begin(), codes.end());

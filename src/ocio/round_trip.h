@@ -20,9 +20,9 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// more, by the reference.
 class RoundTrip {
   public:
-    /// @param probes  scene light; what has negative channels is left out
+    /// @param samples  scene light; what has negative channels is left out
     /// @param one_of  so many of them, one is taken
-    RoundTrip(const View& view, const SampleSet& probes, std::size_t one_of = 1);
+    RoundTrip(const View& view, const SampleSet& samples, std::size_t one_of = 1);
 
     /// Code values -> scene light in the view's input space, of so many pixels.
     using WayBack = std::function<void(const float* in, float* out, std::size_t count)>;

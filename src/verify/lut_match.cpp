@@ -40,7 +40,7 @@ struct Candidate {
 };
 
 /// What goes in: codes, or light for a table with a shaper.
-std::vector<float> probes_of(bool is_linear, std::size_t count) {
+std::vector<float> samples_of(bool is_linear, std::size_t count) {
     SampleRandom random(23);
     std::vector<float> in;
     for (std::size_t i = 0; i < count; ++i) {
@@ -55,7 +55,7 @@ std::vector<float> probes_of(bool is_linear, std::size_t count) {
 }
 
 void measure(Candidate& candidate, const LutFile& table, std::size_t count) {
-    const std::vector<float> in = probes_of(candidate.match.encoding == kSceneLinear, count);
+    const std::vector<float> in = samples_of(candidate.match.encoding == kSceneLinear, count);
     std::vector<float> shown(in.size());
     table.run_rgb(in.data(), shown.data(), count);
     std::vector<double> truth(in.size());

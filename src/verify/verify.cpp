@@ -130,13 +130,13 @@ Bounds bounds_of(const Pipeline& pipeline, const Lowered& lowered, bool is_hdr,
 
 class Comparison {
   public:
-    Comparison(const View& view, const SampleSet& probes)
-        : probes_(probes),
+    Comparison(const View& view, const SampleSet& samples)
+        : samples_(samples),
           to_working_(rgb_to_rgb(find_input_space(view.input).primaries, view.op.op->working)),
           decode_(find_display(view.display).decode),
-          truth_(probes.rgb.size()) {
+          truth_(samples.rgb.size()) {
         const Pipeline whole = build_view(view);
-        ReferenceEngine(whole).run_rgb(probes.rgb.data(), truth_.data(), probes.size());
+        ReferenceEngine(whole).run_rgb(samples.rgb.data(), truth_.data(), samples.size());
         for (std::size_t i = 0; i < whole.size(); ++i) {
             const auto* m = std::get_if<MatrixStage>(&whole[i]);
             if (i > 0 && !(m && has_negative_coefficient(m->m))) continue;
@@ -152,17 +152,17 @@ class Comparison {
     void measure(const std::vector<float>& shown, double unit, bool loses_negatives,
                  ParityRow& row) const {
         std::vector<double> errors;
-        errors.reserve(probes_.size());
+        errors.reserve(samples_.size());
         std::size_t worst = 0;
-        for (std::size_t i = 0; i < probes_.size(); ++i) {
+        for (std::size_t i = 0; i < samples_.size(); ++i) {
             const float* v = &shown[3 * i];
             for (std::size_t c = 0; c < 3; ++c) {
                 // A clamp in float32 can be off by a rounding of the encoding's constants.
                 row.is_total = row.is_total && v[c] >= -1e-6F && v[c] <= 1 + 1e-6F;
             }
-            if (probes_.kind[i] == SampleKind::special) continue;
+            if (samples_.kind[i] == SampleKind::special) continue;
             const double error = channel_error(&truth_[3 * i], v);
-            if (probes_.is_non_negative(i)) errors.push_back(error);
+            if (samples_.is_non_negative(i)) errors.push_back(error);
             if (!(error <= row.max_all)) {
                 row.max_all = error;
                 worst = i;
@@ -177,17 +177,17 @@ class Comparison {
         row.mean = stats.mean;
         row.is_ok = row.is_total && row.max_beyond_rounding <= row.bound;
         if (!row.is_ok) {
-            row.note = fmt::format("worst at {:.9g} {:.9g} {:.9g}", probes_.rgb[3 * worst],
-                                   probes_.rgb[3 * worst + 1], probes_.rgb[3 * worst + 2]);
+            row.note = fmt::format("worst at {:.9g} {:.9g} {:.9g}", samples_.rgb[3 * worst],
+                                   samples_.rgb[3 * worst + 1], samples_.rgb[3 * worst + 2]);
         }
     }
 
   private:
     [[nodiscard]] bool is_inside_working(std::size_t i) const {
         const Vector3 v =
-            multiply(to_working_, Vector3{static_cast<double>(probes_.rgb[3 * i]),
-                                          static_cast<double>(probes_.rgb[3 * i + 1]),
-                                          static_cast<double>(probes_.rgb[3 * i + 2])});
+            multiply(to_working_, Vector3{static_cast<double>(samples_.rgb[3 * i]),
+                                          static_cast<double>(samples_.rgb[3 * i + 1]),
+                                          static_cast<double>(samples_.rgb[3 * i + 2])});
         return std::min({v[0], v[1], v[2]}) >= 0;
     }
 
@@ -211,9 +211,9 @@ class Comparison {
 
     /// @see ParityRow::max_beyond_rounding
     [[nodiscard]] Vector3 rounding_allowance(std::size_t i, double unit) const {
-        const Vector3 in = {static_cast<double>(probes_.rgb[3 * i]),
-                            static_cast<double>(probes_.rgb[3 * i + 1]),
-                            static_cast<double>(probes_.rgb[3 * i + 2])};
+        const Vector3 in = {static_cast<double>(samples_.rgb[3 * i]),
+                            static_cast<double>(samples_.rgb[3 * i + 1]),
+                            static_cast<double>(samples_.rgb[3 * i + 2])};
         Vector3 allowance{};
         for (const auto& [before, after] : rounding_points_) {
             const Vector3 entering = before(in);
@@ -239,7 +239,7 @@ class Comparison {
         ReferenceEngine before;
         ReferenceEngine after;
     };
-    const SampleSet& probes_;
+    const SampleSet& samples_;
     Matrix3 to_working_;
     ReferenceEngine decode_;
     std::vector<double> truth_;
@@ -294,7 +294,7 @@ OCIO::ConstProcessorRcPtr builtin_processor(const View& view) {
 /// Rows of the way back from the config's output space, in the forms that applications have it.
 template <class Add>
 void add_inverse_space(const OCIO::ConstConfigRcPtr& config, const View& view,
-                       const std::string& space, const SampleSet& probes, bool with_gpu,
+                       const std::string& space, const SampleSet& samples, bool with_gpu,
                        const Add& add) {
     if (!config->getColorSpace(space.c_str())) return;
     ParityRow row;
@@ -317,7 +317,7 @@ void add_inverse_space(const OCIO::ConstConfigRcPtr& config, const View& view,
         return;
     }
     // A fifth of the colors: two more passes through every form.
-    const RoundTrip trip(view, probes, 5);
+    const RoundTrip trip(view, samples, 5);
     const auto measure = [&](const std::string& form, const RoundTrip::WayBack& run) {
         ParityRow measured = row;
         measured.form = form;
@@ -460,11 +460,11 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
         counts.lattice_edge = std::min(counts.lattice_edge, 17);
         counts.random_count = std::min<std::size_t>(counts.random_count, 50000);
     }
-    SampleSet probes = make_sample_set(input, counts);
+    SampleSet samples = make_sample_set(input, counts);
     for (std::size_t i = 0; i + 2 < options.picture.size(); i += 3) {
-        probes.add(static_cast<double>(options.picture[i]),
-                   static_cast<double>(options.picture[i + 1]),
-                   static_cast<double>(options.picture[i + 2]), SampleKind::picture);
+        samples.add(static_cast<double>(options.picture[i]),
+                    static_cast<double>(options.picture[i + 1]),
+                    static_cast<double>(options.picture[i + 2]), SampleKind::picture);
     }
     std::optional<TemporaryConfig> fresh;
     if (!config) {
@@ -478,14 +478,14 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
     }
 
     std::vector<ParityRow> rows;
-    std::vector<float> shown(probes.rgb.size());
-    const SampleSet few = every_nth(probes, 20);
+    std::vector<float> shown(samples.rgb.size());
+    const SampleSet few = every_nth(samples, 20);
     std::vector<std::string> targets = SimdEngine::targets();  // the best one first
     if (options.only_best_target) targets.resize(1);
     if (is_of_config) targets.clear();  // our engine does not read it
     for (const View& view : views) {
         const Pipeline pipeline = build_view(view);
-        const Comparison comparison(view, probes);
+        const Comparison comparison(view, samples);
         const Comparison few_compared(view, few);
         const DeclaredBounds& declared = view.op.op->bounds;
         const Lowered lowered = lower_to_ocio(pipeline, lower_options(*view.op.op));
@@ -521,7 +521,7 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
             const std::string& target = targets[t];
             // SCALAR takes thirty times as long as the others, with the same code.
             const bool is_slow = target == "SCALAR";
-            const SampleSet& taken = is_slow ? few : probes;
+            const SampleSet& taken = is_slow ? few : samples;
             add(is_slow ? few_compared : comparison, "simd " + target, bounds.simd,
                 declared.simd != DeclaredBounds{}.simd, false, "",
                 [&] { engines[t].run_rgb(taken.rgb.data(), shown.data(), taken.size()); });
@@ -543,7 +543,7 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
             throw Error("verify: " + view.op.label + ": " + e.what());
         }
         const auto cpu = [&](OCIO::OptimizationFlags flags) {
-            OcioCpu(processor, flags).run_rgb(probes.rgb.data(), shown.data(), probes.size());
+            OcioCpu(processor, flags).run_rgb(samples.rgb.data(), shown.data(), samples.size());
         };
         add(comparison, "ocio cpu lossless", bounds.cpu, declared.ocio_cpu > 0,
             bounds.is_mixed_metric, lowering, [&] { cpu(OCIO::OPTIMIZATION_LOSSLESS); });
@@ -553,14 +553,14 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
             // Not our lowering: OpenColorIO's, in float32 throughout.
             add(comparison, "ocio builtin", 1e-3, false, true, builtin_style(view.op), [&] {
                 OcioCpu(builtin, OCIO::OPTIMIZATION_LOSSLESS)
-                    .run_rgb(probes.rgb.data(), shown.data(), probes.size());
+                    .run_rgb(samples.rgb.data(), shown.data(), samples.size());
             });
         }
         if (is_of_config) {
             // Bounded by nothing but the display: it is Blender's choice.
             add(comparison, "half textures", 1, false, false, lowering, [&] {
                 OcioCpu(with_half_textures(processor), OCIO::OPTIMIZATION_LOSSLESS)
-                    .run_rgb(probes.rgb.data(), shown.data(), probes.size());
+                    .run_rgb(samples.rgb.data(), shown.data(), samples.size());
             });
             rows.back().note = "a model of Blender's viewport";
         }
@@ -568,7 +568,7 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
             const std::string space = output_space_name(
                 config_view_name(view_name(view.op), view.op, find_display(view.display)),
                 find_display(view.display).title);
-            add_inverse_space(config, view, space, probes, options.with_gpu,
+            add_inverse_space(config, view, space, samples, options.with_gpu,
                               [&](const ParityRow& row) {
                                   rows.push_back(row);
                                   if (on_row) on_row(rows.back());
@@ -587,7 +587,7 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
         }
         const OcioGpu gpu(processor);
         add(comparison, "ocio gpu", bounds.gpu, declared.ocio_gpu > 0, bounds.is_mixed_metric,
-            lowering, [&] { gpu.run_rgb(probes.rgb.data(), shown.data(), probes.size()); });
+            lowering, [&] { gpu.run_rgb(samples.rgb.data(), shown.data(), samples.size()); });
     }
     return rows;
 }

@@ -4,7 +4,7 @@
     python3 tests/cli/test_catalogue.py build/release/bin/tonewright
 
 Plots are read back from their SVG files and held to `tonewright eval`, to formulas written here, and distances between
-dialects to a recomputation in NumPy: probes, code values and dE ITP. The committed catalogue is the one that is
+dialects to a recomputation in NumPy: samples, code values and dE ITP. The committed catalogue is the one that is
 written here, as tests/parity/test_artifacts.py has it. The last line is `N passed, M failed`.
 """
 
@@ -96,7 +96,7 @@ def itp(code, peak_nits=100):
 
 
 class SplitMix64:
-    """Steele et al. 2014: the probes' random numbers, many at a time."""
+    """Steele et al. 2014: the samples' random numbers, many at a time."""
 
     def __init__(self, seed):
         self.state = np.uint64(seed)
@@ -113,8 +113,8 @@ class SplitMix64:
         return (low + (high - low) * (z >> np.uint64(11)).astype(float) * 2.0**-53).reshape(shape)
 
 
-def non_negative_probes():
-    """The probe set of docs/conventions.md in linear Rec.709, without colours that have a negative channel."""
+def non_negative_samples():
+    """The sample set of docs/conventions.md in linear Rec.709, without colours that have a negative channel."""
     greys = np.repeat(np.concatenate([[0], scene(np.arange(-768, 769) / 64)])[:, None], 3, axis=1)
     parts = [greys]
     for matrix in (np.eye(3), np.linalg.inv(REC709) @ REC2020,
@@ -409,12 +409,12 @@ def check_group(report, command, folder, page, group, members):
 
 
 def check_distances(report, command, page, group, a, b):
-    """Figures of a pair, recomputed: own probes, `tonewright eval`, own dE ITP."""
-    probes = non_negative_probes()
+    """Figures of a pair, recomputed: own samples, `tonewright eval`, own dE ITP."""
+    samples = non_negative_samples()
     count = int(re.search(r"measured on the (\d+) colours", page)[1])
     # Colours on the hull of a wide gamut: rounding decides which have a channel below 0.
-    report.bound("distances: as many probes", abs(count - len(probes)) / len(probes), 1e-4)
-    code = [evaluate(command, probes, name) for name in (a, b)]
+    report.bound("distances: as many samples", abs(count - len(samples)) / len(samples), 1e-4)
+    code = [evaluate(command, samples, name) for name in (a, b)]
     difference = 255 * np.abs(code[0] - code[1]).max(axis=1)
     delta_e = 720 * np.linalg.norm(itp(code[0]) - itp(code[1]), axis=1)
     expected = [difference.max(), np.percentile(difference, 99.9), difference.mean(), delta_e.max(), delta_e.mean()]
@@ -422,7 +422,7 @@ def check_distances(report, command, page, group, a, b):
                       section(page, f"dialects_{slug(group)}"), re.M)
     for what, shown, value, digit in zip(("max", "99.9 %", "mean", "dE max", "dE mean"), map(float, found.groups()),
                                          expected, (0.1, 0.1, 0.01, 0.1, 0.01)):
-        # Half of the last digit, and the few probes that may be others.
+        # Half of the last digit, and the few samples that may be others.
         report.bound(f"{a}, {b}: {what} {shown}, recomputed {value:.4f}", abs(shown - value),
                      0.5 * digit + 1e-3 * value)
 

@@ -121,15 +121,15 @@ std::string check_patterns(const SimdEngine& display, const SimdEngine& native,
     return "";
 }
 
-/// The worst error of an engine over probes, against the operator's bound.
+/// The worst error of an engine over samples, against the operator's bound.
 void expect_within_bound(const SimdEngine& engine, const std::string& target,
                          const Pipeline& pipeline, double bound) {
-    const SampleSet probes = make_sample_set(find_input_space("lin_rec709"),
-                                             {count_of(17, 9), count_of<std::size_t>(20000, 2000)});
-    std::vector<double> truth(probes.rgb.size());
-    ReferenceEngine(pipeline).run_rgb(probes.rgb.data(), truth.data(), probes.size());
-    std::vector<float> out(probes.rgb.size());
-    engine.run_rgb(probes.rgb.data(), out.data(), probes.size());
+    const SampleSet samples = make_sample_set(
+        find_input_space("lin_rec709"), {count_of(17, 9), count_of<std::size_t>(20000, 2000)});
+    std::vector<double> truth(samples.rgb.size());
+    ReferenceEngine(pipeline).run_rgb(samples.rgb.data(), truth.data(), samples.size());
+    std::vector<float> out(samples.rgb.size());
+    engine.run_rgb(samples.rgb.data(), out.data(), samples.size());
     double worst = 0;
     std::size_t at = 0;
     for (std::size_t i = 0; i < out.size(); ++i) {
@@ -138,7 +138,7 @@ void expect_within_bound(const SimdEngine& engine, const std::string& target,
         worst = std::isnan(error) ? kInfinity : error;
         at = i;
     }
-    const float* rgb = &probes.rgb[at / 3 * 3];
+    const float* rgb = &samples.rgb[at / 3 * 3];
     EXPECT_LE(worst, bound) << target << " of (" << rgb[0] << ", " << rgb[1] << ", " << rgb[2]
                             << "): " << out[at] << ", expected " << shortest(truth[at]) << "; "
                             << worst / bound << " times the bound";

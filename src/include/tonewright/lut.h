@@ -129,8 +129,8 @@ struct LutError {
 [[nodiscard]] TONEWRIGHT_API Vector3 interpolate(const Lut& lut, const Vector3& rgb,
                                                  bool trilinear = false);
 
-/// Measured on the standard probe set, as far as it lies inside the encoding's range, and on random
-/// table inputs; behind a shaper as its readers resample it.
+/// Measured on the standard sample set, as far as it lies inside the encoding's range, and on
+/// random table inputs; behind a shaper as its readers resample it.
 [[nodiscard]] TONEWRIGHT_API LutError measure_lut(const Lut& lut, const LutRequest& request,
                                                   bool trilinear = false);
 

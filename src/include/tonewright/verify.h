@@ -28,7 +28,7 @@ struct VerifyOptions {
     bool with_gpu = true;
     /// Our engine only with the instruction set that it takes on this processor.
     bool only_best_target = false;
-    /// Scene-linear RGB pixels to add to the probe set, in the input space.
+    /// Scene-linear RGB pixels to add to the sample set, in the input space.
     std::vector<float> picture;
 };
 

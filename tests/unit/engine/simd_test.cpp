@@ -392,8 +392,8 @@ TEST(Simd, WhatASteepTableIsIndexedWithIsNoCompiledCurve) {
 
 class SimdOperator : public ::testing::TestWithParam<std::string> {};
 
-/// The standard probes, and colours of huge mixed signs: what is left of them after a matrix is the
-/// difference of large numbers.
+/// The standard samples, and colours of huge mixed signs: what is left of them after a matrix is
+/// the difference of large numbers.
 std::vector<float> test_colours() {
     SampleSet set = make_sample_set(find_input_space("lin_rec709"), {7, count_of(20000U, 4000U)});
     SampleRandom random(99);

@@ -120,7 +120,7 @@ TEST(Tonemap, AnyDestinationTypeIsKeptAndRounded) {
                                              {TypeDesc::INT16, 0.5 / 32767},
                                              {TypeDesc::UINT32, 1e-9},
                                              {TypeDesc::INT32, 1e-9},
-                                             {TypeDesc::HALF, std::exp2(-12)},
+                                             {TypeDesc::HALF, 0x1p-12},
                                              {TypeDesc::FLOAT, 0},
                                              {TypeDesc::DOUBLE, 0}}};
     const ImageBuf src = make_rgb(20, 20, TypeDesc::FLOAT, 8);

@@ -604,21 +604,22 @@ TEST(MeasureLut, IsNeverBelowTheErrorAtTheProbes) {
                                 request_for("hable", "linear", LutFormat::clf)}) {
         const Lut lut = sample_lut(r);
         const LutError measured = measure_lut(lut, r);
-        const SampleSet probes = make_sample_set(find_input_space(r.view.input), {17, 2000});
-        std::vector<double> truth(probes.rgb.size());
-        ReferenceEngine(build_view(r.view)).run_rgb(probes.rgb.data(), truth.data(), probes.size());
-        std::vector<double> code(probes.rgb.begin(), probes.rgb.end());
+        const SampleSet samples = make_sample_set(find_input_space(r.view.input), {17, 2000});
+        std::vector<double> truth(samples.rgb.size());
+        ReferenceEngine(build_view(r.view))
+            .run_rgb(samples.rgb.data(), truth.data(), samples.size());
+        std::vector<double> code(samples.rgb.begin(), samples.rgb.end());
         if (!lut.is_half_domain) {
             ReferenceEngine({curve_stage(r.encoding.encode)})
-                .run_rgb(probes.rgb.data(), code.data(), probes.size());
+                .run_rgb(samples.rgb.data(), code.data(), samples.size());
         }
         double worst = 0;
         int inside = 0;
-        for (std::size_t i = 0; i < probes.size(); ++i) {
+        for (std::size_t i = 0; i < samples.size(); ++i) {
             // The lattices and greys are the same whatever the number of random colours.
-            if (probes.kind[i] != SampleKind::lattice && probes.kind[i] != SampleKind::grey)
+            if (samples.kind[i] != SampleKind::lattice && samples.kind[i] != SampleKind::grey)
                 continue;
-            const float* v = &probes.rgb[3 * i];
+            const float* v = &samples.rgb[3 * i];
             const bool is_inside =
                 lut.is_half_domain || std::all_of(v, v + 3, [&](float x) {
                     const auto scene = static_cast<double>(x);

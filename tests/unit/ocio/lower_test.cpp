@@ -655,7 +655,7 @@ HexconeStage neutral(double start_compression, double desaturation, bool white) 
 Pipeline shown(const HexconeStage& stage) { return {kPositive, stage, kSdr, srgb()}; }
 
 TEST(LowerHexcone, PbrNeutralNeedsNoCube) {
-    // On the whole probe set: CPU 7.3e-6, llvmpipe 1.7e-5.
+    // On the whole sample set: CPU 7.3e-6, llvmpipe 1.7e-5.
     const SampleSet set = make_sample_set(find_input_space("lin_rec709"), {});
     std::vector<float> in;
     for (std::size_t i = 0; i < set.size(); ++i) {

@@ -46,11 +46,11 @@ TEST(OperatorFacts, BuiltinsOfThisLibraryEqualTheirOperators) {
     std::set<std::string> known;
     for (std::size_t i = 0; i < registry->getNumBuiltins(); ++i)
         known.insert(registry->getBuiltinStyle(i));
-    const SampleSet probes = make_sample_set(find_input_space("lin_ap0"), {5, 4000});
+    const SampleSet samples = make_sample_set(find_input_space("lin_ap0"), {5, 4000});
     std::vector<float> in;
-    for (std::size_t i = 0; i < probes.size(); ++i) {
-        if (probes.is_non_negative(i) && probes.kind[i] != SampleKind::special)
-            in.insert(in.end(), &probes.rgb[3 * i], &probes.rgb[3 * i] + 3);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        if (samples.is_non_negative(i) && samples.kind[i] != SampleKind::special)
+            in.insert(in.end(), &samples.rgb[3 * i], &samples.rgb[3 * i] + 3);
     }
     const ReferenceEngine srgb({ClampStage{0, 1}, curve_stage(srgb_encode(Expr::input()))});
     int compared = 0;

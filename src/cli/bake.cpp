@@ -119,7 +119,7 @@ int run_bake(Options& options) {
     }
     if (!options.op.empty())
         throw Error("bake: operator is " + options.op + "; expected none with --all");
-    picture_commands().write_shipped_luts(options.all);
+    picture_commands().write_shipped_luts(options.all, options.host);
     return kOk;
 }
 
@@ -170,7 +170,8 @@ void add_bake(CommandLine& program) {
     const Option one = command.add_flag(
         "--1d", options->one, "a 1D table; the view must be per channel in its own space");
     command.add_flag("--3d", options->three, "a cube even where a 1D table would do").excludes(one);
-    command.add("--all", options->all, "write the shipped set into this folder");
+    command.add("--all", options->all,
+                "write the shipped LUTs into this folder; with --for, those of one application");
     command.footer(
         "1D or 3D follows from the view where neither is asked for. Files that have room for text "
         "say what\n"

@@ -39,7 +39,9 @@ class PictureCommands {
     virtual void write_lut(const Lut& lut, LutFormat format, const std::string& path,
                            int bits) const = 0;
     /// The set of `bake --all`: LUTs by application, thumbnails, README.md, MANIFEST.csv.
-    virtual void write_shipped_luts(const std::string& folder) const = 0;
+    /// @param application  only its LUTs; empty: all
+    virtual void write_shipped_luts(const std::string& folder,
+                                    const std::string& application) const = 0;
 };
 
 /// Loads the module at the first call.
@@ -53,6 +55,6 @@ extern "C" const PictureCommands* tonewright_picture_commands(const char* build)
 inline constexpr const char* kPictureCommandsEntry = "tonewright_picture_commands";
 /// The release, and the number of this interface: increase it with every change of the interface
 /// or of the options.
-inline constexpr const char* kPictureCommandsBuild = TONEWRIGHT_VERSION " interface 1";
+inline constexpr const char* kPictureCommandsBuild = TONEWRIGHT_VERSION " interface 2";
 
 TONEWRIGHT_NAMESPACE_END

@@ -33,16 +33,16 @@ constexpr int kDecimals = 4;
 /// An identifier of an encoding as part of a file's name: without parameters.
 std::string name_part(const std::string& id) { return id.substr(0, id.find(':')); }
 
-ShippedLut plan(const LutPresetSet& shelf, const std::string& id) {
-    const LutApplication& host = *shelf.host;
+ShippedLut plan(const LutPresetSet& set, const std::string& id) {
+    const LutApplication& host = *set.host;
     ShippedLut planned;
-    planned.shelf = &shelf;
+    planned.set = &set;
     LutRequest& request = planned.request;
     request.encoding = parse_input_encoding(host.encoding);
     request.view = make_view(resolve_operator(id), request.encoding.default_input, 0, host.display);
     request.format = host.format;
     request.dimension = LutDimension::three;
-    request.size = shelf.size.value_or(host.size);
+    request.size = set.size.value_or(host.size);
     request.bits = host.bits;
     if (host.format == LutFormat::cube) request.decimals = kDecimals;
     const std::string stem = fmt::format("{}_{}_to_{}", id, name_part(host.encoding), host.display);
@@ -53,7 +53,7 @@ ShippedLut plan(const LutPresetSet& shelf, const std::string& id) {
 }
 
 void bake(ShippedLut& planned) {
-    const bool trilinear = is_trilinear(*planned.shelf->host);
+    const bool trilinear = is_trilinear(*planned.set->host);
     BakedLut baked = bake_lut(planned.request, LutNodes::automatic, trilinear);
     planned.lut = std::move(baked.lut);
     planned.is_fitted = baked.is_fitted;
@@ -64,7 +64,7 @@ void bake(ShippedLut& planned) {
 }
 
 const LutError& error_at_host(const ShippedLut& lut) {
-    return is_trilinear(*lut.shelf->host) ? lut.trilinear : lut.tetrahedral;
+    return is_trilinear(*lut.set->host) ? lut.trilinear : lut.tetrahedral;
 }
 
 std::string csv_field(const std::string& text) {
@@ -91,7 +91,7 @@ std::string manifest(const std::vector<ShippedLut>& luts) {
     for (const ShippedLut& lut : luts) {
         const LutRequest& r = lut.request;
         text += fmt::format("{},{},{},{},{},{:.9g},{:.9g},{},{},{},{},{},{},{},{},{},{}\n",
-                            lut.path, csv_field(r.view.op.label), lut.shelf->host->id, r.view.input,
+                            lut.path, csv_field(r.view.op.label), lut.set->host->id, r.view.input,
                             r.encoding.id, r.encoding.scene_lo, r.encoding.scene_hi, r.view.display,
                             name_of(r.format), lut.lut.size, r.bits ? std::to_string(*r.bits) : "",
                             r.decimals ? std::to_string(*r.decimals) : "",
@@ -113,20 +113,29 @@ std::string size_text(const ShippedLut& lut) {
     return fmt::format("{0} x {0} x {0} points", n);
 }
 
+/// In the order of the LUTs, each once.
+std::vector<const LutPresetSet*> sets_of(const std::vector<ShippedLut>& luts) {
+    std::vector<const LutPresetSet*> sets;
+    for (const ShippedLut& lut : luts) {
+        if (sets.empty() || sets.back() != lut.set) sets.push_back(lut.set);
+    }
+    return sets;
+}
+
 /// Operators down, applications across.
 std::string overview(const std::vector<ShippedLut>& luts) {
     std::string head = "| operator |";
     std::string rule = "|---|";
-    for (const LutPresetSet& shelf : lut_preset_sets()) {
-        head += fmt::format(" [{0}](#{1}) |", shelf.host->title, shelf.host->id);
+    for (const LutPresetSet* set : sets_of(luts)) {
+        head += fmt::format(" [{0}](#{1}) |", set->host->title, set->host->id);
         rule += "---|";
     }
     std::string text = head + "\n" + rule + "\n";
     for (const std::string& id : kOperators) {
         text += "| " + find_operator(id).title + " |";
-        for (const LutPresetSet& shelf : lut_preset_sets()) {
+        for (const LutPresetSet* set : sets_of(luts)) {
             const auto found = std::find_if(luts.begin(), luts.end(), [&](const ShippedLut& lut) {
-                return lut.shelf == &shelf && lut.request.view.op.op->id == id;
+                return lut.set == set && lut.request.view.op.op->id == id;
             });
             text += found == luts.end()
                         ? " |"
@@ -137,16 +146,16 @@ std::string overview(const std::vector<ShippedLut>& luts) {
     return text;
 }
 
-std::string section(const LutPresetSet& shelf, const std::vector<ShippedLut>& luts) {
-    const LutApplication& host = *shelf.host;
+std::string section(const LutPresetSet& set, const std::vector<ShippedLut>& luts) {
+    const LutApplication& host = *set.host;
     std::string text = fmt::format("\n<a id=\"{}\"></a>\n## {}\n\n", host.id, host.title);
-    if (!shelf.also.empty()) text += "Also for " + shelf.also + ".\n\n";
+    if (!set.also.empty()) text += "Also for " + set.also + ".\n\n";
     text += fmt::format("{}. {}\n\n", host.steps,
                         host.tested.empty() ? "(Format checked, application not run.)"
                                             : "(Tested with " + host.tested + ".)");
     bool is_first = true;
     for (const ShippedLut& lut : luts) {
-        if (lut.shelf != &shelf) continue;
+        if (lut.set != &set) continue;
         const LutRequest& r = lut.request;
         const LutError& error = error_at_host(lut);
         if (is_first) {
@@ -194,8 +203,8 @@ std::string readme(const std::vector<ShippedLut>& luts) {
         "interpolations, tetrahedral\n"
         "and trilinear, and the colour differences. Generated by `tonewright bake --all luts`; do "
         "not edit.\n";
-    for (const LutPresetSet& shelf : lut_preset_sets())
-        text += section(shelf, luts);
+    for (const LutPresetSet* set : sets_of(luts))
+        text += section(*set, luts);
     return text;
 }
 
@@ -208,7 +217,7 @@ bool is_trilinear(const LutApplication& host) {
 const std::vector<LutPresetSet>& lut_preset_sets() {
     // What takes sRGB is for pictures of 8 bits: 17 points are half a code of these off in the
     // mean.
-    static const std::vector<LutPresetSet> shelves = {
+    static const std::vector<LutPresetSet> sets = {
         {&find_lut_application("resolve"), "", kOperators, {}},
         {&find_lut_application("nuke"),
          "every application whose picture is in ACEScct: After Effects, Houdini, Flame, Baselight. "
@@ -227,14 +236,21 @@ const std::vector<LutPresetSet>& lut_preset_sets() {
          "Affinity Photo, OBS Studio, darktable, G'MIC, GIMP, three.js", kOperators, 17},
         {&find_lut_application("imagemagick"), "GraphicsMagick, RawTherapee", kOperators, 36},
     };
-    return shelves;
+    return sets;
 }
 
-std::vector<ShippedLut> bake_shipped_luts() {
+std::vector<ShippedLut> bake_shipped_luts(const std::string& application) {
     std::vector<ShippedLut> luts;
-    for (const LutPresetSet& shelf : lut_preset_sets()) {
-        for (const std::string& id : shelf.operators)
-            luts.push_back(plan(shelf, id));
+    std::vector<std::string> names;
+    for (const LutPresetSet& set : lut_preset_sets()) {
+        names.emplace_back(set.host->id);
+        if (!application.empty() && application != set.host->id) continue;
+        for (const std::string& id : set.operators)
+            luts.push_back(plan(set, id));
+    }
+    if (luts.empty()) {
+        throw Error("bake: application is " + application + "; expected " + join_choices(names) +
+                    " with --all" + did_you_mean(application, names));
     }
     in_parallel(luts.size(), 0, [&](std::size_t i) { bake(luts[i]); });
     return luts;

@@ -24,7 +24,7 @@ struct LutPresetSet {
 
 /// A LUT of the set.
 struct ShippedLut {
-    const LutPresetSet* shelf = nullptr;
+    const LutPresetSet* set = nullptr;
     LutRequest request;
     /// In the set's folder: `resolve/agx_blender_davinci_to_rec1886.cube`.
     std::string path;
@@ -38,8 +38,12 @@ struct ShippedLut {
     std::string contents;
 };
 
-/// All of them, in the order of the shelves. The same on every run, whatever the number of threads.
-[[nodiscard]] TONEWRIGHT_API std::vector<ShippedLut> bake_shipped_luts();
+/// All of them, in the order of lut_preset_sets(). The same on every run, whatever the number of
+/// threads.
+/// @param application  only those of its set; empty: of all
+/// @throws Error  the application has no set
+[[nodiscard]] TONEWRIGHT_API std::vector<ShippedLut> bake_shipped_luts(
+    const std::string& application = {});
 
 /// README.md and MANIFEST.csv, of LUTs that all have their contents.
 [[nodiscard]] TONEWRIGHT_API std::vector<GeneratedFile> describe_shipped_luts(

@@ -13,9 +13,9 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-void write_shipped_luts(const std::string& folder) {
+void write_shipped_luts(const std::string& folder, const std::string& application) {
     require_writable_folder(folder);
-    std::vector<ShippedLut> luts = bake_shipped_luts();
+    std::vector<ShippedLut> luts = bake_shipped_luts(application);
     std::vector<GeneratedFile> files = make_shipped_files(luts);
     const std::vector<GeneratedFile> about = describe_shipped_luts(luts);
     files.insert(files.end(), about.begin(), about.end());

@@ -33,8 +33,9 @@ class Commands : public PictureCommands {
                    int bits) const override {
         write_lut_picture(lut, format, path, bits);
     }
-    void write_shipped_luts(const std::string& folder) const override {
-        tonewright::write_shipped_luts(folder);
+    void write_shipped_luts(const std::string& folder,
+                            const std::string& application) const override {
+        tonewright::write_shipped_luts(folder, application);
     }
 };
 

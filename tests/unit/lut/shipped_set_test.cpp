@@ -22,13 +22,13 @@ LutRequest hable_cube(std::optional<int> decimals) {
     return request;
 }
 
-TEST(ShippedSet, ItsShelvesAreApplicationsWithOperatorsThatThereAre) {
+TEST(ShippedSet, ItsSetsAreOfApplicationsAndOperatorsThatThereAre) {
     std::set<std::string> hosts;
     std::set<std::string> operators;
-    for (const LutPresetSet& shelf : lut_preset_sets()) {
-        EXPECT_TRUE(hosts.insert(shelf.host->id).second) << shelf.host->id;
-        EXPECT_FALSE(shelf.operators.empty());
-        for (const std::string& id : shelf.operators)
+    for (const LutPresetSet& set : lut_preset_sets()) {
+        EXPECT_TRUE(hosts.insert(set.host->id).second) << set.host->id;
+        EXPECT_FALSE(set.operators.empty());
+        for (const std::string& id : set.operators)
             operators.insert(find_operator(id).id);
     }
     EXPECT_EQ(operators.size(), 10U);

@@ -7,6 +7,7 @@
 #include "base/strings.h"
 #include "cli/picture_commands.h"
 #include "cli/shared_options.h"
+#include "lut/shipped_set.h"
 #include "measure/error_metric.h"
 #include "tonewright/lut.h"
 #include "tonewright/lut_applications.h"
@@ -119,6 +120,7 @@ int run_bake(Options& options) {
     }
     if (!options.op.empty())
         throw Error("bake: operator is " + options.op + "; expected none with --all");
+    if (!options.host.empty()) require_preset_set(options.host);
     picture_commands().write_shipped_luts(options.all, options.host);
     return kOk;
 }

@@ -239,18 +239,23 @@ const std::vector<LutPresetSet>& lut_preset_sets() {
     return sets;
 }
 
-std::vector<ShippedLut> bake_shipped_luts(const std::string& application) {
-    std::vector<ShippedLut> luts;
+void require_preset_set(const std::string& application) {
     std::vector<std::string> names;
     for (const LutPresetSet& set : lut_preset_sets()) {
+        if (application == set.host->id) return;
         names.emplace_back(set.host->id);
+    }
+    throw Error("bake: application is " + application + "; expected " + join_choices(names) +
+                " with --all" + did_you_mean(application, names));
+}
+
+std::vector<ShippedLut> bake_shipped_luts(const std::string& application) {
+    if (!application.empty()) require_preset_set(application);
+    std::vector<ShippedLut> luts;
+    for (const LutPresetSet& set : lut_preset_sets()) {
         if (!application.empty() && application != set.host->id) continue;
         for (const std::string& id : set.operators)
             luts.push_back(plan(set, id));
-    }
-    if (luts.empty()) {
-        throw Error("bake: application is " + application + "; expected " + join_choices(names) +
-                    " with --all" + did_you_mean(application, names));
     }
     in_parallel(luts.size(), 0, [&](std::size_t i) { bake(luts[i]); });
     return luts;

@@ -22,6 +22,9 @@ struct LutPresetSet {
 };
 [[nodiscard]] TONEWRIGHT_API const std::vector<LutPresetSet>& lut_preset_sets();
 
+/// @throws Error  no set is for this application
+TONEWRIGHT_API void require_preset_set(const std::string& application);
+
 /// A LUT of the set.
 struct ShippedLut {
     const LutPresetSet* set = nullptr;

@@ -483,7 +483,7 @@ def main():
         check_formulas(report, folder)
         check_errors(report, command, Path(scratch))
         jobs = [(check_operator, op["id"], (op,)) for op in share_of(operators, 2)]
-        jobs += [(check_group, name, (name, members)) for name, members in groups.items()]
+        jobs += [(check_group, name, (name, members)) for name, members in share_of(groups.items(), 2)]
 
         def run_job(job):
             check, what, arguments = job
@@ -493,7 +493,10 @@ def main():
                 report.check(what, False, repr(error))
 
         list(pool.map(run_job, jobs))
-        # One pair is as good as all: what is measured does not know which operators it is of.
+        # One pair is as good as all: what is measured does not know which operators it is of. Half a million colors
+        # through `eval` take seconds.
+        if not share_of([*[False] * 2, True], 3)[0]:
+            return report.finish()
         group = "AgX" if "AgX" in groups else next(iter(groups))
         check_distances(report, command, page, group, *[op["id"] for op in groups[group][:2]])
     return report.finish()

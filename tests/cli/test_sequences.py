@@ -391,7 +391,7 @@ def main():
         shots = Shots(command, report, Path(folder))
         checks = [check_names, check_jobs, check_missing, check_skip_existing, check_in_place, check_summary,
                   check_progress, check_vanishing, check_stopped, check_disks, check_unwritable]
-        for check in share_of(checks, 2):
+        for check in share_of(checks, 3):
             check(shots)
     return report.finish()
 

@@ -306,7 +306,7 @@ def main():
     hosts = json.loads(run(command, "list", "--hosts", "--json"))
     report.check("hosts", len(hosts) >= 18, len(hosts))
     with tempfile.TemporaryDirectory(prefix="tonewright-") as name:
-        for host in share_of(hosts, 2):
+        for host in share_of(hosts, 3):
             check_host(report, command, host, Path(name))
         check_formats(report, command, Path(name))
         check_fit(report, command, Path(name))

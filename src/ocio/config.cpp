@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <set>
@@ -112,31 +113,32 @@ std::string probe_csv(const ConfigModel& model,
     constexpr double exact = 1e-6;
     constexpr double between_samples = 3;
     const InputSpace& space = find_input_space("lin_rec709");
-    std::vector<Vector3> colors;
+    // Floats, as processors take them. Rounding all of them in a loop is wrong in GCC 12 at -O3:
+    // its vectorizer (-ftree-slp-vectorize) leaves out the way from double to float and back.
+    std::vector<std::array<float, 3>> colors;
+    const auto add = [&](double r, double g, double b) {
+        colors.push_back({static_cast<float>(r), static_cast<float>(g), static_cast<float>(b)});
+    };
     for (int stops = -12; stops <= 12; stops += 2) {
         const double v = 0.18 * std::exp2(stops);
-        colors.push_back({v, v, v});
+        add(v, v, v);
     }
     SampleRandom random(5);
     for (int i = 0; i < 24; ++i) {
         Vector3 v{};
         for (double& x : v)
             x = std::exp2(random.uniform(-10, 8));
-        colors.push_back(v);
+        add(v[0], v[1], v[2]);
     }
     const double light[] = {0.05, 0.8, 20};
     for (const double x : light) {
         for (int bits = 1; bits < 7; ++bits) {
-            colors.push_back({bits & 1 ? x : 0, bits & 2 ? x : 0, bits & 4 ? x : 0});
+            add(bits & 1 ? x : 0, bits & 2 ? x : 0, bits & 4 ? x : 0);
         }
     }
-    colors.push_back({0, 0, 0});
-    colors.push_back({-0.1, 0.2, 0.5});
-    colors.push_back({0.3, -0.05, 2});
-    for (Vector3& v : colors) {
-        for (double& x : v)
-            x = static_cast<double>(static_cast<float>(x));
-    }
+    add(0, 0, 0);
+    add(-0.1, 0.2, 0.5);
+    add(0.3, -0.05, 2);
     std::string text =
         "view,display,space,in_r,in_g,in_b,out_r,out_g,out_b,within_r,within_g,within_b\n";
     for (const auto& view : model.views) {
@@ -145,7 +147,9 @@ std::string probe_csv(const ConfigModel& model,
             const View shown = make_view(view.op, space.id, view.exposure_stops, display->id);
             const std::string name = config_view_name(view.name, shown.op, *display);
             const ReferenceEngine engine(build_view(shown));
-            for (const Vector3& v : colors) {
+            for (const auto& [r, g, b] : colors) {
+                const Vector3 v = {static_cast<double>(r), static_cast<double>(g),
+                                   static_cast<double>(b)};
                 const Vector3 out = engine(v);
                 double bound =
                     std::max(exact, between_samples * errors.at(view.name).at(display->title));

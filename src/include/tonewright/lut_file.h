@@ -28,8 +28,8 @@ class TONEWRIGHT_API LutFile {
     /// Nothing is taken from the file before it has been looked through: sizes, numbers of rows,
     /// numbers.
     ///
-    /// Formats that OpenColorIO reads go through a temporary copy: a file that was rewritten is read
-    /// again, and OpenColorIO's caches, log and settings stay those of the application.
+    /// Formats that OpenColorIO reads go through a temporary copy: a file that was rewritten is
+    /// read again, and OpenColorIO's caches, log and settings stay those of the application.
     /// @throws FileError  missing, malformed, of unknown format, or of a size that its reader has
     ///                    not; with path, line where there are lines, and reason. Also when the
     ///                    temporary folder cannot be written.

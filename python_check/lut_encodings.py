@@ -9,10 +9,9 @@ from typing import Callable, NamedTuple
 import numpy as np
 
 from operators.pq import pq_decode, pq_encode
-from operators.spaces import D65, PRIMARIES
+from operators.spaces import CAMERAS, D65, PRIMARIES
 
 # xy of red, green, blue, white.
-ALEXA_WIDE_GAMUT = ((0.6840, 0.3130), (0.2210, 0.8480), (0.0861, -0.1020), D65)  # ARRI, "ALEXA Log C Curve", 2017
 DAVINCI_WIDE_GAMUT = ((0.8000, 0.3130), (0.1682, 0.9877), (0.0790, -0.1155), D65)  # "DaVinci Resolve 17 Wide Gamut..."
 
 
@@ -75,7 +74,7 @@ def srgb_decode(code):
 
 ENCODINGS = {
     "acescct": Encoding(acescct_encode, acescct_decode, PRIMARIES["ap1"]),
-    "logc3": Encoding(logc3_encode, logc3_decode, ALEXA_WIDE_GAMUT),
+    "logc3": Encoding(logc3_encode, logc3_decode, CAMERAS["awg3"]),
     "davinci": Encoding(davinci_encode, davinci_decode, DAVINCI_WIDE_GAMUT),
     "unity_logc": Encoding(unity_logc_encode, unity_logc_decode, PRIMARIES["rec709"]),
     "srgb": Encoding(srgb_encode, srgb_decode, PRIMARIES["rec709"]),

@@ -18,6 +18,14 @@ PRIMARIES = {
     "ap0": ((0.7347, 0.2653), (0.0, 1.0), (0.0001, -0.0770), ACES_WHITE),  # SMPTE ST 2065-1
     "ap1": ((0.713, 0.293), (0.165, 0.830), (0.128, 0.044), ACES_WHITE),  # Academy S-2014-004
 }
+# Of cameras: ARRI, "ALEXA Log C Curve", 2017, and "LogC4", 2022; Sony, "Technical Summary for S-Gamut3.Cine/S-Log3".
+CAMERAS = {
+    "awg3": ((0.6840, 0.3130), (0.2210, 0.8480), (0.0861, -0.1020), D65),
+    "awg4": ((0.7347, 0.2653), (0.1424, 0.8576), (0.0991, -0.0308), D65),
+    "sgamut3": ((0.730, 0.280), (0.140, 0.855), (0.100, -0.050), D65),
+    "sgamut3cine": ((0.766, 0.275), (0.225, 0.800), (0.089, -0.087), D65),
+}
+CAT02 = np.array([[0.7328, 0.4296, -0.1624], [-0.7036, 1.6975, 0.0061], [0.0030, 0.0136, 0.9834]])  # CIE 159:2004
 BRADFORD = np.array([[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]])
 
 
@@ -47,17 +55,26 @@ def rgb_to_xyz(space):
     return columns * np.linalg.solve(columns, xyz(white))
 
 
-def rgb_to_rgb(source, target):
+def rgb_to_rgb(source, target, cone=BRADFORD):
     """Matrix between linear RGB spaces, Bradford-adapted (ICC.1 annex E) where their whites differ.
+
+    The makers of CAMERAS state their matrix to ACES2065-1 with CAT02, so those gamuts go through ACES2065-1.
 
     >>> rgb_to_rgb("ap0", "ap1")[0].round(10).tolist()  # Academy S-2014-004: 1.4514393161, ...
     [1.4514393161, -0.2365107469, -0.2149285693]
+    >>> rgb_to_rgb(CAMERAS["awg3"], "ap0")[0].round(5).tolist()  # the Academy's IDT by ARRI: 0.680206, ...
+    [0.68021, 0.23614, 0.08366]
     """
     if source == target:
         return np.eye(3)
+    cameras = CAMERAS.values()
+    if cone is BRADFORD and (source in cameras or target in cameras):
+        to_ap0, from_ap0 = (rgb_to_rgb(space, "ap0", CAT02 if space in cameras else None) for space in (source, target))
+        return np.linalg.solve(from_ap0, to_ap0)
+    cone = BRADFORD if cone is None else cone
     whites = [chromaticities(space)[3] for space in (source, target)]
-    cones = [BRADFORD @ xyz(white) for white in whites]
-    adapt = np.linalg.solve(BRADFORD, np.diag(cones[1] / cones[0]) @ BRADFORD)
+    cones = [cone @ xyz(white) for white in whites]
+    adapt = np.linalg.solve(cone, np.diag(cones[1] / cones[0]) @ cone)
     if whites[0] == whites[1]:
         adapt = np.eye(3)
     return np.linalg.solve(rgb_to_xyz(target), adapt @ rgb_to_xyz(source))

@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <regex.h>
+#include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -19,6 +20,7 @@
 #include <system_error>
 #include <utility>
 
+#include "base/input_file.h"
 #include "base/strings.h"
 #include "tonewright/error.h"
 #include "tonewright/generated_files.h"
@@ -35,21 +37,30 @@ namespace {
 fs::path resolve_target(const std::string& path, std::string& why) {
     std::error_code error;
     fs::path target = path;
+    why = why_no_file(path);
+    if (!why.empty()) return target;
     if (fs::is_symlink(fs::symlink_status(target, error))) {
         target = fs::weakly_canonical(target, error);
         if (error) why = error.message();
     }
-    // Renaming over a device or a directory would destroy it, or fail late.
-    const fs::file_status status = fs::status(target, error);
-    if (fs::exists(status) && !fs::is_regular_file(status)) {
-        why = fs::is_directory(status) ? "it is a directory" : "it is no regular file";
-    }
+    // Renaming over a device or a folder would destroy it, or fail late.
+    if (why.empty()) why = why_no_file(target);
     return target;
 }
 
 /// Stem and extension of the temporary names of a target. Names have at most 255 bytes.
 std::pair<std::string, std::string> name_parts(const fs::path& target) {
     return {target.stem().string().substr(0, 200), target.extension().string()};
+}
+
+/// That nobody else can guess.
+std::uint64_t random_bits() {
+    std::uint64_t bits = 0;
+    if (::getrandom(&bits, sizeof bits, 0) == static_cast<ssize_t>(sizeof bits)) return bits;
+    // An old kernel. O_EXCL still keeps two writers apart.
+    static std::atomic<std::uint64_t> count = 0;
+    return static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count()) +
+           count++;
 }
 
 /// Identifies the machine and the container, within which a process id means one process.
@@ -63,8 +74,8 @@ const std::string& machine_tag() {
     return tag;
 }
 
-/// The names of the unfinished temporary files, for the signal handler. The one that takes a name
-/// out removes the file.
+/// The names of the unfinished temporary files and of new folders, for the signal handler. The one
+/// that takes a name out removes the file.
 std::array<std::atomic<const char*>, 256> unfinished_names;
 static_assert(std::atomic<const char*>::is_always_lock_free);
 
@@ -92,7 +103,8 @@ void release_unfinished(std::atomic<const char*>*& place) {
 void remove_unfinished(int number) {
     is_ending = true;
     for (std::atomic<const char*>& place : unfinished_names) {
-        if (const char* name = place.exchange(nullptr)) ::unlink(name);
+        // Folders stay where something is in them.
+        if (const char* name = place.exchange(nullptr); name && ::unlink(name) != 0) ::rmdir(name);
     }
     ::signal(number, SIG_DFL);
     ::raise(number);
@@ -103,7 +115,8 @@ std::vector<std::string> parts_of_temporary(const std::string& name) {
     // <regex> costs five seconds of compiling, this one nothing.
     static const regex_t pattern = [] {
         regex_t compiled;
-        (void)::regcomp(&compiled, R"(^\.(.+)\.([0-9a-f]{8})\.([0-9]{1,9})\.[0-9]+\.tmp(\..*)?$)",
+        (void)::regcomp(&compiled,
+                        R"(^\.(.+)\.([0-9a-f]{8})\.([0-9]{1,9})\.[0-9a-f]+\.tmp(\..*)?$)",
                         REG_EXTENDED);
         return compiled;
     }();
@@ -126,6 +139,7 @@ void remove_unfinished_files_on_signals() {
         // nohup stays in force.
         if (::signal(number, remove_unfinished) == SIG_IGN) ::signal(number, SIG_IGN);
     }
+    ::signal(SIGXFSZ, SIG_IGN);
 }
 
 void remove_leftovers(const std::vector<std::string>& paths) {
@@ -154,11 +168,10 @@ void remove_leftovers(const std::vector<std::string>& paths) {
 }
 
 AtomicFile::AtomicFile(const std::string& path) {
-    static std::atomic<unsigned> count = 0;
     target_ = resolve_target(path, refusal_);
     const auto [stem, extension] = name_parts(target_);
-    path_ = target_.parent_path() /
-            fmt::format(".{}.{}.{}.{}.tmp{}", stem, machine_tag(), ::getpid(), count++, extension);
+    path_ = target_.parent_path() / fmt::format(".{}.{}.{}.{:016x}.tmp{}", stem, machine_tag(),
+                                                ::getpid(), random_bits(), extension);
     unfinished_ = register_unfinished(path_.string());
 }
 
@@ -174,15 +187,17 @@ int AtomicFile::check_target() const {
     return ::access(target_.c_str(), W_OK) == 0 || errno == ENOENT ? 0 : errno;
 }
 
-void AtomicFile::settle() {
-    if (!is_ending) return;
+int AtomicFile::create() {
+    const int file =
+        ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    if (file < 0 || !is_ending) return file;
     ::unlink(path_.c_str());
     while (true)
         ::pause();
 }
 
 int AtomicFile::keep() {
-    const int file = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC);
+    const int file = ::open(path_.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
     if (file < 0) return errno;
     struct stat old {};
     if (::stat(target_.c_str(), &old) == 0) (void)::fchmod(file, old.st_mode & 07777);
@@ -210,10 +225,8 @@ void write_text_atomically(const std::string& path, std::string_view contents) {
     AtomicFile target(path);
     if (!target.refusal().empty()) refuse(target.refusal());
     if (const int error = target.check_target()) fail(error);
-    const int file =
-        ::open(target.path().c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
+    const int file = target.create();
     if (file < 0) fail(errno);
-    target.settle();
     std::size_t written = 0;
     int error = 0;
     while (written < contents.size() && error == 0) {
@@ -231,26 +244,34 @@ void write_text_atomically(const std::string& path, std::string_view contents) {
 
 namespace {
 void make_folder(const fs::path& folder) {
+    std::vector<std::string> missing;  // the deepest first: so they are removed
     std::error_code error;
+    for (fs::path path = folder; !path.empty() && !fs::exists(path, error) && !error;
+         path = path.parent_path())
+        missing.push_back(path.string());
     fs::create_directories(folder, error);
     if (error) throw FileError("write: " + folder.string() + ": " + error.message());
+    for (const std::string& path : missing)
+        (void)register_unfinished(path);
 }
 }  // namespace
 
 void require_writable_folder(const std::string& folder) {
     const fs::path root(folder);
     make_folder(root);
-    const fs::path probe = root / ".tonewright";
-    write_text_atomically(probe.string(), "");
-    std::error_code error;
-    fs::remove(probe, error);
+    AtomicFile probe((root / ".tonewright").string());  // which is never kept
+    const int file = probe.create();
+    if (file < 0) throw FileError("write: " + folder + ": " + reason_of(errno));
+    ::close(file);
 }
 
 void write_generated_files(const std::string& folder, const std::vector<GeneratedFile>& files,
                            std::string_view last) {
     const fs::path root(folder);
     std::set<std::string> stale;
-    if (std::ifstream manifest(root / "MANIFEST.csv"); manifest) {
+    const fs::path old_manifest = root / "MANIFEST.csv";
+    if (std::ifstream manifest; why_no_file(old_manifest.string()).empty()) {
+        manifest.open(old_manifest);
         std::string line;
         std::getline(manifest, line);  // column names; the first column is the path
         while (std::getline(manifest, line)) {

@@ -17,8 +17,8 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// A file that is written under a temporary name beside its target and gets the target's name when
 /// it is complete. A failed or killed run leaves the old file whole.
 ///
-/// The temporary name is `.<stem>.<machine>.<pid>.<n>.tmp.<extension>`. The extension comes last
-/// because it selects the format.
+/// The temporary name is `.<stem>.<machine>.<pid>.<random>.tmp.<extension>`. The extension comes
+/// last because it selects the format. Nobody can guess the name and put a link there.
 class TONEWRIGHT_API AtomicFile {
   public:
     /// Touches nothing yet. Follows symbolic links.
@@ -32,14 +32,17 @@ class TONEWRIGHT_API AtomicFile {
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
     /// Where the bytes go in the end.
     [[nodiscard]] const std::filesystem::path& target() const { return target_; }
-    /// Why no file can be written there (a directory, a device, a broken link); empty if one can.
+    /// Why no file can be written there (a folder, a device, a pipe, a broken link); empty if one
+    /// can.
     [[nodiscard]] const std::string& refusal() const { return refusal_; }
     /// Renaming asks only the folder for permission, and would replace a write-protected file.
     /// @returns  0 or an errno.
     [[nodiscard]] int check_target() const;
-    /// Call after the temporary file was created. If a signal is removing unfinished files at this
-    /// moment, removes this one too and waits for the end of the process.
-    void settle();
+    /// Creates the temporary file, which nothing else may have made, and opens it for writing. If a
+    /// signal is removing unfinished files at this moment, removes it and waits for the end of the
+    /// process.
+    /// @returns  a descriptor, which the caller closes; or -1, and an errno in `errno`.
+    [[nodiscard]] int create();
     /// Gives the temporary file the permissions of the old one, syncs it and renames it.
     /// @returns  0 or an errno.
     [[nodiscard]] int keep();
@@ -55,7 +58,8 @@ class TONEWRIGHT_API AtomicFile {
 TONEWRIGHT_API void write_text_atomically(const std::string& path, std::string_view contents);
 
 /// Creates the folder if it is missing, and a file in it for a moment, so that a long computation
-/// does not find out at its end that it cannot write.
+/// does not find out at its end that it cannot write. A signal that ends the program removes the
+/// folder if nothing was written into it.
 /// @throws FileError  naming the path and the reason.
 TONEWRIGHT_API void require_writable_folder(const std::string& folder);
 
@@ -64,8 +68,9 @@ TONEWRIGHT_API void require_writable_folder(const std::string& folder);
 /// cannot be asked). Files that cannot be removed stay.
 TONEWRIGHT_API void remove_leftovers(const std::vector<std::string>& paths);
 
-/// On SIGINT, SIGTERM and SIGHUP, removes unfinished files before the process ends. For a program
-/// to call once.
+/// On SIGINT, SIGTERM and SIGHUP, removes unfinished files and new empty folders before the process
+/// ends; a file that becomes too large (SIGXFSZ) is an error of writing it, and ends nothing. For a
+/// program to call once.
 TONEWRIGHT_API void remove_unfinished_files_on_signals();
 
 TONEWRIGHT_NAMESPACE_END

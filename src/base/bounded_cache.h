@@ -41,7 +41,7 @@ class BoundedCache {
         if (const std::shared_future<Pointer> known = find_or_add(key, promise, id); known.valid())
             return known.get();
         try {
-            const Pointer value(new Value(make()));
+            Pointer value(new Value(make()));
             promise.set_value(value);
             return value;
         } catch (...) {

@@ -65,7 +65,7 @@ void append_decimal(std::string& text, std::int64_t digits, int exponent) {
         fixed.append(static_cast<std::size_t>(exponent), '0');
     } else if (-exponent < count) {
         fixed = number;
-        fixed.insert(static_cast<std::size_t>(count + exponent), 1, '.');
+        fixed.insert(fixed.end() + exponent, '.');
     } else {
         fixed = '.';
         fixed.append(static_cast<std::size_t>(-exponent - count), '0');

@@ -7,49 +7,182 @@
 #include <cstdint>
 #include <filesystem>
 
+#include "tonewright/error.h"
+
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
-/// Levenshtein distance, without regard to case.
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// Of inserting, dropping or replacing a letter. Other digits are another thing, not a slip.
+std::size_t cost_of(char a, char b = ' ') { return is_digit(a) || is_digit(b) ? 2 : 1; }
+
+/// Damerau-Levenshtein distance (optimal string alignment): two letters that changed places are
+/// one slip.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-    std::vector<std::size_t> row(b.size() + 1);
-    for (std::size_t j = 0; j <= b.size(); ++j)
-        row[j] = j;
-    for (std::size_t i = 1; i <= a.size(); ++i) {
-        std::size_t diagonal = row[0];
-        row[0] = i;
-        for (std::size_t j = 1; j <= b.size(); ++j) {
-            const std::size_t substitute = diagonal + (lower(a[i - 1]) == lower(b[j - 1]) ? 0 : 1);
-            diagonal = row[j];
-            row[j] = std::min({substitute, row[j] + 1, row[j - 1] + 1});
+    std::vector<std::vector<std::size_t>> rows(a.size() + 1,
+                                               std::vector<std::size_t>(b.size() + 1));
+    for (std::size_t j = 0; j < b.size(); ++j)
+        rows[0][j + 1] = rows[0][j] + cost_of(b[j]);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        std::vector<std::size_t>& row = rows[i + 1];
+        row[0] = rows[i][0] + cost_of(a[i]);
+        for (std::size_t j = 0; j < b.size(); ++j) {
+            const std::size_t change = a[i] == b[j] ? 0 : cost_of(a[i], b[j]);
+            row[j + 1] = std::min(
+                {rows[i][j] + change, rows[i][j + 1] + cost_of(a[i]), row[j] + cost_of(b[j])});
+            if (i > 0 && j > 0 && a[i] == b[j - 1] && a[i - 1] == b[j])
+                row[j + 1] = std::min(row[j + 1], rows[i - 1][j - 1] + 1);
         }
     }
-    return row[b.size()];
+    return rows[a.size()][b.size()];
+}
+
+/// The words of a folded name.
+std::vector<std::string_view> words_of(std::string_view name) {
+    constexpr std::string_view kBetween = "_.:,()/";
+    std::vector<std::string_view> words;
+    while (!name.empty()) {
+        const std::size_t end = std::min(name.find_first_of(kBetween), name.size());
+        if (end > 0) words.push_back(name.substr(0, end));
+        name.remove_prefix(std::min(end + 1, name.size()));
+    }
+    return words;
+}
+
+std::string joined_words(std::string_view name) {
+    std::string joined;
+    for (const std::string_view word : words_of(name))
+        joined += word;
+    return joined;
+}
+
+/// Bytes of the character that a text begins with; 0 where that is a control character or no UTF-8.
+/// Controls of two bytes (C1) and marks that change the direction of writing count as controls.
+std::size_t utf8_length(std::string_view text) {
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    if (byte(0) < 0x80) return byte(0) >= 0x20 && byte(0) != 0x7f ? 1 : 0;
+    const std::size_t length = byte(0) >= 0xf0 ? 4 : byte(0) >= 0xe0 ? 3 : 2;
+    if (byte(0) < 0xc2 || byte(0) > 0xf4 || text.size() < length) return 0;
+    std::uint32_t point = byte(0) & (0x7f >> length);
+    for (std::size_t i = 1; i < length; ++i) {
+        if ((byte(i) & 0xc0) != 0x80) return 0;
+        point = point << 6 | (byte(i) & 0x3f);
+    }
+    constexpr std::uint32_t kSmallest[] = {0, 0, 0x80, 0x800, 0x10000};
+    const bool is_character =
+        point >= kSmallest[length] && point <= 0x10ffff && (point < 0xd800 || point > 0xdfff);
+    const bool is_control = point < 0xa0 || (point >= 0x200e && point <= 0x200f) ||
+                            (point >= 0x2028 && point <= 0x202e) ||
+                            (point >= 0x2066 && point <= 0x2069);
+    return is_character && !is_control ? length : 0;
+}
+
+}  // namespace
+
+std::string folded_name(std::string_view name) {
+    std::string folded;
+    bool is_between = false;
+    for (const char c : name) {
+        if (c == '-' || c == '_' || c == ' ' || (c >= '\t' && c <= '\r')) {
+            is_between = true;
+            continue;
+        }
+        if (is_between && !folded.empty()) folded += '_';
+        is_between = false;
+        folded += lower(c);
+    }
+    return folded;
+}
+
+bool is_same_name(std::string_view a, std::string_view b) {
+    return folded_name(a) == folded_name(b);
+}
+
+std::vector<std::string> likely_names(std::string_view name,
+                                      const std::vector<NamedChoice>& choices) {
+    constexpr std::size_t kMost = 3;
+    constexpr std::size_t kLongest = 64;  // is no name, and the distance takes its square
+    const std::string typed = folded_name(name);
+    if (typed.empty() || typed.size() > kLongest) return {};
+    const auto first_of = [&](const auto& fits) {
+        std::vector<std::string> found;
+        for (const NamedChoice& choice : choices) {
+            bool is_fitting = fits(folded_name(choice.id));
+            for (const std::string& other : choice.names)
+                is_fitting = is_fitting || fits(folded_name(other));
+            if (is_fitting && found.size() < kMost) found.push_back(choice.id);
+        }
+        return found;
+    };
+    const auto has_word = [&](const std::string& candidate) {
+        const std::vector<std::string_view> words = words_of(candidate);
+        return typed.size() > 1 && std::find(words.begin(), words.end(), typed) != words.end();
+    };
+    if (std::vector<std::string> found = first_of(has_word); !found.empty()) return found;
+    // People leave separators out, or put them in: `aces2` is the beginning of aces_20.
+    const std::string joined = joined_words(typed);
+    const auto joined_so = [&](const std::string& candidate) {
+        return joined_words(candidate) == joined;
+    };
+    if (std::vector<std::string> found = first_of(joined_so); !found.empty()) return found;
+    const auto begins_so = [&](const std::string& candidate) {
+        return joined.size() > 2 && joined_words(candidate).starts_with(joined);
+    };
+    if (std::vector<std::string> found = first_of(begins_so); !found.empty()) return found;
+
+    std::string best;
+    std::size_t least = std::max<std::size_t>(typed.size() / 3, 1) + 1;
+    const auto measure = [&](const std::string& candidate) {
+        const std::size_t distance = edit_distance(typed, folded_name(candidate));
+        if (distance >= least) return;
+        least = distance;
+        best = candidate;
+    };
+    for (const NamedChoice& choice : choices) {
+        measure(choice.id);
+        for (const std::string& other : choice.names)
+            measure(other);
+    }
+    if (best.empty()) return {};
+    return {best};
+}
+
+namespace {
+
+std::vector<NamedChoice> without_other_names(const std::vector<std::string>& candidates) {
+    std::vector<NamedChoice> choices;
+    choices.reserve(candidates.size());
+    for (const std::string& candidate : candidates)
+        choices.push_back({candidate});
+    return choices;
 }
 
 }  // namespace
 
 std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates) {
-    std::string best;
-    std::size_t best_distance = name.size() / 3 + 2;  // farther is no slip of the fingers
-    for (const std::string& candidate : candidates) {
-        std::size_t distance = edit_distance(name, candidate);
-        // "agx" for agx_sobotka: a beginning counts as near.
-        if (name.size() >= 3 && candidate.starts_with(name))
-            distance = std::min<std::size_t>(distance, 1);
-        if (distance < best_distance) {
-            best_distance = distance;
-            best = candidate;
-        }
-    }
-    return best;
+    const std::vector<std::string> likely = likely_names(name, without_other_names(candidates));
+    return likely.empty() ? "" : likely.front();
 }
 
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates) {
-    const std::string nearest = nearest_name(name, candidates);
-    return nearest.empty() ? "" : "; did you mean " + nearest + "?";
+    return did_you_mean(name, without_other_names(candidates));
+}
+
+std::string did_you_mean(std::string_view name, const std::vector<NamedChoice>& choices) {
+    const std::vector<std::string> likely = likely_names(name, choices);
+    return likely.empty() ? "" : "; did you mean " + join_choices(likely) + "?";
+}
+
+std::size_t find_choice(std::string_view what, std::string_view text,
+                        const std::vector<std::string>& choices) {
+    for (std::size_t i = 0; i < choices.size(); ++i) {
+        if (is_same_name(choices[i], text)) return i;
+    }
+    throw Error(fmt::format("{} is {}; expected {}{}", what, text, join_choices(choices),
+                            did_you_mean(text, choices)));
 }
 
 std::string join_choices(const std::vector<std::string>& choices) {
@@ -67,11 +200,6 @@ std::string lowercase(std::string_view text) {
     return result;
 }
 
-bool equal_ignoring_case(std::string_view a, std::string_view b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                      [](char x, char y) { return lower(x) == lower(y); });
-}
-
 std::string extension_of(const std::string& path) {
     return lowercase(std::filesystem::path(path).extension().string());
 }
@@ -87,6 +215,30 @@ std::string first_line(std::string_view text) {
     const std::size_t begin = text.find_first_not_of("\r\n ");
     if (begin == std::string_view::npos) return "unknown error";
     return std::string(text.substr(begin, text.find_first_of("\r\n", begin) - begin));
+}
+
+std::string one_line(std::string_view text, std::size_t longest) {
+    std::string line;
+    bool is_blank = false;
+    for (std::size_t i = 0; i < text.size() && line.size() < longest;) {
+        const char c = text[i];
+        if (c == ' ' || (c >= '\t' && c <= '\r')) {
+            is_blank = !line.empty();
+            ++i;
+            continue;
+        }
+        if (is_blank) line += ' ';
+        is_blank = false;
+        const std::size_t length = utf8_length(text.substr(i));
+        if (length == 0) {
+            line += '?';
+            ++i;
+        } else {
+            line += text.substr(i, length);
+            i += length;
+        }
+    }
+    return text.size() > longest && line.size() >= longest ? line + "..." : line;
 }
 
 std::string printable(std::string_view text, std::size_t longest) {

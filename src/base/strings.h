@@ -12,14 +12,16 @@ TONEWRIGHT_NAMESPACE_BEGIN
 
 /// Folds ASCII letters, whatever the locale.
 [[nodiscard]] TONEWRIGHT_API std::string lowercase(std::string_view text);
-/// Compares without regard to the case of ASCII letters.
-[[nodiscard]] TONEWRIGHT_API bool equal_ignoring_case(std::string_view a, std::string_view b);
 /// The extension of a path in lower case, with its dot; empty if there is none.
 [[nodiscard]] TONEWRIGHT_API std::string extension_of(const std::string& path);
 /// Without the blanks (space, tab, line ends) at both ends.
 [[nodiscard]] TONEWRIGHT_API std::string_view trimmed(std::string_view text);
 /// The first line of a message that may have several; "unknown error" for an empty one.
 [[nodiscard]] TONEWRIGHT_API std::string first_line(std::string_view text);
+/// A message as one line: runs of blanks and line ends become one space, other control characters
+/// `?`, bytes of no UTF-8 `?`; what is beyond `longest` bytes becomes `...`.
+[[nodiscard]] TONEWRIGHT_API std::string one_line(std::string_view text,
+                                                  std::size_t longest = 2000);
 /// Untrusted text, fit for a message of one line: every other byte than printable ASCII becomes
 /// `?`, and a long text ends in `...`.
 [[nodiscard]] TONEWRIGHT_API std::string printable(std::string_view text, std::size_t longest = 60);
@@ -28,13 +30,35 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// FNV-1a, 32 bits, as 8 hexadecimal digits.
 [[nodiscard]] TONEWRIGHT_API std::string content_hash(std::string_view contents);
 
-/// The candidate with the smallest edit distance to `name`, or empty when none is near enough to be
-/// a likely typing mistake (more than a third of the letters wrong).
+/// A name as names are compared: in lower case, and runs of blanks, `-` and `_` are one `_`.
+[[nodiscard]] TONEWRIGHT_API std::string folded_name(std::string_view name);
+/// True where both names are the same once folded.
+[[nodiscard]] TONEWRIGHT_API bool is_same_name(std::string_view a, std::string_view b);
+
+/// What a user can name: its id, and its other names.
+struct NamedChoice {
+    std::string id;
+    std::vector<std::string> names = {};
+};
+/// The choices that `name` is likely meant for, at most three, the first of them first: those that
+/// have it for a word ("p3" in display_p3), else those that begin with it, else the one that it is
+/// a slip of the fingers of. Of a slip, at most a third of the letters are wrong, and digits count
+/// twice: rec709 and rec2020 are two things.
+[[nodiscard]] TONEWRIGHT_API std::vector<std::string> likely_names(
+    std::string_view name, const std::vector<NamedChoice>& choices);
+/// The first of them, or empty.
 [[nodiscard]] TONEWRIGHT_API std::string nearest_name(std::string_view name,
                                                       const std::vector<std::string>& candidates);
 /// `; did you mean <nearest>?`, or empty.
 [[nodiscard]] TONEWRIGHT_API std::string did_you_mean(std::string_view name,
                                                       const std::vector<std::string>& candidates);
+[[nodiscard]] TONEWRIGHT_API std::string did_you_mean(std::string_view name,
+                                                      const std::vector<NamedChoice>& choices);
+/// The index of the choice that `text` names, once folded.
+/// @param what   names the choice in the message: "plot: --y"
+/// @throws Error  `<what> is <text>; expected <choices>[; did you mean <nearest>?]`
+[[nodiscard]] TONEWRIGHT_API std::size_t find_choice(std::string_view what, std::string_view text,
+                                                     const std::vector<std::string>& choices);
 /// `a, b or c`.
 [[nodiscard]] TONEWRIGHT_API std::string join_choices(const std::vector<std::string>& choices);
 

@@ -9,85 +9,140 @@ namespace {
 
 /// --frames, --missing, --skip-existing, --jobs. @returns  the first
 Option add_frame_options(const Command& command, FrameOptions& options) {
+    const char* const group = "Frames of a shot";
     const Option frames = command.add(
         "--frames", options.frames,
-        "frames such as 1001-1100, 1-9x2 (every second) or 1,5,10-20: `in` and `out` "
-        "have %04d, #### (# is four digits, too) or @@@@ (as many digits; in the file's name) "
-        "where "
-        "the number stands. The exit code is 1 if any failed; the others are whole");
+        "frames such as 1001-1100, 1-9x2 or 1,5,10-20; IN and OUT have %04d, #### or @@@@ for the "
+        "number");
+    frames.value("RANGE").group(group);
     command
-        .add("--missing", options.missing,
-             "frames whose `in` is not there: `error` (they fail), `skip` (they are left out) or "
-             "`hold` (the nearest earlier frame that is there stands for them, as in players; it "
-             "need not be of --frames; without one in the 1000 before they fail)")
-        .show_default()
+        .add_flag("--skip-existing", options.skip_existing,
+                  "skip frames whose output is complete and up to date")
+        .group(group)
         .needs(frames);
     command
-        .add_flag(
-            "--skip-existing", options.skip_existing,
-            "leave frames whose `out` is newer than `in`, has the size and pixel type that it "
-            "would get and can be read to its end: goes on where a run was stopped. It does "
-            "not know the options of that run: after a change of operator, exposure, display "
-            "... leave it out, or remove the files")
+        .add("--missing", options.missing,
+             "missing input frames: `error`, `skip`, or `hold` (use the last earlier frame)")
+        .value("ACTION")
+        .show_default()
+        .group(group)
         .needs(frames);
     command
         .add("--jobs", options.jobs,
-             "frames at a time, each with memory of its own; the --threads are shared among "
-             "them. 0 = as many as threads")
+             "number of frames processed at a time; 0 is the number of threads")
+        .value("N")
         .show_default()
         .range(0, 256)
+        .group(group)
         .needs(frames);
     return frames;
+}
+
+/// How the file is written.
+void add_file_options(const Command& command, ApplyOptions& options) {
+    const char* const group = "Output";
+    command.add("-d", options.type, "uint8, uint16, half or float (default: the format's)")
+        .value("TYPE")
+        .group(group);
+    command
+        .add("--alpha", options.alpha,
+             "`keep`, `ignore` (leave it out) or `opaque` (1); the last two do not divide by it")
+        .value("ACTION")
+        .show_default()
+        .group(group);
+    command.add_flag("--in-place", options.is_in_place, "allow the output to replace the input")
+        .group(group);
+    command
+        .add("--compression", options.compression,
+             "compression of the format, as in oiiotool: zip, dwaa:60, lzw, jpeg:90, ...")
+        .value("NAME")
+        .group(group);
+    command
+        .add("--quality", options.quality,
+             "quality of JPEG, WebP, HEIC and DWA (default: the format's)")
+        .value("N")
+        .range(1, 100)
+        .group(group);
+    command
+        .add_flag("--no-metadata", options.has_no_metadata,
+                  "do not write version, operator, exposure and display into the file")
+        .group(group);
+    command
+        .add("--max-pixels", options.max_pixels,
+             "limit of the display window that is filled with black around the picture")
+        .value("N")
+        .show_default()
+        .range(1, 1e12)
+        .group(group);
 }
 
 }  // namespace
 
 void add_apply(CommandLine& program) {
     auto options = std::make_shared<ApplyOptions>();
-    const Command command = program.add("apply", "tone map a picture, or the frames of a shot");
-    command.add("in", options->in, "picture, any format that OpenImageIO reads").required();
-    command.add("out", options->out, "picture to write; the extension says the format").required();
-    const Option op = command.add("--operator", options->op, "operator, or operator:preset");
-    const Option false_color =
-        command.add_flag("--false-color", options->is_false_color,
-                         "where the light is: a color for every stop, the operator false_color");
-    false_color.excludes(op);
-    const Option frames = add_frame_options(command, options->frames);
+    const Command command = program.add("apply", "Tone map a picture or the frames of a shot.");
+    command.group("Pictures");
+    command
+        .add("in", options->pictures,
+             "pictures, folders or @FILE (one name a line); without -o, the last one is the output")
+        .required();
+    command.add("-o,--output", options->output, "picture to write, or folder for several pictures")
+        .value("OUT")
+        .group("Output");
+    command.add("--format", options->format, "extension of the pictures in a folder")
+        .value("EXT")
+        .group("Output");
+    const Option op = command.add("--operator", options->op,
+                                  "operator[:preset][:name=value] or view (default: AgX)");
+    op.value("NAME").group("Operator");
     options->input = "auto";
     add_view_options(command, *options);
     command.option("--input").describe(
-        "what the input's numbers are: `auto`, what the picture says (`oiio:ColorSpace`, "
-        "chromaticities, ...; linear Rec.709 where it says nothing), a scene-linear space, or "
-        "sRGB, "
-        "Rec709, Gamma2.2 or a display, whose code values are decoded");
-    command.add("-d", options->type, "pixel type of the output: uint8, uint16, half or float");
+        "color space of the input: a space, a display or `auto` (what the file says)");
+    command.option("--exposure").group("Exposure");
+    const Option false_color =
+        command.add_flag("--false-color", options->is_false_color,
+                         "show exposure as colors, one for every stop (operator false_color)");
+    false_color.group("Operator").excludes(op);
+    const Option legend = command.add_flag("--legend", options->has_legend,
+                                           "draw what the colors mean below the picture");
+    legend.group("Operator").needs(false_color);
     command
         .add("--statistics", options->statistics,
-             "parameters that a picture has (its largest luminance, ...) and --set does "
-             "not name: each `picture`'s own, those of the `sequence` of --frames, or "
-             "`defaults`")
-        .show_default();
+             "operators measure each `picture`, the whole `sequence`, or use `defaults`")
+        .value("NAME")
+        .show_default()
+        .group("Operator");
+    add_file_options(command, *options);
+    command
+        .add_flag("--dither", options->dither,
+                  "dither 8-bit output by half a code value, alike in every frame")
+        .group("Pictures");
     add_picture_input(command, options->picture);
-    command.add_flag("--dither", options->dither,
-                     "noise of half a code value against bands, in files of 8 bits; the same in "
-                     "every frame");
     const Option metered = command
                                .add("--auto-exposure", options->metering.method,
-                                    "exposure from the picture's light: log-average, "
-                                    "histogram, mean or max; --exposure comes on top")
-                               .group("Metering");
+                                    "meter the picture: log-average, histogram, mean or max; "
+                                    "--exposure is added")
+                               .value("METHOD")
+                               .group("Exposure");
+    const Option frames = add_frame_options(command, options->frames);
+    for (const char* other : {"--frames", "--subimage", "--timeout"})
+        legend.excludes(command.option(other));
     add_exposure_options(command, options->metering, &metered);
     add_shot_options(command, options->shot, frames, &metered);
-    add_lut_options(command, options->lut, op,
-                    {"--set", "--look", "--display", "--reference-white", "--statistics",
-                     "--frames", "--false-color", "--auto-exposure", "--subimage", "--dither"});
+    add_lut_options(
+        command, options->lut, op,
+        {"--set", "--look", "--display", "--reference-white", "--statistics", "--frames",
+         "--false-color", "--auto-exposure", "--subimage", "--dither", "--timeout"});
+    command.common({"-o", "--format", "--operator", "--set", "--look", "--exposure",
+                    "--auto-exposure", "--input", "--display", "-d", "--frames", "--skip-existing",
+                    "--lut", "--input-encoding"});
     command.footer(
         "Examples:\n"
-        "  tonewright apply render.exr out.png --operator hable --exposure 1 -d uint8\n"
-        "  tonewright apply shot.%04d.exr out.####.png --frames 1001-1100 --operator agx_blender\n"
-        "  tonewright apply in.@@@@.exr out.@@@@.png --frames 1-99x2 --operator hable "
-        "--skip-existing\n"
-        "  tonewright apply render.exr out.png --lut agx.cube --input-encoding acescct -d uint8");
+        "  tonewright apply render.exr out.png --operator hable --exposure 1\n"
+        "  tonewright apply *.exr -o out/ --format png --operator \"AgX Punchy\"\n"
+        "  tonewright apply shot.####.exr out.####.png --frames 1001-1100\n"
+        "  tonewright apply render.exr out.png --lut agx.cube --input-encoding acescct");
     command.action([options, command] {
         options->given = command.given();
         return picture_commands().apply(*options);

@@ -5,7 +5,6 @@
 
 #include <zip.h>
 
-#include <ctime>
 #include <memory>
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -26,13 +25,13 @@ std::string make_archive(const std::vector<GeneratedFile>& files) {
     };
     const std::unique_ptr<zip_source_t, Closer> memory(
         zip_source_buffer_create(nullptr, 0, 0, &error));
-    if (!memory) fail("no memory");
+    if (!memory) fail("not enough memory");
     zip_source_keep(memory.get());  // the archive takes one of two
     std::unique_ptr<zip_t, Closer> archive(
         zip_open_from_source(memory.get(), ZIP_TRUNCATE, &error));
     if (!archive) {
         zip_source_free(memory.get());
-        fail("cannot be begun");
+        fail("cannot be created");
     }
     for (const GeneratedFile& file : files) {
         zip_source_t* contents =
@@ -44,9 +43,12 @@ std::string make_archive(const std::vector<GeneratedFile>& files) {
             zip_source_free(contents);
             throw Error("archive: " + file.path + ": " + zip_strerror(archive.get()));
         }
-        // 1980-01-01, the earliest that a ZIP can say: the same bytes on every day.
-        constexpr std::time_t kEarliest = 315532800;
-        zip_file_set_mtime(archive.get(), static_cast<zip_uint64_t>(index), kEarliest, 0);
+        // 1980-01-01, the earliest that a ZIP can say, in its own numbers: the same bytes on every
+        // day and in every time zone.
+        constexpr zip_uint16_t kMidnight = 0;
+        constexpr zip_uint16_t kEarliest = (1 << 5) | 1;
+        zip_file_set_dostime(archive.get(), static_cast<zip_uint64_t>(index), kMidnight, kEarliest,
+                             0);
     }
     if (zip_close(archive.get()) != 0)
         throw Error(std::string("archive: ") + zip_strerror(archive.get()));

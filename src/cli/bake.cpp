@@ -1,22 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <memory>
 
 #include "base/atomic_file.h"
+#include "base/format_number.h"
+#include "base/input_file.h"
 #include "base/strings.h"
+#include "cli/messages.h"
 #include "cli/picture_commands.h"
 #include "cli/shared_options.h"
 #include "lut/shipped_set.h"
 #include "measure/error_metric.h"
 #include "tonewright/lut.h"
 #include "tonewright/lut_applications.h"
+#include "tonewright/registry.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 struct Options : ViewOptions {
-    std::string format = "cube";
+    std::string format;
     std::string file;
     std::string encoding = "acescct";
     std::optional<int> size;
@@ -43,79 +48,131 @@ void require_lut_picture(const std::string& path, int bits) {
     }
 }
 
-/// What the host expects, where the user has not said otherwise.
-void take_from_host(Options& options) {
-    if (options.host.empty()) return;
-    const LutApplication& host = find_lut_application(options.host);
+/// What the application expects, where the user has not said otherwise.
+void take_from_host(Options& options, const LutApplication& host) {
     const auto is_given = [&](const char* option) { return options.given.contains(option); };
+    if (!is_given("--input") && !is_given("--input-encoding"))
+        options.input = lut_input_of(host, *resolve_operator(options.op).op);
     if (!is_given("--input-encoding")) options.encoding = host.encoding;
     if (!is_given("--display")) options.display = host.display;
-    if (is_given("--format")) return;  // another file than the host's own
-    options.format = name_of(host.format);
+    if (is_given("--format")) return;  // another file than the application's own
     if (is_given("--max-error") && is_strip(host.format)) {
-        throw Error("bake: max error is given for " + host.id + "; expected none, its size is " +
-                    std::to_string(host.size));
+        throw Error(
+            fmt::format("bake: --max-error is given for {}; expected none, because its size is {}",
+                        host.id, host.size));
     }
-    if (!is_given("--size") && !is_given("--max-error") && !options.one) options.size = host.size;
     if (!is_given("--depth")) options.bits = host.bits;
+    // A view of one curve for each channel is exact as a 1D table, where its primaries can be had.
+    if (host.takes_any_primaries && !options.three && is_per_channel(build_view(options.view())))
+        return;
+    if (!is_given("--size") && !is_given("--max-error") && !options.one) options.size = host.size;
     if (!options.one) options.three = true;
+}
+
+/// An operator that measures its picture has none here.
+void warn_of_constants(const ResolvedOperator& op) {
+    std::vector<std::string> constants;
+    for (const ParameterSpec& parameter : op.op->parameters) {
+        const bool is_set = op.settings.contains(parameter.name) ||
+                            (op.preset && op.preset->settings.contains(parameter.name));
+        if (!parameter.from_picture || is_set) continue;
+        constants.push_back(fmt::format("{} {} for the {}", parameter.name,
+                                        shortest(op.params.number(parameter.name)),
+                                        parameter.statistic));
+    }
+    if (constants.empty()) return;
+    warn(
+        fmt::format("{} measures each picture, which a LUT cannot do; the LUT uses {} (--set "
+                    "{}=... changes it)",
+                    op.label, fmt::join(constants, ", "),
+                    constants.front().substr(0, constants.front().find(' '))));
+}
+
+/// A 3D LUT that does not follow its operator in saturated lights.
+void warn_of_ringing(const std::string& file, const LutRequest& request, const BakedLut& baked) {
+    if (baked.lut.dimension != 3 || follows_operator(baked.ringing)) return;
+    const LutRinging& ringing = baked.ringing;
+    const std::string what =
+        rings(ringing)
+            ? fmt::format("rings: along rising exposure, {}, where {} does not", to_string(ringing),
+                          request.view.op.label)
+            : fmt::format("does not follow {} in saturated lights", request.view.op.label);
+    std::string remedy;
+    const Operator& op = *request.view.op.op;
+    for (const InputSpace& space : all_input_spaces()) {
+        if (space.primaries == op.working && space.id != request.view.input)
+            remedy = fmt::format("; use the operator's own primaries: --input {}", space.id);
+    }
+    if (remedy.empty() && baked.lut.size < 65 && !is_picture_format(request.format))
+        remedy = "; use more nodes: --size 65";
+    warn(
+        fmt::format("{} {}; errors there up to {} (99.9 %), because clips and kinks of the "
+                    "operator run between its nodes{}",
+                    file, what, rounded_up(ringing.p999), remedy));
 }
 
 void bake_one(Options& options) {
     if (options.op.empty())
-        throw Error("bake: operator is missing; expected an id of `tonewright list`, or --all DIR");
-    if (options.file.empty()) throw Error("bake: -o is missing; expected the file to write");
-    take_from_host(options);
+        throw Error(
+            "bake: OPERATOR is missing; expected an id from `tonewright list`, or --all FOLDER");
+    if (options.file.empty()) throw Error("bake: -o is missing; expected -o FILE");
+    const LutApplication* host =
+        options.host.empty() ? nullptr : &find_lut_application(options.host);
     LutRequest request;
-    request.format = parse_lut_format(options.format);
+    std::optional<LutFormat> format;
+    if (!options.format.empty()) format = parse_lut_format(options.format);
+    request.format = lut_format_of_file(options.file, format, host);
+    // Told before minutes of work.
+    if (const std::string why = why_no_file(options.file); !why.empty())
+        throw FileError(fmt::format("write: {}: {}", options.file, why));
+    if (!options.given.contains("--input"))
+        options.input = parse_input_encoding(options.encoding).default_input;
+    if (host) take_from_host(options, *host);
     request.encoding = parse_input_encoding(options.encoding);
-    if (!options.given.contains("--input")) options.input = request.encoding.default_input;
     request.view = options.view();
     request.size = options.size;
     request.bits = options.bits;
     request.icc_version = options.icc_version;
     if (options.given.contains("--icc-version") && request.format != LutFormat::icc)
-        throw Error("bake: ICC version is given for " + options.format + "; expected icc");
+        throw Error(fmt::format("bake: --icc-version is given for {}; expected format icc with it",
+                                name_of(request.format)));
     request.decimals = options.decimals;
     if (options.one) request.dimension = LutDimension::one;
     if (options.three) request.dimension = LutDimension::three;
-    const bool trilinear =
-        !options.host.empty() && is_trilinear(find_lut_application(options.host));
+    const bool trilinear = host && is_trilinear(*host);
     LutNodes nodes = LutNodes::automatic;
     if (options.nodes == "sampled") nodes = LutNodes::sampled;
     if (options.nodes == "fitted") nodes = LutNodes::fitted;
     const bool is_picture = is_picture_format(request.format);
     if (is_picture) require_lut_picture(options.file, request.bits.value_or(16));
+    warn_of_constants(request.view.op);
     const BakedLut baked = bake_lut(request, nodes, trilinear, options.max_error);
     const Lut& lut = baked.lut;
     const LutError& error = baked.error;
     request.size = lut.size;
+    warn_of_ringing(options.file, request, baked);
     if (is_picture) {
         picture_commands().write_lut(lut, request.format, options.file, request.bits.value_or(16));
     } else {
-        write_text_atomically(options.file, write_lut(lut, request, error, baked.other_error));
+        write_text_atomically(options.file, write_lut(baked, request));
     }
-    fmt::print(
-        stderr,
-        "{}: {}D, {} {}, {} in ({}), error max {}, 99.9 % {}, mean {} ({} interpolation{})\n",
+    print_result(fmt::format(
+        "{}: {}D, {} {}, {} in ({}), error max {}, 99.9 % {}, mean {} ({} interpolation{})",
         options.file, lut.dimension, lut.size, lut.dimension == 3 ? "a side" : "entries",
         lut.is_half_domain ? "scene-linear" : request.encoding.id, request.view.input,
         rounded_up(error.max), rounded_up(error.p999), rounded_up(error.mean), error.interpolation,
-        baked.is_fitted ? ", fitted nodes" : "");
+        baked.is_fitted ? ", fitted nodes" : ""));
     const std::string clipped = to_string(measure_clipping(request, lut));
     if (!clipped.empty()) {
-        fmt::print(stderr, "{}: clips what {} would show {}\n", options.file, request.view.op.label,
-                   clipped);
+        print_result(fmt::format("{}: clips what {} would show {}", options.file,
+                                 request.view.op.label, clipped));
     }
-    if (!options.host.empty()) {
-        const LutApplication& host = find_lut_application(options.host);
-        fmt::print(stderr, "{}: {}\n", host.title, host.steps);
-    }
+    if (host) print_result(fmt::format("{}: {}", host->title, host->steps));
 }
 
 int run_bake(Options& options) {
     if (options.all.empty()) {
-        bake_one(options);
+        with_memory_for(options.file, [&] { bake_one(options); });
         return kOk;
     }
     if (!options.op.empty())
@@ -129,58 +186,83 @@ int run_bake(Options& options) {
 
 void add_bake(CommandLine& program) {
     auto options = std::make_shared<Options>();
-    const Command command = program.add("bake", "a view or operator as a lookup table file");
+    const Command command = program.add("bake", "Write an operator as a LUT file.");
+    command.group("LUTs and configs");
+    const char* const output = "Output";
+    const char* const table = "Table";
     command.add("operator", options->op, "operator, or operator:preset");
+    command.add("-o", options->file, "file to write").value("FILE").group(output);
+    command
+        .add("--for", options->host,
+             "application that reads the LUT (see `tonewright list --hosts`); sets format, size, "
+             "input and display")
+        .value("NAME")
+        .group(output);
+    command.add("--format", options->format, "LUT format; see below (default: by the extension)")
+        .value("NAME")
+        .group(output);
+    command
+        .add("--all", options->all, "write the shipped LUTs; with --for, those of one application")
+        .value("FOLDER")
+        .group(output);
     add_view_options(command, *options);
-    command.add("-o", options->file, "file to write");
-    command.add("--for", options->host,
-                "application that reads it (`tonewright list --hosts`): format, size, "
-                "input and output are then what it expects, unless given");
+    command.add("--input-encoding", options->encoding, "encoding of the LUT's input; see below")
+        .value("NAME")
+        .show_default()
+        .group("Color");
     command
-        .add("--format", options->format,
-             "cube, clf, ctf, spi1d, spi3d, csp, resolve_cube (1D and 3D tables), 3dl, lut "
-             "(Houdini), icc (device link); hald, strip, strip_up (pictures); raw")
-        .show_default();
+        .add("--size", options->size,
+             "grid points a side (default 33) or entries of a 1D table (default 4096); see below")
+        .value("N")
+        .group(table);
     command
-        .add("--input-encoding", options->encoding,
-             "what goes in: acescct, logc3, logc4, slog3, davinci, unity_logc, unreal_log, "
-             "srgb (each of its own primaries unless --input says otherwise), pq[:WHITE] "
-             "(scene-linear 1 at WHITE cd/m2), log2[:LO:HI] (stops from 0.18, default "
-             "-10:6.5), linear[:LO:HI] (1D only)")
-        .show_default();
-    command.add(
-        "--size", options->size,
-        "grid points a side (17..129, default 33; 3dl 17, 33, 65; hald a square of 16..144, "
-        "default 64; strip 2..64, default 32; raw 2..129), or entries in 1D (default 4096)");
-    command.add("--max-error", options->max_error,
-                "instead of a size: the smallest of 17, 25, 33, 49, 65, 97 and 129 points a "
-                "side whose largest error is at most this, in code values");
+        .add("--max-error", options->max_error,
+             "choose the smallest size up to 129 whose largest error, in code values, is at most "
+             "this")
+        .value("VALUE")
+        .group(table);
+    const Option one =
+        command.add_flag("--1d", options->one, "write a 1D table; the view must be per channel");
+    one.group(table);
+    command.add_flag("--3d", options->three, "write a 3D LUT even where a 1D table would do")
+        .group(table)
+        .excludes(one);
     command
         .add("--nodes", options->nodes,
-             "values at the nodes: sampled, fitted (least error between them), or auto: "
-             "the nearer one")
+             "values at grid points: `sampled`, `fitted` (least error) or `auto` (no rings first)")
+        .value("NAME")
         .choices({"auto", "sampled", "fitted"})
-        .show_default();
-    command.add("--depth", options->bits,
-                "bits of a number: 8, 16 or 32 (float) in pictures, 10, 12 or 16 in 3dl");
-    command.add("--icc-version", options->icc_version, "of a device link")
+        .show_default()
+        .group(table);
+    command
+        .add("--decimals", options->decimals,
+             "decimals in a .cube file, 3..9 (default: all digits of a float)")
+        .value("N")
+        .group(table);
+    command
+        .add("--depth", options->bits,
+             "bits of a value: 8, 16 or 32 (float) in pictures, 10, 12 or 16 in 3dl")
+        .value("BITS")
+        .group(table);
+    command.add("--icc-version", options->icc_version, "version of a device link: 2 or 4")
+        .value("N")
         .choices({2, 4})
-        .show_default();
-    command.add("--decimals", options->decimals,
-                "of the numbers in a cube, 3..9 (default: as many as a float has); 4 round "
-                "by 5e-5, less than most cubes are off between their nodes");
-    const Option one = command.add_flag(
-        "--1d", options->one, "a 1D table; the view must be per channel in its own space");
-    command.add_flag("--3d", options->three, "a cube even where a 1D table would do").excludes(one);
-    command.add("--all", options->all,
-                "write the shipped LUTs into this folder; with --for, those of one application");
+        .show_default()
+        .group(table);
+    command.common({"-o", "--for", "--format", "--all", "--set", "--look", "--exposure", "--input",
+                    "--display", "--input-encoding", "--size", "--max-error"});
     command.footer(
-        "1D or 3D follows from the view where neither is asked for. Files that have room for text "
-        "say what\n"
-        "goes in, what comes out and how far it is from the exact operator.\n"
-        "Examples:\n  tonewright bake agx_blender --for resolve -o agx.cube\n"
-        "  tonewright bake agx_sobotka --format cube --size 33 --input-encoding acescct -o "
-        "agx.cube");
+        "Formats: cube, clf, ctf, spi1d, spi3d, csp, resolve_cube (1D and 3D), 3dl, lut "
+        "(Houdini), icc (device link); hald, strip, strip_up (pictures); raw.\n"
+        "Input encodings: acescct, logc3, logc4, slog3, davinci, unity_logc, unreal_log, srgb; "
+        "pq[:WHITE] (cd/m2 of scene-linear 1.0); log2[:LOW:HIGH] (stops from 0.18, default "
+        "-10:6.5); linear[:LOW:HIGH] (1D only). The named ones have their own primaries unless "
+        "--input is given.\n"
+        "Sizes: 17..129; 3dl 17, 33 or 65; hald a square of 16..144 (default 64); strip 2..64 "
+        "(default 32); raw 2..129.\n"
+        "Examples:\n"
+        "  tonewright bake agx_blender --for resolve -o agx.cube\n"
+        "  tonewright bake agx_sobotka --size 33 --input-encoding acescct -o agx.cube");
     command.action([options, command] {
         options->given = command.given();
         return run_bake(*options);

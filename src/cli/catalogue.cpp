@@ -59,7 +59,7 @@ struct SceneColor {
 constexpr SceneColor kOrange = {"orange", "1, 0.25, 0.02", {1, 0.25, 0.02}};
 constexpr SceneColor kGreen = {"green", "0.05, 1, 0.1", {0.05, 1, 0.1}};
 constexpr SceneColor kBlue = {"blue", "0.02, 0.06, 1", {0.02, 0.06, 1}};
-constexpr SceneColor kGrey = {"grey", "1, 1, 1", {1, 1, 1}};
+constexpr SceneColor kGrey = {"gray", "1, 1, 1", {1, 1, 1}};
 
 constexpr std::array kChannelColors = {"#d1242f", "#1a8f3c", "#1f6feb"};
 constexpr std::array kChannelNames = {"red", "green", "blue"};
@@ -91,7 +91,7 @@ CurvePlot plot_of(const Operator& op) {
     const std::vector<Variant> variants = variants_of(op);
     CurvePlot plot;
     plot.title = op.title;
-    plot.subtitle = "sRGB code value of scene-linear grey";
+    plot.subtitle = "sRGB code value of scene-linear gray";
     for (const Variant& v : variants) {
         const std::size_t index = plot.lines.size();
         add_line(plot.lines,
@@ -107,10 +107,10 @@ CurvePlot plot_of(const Operator& op) {
     for (const std::vector<double>& channel : grey)
         tint = std::max(tint, largest_difference(channel, plot.lines[0].values));
     if (tint > 0.5 / 255) {
-        if (variants.size() == 1) plot.lines[0].label = "luminance of the shown grey";
+        if (variants.size() == 1) plot.lines[0].label = "luminance of the shown gray";
         for (std::size_t c = 0; c < 3; ++c) {
             plot.lines.push_back({fmt::format("grey-{}", kChannelNames[c]),
-                                  fmt::format("{} of the shown grey", kChannelNames[c]),
+                                  fmt::format("{} of the shown gray", kChannelNames[c]),
                                   kChannelColors[c], 1, "", grey[c]});
         }
     }
@@ -222,8 +222,8 @@ double round_scale(double value) {
 CurvePlot plot_of(const DialectGroup& group) {
     const std::vector<double> scene = scene_of(plot_stops());
     CurvePlot plot;
-    plot.title = group.name + ": the grey curves";
-    plot.subtitle = "sRGB code value of scene-linear grey";
+    plot.title = group.name + ": the gray curves";
+    plot.subtitle = "sRGB code value of scene-linear gray";
     std::vector<double> mean(scene.size());
     for (const Dialect& d : group.dialects) {
         const std::vector<double> codes = grey_codes(d.view, scene);
@@ -255,8 +255,8 @@ CurvePlot plot_of(const DialectGroup& group) {
 
 PatchChart colors_of(const DialectGroup& group) {
     PatchChart chart;
-    chart.title = group.name + ": colours";
-    chart.subtitle = "scene colour at stops from mid grey, as shown on sRGB";
+    chart.title = group.name + ": colors";
+    chart.subtitle = "scene color at stops from mid gray, as shown on sRGB";
     const std::vector<double> stops = {-2, 0, 2, 4, 6};
     const std::vector<SceneColor> colors = {kOrange, kGreen, kBlue};
     for (const SceneColor& color : colors) {
@@ -382,7 +382,7 @@ std::string measured_line(const Operator& op) {
     const std::optional<double> black = stops_at_code(view, 0.5 / 255);
     const std::optional<double> white = stops_at_code(view, 254.5 / 255);
     std::string text = fmt::format(
-        "* Measured on sRGB: 0.18 \u2192 {:.3f}, 1 \u2192 {:.3f}; contrast at mid grey {:.2f}; ",
+        "* Measured on sRGB: 0.18 \u2192 {:.3f}, 1 \u2192 {:.3f}; contrast at mid gray {:.2f}; ",
         grey_code(view, kMidGrey), grey_code(view, 1), contrast_at_mid_grey(view));
     if (black) {
         text += fmt::format("black below {} stops", signed_stops(*black));
@@ -493,8 +493,8 @@ std::string distance_matrix(const DialectGroup& group, const std::vector<Distanc
 std::string dialect_section(DialectGroup& group, const std::vector<float>& samples) {
     const std::vector<Distance> distances = distances_of(group, samples);
     std::string text = fmt::format(
-        "<a id=\"dialects_{0}\"></a>\n\n### {1}\n\n![Grey curves of {1}]"
-        "(curves/dialects_{0}.svg)\n\n![Colours of {1}](curves/dialects_{0}_colors.svg)\n\n"
+        "<a id=\"dialects_{0}\"></a>\n\n### {1}\n\n![Gray curves of {1}]"
+        "(curves/dialects_{0}.svg)\n\n![Colors of {1}](curves/dialects_{0}_colors.svg)\n\n"
         "|  | dialect |  | 0.18 \u2192 | 1 \u2192 | 4 \u2192 |\n|---|---|---|---|---|---|\n",
         group.slug, group.name);
     for (const Dialect& d : group.dialects) {
@@ -528,22 +528,26 @@ std::string introduction() {
         "not edit. Operators that share\na name are compared under [Dialects](#dialects).\n\n"
         "**The plots** show an operator with its default parameters on an sRGB display, from the "
         "double-precision reference.\n\n"
-        "* *Upper graph*: the code value that a scene-linear grey is shown with (at the right: the "
-        "light that it stands for),\n  over stops from mid grey; below them the scene value. "
-        "Thin lines are presets and looks; where what is shown is not\n  grey, the grey of the "
-        "same luminance counts. Vertical lines stand at 0.18, mid grey, and at 1, diffuse white. "
-        "The\n  broken line is no tone mapping at all: whatever is brighter than 1 clips.\n"
-        "* *Lower graph*: what becomes of a saturated orange, ({}) times the scene value. "
-        "Where its lines meet,\n  bright colours fade to white; where one is held at 1 while the "
-        "others go on, the hue shifts.\n"
-        "* *Strips*: the shown colours themselves, one patch for each stop: of grey, of that "
-        "orange, and of a blue ({}).\n\n"
-        "Light above the display's white is cut off, here as in every SDR view: presets for "
-        "brighter displays clip in their plots.\n\n"
-        "**Measured** are code values from 0 to 1. *Contrast at mid grey* is the slope of log "
+        "* *Upper graph*: the code value of a scene-linear gray, over stops from mid gray. The "
+        "right "
+        "axis has the light of the code\n  value; below the stops is the scene value. Thin lines "
+        "are "
+        "presets and looks. A tinted gray counts by its luminance. The\n  vertical lines are at "
+        "0.18 "
+        "(mid gray) and 1 (diffuse white). The broken line is a clamp, without tone mapping.\n"
+        "* *Lower graph*: red, green and blue of a saturated orange, ({}) times the scene value. "
+        "Where the lines meet,\n  bright colors fade to white. Where one stays at 1 while the "
+        "others rise, the hue shifts.\n"
+        "* *Strips*: the shown colors, one patch for each stop: of gray, of that orange, and of a "
+        "blue ({}).\n"
+        "* *Small graphs*: one line each, with the first line in gray behind it, where a plot has "
+        "more than six lines.\n\n"
+        "Light above the display's white is cut off, as in every SDR view. Presets for brighter "
+        "displays clip in their plots.\n\n"
+        "**Measured** are code values from 0 to 1. *Contrast at mid gray* is the slope of log "
         "light over log scene: 1 without tone\nmapping. *Black* and *white* are where 8 bits "
         "show 0 and 255. An operator that adapts to the picture is shown with its\ndefault "
-        "numbers; `tonewright apply` puts in the picture's.\n\n",
+        "numbers; `tonewright apply` measures the picture.\n\n",
         kOrange.numbers, kBlue.numbers);
 }
 
@@ -552,12 +556,12 @@ std::string dialect_introduction(std::size_t sample_count) {
         "## Dialects\n\n"
         "Operators of one name that show different pictures, with their presets; looks are meant "
         "to "
-        "differ and are left out. How\nfar apart two of them are is measured on the {} colours "
+        "differ and are left out. How\nfar apart two of them are is measured on the {} colors "
         "of the [sample set](conventions.md) that have no negative\nchannel, in linear Rec.709, on "
         "an sRGB display: differences of code values in codes of 8 bits (code value \u00d7 255; of "
-        "each\ncolour the worst channel), and \u0394E ITP (ITU-R BT.2124, white at 100 "
+        "each\ncolor the worst channel), and \u0394E ITP (ITU-R BT.2124, white at 100 "
         "cd/m\u00b2), where 1 is about the smallest difference\nthat can be seen. Most samples are "
-        "saturated, and many are far above white: the largest figures are of colours "
+        "saturated, and many are far above white: the largest figures are of colors "
         "that\npictures "
         "seldom have, and the means are for comparison with each other.\n\n",
         sample_count);

@@ -9,11 +9,22 @@ TONEWRIGHT_NAMESPACE_BEGIN
 void add_chart(CommandLine& program) {
     auto options = std::make_shared<ChartOptions>();
     const Command command =
-        program.add("chart", "the synthetic HDR test chart, scene-linear Rec.709");
-    command.add("-o", options->file, "file to write (.exr)").required();
-    command.add("--width", options->width, "pixels").show_default();
-    command.add("--height", options->height, "pixels").show_default();
-    command.add("-d", options->type, "half or float").show_default();
+        program.add("chart", "Write the synthetic HDR test chart, in scene-linear Rec.709.");
+    command.group("Pictures");
+    const char* const group = "Output";
+    command.add("-o", options->file, "file to write (.exr)").value("FILE").required().group(group);
+    command.add("--width", options->width, "width in pixels")
+        .value("N")
+        .show_default()
+        .group(group);
+    command.add("--height", options->height, "height in pixels")
+        .value("N")
+        .show_default()
+        .group(group);
+    command.add("-d", options->type, "pixel type: half or float")
+        .value("TYPE")
+        .show_default()
+        .group(group);
     command.footer("Example:\n  tonewright chart -o chart.exr");
     command.action([options] {
         picture_commands().chart(*options);

@@ -9,9 +9,14 @@ Settings ViewOptions::settings() const {
     for (const std::string& text : set) {
         const std::size_t equals = text.find('=');
         if (equals == std::string::npos || equals == 0) {
-            throw Error("--set: setting is " + text + "; expected name=value");
+            throw Error("--set is " + text + "; expected name=value");
         }
-        result[text.substr(0, equals)] = text.substr(equals + 1);
+        const std::string value = text.substr(equals + 1);
+        const auto [known, is_new] = result.emplace(text.substr(0, equals), value);
+        if (!is_new && known->second != value) {
+            throw Error("--set: " + known->first + " is " + known->second + " and " + value +
+                        "; expected it once");
+        }
     }
     return result;
 }

@@ -1,13 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <memory>
+#include <random>
 
 #include "base/atomic_file.h"
 #include "cli/archive.h"
 #include "cli/command.h"
+#include "cli/elapsed_line.h"
+#include "cli/messages.h"
 #include "cli/options.h"
+#include "tonewright/error.h"
 #include "tonewright/generated_files.h"
 #include "tonewright/ocio.h"
 
@@ -22,66 +29,133 @@ struct Options {
     ConfigOptions config;
     std::vector<std::string> operators;
     std::vector<std::string> names;
+    bool is_updated = false;
+    bool is_removed = false;
+    bool has_backup = false;
 };
 
-/// In place, when everything has been checked; else the config stays as it was.
-void extend(const std::string& path, const ConfigOptions& options) {
+/// "studio.ocio.bak", or with the first number that is free.
+void write_backup(const std::string& path) {
     namespace fs = std::filesystem;
-    const ExtendedConfig extended = extend_config(path, options);
+    std::string backup = path + ".bak";
+    for (int number = 2; fs::exists(backup); ++number)
+        backup = fmt::format("{}.bak{}", path, number);
+    std::error_code error;
+    fs::copy_file(path, backup, error);
+    if (error) throw FileError("write: " + backup + ": " + error.message());
+    fmt::print("backup: {}\n", backup);
+}
+
+/// Empty: there is none.
+std::string text_of(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// In place, when everything has been checked; else the config stays as it was.
+void replace_config(const std::string& path, const ExtendedConfig& changed, bool has_backup) {
+    namespace fs = std::filesystem;
     const fs::path folder = fs::absolute(path).parent_path();
     std::vector<fs::path> written;
-    const fs::path trial = folder / (".tonewright-" + fs::path(path).filename().string());
+    // Beside the config, whose relative paths it has; no name that somebody could have put there.
+    const fs::path trial = folder / fmt::format(".tonewright-{:08x}-{}", std::random_device()(),
+                                                fs::path(path).filename().string());
+    const fs::path record = folder / changed.record.path;
+    const std::string earlier_record = text_of(record);
     std::vector<ExtendedView> views;
     try {
-        for (const GeneratedFile& file : extended.files) {
+        for (const GeneratedFile& file : changed.files) {
             const fs::path table = folder / file.path;
             if (fs::exists(table)) continue;  // its name has the hash of its contents
             fs::create_directories(table.parent_path());
             write_text_atomically(table.string(), file.contents);
             written.push_back(table);
         }
-        write_text_atomically(trial.string(), extended.text);
+        write_text_atomically(trial.string(), changed.text);
         written.push_back(trial);
-        views = extended.check(trial.string());
-        fs::rename(trial, path);
+        views = changed.check(trial.string());
+        if (has_backup) write_backup(path);
+        if (!changed.record.contents.empty()) {
+            fs::create_directories(record.parent_path());
+            write_text_atomically(record.string(), changed.record.contents);
+            if (earlier_record.empty()) written.push_back(record);
+        }
+        write_text_atomically(path, changed.text);
+        fs::remove(trial);
+        std::error_code ignored;
+        for (const std::string& file : changed.unused_files)
+            fs::remove(folder / file, ignored);
+        if (changed.record.contents.empty()) fs::remove(record, ignored);
+        fs::remove(record.parent_path(), ignored);  // where nothing else is in it
     } catch (...) {
         std::error_code ignored;
         for (const fs::path& file : written)
             fs::remove(file, ignored);
-        if (!extended.files.empty())  // its folder, where nothing else is in it
-            fs::remove((folder / extended.files.front().path).parent_path(), ignored);
+        if (!earlier_record.empty()) write_text_atomically(record.string(), earlier_record);
+        fs::remove(record.parent_path(), ignored);
         throw;
     }
-    fmt::print("{:<28} {:<40} {:>9} {:>9}\n", "display", "view", "max error", "99.9 %");
+    for (const auto& [kind, names] : changed.added) {
+        if (!names.empty())
+            fmt::print("added {} {}: {}\n", names.size(), kind, fmt::join(names, ", "));
+    }
+    if (!changed.unused_files.empty())
+        fmt::print("removed {} tables from {}/\n", changed.unused_files.size(),
+                   (folder / changed.record.path).parent_path().filename().string());
+    if (views.empty()) return;
+    fmt::print("\n{:<28} {:<40} {:>9} {:>9}\n", "display", "view", "max error", "99.9 %");
     for (const ExtendedView& v : views)
         fmt::print("{:<28} {:<40} {:>9.1e} {:>9.1e}\n", v.display, v.view, v.max, v.p999);
+}
+
+/// With --into, displays are those of the other config.
+ConfigOptions without_displays(ConfigOptions options) {
+    options.displays.clear();
+    return options;
 }
 
 int run_config(Options& options) {
     ConfigOptions& wanted = options.config;
     if (options.operators.size() != options.names.size()) {
-        throw Error(fmt::format("config: {} --operator and {} --name; expected one name for each",
-                                options.operators.size(), options.names.size()));
+        throw Error(
+            fmt::format("config: number of --name options is {}; expected {}, one for each "
+                        "--operator",
+                        options.names.size(), options.operators.size()));
     }
     for (std::size_t i = 0; i < options.operators.size(); ++i)
         wanted.custom.push_back({options.names[i], options.operators[i]});
+    redirect_opencolorio_messages([](const std::string& text) {
+        if (!message_options().is_quiet) print_message("OpenColorIO: " + text);
+    });
+    if (!options.is_removed) {
+        for (const std::string& text : config_warnings(without_displays(wanted)))
+            warn(text);
+    }
     if (!options.into.empty()) {
-        extend(options.into, wanted);
+        const ExtendedConfig changed = [&] {
+            const ElapsedLine line("config");
+            return options.is_removed ? reduce_config(options.into)
+                                      : extend_config(options.into, wanted, options.is_updated);
+        }();
+        replace_config(options.into, changed, options.has_backup);
         return kOk;
     }
     if (options.folder.empty() && options.archive.empty())
-        throw Error("config: -o is missing; expected -o, --archive or --into");
+        throw Error("config: -o is missing; expected -o FOLDER, --archive FILE or --into CONFIG");
     wanted.working = find_input_space(wanted.working).id;
     const std::filesystem::path archive(options.archive);
     if (!options.archive.empty() && archive.extension() != ".ocioz") {
-        throw Error("config: archive is " + options.archive +
-                    "; expected a name that ends in .ocioz: OpenColorIO knows it by that");
+        throw Error("config: --archive is " + options.archive +
+                    "; expected a name that ends in .ocioz");
     }
     check_config_options(wanted);
     if (!options.folder.empty()) require_writable_folder(options.folder);
     if (!options.archive.empty())
         require_writable_folder(std::filesystem::absolute(archive).parent_path().string());
-    const std::vector<GeneratedFile> files = make_config(wanted);
+    const std::vector<GeneratedFile> files = [&] {
+        const ElapsedLine line("config");
+        return make_config(wanted);
+    }();
     if (!options.folder.empty()) write_generated_files(options.folder, files, "config.ocio");
     if (options.archive.empty()) return kOk;
     std::vector<GeneratedFile> packed;
@@ -96,60 +170,99 @@ int run_config(Options& options) {
 
 void add_config(CommandLine& program) {
     auto options = std::make_shared<Options>();
-    const Command command =
-        program.add("config", "an OpenColorIO config of operators, for any application");
+    const Command command = program.add("config", "Write an OpenColorIO config of the operators.");
+    command.group("LUTs and configs");
+    const char* const output = "Output";
+    const char* const contents = "Contents";
+    const char* const own = "Custom views";
     const Option out =
         command.add("-o", options->folder, "folder to write: config.ocio, luts/, probe.csv");
-    const Option into = command.add("--into", options->into,
-                                    "a config of yours to add to: views, looks and output spaces, "
-                                    "with their tables in tonewright/ beside it");
+    out.value("FOLDER").group(output);
+    const Option into =
+        command.add("--into", options->into,
+                    "existing config that gets the views; their LUTs go to tonewright/ beside it");
+    into.value("CONFIG").group(output);
     out.excludes(into);
+    const Option update =
+        command.add_flag("--update", options->is_updated,
+                         "with --into: replace what it added before; without views, the same ones");
+    update.group(output).needs(into);
+    command.add_flag("--remove", options->is_removed, "with --into: take out what it added before")
+        .group(output)
+        .needs(into)
+        .excludes(update);
+    command
+        .add_flag("--backup", options->has_backup,
+                  "with --into: keep the config as it was as CONFIG.bak")
+        .group(output)
+        .needs(into);
     command
         .add("--archive", options->archive,
-             "file.ocioz to write, with or without -o: a config and its tables in one, for "
-             "OpenColorIO 2.2 and newer")
+             "write the config and its LUTs as one .ocioz file (OpenColorIO 2.2 or newer)")
+        .value("FILE")
+        .group(output)
         .excludes(into);
     ConfigOptions& config = options->config;
     command
         .add("--profile", config.profiles,
-             "of OpenColorIO: 2.0, 2.1 and 2.5, comma separated; the first is config.ocio "
-             "(and --archive's), the others config-2.0.ocio and so on")
+             "OpenColorIO versions; the first is config.ocio, others config-VERSION.ocio")
+        .value("LIST")
         .separated_by(',')
         .show_default("2.1,2.0,2.5")
+        .group(output)
         .excludes(into);
     command
         .add("--views", config.views,
-             "views (\"AgX Punchy\") or operators, comma separated, in order, standard or all; "
-             "default: standard, a dozen, without the large HDR forms")
-        .separated_by(',');
-    command.add("--displays", config.displays, "displays, comma separated; default: all")
-        .separated_by(',');
+             "views (\"AgX Punchy\") or operators, in order; `standard` (a dozen) or `all` "
+             "(default standard)")
+        .value("LIST")
+        .separated_by(',')
+        .group(contents);
+    command.add("--displays", config.displays, "displays (default: all)")
+        .value("LIST")
+        .separated_by(',')
+        .group(contents);
     command
         .add("--looks", config.looks,
-             "looks (\"AgX - Punchy\"), comma separated, or none; default: all of the views")
-        .separated_by(',');
-    command.add("--working", config.working, "space that applications compute in").show_default();
+             "looks (\"AgX - Punchy\"), or `none` (default: all looks of the views)")
+        .value("LIST")
+        .separated_by(',')
+        .group(contents);
+    command.add("--working", config.working, "color space in which applications compute")
+        .value("SPACE")
+        .show_default()
+        .group(contents);
     command
         .add("--operator", options->operators,
-             "a view of your own: ID[:PRESET][:PARAMETER=VALUE...]; repeat for more")
-        .one_value_each();
-    command.add("--name", options->names, "its name, one for each --operator, in their order")
-        .one_value_each();
+             "add a view: NAME[:PRESET][:PARAMETER=VALUE...]; repeat for more")
+        .value("OPERATOR")
+        .one_value_each()
+        .group(own);
+    command.add("--name", options->names, "name of the added view, one for each --operator")
+        .value("NAME")
+        .one_value_each()
+        .group(own);
     command
         .add("--exposure-views", config.exposure_stops,
-             "every view once more with so many stops more light, comma separated")
+             "add every view again with this exposure, in stops")
+        .value("LIST")
         .separated_by(',')
-        .range(-16.0, 16.0);
+        .range(-16.0, 16.0)
+        .group(own);
     command.footer(
-        "Examples:\n  tonewright config -o ocio_config\n"
+        "LIST is separated by commas.\n"
+        "Examples:\n"
+        "  tonewright config -o ocio_config\n"
         "  tonewright config -o everything --views all\n"
-        "  tonewright config -o studio --working acescg --views AgX,aces_20 --displays "
-        "srgb,rec1886 "
-        "\\\n    --operator reinhard_extended:white=6 --name \"Studio Reinhard\"\n"
+        "  tonewright config -o studio --working acescg --views AgX,aces_20 \\\n"
+        "    --operator reinhard_extended:white=6 --name \"Studio Reinhard\"\n"
         "  tonewright config --archive tonewright.ocioz\n"
-        "  tonewright config --into studio.ocio --views AgX,hable\n"
-        "  oiiotool --colorconfig ocio_config/config.ocio in.exr --ociodisplay sRGB Hable \\\n"
-        "    --iscolorspace sRGB -o out.png");
+        "  tonewright config --into studio.ocio --views AgX,hable --backup\n"
+        "  tonewright config --into studio.ocio --remove\n"
+        "  OCIO=ocio_config/config-2.5.ocio blender     # has OpenColorIO 2.5\n"
+        "  tonewright config --archive tonewright.ocioz --profile 2.5\n"
+        "  oiiotool --colorconfig ocio_config/config.ocio in.exr \\\n"
+        "    --ociodisplay sRGB Hable --iscolorspace sRGB -o out.png");
     command.action([options] { return run_config(*options); });
 }
 

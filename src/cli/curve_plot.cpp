@@ -10,6 +10,7 @@
 #include <span>
 
 #include "base/format_number.h"
+#include "base/stroke_font.h"
 #include "cli/plot_surface.h"
 #include "tonewright/error.h"
 
@@ -26,7 +27,6 @@ constexpr PlotSurface::TextStyle kPlain = {};
 constexpr PlotSurface::TextStyle kCentred = {Anchor::middle};
 constexpr PlotSurface::TextStyle kAtEnd = {Anchor::end};
 constexpr PlotSurface::TextStyle kOnLines = {Anchor::start, true};
-constexpr PlotSurface::TextStyle kOnLinesAtEnd = {Anchor::end, true};
 constexpr PlotSurface::TextStyle kHeading = {Anchor::start, false, true};
 
 constexpr double kLeft = 50;
@@ -41,12 +41,20 @@ constexpr std::string_view kBlack = "#000";  // SVG's own
 
 double x_of(double stops) { return kLeft + kStop * (stops - kLowestStop); }
 
+/// Scene-linear 1, in stops from mid grey.
+const double kWhiteStops = std::log2(1 / 0.18);
+
 /// Where a graph is.
 struct Graph {
     double top;  // of the scale's high end
     double height;
     PlotScale scale;
+    double left = kLeft;
+    double width = kRight - kLeft;
 
+    [[nodiscard]] double x_of(double stops) const {
+        return left + width * (stops - kLowestStop) / (kHighestStop - kLowestStop);
+    }
     [[nodiscard]] double unit() const { return height / (scale.high - scale.low); }
     [[nodiscard]] double y_of(double value) const { return top + unit() * (scale.high - value); }
     [[nodiscard]] double bottom() const { return top + height; }
@@ -86,7 +94,7 @@ std::vector<Point> points_of(const PlotLine& line, const Graph& graph) {
     std::vector<double> x;
     std::vector<double> y;
     for (std::size_t i = 0; i < stops.size(); ++i) {
-        x.push_back(x_of(stops[i]));
+        x.push_back(std::round(100 * graph.x_of(stops[i])) / 100);
         y.push_back(std::round(100 * graph.y_of(line.values.at(i))) / 100);
     }
     std::vector<bool> is_needed(x.size());
@@ -106,9 +114,24 @@ class Svg : public PlotSurface {
     void add(fmt::format_string<Args...> format, Args&&... args) {
         fmt::format_to(std::back_inserter(text_), format, std::forward<Args>(args)...);
     }
+    /// The strokes are what one sees. The words are there as well, unseen, for search, selection
+    /// and screen readers; they are seen where the font lacks a character.
     void text(Point at, const TextStyle& style, std::string_view words) override {
-        add("<text x=\"{}\" y=\"{}\"{}>{}</text>\n", px(at.x), px(at.y), class_of(style),
-            xml_escaped(words));
+        const Lettering letters = lettering_of(style, words);
+        if (letters.is_complete) {
+            const double unit = letters.cap_height / kCapHeight;
+            const double width = unit * stroke_text_width(letters.ascii);
+            const double share = style.anchor == Anchor::start    ? 0
+                                 : style.anchor == Anchor::middle ? 0.5
+                                                                  : 1;
+            const std::string path = fmt::format(
+                " transform=\"matrix({0:.4g} 0 0 -{0:.4g} {1} {2})\" d=\"{3}\"/>\n", unit / 100,
+                px(at.x - share * width), px(at.y), stroke_text_path(letters.ascii));
+            if (style.has_halo) add("<path class=\"s o\"{}", path);
+            add("<path class=\"s{}\"{}", style.is_heading ? " w" : "", path);
+        }
+        add("<text x=\"{}\" y=\"{}\"{}>{}</text>\n", px(at.x), px(at.y),
+            class_of(style, !letters.is_complete), xml_escaped(words));
     }
     void rules(Rule kind, std::span<const Segment> segments) override {
         constexpr std::array kClasses = {"g", "m", "t"};
@@ -157,9 +180,10 @@ class Svg : public PlotSurface {
             " stroke=\"{}\" stroke-width=\"{}\"{}", line.color, px(line.width),
             line.dashes.empty() ? "" : fmt::format(" stroke-dasharray=\"{}\"", line.dashes));
     }
-    [[nodiscard]] static std::string class_of(const TextStyle& style) {
+    [[nodiscard]] static std::string class_of(const TextStyle& style, bool is_seen) {
         constexpr std::array kAnchors = {"", "c", "e"};
-        std::string name = style.is_heading ? "b" : style.has_halo ? "h" : "";
+        std::string name = style.is_heading ? "b" : style.has_halo && is_seen ? "h" : "";
+        if (is_seen) name += name.empty() ? "v" : " v";
         const std::string anchor = kAnchors[static_cast<std::size_t>(style.anchor)];
         if (!name.empty() && !anchor.empty()) name += " ";
         name += anchor;
@@ -228,8 +252,7 @@ void draw_graph(PlotSurface& surface, const Graph& graph) {
         if (!tick.right.empty()) surface.text({kRight + 5, y + 4}, kPlain, tick.right);
     }
     surface.rules(Rule::grid, grid);
-    surface.rules(Rule::mark,
-                  {{vertical(0, top, bottom), vertical(std::log2(1 / 0.18), top, bottom)}});
+    surface.rules(Rule::mark, {{vertical(0, top, bottom), vertical(kWhiteStops, top, bottom)}});
     surface.frame(PlotSurface::Frame::graph, {kLeft, top}, kRight - kLeft, bottom - top);
 }
 
@@ -244,14 +267,13 @@ void draw_lines(PlotSurface& surface, const std::vector<PlotLine>& lines, const 
 /// A label of several names goes on in the next row rather than beyond so many letters.
 constexpr std::size_t kLegendLetters = 36;
 
-std::vector<std::string> wrapped(const std::string& label) {
+std::vector<std::string> wrapped(const std::string& label, std::size_t letters = kLegendLetters) {
     std::vector<std::string> rows = {""};
     std::size_t begin = 0;
     while (begin < label.size()) {
         const std::size_t comma = label.find(", ", begin);
         const std::size_t end = comma == std::string::npos ? label.size() : comma + 2;
-        if (!rows.back().empty() && rows.back().size() + end - begin > kLegendLetters)
-            rows.emplace_back();
+        if (!rows.back().empty() && rows.back().size() + end - begin > letters) rows.emplace_back();
         rows.back() += label.substr(begin, end - begin);
         begin = end;
     }
@@ -339,57 +361,117 @@ void draw_axis(PlotSurface& surface, double top) {
     surface.text({kRight + 16, top + 31}, kPlain, "scene");
 }
 
+/// More lines than can be told apart in one graph, and a legend that would lie on them: each line
+/// then has a small graph of its own, with the first line behind it, in place of a legend.
+constexpr std::size_t kMostLinesInside = 6;
+
+/// A grid of small graphs, one for each line with a label.
+class SmallGraphs {
+  public:
+    SmallGraphs(const CurvePlot& plot, const PlotScale& scale) : plot_(plot), scale_(scale) {
+        for (const PlotLine& line : plot.lines) {
+            if (!line.label.empty()) lines_.push_back(&line);
+        }
+        if (lines_.size() <= kMostLinesInside) lines_.clear();
+        for (std::size_t i = 0; i < lines_.size(); ++i) {
+            if (i % kColumns == 0) label_rows_.push_back(1);
+            label_rows_.back() =
+                std::max(label_rows_.back(), wrapped(lines_[i]->label, kLetters).size());
+        }
+    }
+
+    [[nodiscard]] bool empty() const { return lines_.empty(); }
+    [[nodiscard]] double height() const {
+        double height = 0;
+        for (const std::size_t rows : label_rows_)
+            height += row_height(rows);
+        return height;
+    }
+
+    void draw(PlotSurface& surface, double top) const {
+        double y = top;
+        for (std::size_t i = 0; i < lines_.size(); ++i) {
+            const std::size_t rows = label_rows_[i / kColumns];
+            const double labels = kLegendRow * static_cast<double>(rows);
+            draw_one(surface, *lines_[i],
+                     {y + labels + kInset, kHeight, scale_,
+                      kLeft + static_cast<double>(i % kColumns) * (kWidth + kGap), kWidth});
+            if (i % kColumns == kColumns - 1) y += row_height(rows);
+        }
+    }
+
+  private:
+    static constexpr std::size_t kColumns = 3;
+    static constexpr std::size_t kLetters = 24;
+    static constexpr double kGap = 15;
+    static constexpr double kWidth = (kRight - kLeft - (kColumns - 1) * kGap) / kColumns;
+    static constexpr double kHeight = 70;
+    static constexpr double kInset = 3;  // between the frame and the ends of the scale
+
+    static double row_height(std::size_t label_rows) {
+        return kLegendRow * static_cast<double>(label_rows) + kHeight + 2 * kInset + 8;
+    }
+
+    void draw_one(PlotSurface& surface, const PlotLine& line, const Graph& graph) const {
+        const double top = graph.top - kInset;
+        const double bottom = graph.bottom() + kInset;
+        const std::vector<std::string> words = wrapped(line.label, kLetters);
+        double y = top - kLegendRow * static_cast<double>(words.size()) + 10;
+        surface.sample(line, {graph.left, y - 4}, 18);
+        for (const std::string& row : words) {
+            surface.text({graph.left + 23, y}, kPlain, row);
+            y += kLegendRow;
+        }
+        std::vector<Segment> marks;
+        for (const double stops : {0.0, kWhiteStops})
+            marks.push_back({{graph.x_of(stops), top}, {graph.x_of(stops), bottom}});
+        surface.rules(Rule::mark, marks);
+        surface.frame(PlotSurface::Frame::graph, {graph.left, top}, graph.width, bottom - top);
+        surface.begin_lines();
+        PlotLine first = *lines_.front();
+        first.id = "small-" + line.id + "-first";
+        first.color = std::string(colors_of(plot_.theme).frame);
+        first.width = 1;
+        first.dashes.clear();
+        if (&line != lines_.front()) surface.line(first, points_of(first, graph));
+        PlotLine own = line;
+        own.id = "small-" + line.id;
+        own.width = 1.8;
+        surface.line(own, points_of(own, graph));
+        surface.end_group();
+    }
+
+    const CurvePlot& plot_;
+    const PlotScale& scale_;
+    std::vector<const PlotLine*> lines_;
+    std::vector<std::size_t> label_rows_;  // of each row of graphs
+};
+
 /// Where the parts of a plot are.
 struct Layout {
     Graph upper;
     Graph lower;
+    SmallGraphs small;
     double sweeps_top;
     double axis_top;
-    double legend_top;
+    double small_top;
     double height;
-    bool is_legend_below;
 
     explicit Layout(const CurvePlot& plot)
         : upper{42, 220, plot.scale.ticks.empty() ? srgb_scale() : plot.scale},
-          lower{upper.bottom() + 2 * kMargin + 10, 96, plot.lower_scale} {
+          lower{upper.bottom() + 2 * kMargin + 24, 96, plot.lower_scale},
+          small(plot, upper.scale) {
         const bool has_lower = !plot.lower_lines.empty();
         sweeps_top = (has_lower ? lower : upper).bottom() + kMargin + 5;
         axis_top =
             plot.sweeps.empty() ? sweeps_top - 5 : sweeps_top + sweeps_height(plot.sweeps.size());
         height = axis_top + 38;
-        legend_top = height + kLegendRow;
-        is_legend_below = plot.is_legend_below;
-        if (is_legend_below) {
-            double rows = 0;
-            for (const double column : legend_columns(plot.lines))
-                rows = std::max(rows, column);
-            height = legend_top + rows;
-        }
+        small_top = height + 8;
+        if (!small.empty()) height = small_top + small.height();
     }
-
-    /// Entries of a legend below the graph, first down, then right.
-    static std::size_t legend_column(std::size_t index, std::size_t count) {
-        return index / ((count + 1) / 2);
-    }
-    static std::array<double, 2> legend_columns(const std::vector<PlotLine>& lines) {
-        std::array<double, 2> heights{};
-        for (std::size_t i = 0; i < lines.size(); ++i) {
-            heights.at(legend_column(i, lines.size())) +=
-                kLegendRow * static_cast<double>(wrapped(lines[i].label).size());
-        }
-        return heights;
-    }
+    Layout(const Layout&) = delete;
+    Layout& operator=(const Layout&) = delete;
 };
-
-/// In two columns under everything else.
-void draw_legend_below(PlotSurface& surface, const std::vector<PlotLine>& lines, double top) {
-    std::array<double, 2> y = {top, top};
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-        const std::size_t column = Layout::legend_column(i, lines.size());
-        const double left = kLeft + 10 + static_cast<double>(column) * (kRight - kLeft) / 2;
-        y.at(column) += draw_legend_entry(surface, lines[i], left, y.at(column));
-    }
-}
 
 /// The file around a body.
 std::string file_of(const std::string& title, const std::string& description, double height,
@@ -402,15 +484,25 @@ std::string file_of(const std::string& title, const std::string& description, do
         "<title>{}</title>\n<desc>{}</desc>\n",
         px(kPlotWidth), px(height), px(width), px(height * width / kPlotWidth), xml_escaped(title),
         xml_escaped(description));
+    // Widths in the unit of the paths of words.
+    const auto stroke_width = [](const PlotSurface::TextStyle& style, double extra) {
+        const Lettering letters = lettering_of(style, {});
+        const double unit = letters.cap_height / kCapHeight;
+        return px((std::max(kStrokeWidth * unit, 1.0) + letters.extra_width + extra) / unit * 100);
+    };
     svg.add(
-        "<style>text{{fill:{}}}.b{{font-size:14px;font-weight:bold}}"
-        ".c{{text-anchor:middle}}.e{{text-anchor:end}}"
-        ".h{{paint-order:stroke;stroke:{};stroke-width:3px;stroke-linejoin:round}}"
+        "<style>text{{fill:{0};fill-opacity:0}}.v{{fill-opacity:1}}"
+        ".b{{font-size:14px;font-weight:bold}}.c{{text-anchor:middle}}.e{{text-anchor:end}}"
+        ".h{{paint-order:stroke;stroke:{1};stroke-width:{2}px;stroke-linejoin:round}}"
+        ".s{{fill:none;stroke:{0};stroke-width:{3};stroke-linecap:round;stroke-linejoin:round}}"
+        ".w{{stroke-width:{4}}}.o{{stroke:{1};stroke-width:{5}}}",
+        colors.text, colors.page, kHaloWidth, stroke_width(kPlain, 0), stroke_width(kHeading, 0),
+        stroke_width(kPlain, kHaloWidth));
+    svg.add(
         ".g{{stroke:{}}}.m{{stroke:{};stroke-dasharray:2 3}}.t{{stroke:{}}}"
         ".f{{fill:none;stroke:{}}}.p{{fill:none;stroke:{}}}</style>\n"
         "<rect width=\"100%\" height=\"100%\" fill=\"{}\"/>\n",
-        colors.text, colors.page, colors.grid, colors.frame, colors.frame, colors.frame,
-        colors.patch_frame, colors.page);
+        colors.grid, colors.frame, colors.frame, colors.frame, colors.patch_frame, colors.page);
     if (colors.dot != kBlack) svg.add("<style>circle{{fill:{}}}</style>\n", colors.dot);
     return svg.take() + body + "</svg>\n";
 }
@@ -474,6 +566,26 @@ std::string xml_escaped(std::string_view text) {
     return out;
 }
 
+Lettering lettering_of(const PlotSurface::TextStyle& style, std::string_view words) {
+    struct Replacement {
+        std::string_view character, ascii;
+    };
+    constexpr std::array<Replacement, 3> kReplacements = {
+        {{"\u2212", "-"}, {"\u2192", "->"}, {"\u00d7", "x"}}};
+    Lettering letters;
+    letters.ascii = words;
+    for (const auto& [character, ascii] : kReplacements) {
+        for (std::size_t at = 0; (at = letters.ascii.find(character, at)) != std::string::npos;)
+            letters.ascii.replace(at, character.size(), ascii);
+    }
+    letters.is_complete = std::all_of(letters.ascii.begin(), letters.ascii.end(),
+                                      [](char c) { return c >= ' ' && c <= '~'; });
+    // Of Helvetica, whose capitals are 0.72 of its size.
+    letters.cap_height = 0.72 * (style.is_heading ? 13 : 11);
+    letters.extra_width = style.is_heading ? 0.6 : 0;
+    return letters;
+}
+
 double height_of(const CurvePlot& plot) { return Layout(plot).height; }
 
 void draw(const CurvePlot& plot, PlotSurface& surface) {
@@ -483,34 +595,32 @@ void draw(const CurvePlot& plot, PlotSurface& surface) {
     surface.text({kRight, 20}, kAtEnd, plot.subtitle);
     surface.text({kLeft - 5, 28}, kAtEnd, upper.scale.left_heading);
     surface.text({kRight + 5, 28}, kPlain, upper.scale.right_heading);
-    if (plot.names_greys) {
-        surface.text({x_of(0), 32}, kCentred, "mid grey");
-        surface.text({x_of(std::log2(1 / 0.18)), 32}, kCentred, "white");
+    // Above the frame, where no curve is: the marks stand over the two vertical lines.
+    constexpr double kOverLine = 22;
+    for (const PlotMark& mark : plot.marks) {
+        const bool is_first = mark.stops <= 0;
+        surface.text({x_of(mark.stops) + (is_first ? kOverLine : -kOverLine), 32},
+                     is_first ? kAtEnd : kPlain, mark.words);
+    }
+    if (plot.names_greys && plot.marks.empty()) {
+        surface.text({x_of(0), 32}, kCentred, "mid gray");
+        surface.text({x_of(kWhiteStops), 32}, kCentred, "white");
     }
     draw_graph(surface, upper);
     draw_lines(surface, plot.lines, upper);
-    if (!layout.is_legend_below) draw_legend(surface, plot.lines, upper.top + 16);
-    for (const PlotMark& mark : plot.marks) {
-        const double x = x_of(mark.stops);
-        const double y = upper.y_of(mark.value);
-        surface.dot({x, y});
-        // Below the curve; above it where there is no room.
-        if (y > upper.bottom() - 20) {
-            surface.text({x - 4, y - 9}, kOnLinesAtEnd, mark.words);
-        } else {
-            surface.text({x + 8, y + 15}, kOnLines, mark.words);
-        }
-    }
+    if (layout.small.empty()) draw_legend(surface, plot.lines, upper.top + 16);
+    for (const PlotMark& mark : plot.marks)
+        surface.dot({x_of(mark.stops), upper.y_of(mark.value)});
     if (!plot.lower_lines.empty()) {
         const Graph& lower = layout.lower;
         draw_graph(surface, lower);
         draw_lines(surface, plot.lower_lines, lower);
-        surface.text({kLeft + 10, lower.top + 12}, kOnLines, plot.lower_heading);
-        draw_legend(surface, plot.lower_lines, lower.top + 28);
+        surface.text({kLeft, lower.top - kMargin - 5}, kPlain, plot.lower_heading);
+        draw_legend(surface, plot.lower_lines, lower.top + 16);
     }
     if (!plot.sweeps.empty()) draw_sweeps(surface, plot.sweeps, layout.sweeps_top);
     draw_axis(surface, layout.axis_top);
-    if (layout.is_legend_below) draw_legend_below(surface, plot.lines, layout.legend_top);
+    layout.small.draw(surface, layout.small_top);
 }
 
 std::string to_svg(const CurvePlot& plot, double width) {

@@ -39,7 +39,7 @@ struct PlotScale {
     std::string quantity = "code value";  // what its values are
 };
 
-/// A point of a line with words beside it.
+/// A point of a line, with words above the graph.
 struct PlotMark {
     double stops;
     double value;
@@ -62,10 +62,11 @@ struct CurvePlot {
     std::string subtitle;
     /// Without ticks: sRGB code values, with their light at the right.
     PlotScale scale;
-    bool names_greys = false;  // above the lines at mid grey and white
-    /// Else where tone curves are low: in the graph, at the left.
-    bool is_legend_below = false;
+    bool names_greys = false;  // above the lines at mid gray and white, where no marks are
+    /// With labels: a legend where tone curves are low, in the graph at the left; for more than six
+    /// lines small graphs, one for each.
     std::vector<PlotLine> lines;
+    /// At most one up to mid gray and one above: their words stand side by side.
     std::vector<PlotMark> marks;
     /// A second, lower graph over the same stops.
     std::string lower_heading;
@@ -94,6 +95,9 @@ struct PatchChart {
 /// @param width  at which it is shown where nothing else says so
 [[nodiscard]] std::string to_svg(const CurvePlot& plot, double width = 640);
 [[nodiscard]] std::string to_svg(const PatchChart& chart);
+/// The plot as a PDF file of one page, in vectors.
+/// @param width  of the page, in pixels of 1/96 inch
+[[nodiscard]] std::string to_pdf(const CurvePlot& plot, double width = 640);
 
 /// Color `index` of a set that stays apart for color-blind readers too (Okabe and Ito 2008), and
 /// the dashes of its line: from the ninth on the colors come again, dashed.

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <charconv>
-#include <iostream>
-#include <iterator>
+#include <cstdio>
+#include <functional>
 #include <memory>
+#include <optional>
 
+#include "base/atomic_file.h"
+#include "base/input_file.h"
 #include "base/strings.h"
 #include "cli/picture_commands.h"
 #include "cli/shared_options.h"
@@ -25,170 +30,236 @@ struct Options : ViewOptions {
     LutOptions lut;
 };
 
-/// Triplets of numbers, one a line; comma or space between; `#` begins a comment.
-std::vector<double> parse_triplets(std::string_view text) {
-    std::vector<double> values;
-    std::size_t line_number = 0;
-    while (!text.empty()) {
-        ++line_number;
-        const std::size_t end = text.find('\n');
-        const std::string_view whole = text.substr(0, end);
-        text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-
-        std::string_view line = whole.substr(0, whole.find('#'));
-        std::size_t count = 0;
-        bool is_bad = false;
-        const auto skip = [&](std::string_view what) {
-            line.remove_prefix(std::min(line.find_first_not_of(what), line.size()));
-        };
-        skip(" \t\r");
-        while (!line.empty() && !is_bad) {
-            double value = 0;
-            if (line.front() == '+' && line.size() > 1 && line[1] != '-') {
-                line.remove_prefix(1);  // from_chars takes no plus sign
-            }
-            const auto result = std::from_chars(line.data(), line.data() + line.size(), value);
-            // A number too large for double is infinite, and too small is 0: what printf-ed data
-            // means.
-            if (result.ec == std::errc::result_out_of_range) {
-                value = std::strtod(std::string(line.data(), result.ptr).c_str(), nullptr);
-            } else if (result.ec != std::errc()) {
-                is_bad = true;
-                break;
-            }
-            values.push_back(value);
-            ++count;
-            line.remove_prefix(static_cast<std::size_t>(result.ptr - line.data()));
-            const std::size_t before = line.size();
-            skip(" \t\r");
-            if (!line.empty() && line.front() == ',') {
-                line.remove_prefix(1);
-                skip(" \t\r");
-                if (line.empty()) is_bad = true;  // "1,2,"
-            } else if (!line.empty() && line.size() == before) {
-                is_bad = true;  // "1x"
-            }
+/// The three numbers of a line, or none where it is blank or a comment.
+/// @throws Error
+std::optional<Vector3> parse_line(std::string_view whole, std::size_t number) {
+    std::string_view line = whole.substr(0, whole.find('#'));
+    Vector3 values{};
+    std::size_t count = 0;
+    bool is_bad = false;
+    const auto skip = [&](std::string_view what) {
+        line.remove_prefix(std::min(line.find_first_not_of(what), line.size()));
+    };
+    skip(" \t\r");
+    while (!line.empty() && !is_bad) {
+        double value = 0;
+        if (line.front() == '+' && line.size() > 1 && line[1] != '-') {
+            line.remove_prefix(1);  // from_chars takes no plus sign
         }
-        if (is_bad || (count != 0 && count != 3)) {
-            std::string shown(whole.substr(0, 60));
-            if (!shown.empty() && shown.back() == '\r') shown.pop_back();
-            throw Error(
-                fmt::format("eval: line {} is \"{}\"; expected three numbers", line_number, shown));
+        const auto result = std::from_chars(line.data(), line.data() + line.size(), value);
+        // A number too large for double is infinite, and too small is 0: what printf-ed data means.
+        if (result.ec == std::errc::result_out_of_range) {
+            value = std::strtod(std::string(line.data(), result.ptr).c_str(), nullptr);
+        } else if (result.ec != std::errc()) {
+            is_bad = true;
+            break;
+        }
+        if (count < values.size()) values[count] = value;
+        ++count;
+        line.remove_prefix(static_cast<std::size_t>(result.ptr - line.data()));
+        const std::size_t before = line.size();
+        skip(" \t\r");
+        if (!line.empty() && line.front() == ',') {
+            line.remove_prefix(1);
+            skip(" \t\r");
+            if (line.empty()) is_bad = true;  // "1,2,"
+        } else if (!line.empty() && line.size() == before) {
+            is_bad = true;  // "1x"
         }
     }
+    if (is_bad || (count != 0 && count != 3)) {
+        throw Error(fmt::format("eval: line {} is \"{}\"; expected three numbers", number,
+                                trimmed(whole.substr(0, 60))));
+    }
+    if (count == 0) return std::nullopt;
     return values;
 }
 
-void print(double r, double g, double b, int digits) {
-    fmt::print("{:.{}g} {:.{}g} {:.{}g}\n", r, digits, g, digits, b, digits);
-}
+/// Colors in, colors out: `count` triplets.
+using ColorMap = std::function<void(const double* in, double* out, std::size_t count)>;
 
-/// Standard input as triplets.
-std::vector<double> read_triplets() {
-    std::cin.sync_with_stdio(false);
-    const std::string text{std::istreambuf_iterator<char>(std::cin), {}};
-    return parse_triplets(text);
-}
+/// Standard input as triplets, one a line; comma or space between; `#` begins a comment. What has
+/// arrived is answered before more is read, so that a program can ask and wait for the answer.
+class LineEvaluator {
+  public:
+    LineEvaluator(ColorMap map, int digits) : map_(std::move(map)), digits_(digits) {}
 
-void eval_lut(const LutFile& lut, const Pipeline& before, int digits) {
-    const std::vector<double> values = read_triplets();
-    const std::size_t count = values.size() / 3;
-    std::vector<float> code(values.begin(), values.end());
-    if (!before.empty()) {
-        std::vector<double> encoded(values.size());
-        ReferenceEngine(before).run_rgb(code.data(), encoded.data(), count);
-        code.assign(encoded.begin(), encoded.end());
+    /// Until the end of standard input. What comes before a line that is wrong is answered.
+    void run() {
+        std::vector<char> block(std::size_t{1} << 20);
+        std::string rest;  // a line that has not ended yet
+        while (const std::size_t count = read_some(block)) {
+            std::string_view text(block.data(), count);
+            for (std::size_t end = text.find('\n'); end != std::string_view::npos;
+                 end = text.find('\n')) {
+                take(rest.empty() ? text.substr(0, end) : rest.append(text.substr(0, end)));
+                rest.clear();
+                text.remove_prefix(end + 1);
+            }
+            rest += text;
+            if (rest.size() > kLongestLine) take(rest);
+            answer();
+        }
+        if (!rest.empty()) take(rest);
+        answer();
     }
-    std::vector<float> shown(code.size());
-    lut.run_rgb(code.data(), shown.data(), count);
-    for (std::size_t i = 0; i < shown.size(); i += 3) {
-        print(static_cast<double>(shown[i]), static_cast<double>(shown[i + 1]),
-              static_cast<double>(shown[i + 2]), digits);
+
+  private:
+    static constexpr std::size_t kLongestLine = 1 << 16;
+
+    /// Blocks until there is something. @returns  0 at the end
+    static std::size_t read_some(std::vector<char>& block) {
+        while (true) {
+            const ssize_t count = ::read(STDIN_FILENO, block.data(), block.size());
+            if (count >= 0) return static_cast<std::size_t>(count);
+            if (errno != EINTR) throw FileError("read: standard input: " + reason_of(errno));
+        }
     }
+
+    void take(std::string_view line) {
+        ++number_;
+        try {
+            if (line.size() > kLongestLine) {
+                throw Error(
+                    fmt::format("eval: line {} has more than {} bytes; expected three "
+                                "numbers",
+                                number_, kLongestLine));
+            }
+            if (const std::optional<Vector3> color = parse_line(line, number_))
+                colors_.insert(colors_.end(), color->begin(), color->end());
+        } catch (const Error&) {
+            answer();
+            throw;
+        }
+    }
+
+    void answer() {
+        const std::size_t count = colors_.size() / 3;
+        if (count == 0) return;
+        std::vector<double> shown(colors_.size());
+        map_(colors_.data(), shown.data(), count);
+        for (std::size_t i = 0; i < shown.size(); i += 3) {
+            fmt::print("{:.{}g} {:.{}g} {:.{}g}\n", shown[i], digits_, shown[i + 1], digits_,
+                       shown[i + 2], digits_);
+        }
+        if (std::fflush(stdout) != 0) throw FileError("write: standard output: cannot write");
+        colors_.clear();
+    }
+
+    ColorMap map_;
+    int digits_;
+    std::size_t number_ = 0;
+    std::vector<double> colors_;
+};
+
+/// Of an engine that takes floats.
+ColorMap through_floats(std::function<void(const float*, float*, std::size_t)> run) {
+    return [run = std::move(run)](const double* in, double* out, std::size_t count) {
+        const std::vector<float> from(in, in + 3 * count);
+        std::vector<float> to(from.size());
+        run(from.data(), to.data(), count);
+        std::copy(to.begin(), to.end(), out);
+    };
 }
 
-int run_eval(const Options& options) {
-    if (!options.lut.file.empty()) {
-        const InputSpace& input = find_input_space(options.input);
-        const Pipeline before =
-            before_lut("eval", options.lut, options, {input.id, input.primaries});
-        eval_lut(
+ColorMap map_of_lut(const Options& options) {
+    const InputSpace& input = find_input_space(options.input);
+    const Pipeline before = before_lut("eval", options.lut, options, {input.id, input.primaries});
+    const auto lut = with_memory_for(options.lut.file, [&] {
+        return std::make_shared<const LutFile>(
             open_lut(options.lut.file, options.lut.interpolation,
-                     [](const std::string& path) { return picture_commands().read_lut(path); }),
-            before, options.digits);
-        return kOk;
-    }
+                     [](const std::string& path) { return picture_commands().read_lut(path); }));
+    });
+    const auto encode = before.empty() ? nullptr : std::make_shared<const ReferenceEngine>(before);
+    return through_floats([lut, encode](const float* in, float* out, std::size_t count) {
+        if (!encode) {
+            lut->run_rgb(in, out, count);
+            return;
+        }
+        std::vector<double> encoded(3 * count);
+        encode->run_rgb(in, encoded.data(), count);
+        const std::vector<float> code(encoded.begin(), encoded.end());
+        lut->run_rgb(code.data(), out, count);
+    });
+}
+
+ColorMap map_of_operator(const Options& options) {
     if (options.op.empty()) {
         throw Error(
-            "eval: operator is missing; expected an id of `tonewright list`, or --lut FILE");
+            "eval: OPERATOR is missing; expected an id from `tonewright list`, or --lut FILE");
     }
-    const std::vector<std::string> engines = {"reference", "simd", "ocio", "ocio-gpu"};
-    if (std::find(engines.begin(), engines.end(), options.engine) == engines.end()) {
-        throw Error("eval: engine is " + options.engine + "; expected " + join_choices(engines) +
-                    did_you_mean(options.engine, engines));
-    }
+    enum Engine : std::size_t { kReference, kSimd, kOcio, kOcioGpu };
+    const std::size_t kind =
+        find_choice("eval: engine", options.engine, {"reference", "simd", "ocio", "ocio-gpu"});
     const View view = options.view();
     if (options.inverse && !view.op.op->build_inverse) {
-        throw Error(view.op.op->id + " has no inverse; expected " +
+        throw Error("eval: " + view.op.op->id + " has no inverse; expected " +
                     join_choices(invertible_operators()));
     }
     const Pipeline pipeline = options.inverse ? build_inverse_view(view) : build_view(view);
-    const std::vector<double> values = read_triplets();
-    const std::size_t count = values.size() / 3;
-    if (options.engine == "reference") {
-        const ReferenceEngine engine(pipeline);
-        std::array<std::vector<double>, 3> plane;
-        for (std::size_t i = 0; i < values.size(); ++i)
-            plane[i % 3].push_back(values[i]);
-        const std::array<double*, 3> p = {plane[0].data(), plane[1].data(), plane[2].data()};
-        engine.run({p[0], p[1], p[2]}, p, count);
-        for (std::size_t i = 0; i < count; ++i)
-            print(p[0][i], p[1][i], p[2][i], options.digits);
-        return kOk;
+    if (kind == kReference) {
+        const auto engine = std::make_shared<const ReferenceEngine>(pipeline);
+        return [engine](const double* in, double* out, std::size_t count) {
+            std::array<std::vector<double>, 3> plane;
+            for (std::size_t i = 0; i < 3 * count; ++i)
+                plane[i % 3].push_back(in[i]);
+            const std::array<double*, 3> p = {plane[0].data(), plane[1].data(), plane[2].data()};
+            engine->run({p[0], p[1], p[2]}, p, count);
+            for (std::size_t i = 0; i < 3 * count; ++i)
+                out[i] = plane[i % 3][i / 3];
+        };
     }
-    const std::vector<float> in(values.begin(), values.end());
-    std::vector<float> out(in.size());
-    if (options.engine == "simd") {
-        SimdEngine(pipeline, view.op.op->bounds.simd_goal).run_rgb(in.data(), out.data(), count);
-    } else {
-        const LowerOptions lowering{.fits_cubes = lower_options(*view.op.op).fits_cubes};
-        const auto processor = make_processor(lower_to_ocio(pipeline, lowering).ops);
-        if (options.engine == "ocio") {
-            OcioCpu(processor).run_rgb(in.data(), out.data(), count);
-        } else {
-            OcioGpu(processor).run_rgb(in.data(), out.data(), count);
-        }
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-        print(static_cast<double>(out[3 * i]), static_cast<double>(out[3 * i + 1]),
-              static_cast<double>(out[3 * i + 2]), options.digits);
-    }
-    return kOk;
+    const auto of = [](const auto& engine) {
+        return through_floats([engine](const float* in, float* out, std::size_t count) {
+            engine->run_rgb(in, out, count);
+        });
+    };
+    if (kind == kSimd)
+        return of(std::make_shared<const SimdEngine>(pipeline, view.op.op->bounds.simd_goal));
+    const LowerOptions lowering{.fits_cubes = lower_options(*view.op.op).fits_cubes};
+    const auto processor = make_processor(lower_to_ocio(pipeline, lowering).ops);
+    if (kind == kOcio) return of(std::make_shared<OcioCpu>(processor));
+    return of(std::make_shared<OcioGpu>(processor));
 }
+
+int run_eval(const Options& options) {
+    const ColorMap map = options.lut.file.empty() ? map_of_operator(options) : map_of_lut(options);
+    LineEvaluator(map, options.digits).run();
+    return kOk;
+}  // NOLINT(clang-analyzer-cplusplus.NewDeleteLeaks): std::function owns its state
 
 }  // namespace
 
 void add_eval(CommandLine& program) {
     auto options = std::make_shared<Options>();
-    const Command command = program.add("eval", "RGB triplets on stdin -> RGB triplets on stdout");
+    const Command command =
+        program.add("eval", "Tone map RGB triplets from standard input, one a line.");
+    command.group("Operators");
     const Option op = command.add("operator", options->op, "operator, or operator:preset");
     add_view_options(command, *options);
-    command.add("--engine", options->engine, "reference (double), simd, ocio or ocio-gpu")
-        .show_default();
-    command.add("--digits", options->digits, "significant digits of the output")
+    command
+        .add("--engine", options->engine,
+             "`reference` (double precision), `simd`, `ocio` or `ocio-gpu` (floats)")
+        .value("NAME")
         .show_default()
-        .range(1, 17);
-    command.add_flag("--inverse", options->inverse,
-                     "from what the display shows back to scene-linear; for operators that have an "
-                     "inverse");
+        .group("Computation");
+    command.add("--digits", options->digits, "significant digits of the output")
+        .value("N")
+        .show_default()
+        .range(1, 17)
+        .group("Computation");
+    command
+        .add_flag("--inverse", options->inverse,
+                  "map display colors to scene-linear; for operators that have an inverse")
+        .group("Computation");
     add_lut_options(command, options->lut, op,
                     {"--set", "--look", "--display", "--reference-white", "--engine", "--inverse"});
     command.footer(
-        "One colour a line: r g b or r,g,b; nan and inf are numbers; # begins a comment.\n"
-        "The engines other than reference take the numbers as floats. There is no picture: "
-        "parameters\nthat `apply` takes from it have their defaults.\n"
-        "Examples:\n  printf '0.18 0.18 0.18\\n4,2,0.5\\n' | tonewright eval agx_sobotka --display "
-        "srgb\n"
+        "A line is `r g b` or `r,g,b`. Values may be nan and inf; # begins a comment. Each line is "
+        "answered when it arrives, so a program can keep eval running. Parameters that `apply` "
+        "measures from the picture keep their defaults.\n"
+        "Examples:\n"
+        "  printf '0.18 0.18 0.18\\n4,2,0.5\\n' | tonewright eval agx_sobotka\n"
         "  echo 0.18 0.18 0.18 | tonewright eval --lut agx.cube --input-encoding acescct");
     command.action([options, command] {
         options->given = command.given();

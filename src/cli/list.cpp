@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -64,12 +65,13 @@ std::vector<std::string> all_warnings(const Operator& op) {
 /// JSON has no infinity.
 Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-Json to_json(const ParameterSpec& p) {
+Json to_json(const ParameterSpec& p, bool is_live) {
     Json j = {{"name", p.name}, {"kind", kind_name(p.kind)}, {"unit", p.unit}};
     if (p.kind == Kind::number) {
         j.add("default", p.default_value);
         j.add("min", number_or_null(p.min));
         j.add("max", number_or_null(p.max));
+        j.add("live", is_live);
     } else {
         j.add("default", p.default_choice);
     }
@@ -82,8 +84,9 @@ Json to_json(const ParameterSpec& p) {
 
 Json to_json(const Operator& op) {
     Json parameters = Json::array();
+    const std::vector<std::string> live = live_parameters(op);
     for (const ParameterSpec& p : op.parameters)
-        parameters.push_back(to_json(p));
+        parameters.push_back(to_json(p, std::find(live.begin(), live.end(), p.name) != live.end()));
     Json deviations = Json::array();
     for (const DocumentedDifference& d : op.deviations) {
         deviations.push_back({{"kind", kind_name(d.kind)},
@@ -168,16 +171,9 @@ std::string dialects_of(const Operator& op) {
 constexpr const char* kDiagnostic = "shows what is in a picture, not a picture";
 constexpr const char* kLocal = "pictures only, no LUT or config can hold it";
 
-const Operator& find_listed(const std::string& id) {
-    for (const Operator& op : local_operators()) {
-        if (op.id == id) return op;
-    }
-    return find_operator(id);
-}
-
 void print_operator(const Operator& op) {
     fmt::print("{}: {}\n  {}\n", op.id, op.title, op.character);
-    fmt::print("  source      {}\n  licence     {}\n", op.source, op.licence);
+    fmt::print("  source      {}\n  license     {}\n", op.source, op.licence);
     if (op.is_local()) {
         fmt::print("  local       {}\n", kLocal);
     } else {
@@ -189,6 +185,10 @@ void print_operator(const Operator& op) {
     if (op.is_diagnostic) fmt::print("  diagnostic  {}\n", kDiagnostic);
     for (const ParameterSpec& p : op.parameters) {
         fmt::print("  --set {}={}  {}\n      {}\n", p.name, default_of(p), range_of(p), help_of(p));
+    }
+    if (const std::vector<std::string> live = live_parameters(op); !live.empty()) {
+        fmt::print("  live        {} (one expression serves all their values)\n",
+                   fmt::join(live, ", "));
     }
     for (const Preset& p : op.presets)
         fmt::print("  preset      {}:{}  {}\n", op.id, p.id, p.title);
@@ -218,7 +218,7 @@ void print_overview() {
     std::size_t width = 18;
     for (const Operator& op : all_operators())
         width = std::max(width, op.id.size());
-    fmt::print("operators (tonewright list OPERATOR tells more)\n");
+    fmt::print("operators (details: tonewright list OPERATOR)\n");
     for (const Operator& op : all_operators()) {
         std::vector<std::string> words = {op.title};
         for (const Preset& p : op.presets)
@@ -282,14 +282,16 @@ std::string output_of(const LutApplication& host) {
 }
 
 void print_hosts() {
-    fmt::print("applications (tonewright bake OPERATOR --for HOST -o FILE)\n");
+    fmt::print("applications (tonewright bake OPERATOR --for APPLICATION -o FILE)\n");
     for (const LutApplication& host : all_lut_applications()) {
         fmt::print(
-            "\n  {}: {}\n      {}; {} in, {} out; between the nodes {}\n      {}\n      {}\n",
+            "\n  {}: {}\n      format         {}\n      input          {}{}\n      output         "
+            "{}\n"
+            "      interpolation  {}\n      how to load    {}\n      tested         {}\n",
             host.id, host.title, format_of(host), parse_input_encoding(host.encoding).title,
-            output_of(host), host.interpolation, host.steps,
-            host.tested.empty() ? "format checked, application not run"
-                                : "tested with " + host.tested);
+            host.takes_any_primaries ? ", of the operator's own primaries" : "", output_of(host),
+            host.interpolation, host.steps,
+            host.tested.empty() ? "the file format, not the application" : host.tested);
     }
 }
 
@@ -303,6 +305,7 @@ Json hosts_to_json() {
                        {"bits", host.bits},
                        {"input_encoding", host.encoding},
                        {"input", parse_input_encoding(host.encoding).default_input},
+                       {"takes_any_primaries", host.takes_any_primaries},
                        {"display", host.display},
                        {"interpolation", host.interpolation},
                        {"steps", host.steps},
@@ -334,7 +337,7 @@ int run_list(const Options& options) {
             print_hosts();
         }
     } else if (!options.op.empty()) {
-        const Operator& op = find_listed(options.op);
+        const Operator& op = find_picture_operator(options.op);
         if (options.json) {
             fmt::print("{}\n", to_json(op).dump(2));
         } else if (options.markdown) {
@@ -363,32 +366,41 @@ int run_list(const Options& options) {
 void add_list(CommandLine& program) {
     auto options = std::make_shared<Options>();
     const Command command =
-        program.add("list", "operators with their parameters and looks; displays; spaces");
-    command.add("operator", options->op, "one operator in full");
-    const Option json = command.add_flag("--json", options->json, "for programs");
+        program.add("list", "List operators with their parameters, displays and color spaces.");
+    command.group("Operators");
+    const char* const contents = "What to list";
+    const char* const format = "Format";
+    command.add("operator", options->op, "operator to describe in full");
+    const Option json = command.add_flag("--json", options->json, "print JSON");
+    json.group(format);
     const Option markdown =
-        command.add_flag("--markdown", options->markdown, "for documents").excludes(json);
+        command.add_flag("--markdown", options->markdown, "print Markdown").excludes(json);
+    markdown.group(format);
     const Option views =
         command
             .add_flag(
                 "--views", options->views,
-                "each operator's id and its view in the config, with a tab between: for scripts")
+                "each operator's id and the name of its view in the config, with a tab between")
             .excludes(json)
             .excludes(markdown);
+    views.group(contents);
     const Option hosts =
         command
             .add_flag("--hosts", options->hosts,
-                      "applications that read LUTs, what each expects, and what to do there")
+                      "applications that read LUTs, what each expects, and how to load a LUT there")
             .excludes(markdown)
             .excludes(views);
+    hosts.group(contents);
     command
         .add("--catalogue", options->catalogue,
-             "write operators.md and curves/, every operator with a plot, into this folder")
+             "write operators.md and curves/, with a plot of every operator, into this folder")
+        .value("FOLDER")
+        .group(format)
         .excludes(json)
         .excludes(markdown)
         .excludes(views)
         .excludes(hosts);
-    command.footer("Example:\n  tonewright list hable --json");
+    command.footer("Examples:\n  tonewright list\n  tonewright list hable --json");
     command.action([options] { return run_list(*options); });
 }
 

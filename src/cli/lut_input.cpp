@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/lut_input.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 
 #include "base/format_number.h"
 #include "base/strings.h"
+#include "cli/messages.h"
+#include "lut/stated_input.h"
 #include "tonewright/lut.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -21,14 +26,54 @@ LutFile open_lut(const std::string& path, const std::string& interpolation,
     return LutFile(read_picture(path), between);
 }
 
+namespace {
+
+std::optional<StatedInput> stated_input(const LutOptions& options) {
+    // Our text stands at the beginning, but behind the table in a device link.
+    constexpr std::size_t kBeginning = 1U << 16U;
+    const std::string extension = extension_of(options.file);
+    const bool is_link = extension == ".icc" || extension == ".icm";
+    std::string contents(is_link ? std::size_t{1} << 26U : kBeginning, '\0');
+    std::ifstream file(options.file, std::ios::binary);
+    file.read(contents.data(), static_cast<std::streamsize>(contents.size()));
+    contents.resize(static_cast<std::size_t>(std::max<std::streamsize>(file.gcount(), 0)));
+    return read_stated_input(contents);
+}
+
+}  // namespace
+
+bool states_input(const LutOptions& options) { return stated_input(options).has_value(); }
+
+LutOptions with_stated_input(const LutOptions& options, const std::string& input) {
+    if (!options.encoding.empty()) return options;
+    const std::optional<StatedInput> stated = stated_input(options);
+    if (!stated) {
+        warn(fmt::format(
+            "{}: the encoding that the LUT expects is unknown; colors are passed unchanged "
+            "(set --input-encoding; `none` keeps them unchanged)",
+            options.file));
+        return options;
+    }
+    LutOptions found = options;
+    found.encoding = stated->encoding;
+    if (found.space.empty()) found.space = stated->space;
+    if (!message_options().is_quiet) {
+        print_message(fmt::format(
+            "{}: the LUT expects {}, by its header; the picture is {} (--input-encoding none "
+            "passes colors unchanged)",
+            options.file, stated->text, input));
+    }
+    return found;
+}
+
 Pipeline before_lut(const char* command, const LutOptions& options, const ViewOptions& view,
                     const SourceColor& input) {
-    if (options.encoding.empty()) {
+    if (options.encoding.empty() || options.encoding == "none") {
         for (const char* name : {"--input", "--exposure", "--lut-space"}) {
             if (view.given.contains(name)) {
-                throw Error(std::string(command) + ": " + name + " is given for " + options.file +
-                            "; expected --input-encoding with it, or the LUT takes colors as they "
-                            "are");
+                throw Error(
+                    std::string(command) + ": " + name + " is given for " + options.file +
+                    "; expected --input-encoding with it: without it, colors are passed unchanged");
             }
         }
         return {};

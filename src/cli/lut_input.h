@@ -24,8 +24,16 @@ struct LutOptions {
 [[nodiscard]] LutFile open_lut(const std::string& path, const std::string& interpolation,
                                const std::function<Lut(const std::string&)>& read_picture);
 
+/// Whether the file itself says what goes in.
+[[nodiscard]] bool states_input(const LutOptions& options);
+
+/// Without --input-encoding: what the file itself says that goes in, in one line on stderr; where
+/// it says nothing, a warning that colors go in as they are.
+[[nodiscard]] LutOptions with_stated_input(const LutOptions& options, const std::string& input);
+
 /// What stands before the LUT: light of `input`, with --exposure, as --input-encoding in the
-/// primaries of --lut-space. Empty without --input-encoding: colors go in as they are.
+/// primaries of --lut-space. Empty without --input-encoding, and for `none`: colors go in as they
+/// are.
 /// @param command  its name, for the message
 /// @throws Error  unknown names; --input, --exposure or --lut-space without --input-encoding.
 [[nodiscard]] Pipeline before_lut(const char* command, const LutOptions& options,

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <cstdio>
 #include <exception>
+#include <new>
 #include <string>
 #include <system_error>
 
 #include "base/atomic_file.h"
 #include "cli/command.h"
+#include "cli/messages.h"
 #include "cli/options.h"
 #include "tonewright/error.h"
 #include "tonewright/version.h"
@@ -15,39 +15,35 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// One line on stderr, whatever the library's message looked like.
 int report(const std::string& message, int exit_code) {
-    std::string line = message;
-    while (!line.empty() && (line.back() == '\n' || line.back() == ' '))
-        line.pop_back();
-    for (char& c : line) {
-        if (c == '\n' || c == '\r') c = ' ';
-    }
-    fmt::print(stderr, "tonewright: {}\n", line);
+    print_message(message);
     return exit_code;
 }
 
 int run(int argc, char** argv) {
     try {
-        CommandLine program("tonewright",
-                            "Tone mapping operators: one definition, the same picture everywhere.",
-                            TONEWRIGHT_VERSION);
+        CommandLine program(
+            "tonewright", "Tone map pictures, and write operators as LUTs and OpenColorIO configs.",
+            TONEWRIGHT_VERSION);
         program.footer(
             "Examples:\n"
-            "  tonewright list                                       operators, displays, spaces\n"
-            "  tonewright apply in.exr out.png --operator agx_sobotka\n"
-            "  tonewright config -o ocio_config                      the OpenColorIO config\n"
-            "  echo 0.18 0.18 0.18 | tonewright eval hable\n"
-            "Exit codes: 0 ok, 1 a check or a frame of --frames failed, 2 wrong usage, 3 a file "
-            "could not be read or written.");
-        for (const auto add : {add_list, add_eval, add_apply, add_meter, add_bake, add_config,
-                               add_verify, add_chart, add_sheet, add_compare, add_plot})
+            "  tonewright apply in.exr out.png --operator agx_blender\n"
+            "  tonewright compare in.exr -o sheet.png\n"
+            "  tonewright bake agx_blender --for resolve -o agx.cube\n"
+            "  tonewright config -o ocio_config\n"
+            "`tonewright COMMAND --help` explains a command. Exit codes: 0 ok, 1 a check or a "
+            "frame "
+            "failed, 2 wrong usage, 3 a file could not be read or written.");
+        for (const auto add : {add_apply, add_compare, add_meter, add_sheet, add_chart, add_bake,
+                               add_config, add_list, add_eval, add_plot, add_verify})
             add(program);
         const int exit_code = program.run(argc, argv);
         if (std::fflush(stdout) != 0) return report("write: standard output: cannot write", kFile);
         return exit_code;
     } catch (const std::system_error& e) {  // what printing throws
         return report("write: standard output: " + e.code().message(), kFile);
+    } catch (const std::bad_alloc&) {
+        return report("not enough memory", kFile);
     } catch (const FileError& e) {
         return report(e.what(), kFile);
     } catch (const Error& e) {

@@ -10,29 +10,35 @@ void add_meter(CommandLine& program) {
     auto options = std::make_shared<MeterCommandOptions>();
     options->metering.method = "log-average";
     const Command command =
-        program.add("meter", "how much light a picture has, and which exposure that suggests");
-    command.add("in", options->in, "pictures, any format that OpenImageIO reads").required();
-    command.add_flag("--json", options->json, "for programs: all figures, with all digits");
-    command.add("--method", options->metering.method, "log-average, histogram, mean or max")
+        program.add("meter", "Measure the luminance of pictures and suggest an exposure.");
+    command.group("Pictures");
+    command.add("in", options->in, "pictures, in any format that OpenImageIO reads").required();
+    command.add_flag("--json", options->json, "print all figures with all digits, as JSON")
+        .group("Output");
+    command.add("--method", options->metering.method, "method: log-average, histogram, mean or max")
+        .value("NAME")
         .show_default()
-        .group("Metering");
+        .group("Exposure");
     const Option frames =
         command.add("--frames", options->frames,
-                    "frames of a shot, such as 1001-1100: `in` has %04d or #### where the "
-                    "number stands");
+                    "frames such as 1001-1100; IN has %04d, #### or @@@@ for the number");
+    frames.value("RANGE").group("Pictures");
     command
         .add("--input", options->input,
-             "what the input's numbers are: `auto`, what the picture says, or a name as in "
-             "`apply`")
+             "color space of the input: a space, a display or `auto` (what the file says)")
+        .value("SPACE")
+        .group("Pictures")
         .show_default();
     add_picture_input(command, options->picture);
     add_exposure_options(command, options->metering, nullptr);
     add_shot_options(command, options->shot, frames, nullptr);
+    command.common({"--json", "--method", "--frames", "--input", "--key", "--compensation",
+                    "--region", "--percentiles", "--adapt"});
     command.footer(
         "Examples:\n"
         "  tonewright meter render.exr\n"
         "  tonewright meter render.exr --json --method histogram --percentiles 40,95\n"
-        "  tonewright meter shot.####.exr --frames 1001-1100 --adapt --meter-cache shot.json");
+        "  tonewright meter shot.####.exr --frames 1001-1100 --adapt");
     command.action([options] { return picture_commands().meter(*options); });
 }
 

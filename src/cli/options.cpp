@@ -1,17 +1,244 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/options.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <system_error>
+#include <type_traits>
 #include <utility>
 
 #include "base/strings.h"
+#include "cli/help_text.h"
+#include "cli/messages.h"
 #include "tonewright/error.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
+namespace {
+
+constexpr const char* kGeneralOptions = "General options";
+
+/// The kind of number that an option's value is; void for a text.
+template <class Value>
+struct NumberOf {
+    using Type = void;
+};
+template <>
+struct NumberOf<int> {
+    using Type = int;
+};
+template <>
+struct NumberOf<double> {
+    using Type = double;
+};
+template <class Value>
+struct NumberOf<std::optional<Value>> : NumberOf<Value> {};
+template <class Value>
+struct NumberOf<std::vector<Value>> : NumberOf<Value> {};
+
+std::vector<const CLI::App*> subcommands(const CLI::App& app) {
+    return app.get_subcommands([](const CLI::App*) { return true; });
+}
+
+std::string argument_name(const CLI::Option& option) {
+    std::string name = option.get_single_name();
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+    return name;
+}
+
+/// `IN`, or `IN...` where several are taken.
+std::string argument_usage(const CLI::Option& option) {
+    return argument_name(option) + (option.get_items_expected_max() > 1 ? "..." : "");
+}
+
+/// As messages call it: `--size`, or `OPERATOR` for an argument.
+std::string name_of(const CLI::Option& option) {
+    return option.get_positional() ? argument_name(option) : option.get_name();
+}
+
+/// `apply: --size`, which begins every message about the option.
+std::string subject_of(const CLI::App& command, const CLI::Option& option) {
+    return fmt::format("{}: {}", command.get_name(), name_of(option));
+}
+
+/// The text of a number, in decimal notation.
+/// @throws Error
+template <class Number>
+std::string checked_number(const std::string& subject, const std::string& text,
+                           const std::optional<std::pair<double, double>>& limits) {
+    constexpr bool kIsWhole = std::is_integral_v<Number>;
+    Number number{};
+    const char* end = text.data() + text.size();
+    const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
+    const auto [last, error] = std::from_chars(begin, end, number);
+    bool is_good = error == std::errc() && last == end;
+    if constexpr (!kIsWhole) is_good = is_good && std::isfinite(number);
+    if (is_good && limits)
+        is_good = static_cast<double>(number) >= limits->first &&
+                  static_cast<double>(number) <= limits->second;
+    if (is_good) return fmt::format("{}", number);
+    std::string expected = kIsWhole ? "a whole number" : "a number";
+    if (limits) {
+        expected += fmt::format(" in [{}, {}]", limits->first, limits->second);
+    } else if (kIsWhole && error == std::errc::result_out_of_range) {
+        expected += fmt::format(" in [{}, {}]", std::numeric_limits<Number>::min(),
+                                std::numeric_limits<Number>::max());
+    }
+    throw Error(
+        fmt::format("{} is {}; expected {}", subject, text.empty() ? "empty" : text, expected));
+}
+
+std::string value_name(const CLI::Option& option, const OptionHelps& helps) {
+    const auto found = helps.find(&option);
+    return found == helps.end() || found->second.value.empty() ? "VALUE" : found->second.value;
+}
+
+/// What to type: `--size N`, `--exact`.
+std::string usage_of(const CLI::Option& option, const OptionHelps& helps) {
+    if (option.get_positional() || option.get_items_expected_max() == 0) return name_of(option);
+    return name_of(option) + " " + value_name(option, helps);
+}
+
+/// How messages about a given option begin: `apply: --size is 3`, `apply: --exact is given`.
+std::string given_of(const CLI::App& command, const CLI::Option& option) {
+    std::string text = subject_of(command, option) + " is ";
+    if (option.get_items_expected_max() == 0) return text + "given";
+    text += option.results().empty() ? "" : option.results().front();
+    return text;
+}
+
+Error missing_value(const CLI::App& command, const CLI::Option& option, const OptionHelps& helps) {
+    return Error(fmt::format("{} has no value; expected {}", subject_of(command, option),
+                             usage_of(option, helps)));
+}
+
+bool is_option(const CLI::App& command, const std::string& text) {
+    return text.size() > 1 && text.front() == '-' && command.get_option_no_throw(text) != nullptr;
+}
+
+/// CLI11's commands as help pages.
+class HelpFormatter : public CLI::FormatterBase {
+  public:
+    explicit HelpFormatter(const OptionHelps& helps) : helps_(helps) {}
+
+    std::string make_help(const CLI::App* app, std::string name,
+                          CLI::AppFormatMode mode) const override {
+        const bool has_all = mode != CLI::AppFormatMode::Normal;
+        std::string help = format_help(page_of(*app, name), has_all, help_width());
+        if (!has_all) return help;
+        for (const CLI::App* command : subcommands(*app)) {
+            help += "\n\n";
+            help += make_help(command, name + " " + command->get_name(), mode);
+        }
+        return help;
+    }
+
+  private:
+    [[nodiscard]] HelpPage page_of(const CLI::App& app, const std::string& name) const;
+    [[nodiscard]] OptionHelp help_of(const CLI::Option& option) const {
+        const auto found = helps_.find(&option);
+        return found == helps_.end() ? OptionHelp() : found->second;
+    }
+    [[nodiscard]] HelpEntry entry_of(const CLI::Option& option) const;
+
+    const OptionHelps& helps_;
+};
+
+HelpGroup& group_named(std::vector<HelpGroup>& groups, const std::string& title) {
+    const auto found = std::find_if(groups.begin(), groups.end(),
+                                    [&](const HelpGroup& group) { return group.title == title; });
+    if (found != groups.end()) return *found;
+    groups.push_back({title, {}});
+    return groups.back();
+}
+
+HelpEntry HelpFormatter::entry_of(const CLI::Option& option) const {
+    const OptionHelp help = help_of(option);
+    HelpEntry entry;
+    entry.is_common = help.is_common;
+    if (option.get_positional()) {
+        entry.names = argument_usage(option);
+    } else {
+        for (const std::string& name : option.get_snames())
+            entry.names += (entry.names.empty() ? "-" : ", -") + name;
+        for (const std::string& name : option.get_lnames())
+            entry.names += (entry.names.empty() ? "--" : ", --") + name;
+        if (option.get_items_expected_max() > 0) entry.names += " " + value_name(option, helps_);
+    }
+    entry.text = option.get_description();
+    std::string facts = option.get_default_str();
+    if (!facts.empty()) facts.insert(0, "default ");
+    constexpr double kMostShown = 1 << 16;  // a limit that nobody meets is no help
+    if (help.limits && help.limits->second < kMostShown) {
+        facts += fmt::format("{}{}..{}", facts.empty() ? "" : "; ", help.limits->first,
+                             help.limits->second);
+    }
+    if (facts.empty()) return entry;
+    // Behind a default that the text states itself.
+    if (entry.text.ends_with(')') && entry.text.find(" (default") != std::string::npos) {
+        entry.text.back() = ';';
+        entry.text += " " + facts + ")";
+    } else {
+        entry.text += " (" + facts + ")";
+    }
+    return entry;
+}
+
+HelpPage HelpFormatter::page_of(const CLI::App& app, const std::string& name) const {
+    HelpPage page;
+    page.description = app.get_description();
+    page.footer = app.get_footer();
+    page.usage = name;
+    std::vector<const CLI::Option*> options = app.get_options();
+    for (const CLI::App* command : subcommands(app))
+        group_named(page.groups, command->get_group())
+            .entries.push_back({command->get_name(), command->get_description()});
+    page.usage += page.groups.empty() ? " [OPTIONS]" : " COMMAND [OPTIONS]";
+    bool has_common = false;
+    std::size_t number = 0;
+    for (const CLI::Option* option : options) {
+        has_common = has_common || help_of(*option).is_common;
+        if (!option->get_positional()) {
+            ++number;
+            continue;
+        }
+        const std::string argument = argument_usage(*option);
+        page.usage += option->get_required() ? " " + argument : " [" + argument + "]";
+    }
+    // What every command has comes last.
+    const auto is_general = [](const CLI::Option* option) {
+        return option->get_group() == kGeneralOptions;
+    };
+    std::stable_partition(options.begin(), options.end(),
+                          [&](const CLI::Option* option) { return !is_general(option); });
+    for (const CLI::Option* option : options) {
+        const std::string title = option->get_positional() ? "Arguments" : option->get_group();
+        HelpEntry entry = entry_of(*option);
+        if (option == app.get_help_all_ptr() && has_common)
+            entry.text = fmt::format("print all {} options", number);
+        if (!has_common || option->get_positional() || is_general(option)) entry.is_common = true;
+        group_named(page.groups, title).entries.push_back(std::move(entry));
+    }
+    return page;
+}
+
+}  // namespace
 
 const Option& Option::required() const {
     option_->required();
+    return *this;
+}
+
+const Option& Option::value(const std::string& name) const {
+    (*helps_)[option_].value = name;
     return *this;
 }
 
@@ -35,24 +262,26 @@ const Option& Option::group(const std::string& title) const {
     return *this;
 }
 
-const Option& Option::range(int low, int high) const {
-    option_->check(CLI::Range(low, high));
-    return *this;
-}
-
 const Option& Option::range(double low, double high) const {
-    option_->check(CLI::Range(low, high));
+    (*helps_)[option_].limits = {low, high};
     return *this;
 }
 
 const Option& Option::choices(const std::vector<std::string>& texts) const {
-    option_->check(CLI::IsMember(texts));
+    const auto as_listed = [app = app_, option = option_, texts](std::string& text) {
+        text = texts[find_choice(subject_of(*app, *option), text, texts)];
+        return std::string();
+    };
+    option_->transform(CLI::Validator(as_listed, {}));
     return *this;
 }
 
 const Option& Option::choices(const std::vector<int>& numbers) const {
-    option_->check(CLI::IsMember(numbers));
-    return *this;
+    std::vector<std::string> texts;
+    texts.reserve(numbers.size());
+    for (const int number : numbers)
+        texts.push_back(fmt::to_string(number));
+    return choices(texts);
 }
 
 const Option& Option::one_value_each() const {
@@ -75,45 +304,78 @@ const Option& Option::excludes(const Option& other) const {
     return *this;
 }
 
+/// Values are checked here, with messages of ours, before CLI11 converts them with messages of its
+/// own.
+template <class Value>
+Option Command::add_option(const std::string& name, Value& value, const std::string& help) const {
+    using Number = typename NumberOf<Value>::Type;
+    CLI::Option* option = app_->add_option(name, value, help);
+    const auto check = [app = app_, option, helps = helps_](std::string& text) {
+        // CLI11 takes the next word for the value, an option, too.
+        if (!option->get_positional() && is_option(*app, text))
+            throw missing_value(*app, *option, *helps);
+        if constexpr (!std::is_void_v<Number>)
+            text = checked_number<Number>(subject_of(*app, *option), text, (*helps)[option].limits);
+        return std::string();
+    };
+    option->transform(CLI::Validator(check, {}));
+    return {app_, option, helps_};
+}
+
 Option Command::add(const std::string& name, std::string& value, const std::string& help) const {
-    return Option(app_->add_option(name, value, help));
+    return add_option(name, value, help);
 }
 
 Option Command::add(const std::string& name, int& value, const std::string& help) const {
-    return Option(app_->add_option(name, value, help));
+    return add_option(name, value, help);
 }
 
 Option Command::add(const std::string& name, double& value, const std::string& help) const {
-    return Option(app_->add_option(name, value, help));
+    return add_option(name, value, help);
 }
 
 Option Command::add(const std::string& name, std::optional<int>& value,
                     const std::string& help) const {
-    return Option(app_->add_option(name, value, help));
+    return add_option(name, value, help);
 }
 
 Option Command::add(const std::string& name, std::optional<double>& value,
                     const std::string& help) const {
-    return Option(app_->add_option(name, value, help));
+    return add_option(name, value, help);
 }
 
 Option Command::add(const std::string& name, std::vector<std::string>& values,
                     const std::string& help) const {
-    return Option(app_->add_option(name, values, help));
+    return add_option(name, values, help);
 }
 
 Option Command::add(const std::string& name, std::vector<double>& values,
                     const std::string& help) const {
-    return Option(app_->add_option(name, values, help));
+    return add_option(name, values, help);
 }
 
 Option Command::add_flag(const std::string& name, bool& value, const std::string& help) const {
-    return Option(app_->add_flag(name, value, help));
+    CLI::Option* option = app_->add_flag(name, value, help);
+    const auto check = [app = app_, option](std::string& text) {
+        if (text == "true") return std::string();
+        throw Error(fmt::format("{} is {}; expected no value", subject_of(*app, *option), text));
+    };
+    option->transform(CLI::Validator(check, {}));
+    return {app_, option, helps_};
+}
+
+void Command::group(const std::string& title) const { app_->group(title); }
+
+void Command::common(const std::vector<std::string>& names) const {
+    for (const std::string& name : names)
+        (*helps_)[app_->get_option(name)].is_common = true;
 }
 
 void Command::footer(const std::string& text) const { app_->footer(text); }
 
-Option Command::option(const std::string& name) const { return Option(app_->get_option(name)); }
+Option Command::option(const std::string& name) const {
+    return {app_, app_->get_option(name), helps_};
+}
 
 std::set<std::string> Command::given() const {
     std::set<std::string> names;
@@ -130,25 +392,151 @@ void Command::action(std::function<int()> run) const {
 CommandLine::CommandLine(const std::string& name, const std::string& description,
                          const std::string& version)
     : app_(std::make_unique<CLI::App>(description, name)) {
-    app_->set_version_flag("--version", version);
+    app_->formatter(std::make_shared<HelpFormatter>(helps_));
+    app_->set_help_flag("-h,--help", "print the common options")->group(kGeneralOptions);
+    app_->set_help_all_flag("--help-all", "print all options")->group(kGeneralOptions);
+    app_->set_version_flag("--version", version, "print the version")->group(kGeneralOptions);
     app_->require_subcommand(1);
 }
 
 CommandLine::~CommandLine() = default;
 
 Command CommandLine::add(const std::string& name, const std::string& description) {
-    return {app_->add_subcommand(name, description), &exit_code_};
+    CLI::App* app = app_->add_subcommand(name, description);
+    for (const char* help : {"--help", "--help-all"})
+        app->get_option(help)->group(kGeneralOptions);
+    Command command(app, &exit_code_, &helps_);
+    MessageOptions& messages = message_options();
+    const auto flag = [&](const char* names, bool& value, const char* help) {
+        command.add_flag(names, value, help).group(kGeneralOptions);
+    };
+    flag("--strict", messages.is_strict, "treat warnings as errors (exit code 1)");
+    flag("-q,--quiet", messages.is_quiet, "print errors and warnings only");
+    flag("-v,--verbose", messages.is_verbose, "print more details");
+    return command;
 }
 
 void CommandLine::footer(const std::string& text) { app_->footer(text); }
 
+namespace {
+
+/// What to type for the help that has all options.
+std::string help_command(const CLI::App& command) {
+    return fmt::format("`tonewright {} --help-all`", command.get_name());
+}
+
+/// An option that the command does not have.
+std::optional<std::string> unknown_option(const CLI::App& command) {
+    const std::vector<std::string> extras = command.remaining();
+    const auto option = std::find_if(extras.begin(), extras.end(), [](const std::string& text) {
+        return text.size() > 1 && text.front() == '-';
+    });
+    if (option == extras.end()) return {};
+    std::vector<std::string> known;
+    for (const CLI::Option* other : command.get_options()) {
+        for (const std::string& text : other->get_lnames())
+            known.push_back("--" + text);
+    }
+    const std::string typed = option->substr(0, option->find('='));
+    return fmt::format("{}: option is {}; expected one of {}{}", command.get_name(), typed,
+                       help_command(command), did_you_mean(typed, known));
+}
+
+/// An option or argument that is missing, or that cannot stand beside another.
+std::optional<std::string> unmet_requirement(const CLI::App& command, const OptionHelps& helps) {
+    const std::vector<const CLI::Option*> options = command.get_options();
+    const auto contains = [](const std::set<CLI::Option*>& list, const CLI::Option* option) {
+        return std::any_of(list.begin(), list.end(),
+                           [&](const CLI::Option* other) { return other == option; });
+    };
+    for (const CLI::Option* option : options) {
+        if (option->get_required() && option->count() == 0) {
+            return fmt::format(
+                "{} is missing; expected {}", subject_of(command, *option),
+                option->get_positional() ? option->get_description() : usage_of(*option, helps));
+        }
+        if (option->count() == 0) continue;
+        std::vector<std::string> needed;  // in the order of the help
+        for (const CLI::Option* other : options) {
+            const bool is_given = other->count() > 0;
+            if (is_given && contains(option->get_excludes(), other)) {
+                return fmt::format("{}: {} and {} are given; expected one of them",
+                                   command.get_name(), name_of(*option), name_of(*other));
+            }
+            if (!is_given && contains(option->get_needs(), other))
+                needed.push_back(usage_of(*other, helps));
+        }
+        if (!needed.empty()) {
+            return fmt::format("{}; expected {} with it", given_of(command, *option),
+                               fmt::join(needed, " and "));
+        }
+    }
+    return {};
+}
+
+/// An option of one value that has two.
+std::optional<std::string> repeated_option(const CLI::App& command) {
+    for (const CLI::Option* option : command.get_options()) {
+        const std::vector<std::string>& values = option->results();
+        const auto most = static_cast<std::size_t>(option->get_items_expected_max());
+        if (most == 0 || values.size() <= most) continue;
+        return fmt::format("{} is {} and {}; expected it once", subject_of(command, *option),
+                           values[0], values[1]);
+    }
+    return {};
+}
+
+/// An argument that no option takes.
+std::optional<std::string> unexpected_argument(const CLI::App& command) {
+    const std::vector<std::string> extras = command.remaining();
+    if (extras.empty()) return {};
+    std::vector<std::string> arguments;
+    for (const CLI::Option* option : command.get_options()) {
+        if (option->get_positional()) arguments.push_back(argument_usage(*option));
+    }
+    return fmt::format(
+        "{}: argument is {}; expected {} only", command.get_name(), extras.front(),
+        arguments.empty() ? "options" : fmt::format("one {}", fmt::join(arguments, " ")));
+}
+
+/// What is wrong with a command line that CLI11 refuses, in our words. The state of its options
+/// tells what happened: its exceptions hold finished sentences only.
+/// @param last_word  of the command line
+Error usage_error(const CLI::App& command, const OptionHelps& helps, const std::string& last_word,
+                  const CLI::ParseError& error) {
+    // CLI11 runs out of words when a value is missing.
+    if (dynamic_cast<const CLI::ArgumentMismatch*>(&error)) {
+        const std::string name = last_word.substr(0, last_word.find('='));
+        if (const auto text = repeated_option(command)) return Error(*text);
+        if (const CLI::Option* option = command.get_option_no_throw(name))
+            return missing_value(command, *option, helps);
+    }
+    for (const std::optional<std::string>& text :
+         {unknown_option(command), unmet_requirement(command, helps), repeated_option(command),
+          unexpected_argument(command)}) {
+        if (text) return Error(*text);
+    }
+    return Error(fmt::format("{}: {}", command.get_name(), error.what()));
+}
+
+}  // namespace
+
 int CommandLine::run(int argc, char** argv) {
-    // CLI11 would only say that a subcommand is required.
-    const std::vector<std::string> flags = {"-h", "--help", "--version"};
-    const std::string first = argc > 1 ? argv[1] : flags[0];
+    // `help COMMAND` is `COMMAND --help`.
+    std::vector<std::string> words(argv + 1, argv + argc);
+    if (!words.empty() && words.front() == "help") {
+        if (words.size() > 2)
+            throw Error("help: argument is " + words[2] + "; expected one command");
+        words.erase(words.begin());
+        words.emplace_back("--help");
+    }
     std::vector<std::string> names;
-    for (const CLI::App* command : app_->get_subcommands([](CLI::App*) { return true; }))
+    for (const CLI::App* command : subcommands(*app_))
         names.push_back(command->get_name());
+    names.emplace_back("help");
+    if (words.empty()) throw Error("command is missing; expected " + join_choices(names));
+    const std::string first = words.front();
+    const std::vector<std::string> flags = {"-h", "--help", "--help-all", "--version"};
     const auto is_in = [&](const std::vector<std::string>& list) {
         return std::find(list.begin(), list.end(), first) != list.end();
     };
@@ -156,12 +544,15 @@ int CommandLine::run(int argc, char** argv) {
         throw Error("command is " + first + "; expected " + join_choices(names) +
                     did_you_mean(first, names));
     }
+    const std::string last = words.back();
     try {
-        app_->parse(argc, argv);
+        std::reverse(words.begin(), words.end());  // as CLI11 takes them
+        app_->parse(std::move(words));
     } catch (const CLI::Success& e) {
         return app_->exit(e);  // --help, --version
     } catch (const CLI::ParseError& e) {
-        throw Error(e.what());
+        const std::vector<CLI::App*> commands = app_->get_subcommands();
+        throw usage_error(commands.empty() ? *app_ : *commands.front(), helps_, last, e);
     }
     return exit_code_;
 }

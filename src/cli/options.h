@@ -5,35 +5,49 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tonewright/version.h"
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): CLI11's own name
 class App;
 class Option;
 }  // namespace CLI
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
+/// What the help and the messages say of an option, besides its names and its text.
+struct OptionHelp {
+    std::string value;
+    /// Of a number: the lowest and the highest that it can be.
+    std::optional<std::pair<double, double>> limits;
+    bool is_common = false;
+};
+using OptionHelps = std::map<const CLI::Option*, OptionHelp>;
+
 /// One option, flag or positional argument of a command. A handle: the command line owns the
 /// option.
 class Option {
   public:
-    explicit Option(CLI::Option* option) : option_(option) {}
+    Option(const CLI::App* app, CLI::Option* option, OptionHelps* helps)
+        : app_(app), option_(option), helps_(helps) {}
 
     const Option& required() const;
+    /// What stands for the value in the help, such as `FILE`.
+    const Option& value(const std::string& name) const;
     /// The help shows the value that the variable has now.
     const Option& show_default() const;
     const Option& show_default(const std::string& text) const;
     const Option& describe(const std::string& help) const;
     /// The title in the help under which the option stands.
     const Option& group(const std::string& title) const;
-    const Option& range(int low, int high) const;
+    /// The lowest and the highest number that the value can be.
     const Option& range(double low, double high) const;
     const Option& choices(const std::vector<std::string>& texts) const;
     const Option& choices(const std::vector<int>& numbers) const;
@@ -45,13 +59,16 @@ class Option {
     const Option& excludes(const Option& other) const;
 
   private:
+    const CLI::App* app_;
     CLI::Option* option_;
+    OptionHelps* helps_;
 };
 
 /// One subcommand. A handle, as Option is.
 class Command {
   public:
-    Command(CLI::App* app, int* exit_code) : app_(app), exit_code_(exit_code) {}
+    Command(CLI::App* app, int* exit_code, OptionHelps* helps)
+        : app_(app), exit_code_(exit_code), helps_(helps) {}
 
     // The variable keeps its value where the option is not given; it must live until the command
     // line has run.
@@ -66,6 +83,13 @@ class Command {
     Option add(const std::string& name, std::vector<double>& values, const std::string& help) const;
     Option add_flag(const std::string& name, bool& value, const std::string& help) const;
 
+    /// The title under which the program's help lists the command.
+    void group(const std::string& title) const;
+    /// The options that `--help` prints; `--help-all` prints the others, too. A command that does
+    /// not call it has common options only.
+    void common(const std::vector<std::string>& names) const;
+    /// At the end of the help. Lines that begin with a space stay as they are; others are
+    /// paragraphs, which are wrapped.
     void footer(const std::string& text) const;
     /// @param run  returns the exit code
     void action(std::function<int()> run) const;
@@ -75,8 +99,12 @@ class Command {
     [[nodiscard]] std::set<std::string> given() const;
 
   private:
+    template <class Value>
+    Option add_option(const std::string& name, Value& value, const std::string& help) const;
+
     CLI::App* app_;
     int* exit_code_;  // of the command line
+    OptionHelps* helps_;
 };
 
 /// A program with subcommands, of which one runs.
@@ -98,6 +126,7 @@ class CommandLine {
 
   private:
     std::unique_ptr<CLI::App> app_;
+    OptionHelps helps_;
     int exit_code_ = 0;
 };
 

@@ -29,7 +29,8 @@ const PictureCommands& load() {
     const auto entry = reinterpret_cast<Entry>(::dlsym(module, kPictureCommandsEntry));
     const PictureCommands* commands = entry ? entry(kPictureCommandsBuild) : nullptr;
     if (!commands)
-        fail(path + ": is of another build; expected " + std::string(kPictureCommandsBuild));
+        fail(path + ": belongs to another build; expected " + std::string(kPictureCommandsBuild));
+    commands->use_messages(message_options());
     return *commands;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cli/curve_plot.h"
+#include "cli/messages.h"
 #include "cli/picture_options.h"
 #include "tonewright/lut.h"
 #include "tonewright/version.h"
@@ -23,6 +24,9 @@ class PictureCommands {
     PictureCommands(const PictureCommands&) = delete;
     PictureCommands& operator=(const PictureCommands&) = delete;
     virtual ~PictureCommands() = default;
+
+    /// Called once, after loading.
+    virtual void use_messages(const MessageOptions& options) const = 0;
 
     [[nodiscard]] virtual int apply(const ApplyOptions& options) const = 0;
     [[nodiscard]] virtual int meter(const MeterCommandOptions& options) const = 0;
@@ -55,6 +59,6 @@ extern "C" const PictureCommands* tonewright_picture_commands(const char* build)
 inline constexpr const char* kPictureCommandsEntry = "tonewright_picture_commands";
 /// The release, and the number of this interface: increase it with every change of the interface
 /// or of the options.
-inline constexpr const char* kPictureCommandsBuild = TONEWRIGHT_VERSION " interface 2";
+inline constexpr const char* kPictureCommandsBuild = TONEWRIGHT_VERSION " interface 6";
 
 TONEWRIGHT_NAMESPACE_END

@@ -13,10 +13,13 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// Which part of a picture is read, how its alpha is understood, and by how many threads.
+/// Which part of a picture is read, how its alpha is understood, by how many threads, and how long
+/// it may take.
 struct PictureInput {
     int subimage = 0;
     int threads = 0;
+    /// Seconds; each picture then has a process of its own. 0: no limit.
+    double timeout = 0;
     bool unpremult = false;
     bool no_unpremult = false;
 };
@@ -58,13 +61,27 @@ struct ShotOptions {
 };
 
 struct ApplyOptions : ViewOptions {
+    /// As the command line has them: pictures, folders, @lists; without -o the last is the output.
+    std::vector<std::string> pictures;
+    /// -o: a file, or a folder.
+    std::string output;
+    /// Extension of the files in a folder.
+    std::string format;
+    // One picture or shot. run_apply() fills them in.
     std::string in;
     std::string out;
     FrameOptions frames;
     std::string type;
     std::string statistics = "picture";
     bool is_false_color = false;
+    bool has_legend = false;
     bool dither = false;
+    bool is_in_place = false;
+    std::string alpha = "keep";
+    std::string compression;
+    int quality = 0;
+    double max_pixels = 1e8;
+    bool has_no_metadata = false;
     PictureInput picture;
     LutOptions lut;
     ExposureOptions metering;

@@ -23,13 +23,7 @@ namespace {
 enum class Quantity : unsigned char { code, light, log };
 
 Quantity parse_quantity(const std::string& text) {
-    const std::vector<std::string> names = {"code", "light", "log"};
-    const auto found = std::find(names.begin(), names.end(), text);
-    if (found == names.end()) {
-        throw Error("plot: --y is " + text + "; expected " + join_choices(names) +
-                    did_you_mean(text, names));
-    }
-    return static_cast<Quantity>(found - names.begin());
+    return static_cast<Quantity>(find_choice("plot: --y", text, {"code", "light", "log"}));
 }
 
 /// Light 1: white in percent, and as HDR displays show it in cd/m2.
@@ -156,7 +150,7 @@ struct Options : ViewOptions {
 
 /// `--set` and `--look` are for all; what an operator's own text says comes first.
 View view_of(const Options& options, const std::string& text) {
-    const ResolvedOperator own = parse_operator(text);
+    const ResolvedOperator own = resolve_operator(text);
     Settings settings = own.settings;
     settings.merge(options.settings());
     const std::string& look = own.params.look();
@@ -184,9 +178,10 @@ std::string fit_title(const std::string& title, std::size_t words) {
 constexpr std::size_t kMostLines = 24;
 
 CurvePlot plot_of(const Options& options) {
-    if (options.display == kLinearOutput || options.display == kNativeOutput) {
-        throw Error("plot: display is " + options.display +
-                    "; expected a display of `tonewright list`");
+    if (is_same_name(options.display, kLinearOutput) ||
+        is_same_name(options.display, kNativeOutput)) {
+        throw Error("plot: --display is " + options.display +
+                    "; expected a display with an encoding, such as srgb");
     }
     if (options.operators.size() > kMostLines) {
         throw Error(fmt::format("plot: number of operators is {}; expected at most {}",
@@ -242,13 +237,11 @@ CurvePlot plot_of(const Options& options) {
         brightest = std::max(brightest, *std::max_element(line.values.begin(), line.values.end()));
     }
     plot.scale = readings.scale(brightest);
-    constexpr std::size_t kMostLinesInside = 8;
-    plot.is_legend_below = plot.lines.size() > kMostLinesInside;
 
     plot.subtitle =
         quantity == Quantity::code
-            ? display.title + " code value of scene-linear grey"
-            : fmt::format("{} of scene-linear grey on {}",
+            ? display.title + " code value of scene-linear gray"
+            : fmt::format("{} of scene-linear gray on {}",
                           quantity == Quantity::log ? "log light" : "light", display.title);
     if (options.exposure != 0) plot.subtitle += fmt::format(", {:+g} stops", options.exposure);
     const std::string title = views.size() == 1 ? name_of(views[0].op) : "Tone curves";
@@ -258,11 +251,17 @@ CurvePlot plot_of(const Options& options) {
 
 int run_plot(const Options& options) {
     const CurvePlot plot = plot_of(options);
-    if (extension_of(options.file) != ".svg") {
+    const std::string extension = extension_of(options.file);
+    const int vector_width = options.width > 0 ? options.width : 640;
+    if (extension == ".pdf") {
+        write_text_atomically(options.file, to_pdf(plot, vector_width));
+        return kOk;
+    }
+    if (extension != ".svg") {
         picture_commands().write_plot(plot, options.file, options.width > 0 ? options.width : 1280);
         return kOk;
     }
-    write_text_atomically(options.file, to_svg(plot, options.width > 0 ? options.width : 640));
+    write_text_atomically(options.file, to_svg(plot, vector_width));
     return kOk;
 }
 
@@ -270,30 +269,36 @@ int run_plot(const Options& options) {
 
 void add_plot(CommandLine& program) {
     auto options = std::make_shared<Options>();
-    const Command command =
-        program.add("plot", "the curves of operators in one plot, SVG or a picture");
-    command
-        .add("operators", options->operators,
-             "operator[:preset][:name=value...], look=ID among the values")
+    const Command command = program.add("plot", "Plot the tone curves of operators.");
+    command.group("Operators");
+    command.add("operators", options->operators, "NAME[:PRESET][:PARAMETER=VALUE...][:look=LOOK]")
         .required();
-    command.add("-o", options->file, "file to write: .svg, or a picture such as .png").required();
+    const char* const output = "Plot";
+    command.add("-o", options->file, "file to write: .svg, .pdf, or a picture such as .png")
+        .value("FILE")
+        .required()
+        .group(output);
     command
         .add("--y", options->y,
-             "code: display code values; light: what they stand for, of white or in "
-             "cd/m2; log: the same in decades")
-        .show_default();
+             "vertical axis: `code` (code values), `light` (percent of white or cd/m2) or `log`")
+        .value("NAME")
+        .show_default()
+        .group(output);
+    command.add("--title", options->title, "title of the plot").value("TEXT").group(output);
+    command
+        .add("--width", options->width,
+             "width in pixels (default 640 for SVG and PDF, 1280 for pictures)")
+        .value("N")
+        .range(320, 16384)
+        .group(output);
+    command.add_flag("--dark", options->is_dark, "draw for a dark page").group(output);
     add_view_options(command, *options);
-    command.add("--title", options->title, "over the plot");
-    command.add("--width", options->width, "pixels; default 640, of a picture 1280")
-        .range(320, 16384);
-    command.add_flag("--dark", options->is_dark, "for dark pages");
     command.footer(
-        "Plotted are greys from -10 to +10 stops around 0.18; where a grey is not shown as one, "
-        "the grey\nof the same luminance. --set and --look go to all operators.\n"
+        "The plot shows grays from -10 to +10 stops around 0.18. An operator that tints gray is "
+        "plotted by the luminance of the result. --set and --look apply to all operators.\n"
         "Examples:\n"
         "  tonewright plot hable agx_sobotka aces_13 -o curves.svg\n"
-        "  tonewright plot reinhard_extended:white=2 reinhard_extended:white=8 --y log -o "
-        "white.png\n"
+        "  tonewright plot hable:white=4 hable --y log -o white.png\n"
         "  tonewright plot aces_20 gt7 --display rec2100_pq -o hdr.svg");
     command.action([options] { return run_plot(*options); });
 }

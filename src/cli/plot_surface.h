@@ -26,7 +26,7 @@ struct PlotColors {
 };
 [[nodiscard]] const PlotColors& colors_of(PlotTheme theme);
 
-/// What a plot is drawn on: an SVG file, or pixels.
+/// What a plot is drawn on: an SVG file, a PDF file, or pixels.
 class PlotSurface {
   public:
     enum class Anchor : unsigned char { start, middle, end };
@@ -72,6 +72,19 @@ class PlotSurface {
     virtual void patches(Point left, double width, std::span<const Patch> row) = 0;
     virtual void end_group() = 0;
 };
+
+/// The words of a plot in the stroke font, which SVG files and pictures have in common.
+struct Lettering {
+    std::string ascii;
+    /// The font has all characters: none became `?`.
+    bool is_complete = true;
+    double cap_height = 0;
+    /// Beyond the stroke width of the font.
+    double extra_width = 0;
+};
+[[nodiscard]] Lettering lettering_of(const PlotSurface::TextStyle& style, std::string_view words);
+/// Of the page's color around words on lines, both sides together.
+inline constexpr double kHaloWidth = 3;
 
 /// Draws all of the plot; the page behind it is the surface's own.
 void draw(const CurvePlot& plot, PlotSurface& surface);

@@ -22,7 +22,7 @@ void add_view_options(const Command& command, ViewOptions& options);
 void add_lut_options(const Command& command, LutOptions& options, const Option& op,
                      const std::vector<std::string>& others);
 
-/// --subimage, --threads, --unpremult, --no-unpremult.
+/// --subimage, --threads, --timeout, --unpremult, --no-unpremult.
 void add_picture_input(const Command& command, PictureInput& options);
 
 /// --delta, --percentiles, --key, ... and --meter-region.

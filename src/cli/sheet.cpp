@@ -9,11 +9,22 @@ TONEWRIGHT_NAMESPACE_BEGIN
 void add_sheet(CommandLine& program) {
     auto options = std::make_shared<SheetOptions>();
     const Command command =
-        program.add("sheet", "pictures side by side with their labels: a contact sheet");
-    command.add("pictures", options->pictures, "label=file, display pictures").required();
-    command.add("-o", options->file, "file to write").required();
-    command.add("--columns", options->columns, "pictures a row").show_default().range(1, 100);
-    command.add("--cell-width", options->cell_width, "pixels").show_default().range(16, 16384);
+        program.add("sheet", "Arrange pictures with labels on a contact sheet.");
+    command.group("Pictures");
+    const char* const group = "Output";
+    command.add("pictures", options->pictures, "LABEL=FILE: label and display-encoded picture")
+        .required();
+    command.add("-o", options->file, "file to write").value("FILE").required().group(group);
+    command.add("--columns", options->columns, "pictures in a row")
+        .value("N")
+        .show_default()
+        .range(1, 100)
+        .group(group);
+    command.add("--cell-width", options->cell_width, "width of a picture in pixels")
+        .value("N")
+        .show_default()
+        .range(16, 16384)
+        .group(group);
     command.footer("Example:\n  tonewright sheet -o sheet.png Hable=hable.png AgX=agx.png");
     command.action([options] {
         picture_commands().sheet(*options);

@@ -2,18 +2,23 @@
 #include "tonewright/verify.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <map>
 #include <memory>
 
+#include "base/strings.h"
+#include "cli/elapsed_line.h"
 #include "cli/json.h"
 #include "cli/lut_input.h"
+#include "cli/messages.h"
 #include "cli/options.h"
 #include "cli/picture_commands.h"
 #include "tonewright/lint.h"
 #include "tonewright/lut_match.h"
+#include "tonewright/ocio.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -63,10 +68,10 @@ void print_matches(const std::string& path, const std::vector<LutMatch>& matches
     constexpr double kSame = 1e-2;
     const LutMatch& best = matches.front();
     if (best.mean <= kSame) {
-        fmt::print("{} is {} with {} input ({}) and {} output, max error {:.2g}\n\n", path, best.op,
-                   best.encoding, best.input, best.display, best.max);
+        fmt::print("{} is {} with {} input ({}) and {} output, max error {:.2g}\n\n",
+                   one_line(path), best.op, best.encoding, best.input, best.display, best.max);
     } else {
-        fmt::print("{} is none of these; the nearest:\n\n", path);
+        fmt::print("{} is none of these; the nearest:\n\n", one_line(path));
     }
     fmt::print("{:<32} {:<24} {:<16} {:<12} {:>8} {:>8} {:>8}\n", "operator", "input encoding",
                "input", "output", "max", "99.9 %", "mean");
@@ -137,6 +142,9 @@ int run_verify(Options& options) {
         verify_options.lattice_edge = 9;
         verify_options.random_count = 10000;
     }
+    redirect_opencolorio_messages([](const std::string& text) {
+        if (!message_options().is_quiet) print_message("OpenColorIO: " + text);
+    });
     Json lint = Json::array();
     const bool is_of_config = !verify_options.config.empty() && verify_options.operators.empty();
     if (is_of_config) {
@@ -160,7 +168,12 @@ int run_verify(Options& options) {
         fmt::print("{}", format_row(row));
         std::fflush(stdout);
     };
-    const std::vector<ParityRow> rows = verify(verify_options, print);
+    const std::vector<ParityRow> rows = [&] {
+        // Rows on the terminal show how far it is.
+        const bool has_rows = !options.json && !options.summary && ::isatty(STDOUT_FILENO) != 0;
+        const ElapsedLine line("verify", has_rows ? -1 : STDERR_FILENO);
+        return verify(verify_options, print);
+    }();
     std::size_t failed = 0;
     for (const ParityRow& row : rows)
         failed += row.is_ok ? 0 : 1;
@@ -196,43 +209,62 @@ int run_verify(Options& options) {
 
 void add_verify(CommandLine& program) {
     auto options = std::make_shared<Options>();
-    const Command command =
-        program.add("verify", "the parity table: every form against the double reference");
-    command.add("operators", options->verify.operators,
-                "or all, with their presets and looks, the default; of a config its "
-                "views are the default");
+    const Command command = program.add(
+        "verify",
+        "Compare every backend with the double-precision reference and print the errors.");
+    command.group("Checks");
+    const char* const what = "What to verify";
+    const char* const how = "Measurement";
+    const char* const output = "Output";
+    command.add(
+        "operators", options->verify.operators,
+        "operators (default: all with their presets and looks, or the views of the config)");
+    command
+        .add("--config", options->verify.config,
+             "config file or its folder, from Tonewright or not (default: a new config)")
+        .value("CONFIG")
+        .group(what);
+    command
+        .add("--lut", options->lut,
+             "LUT file: find the operator and input encoding that made it, and its error")
+        .value("FILE")
+        .group(what);
     command
         .add("--display", options->verify.displays,
-             "displays; repeat for more; default: srgb, of a config all")
-        .one_value_each();
-    command.add("--input", options->verify.input, "scene-linear space of the samples")
-        .show_default();
-    command.add("--config", options->verify.config,
-                "a config to check, or its folder: any, ours or not; default: a fresh one");
-    command.add("--picture", options->picture, "picture whose pixels join the samples");
-    command.add_flag("--quick", options->quick,
-                     "smaller sample sets: grids of 9 instead of 33 points a side, 10,000 random "
-                     "colors instead of 100,000");
-    command.add_flag("--summary", options->summary, "a short table: one line for each operator");
-    command.add_flag("--best-target", options->verify.only_best_target,
-                     "measure our engine only with the instruction set that it takes here");
-    command.add_flag("--no-gpu", options->no_gpu, "leave OCIO's GPU path out");
-    command.add_flag("--json", options->json, "for programs");
-    const Option lut = command.add(
-        "--lut", options->lut,
-        "a LUT, ours or not, of any format of `apply --lut`: which of the operators it is, "
-        "with which input encoding, and how far from it; nothing is held to a bound");
+             "display; repeat for more (default: srgb, or all displays of the config)")
+        .value("NAME")
+        .one_value_each()
+        .group(what);
+    command.add("--input", options->verify.input, "scene-linear color space of the samples")
+        .value("SPACE")
+        .show_default()
+        .group(what);
+    command.add("--picture", options->picture, "add the pixels of this picture to the samples")
+        .value("FILE")
+        .group(how);
+    command
+        .add_flag("--quick", options->quick,
+                  "use smaller sample sets: 9 grid points a side, 10,000 random colors")
+        .group(how);
+    command
+        .add_flag("--best-target", options->verify.only_best_target,
+                  "measure only the fastest instruction set of this machine")
+        .group(how);
+    command.add_flag("--no-gpu", options->no_gpu, "leave out OpenColorIO's GPU path").group(how);
+    command.add_flag("--summary", options->summary, "print one line for each operator")
+        .group(output);
+    command.add_flag("--json", options->json, "print JSON").group(output);
+    const Option lut = command.option("--lut");
     for (const char* other : {"--display", "--input", "--config", "--picture", "--quick",
                               "--summary", "--best-target", "--no-gpu"})
         lut.excludes(command.option(other));
     command.footer(
-        "max, 99.9 % and mean: errors of display code values over samples >= 0; max all: negatives "
-        "and mixed\n"
-        "signs included. beyond f32: where an error is beyond the bound, how far it exceeds what "
-        "float32\n"
-        "rounding before a cancelling matrix has to cost. Exit code 1 when a bound is exceeded.\n"
-        "Examples:\n  tonewright verify hable --display display_p3\n"
-        "  tonewright verify --lut somebodys_agx.cube agx_sobotka agx_blender");
+        "The columns max, 99.9 % and mean are errors of code values over samples >= 0; max all "
+        "includes negative values. Beyond f32: how far an error above its bound exceeds float32 "
+        "rounding. The exit code is 1 when an error exceeds its bound.\n"
+        "Examples:\n"
+        "  tonewright verify hable --display display_p3\n"
+        "  tonewright verify --lut unknown.cube agx_sobotka agx_blender");
     command.action([options] { return run_verify(*options); });
 }
 

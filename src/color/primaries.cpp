@@ -70,11 +70,11 @@ Matrix3 rgb_to_xyz(const Primaries& p) {
     return m;
 }
 
-Matrix3 bradford_adaptation(Chromaticity from, Chromaticity to) {
+namespace {
+
+/// By the responses of the cones, scaled from one white to another.
+Matrix3 adaptation(const Matrix3& cone, Chromaticity from, Chromaticity to) {
     if (from == to) return kIdentity3;
-    // Lam 1985, as printed in ICC.1:2010, annex E.3.
-    constexpr Matrix3 cone = {
-        {{0.8951, 0.2664, -0.1614}, {-0.7502, 1.7135, 0.0367}, {0.0389, -0.0685, 1.0296}}};
     const Vector3 source = multiply(cone, xyz_of(from));
     const Vector3 target = multiply(cone, xyz_of(to));
     const Matrix3 gains = {{{target[0] / source[0], 0, 0},
@@ -83,13 +83,48 @@ Matrix3 bradford_adaptation(Chromaticity from, Chromaticity to) {
     return multiply(inverse(cone), multiply(gains, cone));
 }
 
-Matrix3 rgb_to_rgb(const Primaries& from, const Primaries& to) {
-    if (from == to) return kIdentity3;
+/// CIE 159:2004, CIECAM02: its transform CAT02.
+constexpr Matrix3 kCat02 = {
+    {{0.7328, 0.4296, -0.1624}, {-0.7036, 1.6975, 0.0061}, {0.0030, 0.0136, 0.9834}}};
+
+/// Gamuts whose makers state their matrix to ACES2065-1 with CAT02 instead of Bradford: the
+/// Academy's input transforms by ARRI (CSC.Arri.LogC3_to_ACES.a2.v1, CSC.Arri.LogC4_to_ACES.a2.v1)
+/// and by Sony (CSC.Sony.SLog3_SGamut3_to_ACES.a2.v1, CSC.Sony.SLog3_SGamut3Cine_to_ACES.a2.v1).
+/// Blackmagic Design states none for DaVinci Wide Gamut.
+bool is_adapted_by_cat02(const Primaries& p) {
+    return p == kArriWideGamut3 || p == kArriWideGamut4 || p == kSGamut3 || p == kSGamut3Cine;
+}
+
+/// By Bradford where the whites differ.
+Matrix3 by_bradford(const Primaries& from, const Primaries& to) {
     const Matrix3 adapt = bradford_adaptation(from.whitepoint, to.whitepoint);
     return multiply(inverse(rgb_to_xyz(to)), multiply(adapt, rgb_to_xyz(from)));
 }
 
+Matrix3 to_ap0(const Primaries& p) {
+    if (!is_adapted_by_cat02(p)) return by_bradford(p, kAP0);
+    const Matrix3 adapt = adaptation(kCat02, p.whitepoint, kAcesWhite);
+    return multiply(inverse(rgb_to_xyz(kAP0)), multiply(adapt, rgb_to_xyz(p)));
+}
+
+}  // namespace
+
+Matrix3 bradford_adaptation(Chromaticity from, Chromaticity to) {
+    // Lam 1985, as printed in ICC.1:2010, annex E.3.
+    constexpr Matrix3 cone = {
+        {{0.8951, 0.2664, -0.1614}, {-0.7502, 1.7135, 0.0367}, {0.0389, -0.0685, 1.0296}}};
+    return adaptation(cone, from, to);
+}
+
+Matrix3 rgb_to_rgb(const Primaries& from, const Primaries& to) {
+    if (from == to) return kIdentity3;
+    if (is_adapted_by_cat02(from) || is_adapted_by_cat02(to))
+        return multiply(inverse(to_ap0(to)), to_ap0(from));
+    return by_bradford(from, to);
+}
+
 Matrix3 rgb_to_xyz_d65(const Primaries& p) {
+    if (is_adapted_by_cat02(p)) return multiply(rgb_to_xyz(kRec709), rgb_to_rgb(p, kRec709));
     return multiply(bradford_adaptation(p.whitepoint, kD65), rgb_to_xyz(p));
 }
 

@@ -33,6 +33,7 @@ int cost_of(const TapeInstruction& step) {
     switch (step.op) {
         case ExprOp::constant:
         case ExprOp::input:
+        case ExprOp::uniform:
             return 0;
         case ExprOp::power:
             return 35;
@@ -80,6 +81,8 @@ Interval interval_of(const TapeInstruction& step, const Interval& a, const Inter
     switch (step.op) {
         case ExprOp::constant:
             return {step.value, step.value};
+        case ExprOp::uniform:
+            return {};
         case ExprOp::input:
             return {-kHalfMax, kHalfMax};
         case ExprOp::add:
@@ -244,6 +247,7 @@ class CurveFitter {
         std::map<std::uint32_t, std::size_t> number = {{root, 0}};
         std::string text;
         const auto append = [&](const auto& value) {
+            // NOLINTNEXTLINE(bugprone-sizeof-expression): the table is known by its address.
             text.append(reinterpret_cast<const char*>(&value), sizeof(value));
         };
         for (const std::uint32_t i : steps) {

@@ -61,6 +61,7 @@ class Generator : public Xbyak::CodeGenerator {
         slot_count_ = 0;
         align(32);
         const std::size_t entry = getSize();
+        endbr64();  // called through a pointer, as CET's indirect branch tracking requires
         push(rbp);
         push(rbx);
         mov(rbx, rsp);

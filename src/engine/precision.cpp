@@ -193,7 +193,6 @@ double half_ulps(ExprOp op) {
         case ExprOp::log2:
             return 2;
         case ExprOp::power:
-            return 3;
         case ExprOp::lookup:
             return 3;
         case ExprOp::lattice:  // nodes, weights, and a sum of four products

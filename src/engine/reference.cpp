@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "engine/reference_operations.h"
 #include "engine/tape.h"
+#include "expr/lattice_place.h"
 #include "expr/scalar_ops.h"
 #include "tonewright/engine.h"
 #include "tonewright/error.h"
@@ -21,14 +23,16 @@ constexpr std::size_t kTileDoubles = 4096;
 /// One operation over a tile. The switch is outside the loop, so that the plain operations become
 /// vector code; each computes exactly scalar_op().
 template <ExprOp op>
-void run_op(double* out, const double* a, const double* b, const double* c, const Table* table,
-            std::size_t count) noexcept {
+[[gnu::always_inline]] inline void run_op(double* out, const double* a, const double* b,
+                                          const double* c, const Table* table,
+                                          std::size_t count) noexcept {
     for (std::size_t i = 0; i < count; ++i)
         out[i] = scalar_op(op, a[i], b[i], c[i], table);
 }
 
-void run_instruction(const TapeInstruction& step, double* out, const double* a, const double* b,
-                     const double* c, std::size_t n) noexcept {
+[[gnu::always_inline]] inline void run_with_any_target(const TapeInstruction& step, double* out,
+                                                       const double* a, const double* b,
+                                                       const double* c, std::size_t n) noexcept {
     const Table* t = step.table;
     switch (step.op) {
         case ExprOp::add:
@@ -73,28 +77,72 @@ void run_instruction(const TapeInstruction& step, double* out, const double* a, 
             return run_op<ExprOp::select>(out, a, b, c, t, n);
         case ExprOp::lookup:
             return run_op<ExprOp::lookup>(out, a, b, c, t, n);
-        case ExprOp::lattice:
-            for (std::size_t i = 0; i < n; ++i)
-                out[i] = (*step.lattice)(step.input, a[i], b[i], c[i]);
-            return;
         case ExprOp::constant:
         case ExprOp::input:
+        case ExprOp::lattice:
+        case ExprOp::uniform:
             return;
+    }
+}
+
+void run_on_baseline(const TapeInstruction& step, double* out, const double* a, const double* b,
+                     const double* c, std::size_t n) noexcept {
+    run_with_any_target(step, out, a, b, c, n);
+}
+
+#if defined(__x86_64__) && defined(__GNUC__)
+/// The same bits: AVX2 has no fused multiply-add.
+[[gnu::target("avx2")]] void run_on_avx2(const TapeInstruction& step, double* out, const double* a,
+                                         const double* b, const double* c, std::size_t n) noexcept {
+    run_with_any_target(step, out, a, b, c, n);
+}
+#endif
+
+/// Of the same place in a lattice, what several instructions make of it: a place is found once.
+struct LatticeChannels {
+    std::size_t count = 0;
+    std::array<std::size_t, 3> channel{};
+    std::array<double*, 3> out{};
+};
+
+void run_lattice(const Lattice& lattice, const LatticeChannels& channels, const double* a,
+                 const double* b, const double* c, std::size_t n) noexcept {
+    const double* const nodes = lattice.nodes().data();
+    for (std::size_t i = 0; i < n; ++i) {
+        const LatticePlace place(lattice.edge(), {a[i], b[i], c[i]});
+        for (std::size_t k = 0; k < channels.count; ++k)
+            channels.out[k][i] = place.interpolate(nodes + channels.channel[k]);
     }
 }
 
 }  // namespace
 
+RunInstruction reference_operations() {
+#if defined(__x86_64__) && defined(__GNUC__)
+    static const bool has_avx2 = __builtin_cpu_supports("avx2") != 0;
+    if (has_avx2) return run_on_avx2;
+#endif
+    return run_on_baseline;
+}
+
 /// The tape with a register for each value. run() allocates no memory.
 struct ReferenceEngine::Program {
     /// A tile of one value: among the constants, or among the registers on the stack.
     struct Row {
-        std::size_t offset = 0;
+        std::size_t index = 0;   // of the register
+        std::size_t offset = 0;  // of its tile
         bool is_constant = false;
     };
     struct Step {
         const TapeInstruction* instruction;
         Row out, a, b, c;
+
+        /// Another channel of the same values in the same lattice.
+        [[nodiscard]] bool is_at_place_of(const Step& other) const {
+            const TapeInstruction& i = *instruction;
+            const TapeInstruction& o = *other.instruction;
+            return i.lattice && i.lattice == o.lattice && i.a == o.a && i.b == o.b && i.c == o.c;
+        }
     };
 
     Tape tape;
@@ -130,11 +178,11 @@ struct ReferenceEngine::Program {
         for (std::size_t i = 0; i < code.size(); ++i) {
             const TapeInstruction& step = code[i];
             if (step.op == ExprOp::constant) {
-                rows.push_back({constants.size(), true});
+                rows.push_back({0, constants.size(), true});
                 constants.insert(constants.end(), tile, step.value);
                 continue;
             }
-            rows.push_back({registers.register_of[i] * tile, false});
+            rows.push_back({registers.register_of[i], registers.register_of[i] * tile, false});
             // An operand that the operation does not have is the first one once more.
             const int count = operand_count(step.op);
             const Row a = count > 0 ? rows[step.a] : rows[i];
@@ -155,21 +203,36 @@ ReferenceEngine& ReferenceEngine::operator=(ReferenceEngine&&) noexcept = defaul
 void ReferenceEngine::run(const std::array<const double*, 3>& in, const std::array<double*, 3>& out,
                           std::size_t count) const noexcept {
     const Program& program = *program_;
+    const RunInstruction run_step = reference_operations();
     alignas(64) std::array<double, kTileDoubles> registers;
     const auto read = [&](const Program::Row& row) -> const double* {
         return (row.is_constant ? program.constants.data() : registers.data()) + row.offset;
     };
     for (std::size_t begin = 0; begin < count; begin += program.tile) {
         const std::size_t n = std::min(program.tile, count - begin);
-        for (const Program::Step& step : program.steps) {
+        for (auto at = program.steps.begin(); at != program.steps.end(); ++at) {
+            const Program::Step& step = *at;
             double* const result = registers.data() + step.out.offset;
             if (step.instruction->op == ExprOp::input) {
                 const double* plane = in[static_cast<std::size_t>(step.instruction->input)] + begin;
                 for (std::size_t k = 0; k < n; ++k)
                     result[k] = sanitise(plane[k]);
+            } else if (step.instruction->op == ExprOp::lattice) {
+                LatticeChannels channels;
+                const auto add = [&](const Program::Step& same) {
+                    channels.channel[channels.count] =
+                        static_cast<std::size_t>(same.instruction->input);
+                    channels.out[channels.count] = registers.data() + same.out.offset;
+                    ++channels.count;
+                };
+                add(step);
+                while (channels.count < 3 && at + 1 != program.steps.end() &&
+                       (at + 1)->is_at_place_of(step))
+                    add(*++at);
+                run_lattice(*step.instruction->lattice, channels, read(step.a), read(step.b),
+                            read(step.c), n);
             } else {
-                run_instruction(*step.instruction, result, read(step.a), read(step.b), read(step.c),
-                                n);
+                run_step(*step.instruction, result, read(step.a), read(step.b), read(step.c), n);
             }
         }
         for (std::size_t c = 0; c < 3; ++c)
@@ -178,9 +241,26 @@ void ReferenceEngine::run(const std::array<const double*, 3>& in, const std::arr
 }
 
 Vector3 ReferenceEngine::operator()(const Vector3& rgb) const noexcept {
-    Vector3 result{};
-    run({&rgb[0], &rgb[1], &rgb[2]}, {&result[0], &result[1], &result[2]}, 1);
-    return result;
+    const Program& program = *program_;
+    // Side by side: a tile apart, they would push each other out of the cache.
+    alignas(64) std::array<double, kTileDoubles> registers;
+    const auto read = [&](const Program::Row& row) {
+        return row.is_constant ? program.constants[row.offset] : registers[row.index];
+    };
+    for (const Program::Step& step : program.steps) {
+        const TapeInstruction& instruction = *step.instruction;
+        double& result = registers[step.out.index];
+        if (instruction.op == ExprOp::input) {
+            result = sanitise(rgb[static_cast<std::size_t>(instruction.input)]);
+        } else if (instruction.op == ExprOp::lattice) {
+            result =
+                (*instruction.lattice)(instruction.input, read(step.a), read(step.b), read(step.c));
+        } else {
+            result = scalar_op(instruction.op, read(step.a), read(step.b), read(step.c),
+                               instruction.table);
+        }
+    }
+    return {read(program.outputs[0]), read(program.outputs[1]), read(program.outputs[2])};
 }
 
 void ReferenceEngine::run_rgb(const float* in, double* out,

@@ -1295,12 +1295,9 @@ const std::vector<Target>& targets() {
 const Target& find_target(std::string_view name) {
     if (name.empty()) return targets().front();
     std::vector<std::string> names;
-    for (const Target& target : targets()) {
-        if (target.target == name) return target;
+    for (const Target& target : targets())
         names.emplace_back(target.target);
-    }
-    throw Error("simd engine: target is " + std::string(name) + "; expected " +
-                join_choices(names) + did_you_mean(name, names));
+    return targets()[find_choice("simd engine: target", name, names)];
 }
 
 }  // namespace simd

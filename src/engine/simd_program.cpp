@@ -21,7 +21,7 @@ namespace {
 
 /// Bytes of registers that a tile may take: what stays in a first-level cache of 32 KiB beside the
 /// constants and the pixels on their way in and out.
-constexpr std::size_t kCacheBytes = 24 * 1024;
+constexpr std::size_t kCacheBytes = 24UL * 1024;
 
 // ---------------------------------------------------------------------------------------------
 // Pass 1: rewrites on the tape
@@ -262,6 +262,7 @@ class Selector {
         switch (step.op) {
             case ExprOp::constant:
             case ExprOp::input:
+            case ExprOp::uniform:
                 return;
             case ExprOp::add:
                 if (match_rows3(step)) return;
@@ -548,7 +549,8 @@ class Assembler {
         const Selected& s = steps_[slot];
         const auto n = static_cast<std::size_t>(s.sibling);
         step.channel[s.op == Op::lattice ? static_cast<std::size_t>(s.channel) : n] = place(slot);
-        std::copy(s.k.begin(), s.k.end(), step.k.begin() + 3 * s.sibling);
+        std::copy(s.k.begin(), s.k.end(),
+                  step.k.begin() + 3 * static_cast<std::ptrdiff_t>(s.sibling));
         if (s.op == Op::lookup_nonuniform) add_lines(positioned_[step.table], *s.table, n);
     }
 

@@ -17,6 +17,10 @@ std::uint32_t Tape::add(const Expr& expr,
     TapeInstruction step;
     step.op = expr.op();
     step.node = expr.node();
+    if (expr.op() == ExprOp::uniform) {
+        throw Error("engine: " + expr.uniform_name() +
+                    " has no value; expected bind_uniforms() before");
+    }
     if (expr.is_constant()) step.value = expr.value();
     if (expr.op() == ExprOp::input) step.input = expr.input_index();
     if (expr.op() == ExprOp::lookup) step.table = expr.table().get();

@@ -29,6 +29,7 @@ struct TapeInstruction {
     switch (op) {
         case ExprOp::constant:
         case ExprOp::input:
+        case ExprOp::uniform:
             return 0;
         case ExprOp::negate:
         case ExprOp::absolute:

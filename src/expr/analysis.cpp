@@ -21,10 +21,11 @@ template <class Leaf>
 Expr rebuild(const Expr& e, const Leaf& leaf, std::unordered_map<const ExprNode*, Expr>& done) {
     if (auto it = done.find(e.node()); it != done.end()) return it->second;
     Expr result = e;
-    if (e.op() == ExprOp::input) {
+    if (e.op() == ExprOp::input || e.op() == ExprOp::uniform) {
         result = leaf(e);
     } else if (!e.is_constant()) {
         std::vector<Expr> operands;
+        operands.reserve(static_cast<std::size_t>(e.operand_count()));
         for (int i = 0; i < e.operand_count(); ++i) {
             operands.push_back(rebuild(e.operand(i), leaf, done));
         }
@@ -40,6 +41,9 @@ double evaluate_node(const Expr& e, std::span<const double> inputs,
                      std::unordered_map<const ExprNode*, double>& done) {
     if (e.is_constant()) return e.value();
     if (e.op() == ExprOp::input) return inputs[static_cast<std::size_t>(e.input_index())];
+    if (e.op() == ExprOp::uniform)
+        throw Error("expression: " + e.uniform_name() +
+                    " has no value; expected bind_uniforms() before");
     if (auto it = done.find(e.node()); it != done.end()) return it->second;
     std::array<double, 3> v{};
     for (int i = 0; i < e.operand_count(); ++i) {
@@ -53,7 +57,7 @@ double evaluate_node(const Expr& e, std::span<const double> inputs,
 }
 
 Expr differentiate(const Expr& e, int index, std::unordered_map<const ExprNode*, Expr>& done) {
-    if (e.is_constant()) return 0;
+    if (e.is_constant() || e.op() == ExprOp::uniform) return 0;
     if (e.op() == ExprOp::input) return e.input_index() == index ? 1 : 0;
     if (auto it = done.find(e.node()); it != done.end()) return it->second;
     const auto u = [&] { return e.operand(0); };
@@ -138,13 +142,14 @@ Expr differentiate(const Expr& e, int index, std::unordered_map<const ExprNode*,
             break;
         }
         case ExprOp::lattice:
-            throw Error("derivative: of a lattice there is no expression");
+            throw Error("derivative: a lattice has no derivative expression");
         case ExprOp::floor:
         case ExprOp::less:
         case ExprOp::less_equal:
         case ExprOp::equal:
         case ExprOp::constant:
         case ExprOp::input:
+        case ExprOp::uniform:
             break;
     }
     done.emplace(e.node(), result);
@@ -175,10 +180,36 @@ Expr substitute(const Expr& expr, Span<const Expr> inputs) {
     return rebuild(
         expr,
         [&](const Expr& leaf) {
+            if (leaf.op() == ExprOp::uniform) return leaf;
             const auto i = static_cast<std::size_t>(leaf.input_index());
             return i < inputs.size() ? inputs[i] : leaf;
         },
         done);
+}
+
+Expr bind_uniforms(const Expr& expr, const UniformValues& values) {
+    std::unordered_map<const ExprNode*, Expr> done;
+    return rebuild(
+        expr,
+        [&](const Expr& leaf) -> Expr {
+            if (leaf.op() == ExprOp::input) return leaf;
+            const auto found = values.find(leaf.uniform_name());
+            return found == values.end() ? leaf : Expr(found->second);
+        },
+        done);
+}
+
+std::vector<std::string> uniforms_of(Span<const Expr> exprs) {
+    std::unordered_set<const ExprNode*> seen;
+    std::vector<Expr> order;
+    for (const Expr& e : exprs)
+        collect(e, seen, order);
+    std::vector<std::string> names;
+    for (const Expr& e : order) {
+        if (e.op() == ExprOp::uniform) names.push_back(e.uniform_name());
+    }
+    std::sort(names.begin(), names.end());
+    return names;
 }
 
 double evaluate(const Expr& expr, Span<const double> inputs) {

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "base/format_number.h"
+#include "expr/lattice_place.h"
 #include "expr/node.h"
 #include "expr/scalar_ops.h"
 #include "tonewright/error.h"
@@ -49,44 +50,6 @@ double Table::operator()(double x) const noexcept {
     return samples[i] + (position - static_cast<double>(i)) * (samples[i + 1] - samples[i]);
 }
 
-namespace {
-
-/// The tetrahedron of a place: its four nodes, from the one nearest to the origin on, each one step
-/// along another coordinate, in the order of the fractions.
-struct Tetrahedron {
-    std::array<std::size_t, 4> node{};
-    std::array<double, 4> weight{};
-    std::array<std::size_t, 3> axis{0, 1, 2};
-
-    Tetrahedron(int edge, const std::array<double, 3>& at) noexcept {
-        const auto n = static_cast<std::size_t>(edge);
-        const std::array<std::size_t, 3> stride = {n * n, n, 1};
-        std::array<double, 3> fraction{};
-        std::size_t corner = 0;
-        for (std::size_t i = 0; i < 3; ++i) {
-            const double t = at[i] > 0 ? (at[i] < 1 ? at[i] : 1.0) : 0.0;  // NaN -> 0
-            const double place = t * static_cast<double>(n - 1);
-            const std::size_t cell = std::min(static_cast<std::size_t>(place), n - 2);
-            fraction[i] = place - static_cast<double>(cell);
-            corner += cell * stride[i];
-        }
-        const auto order = [&](std::size_t i, std::size_t k) {
-            if (fraction[axis[i]] < fraction[axis[k]]) std::swap(axis[i], axis[k]);
-        };
-        order(0, 1);
-        order(1, 2);
-        order(0, 1);
-        node[0] = corner;
-        weight[0] = 1 - fraction[axis[0]];
-        for (std::size_t i = 0; i < 3; ++i) {
-            node[i + 1] = node[i] + stride[axis[i]];
-            weight[i + 1] = fraction[axis[i]] - (i < 2 ? fraction[axis[i + 1]] : 0.0);
-        }
-    }
-};
-
-}  // namespace
-
 Lattice::Lattice(int edge, std::function<std::vector<double>()> make)
     : edge_(edge), make_(std::move(make)) {
     if (edge < 2) {
@@ -109,13 +72,10 @@ const std::vector<double>& Lattice::nodes() const {
 }
 
 double Lattice::operator()(int channel, double r, double g, double b) const {
-    const Tetrahedron t(edge_, {r, g, b});
+    const LatticePlace t(edge_, {r, g, b});
     const auto c = static_cast<std::size_t>(channel);
     const std::vector<double>& node = nodes();
-    double sum = 0;
-    for (std::size_t i = 0; i < 4; ++i)
-        sum += t.weight[i] * node[3 * t.node[i] + c];
-    return sum;
+    return t.interpolate(&node[c]);
 }
 
 std::array<double, 3> Lattice::operator()(double r, double g, double b) const {
@@ -124,15 +84,7 @@ std::array<double, 3> Lattice::operator()(double r, double g, double b) const {
 
 std::array<double, 3> Lattice::gradient(int channel, double r, double g, double b) const {
     const std::array<double, 3> at = {r, g, b};
-    const Tetrahedron t(edge_, at);
-    const auto c = static_cast<std::size_t>(channel);
-    const std::vector<double>& node = nodes();
-    std::array<double, 3> slope{};
-    for (std::size_t i = 0; i < 3; ++i) {
-        if (!(at[t.axis[i]] > 0 && at[t.axis[i]] < 1)) continue;
-        slope[t.axis[i]] = (node[3 * t.node[i + 1] + c] - node[3 * t.node[i] + c]) * (edge_ - 1);
-    }
-    return slope;
+    return LatticePlace(edge_, at).gradient(&nodes()[static_cast<std::size_t>(channel)], edge_, at);
 }
 
 namespace {
@@ -143,6 +95,7 @@ struct NodeKey {
     std::uint64_t bits;  // of the constant, or the input's index, or the lattice's channel
     std::array<const ExprNode*, 3> operands;
     const void* data;  // table or lattice
+    std::string name;  // of the uniform
     friend bool operator==(const NodeKey&, const NodeKey&) = default;
 };
 
@@ -153,7 +106,8 @@ struct NodeKeyHash {
         for (const ExprNode* p : key.operands) {
             h = h * 1000003U ^ std::hash<const void*>{}(p);
         }
-        return h * 1000003U ^ std::hash<const void*>{}(key.data);
+        h = h * 1000003U ^ std::hash<const void*>{}(key.data);
+        return key.name.empty() ? h : h * 1000003U ^ std::hash<std::string>{}(key.name);
     }
 };
 
@@ -169,7 +123,7 @@ SharedNodes& shared_nodes() {
 }
 
 std::shared_ptr<const ExprNode> share(ExprNode node) {
-    NodeKey key{node.op, 0, {}, node.table.get()};
+    NodeKey key{node.op, 0, {}, node.table.get(), node.name};
     if (node.lattice) key.data = node.lattice.get();
     key.bits = node.op == ExprOp::input || node.op == ExprOp::lattice
                    ? static_cast<std::uint64_t>(node.input)
@@ -252,12 +206,20 @@ Expr Expr::input(int index) {
     return Expr(share(std::move(node)));
 }
 
+Expr Expr::uniform(std::string name) {
+    ExprNode node;
+    node.op = ExprOp::uniform;
+    node.name = std::move(name);
+    return Expr(share(std::move(node)));
+}
+
 ExprOp Expr::op() const noexcept { return node_->op; }
 bool Expr::is_constant(double v) const noexcept {
     return node_->op == ExprOp::constant && node_->value == v;
 }
 double Expr::value() const noexcept { return node_->value; }
 int Expr::input_index() const noexcept { return node_->input; }
+const std::string& Expr::uniform_name() const noexcept { return node_->name; }
 const std::shared_ptr<const Table>& Expr::table() const noexcept { return node_->table; }
 const std::shared_ptr<const Lattice>& Expr::lattice() const noexcept { return node_->lattice; }
 int Expr::channel() const noexcept { return node_->input; }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "tonewright/expr.h"
@@ -12,6 +13,7 @@ struct ExprNode {
     ExprOp op = ExprOp::constant;
     double value = 0;  // constant
     int input = 0;     // input; channel of a lattice
+    std::string name;  // uniform
     std::vector<Expr> operands;
     std::shared_ptr<const Table> table;  // lookup
     std::shared_ptr<const Lattice> lattice;

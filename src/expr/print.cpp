@@ -45,6 +45,8 @@ Text print(const Expr& e, std::span<const std::string> names) {
             const auto i = static_cast<std::size_t>(e.input_index());
             return {i < names.size() ? names[i] : "x" + std::to_string(i), kAtom};
         }
+        case ExprOp::uniform:
+            return {e.uniform_name(), kAtom};
         case ExprOp::add:
             return binary(" + ", kSum);
         case ExprOp::subtract:

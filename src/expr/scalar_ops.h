@@ -55,6 +55,7 @@ inline double scalar_op(ExprOp op, double a, double b, double c, const Table* ta
             return (*table)(a);
         case ExprOp::constant:
         case ExprOp::input:
+        case ExprOp::uniform:
         case ExprOp::lattice:
             break;
     }

@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "image/stroke_font.h"
+#include "base/stroke_font.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "image/stroke_font.h"
+#include "base/stroke_font.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 

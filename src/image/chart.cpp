@@ -10,6 +10,7 @@
 
 #include "image/canvas.h"
 #include "image/chart_scene.h"
+#include "measure/chart_colors.h"
 #include "tonewright/chart.h"
 #include "tonewright/color.h"
 
@@ -30,16 +31,6 @@ const Rgb kTitle = grey_of(0.32);
 const Rgb kLabel = grey_of(0.16);
 
 double stops(double s) { return kMidGrey * std::exp2(s); }
-
-/// Hue in [0, 1): red, yellow, green, cyan, blue, magenta. The largest channel is `value`.
-Rgb hue_color(double hue, double saturation, double value) {
-    const auto channel = [&](double offset) {
-        const double t = std::fmod(hue * 6 + offset, 6.0);
-        const double k = std::clamp(std::fabs(t - 3) - 1, 0.0, 1.0);
-        return static_cast<float>(value * (1 - saturation * (1 - k)));
-    };
-    return {channel(0), channel(4), channel(2)};
-}
 
 Rgb rgb_of(const Vector3& v) {
     return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
@@ -120,7 +111,7 @@ void draw_hue_sweep(Sheet& sheet, double left, double top, double bottom, double
     const double panel = left + 24;
     const double right = left + kColumn;
     sheet.paint(panel, top, right, bottom, [&](double u, double v) {
-        return hue_color(u, saturation, stops(kHigh + v * (kLow - kHigh)));
+        return rgb_of(hue_color(u, saturation, stops(kHigh + v * (kLow - kHigh))));
     });
     for (int s = static_cast<int>(kLow); s <= static_cast<int>(kHigh); s += 2) {
         const double y = top + (kHigh - s) / (kHigh - kLow) * (bottom - top);
@@ -190,10 +181,8 @@ void draw_gamuts(Sheet& sheet, double left, double top, double bottom) {
         const double y = top + static_cast<double>(g) * step_y;
         sheet.label(kNames[g], panel - 6, y + step_y / 2 + 3, Canvas::Align::right);
         for (std::size_t h = 0; h < 6; ++h) {
-            const Rgb own = hue_color(static_cast<double>(h) / 6, 1, 1);
-            const Vector3 light = {static_cast<double>(own[0]), static_cast<double>(own[1]),
-                                   static_cast<double>(own[2])};
-            const Rgb color = rgb_of(multiply(to_rec709, light));
+            const Rgb color =
+                rgb_of(multiply(to_rec709, hue_color(static_cast<double>(h) / 6, 1, 1)));
             const double x = panel + static_cast<double>(h) * step_x + 3;
             const double part = (step_x - 6) / kExposures.size();
             for (std::size_t e = 0; e < kExposures.size(); ++e) {
@@ -213,22 +202,19 @@ void draw_saturation(Sheet& sheet, double left, double top, double bottom) {
         const double y = top + static_cast<double>(h) * step;
         sheet.label(kHueNames[h], panel - 6, y + step - 3, Canvas::Align::right);
         sheet.paint(panel, y, left + kColumn, y + step, [&](double u, double) {
-            return hue_color(static_cast<double>(h) / 6, u, stops(3));
+            return rgb_of(hue_color(static_cast<double>(h) / 6, u, stops(3)));
         });
     }
 }
 
 /// Exposure ramps without a step: bands, kinks and turning hues show here.
 void draw_gradients(Sheet& sheet, double left, double top, double bottom) {
-    // The second: light skin of the ColorChecker; the last: a deep blue light.
-    constexpr std::array<Vector3, 4> kTints = {
-        {{1, 1, 1}, {1, 0.56, 0.42}, {1, 0.25, 0.02}, {0.06, 0.10, 1}}};
     sheet.title("Gradients -6 .. +8 stops: grey, skin, orange, blue", left, top - 10);
-    const double step = (bottom - top) / kTints.size();
-    for (std::size_t i = 0; i < kTints.size(); ++i) {
+    const double step = (bottom - top) / kGradientTints.size();
+    for (std::size_t i = 0; i < kGradientTints.size(); ++i) {
         const double y = top + static_cast<double>(i) * step;
         sheet.paint(left, y, left + kColumn, y + step, [&](double u, double) {
-            return scaled(rgb_of(kTints[i]), stops(-6 + 14 * u));
+            return scaled(rgb_of(kGradientTints[i]), stops(-6 + 14 * u));
         });
     }
 }

@@ -8,6 +8,8 @@
 #include <array>
 #include <cmath>
 
+#include "measure/chart_colors.h"
+
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
@@ -42,6 +44,8 @@ struct Sphere {
 
 constexpr double kGap = 0.01;
 
+Vec lamp(std::size_t i) { return {kLamps[i][0], kLamps[i][1], kLamps[i][2]}; }
+
 const std::array<Sphere, 9> kSpheres = {{
     // On the floor, lit: grey card, plastic, gold, ceramic, chrome.
     {{-2.5, 0.58, 0.15}, 0.58, {0.18, 0.18, 0.18}, {0, 0, 0}, 0, 1, {}},
@@ -50,10 +54,10 @@ const std::array<Sphere, 9> kSpheres = {{
     {{1.25, 0.58, -0.2}, 0.58, {0.010, 0.07, 0.46}, {0.05, 0.05, 0.05}, 240, 1800, {}},
     {{2.5, 0.58, 0.15}, 0.58, {0.0, 0.0, 0.0}, {0.85, 0.86, 0.87}, 500, 2500, {}},
     // Above and behind, shining: red, green, blue, and the magenta of a neon tube.
-    {{-2.0, 1.72, 0.9}, 0.42, {}, {}, 0, 1, {40, 0, 0}},
-    {{-0.68, 1.86, 1.1}, 0.42, {}, {}, 0, 1, {0, 24, 0}},
-    {{0.68, 1.86, 1.1}, 0.42, {}, {}, 0, 1, {0, 0, 60}},
-    {{2.0, 1.72, 0.9}, 0.42, {}, {}, 0, 1, {46, 0.6, 30}},
+    {{-2.0, 1.72, 0.9}, 0.42, {}, {}, 0, 1, lamp(0)},
+    {{-0.68, 1.86, 1.1}, 0.42, {}, {}, 0, 1, lamp(1)},
+    {{0.68, 1.86, 1.1}, 0.42, {}, {}, 0, 1, lamp(2)},
+    {{2.0, 1.72, 0.9}, 0.42, {}, {}, 0, 1, lamp(3)},
 }};
 
 const Vec kToKey = normalize({-0.55, 0.95, -0.75});

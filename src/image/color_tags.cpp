@@ -2,9 +2,14 @@
 #include "image/color_tags.h"
 #include "base/format_number.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <string>
+#include <string_view>
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -15,12 +20,82 @@ struct Claim {
     Primaries primaries;
 };
 
+constexpr std::string_view kGamma = "Gamma";
+
 Claim power_claim(double exponent, const Primaries& primaries) {
     // OIIO parses the number, and its writers (PNG's gAMA) want the point: "Gamma2.0".
     std::string number = shortest(exponent);
     if (number.find('.') == std::string::npos) number += ".0";
-    return {"Gamma" + number, primaries};
+    return {std::string(kGamma) + number, primaries};
 }
+
+/// How a display's code values are described in files, by its id.
+struct DisplayCode {
+    std::string_view id;
+    IccCurve curve;          // of an SDR display
+    CodePoints code_points;  // of an HDR display: ITU-T H.273, tables 2 and 3
+};
+constexpr CodePoints kNoPoints = {2, 2};  // "unspecified"
+constexpr double kSrgbPower = 2.4;
+constexpr std::array kDisplayCodes = {
+    DisplayCode{"srgb", {kSrgbPower, true}, kNoPoints},
+    DisplayCode{"display_p3", {kSrgbPower, true}, kNoPoints},
+    DisplayCode{"rec1886", {2.4}, kNoPoints},
+    DisplayCode{"rec2020", {2.4}, kNoPoints},
+    DisplayCode{"g22", {2.2}, kNoPoints},
+    DisplayCode{"rec2100_pq", {}, {9, 16}},
+    DisplayCode{"rec2100_hlg", {}, {9, 18}},
+    DisplayCode{"p3d65_pq", {}, {12, 16}},
+};
+
+/// The X.Y of "GammaX.Y", or 0.
+double power_of(std::string_view name) {
+    if (name.substr(0, kGamma.size()) != kGamma) return 0;
+    double power = 0;
+    const char* end = name.data() + name.size();
+    const auto [stop, error] = std::from_chars(name.data() + kGamma.size(), end, power);
+    return error == std::errc() && stop == end && power >= 0.1 && power <= 10 ? power : 0;
+}
+
+/// `chromaticities`, or those of Rec.709 where there are none.
+Primaries primaries_of(const OIIO::ImageSpec& spec) {
+    const OIIO::ParamValue* xy =
+        spec.find_attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8));
+    if (!xy) return kRec709;
+    std::array<double, 8> p{};
+    std::copy_n(static_cast<const float*>(xy->data()), p.size(), p.begin());
+    return {"chromaticities", {p[0], p[1]}, {p[2], p[3]}, {p[4], p[5]}, {p[6], p[7]}};
+}
+
+/// What viewers take the colors of a file for that does not say what they are, or cannot be
+/// written to say it by OpenImageIO.
+struct FormatColor {
+    std::string_view format;
+    std::string_view title;
+    bool has_icc = false;
+    bool has_power = false;  // says the power of its code values
+    // Applications presume linear light, whatever attributes say; else they presume sRGB.
+    bool is_linear = false;
+};
+constexpr std::array kFormats = {
+    FormatColor{"png", "PNG", true, true},
+    FormatColor{"jpeg", "JPEG", true},
+    FormatColor{"tiff", "TIFF", true},
+    FormatColor{"webp", "WebP"},
+    FormatColor{"heif", "HEIF"},
+    FormatColor{"jpeg2000", "JPEG 2000"},
+    FormatColor{"gif", "GIF"},
+    FormatColor{"bmp", "BMP"},
+    FormatColor{"ico", "ICO"},
+    FormatColor{"iff", "IFF"},
+    FormatColor{"pnm", "PNM"},
+    FormatColor{"sgi", "SGI"},
+    FormatColor{"rla", "RLA", false, true},
+    FormatColor{"targa", "Targa", false, true},
+    FormatColor{"dpx", "DPX", false, true},
+    FormatColor{"hdr", "Radiance HDR", false, false, true},
+    FormatColor{"openexr", "OpenEXR", false, false, true},
+};
 
 Claim claim_of(const View& view) {
     if (view.display == kLinearOutput) return {"Linear", kRec709};
@@ -88,6 +163,65 @@ void tag_as_result_of(const View& view, OIIO::ImageSpec& spec) {
         xy[i++] = static_cast<float>(c.y);
     }
     spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), xy.data());
+}
+
+std::optional<TaggedColor> tagged_color(const OIIO::ImageSpec& spec) {
+    const std::string name = spec.get_string_attribute("oiio:ColorSpace");
+    if (name == "Linear") return TaggedColor{"linear light", primaries_of(spec), IccCurve{}};
+    if (name == "sRGB") return TaggedColor{"sRGB", primaries_of(spec), IccCurve{kSrgbPower, true}};
+    if (const double power = power_of(name); power > 0) {
+        return TaggedColor{fmt::format("Gamma {}", shortest(power)), primaries_of(spec),
+                           IccCurve{power}};
+    }
+    for (const Display& display : all_displays()) {
+        if (display.title != name) continue;
+        const auto* code = std::find_if(kDisplayCodes.begin(), kDisplayCodes.end(),
+                                        [&](const auto& c) { return c.id == display.id; });
+        if (code == kDisplayCodes.end()) return {};
+        TaggedColor color = {display.title, display.primaries};
+        if (display.is_hdr) {
+            color.code_points = code->code_points;
+        } else {
+            color.curve = code->curve;
+        }
+        return color;
+    }
+    return {};
+}
+
+ColorDescription describe_color(const OIIO::ImageSpec& spec, std::string_view format) {
+    const auto* row = std::find_if(kFormats.begin(), kFormats.end(),
+                                   [&](const FormatColor& f) { return f.format == format; });
+    const std::optional<TaggedColor> color = tagged_color(spec);
+    // The rest keep the attributes themselves.
+    if (row == kFormats.end() || !color) return {};
+    const bool is_png = format == "png";
+    const bool is_srgb = color->curve && color->curve->is_srgb && color->primaries == kRec709;
+    const bool is_linear = color->curve && color->curve->exponent == 1;
+    if (is_png && is_srgb) return {};  // OpenImageIO writes the chunk sRGB
+    ColorDescription said;
+    if (color->curve && row->has_icc && has_icc()) {
+        said.icc =
+            write_display_icc(color->primaries, *color->curve, color->name, spec.nchannels < 3);
+        return said;
+    }
+    if (is_png && color->code_points) {
+        said.chunk = cicp_chunk(*color->code_points);
+        return said;
+    }
+    const bool is_presumed = row->is_linear ? is_linear : is_srgb;
+    const bool is_said =
+        row->has_power && color->curve && !color->curve->is_srgb && color->primaries == kRec709;
+    if (is_presumed || is_said) return {};
+    said.missing =
+        row->is_linear
+            ? fmt::format(
+                  "most applications read {} as linear light, but the file holds code "
+                  "values of {}; for linear light, use --display linear",
+                  row->title, color->name)
+            : fmt::format("{} does not say that its colors are {}: viewers take them for sRGB",
+                          row->title, color->name);
+    return said;
 }
 
 TONEWRIGHT_NAMESPACE_END

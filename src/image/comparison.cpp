@@ -9,12 +9,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/strings.h"
 #include "image/canvas.h"
 #include "image/contact_sheet.h"
+#include "image/source_picture.h"
 #include "tonewright/error.h"
 #include "tonewright/pipeline.h"
 
@@ -36,12 +39,17 @@ std::vector<int> color_and_alpha(const ImageSpec& spec) {
     return channels;
 }
 
-/// The display window in memory, as the first step of the engines makes it.
-ImageBuf shown_scene(const ImageBuf& picture) {
+/// A part of the display window in memory, as the first step of the engines makes it. The window
+/// begins at 0, 0.
+ImageBuf shown_scene(const ImageBuf& picture, const ROI& part) {
     const ROI window = shown_window(picture);
     const std::vector<int> channels = color_and_alpha(picture.spec());
     const auto count = static_cast<int>(channels.size());
-    ImageSpec spec(window.width(), window.height(), count, OIIO::TypeDesc::FLOAT);
+    ImageSpec spec(part.width(), part.height(), count, OIIO::TypeDesc::FLOAT);
+    spec.x = part.xbegin - window.xbegin;
+    spec.y = part.ybegin - window.ybegin;
+    spec.full_width = window.width();
+    spec.full_height = window.height();
     spec.extra_attribs = picture.spec().extra_attribs;
     spec.erase_attribute("PixelAspectRatio");
     spec.alpha_channel = -1;
@@ -51,16 +59,17 @@ ImageBuf shown_scene(const ImageBuf& picture) {
         if (from == picture.spec().alpha_channel) spec.alpha_channel = c;
     }
     ImageBuf scene(spec);
-    OIIO::ImageBufAlgo::parallel_image(scene.roi(), [&](ROI part) {
+    if (!scene.localpixels()) throw std::bad_alloc();
+    OIIO::ImageBufAlgo::parallel_image(scene.roi(), [&](ROI rows) {
         const auto all = static_cast<std::size_t>(picture.nchannels());
-        std::vector<float> row(static_cast<std::size_t>(window.width()) * all);
-        for (int y = part.ybegin; y < part.yend; ++y) {
-            ROI line = window;
+        std::vector<float> row(static_cast<std::size_t>(part.width()) * all);
+        for (int y = rows.ybegin; y < rows.yend; ++y) {
+            ROI line = part;
             line.ybegin = window.ybegin + y;
             line.yend = line.ybegin + 1;
             picture.get_pixels(line, OIIO::TypeFloat, row.data());
-            auto* to = static_cast<float*>(scene.pixeladdr(0, y));
-            for (std::size_t x = 0; x < static_cast<std::size_t>(window.width()); ++x) {
+            auto* to = static_cast<float*>(scene.pixeladdr(spec.x, y));
+            for (std::size_t x = 0; x < static_cast<std::size_t>(part.width()); ++x) {
                 for (const int c : channels) {
                     constexpr auto kMax = static_cast<float>(kHalfMax);
                     const float value = row[x * all + static_cast<std::size_t>(c)];
@@ -73,12 +82,56 @@ ImageBuf shown_scene(const ImageBuf& picture) {
     return scene;
 }
 
+/// The whole window, of the pixels that a picture has of it: a small picture in a large window
+/// takes the memory of a small picture.
+ImageBuf shrink(const ImageBuf& picture, const PictureSize& size) {
+    const ROI window = shown_window(picture);
+    ROI part = OIIO::roi_intersection(window, picture.roi());
+    part.zend = part.zbegin + 1;
+    const bool is_empty = part.width() <= 0 || part.height() <= 0;
+    if (is_empty) {
+        part = window;
+        part.xend = part.xbegin + 1;
+        part.yend = part.ybegin + 1;
+    }
+    const ImageBuf scene = shown_scene(picture, part);
+    ImageSpec spec = scene.spec();
+    spec.x = spec.y = 0;
+    spec.width = spec.full_width = size.width;
+    spec.height = spec.full_height = size.height;
+    ImageBuf small(spec);
+    if (is_empty) return small;
+    // Where the filter, three pixels of the result wide, reaches the part.
+    const auto reach = [](int from, int to, int window_length, int length) {
+        const double scale = static_cast<double>(length) / window_length;
+        return std::pair(std::max(static_cast<int>(std::floor(from * scale)) - 2, 0),
+                         std::min(static_cast<int>(std::ceil(to * scale)) + 2, length));
+    };
+    const ROI from = scene.roi();
+    const auto [left, right] = reach(from.xbegin, from.xend, window.width(), size.width);
+    const auto [top, bottom] = reach(from.ybegin, from.yend, window.height(), size.height);
+    // For a whole picture the filter looks at each pixel nine times; for a few pixels of a large
+    // window it looks at black for minutes.
+    const double taps = 9.0 * (right - left) * (bottom - top) * window.width() / size.width *
+                        window.height() / size.height;
+    if (taps > 2e8 + 40 * static_cast<double>(from.npixels())) {
+        throw PictureError(
+            fmt::format("the display window is {} x {} pixels, the data window {} x {}; expected "
+                        "smaller windows",
+                        window.width(), window.height(), from.width(), from.height()));
+    }
+    filter_down(small, scene, ROI(left, right, top, bottom, 0, 1, 0, spec.nchannels));
+    if (small.has_error()) throw Error("compare: " + first_line(small.geterror()));
+    return small;
+}
+
 /// Every pixel as often as fits.
 ImageBuf enlarge(const ImageBuf& scene, const PictureSize& size) {
     ImageSpec spec = scene.spec();
     spec.width = spec.full_width = size.width;
     spec.height = spec.full_height = size.height;
     ImageBuf large(spec);
+    if (!large.localpixels()) throw std::bad_alloc();
     const auto bytes = static_cast<std::size_t>(spec.nchannels) * sizeof(float);
     for (int y = 0; y < size.height; ++y) {
         for (int x = 0; x < size.width; ++x) {
@@ -131,10 +184,16 @@ struct Caption {
 ImageBuf resize_scene(const ImageBuf& picture, int width) {
     if (picture.deep()) throw Error("compare: picture is deep; expected flat pixels");
     const PictureSize size = fitted_size(picture, width);
-    ImageBuf scene = shown_scene(picture);
-    const ImageSpec& spec = scene.spec();
-    if (size.width == spec.width && size.height == spec.height) return scene;
-    if (size.width > spec.width) return enlarge(scene, size);
+    const ROI window = shown_window(picture);
+    if (size.height > kLargestSheet) {
+        throw PictureError(
+            fmt::format("a picture of {} x {} pixels, {} wide, is {} high; expected at most {}",
+                        window.width(), window.height(), size.width, size.height, kLargestSheet));
+    }
+    if (size.width < window.width()) return shrink(picture, size);
+    ImageBuf scene = shown_scene(picture, window);
+    if (size.width == window.width() && size.height == window.height()) return scene;
+    if (size.width > window.width()) return enlarge(scene, size);
     ImageBuf small = filtered_down(scene, size);
     if (small.has_error()) throw Error("compare: " + first_line(small.geterror()));
     return small;

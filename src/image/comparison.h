@@ -18,7 +18,9 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// +-65504 before, so that one pixel does not spoil its neighbours.
 ///
 /// @param width    of the result, pixels
-/// @throws Error   deep, or cannot be read
+/// @throws Error         deep, or cannot be read
+/// @throws PictureError  a small picture in a display window that is too large to be filtered, or a
+///                       result of more than 65535 rows
 [[nodiscard]] TONEWRIGHT_API OIIO::ImageBuf resize_scene(const OIIO::ImageBuf& picture, int width);
 
 /// How many columns make a sheet of so many equal cells most like a screen, without gaps where that

@@ -11,9 +11,11 @@
 #include "base/strings.h"
 #include "image/canvas.h"
 #include "image/contact_sheet.h"
+#include "image/source_picture.h"
 #include "tonewright/color.h"
 #include "tonewright/contact_sheet.h"
 #include "tonewright/engine.h"
+#include "tonewright/image_io.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -145,10 +147,26 @@ PictureSize fitted_size(const ImageBuf& picture, int width) {
         static_cast<double>(picture.spec().get_float_attribute("PixelAspectRatio", 1));
     const double aspect =
         window.width() * (pixel_aspect > 0 ? pixel_aspect : 1.0) / window.height();
-    return {width, std::max(1, static_cast<int>(std::lround(width / aspect)))};
+    constexpr double kMost = 1e6;  // more than any sheet has, and sums of 10,000 are no overflow
+    const double height = std::clamp(width / aspect, 1.0, kMost);
+    return {width, static_cast<int>(std::lround(height))};
+}
+
+void check_shown_window(const ImageBuf& picture) {
+    const ROI window = shown_window(picture);
+    const double most =
+        std::max(WriteOptions{}.max_pixels, 4 * static_cast<double>(picture.roi().npixels()));
+    if (static_cast<double>(window.npixels()) > most) {
+        throw PictureError(fmt::format(
+            "the display window is {} x {} pixels, the data window {} x {}; expected at most "
+            "{:.0f} "
+            "pixels of both",
+            window.width(), window.height(), picture.spec().width, picture.spec().height, most));
+    }
 }
 
 ImageBuf shown_rgb(const ImageBuf& picture) {
+    check_shown_window(picture);
     const ROI window = shown_window(picture);
     const int channels = picture.nchannels();
     ImageBuf rgb(OIIO::ImageSpec(window.width(), window.height(), 3, OIIO::TypeDesc::FLOAT));
@@ -170,6 +188,14 @@ ImageBuf shown_rgb(const ImageBuf& picture) {
     });
     if (picture.has_error()) throw Error("contact sheet: " + first_line(picture.geterror()));
     return rgb;
+}
+
+void filter_down(ImageBuf& small, const ImageBuf& picture, const ROI& roi) {
+#if OIIO_VERSION >= 30000  // where the other form is deprecated
+    OIIO::ImageBufAlgo::resize(small, picture, {{"filtername", "blackman-harris"}}, roi);
+#else
+    OIIO::ImageBufAlgo::resize(small, picture, "blackman-harris", 0, roi);
+#endif
 }
 
 ImageBuf filtered_down(const ImageBuf& picture, const PictureSize& size) {
@@ -224,7 +250,7 @@ ImageBuf make_contact_sheet(const std::vector<std::pair<std::string, ImageBuf>>&
         height += tallest + label_height + margin;
     }
     height += surround.bottom();
-    constexpr int kLargest = 65535;
+    constexpr int kLargest = kLargestSheet;
     if (width > kLargest || height > kLargest) {
         throw Error(fmt::format("contact sheet: size is {} x {}; expected at most {} each way",
                                 width, height, kLargest));

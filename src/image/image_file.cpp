@@ -10,20 +10,31 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-OIIO::ImageBuf read_image(const std::string& path) { return PictureReader(path).read_all(); }
+OIIO::ImageBuf read_image(const std::string& path) {
+    return with_memory_for(path, [&] { return PictureReader(path).read_all(); });
+}
 
 void write_image_atomically(const OIIO::ImageBuf& image, const std::string& path,
-                            const OIIO::TypeDesc& type) {
+                            const WriteOptions& options) {
     const auto refuse = [&](const std::string& reason) {
         throw FileError(fmt::format("{}: cannot write: {}", path, reason));
     };
     if (image.deep()) refuse("the picture is deep; expected flat pixels");
     if (!image.initialized())
         refuse(image.has_error() ? first_line(image.geterror()) : "there is no picture");
-    PictureWriter writer(path, type);
-    writer.open(image.spec());
-    writer.write_rows(image);
-    writer.finish();
+    with_memory_for(path, [&] {
+        PictureWriter writer(path, options);
+        writer.open(image.spec());
+        writer.write_rows(image);
+        writer.finish();
+    });
+}
+
+void write_image_atomically(const OIIO::ImageBuf& image, const std::string& path,
+                            const OIIO::TypeDesc& type) {
+    WriteOptions options;
+    options.type = type;
+    write_image_atomically(image, path, options);
 }
 
 OIIO::TypeDesc parse_pixel_type(std::string_view text) {
@@ -33,12 +44,10 @@ OIIO::TypeDesc parse_pixel_type(std::string_view text) {
         {"half", OIIO::TypeDesc::HALF},
         {"float", OIIO::TypeDesc::FLOAT}};
     std::vector<std::string> names;
-    for (const auto& [name, type] : types) {
-        if (name == text) return type;
-        names.push_back(name);
-    }
-    throw Error(fmt::format("pixel type is {}; expected {}{}", text, join_choices(names),
-                            did_you_mean(text, names)));
+    names.reserve(types.size());
+    for (const auto& type : types)
+        names.push_back(type.first);
+    return types[find_choice("pixel type", text, names)].second;
 }
 
 TONEWRIGHT_NAMESPACE_END

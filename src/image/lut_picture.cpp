@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/lut_picture.h"
+#include "image/picture_file.h"
 #include "tonewright/image_io.h"
 #include "tonewright/lut.h"
 
@@ -15,9 +16,9 @@ namespace {
 
 /// The node that a pixel holds, of a cube of n points a side; red fastest.
 std::size_t node_of(LutFormat format, int n, int width, int x, int y) {
-    if (format == LutFormat::hald) return static_cast<std::size_t>(y * width + x);
     const int green = format == LutFormat::strip_up ? n - 1 - y : y;
-    return static_cast<std::size_t>((x / n * n + green) * n + x % n);
+    const int node = format == LutFormat::hald ? y * width + x : (x / n * n + green) * n + x % n;
+    return static_cast<std::size_t>(node);
 }
 
 /// Nothing else in the file tells a strip from one that stands on its head.
@@ -46,11 +47,10 @@ Layout layout_of(const std::string& path, int width, int height) {
 }  // namespace
 
 Lut read_lut_picture(const std::string& path) {
-    if (const auto in = OIIO::ImageInput::open(path)) {
+    {
+        const auto in = open_picture(path);
         // Before there is room for its pixels.
         (void)layout_of(path, in->spec().width, in->spec().height);
-    } else {
-        (void)OIIO::geterror();  // read_image() says what is wrong
     }
     const OIIO::ImageBuf picture = read_image(path);
     const OIIO::ImageSpec& spec = picture.spec();

@@ -113,7 +113,8 @@ SceneMeter measure_file(const std::string& path, const MeterOptions& options,
         }
         if (is_empty(window)) return;
         const ImageSpec rows = with_color_metadata_alone(spec);
-        const int step = rows_of_batch(spec.scanline_bytes(), reader.row_step(), batch_bytes);
+        const int step =
+            rows_of_batch(spec.scanline_bytes(), reader.row_step(), spec.height, batch_bytes);
         std::vector<std::byte> pixels(spec.scanline_bytes() * static_cast<std::size_t>(step));
         // Batches begin at multiples of the step: tiles are read as a whole.
         for (int y = spec.y + (window.ybegin - spec.y) / step * step; y < window.yend; y += step) {
@@ -152,16 +153,16 @@ Metering meter(const ImageBuf& src, const MeterOptions& options, int nthreads) {
 
 Metering meter_file(const std::string& path, const MeterOptions& options, int nthreads) {
     check_meter_options(options);
+    const ImageSpec spec =
+        about_picture(path, [&] { return PictureReader(path, nthreads, options.subimage).spec(); });
     try {
-        require_pixels(PictureReader(path, nthreads, options.subimage).spec(), options);
-        return measure_file(path, options, SceneMeter::Figures::all, nthreads).metering();
-    } catch (const FileError&) {
-        throw;
+        require_pixels(spec, options);
     } catch (const Error& e) {
         throw Error(fmt::format("{}: {}", path, e.what()));
-    } catch (const std::bad_alloc&) {
-        throw Error(path + ": not enough memory");
     }
+    return about_picture(path, [&] {
+        return measure_file(path, options, SceneMeter::Figures::all, nthreads).metering();
+    });
 }
 
 SceneStatistics statistics_of_sequence(const std::vector<Metering>& frames) {
@@ -208,13 +209,10 @@ double ev100(double luminance) {
 
 ExposureRule::Method parse_meter_method(std::string_view text) {
     using Method = ExposureRule::Method;
-    if (text == "log-average") return Method::log_average;
-    if (text == "histogram") return Method::histogram;
-    if (text == "mean") return Method::mean;
-    if (text == "max") return Method::maximum;
-    const std::vector<std::string> names = {"log-average", "histogram", "mean", "max"};
-    throw Error(fmt::format("meter: method is {}; expected {}{}", text, join_choices(names),
-                            did_you_mean(text, names)));
+    constexpr Method kMethods[] = {Method::log_average, Method::histogram, Method::mean,
+                                   Method::maximum};
+    return kMethods[find_choice("meter: method", text,
+                                {"log-average", "histogram", "mean", "max"})];
 }
 
 void check_exposure_rule(const ExposureRule& rule) {

@@ -8,18 +8,38 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/atomic_file.h"
+#include "base/input_file.h"
+#include "image/source_picture.h"
 #include "tonewright/error.h"
+#include "tonewright/image_io.h"
 
 /// Picture files, read and written some rows at a time, whole or not at all.
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// In one line, why a picture could not be opened.
-/// @param reported  what OpenImageIO says
-[[nodiscard]] TONEWRIGHT_API std::string why_not_open(const std::string& path,
-                                                      const std::string& reported);
+/// Opens a picture, or a name that one of OpenImageIO's readers makes one of.
+/// @throws FileError  missing, unreadable, a folder, a pipe, or of unknown format. One line.
+[[nodiscard]] TONEWRIGHT_API std::unique_ptr<OIIO::ImageInput> open_picture(
+    const std::string& path, const OIIO::ImageSpec* config = nullptr);
+
+/// Runs `step`, which works on a picture whose options were checked before: what is wrong now, the
+/// picture is.
+/// @throws FileError  "<path>: <reason>"
+template <class Step>
+decltype(auto) about_picture(const std::string& path, const Step& step) {
+    try {
+        return with_memory_for(path, step);
+    } catch (const PictureError& e) {
+        throw FileError(path + ": " + e.what());
+    } catch (const FileError&) {
+        throw;
+    } catch (const Error& e) {
+        throw FileError(path + ": " + e.what());
+    }
+}
 
 /// Reads a picture from top to bottom or in any other order of rows. Full resolution, in the pixel
 /// type of the file.
@@ -61,8 +81,10 @@ class TONEWRIGHT_API PictureReader {
 inline constexpr std::size_t kBatchBytes = std::size_t{16} << 20;
 
 /// Rows of a batch: at least 64 (formats compress up to 32 rows together, OpenEXR's threads one
-/// such block each), and a multiple of `step`.
-[[nodiscard]] TONEWRIGHT_API int rows_of_batch(std::size_t bytes_per_row, int step,
+/// such block each), a multiple of `step`, and no more than the picture has.
+/// @param step    what row_step() says; height at most
+/// @param height  rows of the picture
+[[nodiscard]] TONEWRIGHT_API int rows_of_batch(std::size_t bytes_per_row, int step, int height,
                                                std::size_t batch_bytes = kBatchBytes);
 
 /// The spec of rows [ybegin, yend) of a picture, untiled.
@@ -80,7 +102,8 @@ class TONEWRIGHT_API PictureWriter {
     /// Touches nothing yet.
     /// @param nthreads  0: OIIO's `threads` attribute.
     /// @throws FileError  unknown extension, or a place for no file.
-    PictureWriter(const std::string& path, const OIIO::TypeDesc& type, int nthreads = 0);
+    /// @throws Error      compression or quality that the format does not have.
+    explicit PictureWriter(const std::string& path, WriteOptions options = {}, int nthreads = 0);
     /// Removes what is not finished.
     ~PictureWriter();
     PictureWriter(const PictureWriter&) = delete;
@@ -111,11 +134,21 @@ class TONEWRIGHT_API PictureWriter {
     void check_disk() const;
     [[nodiscard]] OIIO::ImageSpec plan(const OIIO::ImageSpec& picture);
     [[nodiscard]] OIIO::ImageBuf checked(OIIO::ImageBuf&& changed) const;
+    [[nodiscard]] std::string_view format() const;
+    void check_compression() const;
+    /// What the file cannot be, in one warning.
+    void warn_of_limits(const OIIO::ImageSpec& wanted, const std::string& missing) const;
+    void watch_cover(const OIIO::ImageBuf& rows);
+    void warn_without_cover() const;
+    void write_part(const OIIO::ImageBuf& rows);
     void write_fitted(const OIIO::ImageBuf& rows);
 
     std::string path_;
-    OIIO::TypeDesc type_;
+    WriteOptions options_;
     std::vector<int> channels_;        // to write; empty: all
+    int alpha_ = -1;                   // of those that are written
+    bool watches_cover_ = false;       // a picture without cover is a warning
+    bool has_cover_ = false;           // alpha is not 0 everywhere
     std::optional<OIIO::ROI> window_;  // to write; none: all of the picture
     bool divides_by_alpha_ = false;
     int last_row_ = 0;  // of the picture, exclusive

@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
-#include <unistd.h>
-
 #include <algorithm>
+#include <array>
 #include <cerrno>
+#include <climits>
+#include <cstdint>
 #include <filesystem>
+#include <fstream>
+#include <string_view>
 #include <system_error>
 
+#include "base/input_file.h"
 #include "base/strings.h"
 #include "image/picture_file.h"
+#include "image/source_picture.h"
 #include "tonewright/image_io.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -20,24 +25,98 @@ using OIIO::ImageBuf;
     throw FileError(fmt::format("{}: cannot read: {}", path, reason));
 }
 
-}  // namespace
-
-std::string why_not_open(const std::string& path, const std::string& reported) {
-    namespace fs = std::filesystem;
+/// OpenImageIO's reader delivers whatever its memory holds for what a truncated file lacks. SMPTE
+/// ST 268:2003, table 1 (offsets in bytes), where the pixels of the first element are not
+/// compressed.
+void check_dpx_size(const std::string& path) {
+    std::array<unsigned char, 808> header{};
+    std::ifstream file(path, std::ios::binary);
+    if (!file.read(reinterpret_cast<char*>(header.data()), header.size()))
+        cannot_read(path, "the file is truncated or damaged");
+    const bool is_little = header[0] == 'X';
+    const auto number = [&](std::size_t at, std::size_t bytes) {
+        std::uint64_t value = 0;
+        for (std::size_t i = 0; i < bytes; ++i)
+            value = value << 8 | header[at + (is_little ? bytes - 1 - i : i)];
+        return value;
+    };
+    const std::uint64_t width = number(772, 4);
+    const std::uint64_t height = number(776, 4);
+    const std::uint64_t bits = number(803, 1);
+    const std::uint64_t packing = number(804, 2);
+    const std::uint64_t encoding = number(806, 2);
+    std::uint64_t per_pixel = 0;
+    switch (number(800, 1)) {  // the descriptor: ST 268:2003, table 1, field 21.6
+        case 50:
+            per_pixel = 3;
+            break;
+        case 51:
+        case 52:
+            per_pixel = 4;
+            break;
+        case 1:
+        case 2:
+        case 3:
+        case 4:
+        case 6:
+            per_pixel = 1;
+            break;
+        default:
+            return;  // subsampled or of a maker's own
+    }
+    if (encoding != 0) return;
+    const std::uint64_t samples = width * per_pixel;
+    std::uint64_t row = 0;
+    if (bits == 10 && (packing == 1 || packing == 2)) {
+        row = (samples + 2) / 3 * 4;
+    } else if (bits == 12 && (packing == 1 || packing == 2)) {
+        row = samples * 2;
+    } else {
+        row = (samples * bits + 7) / 8;
+    }
+    const std::uint64_t offset = number(4, 4);
     std::error_code error;
-    const fs::file_status status = fs::status(path, error);
-    if (!fs::exists(status)) return std::generic_category().message(ENOENT);
-    if (fs::is_directory(status)) return "it is a directory";
-    if (::access(path.c_str(), R_OK) != 0) return std::generic_category().message(errno);
-    if (fs::is_regular_file(status) && fs::file_size(path, error) == 0) return "the file is empty";
+    const std::uint64_t size = std::filesystem::file_size(path, error);
+    if (error || offset == 0xFFFFFFFFU || offset + row * height <= size) return;
+    cannot_read(path, fmt::format("the file is truncated: it has {} bytes; expected {}", size,
+                                  offset + row * height));
+}
+
+/// In one line, why a picture could not be opened.
+/// @param reported  what OpenImageIO says
+std::string why_not_open(const std::string& path, const std::string& reported) {
+    if (std::string why = why_not_readable(path); !why.empty()) return why;
+    std::error_code error;
+    if (std::filesystem::file_size(path, error) == 0) return "the file is empty";
     return first_line(reported);
 }
 
+}  // namespace
+
+std::unique_ptr<OIIO::ImageInput> open_picture(const std::string& path,
+                                               const OIIO::ImageSpec* config) {
+    // A reader would wait for ever for the end of a pipe. A name without a file may be one that a
+    // reader understands: "shot.exr.tonewright?op=hable".
+    if (const std::string why = why_no_file(path); !why.empty()) cannot_read(path, why);
+    std::unique_ptr<OIIO::ImageInput> in;
+    if (path.find('?') != std::string::npos && why_not_readable(path).empty()) {
+        // OpenImageIO would take what follows the ? for arguments of a reader.
+        const std::string extension = extension_of(path);
+        in = OIIO::ImageInput::create(extension.empty() ? extension : extension.substr(1));
+        OIIO::ImageSpec spec;
+        const bool is_open = in && in->open(path, spec, config ? *config : OIIO::ImageSpec());
+        if (!is_open && in) cannot_read(path, why_not_open(path, in->geterror()));
+    } else {
+        in = OIIO::ImageInput::open(path, config);
+    }
+    if (!in) cannot_read(path, why_not_open(path, OIIO::geterror()));
+    return in;
+}
+
 PictureReader::PictureReader(const std::string& path, int nthreads, int subimage)
-    : path_(path), subimage_(subimage), in_(OIIO::ImageInput::open(path)) {
+    : path_(path), subimage_(subimage), in_(open_picture(path)) {
     // Not through ImageBuf: it asks the shared cache, which may know an older file of this name,
     // and it passes over errors that a reader reports while it delivers pixels.
-    if (!in_) cannot_read(path, why_not_open(path, OIIO::geterror()));
     in_->threads(nthreads);
     if (!in_->seek_subimage(subimage, 0))
         cannot_read(path, fmt::format("it has no subimage {}; the first is 0", subimage));
@@ -45,6 +124,20 @@ PictureReader::PictureReader(const std::string& path, int nthreads, int subimage
     if (spec_.deep)
         cannot_read(path, "the picture is deep; expected flat pixels (oiiotool --flatten)");
     spec_.channelformats.clear();  // all channels are read in the widest of them
+    complete_channel_names(spec_);
+    std::error_code error;
+    const auto bytes = static_cast<double>(std::filesystem::file_size(path, error));
+    if (error) return;  // no regular file
+    // The densest compressions of black (DWAB of wide rows) have some 300,000 bytes in one.
+    constexpr double kDensest = 1e6;
+    constexpr double kHarmless = 64 << 20;
+    const double claimed = static_cast<double>(spec_.width) * spec_.height *
+                           std::max(spec_.depth, 1) * static_cast<double>(spec_.pixel_bytes());
+    if (claimed > std::max(kDensest * bytes, kHarmless)) {
+        cannot_read(path, fmt::format("it declares {} x {} pixels of {} channels in {:.0f} bytes",
+                                      spec_.width, spec_.height, spec_.nchannels, bytes));
+    }
+    if (std::string_view(in_->format_name()) == "dpx") check_dpx_size(path);
 }
 
 PictureReader::~PictureReader() = default;
@@ -61,6 +154,9 @@ void PictureReader::check(bool was_read) const {
 
 void PictureReader::read_rows(int ybegin, int yend, std::byte* to) {
     const OIIO::ImageSpec& s = spec_;
+    // This reader delivers less than it says, without a word.
+    if (std::string_view(in_->format_name()) == "dpx")
+        std::fill_n(to, s.scanline_bytes() * static_cast<std::size_t>(yend - ybegin), std::byte{});
     check(s.tile_width > 0
               ? in_->read_tiles(subimage_, 0, s.x, s.x + s.width, ybegin, yend, s.z, s.z + 1, 0,
                                 s.nchannels, s.format, to)
@@ -68,7 +164,8 @@ void PictureReader::read_rows(int ybegin, int yend, std::byte* to) {
 }
 
 ImageBuf PictureReader::read_all() {
-    ImageBuf image(spec_, OIIO::InitializePixels::No);
+    // Cleared: some readers deliver less than they say.
+    ImageBuf image(spec_, OIIO::InitializePixels::Yes);
     if (!image.localpixels()) {
         cannot_read(path_, fmt::format("no memory for {} x {} pixels", spec_.width, spec_.height));
     }
@@ -77,11 +174,13 @@ ImageBuf PictureReader::read_all() {
     return image;
 }
 
-int rows_of_batch(std::size_t bytes_per_row, int step, std::size_t batch_bytes) {
+int rows_of_batch(std::size_t bytes_per_row, int step, int height, std::size_t batch_bytes) {
     constexpr int kLeast = 64;
-    const auto rows = static_cast<int>(batch_bytes / std::max<std::size_t>(bytes_per_row, 1));
+    step = std::clamp(step, 1, std::max(height, 1));
+    const auto rows = static_cast<int>(
+        std::min<std::size_t>(batch_bytes / std::max<std::size_t>(bytes_per_row, 1), INT_MAX));
     const int unit = (kLeast + step - 1) / step * step;
-    return std::max(rows / unit, 1) * unit;
+    return std::min(std::max(rows / unit, 1) * unit, std::max(height, 1));
 }
 
 OIIO::ImageSpec spec_of_rows(const OIIO::ImageSpec& picture, int ybegin, int yend) {
@@ -98,7 +197,7 @@ void check_is_complete(PictureReader& reader) {
         (void)reader.read_all();
         return;
     }
-    const int step = rows_of_batch(spec.scanline_bytes(), reader.row_step());
+    const int step = rows_of_batch(spec.scanline_bytes(), reader.row_step(), spec.height);
     const int yend = spec.y + spec.height;
     std::vector<std::byte> rows(spec.scanline_bytes() * static_cast<std::size_t>(step));
     for (int y = spec.y; y < yend; y += step)

@@ -4,13 +4,17 @@
 #include <OpenImageIO/imagecache.h>
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
+#include <charconv>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -20,7 +24,9 @@
 
 #include "base/atomic_file.h"
 #include "base/strings.h"
+#include "image/color_tags.h"
 #include "image/picture_file.h"
+#include "image/png_chunks.h"
 #include "tonewright/error.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -32,15 +38,58 @@ using OIIO::ImageSpec;
 using OIIO::ROI;
 
 /// The channels that a format takes: all (empty), or color and alpha, or color.
-std::vector<int> channels_to_write(const ImageSpec& spec, const OIIO::ImageOutput& out) {
+std::vector<int> channels_to_write(const ImageSpec& spec, const OIIO::ImageOutput& out,
+                                   bool leaves_out_alpha) {
     const bool takes_alpha = out.supports("alpha") != 0;
-    if (out.supports("nchannels") != 0 && takes_alpha) return {};
+    const bool takes_all = out.supports("nchannels") != 0 && takes_alpha;
     const int color_count = spec.nchannels < 3 ? 1 : 3;
-    std::vector<int> channels(static_cast<std::size_t>(color_count));
+    std::vector<int> channels(static_cast<std::size_t>(takes_all ? spec.nchannels : color_count));
     std::iota(channels.begin(), channels.end(), 0);
-    if (takes_alpha && spec.alpha_channel >= color_count) channels.push_back(spec.alpha_channel);
+    if (!takes_all && takes_alpha && spec.alpha_channel >= color_count)
+        channels.push_back(spec.alpha_channel);
+    if (leaves_out_alpha && spec.alpha_channel >= 0) std::erase(channels, spec.alpha_channel);
     if (static_cast<int>(channels.size()) == spec.nchannels) return {};
     return channels;
+}
+
+/// Compressions of the formats that have several, or a quality, as OpenImageIO names them. Its
+/// writers take an unknown name for the default and say nothing.
+struct FormatCompressions {
+    std::string_view format;
+    std::vector<std::string> names;
+    std::vector<std::string> with_quality;
+};
+const FormatCompressions* compressions_of(std::string_view format) {
+    static const std::vector<FormatCompressions> all = {
+        {"openexr",
+         {"none", "rle", "zip", "zips", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"},
+         {"dwaa", "dwab"}},
+        {"tiff", {"none", "lzw", "zip", "packbits", "jpeg"}, {"jpeg"}},
+        {"jpeg", {"jpeg"}, {"jpeg"}},
+        {"webp", {"webp", "lossless"}, {"webp"}},
+        {"heif", {"heic", "none"}, {"heic"}},
+        {"png", {"default", "filtered", "huffman", "rle", "fixed"}, {}},
+        {"targa", {"none", "rle"}, {}},
+        {"iff", {"none", "rle"}, {}},
+    };
+    const auto found =
+        std::find_if(all.begin(), all.end(), [&](const auto& row) { return row.format == format; });
+    return found == all.end() ? nullptr : &*found;
+}
+
+/// Nothing but heif files have it: the codec is not said by the name. ISO/IEC 14496-12, 4.3: the
+/// brand of a file stands in its box `ftyp`.
+std::string brand_of(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::array<char, 12> start{};
+    file.read(start.data(), start.size());
+    return {start.data() + 8, 4};
+}
+
+std::string title_of(const OIIO::TypeDesc& type) {
+    if (type == OIIO::TypeDesc::UINT8) return "8 bits";
+    if (type == OIIO::TypeDesc::UINT16) return "16 bits";
+    return type.c_str();
 }
 
 }  // namespace
@@ -49,9 +98,8 @@ std::vector<int> channels_to_write(const ImageSpec& spec, const OIIO::ImageOutpu
 /// none), and libjpeg ends the process when one did not. So this takes everything, and remembers.
 class PictureWriter::FileProxy final : public OIIO::Filesystem::IOProxy {
   public:
-    explicit FileProxy(const fs::path& path) : IOProxy(path.string(), Write) {
-        const int file =
-            ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
+    explicit FileProxy(AtomicFile& target) : IOProxy(target.path().string(), Write) {
+        const int file = target.create();
         if (file >= 0) file_ = ::fdopen(file, "wb");
         if (!file_) {
             errno_ = errno;
@@ -65,15 +113,31 @@ class PictureWriter::FileProxy final : public OIIO::Filesystem::IOProxy {
     FileProxy(const FileProxy&) = delete;
     FileProxy& operator=(const FileProxy&) = delete;
 
+    /// Puts `bytes` between those that the writer writes before and behind `place`, which it
+    /// passes once.
+    void insert(std::size_t place, std::string bytes) {
+        place_ = static_cast<int64_t>(place);
+        inserted_ = std::move(bytes);
+    }
+
     [[nodiscard]] const char* proxytype() const override { return "tonewright"; }
     bool seek(int64_t offset) override {
         if (offset == m_pos) return true;
-        if (!errno_ && ::fseeko(file_, offset, SEEK_SET) != 0) errno_ = errno;
+        if (!errno_ && ::fseeko(file_, offset + shift_, SEEK_SET) != 0) errno_ = errno;
         m_pos = offset;
         return true;
     }
     std::size_t write(const void* bytes, std::size_t size) override {
-        if (!errno_ && std::fwrite(bytes, 1, size, file_) != size) errno_ = errno ? errno : EIO;
+        const auto* from = static_cast<const char*>(bytes);
+        std::size_t before = 0;
+        if (!inserted_.empty() && m_pos <= place_ && m_pos + static_cast<int64_t>(size) > place_) {
+            before = static_cast<std::size_t>(place_ - m_pos);
+            put(from, before);
+            put(inserted_.data(), inserted_.size());
+            shift_ = static_cast<int64_t>(inserted_.size());
+            inserted_.clear();
+        }
+        put(from + before, size - before);
         m_pos += static_cast<int64_t>(size);
         size_ = std::max(size_, m_pos);
         return size;
@@ -97,15 +161,22 @@ class PictureWriter::FileProxy final : public OIIO::Filesystem::IOProxy {
     }
 
   private:
+    void put(const char* bytes, std::size_t size) {
+        if (!errno_ && std::fwrite(bytes, 1, size, file_) != size) errno_ = errno ? errno : EIO;
+    }
+
     std::FILE* file_ = nullptr;
     int errno_ = 0;
     int64_t size_ = 0;
+    std::string inserted_;  // not yet
+    int64_t place_ = 0;
+    int64_t shift_ = 0;  // of what follows it
 };
 
 // ---------------------------------------------------------------------------------------------
 
-PictureWriter::PictureWriter(const std::string& path, const OIIO::TypeDesc& type, int nthreads)
-    : path_(path), type_(type) {
+PictureWriter::PictureWriter(const std::string& path, WriteOptions options, int nthreads)
+    : path_(path), options_(std::move(options)) {
     temporary_ = std::make_unique<AtomicFile>(path);
     if (!temporary_->refusal().empty()) fail(temporary_->refusal());
     const fs::path& target = temporary_->target();
@@ -115,6 +186,51 @@ PictureWriter::PictureWriter(const std::string& path, const OIIO::TypeDesc& type
                                     : "the name has no extension that selects a format");
     }
     out_->threads(nthreads);
+    check_compression();
+}
+
+std::string_view PictureWriter::format() const { return out_->format_name(); }
+
+void PictureWriter::check_compression() const {
+    const auto& [type, alpha, text, quality, max_pixels, says_how, warn] = options_;
+    const FormatCompressions* known = compressions_of(format());
+    const std::size_t colon = std::min(text.find(':'), text.size());
+    const std::string name = text.substr(0, colon);
+    if (!name.empty()) {
+        if (!known) {
+            throw Error(
+                fmt::format("{}: compression is {}; expected none, because {} has one method only",
+                            path_, text, format()));
+        }
+        if (std::find(known->names.begin(), known->names.end(), name) == known->names.end()) {
+            throw Error(fmt::format("{}: compression is {}; expected {}{}", path_, text,
+                                    join_choices(known->names), did_you_mean(name, known->names)));
+        }
+    }
+    const bool has_number = colon < text.size();
+    if (has_number) {
+        const std::string_view digits = std::string_view(text).substr(colon + 1);
+        int number = 0;
+        const auto [end, error] =
+            std::from_chars(digits.data(), digits.data() + digits.size(), number);
+        if (error != std::errc() || end != digits.data() + digits.size() || number < 1)
+            throw Error(
+                fmt::format("{}: compression is {}; expected a quality of 1 or more after "
+                            "the colon",
+                            path_, text));
+    }
+    if (quality == 0 && !has_number) return;
+    if (quality != 0 && (quality < 1 || quality > 100))
+        throw Error(fmt::format("{}: quality is {}; expected [1, 100]", path_, quality));
+    const std::vector<std::string> none;
+    const std::vector<std::string>& with = known ? known->with_quality : none;
+    const bool is_default =
+        name.empty() && (format() == "jpeg" || format() == "webp" || format() == "heif");
+    if (is_default || std::find(with.begin(), with.end(), name) != with.end()) return;
+    throw Error(fmt::format("{}: quality is {}; expected {}", path_,
+                            has_number ? text.substr(colon + 1) : fmt::to_string(quality),
+                            with.empty() ? fmt::format("none, because {} is lossless", format())
+                                         : "--compression " + join_choices(with) + " with it"));
 }
 
 PictureWriter::~PictureWriter() = default;
@@ -139,7 +255,7 @@ ImageSpec PictureWriter::plan(const ImageSpec& picture) {
     // One level alone is no texture: OpenEXR's writer would wait for the others.
     if (spec.get_string_attribute("textureformat") == "Plain Texture")
         spec.erase_attribute("textureformat");
-    channels_ = channels_to_write(spec, *out_);
+    channels_ = channels_to_write(spec, *out_, options_.alpha == WriteOptions::Alpha::ignore);
     if (!channels_.empty()) {
         // One pixel shows what becomes of names and places of channels.
         ImageSpec pixel = spec;
@@ -162,6 +278,13 @@ ImageSpec PictureWriter::plan(const ImageSpec& picture) {
     const bool same = window.xbegin == data.xbegin && window.xend == data.xend &&
                       window.ybegin == data.ybegin && window.yend == data.yend;
     if (!same && !out_->supports("displaywindow")) {
+        const double most = std::max(options_.max_pixels, 4 * static_cast<double>(data.npixels()));
+        if (static_cast<double>(window.npixels()) > most) {
+            throw FileError(fmt::format(
+                "{}: cannot write: the display window is {} x {} pixels, the data window {} x {}; "
+                "expected at most {:.0f} pixels (--max-pixels) to fill with black",
+                path_, window.width(), window.height(), data.width(), data.height(), most));
+        }
         window_ = window;
         window_->chbegin = 0;
         window_->chend = spec.nchannels;
@@ -174,13 +297,31 @@ ImageSpec PictureWriter::plan(const ImageSpec& picture) {
 
     // PNG wants color that is not multiplied by alpha. OIIO's writer divides integers, rounding
     // down, and for "Gamma2.2" and its like it divides by a power of alpha: 0.25 of 0.5 becomes 1.
-    divides_by_alpha_ = std::string_view(out_->format_name()) == "png" && spec.alpha_channel >= 0 &&
+    divides_by_alpha_ = format() == "png" && spec.alpha_channel >= 0 &&
                         spec.get_int_attribute("oiio:UnassociatedAlpha", 0) == 0;
     if (divides_by_alpha_) spec.attribute("oiio:UnassociatedAlpha", 1);
+    alpha_ = spec.alpha_channel < spec.nchannels ? spec.alpha_channel : -1;
+    // OpenEXR's viewers show light without cover, and elements such as flames have nothing else.
+    watches_cover_ =
+        alpha_ >= 0 && options_.alpha == WriteOptions::Alpha::keep && format() != "openexr";
 
-    spec.set_format(type_ == OIIO::TypeUnknown ? picture.format : type_);
-    if (type_ != OIIO::TypeUnknown)
+    OIIO::TypeDesc type = options_.type;
+    const std::optional<TaggedColor> color = tagged_color(picture);
+    // ITU-R BT.2100-2 has 10 and 12 bits: 8 show bands.
+    if (type == OIIO::TypeUnknown && format() == "png" && color && color->code_points &&
+        picture.format.is_floating_point()) {
+        type = OIIO::TypeDesc::UINT16;
+    }
+    spec.set_format(type == OIIO::TypeUnknown ? picture.format : type);
+    if (type != OIIO::TypeUnknown)
         spec.erase_attribute("oiio:BitsPerSample");  // overrules the type
+    if (!options_.compression.empty()) {
+        spec.attribute("compression", options_.compression);
+    } else if (options_.quality > 0) {
+        spec.erase_attribute("compression");  // the source's may have a quality of its own
+    }
+    if (options_.quality > 0) spec.attribute("CompressionQuality", options_.quality);
+    if (format() != "openexr" && format() != "png") spec.erase_attribute("tonewright:.*");
     return spec;
 }
 
@@ -207,19 +348,69 @@ ImageSpec PictureWriter::file_spec(const ImageSpec& picture) {
 
 void PictureWriter::open(const ImageSpec& picture) {
     if (const int error = temporary_->check_target()) fail(reason_of(error));
-    const ImageSpec spec = plan(picture);
+    ImageSpec spec = plan(picture);
+    const ColorDescription color = describe_color(spec, format());
+    if (!color.icc.empty()) {
+        spec.attribute("ICCProfile",
+                       OIIO::TypeDesc(OIIO::TypeDesc::UINT8, static_cast<int>(color.icc.size())),
+                       color.icc.data());
+    }
     // libtiff reads its own directories back when there is an EXIF one (a picture marked sRGB has),
     // and a proxy for writing cannot be read: the file would lack its first directory.
     std::string name = temporary_->path().string();
-    if (out_->supports("ioproxy") && std::string_view(out_->format_name()) != "tiff") {
-        proxy_ = std::make_unique<FileProxy>(temporary_->path());
+    if (out_->supports("ioproxy") && format() != "tiff") {
+        proxy_ = std::make_unique<FileProxy>(*temporary_);
         check_disk();
+        if (!color.chunk.empty()) proxy_->insert(kAfterPngHeader, color.chunk);
         out_->set_ioproxy(proxy_.get());
         name = fs::path(path_).filename().string();
+    } else {
+        // So that it opens this file and no link that somebody put there.
+        const int file = temporary_->create();
+        if (file < 0) fail(reason_of(errno));
+        ::close(file);
     }
     const bool is_open = out_->open(name, spec);
-    temporary_->settle();
     if (!is_open) fail(first_line(out_->geterror()));
+    warn_of_limits(spec, color.missing);
+}
+
+void PictureWriter::warn_of_limits(const ImageSpec& wanted, const std::string& missing) const {
+    if (!options_.warn) return;
+    std::vector<std::string> limits;
+    if (!missing.empty()) limits.push_back(missing);
+    const OIIO::TypeDesc type = out_->spec().format;
+    if (options_.type != OIIO::TypeUnknown && options_.type != type && format() != "null") {
+        limits.push_back(
+            fmt::format("pixels are {}, not {}", title_of(type), title_of(options_.type)));
+    }
+    const std::optional<TaggedColor> color = tagged_color(wanted);
+    if (color && color->code_points && type == OIIO::TypeDesc::UINT8) {
+        limits.emplace_back("gradients in 8 bits show bands");
+    }
+    if (!limits.empty()) options_.warn(fmt::format("{}", fmt::join(limits, "; ")));
+}
+
+void PictureWriter::watch_cover(const ImageBuf& rows) {
+    if (!watches_cover_ || has_cover_) return;
+    ROI line = rows.roi();
+    line.chbegin = alpha_;
+    line.chend = alpha_ + 1;
+    std::vector<float> alpha(static_cast<std::size_t>(line.width()));
+    for (int y = rows.ybegin(); y < rows.yend() && !has_cover_; ++y) {
+        line.ybegin = y;
+        line.yend = y + 1;
+        line.zend = line.zbegin + 1;
+        rows.get_pixels(line, OIIO::TypeFloat, alpha.data());
+        has_cover_ = std::any_of(alpha.begin(), alpha.end(), [](float a) { return a != 0; });
+    }
+}
+
+void PictureWriter::warn_without_cover() const {
+    if (!watches_cover_ || has_cover_ || !options_.warn) return;
+    options_.warn(
+        "alpha is 0 everywhere, so viewers show nothing; --alpha ignore leaves it out, --alpha "
+        "opaque makes it 1");
 }
 
 OIIO::TypeDesc PictureWriter::row_type() const {
@@ -228,7 +419,7 @@ OIIO::TypeDesc PictureWriter::row_type() const {
 }
 
 bool PictureWriter::is_bottom_up() const {
-    return std::string_view(out_->format_name()) == "openexr" &&
+    return format() == "openexr" &&
            out_->spec().get_string_attribute("openexr:lineOrder") == "decreasingY";
 }
 
@@ -243,23 +434,45 @@ void PictureWriter::write_rows(const ImageBuf& rows) {
         change(
             OIIO::ImageBufAlgo::channels(*fitted, static_cast<int>(channels_.size()), channels_));
     }
-    if (window_) {
-        // Black above the first row and below the last goes with them.
+    watch_cover(*fitted);
+    if (alpha_ >= 0 && options_.alpha == WriteOptions::Alpha::opaque) {
+        ImageBuf opaque = fitted->copy(fitted->spec().format);
+        ROI cover = opaque.roi();
+        cover.chbegin = alpha_;
+        cover.chend = alpha_ + 1;
+        const std::vector<float> one(static_cast<std::size_t>(opaque.nchannels()), 1.0F);
+        OIIO::ImageBufAlgo::fill(opaque, one, cover);
+        change(std::move(opaque));
+    }
+    if (!window_) {
+        write_part(*fitted);
+        return;
+    }
+    // Black above the first row and below the last goes with them, some rows at a time.
+    const int data_end = rows.roi().yend;
+    const int end = data_end == last_row_ ? window_->yend : std::min(data_end, window_->yend);
+    const std::size_t row_bytes = static_cast<std::size_t>(window_->width()) *
+                                  static_cast<std::size_t>(window_->nchannels()) * sizeof(float);
+    const int step = rows_of_batch(row_bytes, 1, window_->height());
+    while (next_row_ < end) {
         ROI part = *window_;
         part.ybegin = next_row_;
-        const int end = rows.roi().yend;
-        part.yend = end == last_row_ ? window_->yend : std::min(end, window_->yend);
-        if (part.yend <= part.ybegin) return;
+        part.yend = std::min(next_row_ + step, end);
         next_row_ = part.yend;
-        change(OIIO::ImageBufAlgo::cut(*fitted, part));
-        changed.set_origin(0, part.ybegin - window_->ybegin);
+        ImageBuf shown = checked(OIIO::ImageBufAlgo::cut(*fitted, part));
+        shown.set_origin(0, part.ybegin - window_->ybegin);
+        write_part(shown);
     }
-    if (divides_by_alpha_) {
-        ImageBuf divided = fitted->copy(OIIO::TypeFloat);
-        OIIO::ImageBufAlgo::unpremult(divided, divided);
-        change(std::move(divided));
+}
+
+void PictureWriter::write_part(const ImageBuf& rows) {
+    if (!divides_by_alpha_) {
+        write_fitted(rows);
+        return;
     }
-    write_fitted(*fitted);
+    ImageBuf divided = rows.copy(OIIO::TypeFloat);
+    OIIO::ImageBufAlgo::unpremult(divided, divided);
+    write_fitted(checked(std::move(divided)));
 }
 
 void PictureWriter::write_fitted(const ImageBuf& rows) {
@@ -274,6 +487,8 @@ void PictureWriter::write_fitted(const ImageBuf& rows) {
 }
 
 void PictureWriter::finish() {
+    warn_without_cover();
+    const bool is_heif = format() == "heif";
     if (!out_->close()) fail(first_line(out_->geterror()));
     out_.reset();  // some write their last bytes only now
     if (proxy_) {
@@ -286,6 +501,12 @@ void PictureWriter::finish() {
             fail("what was written cannot be read back (disk full?)");
         }
     }
+    const bool is_named_avif =
+        OIIO::Strutil::iequals(temporary_->target().extension().string(), ".avif");
+    if (options_.warn && is_heif && is_named_avif &&
+        !brand_of(temporary_->path()).starts_with("avi"))
+        options_.warn(
+            "the file contains HEVC (HEIC), not AV1, because this OpenImageIO cannot write AVIF");
     if (const int error = temporary_->keep()) fail(reason_of(error));
     // Who reads the file through OIIO's shared cache gets the new one.
     auto cache = OIIO::ImageCache::create(true);  // a pointer, or since 3.0 a shared one

@@ -91,8 +91,8 @@ ScenePlanes read_light(const OIIO::ImageBuf& src, const SimdEngine& to_light,
     const ChannelLayout layout = channel_layout(spec);
     if (spec.depth > 1) {
         throw Error(
-            fmt::format("picture has {} slices; expected one: a local operator looks at "
-                        "what is beside a pixel, not behind it",
+            fmt::format("picture has {} slices; expected one: local operators work on flat "
+                        "pictures",
                         spec.depth));
     }
     ScenePlanes light;

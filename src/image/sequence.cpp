@@ -29,14 +29,14 @@ bool is_newer(const std::string& path, const std::string& than) {
 }
 
 /// @param tonemapper  one that takes no statistics
-bool is_done(const Tonemapper& tonemapper, const FrameFiles& frame, const OIIO::TypeDesc& type) {
+bool is_done(const Tonemapper& tonemapper, const FrameFiles& frame, const WriteOptions& write) {
     if (!is_newer(frame.out, frame.in)) return false;
     try {
         const PictureReader source(frame.in, 0, frame.subimage);
         PictureReader result(frame.out);
         const OIIO::ImageSpec is = result.spec();
         const OIIO::ImageSpec should =
-            PictureWriter(frame.out, type).file_spec(result_spec(tonemapper, source.spec()));
+            PictureWriter(frame.out, write).file_spec(result_spec(tonemapper, source.spec()));
         if (is.width != should.width || is.height != should.height || is.depth != should.depth ||
             (should.format != OIIO::TypeUnknown && is.format != should.format)) {
             return false;
@@ -57,6 +57,7 @@ void tonemap_files(const Tonemapper& tonemapper, std::vector<FrameFiles>& frames
         options.jobs > 0 ? static_cast<std::size_t>(options.jobs) : threads, frames.size());
     if (jobs == 0) return;
     std::vector<std::string> outs;
+    outs.reserve(frames.size());
     for (const FrameFiles& frame : frames)
         outs.push_back(frame.out);
     remove_leftovers(outs);
@@ -67,18 +68,26 @@ void tonemap_files(const Tonemapper& tonemapper, std::vector<FrameFiles>& frames
     const Tonemapper& any = without_statistics ? *without_statistics : tonemapper;
     std::atomic<std::size_t> next = 0;
     std::mutex mutex;
+    WriteOptions write = options.write;
+    std::mutex warn_mutex;
+    if (options.write.warn) {
+        write.warn = [&](const std::string& text) {
+            const std::lock_guard lock(warn_mutex);
+            options.write.warn(text);
+        };
+    }
     const auto work = [&](std::size_t job) {
         const auto nthreads =
             static_cast<int>(std::max<std::size_t>((threads + jobs - 1 - job) / jobs, 1));
         for (std::size_t i = next++; i < frames.size(); i = next++) {
             FrameFiles& frame = frames[i];
             try {
-                frame.is_skipped = options.skip_existing && is_done(any, frame, options.type);
+                frame.is_skipped = options.skip_existing && is_done(any, frame, write);
                 if (!frame.is_skipped) {
                     std::optional<Tonemapper> own;
                     if (frame.exposure_stops) own = tonemapper.with_exposure(*frame.exposure_stops);
-                    tonemap_file(own ? *own : tonemapper, frame.in, frame.out, options.type,
-                                 nthreads, frame.subimage);
+                    tonemap_file(own ? *own : tonemapper, frame.in, frame.out, write, nthreads,
+                                 frame.subimage);
                 }
             } catch (const std::exception& e) {
                 frame.error = e.what();

@@ -28,7 +28,7 @@ constexpr int kThumbnailHeight = 54;
 // The chart is drawn larger and averaged: thin lines and steps keep their light.
 constexpr int kOversampling = 4;
 
-std::string encode_png(const ImageBuf& picture, OIIO::TypeDesc type) {
+std::string encode_png(const ImageBuf& picture, const OIIO::TypeDesc& type) {
     OIIO::Filesystem::IOVecOutput memory;  // before what writes to it until it ends
     const std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create("png");
     if (!out) throw Error("bake: PNG: " + first_line(OIIO::geterror()));
@@ -52,9 +52,10 @@ std::vector<float> small_chart() {
     chart.get_pixels(chart.roi(), OIIO::TypeDesc::FLOAT, large.data());
     std::vector<float> small(std::size_t{3} * kThumbnailWidth * kThumbnailHeight);
     constexpr float kShare = 1.0F / (kOversampling * kOversampling);
+    constexpr std::size_t kWidth = std::size_t{kThumbnailWidth} * kOversampling;
     for (std::size_t i = 0; i < large.size(); ++i) {
-        const std::size_t x = i / 3 % (kThumbnailWidth * kOversampling) / kOversampling;
-        const std::size_t y = i / 3 / (kThumbnailWidth * kOversampling) / kOversampling;
+        const std::size_t x = i / 3 % kWidth / kOversampling;
+        const std::size_t y = i / 3 / kWidth / kOversampling;
         small[3 * (y * kThumbnailWidth + x) + i % 3] += kShare * large[i];
     }
     return small;

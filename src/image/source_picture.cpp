@@ -68,9 +68,9 @@ SourceColor color_of_chromaticities(const float* floats) {
         (primaries.green.x - primaries.red.x) * (primaries.blue.y - primaries.red.y) -
         (primaries.blue.x - primaries.red.x) * (primaries.green.y - primaries.red.y);
     if (!are_numbers || !(std::fabs(area) > 1e-6) || !(primaries.whitepoint.y > 0)) {
-        throw Error(
-            fmt::format("chromaticities of the picture are {}; expected those of red, green, "
-                        "blue and white; or name the input",
+        throw PictureError(
+            fmt::format("chromaticities of the picture are {}; expected red, green, blue "
+                        "and white, or an input space that you name",
                         text));
     }
     return {"chromaticities " + text, primaries};
@@ -79,7 +79,7 @@ SourceColor color_of_chromaticities(const float* floats) {
 }  // namespace
 
 SourceColor source_color(const OIIO::ImageSpec& spec, std::string_view input) {
-    if (input != kAutoInput) return find_source_color(input);
+    if (!is_same_name(input, kAutoInput)) return find_source_color(input);
     for (const char* attribute : {"oiio:ColorSpace", "colorInteropID"}) {
         const std::string name = spec.get_string_attribute(attribute);
         if (is_no_name(name)) continue;
@@ -87,8 +87,8 @@ SourceColor source_color(const OIIO::ImageSpec& spec, std::string_view input) {
             SourceColor color = find_source_color(name);
             if (color.name != "lin_rec709") return color;
         } catch (const Error& e) {
-            throw Error(
-                fmt::format("{} of the picture: {}; or name the input", attribute, e.what()));
+            throw PictureError(
+                fmt::format("{} of the picture: {}; or name an input space", attribute, e.what()));
         }
     }
     if (spec.get_int_attribute("acesImageContainerFlag", 0) == 1)
@@ -109,22 +109,36 @@ OIIO::ImageSpec with_color_metadata_alone(const OIIO::ImageSpec& spec) {
     return result;
 }
 
+void complete_channel_names(OIIO::ImageSpec& spec) {
+    const auto is_there = [&](int channel) { return channel < spec.nchannels; };
+    if (!is_there(spec.alpha_channel)) spec.alpha_channel = -1;
+    if (!is_there(spec.z_channel)) spec.z_channel = -1;
+    if (static_cast<int>(spec.channelnames.size()) == spec.nchannels) return;
+    const int alpha = spec.alpha_channel;
+    spec.default_channel_names();
+    if (alpha >= 0) spec.alpha_channel = alpha;
+}
+
 ChannelLayout channel_layout(const OIIO::ImageSpec& spec) {
     const int alpha = find_alpha(spec);
     if (spec.nchannels == 2 && alpha != 1) {
-        throw Error(
-            fmt::format("picture has 2 channels ({}, {}); expected 1, 3 or more, or grey and alpha",
+        throw PictureError(
+            fmt::format("picture has 2 channels ({}, {}); expected 1, 3 or more, or gray and alpha",
                         std::string(spec.channel_name(0)), std::string(spec.channel_name(1))));
     }
-    if (spec.channelindex("RY") >= 0 && spec.channelindex("BY") >= 0) {
-        throw Error(
+    const auto has = [&](const char* name) {
+        const std::vector<std::string>& names = spec.channelnames;
+        return std::find(names.begin(), names.end(), name) != names.end();
+    };
+    if (has("RY") && has("BY")) {
+        throw PictureError(
             "channels are Y, RY, BY: luminance and chroma; expected R, G, B, or Y alone "
             "(oiiotool --ch Y)");
     }
     const bool is_grey = spec.nchannels <= 2;
     if (alpha >= 0 && alpha < (is_grey ? 1 : 3)) {
-        throw Error(
-            fmt::format("alpha channel is {}; expected none or {} and above: color comes first "
+        throw PictureError(
+            fmt::format("alpha channel is {}; expected none, or {} and above: color comes first "
                         "(oiiotool --ch R,G,B,A)",
                         alpha, is_grey ? 1 : 3));
     }
@@ -145,7 +159,7 @@ bool divides_by_alpha(const OIIO::ImageSpec& spec, TonemapOptions::Unpremult unp
 
 void check_pixel_type(const char* what, const OIIO::TypeDesc& type) {
     if (pixel_access(type)) return;
-    throw Error(
+    throw PictureError(
         fmt::format("{} pixel type is {}; expected an integer of 8, 16 or 32 bits, half, float or "
                     "double",
                     what, std::string(type.c_str())));

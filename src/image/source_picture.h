@@ -19,14 +19,24 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// cache.
 inline constexpr std::size_t kSpan = 1024;
 
+/// What is wrong with a picture itself. Who knows its file puts the name before it.
+class TONEWRIGHT_API PictureError : public FileError {
+  public:
+    using FileError::FileError;
+};
+
+/// Some of OIIO's readers (FITS) leave out the names of channels, which OIIO's own functions then
+/// stumble over: gives them OIIO's defaults. An alpha or depth channel that is not there is none.
+TONEWRIGHT_API void complete_channel_names(OIIO::ImageSpec& spec);
+
 /// Which channels are color and alpha. By position, not by name.
 struct ChannelLayout {
     bool is_grey = false;  // channel 0 alone is color, else 0, 1, 2
     int alpha = -1;        // -1: none
 };
 
-/// @throws Error  two channels of which the second is no alpha; alpha before color; luminance and
-///                chroma (Y, RY, BY) instead of color.
+/// @throws PictureError  two channels of which the second is no alpha; alpha before color;
+///                       luminance and chroma (Y, RY, BY) instead of color.
 [[nodiscard]] TONEWRIGHT_API ChannelLayout channel_layout(const OIIO::ImageSpec& spec);
 
 /// True when color has to be divided by alpha to be a color.
@@ -39,8 +49,8 @@ struct ChannelLayout {
 ///                 `oiio:ColorSpace`, where it is another one than the linear Rec.709 that readers
 ///                 presume; else `colorInteropID`; else ACES2065-1 where `acesImageContainerFlag`
 ///                 is set; else linear light of its `chromaticities`; else linear Rec.709.
-/// @throws Error   unknown name; the picture has a name that is unknown, or impossible
-///                 chromaticities.
+/// @throws Error         `input` is an unknown name.
+/// @throws PictureError  the picture has a name that is unknown, or impossible chromaticities.
 [[nodiscard]] TONEWRIGHT_API SourceColor source_color(const OIIO::ImageSpec& spec,
                                                       std::string_view input);
 
@@ -48,7 +58,7 @@ struct ChannelLayout {
 [[nodiscard]] TONEWRIGHT_API OIIO::ImageSpec with_color_metadata_alone(const OIIO::ImageSpec& spec);
 
 /// @param what    "source" or "destination"
-/// @throws Error  for a type that OIIO has no pixels of.
+/// @throws PictureError  for a type that OIIO has no pixels of.
 TONEWRIGHT_API void check_pixel_type(const char* what, const OIIO::TypeDesc& type);
 
 /// Reads the header of a picture that is not open yet.

@@ -66,7 +66,7 @@ bool report_thrown(ImageBuf& dst, const char* prefix = "tonemap: ") noexcept {
         try {
             throw;
         } catch (const std::bad_alloc&) {
-            dst.errorfmt("{}not enough memory", prefix);
+            dst.errorfmt("not enough memory");
         } catch (const std::exception& e) {
             dst.errorfmt("{}{}", prefix, e.what());
         } catch (...) {
@@ -91,11 +91,21 @@ ImageSpec result_spec(const ImageSpec& source, bool grey_becomes_color) {
     }
     spec.set_format(OIIO::TypeFloat);
     spec.channelformats.clear();
+    complete_channel_names(spec);
     return spec;
 }
 
 ResolvedOperator operator_of(const TonemapOptions& options) {
     return resolve_picture_operator(options.op, options.settings, options.look);
+}
+
+/// The same options, with what the operator's text says in their own places.
+TonemapOptions in_places(TonemapOptions options) {
+    const ResolvedOperator op = operator_of(options);
+    options.op = op.name();
+    options.settings = op.settings;
+    options.look = op.params.look();
+    return options;
 }
 
 View view_of(const TonemapOptions& options, const Settings& settings, const SourceColor& source) {
@@ -195,7 +205,7 @@ struct Prepared {
 
 struct Tonemapper::State {
     explicit State(const TonemapOptions& o)
-        : options(o), depends_on_picture(tonewright::depends_on_picture(o)) {
+        : options(in_places(o)), depends_on_picture(tonewright::depends_on_picture(options)) {
         // Tells what is wrong with the options before there is a picture.
         is_local =
             view_of(options, options.settings, source_color({}, options.input)).op.op->is_local();
@@ -446,7 +456,7 @@ void run_picture(const PictureMap& with, ImageBuf& dst, const ImageBuf& src, ROI
     const int chend = roi.defined() ? std::min(roi.chend, source.nchannels) : source.nchannels;
     if (chbegin > 0 || chend < color_count) {
         fail(fmt::format(
-            "channel range is [{}, {}); expected it to begin at 0 and to hold all {} of "
+            "channel range is [{}, {}); expected a range from 0 that has all {} channels of "
             "color",
             roi.chbegin, roi.chend, color_count));
     }
@@ -457,7 +467,7 @@ void run_picture(const PictureMap& with, ImageBuf& dst, const ImageBuf& src, ROI
     if (dst.initialized() && !plan.grey_result && dst.nchannels() < 3) {
         fail(fmt::format("destination has {}; expected 3 or more: {}",
                          dst.nchannels() == 1 ? "1 channel" : "2 channels",
-                         plan.grey_source ? with.label + " shows this grey picture in color"
+                         plan.grey_source ? with.label + " shows this gray picture in color"
                                           : std::string("the picture is in color")));
     }
     if (layout.alpha >= 0 && divides_by_alpha(source, with.unpremult)) plan.alpha = layout.alpha;

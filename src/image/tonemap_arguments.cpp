@@ -3,6 +3,7 @@
 #include "base/strings.h"
 #include "tonewright/tonemap.h"
 
+#include <algorithm>
 #include <charconv>
 #include <utility>
 
@@ -24,12 +25,10 @@ template <class Choice>
 Choice parse_choice(std::string_view name, const std::string& value,
                     const std::vector<std::pair<std::string, Choice>>& choices) {
     std::vector<std::string> names;
-    for (const auto& [text, choice] : choices) {
-        if (text == value) return choice;
-        names.push_back(text);
-    }
-    throw Error(std::string(name) + " is " + value + "; expected " + join_choices(names) +
-                did_you_mean(value, names));
+    names.reserve(choices.size());
+    for (const auto& choice : choices)
+        names.push_back(choice.first);
+    return choices[find_choice(name, value, names)].second;
 }
 
 }  // namespace
@@ -38,6 +37,18 @@ const std::vector<std::string>& tonemap_argument_names() {
     static const std::vector<std::string> names = {
         "op", "look", "exposure", "input", "display", "reference_white", "unpremult", "statistics"};
     return names;
+}
+
+bool is_tonemap_argument(std::string_view name) {
+    const std::vector<std::string>& names = tonemap_argument_names();
+    return std::find(names.begin(), names.end(), name) != names.end() ||
+           (name.starts_with(kParameter) && name.size() > kParameter.size());
+}
+
+std::string tonemap_argument_choices() {
+    std::vector<std::string> choices = tonemap_argument_names();
+    choices.emplace_back("set.NAME for a parameter of the operator");
+    return join_choices(choices);
 }
 
 void set_tonemap_argument(TonemapOptions& options, std::string_view name,
@@ -64,13 +75,11 @@ void set_tonemap_argument(TonemapOptions& options, std::string_view name,
         options.statistics = parse_choice<Statistics>(
             name, value,
             {{"picture", Statistics::from_picture}, {"defaults", Statistics::defaults}});
-    } else if (name.substr(0, kParameter.size()) == kParameter && name.size() > kParameter.size()) {
+    } else if (name.starts_with(kParameter) && name.size() > kParameter.size()) {
         options.settings[std::string(name.substr(kParameter.size()))] = value;
     } else {
-        std::vector<std::string> expected = tonemap_argument_names();
-        expected.emplace_back("set.NAME for a parameter of the operator");
-        throw Error("argument is " + std::string(name) + "; expected " + join_choices(expected) +
-                    did_you_mean(name, tonemap_argument_names()));
+        throw Error("argument is " + std::string(name) + "; expected " +
+                    tonemap_argument_choices() + did_you_mean(name, tonemap_argument_names()));
     }
 }
 

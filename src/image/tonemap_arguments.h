@@ -12,6 +12,11 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// Names of set_tonemap_argument(), without `set.NAME`.
 [[nodiscard]] TONEWRIGHT_API const std::vector<std::string>& tonemap_argument_names();
 
+/// Whether set_tonemap_argument() takes the name.
+[[nodiscard]] TONEWRIGHT_API bool is_tonemap_argument(std::string_view name);
+/// All names, for a message: `op, look, ... or set.NAME for a parameter of the operator`.
+[[nodiscard]] TONEWRIGHT_API std::string tonemap_argument_choices();
+
 /// Sets one option of tonemap() by its name, as file names and scripts have them: `op`, `look`,
 /// `exposure`, `input`, `display`, `reference_white`, `unpremult` (auto, yes, no), `statistics`
 /// (picture, defaults), and `set.NAME`, a parameter of the operator.

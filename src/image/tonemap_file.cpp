@@ -5,7 +5,6 @@
 // at a time, so that the memory does not grow with the picture.
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imageio.h>
-#include <fmt/format.h>
 #include <sys/stat.h>
 
 #include <algorithm>
@@ -17,12 +16,15 @@
 #include <thread>
 #include <vector>
 
+#include "base/format_number.h"
+#include "base/strings.h"
 #include "image/batch_queue.h"
 #include "image/picture_file.h"
 #include "image/scene_meter.h"
 #include "image/source_picture.h"
 #include "image/tonemap_file.h"
 #include "tonewright/image_io.h"
+#include "tonewright/registry.h"
 #include "tonewright/tonemap.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -32,7 +34,23 @@ using OIIO::ImageBuf;
 using OIIO::ImageSpec;
 
 void run(const Tonemapper& tonemapper, ImageBuf& to, const ImageBuf& from, int nthreads) {
-    if (!tonemapper(to, from, {}, nthreads)) throw Error(to.geterror());
+    if (!tonemapper(to, from, {}, nthreads)) throw Error(one_line(to.geterror()));
+}
+
+/// How the result was made. No date and no machine: the same run makes the same bytes.
+void say_how(ImageSpec& picture, const TonemapOptions& options) {
+    const ResolvedOperator op =
+        resolve_picture_operator(options.op, options.settings, options.look);
+    const std::string exposure = shortest(options.exposure_stops);
+    std::string display = options.display;
+    if (options.reference_white != kReferenceWhite)
+        display += fmt::format(", reference white {}", shortest(options.reference_white));
+    picture.attribute("Software",
+                      fmt::format("Tonewright {}: {}, exposure {}, display {}", TONEWRIGHT_VERSION,
+                                  operator_text(op), exposure, display));
+    picture.attribute("tonewright:operator", operator_text(op));
+    picture.attribute("tonewright:exposure", exposure);
+    picture.attribute("tonewright:display", display);
 }
 
 /// A picture without a date gets its file's: writers of EXR, TIFF and DPX would put in the time,
@@ -80,7 +98,8 @@ struct Batch {
 class FilePass {
   public:
     FilePass(const Tonemapper& tonemapper, PictureReader& reader, PictureWriter& writer,
-             int nthreads, std::size_t batch_bytes, const std::string& in)
+             const WriteOptions& options, int nthreads, std::size_t batch_bytes,
+             const std::string& in)
         : tonemapper_(tonemapper),
           reader_(reader),
           writer_(writer),
@@ -88,11 +107,12 @@ class FilePass {
           source_(with_color_metadata_alone(reader.spec())) {
         ImageSpec result = result_spec(tonemapper, reader.spec());
         give_date(result, in);
+        if (options.says_how) say_how(result, tonemapper.options());
         writer.open(result);
         result_ = with_color_metadata_alone(result);
         result_.set_format(writer.row_type());
         step_ = rows_of_batch(source_.scanline_bytes() + result_.scanline_bytes(),
-                              reader.row_step(), batch_bytes);
+                              reader.row_step(), source_.height, batch_bytes);
     }
 
     void run_all() {
@@ -202,18 +222,21 @@ class FilePass {
 }  // namespace
 
 void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
-                        const OIIO::TypeDesc& type, int nthreads, std::size_t batch_bytes,
+                        const WriteOptions& write, int nthreads, std::size_t batch_bytes,
                         int subimage) {
     nthreads = thread_count(nthreads);
-    PictureWriter writer(out, type, nthreads);  // a wrong name is told before a large file is read
+    PictureWriter writer(out, write, nthreads);  // a wrong name is told before a large file is read
     PictureReader reader(in, nthreads, subimage);
     check_pixel_type("source", reader.spec().format);
+    (void)channel_layout(reader.spec());
+    (void)source_color(reader.spec(), tonemapper.options().input);
     if (reader.spec().depth > 1 || tonemapper.needs_whole_picture()) {
         const ImageBuf source = reader.read_all();
         ImageBuf result;
         run(tonemapper, result, source, nthreads);
         give_date(result.specmod(), in);
-        write_image_atomically(result, out, type);
+        if (write.says_how) say_how(result.specmod(), tonemapper.options());
+        write_image_atomically(result, out, write);
         return;
     }
     std::optional<Tonemapper> own;
@@ -226,20 +249,21 @@ void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, con
             measure_file(in, options, SceneMeter::Figures::statistics, nthreads, batch_bytes)
                 .statistics());
     }
-    FilePass(own ? *own : tonemapper, reader, writer, nthreads, batch_bytes, in).run_all();
+    FilePass(own ? *own : tonemapper, reader, writer, write, nthreads, batch_bytes, in).run_all();
+}
+
+void tonemap_file(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
+                  const WriteOptions& options, int nthreads, int subimage) {
+    about_picture(in, [&] {
+        tonemap_in_batches(tonemapper, in, out, options, nthreads, kBatchBytes, subimage);
+    });
 }
 
 void tonemap_file(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
                   const OIIO::TypeDesc& type, int nthreads, int subimage) {
-    try {
-        tonemap_in_batches(tonemapper, in, out, type, nthreads, kBatchBytes, subimage);
-    } catch (const FileError&) {
-        throw;
-    } catch (const Error& e) {
-        throw Error(fmt::format("{}: {}", in, e.what()));
-    } catch (const std::bad_alloc&) {
-        throw Error(in + ": not enough memory");
-    }
+    WriteOptions options;
+    options.type = type;
+    tonemap_file(tonemapper, in, out, options, nthreads, subimage);
 }
 
 TONEWRIGHT_NAMESPACE_END

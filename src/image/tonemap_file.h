@@ -20,7 +20,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// tonemap_file(), with batches of about this size.
 /// @throws Error  without the picture's name
 TONEWRIGHT_API void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in,
-                                       const std::string& out, const OIIO::TypeDesc& type,
+                                       const std::string& out, const WriteOptions& write,
                                        int nthreads, std::size_t batch_bytes, int subimage = 0);
 
 TONEWRIGHT_NAMESPACE_END

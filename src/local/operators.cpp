@@ -12,8 +12,7 @@ void run_rows_in_turn(int count, const std::function<void(int begin, int end)>& 
 
 void run_local_operator(const ResolvedOperator& op, ScenePlanes& picture) {
     if (!op.op->is_local()) {
-        throw Error("operator is " + op.op->id +
-                    ", which looks at one pixel at a time; expected a local one");
+        throw Error("operator is " + op.op->id + "; expected a local operator");
     }
     const std::size_t count =
         static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);

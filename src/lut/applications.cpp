@@ -17,11 +17,14 @@ const std::vector<LutApplication>& all_lut_applications() {
          "davinci",
          "rec1886",
          {},
-         "trilinear, tetrahedral by choice",
-         "Project Settings > Color Management > Open LUT Folder, copy, Update Lists; in a node of "
-         "a "
-         "timeline in DaVinci WG/Intermediate: LUTs, the file",
-         ""},
+         "tetrahedral",
+         "Project Settings > Color Management: Open LUT Folder, copy, Update Lists; 3D Lookup "
+         "Table "
+         "Interpolation: Tetrahedral. In the timeline, two nodes: Color Space Transform with the "
+         "file's primaries as output color space, DaVinci Intermediate as output gamma, tone "
+         "mapping None, gamut mapping None; then LUTs, the file",
+         "",
+         true},
         {"nuke",
          "Nuke",
          LutFormat::cube,
@@ -29,8 +32,9 @@ const std::vector<LutApplication>& all_lut_applications() {
          "acescct",
          "srgb",
          {},
-         "trilinear",
-         "OCIOFileTransform or Vectorfield with the file, behind a conversion to ACEScct",
+         "tetrahedral",
+         "OCIOFileTransform with the file and interpolation tetrahedral, behind a conversion to "
+         "ACEScct",
          ""},
         {"ffmpeg",
          "ffmpeg",
@@ -40,8 +44,14 @@ const std::vector<LutApplication>& all_lut_applications() {
          "rec1886",
          {},
          "tetrahedral",
-         "ffmpeg -i hdr10.mkv -vf zscale=matrix=gbr,format=gbrp16le,"
-         "lut3d=FILE:interp=tetrahedral -pix_fmt gbrp16le out.mkv: PQ, Rec.2020, in RGB",
+         // The LUT changes the numbers, not what the frames say of themselves: setparams says it,
+         // zscale goes by that, and the last options write it into the file.
+         "ffmpeg -i hdr10.mkv -vf "
+         "zscale=matrix=gbr:range=full,format=gbrp16le,lut3d=FILE:interp=tetrahedral,"
+         "setparams=color_primaries=bt709:color_trc=bt709,zscale=matrix=bt709:range=limited,"
+         "sidedata=delete,format=yuv420p -color_primaries bt709 -color_trc bt709 -colorspace bt709 "
+         "-c:a copy out.mkv: HDR10 (PQ, Rec.2020) in, BT.709 out, 4:2:0 of 8 bits; yuv420p10le for "
+         "10",
          "ffmpeg 5.1"},
         {"premiere",
          "Premiere Pro",
@@ -198,12 +208,23 @@ const std::vector<LutApplication>& all_lut_applications() {
 
 const LutApplication& find_lut_application(std::string_view id) {
     std::vector<std::string> ids;
+    std::vector<NamedChoice> choices;
     for (const LutApplication& host : all_lut_applications()) {
-        if (host.id == id) return host;
+        if (is_same_name(host.id, id) || is_same_name(host.title, id)) return host;
         ids.push_back(host.id);
+        choices.push_back({host.id, {host.title}});
     }
-    throw Error("bake: host is " + std::string(id) + "; expected " + join_choices(ids) +
-                did_you_mean(id, ids));
+    throw Error("bake: application is " + std::string(id) + "; expected " + join_choices(ids) +
+                did_you_mean(id, choices));
+}
+
+std::string lut_input_of(const LutApplication& application, const Operator& op) {
+    if (application.takes_any_primaries) {
+        for (const InputSpace& space : all_input_spaces()) {
+            if (space.primaries == op.working) return space.id;
+        }
+    }
+    return parse_input_encoding(application.encoding).default_input;
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "base/format_number.h"
+#include "lut/ringing.h"
 #include "measure/error_metric.h"
 #include "tonewright/lut.h"
 
@@ -11,7 +12,24 @@ namespace {
 BakedLut measured(Lut lut, const LutRequest& request, bool trilinear, bool is_fitted) {
     quantize(lut, request);
     const LutError error = measure_lut(lut, request, trilinear);
-    return {std::move(lut), error, {}, is_fitted};
+    LutRinging ringing = measure_ringing(lut, request, trilinear);
+    return {std::move(lut), error, {}, is_fitted, std::move(ringing)};
+}
+
+/// With nodes that follow the operator along rising exposure, where such can be had.
+BakedLut smooth(Lut lut, const LutRequest& request, bool trilinear, bool is_fitted) {
+    BakedLut baked = measured(lut, request, trilinear, is_fitted);
+    // Where the operator clips colors of the domain, no nodes help: mends that worked began below.
+    constexpr double kHopeless = 0.3;
+    const LutRinging& ringing = baked.ringing;
+    if ((!rings(ringing) && ringing.p999 <= kFittedRayError) || ringing.p999 > kHopeless)
+        return baked;
+    fit_rays(lut, request, trilinear);
+    BakedLut calm = measured(std::move(lut), request, trilinear, is_fitted);
+    const bool is_better = rings(calm.ringing) == rings(baked.ringing)
+                               ? calm.ringing.p999 < baked.ringing.p999
+                               : rings(baked.ringing);
+    return is_better ? calm : baked;
 }
 
 /// With what the other interpolation makes of it.
@@ -24,9 +42,16 @@ BakedLut bake_size(const LutRequest& request, LutNodes nodes, bool trilinear, bo
     const Lut sampled = sample_lut(request);
     if (sampled.dimension == 1 || nodes == LutNodes::sampled)
         return measured(sampled, request, trilinear, false);
-    BakedLut fitted = measured(fit_lut(request, sampled), request, trilinear, true);
-    if (nodes == LutNodes::fitted) return fitted;
-    BakedLut plain = measured(sampled, request, trilinear, false);
+    if (nodes == LutNodes::fitted)
+        return measured(fit_lut(request, sampled), request, trilinear, true);
+    BakedLut fitted = smooth(fit_lut(request, sampled), request, trilinear, true);
+    BakedLut plain = smooth(sampled, request, trilinear, false);
+    for (bool (*is_right)(const LutRinging&) :
+         {follows_operator, +[](const LutRinging& ringing) { return !rings(ringing); }}) {
+        const bool fitted_is_right = is_right(fitted.ringing);
+        if (by_max || fitted_is_right == is_right(plain.ringing)) continue;
+        return fitted_is_right ? fitted : plain;
+    }
     const bool is_nearer =
         by_max ? fitted.error.max < plain.error.max
                : fitted.error.mean <= plain.error.mean && fitted.error.p999 <= plain.error.p999;
@@ -49,7 +74,7 @@ BakedLut bake_lut(const LutRequest& request, LutNodes nodes, bool trilinear,
         return complete(bake_size(request, nodes, trilinear, false), request, trilinear);
     if (request.size) {
         throw Error("bake: size is " + std::to_string(*request.size) +
-                    "; expected none with --max-error, which chooses it");
+                    "; expected no size with --max-error");
     }
     if (!(*max_error > 0))
         throw Error("bake: max error is " + shortest(*max_error) + "; expected above 0");

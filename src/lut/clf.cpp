@@ -113,6 +113,12 @@ std::string write_clf(const ClfTable& table, const std::string& name,
     for (const std::string& line : description) {
         text += "    <Description>" + xml_escape(line) + "</Description>\n";
     }
+    for (const auto& [name_of_element, value] :
+         {std::pair("InputDescriptor", &table.input_descriptor),
+          std::pair("OutputDescriptor", &table.output_descriptor)}) {
+        if (!value->empty())
+            text += fmt::format("    <{0}>{1}</{0}>\n", name_of_element, xml_escape(*value));
+    }
     if (table.dimension == 1) {
         text += fmt::format(
             "    <LUT1D inBitDepth=\"32f\" outBitDepth=\"{}\"{}{} interpolation=\"linear\">\n"

@@ -46,6 +46,9 @@ struct ClfTable {
     Numbers numbers = Numbers::exact;
     double unit = 1;             // of multiples
     double least_precision = 0;  // of compact numbers: none needs to be nearer to its value
+    /// What goes in and what comes out, for InputDescriptor and OutputDescriptor. Empty: none.
+    std::string input_descriptor = {};
+    std::string output_descriptor = {};
 };
 
 /// ".clf" or ".ctf". OCIO knows a format by it.

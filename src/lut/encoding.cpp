@@ -49,8 +49,9 @@ struct Range {
 
 /// "name", or "name:LO:HI".
 Range parse_range(std::string_view text, std::string_view name, Range fallback) {
-    if (text == name) return fallback;
-    std::string_view rest = text.substr(name.size() + 1);
+    const std::size_t begin = text.find(':');
+    if (begin == std::string_view::npos) return fallback;
+    const std::string_view rest = text.substr(begin + 1);
     const std::size_t colon = rest.find(':');
     Range range{};
     if (colon == std::string_view::npos || !parse_number(rest.substr(0, colon), range.lo) ||
@@ -65,6 +66,7 @@ Range parse_range(std::string_view text, std::string_view name, Range fallback) 
 
 std::vector<std::string> input_encoding_names() {
     std::vector<std::string> names;
+    names.reserve(std::size(kFixedEncodings) + 3);
     for (const FixedEncoding& fixed : kFixedEncodings)
         names.emplace_back(fixed.id);
     for (const char* name : {"pq", "log2", "linear"})
@@ -74,10 +76,10 @@ std::vector<std::string> input_encoding_names() {
 
 InputEncoding parse_input_encoding(std::string_view text) {
     const Expr x = Expr::input();
-    const std::string_view name = text.substr(0, text.find(':'));
+    const std::string name = folded_name(text.substr(0, text.find(':')));
     InputEncoding e;
     for (const FixedEncoding& fixed : kFixedEncodings) {
-        if (text != fixed.id) continue;
+        if (!is_same_name(text, fixed.id)) continue;
         e.id = fixed.id;
         e.title = fixed.title;
         e.encode = fixed.encode(x);
@@ -89,10 +91,11 @@ InputEncoding parse_input_encoding(std::string_view text) {
     }
     if (name == "pq") {
         double white = kReferenceWhite;
-        if (text != name &&
-            (!parse_number(text.substr(name.size() + 1), white) || !(white > 0) || white > 10000)) {
+        const std::size_t colon = text.find(':');
+        if (colon != std::string_view::npos &&
+            (!parse_number(text.substr(colon + 1), white) || !(white > 0) || white > 10000)) {
             throw Error("bake: input encoding is " + std::string(text) +
-                        "; expected pq:WHITE with what scene-linear 1 is, in (0, 10000] cd/m2");
+                        "; expected pq:WHITE, the cd/m2 of scene-linear 1.0 in (0, 10000]");
         }
         e.id = fmt::format("pq:{}", shortest(white));
         e.title = fmt::format("PQ (SMPTE ST 2084), scene-linear 1 at {} cd/m2", shortest(white));
@@ -131,9 +134,14 @@ InputEncoding parse_input_encoding(std::string_view text) {
         e.is_linear = true;
         return e;
     }
-    const std::vector<std::string> names = input_encoding_names();
+    std::vector<NamedChoice> choices;
+    choices.reserve(std::size(kFixedEncodings) + 3);
+    for (const FixedEncoding& fixed : kFixedEncodings)
+        choices.push_back({fixed.id, {fixed.title}});
+    for (const char* other : {"pq", "log2", "linear"})
+        choices.push_back({other});
     throw Error("bake: input encoding is " + std::string(text) + "; expected " +
-                join_choices(names) + did_you_mean(name, names));
+                join_choices(input_encoding_names()) + did_you_mean(name, choices));
 }
 
 std::vector<std::string> lut_format_names() {
@@ -156,12 +164,7 @@ bool has_shaper(LutFormat format) {
 }
 
 LutFormat parse_lut_format(std::string_view text) {
-    const std::vector<std::string> names = lut_format_names();
-    for (std::size_t i = 0; i < names.size(); ++i) {
-        if (names[i] == text) return static_cast<LutFormat>(i);
-    }
-    throw Error("bake: format is " + std::string(text) + "; expected " + join_choices(names) +
-                did_you_mean(text, names));
+    return static_cast<LutFormat>(find_choice("bake: format", text, lut_format_names()));
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -387,7 +387,7 @@ CubeAxis make_log_axis(double top, int edge, double share_of_lights) {
             exp2(min(place, below) + max(place - below, 0) * longer + lowest) - kToe, top};
 }
 
-CubeAxis choose_log_axis(const CubeProblem& problem, double top) {
+double choose_share_of_lights(const CubeProblem& problem, double top) {
     // A smaller cube tells.
     CubeProblem smaller = problem;
     smaller.edge = std::min(problem.edge, 33);
@@ -399,7 +399,11 @@ CubeAxis choose_log_axis(const CubeProblem& problem, double top) {
         if (error < least) best = share;
         least = std::min(error, least);
     }
-    return make_log_axis(top, problem.edge, best);
+    return best;
+}
+
+CubeAxis choose_log_axis(const CubeProblem& problem, double top) {
+    return make_log_axis(top, problem.edge, choose_share_of_lights(problem, top));
 }
 
 std::vector<double> sample_cube(const CubeProblem& problem) {

@@ -43,6 +43,9 @@ struct CubeProblem {
     double hi = kInfinity;
 };
 
+/// The share of make_log_axis() that suits the pipeline best, @see choose_log_axis.
+[[nodiscard]] TONEWRIGHT_API double choose_share_of_lights(const CubeProblem& problem, double top);
+
 /// The logarithmic axis that suits the pipeline best, by the errors of sampled cubes of 33 nodes a
 /// side: with longer steps for the lights where the operator has little left to do above 64.
 /// @param problem  its axis is not read.

@@ -20,9 +20,9 @@ double half_value(unsigned bits) noexcept {
     if (exponent == 31) {
         magnitude = mantissa ? std::numeric_limits<double>::quiet_NaN() : kInfinity;
     } else if (exponent == 0) {
-        magnitude = std::ldexp(mantissa, -24);
+        magnitude = mantissa * 0x1p-24;
     } else {
-        magnitude = std::ldexp(mantissa + 1024, static_cast<int>(exponent) - 25);
+        magnitude = (mantissa + 1024) * (static_cast<double>(1U << exponent) * 0x1p-25);
     }
     return bits & kSignBit ? -magnitude : magnitude;
 }
@@ -30,30 +30,29 @@ double half_value(unsigned bits) noexcept {
 std::vector<signed char> unused_entries(const std::vector<float>& table, double lo, double hi) {
     std::vector<signed char> slack(kHalfCount);
     if (lo <= -kHalfMax && hi >= kHalfMax) return slack;
-    const auto is_used = [&](unsigned bits) {
-        const double h = half_value(bits);
-        return h >= lo && h <= hi;
-    };
+    std::vector<char> is_used(kHalfCount);
     float at_lo = 0;
     float at_hi = 0;
     double lowest = kInfinity;
     double highest = -kInfinity;
     for (unsigned bits = 0; bits < kHalfCount; ++bits) {
-        if (!is_used(bits)) continue;
-        if (half_value(bits) < lowest) {
-            lowest = half_value(bits);
+        const double h = half_value(bits);
+        is_used[bits] = h >= lo && h <= hi ? 1 : 0;
+        if (!is_used[bits]) continue;
+        if (h < lowest) {
+            lowest = h;
             at_lo = table[bits];
         }
-        if (half_value(bits) > highest) {
-            highest = half_value(bits);
+        if (h > highest) {
+            highest = h;
             at_hi = table[bits];
         }
     }
     const signed char above = at_lo <= at_hi ? 1 : -1;
     for (unsigned bits = 0; bits < kHalfCount; ++bits) {
         const bool is_next =
-            (bits > 0 && is_used(bits - 1)) || (bits + 1 < kHalfCount && is_used(bits + 1));
-        if (is_used(bits) || is_next || bits == kSignBit || bits == 0) continue;
+            (bits > 0 && is_used[bits - 1]) || (bits + 1 < kHalfCount && is_used[bits + 1]);
+        if (is_used[bits] || is_next || bits == kSignBit || bits == 0) continue;
         slack[bits] = static_cast<signed char>(half_value(bits) < lo ? -above : above);
     }
     return slack;

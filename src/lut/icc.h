@@ -6,9 +6,28 @@
 #include <string_view>
 #include <vector>
 
-#include "tonewright/version.h"
+#include "tonewright/color.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
+
+/// How the code values of a display become light.
+struct IccCurve {
+    /// A power; or the curve of IEC 61966-2-1, whose power it is, too.
+    double exponent = 1;
+    bool is_srgb = false;
+};
+
+/// True when this build has Little CMS. Without it the functions of this header throw Error.
+[[nodiscard]] TONEWRIGHT_API bool has_icc();
+
+/// An ICC display profile of version 4 (ICC.1:2010-12): primaries and white, adapted to D50 with
+/// Bradford's matrix, and one parametric curve. The same bytes on every run.
+/// @param is_gray      for pictures of one channel: the curve alone
+/// @param description  one line that programs show
+[[nodiscard]] TONEWRIGHT_API std::string write_display_icc(const Primaries& primaries,
+                                                           const IccCurve& curve,
+                                                           const std::string& description,
+                                                           bool is_gray);
 
 /// A cube as an ICC device link, RGB to RGB, 16 bits: the contents of the file, the same on every
 /// run.

@@ -2,10 +2,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
+#include <span>
 
 #include "base/random.h"
 #include "lut/half_domain.h"
+#include "lut/node_weights.h"
 #include "lut/shaper.h"
+#include "lut/table_input.h"
 #include "measure/error_metric.h"
 #include "measure/sample_set.h"
 #include "tonewright/engine.h"
@@ -48,9 +52,10 @@ double interpolate_1d(const Lut& lut, double x, std::size_t channel) {
 }
 
 /// What the table before a cube makes of light: straight lines between equal steps.
-void run_shaper(const InputEncoding& encoding, const std::vector<float>& light,
+void run_shaper(const InputEncoding& encoding, std::span<const float> light,
                 std::vector<double>& code) {
     std::vector<float> steps;
+    steps.reserve(kShaperSteps);
     const double lo = encoding.scene_lo;
     const double span = encoding.scene_hi - lo;
     for (int i = 0; i < kShaperSteps; ++i)
@@ -60,6 +65,114 @@ void run_shaper(const InputEncoding& encoding, const std::vector<float>& light,
     for (std::size_t i = 0; i < light.size(); ++i)
         code[i] = interpolate_1d(shaper, (static_cast<double>(light[i]) - lo) / span, 0);
 }
+
+/// A table beside what it stands for.
+class Comparison {
+  public:
+    Comparison(const Lut& lut, const LutRequest& request, bool trilinear)
+        : lut_(lut), request_(request), trilinear_(trilinear), engine_(build_view(request.view)) {}
+
+    /// Where the encoding holds the light.
+    [[nodiscard]] bool is_inside(const float* light) const {
+        if (lut_.is_half_domain) return true;
+        return std::all_of(light, light + 3, [&](float x) {
+            return static_cast<double>(x) >= request_.encoding.scene_lo &&
+                   static_cast<double>(x) <= request_.encoding.scene_hi;
+        });
+    }
+
+    /// Of each color the worst channel's.
+    std::vector<double> errors(const std::vector<float>& light, std::vector<double>& shown,
+                               std::vector<double>& wanted) const {
+        const std::vector<double> code = table_input(lut_, request_, light);
+        wanted.resize(light.size());
+        shown.resize(light.size());
+        engine_.run_rgb(light.data(), wanted.data(), light.size() / 3);
+        std::vector<double> errors;
+        for (std::size_t i = 0; i < light.size(); i += 3) {
+            const Vector3 out = interpolate(lut_, {code[i], code[i + 1], code[i + 2]}, trilinear_);
+            double worst = 0;
+            for (std::size_t c = 0; c < 3; ++c) {
+                shown[i + c] = out[c];
+                const double difference = std::fabs(out[c] - wanted[i + c]);
+                worst = std::max(worst, std::isnan(difference) ? kInfinity : difference);
+            }
+            errors.push_back(worst);
+        }
+        return errors;
+    }
+
+    /// The largest error of any color that goes in: a search uphill from the worst samples.
+    [[nodiscard]] double largest_error(const std::vector<float>& light,
+                                       const std::vector<double>& errors) const {
+        constexpr std::size_t kStarts = 400;
+        std::vector<std::size_t> order(errors.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        const std::size_t count = std::min(kStarts, order.size());
+        std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count),
+                          order.end(),
+                          [&](std::size_t a, std::size_t b) { return errors[a] > errors[b]; });
+        std::vector<float> starts;
+        std::vector<double> best;
+        for (std::size_t k = 0; k < count; ++k) {
+            starts.insert(starts.end(), &light[3 * order[k]], &light[3 * order[k]] + 3);
+            best.push_back(errors[order[k]]);
+        }
+        std::vector<double> place = table_input(lut_, request_, starts);
+        climb(place, best);
+        return best.empty() ? 0 : *std::max_element(best.begin(), best.end());
+    }
+
+  private:
+    /// A pattern search, of all places at once: along the axes and the diagonals, by half a cell at
+    /// first.
+    void climb(std::vector<double>& place, std::vector<double>& best) const {
+        constexpr int kHalvings = 9;
+        constexpr int kStepsEach = 3;
+        std::vector<double> shown;
+        std::vector<double> wanted;
+        double step = 0.5 / (lut_.size - 1);
+        for (int halving = 0; halving < kHalvings; ++halving, step /= 2) {
+            for (int i = 0; i < kStepsEach; ++i) {
+                std::vector<double> tried;
+                for (std::size_t k = 0; k < best.size(); ++k) {
+                    for (int direction = 0; direction < kDirections; ++direction) {
+                        for (std::size_t c = 0; c < 3; ++c) {
+                            tried.push_back(std::clamp(
+                                place[3 * k + c] + step * direction_of(direction, c), 0.0, 1.0));
+                        }
+                    }
+                }
+                const std::vector<double> errors =
+                    this->errors(light_of(request_.encoding, tried), shown, wanted);
+                bool is_better = false;
+                for (std::size_t k = 0; k < errors.size(); ++k) {
+                    const std::size_t start = k / kDirections;
+                    if (errors[k] <= best[start]) continue;
+                    best[start] = errors[k];
+                    std::copy_n(&tried[3 * k], 3, &place[3 * start]);
+                    is_better = true;
+                }
+                if (!is_better) break;
+            }
+        }
+    }
+
+    static constexpr int kDirections = 14;
+    /// Six along the axes, then eight along the diagonals.
+    static double direction_of(int direction, std::size_t channel) {
+        if (direction < 6) {
+            if (static_cast<std::size_t>(direction / 2) != channel) return 0;
+            return direction % 2 ? 1 : -1;
+        }
+        return (static_cast<unsigned>(direction - 6) >> channel & 1U) ? 1 : -1;
+    }
+
+    const Lut& lut_;
+    const LutRequest& request_;
+    bool trilinear_;
+    ReferenceEngine engine_;
+};
 
 }  // namespace
 
@@ -73,49 +186,51 @@ Vector3 interpolate(const Lut& lut, const Vector3& rgb, bool trilinear) {
         }
         return out;
     }
-    const auto n = static_cast<std::size_t>(lut.size);
-    std::array<std::size_t, 3> corner{};
-    std::array<double, 3> f{};
-    for (std::size_t c = 0; c < 3; ++c) {
-        const double position =
-            (rgb[c] > 0 ? std::min(rgb[c], 1.0) : 0.0) * static_cast<double>(n - 1);
-        corner[c] = std::min(static_cast<std::size_t>(position), n - 2);
-        f[c] = position - static_cast<double>(corner[c]);
-    }
-    const auto add = [&](std::array<std::size_t, 3> step, double weight) {
-        const std::size_t node =
-            ((corner[2] + step[2]) * n + corner[1] + step[1]) * n + corner[0] + step[0];
-        for (std::size_t c = 0; c < 3; ++c) {
-            out[c] += weight * static_cast<double>(lut.values[3 * node + c]);
-        }
-    };
-    if (trilinear) {
-        for (std::size_t i = 0; i < 8; ++i) {
-            double weight = 1;
-            const std::array<std::size_t, 3> step = {i & 1, i >> 1 & 1, i >> 2 & 1};
-            for (std::size_t c = 0; c < 3; ++c)
-                weight *= step[c] ? f[c] : 1 - f[c];
-            add(step, weight);
-        }
-        return out;
-    }
-    // Tetrahedral: from the near corner to the far one along the axes, largest fraction first.
-    std::array<std::size_t, 3> order = {0, 1, 2};
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return f[a] > f[b]; });
-    std::array<std::size_t, 3> step{};
-    add(step, 1 - f[order[0]]);
-    for (std::size_t k = 0; k < 3; ++k) {
-        step[order[k]] = 1;
-        add(step, f[order[k]] - (k < 2 ? f[order[k + 1]] : 0));
+    const NodeWeights at = node_weights(rgb, static_cast<std::size_t>(lut.size), trilinear);
+    for (std::size_t k = 0; k < at.count; ++k) {
+        for (std::size_t c = 0; c < 3; ++c)
+            out[c] += at.weight[k] * static_cast<double>(lut.values[3 * at.node[k] + c]);
     }
     return out;
 }
 
+std::vector<double> table_input(const Lut& lut, const LutRequest& request,
+                                std::span<const float> light) {
+    std::vector<double> code(light.begin(), light.end());
+    if (lut.is_half_domain) return code;
+    if (has_shaper(request.format)) {
+        run_shaper(request.encoding, light, code);
+    } else {
+        ReferenceEngine({curve_stage(request.encoding.encode)})
+            .run_rgb(light.data(), code.data(), light.size() / 3);
+    }
+    return code;
+}
+
+std::vector<float> light_of(const InputEncoding& encoding, std::span<const double> code) {
+    const std::size_t count = code.size() / 3;
+    std::array<std::vector<double>, 3> plane;
+    for (std::size_t c = 0; c < 3; ++c) {
+        for (std::size_t i = 0; i < count; ++i)
+            plane[c].push_back(code[3 * i + c]);
+    }
+    const std::array<double*, 3> p = {plane[0].data(), plane[1].data(), plane[2].data()};
+    ReferenceEngine({curve_stage(encoding.decode)}).run({p[0], p[1], p[2]}, p, count);
+    std::vector<float> light;
+    for (std::size_t i = 0; i < count; ++i) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            light.push_back(
+                static_cast<float>(std::clamp(plane[c][i], encoding.scene_lo, encoding.scene_hi)));
+        }
+    }
+    return light;
+}
+
 LutError measure_lut(const Lut& lut, const LutRequest& request, bool trilinear) {
+    const Comparison comparison(lut, request, trilinear);
     const InputSpace& space = find_input_space(request.view.input);
     SampleSet samples = make_sample_set(space, {17, 50000});
-    // And table inputs over the whole cube: the corners that no scene colour of the set reaches.
+    // And table inputs over the whole cube: the corners that no scene color of the set reaches.
     constexpr std::size_t kRandomCount = 50000;
     SampleRandom random(7);
     std::array<std::vector<double>, 3> inputs;
@@ -129,49 +244,18 @@ LutError measure_lut(const Lut& lut, const LutRequest& request, bool trilinear) 
     for (std::size_t i = 0; i < kRandomCount; ++i) {
         samples.add(inputs[0][i], inputs[1][i], inputs[2][i], SampleKind::random);
     }
-    // Table input as a client has it: float, of the float colour.
-    std::vector<double> code(samples.rgb.size());
-    {
-        const ReferenceEngine encode({curve_stage(request.encoding.encode)});
-        if (lut.is_half_domain) {
-            std::copy(samples.rgb.begin(), samples.rgb.end(), code.begin());
-        } else if (has_shaper(request.format)) {
-            run_shaper(request.encoding, samples.rgb, code);
-        } else {
-            encode.run_rgb(samples.rgb.data(), code.data(), samples.size());
-        }
+    std::vector<float> light;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const float* v = &samples.rgb[3 * i];
+        if (samples.kind[i] != SampleKind::special && comparison.is_inside(v))
+            light.insert(light.end(), v, v + 3);
     }
-    const ReferenceEngine engine(build_view(request.view));
-    std::vector<double> truth(samples.rgb.size());
-    engine.run_rgb(samples.rgb.data(), truth.data(), samples.size());
-
-    std::vector<double> errors;
     std::vector<double> shown;
     std::vector<double> wanted;
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        if (samples.kind[i] == SampleKind::special) continue;
-        const float* v = &samples.rgb[3 * i];
-        bool inside = true;
-        for (std::size_t c = 0; c < 3; ++c) {
-            const auto x = static_cast<double>(v[c]);
-            inside = inside && (lut.is_half_domain ||
-                                (x >= request.encoding.scene_lo && x <= request.encoding.scene_hi));
-        }
-        if (!inside) continue;
-        const Vector3 out =
-            interpolate(lut, {code[3 * i], code[3 * i + 1], code[3 * i + 2]}, trilinear);
-        double worst = 0;
-        for (std::size_t c = 0; c < 3; ++c) {
-            const double difference = std::fabs(out[c] - truth[3 * i + c]);
-            worst = std::max(worst, std::isnan(difference) ? kInfinity : difference);
-            shown.push_back(out[c]);
-            wanted.push_back(truth[3 * i + c]);
-        }
-        errors.push_back(worst);
-    }
+    const std::vector<double> errors = comparison.errors(light, shown, wanted);
     const ErrorStats stats = summarise(errors);
     LutError result;
-    result.max = stats.max;
+    result.max = lut.dimension == 3 ? comparison.largest_error(light, errors) : stats.max;
     result.p999 = stats.p999;
     result.mean = stats.mean;
     result.interpolation = lut.dimension == 1 ? "linear" : trilinear ? "trilinear" : "tetrahedral";

@@ -63,7 +63,7 @@ class Text {
         line_ = rest_.substr(0, end);
         rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
         if (line_.find('\0') != std::string_view::npos)
-            fail("holds bytes that are no text; expected a text file");
+            fail("holds bytes that are not text; expected a text file");
         words_ = line_;
         return true;
     }
@@ -207,7 +207,7 @@ CubeText read_cube(Text& text) {
         const std::string key = lowercase(first);
         if (rows.found() > 0) text.refuse("three numbers");
         if (key == "title") continue;
-        if (has(key)) text.fail(std::string(first) + " stands here twice; expected once");
+        if (has(key)) text.fail(std::string(first) + " appears twice; expected once");
         if (key == "lut_1d_size") {
             result.table.size = text.size(first, text.word(), 2, kLargestTable);
             rows.expect(static_cast<std::size_t>(result.table.size));
@@ -498,8 +498,7 @@ void check_lut(Text& text) {
     const bool is_cube = type != "c";
     if (is_cube && length[0] > kLargestCube)
         text.fail(fmt::format("Length is {}; expected [2, {}]", length[0], kLargestCube));
-    if ((type == "3d+1d") != (length.size() == 2))
-        text.fail("Length has not the sizes that Type needs");
+    if ((type == "3d+1d") != (length.size() == 2)) text.fail("Length lacks sizes that Type needs");
     // Blocks: "Pre {", "3D {" or "{", "RGB {"; numbers; "}".
     std::string block;
     std::size_t found = 0;
@@ -571,7 +570,7 @@ class XmlText {
     void check() {
         if (const std::size_t nul = text_.find('\0'); nul != std::string_view::npos) {
             advance(nul);
-            fail("holds bytes that are no text; expected a text file");
+            fail("holds bytes that are not text; expected a text file");
         }
         const std::size_t first = text_.find_first_not_of(" \t\r\n");
         advance(first);
@@ -623,7 +622,7 @@ class XmlText {
     void skip_past(std::string_view what) {
         const std::size_t end = text_.find(what, at_);
         if (end == std::string_view::npos)
-            fail(fmt::format("opens what never closes; expected {}", what));
+            fail(fmt::format("opens an element that never closes; expected {}", what));
         advance(end + what.size());
     }
     /// Where the > of the tag stands: none of those in quotation marks.
@@ -670,14 +669,14 @@ class XmlText {
         if (tag.starts_with('/')) {
             tag.remove_prefix(1);
             if (open_.empty() || name_of(tag) != open_.back().name)
-                fail(fmt::format("</{}> closes what is not open", printable(tag)));
+                fail(fmt::format("</{}> closes an element that is not open", printable(tag)));
             open_.pop_back();
             advance(end + 1);
             return;
         }
         const std::string name = name_of(tag);
         // OpenColorIO would read any file that stands there.
-        if (name == "reference") fail("Reference is not read; expected the transform itself");
+        if (name == "reference") fail("Reference is not supported; expected the transform itself");
         const Element parent = open_.empty() ? Element() : open_.back();
         const bool is_closed = tag.ends_with('/');
         if (!is_closed) {
@@ -695,12 +694,35 @@ class XmlText {
         }
         advance(end + 1);
         if (name == "array") check_array(count, parent.is_half_domain, is_closed);
+        if (!is_closed && holds_numbers(name)) check_numbers(tag.substr(0, name.size()));
         if (name == "indexmap") {
             const std::string_view body =
                 is_closed ? "" : text_.substr(at_, text_.find('<', at_) - at_);
             const auto found = static_cast<std::size_t>(std::count(body.begin(), body.end(), '@'));
             if (found != count)
                 fail(fmt::format("IndexMap has {} entries; expected {}", found, count));
+        }
+    }
+
+    /// Elements of color corrections and ranges. OpenColorIO makes floats of them.
+    static bool holds_numbers(std::string_view name) {
+        static constexpr std::array<std::string_view, 8> kNames = {
+            "slope",      "offset",     "power",       "saturation",
+            "mininvalue", "maxinvalue", "minoutvalue", "maxoutvalue"};
+        return std::find(kNames.begin(), kNames.end(), name) != kNames.end();
+    }
+    /// Of the element that has just begun. What is no number is for OpenColorIO to refuse.
+    void check_numbers(std::string_view element) const {
+        std::string_view body = text_.substr(at_, text_.find('<', at_) - at_);
+        while (true) {
+            body.remove_prefix(std::min(body.find_first_not_of(kSpace), body.size()));
+            if (body.empty()) return;
+            const std::string_view word = body.substr(0, body.find_first_of(kSpace));
+            body.remove_prefix(word.size());
+            const std::optional<double> value = parse_number(word);
+            if (value && !is_float(*value))
+                fail(fmt::format("{} is {}; expected a finite number", printable(element),
+                                 printable(word)));
         }
     }
 
@@ -744,7 +766,7 @@ class XmlText {
                 refuse(dim, "a matrix's, such as 3 3");
         } else {
             fail(fmt::format(
-                "Array stands in {}; expected LUT1D, LUT3D, InverseLUT1D, InverseLUT3D or Matrix",
+                "Array is inside {}; expected LUT1D, LUT3D, InverseLUT1D, InverseLUT3D or Matrix",
                 parent.empty() ? "no element" : printable(parent)));
         }
         return static_cast<std::size_t>(sizes[0]) * static_cast<std::size_t>(sizes[1]);

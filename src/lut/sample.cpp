@@ -125,7 +125,7 @@ Lut sample_lut(const LutRequest& request) {
     check_bits(request, traits);
     if (request.decimals && request.format != LutFormat::cube) {
         throw Error("bake: decimals is " + std::to_string(*request.decimals) +
-                    "; expected none for " + traits.name + ", only cube has them");
+                    "; expected none for " + traits.name + "; only cube has decimals");
     }
     if (request.decimals && (*request.decimals < 3 || *request.decimals > 9)) {
         throw Error("bake: decimals is " + std::to_string(*request.decimals) + "; expected [3, 9]");
@@ -143,7 +143,7 @@ Lut sample_lut(const LutRequest& request) {
     if (!one && request.encoding.is_linear) {
         throw Error("bake: input encoding is " + request.encoding.id +
                     "; expected another for a 3D table, such as acescct or log2" +
-                    " (a cube of linear light clips at its end and bands in the shadows)");
+                    " (a 3D LUT of linear input clips at its end and bands in the shadows)");
     }
     const bool has_half_domain =
         request.format == LutFormat::clf || request.format == LutFormat::ctf;
@@ -197,7 +197,7 @@ Lut sample_lut(const LutRequest& request) {
 
 Lut fit_lut(const LutRequest& request, const Lut& sampled) {
     if (sampled.dimension != 3)
-        throw Error("bake: a 1D table has no nodes to fit; expected a cube");
+        throw Error("bake: a 1D table has no grid to fit; expected a 3D LUT");
     CubeProblem problem;
     problem.edge = sampled.size;
     problem.axis = {request.encoding.encode, request.encoding.decode, request.encoding.scene_hi};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,9 +17,12 @@ struct LutPresetSet {
     const LutApplication* host = nullptr;
     /// Applications that the same files suit.
     std::string also;
+    /// Those whose LUT follows them in saturated lights, @see follows_operator(). The others ring.
     std::vector<std::string> operators;
     /// Instead of the host's, where fewer are enough.
     std::optional<int> size;
+    /// By operator: the nodes a side that it takes not to ring, where the size above is too small.
+    std::map<std::string, int> larger_sizes = {};
 };
 [[nodiscard]] TONEWRIGHT_API const std::vector<LutPresetSet>& lut_preset_sets();
 
@@ -37,9 +41,16 @@ struct ShippedLut {
     bool is_fitted = false;
     LutError tetrahedral;
     LutError trilinear;
+    /// As its application interpolates.
+    LutRinging ringing;
     /// The file. Empty for a picture, which OpenImageIO writes.
     std::string contents;
 };
+
+/// What bake_shipped_luts() makes, in its order: all but the tables and what is measured of them.
+[[nodiscard]] TONEWRIGHT_API std::vector<ShippedLut> plan_shipped_luts(
+    const std::string& application = {});
+TONEWRIGHT_API void bake_shipped_lut(ShippedLut& planned);
 
 /// All of them, in the order of lut_preset_sets(). The same on every run, whatever the number of
 /// threads.

@@ -44,7 +44,8 @@ std::string hash_of(const Lut& lut) {
 
 /// What it is, what goes in, what comes out, how exact it is.
 std::vector<std::string> header_lines(const Lut& lut, const LutRequest& r, const LutError& e,
-                                      const std::optional<LutError>& other) {
+                                      const std::optional<LutError>& other,
+                                      const std::optional<LutRinging>& ringing) {
     const Operator& op = *r.view.op.op;
     std::vector<std::string> lines;
     lines.push_back("Tonewright: " + op.title + ", " + r.view.op.label +
@@ -87,6 +88,20 @@ std::vector<std::string> header_lines(const Lut& lut, const LutRequest& r, const
     }
     add_error_lines(lines, e);
     if (other) add_error_lines(lines, *other);
+    lines.emplace_back(
+        lut.dimension == 3
+            ? "The maximum is that of all colors of the input range. 99.9 % and mean are those of "
+              "the samples: grays, grids of Rec.709, Rec.2020 and AP1 at five exposures, random "
+              "colors"
+            : "All three are those of the samples: grays, grids of Rec.709, Rec.2020 and AP1 at "
+              "five exposures, random colors");
+    if (ringing) {
+        lines.push_back(fmt::format(
+            "{}, {} interpolation, along rising exposure of the test chart's lamps and hues: {}; "
+            "99.9 % of the errors up to {}",
+            rings(*ringing) ? "RINGS" : "Does not ring", e.interpolation, to_string(*ringing),
+            three_digits_up(ringing->p999)));
+    }
     lines.push_back(fmt::format("{}, size {}, numbers {}", lut.dimension == 3 ? "Cube" : "Table",
                                 lut.size, hash_of(lut)));
     return lines;
@@ -127,7 +142,7 @@ std::string write_cube(const Lut& lut, const LutRequest& r, const Lines& header)
     for (const float v : lut.values) {
         std::string number;
         append_value(number, lut, v);
-        text += number + " " + number + " " + number + "\n";
+        text += fmt::format("{0} {0} {0}\n", number);
     }
     return text;
 }
@@ -198,7 +213,7 @@ std::string write_csp(const Lut& lut, const LutRequest& r, const Lines& header) 
         to += i + 1 < kPoints ? ' ' : '\n';
     }
     for (int c = 0; c < 3; ++c)
-        text += std::to_string(kPoints) + "\n" + from + to;
+        text += fmt::format("{}\n{}{}", kPoints, from, to);
     text += fmt::format("\n{0} {0} {0}\n", lut.size);
     return text + triplets(lut);
 }
@@ -219,7 +234,7 @@ std::string write_resolve_cube(const Lut& lut, const LutRequest& r, const Lines&
         const double light = lo + (hi - lo) * i / (kShaperSteps - 1.0);
         std::string number;
         append_number(number, static_cast<float>(evaluate(r.encoding.encode, light)));
-        text += number + " " + number + " " + number + "\n";
+        text += fmt::format("{0} {0} {0}\n", number);
     }
     return text + triplets(lut);
 }
@@ -260,6 +275,14 @@ std::string write_raw(const Lut& lut) {
     return bytes;
 }
 
+/// What follows the word in the first line that begins with it.
+std::string described(const Lines& header, std::string_view word) {
+    for (const std::string& line : header) {
+        if (line.starts_with(word)) return line.substr(word.size());
+    }
+    return {};
+}
+
 std::string write_clf_file(const Lut& lut, const LutRequest& r, const Lines& header) {
     const std::vector<float> nodes = lut.dimension == 3 ? blue_fastest(lut) : lut.values;
     ClfTable table;
@@ -269,14 +292,17 @@ std::string write_clf_file(const Lut& lut, const LutRequest& r, const Lines& hea
     table.is_half_domain = lut.is_half_domain;
     table.values = nodes;
     table.is_ctf = r.format == LutFormat::ctf;
+    table.input_descriptor = described(header, "Input: ");
+    table.output_descriptor = described(header, "Output: ");
     return write_clf(table, title_of(r), header);
 }
 
 }  // namespace
 
 std::string write_lut(const Lut& lut, const LutRequest& request, const LutError& error,
-                      const std::optional<LutError>& other_error) {
-    const auto header = [&] { return header_lines(lut, request, error, other_error); };
+                      const std::optional<LutError>& other_error,
+                      const std::optional<LutRinging>& ringing) {
+    const auto header = [&] { return header_lines(lut, request, error, other_error, ringing); };
     switch (request.format) {
         case LutFormat::cube:
             return write_cube(lut, request, header());
@@ -306,6 +332,12 @@ std::string write_lut(const Lut& lut, const LutRequest& request, const LutError&
             break;
     }
     return {};
+}
+
+std::string write_lut(const BakedLut& baked, const LutRequest& request) {
+    std::optional<LutRinging> ringing;
+    if (baked.lut.dimension == 3) ringing = baked.ringing;
+    return write_lut(baked.lut, request, baked.error, baked.other_error, ringing);
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <OpenColorIO/OpenColorIO.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -180,7 +181,7 @@ void check_config_options(const ConfigOptions& options) {
         if (profile != "2.0" && profile != "2.1" && profile != "2.5")
             throw Error("config: profile is " + profile + "; expected 2.0, 2.1 or 2.5");
         if (!profiles.insert(profile).second)
-            throw Error("config: profile " + profile + " is there twice; expected it once");
+            throw Error("config: profile " + profile + " appears twice; expected once");
     }
     if (find_input_space(options.working).is_camera) {
         throw Error("config: working space is " + options.working +
@@ -188,6 +189,20 @@ void check_config_options(const ConfigOptions& options) {
     }
     if (profiles.empty()) throw Error("config: no profile; expected 2.0, 2.1 or 2.5");
     (void)make_config_model(options);
+}
+
+std::vector<std::string> config_warnings(const ConfigOptions& options) {
+    std::vector<std::string> views;
+    std::set<const Operator*> said;
+    for (const auto& view : make_config_model(options).views) {
+        const std::string constants = stand_ins(view.op);
+        if (constants.empty() || !said.insert(view.op.op).second) continue;
+        views.push_back(fmt::format("{} takes {}", view.name, constants));
+    }
+    if (views.empty()) return {};
+    return {
+        fmt::format("a config measures no picture: {} (--operator ID:PARAMETER=VALUE sets others)",
+                    fmt::join(views, "; "))};
 }
 
 std::vector<GeneratedFile> make_config(const ConfigOptions& options) {

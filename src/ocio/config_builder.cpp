@@ -50,6 +50,25 @@ bool has_code_below_black(const Display& display) {
     return !display.is_hdr && ReferenceEngine(display.encode)({-1, -1, -1})[0] != 0;
 }
 
+OCIO::TransformRcPtr log_to_linear(const ConfigModel::LogCurve& curve) {
+    const double log_slope[] = {curve.log_slope, curve.log_slope, curve.log_slope};
+    const double log_offset[] = {curve.log_offset, curve.log_offset, curve.log_offset};
+    const double linear_slope[] = {curve.linear_slope, curve.linear_slope, curve.linear_slope};
+    const double linear_offset[] = {curve.linear_offset, curve.linear_offset, curve.linear_offset};
+    const auto with_parameters = [&](const auto& log) -> OCIO::TransformRcPtr {
+        log->setBase(curve.base);
+        log->setLogSideSlopeValue(log_slope);
+        log->setLogSideOffsetValue(log_offset);
+        log->setLinSideSlopeValue(linear_slope);
+        log->setLinSideOffsetValue(linear_offset);
+        log->setDirection(OCIO::TRANSFORM_DIR_INVERSE);
+        return log;
+    };
+    if (!curve.linear_break) return with_parameters(OCIO::LogAffineTransform::Create());
+    const double at[] = {*curve.linear_break, *curve.linear_break, *curve.linear_break};
+    return with_parameters(OCIO::LogCameraTransform::Create(at));
+}
+
 OCIO::ColorSpaceRcPtr make_space(const ConfigModel::Space& space, LutFiles& luts) {
     using Kind = ConfigModel::SpaceKind;
     const bool is_display = space.kind == Kind::display || space.kind == Kind::display_reference;
@@ -92,6 +111,13 @@ OCIO::ColorSpaceRcPtr make_space(const ConfigModel::Space& space, LutFiles& luts
             OCIO::BuiltinTransformRcPtr builtin = OCIO::BuiltinTransform::Create();
             builtin->setStyle(space.style.c_str());
             cs->setTransform(builtin, OCIO::COLORSPACE_DIR_TO_REFERENCE);
+            break;
+        }
+        case Kind::log: {
+            OCIO::GroupTransformRcPtr group = OCIO::GroupTransform::Create();
+            group->appendTransform(log_to_linear(space.curve));
+            append(group, lower_to_ocio({MatrixStage{to_reference(*space.primaries)}}).ops);
+            cs->setTransform(group, OCIO::COLORSPACE_DIR_TO_REFERENCE);
             break;
         }
         case Kind::texture:
@@ -199,8 +225,7 @@ std::optional<LoweredOps> inverse_space(const ConfigModel::View& view, const Dis
 }
 
 /// @param back  display reference -> scene reference
-ErrorStats measure_round_trip(const View& view, const LoweredOps& back,
-                              OCIO::OptimizationFlags flags, const SampleSet& samples) {
+WayBackError measure_round_trip(const View& view, const LoweredOps& back, const RoundTrip& trip) {
     const Display& display = find_display(view.display);
     LoweredOps ops =
         lower_to_ocio(joined(display.decode, {MatrixStage{rgb_to_xyz_d65(display.primaries)}})).ops;
@@ -208,10 +233,14 @@ ErrorStats measure_round_trip(const View& view, const LoweredOps& back,
     append(
         ops,
         lower_to_ocio({MatrixStage{rgb_to_rgb(kAP0, find_input_space(view.input).primaries)}}).ops);
-    const OcioCpu cpu(make_processor(ops), flags);
-    return RoundTrip(view, samples)
-        .measure([&](const float* in, float* out, std::size_t n) { cpu.run_rgb(in, out, n); })
-        .errors;
+    const OCIO::ConstProcessorRcPtr processor = make_processor(ops);
+    const auto errors = [&](OCIO::OptimizationFlags flags) {
+        const OcioCpu cpu(processor, flags);
+        return trip
+            .measure([&](const float* in, float* out, std::size_t n) { cpu.run_rgb(in, out, n); })
+            .errors;
+    };
+    return {errors(OCIO::OPTIMIZATION_LOSSLESS), errors(OCIO::OPTIMIZATION_DEFAULT), true};
 }
 
 /// Beyond this, what comes back is another picture.
@@ -219,8 +248,18 @@ bool is_inverse_space(const ErrorStats& lossless) {
     return lossless.mean <= 5e-3 && lossless.p999 <= 3.5e-2;
 }
 
+/// Of a view on a display: in HDR with what limits it.
+std::string describe(const ConfigModel::View& view, const DisplayedView& shown) {
+    const DisplayLimit limit = display_limit(shown.op, *shown.display);
+    if (!shown.display->is_hdr || limit.peak <= 1)
+        return view.description + blender_difference(shown.op);
+    const double peak = std::min(limit.peak * kReferenceWhite, shown.display->peak);
+    return fmt::format("{} Up to {:g} cd/m2, limited to {}.{}", view.description, peak,
+                       limit.primaries.name, blender_difference(shown.op));
+}
+
 /// For descriptions: what comes back, and how near.
-std::string describe(const WayBackError& back, bool is_diagnostic) {
+std::string describe_way_back(const WayBackError& back, bool is_diagnostic) {
     if (is_diagnostic) return " There is no way back: many colors of a scene are shown as one.";
     if (!back.is_measured) return "";
     if (!back.exists) return " There is no way back.";
@@ -242,30 +281,42 @@ std::string yaml_of(const OCIO::Config& config) {
     return yaml.str();
 }
 
-/// OCIO's CPU path of the view against the reference, for colors of the input space >= 0.
-ViewError measure_view(const View& view, const SampleSet& samples) {
-    const Pipeline stages = build_view(view);
-    const Lowered lowered = lower_to_ocio(stages, lower_options(*view.op.op));
-    std::vector<double> truth(samples.rgb.size());
-    ReferenceEngine(stages).run_rgb(samples.rgb.data(), truth.data(), samples.size());
+/// The code values of colors by the reference.
+std::vector<double> true_codes(const Pipeline& stages, const SampleSet& samples) {
+    std::vector<double> codes(samples.rgb.size());
+    ReferenceEngine(stages).run_rgb(samples.rgb.data(), codes.data(), samples.size());
+    return codes;
+}
+
+/// OCIO's CPU path of the view against the reference.
+/// @param truth  true_codes() of the samples
+ViewError measure_view(const View& view, const Lowered& lowered, const SampleSet& samples,
+                       const std::vector<double>& truth) {
     std::vector<float> shown(samples.rgb.size());
     OcioCpu(make_processor(lowered.ops)).run_rgb(samples.rgb.data(), shown.data(), samples.size());
     std::vector<double> errors;
-    std::vector<double> a;
-    std::vector<double> b;
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        if (!samples.is_non_negative(i) || samples.kind[i] == SampleKind::special) continue;
+    for (std::size_t i = 0; i < samples.size(); ++i)
         errors.push_back(channel_error(&truth[3 * i], &shown[3 * i]));
-        for (std::size_t c = 0; c < 3; ++c) {
-            a.push_back(truth[3 * i + c]);
-            b.push_back(static_cast<double>(shown[3 * i + c]));
-        }
-    }
     ViewError result;
     result.is_exact = lowered.is_exact;
     result.in_gamut = summarise(errors);
-    result.delta_e = summarise(delta_e_itp(find_display(view.display), a, b)).max;
+    if (!result.is_exact) {
+        const std::vector<double> codes(shown.begin(), shown.end());
+        result.delta_e = summarise(delta_e_itp(find_display(view.display), truth, codes)).max;
+    }
     return result;
+}
+
+/// Those with no negative channel.
+SampleSet measured_samples(const InputSpace& space, const SampleSetOptions& options) {
+    const SampleSet all = make_sample_set(space, options);
+    SampleSet kept;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (!all.is_non_negative(i) || all.kind[i] == SampleKind::special) continue;
+        kept.rgb.insert(kept.rgb.end(), &all.rgb[3 * i], &all.rgb[3 * i] + 3);
+        kept.kind.push_back(all.kind[i]);
+    }
+    return kept;
 }
 
 }  // namespace
@@ -297,8 +348,15 @@ std::vector<DisplayedView> displayed_views(const ConfigModel::View& view,
             ++i;
         if (i == forms.size()) {
             std::string where(limit.primaries.name);
-            if (limit.peak > 1) where += fmt::format(", {:g} nit", limit.peak * kReferenceWhite);
-            forms.push_back({view.name + " (" + where + ")", stages, rgb});
+            // By the peak that people look for, which the light of single channels may exceed.
+            const double peak = std::min(limit.peak * kReferenceWhite, display->peak);
+            if (limit.peak > 1) where += fmt::format(", {:g} nit", peak);
+            const std::string name = view.name + " (" + where + ")";
+            const bool is_taken = std::any_of(forms.begin(), forms.end(),
+                                              [&](const Form& form) { return form.name == name; });
+            forms.push_back(
+                {is_taken ? view.name + " (" + where + ", " + display->title + ")" : name, stages,
+                 rgb});
         }
         form_of.push_back(i);
     }
@@ -310,6 +368,14 @@ std::vector<DisplayedView> displayed_views(const ConfigModel::View& view,
     }
     return shown;
 }
+
+ConfigBuilder::ConfigBuilder(const ConfigModel& model, OCIO::ConfigRcPtr config, LutFiles luts)
+    : model_(model),
+      config_(std::move(config)),
+      luts_(std::move(luts)),
+      samples_(measured_samples(find_input_space("lin_rec709"), {9, 40000})),
+      wide_samples_(measured_samples(find_input_space("lin_ap1"), {9, 40000})),
+      few_samples_(measured_samples(find_input_space("lin_rec709"), {3, 1000})) {}
 
 void ConfigBuilder::add_spaces() {
     for (const auto& space : model_.spaces)
@@ -410,7 +476,7 @@ void ConfigBuilder::add_views() {
         for (const DisplayedView& shown : forms) {
             config_->addDisplayView(shown.display->title.c_str(), shown.name.c_str(),
                                     shown.transform.c_str(), shown.display->title.c_str(), "", "",
-                                    view.description.c_str());
+                                    describe(view, shown).c_str());
         }
     }
     add_shared_view(kUntonemappedView, kUntonemappedView, OCIO::OCIO_VIEW_USE_DISPLAY_NAME,
@@ -469,7 +535,7 @@ void ConfigBuilder::add_views_to(const Display& display, const std::string& host
             if (shown.display != &display) continue;
             config_->addDisplayView(host_display.c_str(), shown.name.c_str(),
                                     shown.transform.c_str(), host_space.c_str(), "", "",
-                                    view.description.c_str());
+                                    describe(view, shown).c_str());
             // An empty list means all.
             const std::string listed = ", " + active + ",";
             if (!active.empty() && listed.find(", " + shown.name + ",") == std::string::npos)
@@ -577,29 +643,29 @@ ConfigBuilder::LoweredView ConfigBuilder::lower_view(const ConfigModel::View& vi
                                                      const DisplayedView& shown,
                                                      bool is_first) const {
     LoweredView result;
+    const LowerOptions options = lower_options(*view.op.op);
     const View measured = make_view(view.op, "lin_rec709", view.exposure_stops, shown.display->id);
+    const Pipeline stages = build_view(measured);
+    const std::vector<double> truth = true_codes(stages, samples_);
     ViewError& error = result.error;
-    error = measure_view(measured, samples_);
-    result.forward = lower_to_ocio(shown.stages, lower_options(*view.op.op));
+    error = measure_view(measured, lower_to_ocio(stages, options), samples_, truth);
+    result.forward = lower_to_ocio(shown.stages, options);
     result.back = inverse_space(view, shown);
     // OpenColorIO takes seconds to invert a cube: once for a view, and of few colors.
     const bool is_slow = !result.back && !result.forward.is_exact;
-    WayBackError& round_trip = error.back;
-    round_trip.is_measured = !view.op.op->is_diagnostic && (is_first || !is_slow);
-    if (round_trip.is_measured) {
-        const SampleSet& samples = is_slow ? few_samples_ : samples_;
-        const LoweredOps back = result.back ? *result.back : inverse(result.forward.ops);
-        round_trip.lossless =
-            measure_round_trip(measured, back, OCIO::OPTIMIZATION_LOSSLESS, samples);
-        round_trip.by_default =
-            measure_round_trip(measured, back, OCIO::OPTIMIZATION_DEFAULT, samples);
-        round_trip.exists = is_inverse_space(round_trip.lossless);
+    if (!view.op.op->is_diagnostic && (is_first || !is_slow)) {
+        const RoundTrip trip = is_slow ? RoundTrip(measured, few_samples_)
+                                       : RoundTrip(measured, {truth.begin(), truth.end()});
+        error.back = measure_round_trip(
+            measured, result.back ? *result.back : inverse(result.forward.ops), trip);
+        error.back.exists = is_inverse_space(error.back.lossless);
     }
     if (!error.is_exact) {
-        result.wide =
-            measure_view(make_view(view.op, "lin_ap1", view.exposure_stops, shown.display->id),
-                         wide_samples_)
-                .in_gamut;
+        const View wide = make_view(view.op, "lin_ap1", view.exposure_stops, shown.display->id);
+        const Pipeline wide_stages = build_view(wide);
+        result.wide = measure_view(wide, lower_to_ocio(wide_stages, options), wide_samples_,
+                                   true_codes(wide_stages, wide_samples_))
+                          .in_gamut;
     }
     return result;
 }
@@ -621,7 +687,7 @@ void ConfigBuilder::add_view_transform(const ConfigModel::View& view, const Disp
             rounded_up(lowered.wide.max), rounded_up(lowered.wide.p999),
             rounded_up(lowered.wide.mean));
     }
-    const std::string inverse_space_text = describe(error.back, view.op.op->is_diagnostic);
+    const std::string inverse_space_text = describe_way_back(error.back, view.op.op->is_diagnostic);
     ways_back_[shown.transform] = inverse_space_text;
     text += inverse_space_text;
     OCIO::ViewTransformRcPtr vt = OCIO::ViewTransform::Create(OCIO::REFERENCE_SPACE_SCENE);

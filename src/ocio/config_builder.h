@@ -52,8 +52,7 @@ struct ViewError {
 /// somebody's.
 class ConfigBuilder {
   public:
-    ConfigBuilder(const ConfigModel& model, OCIO::ConfigRcPtr config, LutFiles luts)
-        : model_(model), config_(std::move(config)), luts_(std::move(luts)) {}
+    ConfigBuilder(const ConfigModel& model, OCIO::ConfigRcPtr config, LutFiles luts);
 
     /// The config is somebody's, with references of its own.
     /// @param scene, display  what its interchange spaces are of its references
@@ -128,9 +127,8 @@ class ConfigBuilder {
     std::set<std::string> cubes_;
     /// Of each view transform, what its way back is.
     std::map<std::string, std::string> ways_back_;
-    SampleSet samples_ = make_sample_set(find_input_space("lin_rec709"), {9, 40000});
-    SampleSet wide_samples_ = make_sample_set(find_input_space("lin_ap1"), {9, 40000});
-    SampleSet few_samples_ = make_sample_set(find_input_space("lin_rec709"), {3, 1000});
+    /// Colors that errors are measured on; none has a negative channel.
+    SampleSet samples_, wide_samples_, few_samples_;
 };
 
 TONEWRIGHT_NAMESPACE_END

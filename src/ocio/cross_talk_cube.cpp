@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ocio/cross_talk_cube.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "base/bounded_cache.h"
+#include "base/number_cache.h"
 #include "lut/fit.h"
+#include "lut/fit_key.h"
 #include "tonewright/engine.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -93,6 +97,17 @@ struct Key {
     }
 };
 
+/// Of fit_cube() and choose_share_of_lights(): another number where they make other nodes of the
+/// same problem.
+constexpr int kFitVersion = 1;
+
+/// All that a fitted cube depends on.
+std::string key_of(const CubeProblem& problem, double top) {
+    return fmt::format("cube {}, {} nodes a side: {}, {}, {}", kFitVersion, problem.edge,
+                       key_of_numbers({problem.lo, problem.hi, top}),
+                       key_of_primaries(problem.primaries), key_of_pipeline(problem.pipeline));
+}
+
 }  // namespace
 
 double cross_talk_top(const CrossTalkStage& stage, const ClampStage& behind, double largest,
@@ -118,15 +133,43 @@ std::shared_ptr<const CrossTalkCube> cross_talk_cube(const CrossTalkStage& stage
     problem.hi = evaluate(node_code(), limit.hi);
     const Key key = {compose(problem.pipeline), problem.lo, problem.hi, top, options};
     return cache.get(key, [&] {
-        problem.axis =
-            options.is_fitted ? choose_log_axis(problem, top) : make_log_axis(top, problem.edge);
-        const std::vector<double> nodes =
-            options.is_fitted ? fit_cube(problem) : sample_cube(problem);
+        std::vector<double> nodes;
+        if (options.is_fitted) {
+            nodes = cached_numbers("cube", key_of(problem, top), [&] {
+                const double share = choose_share_of_lights(problem, top);
+                problem.axis = make_log_axis(top, problem.edge, share);
+                std::vector<double> numbers = fit_cube(problem);
+                numbers.push_back(share);
+                return numbers;
+            });
+            problem.axis = make_log_axis(top, problem.edge, nodes.back());
+            nodes.pop_back();
+        } else {
+            problem.axis = make_log_axis(top, problem.edge);
+            nodes = sample_cube(problem);
+        }
         CrossTalkCube cube = {problem.axis.place, {nodes.begin(), nodes.end()}};
         hold_limits(cube.nodes, problem.edge, static_cast<float>(problem.lo),
                     static_cast<float>(problem.hi));
         return cube;
     });
+}
+
+std::shared_ptr<const HueCube> hue_cube(const CrossTalkStage& stage, const HueStructure& structure,
+                                        double top, const Primaries& primaries) {
+    struct HueKey {
+        std::array<Expr, 3> f;  // equal expressions are the same node, as long as one lives
+        double top;
+        Primaries primaries;
+
+        bool operator==(const HueKey& b) const {
+            return std::equal(f.begin(), f.end(), b.f.begin(), same) && top == b.top &&
+                   primaries == b.primaries;
+        }
+    };
+    static BoundedCache<HueKey, HueCube> cache(64);
+    return cache.get({stage.f, top, primaries},
+                     [&] { return fit_hue_cube(structure, top, {.primaries = primaries}); });
 }
 
 TONEWRIGHT_NAMESPACE_END

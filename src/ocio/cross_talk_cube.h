@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "lut/hue_cube.h"
 #include "tonewright/pipeline.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -34,5 +35,11 @@ struct CrossTalkCubeOptions {
 [[nodiscard]] std::shared_ptr<const CrossTalkCube> cross_talk_cube(
     const CrossTalkStage& stage, const ClampStage& behind, double top,
     const CrossTalkCubeOptions& options);
+
+/// The 3D LUT of a stage that is declared in axes of hues. LUTs that were asked for last are kept.
+/// @param primaries  of the light
+[[nodiscard]] std::shared_ptr<const HueCube> hue_cube(const CrossTalkStage& stage,
+                                                      const HueStructure& structure, double top,
+                                                      const Primaries& primaries);
 
 TONEWRIGHT_NAMESPACE_END

@@ -5,11 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <map>
+#include <set>
 
 #include "base/strings.h"
+#include "ocio/added_record.h"
 #include "ocio/config_builder.h"
 #include "ocio/read_config.h"
+#include "ocio/yaml_text.h"
 #include "tonewright/engine.h"
 #include "tonewright/ocio.h"
 
@@ -116,7 +120,7 @@ std::map<std::string, std::vector<float>> pictures_of(const OCIO::ConstConfigRcP
         const std::string display = config->getDisplay(d);
         for (int v = 0; v < config->getNumViews(display.c_str()); ++v) {
             const std::string view = config->getView(display.c_str(), v);
-            add("view " + display + " / " + view, [&] {
+            add(fmt::format("view {} / {}", display, view), [&] {
                 return config->getProcessor("aces_interchange", display.c_str(), view.c_str(),
                                             OCIO::TRANSFORM_DIR_FORWARD);
             });
@@ -125,23 +129,150 @@ std::map<std::string, std::vector<float>> pictures_of(const OCIO::ConstConfigRcP
     return pictures;
 }
 
+constexpr const char* kFolder = "tonewright";
+
+/// OpenColorIO takes it, and what was there before makes the same numbers.
+/// @param before  pictures that it must make; others may be added or missing
+OCIO::ConfigRcPtr check_result(const std::string& path, const std::string& written,
+                               const std::map<std::string, std::vector<float>>& before) {
+    const OCIO::ConfigRcPtr made = read_config(written);
+    try {
+        made->validate();
+    } catch (const OCIO::Exception& e) {
+        throw Error("config: OpenColorIO refuses the result: " + one_line(e.what()));
+    }
+    const std::map<std::string, std::vector<float>> after = pictures_of(made);
+    for (const auto& [name, picture] : before) {
+        const auto it = after.find(name);
+        const bool is_same =
+            it != after.end() && it->second.size() == picture.size() &&
+            std::memcmp(it->second.data(), picture.data(), picture.size() * sizeof(float)) == 0;
+        if (!is_same) throw Error(fmt::format("config: the result changes {} of {}", name, path));
+    }
+    return made;
+}
+
+/// The items of a list that have these names, in the order of the names.
+std::vector<YAML::Node> named(const YAML::Node& list, const std::vector<std::string>& names) {
+    std::map<std::string, YAML::Node> items;
+    for (const YAML::Node& item : list) {
+        if (item.IsMap() && item["name"]) items[item["name"].Scalar()] = item;
+    }
+    std::vector<YAML::Node> found;
+    for (const std::string& name : names)
+        found.push_back(items.at(name));
+    return found;
+}
+
+void append_or_add(YamlText& yaml, const std::string& key, const std::vector<YAML::Node>& items) {
+    const YAML::Node list = yaml.root()[key];
+    const bool is_there =
+        list && list.IsSequence() && (list.size() > 0 || list.Style() == YAML::EmitterStyle::Flow);
+    if (is_there) {
+        yaml.append(list, items);
+    } else if (list) {
+        throw Error("config: " + key + " is empty; expected at least one, or no " + key);
+    } else {
+        yaml.add(key, items);
+    }
+}
+
+/// "a, b", or a list.
+void append_names(YamlText& yaml, const std::string& key, const std::string& separator,
+                  const std::vector<std::string>& names) {
+    const YAML::Node list = yaml.root()[key];
+    if (list && list.IsSequence() && list.size() > 0) {
+        std::vector<YAML::Node> items;
+        for (const std::string& name : names)
+            items.emplace_back(name);
+        yaml.append(list, items);
+        return;
+    }
+    for (const std::string& name : names)
+        yaml.append_text(list, (list.Scalar().empty() ? "" : separator) + name);
+}
+
+/// Tables of the folder that no config beside this one has added.
+std::vector<std::string> unused(const std::string& config, const std::vector<std::string>& files,
+                                const std::vector<std::string>& used) {
+    namespace fs = std::filesystem;
+    std::set<std::string> kept(used.begin(), used.end());
+    const fs::path folder = fs::absolute(config).parent_path();
+    std::error_code ignored;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder / kFolder, ignored)) {
+        const fs::path name = entry.path().filename();
+        if (name.extension() != ".yaml" ||
+            name == fs::path(AddedRecord::path_of(config)).filename())
+            continue;
+        const AddedRecord other = AddedRecord::read((folder / name.stem()).string());
+        kept.insert(other.files.begin(), other.files.end());
+    }
+    std::vector<std::string> result;
+    for (const std::string& file : files) {
+        if (!kept.contains(file)) result.push_back(file);
+    }
+    return result;
+}
+
+bool is_empty(const ConfigOptions& o) {
+    return o.views.empty() && o.displays.empty() && o.looks.empty() && o.custom.empty() &&
+           o.exposure_stops.empty();
+}
+
 }  // namespace
 
-ExtendedConfig extend_config(const std::string& path, const ConfigOptions& options) {
-    const OCIO::ConfigRcPtr config = read_config(path);
+ExtendedConfig reduce_config(const std::string& path) {
+    const std::string text = read_config_text(path);
+    const AddedRecord record = AddedRecord::read(path);
+    ExtendedConfig result;
+    result.text = record.without(text, path);
+    result.record = {AddedRecord::path_of(path), ""};
+    result.unused_files = unused(path, record.files, {});
+    const OCIO::ConfigRcPtr left = read_config(path, result.text);
+    const std::map<std::string, std::vector<float>> all = pictures_of(read_config(path));
+    std::map<std::string, std::vector<float>> before;
+    for (const auto& [name, picture] : pictures_of(left)) {
+        if (const auto it = all.find(name); it != all.end()) before.insert(*it);
+    }
+    result.check = [before, path](const std::string& written) {
+        (void)check_result(path, written, before);
+        return std::vector<ExtendedView>{};
+    };
+    return result;
+}
+
+ExtendedConfig extend_config(const std::string& path, const ConfigOptions& given, bool is_updated) {
+    std::string text = read_config_text(path);
+    ConfigOptions options = given;
+    AddedRecord record;
+    std::vector<std::string> replaced;
+    if (is_updated) {
+        const AddedRecord earlier = AddedRecord::read(path);
+        text = earlier.without(text, path);
+        replaced = earlier.files;
+        if (is_empty(given)) options = earlier.options;
+    } else if (std::filesystem::exists(std::filesystem::absolute(path).parent_path() /
+                                       AddedRecord::path_of(path))) {
+        record = AddedRecord::read(path);
+    }
+    record.options = options;
+    const OCIO::ConfigRcPtr config = read_config(path, text);
+    bool has_folder = false;
+    for (int i = 0; i < config->getNumSearchPaths(); ++i)
+        has_folder = has_folder || std::string_view(config->getSearchPath(i)) == kFolder;
+    const std::string original_active_views = config->getActiveViews();
     for (const char* role : {"aces_interchange", "cie_xyz_d65_interchange"}) {
         if (!config->hasRole(role)) {
-            throw Error(
-                "config: " + path + " has no role " + role +
-                "; expected both interchange roles: nothing else says what its numbers are");
+            throw Error("config: " + path + " has no role " + role +
+                        "; expected both interchange roles, which say what its color spaces are");
         }
     }
     const std::map<std::string, std::vector<float>> before = pictures_of(config);
     const std::vector<HostDisplay> hosts = match_displays(config, options.displays);
     if (hosts.empty()) {
         throw Error(
-            "config: no display of " + path +
-            " is one of ours, shown through a view transform; expected one of sRGB, Display "
+            "config: " + path +
+            " has no display that Tonewright knows with a view transform; expected sRGB, Display "
             "P3, Rec.1886, Rec.2020, 2.2, PQ or HLG");
     }
     ConfigOptions chosen = options;
@@ -174,12 +305,10 @@ ExtendedConfig extend_config(const std::string& path, const ConfigOptions& optio
         }
     }
 
-    constexpr const char* kFolder = "tonewright";
     // The folder may hold tables of another release, and another config beside it may need them.
     ConfigBuilder builder(model, config, LutFiles(kFolder, LutFiles::Names::hashed));
     builder.set_references(config->getColorSpace("aces_interchange"),
                            config->getColorSpace("cie_xyz_d65_interchange"));
-    config->addSearchPath(kFolder);
     builder.add_view_transforms();
     builder.add_looks();
     for (const HostDisplay& host : hosts)
@@ -187,7 +316,60 @@ ExtendedConfig extend_config(const std::string& path, const ConfigOptions& optio
 
     ExtendedConfig result;
     result.files = builder.tables();
-    result.text = builder.text();
+    try {
+        YamlText yaml(text);
+        const YAML::Node made = YAML::Load(builder.text());
+        std::vector<std::string> transforms;
+        std::vector<std::string> looks;
+        std::vector<std::string> all_views;
+        std::vector<std::string> spaces;
+        std::vector<std::string> active;
+        const auto note = [](std::vector<std::string>& names, const std::string& name) {
+            if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+        };
+        const std::string listed = ", " + original_active_views + ",";
+        for (const HostDisplay& host : hosts) {
+            std::vector<std::string> views;
+            for (const auto& view : model.views) {
+                for (const DisplayedView& shown : builder.displayed(view.name)) {
+                    if (shown.display != host.ours) continue;
+                    note(transforms, shown.transform);
+                    views.push_back(shown.name);
+                    all_views.push_back(fmt::format("{} on {}", shown.name, host.name));
+                    spaces.push_back(output_space_name(shown.name, host.name));
+                    if (listed.find(", " + shown.name + ",") == std::string::npos)
+                        note(active, shown.name);
+                }
+            }
+            yaml.append(yaml.root()["displays"][host.name],
+                        named(made["displays"][host.name], views));
+        }
+        for (const auto& look : model.looks)
+            looks.push_back(look.name);
+        append_or_add(yaml, "view_transforms", named(made["view_transforms"], transforms));
+        append_or_add(yaml, "looks", named(made["looks"], looks));
+        append_or_add(yaml, "colorspaces", named(made["colorspaces"], spaces));
+        if (!original_active_views.empty()) append_names(yaml, "active_views", ", ", active);
+        if (!yaml.root()["search_path"]) {
+            yaml.add_text("search_path", kFolder);
+        } else if (!has_folder) {
+            append_names(yaml, "search_path", ":", {kFolder});
+        }
+        result.text = yaml.result();
+        record.add(yaml.insertions(), result.text);
+        result.added = {{"views", all_views},
+                        {"view transforms", transforms},
+                        {"looks", looks},
+                        {"color spaces", spaces}};
+    } catch (const YAML::Exception& e) {
+        throw FileError("read: " + path + ": " + one_line(e.what()));
+    }
+    std::set<std::string> files(record.files.begin(), record.files.end());
+    for (const GeneratedFile& file : result.files)
+        files.insert(file.path);
+    record.files.assign(files.begin(), files.end());
+    result.record = {AddedRecord::path_of(path), record.text()};
+    result.unused_files = unused(path, replaced, record.files);
     result.check = [before, hosts, model, path, bounds = [&] {
         std::map<std::string, double> all;
         for (const auto& view : model.views) {
@@ -197,20 +379,7 @@ ExtendedConfig extend_config(const std::string& path, const ConfigOptions& optio
         }
         return all;
     }()](const std::string& written) {
-        const OCIO::ConfigRcPtr made = read_config(written);
-        try {
-            made->validate();
-        } catch (const OCIO::Exception& e) {
-            throw Error("config: OpenColorIO refuses the result: " + std::string(e.what()));
-        }
-        const std::map<std::string, std::vector<float>> after = pictures_of(made);
-        for (const auto& [name, picture] : before) {
-            const auto it = after.find(name);
-            const bool is_same =
-                it != after.end() && it->second.size() == picture.size() &&
-                std::memcmp(it->second.data(), picture.data(), picture.size() * sizeof(float)) == 0;
-            if (!is_same) throw Error("config: the result changes " + name + " of " + path);
-        }
+        const OCIO::ConfigRcPtr made = check_result(path, written, before);
         std::vector<ExtendedView> views;
         const SampleSet samples = make_sample_set(find_input_space("lin_ap0"), {5, 4000});
         for (const auto& view : model.views) {
@@ -239,9 +408,11 @@ ExtendedConfig extend_config(const std::string& path, const ConfigOptions& optio
                 // measured: what is refused is another picture, not one that is less exact.
                 constexpr double kAnother = 0.02;
                 if (stats.mean > kAnother + bounds.at(view.name + host.ours->id)) {
-                    throw Error(fmt::format(
-                        "config: view {} on {} would be {:.2g} from the reference in the mean",
-                        name, host.name, stats.mean));
+                    throw Error(
+                        fmt::format("config: view {} on {} would differ from the reference by "
+                                    "{:.2g} on average; expected at "
+                                    "most 0.02 more than its bound",
+                                    name, host.name, stats.mean));
                 }
             }
         }

@@ -22,6 +22,10 @@ const std::vector<FixedFunctions>& all_fixed_functions() {
             {rrt_glow_and_red_modifier(RrtSaturation::after_glow), glow_and_red},
             // The saturation of the dark: where all channels are below 0.01.
             {rrt_glow_and_red_modifier(RrtSaturation::before_glow), glow_and_red, false},
+            // Unreal's and Filament's: also another weight of the hue, at most 0.0074 away from the
+            // functions' B-spline, of a change of red by at most 18 %.
+            {ap1_glow_and_red_modifier(1e-10), glow_and_red, false, rgb_to_rgb(kAP1, kAP0)},
+            {ap1_glow_and_red_modifier(1e-5), glow_and_red, false, rgb_to_rgb(kAP1, kAP0)},
         };
     }();
     return all;

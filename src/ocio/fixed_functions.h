@@ -14,6 +14,8 @@ struct FixedFunctions {
     std::vector<FixedFunctionOp> functions;
     /// False where the functions differ from the stage a little.
     bool is_exact = true;
+    /// Light -> the space that the functions work in; its inverse stands behind them.
+    Matrix3 to_space = kIdentity3;
 };
 
 [[nodiscard]] const std::vector<FixedFunctions>& all_fixed_functions();

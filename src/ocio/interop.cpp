@@ -17,13 +17,14 @@ struct SpaceId {
     std::string_view from_aces;
 };
 
-constexpr std::array<SpaceId, 14> kSpaces = {{
+constexpr std::array<SpaceId, 15> kSpaces = {{
     {"ACEScg", "v2.0", "CSC.Academy.ACEScg_to_ACES.a2.v1", "CSC.Academy.ACES_to_ACEScg.a2.v1"},
     {"ACEScct", "v2.0", "CSC.Academy.ACEScct_to_ACES.a2.v1", "CSC.Academy.ACES_to_ACEScct.a2.v1"},
     {"ACEScc", "v2.0", "CSC.Academy.ACEScc_to_ACES.a2.v1", "CSC.Academy.ACES_to_ACEScc.a2.v1"},
     {"ADX10", "v2.0", "CSC.Academy.ADX10_to_ACES.a2.v1", ""},
     {"ADX16", "v2.0", "CSC.Academy.ADX16_to_ACES.a2.v1", ""},
     {"ARRI LogC3 (EI800)", "v2.0", "CSC.Arri.LogC3_to_ACES.a2.v1", "CSC.Arri.ACES_to_LogC3.a2.v1"},
+    {"ARRI LogC4", "v2.0", "CSC.Arri.LogC4_to_ACES.a2.v1", "CSC.Arri.ACES_to_LogC4.a2.v1"},
     {"CanonLog2 CinemaGamut D55", "v2.0", "CSC.Canon.CLog2_CGamut_to_ACES.a1.v1",
      "CSC.Canon.ACES_to_CLog2_CGamut.a1.v1"},
     {"CanonLog3 CinemaGamut D55", "v2.0", "CSC.Canon.CLog3_CGamut_to_ACES.a1.v1",

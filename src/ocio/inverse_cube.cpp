@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ocio/inverse_cube.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "base/bounded_cache.h"
+#include "base/number_cache.h"
 #include "lut/fit_inverse.h"
+#include "lut/fit_key.h"
 #include "tonewright/color.h"
 #include "tonewright/engine.h"
 #include "tonewright/view.h"
@@ -61,17 +66,19 @@ Pipeline sampled_inverse(const Pipeline& back, double peak) {
         stages.insert(stages.end(), back.begin(), back.end());
         stages.push_back(ClampStage{-kBrightest, kBrightest});
         stages.push_back(curve_stage(code_of(x)));
-        const ReferenceEngine engine(stages);
-        std::vector<double> nodes;
-        const double step = 1.0 / (kEdge - 1);
-        for (int r = 0; r < kEdge; ++r) {
-            for (int g = 0; g < kEdge; ++g) {
-                for (int b = 0; b < kEdge; ++b) {
-                    const Vector3 v = engine({r * step, g * step, b * step});
-                    nodes.insert(nodes.end(), v.begin(), v.end());
-                }
-            }
+        constexpr std::size_t n = kEdge;
+        constexpr double step = 1.0 / (kEdge - 1);
+        std::array<std::vector<double>, 3> planes;
+        for (std::size_t i = 0; i < n * n * n; ++i) {
+            planes[0].push_back(static_cast<double>(i / (n * n)) * step);
+            planes[1].push_back(static_cast<double>(i / n % n) * step);
+            planes[2].push_back(static_cast<double>(i % n) * step);
         }
+        const std::array<double*, 3> at = {planes[0].data(), planes[1].data(), planes[2].data()};
+        ReferenceEngine(stages).run({at[0], at[1], at[2]}, at, n * n * n);
+        std::vector<double> nodes;
+        for (std::size_t i = 0; i < n * n * n; ++i)
+            nodes.insert(nodes.end(), {planes[0][i], planes[1][i], planes[2][i]});
         return nodes;
     };
     return {ClampStage{0, peak},
@@ -106,7 +113,13 @@ Pipeline fitted_inverse(const Pipeline& forward, const Primaries& primaries, dou
             problem.forward = {ClampStage{0, 1}, curve_stage(light_of(x))};
             problem.forward.insert(problem.forward.end(), forward.begin(), forward.end());
             problem.primaries = primaries;
-            std::vector<double> nodes = fit_inverse_cube(problem);
+            constexpr int kFitVersion = 2;  // another one where the fit makes other nodes
+            const std::string key =
+                fmt::format("inverse cube {}, {} nodes a side: {}, {}, {}, {}", kFitVersion,
+                            problem.edge, key_of_numbers({peak}), key_of_primaries(primaries),
+                            key_of_pipeline(problem.before), key_of_pipeline(problem.forward));
+            std::vector<double> nodes =
+                cached_numbers("inverse_cube", key, [&] { return fit_inverse_cube(problem); });
             // Where no picture leads to: light beyond the brightest is not asked for.
             for (double& code : nodes)
                 code = std::clamp(code, -1.0, 1.0);

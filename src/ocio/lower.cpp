@@ -14,6 +14,7 @@
 #include "ocio/cross_talk_cube.h"
 #include "ocio/fixed_functions.h"
 #include "ocio/hexcone.h"
+#include "pipeline/hue_structure.h"
 #include "tonewright/engine.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -166,11 +167,19 @@ class Lowering {
         flush_curves();
         const FixedFunctions* const functions = find_fixed_functions(stage);
         if (!functions) {
-            emit_cube(stage, behind_, options_.fits_cubes);
+            const auto structure = options_.fits_cubes ? find_hue_structure(stage) : nullptr;
+            if (structure) {
+                emit_hue_cube(stage, *structure);
+            } else {
+                emit_cube(stage, behind_, options_.fits_cubes);
+            }
             return;
         }
+        const bool has_own_space = functions->to_space != kIdentity3;
+        if (has_own_space) emit(MatrixOp{functions->to_space}, "matrix");
         for (const FixedFunctionOp& function : functions->functions)
             emit(function, function.style);
+        if (has_own_space) emit(MatrixOp{inverse(functions->to_space)}, "matrix");
         result_.is_exact = result_.is_exact && functions->is_exact;
         domain_ = {};
     }
@@ -192,6 +201,41 @@ class Lowering {
         result_.is_exact = false;
         domain_ = {};
         lower(curve_stage(srgb_decode(Expr::input())));
+    }
+
+    /// A 3D LUT over hue, saturation and value of the axes that the stage is declared in.
+    void emit_hue_cube(const CrossTalkStage& stage, const HueStructure& structure) {
+        result_.loses_negatives = result_.loses_negatives || !(domain_.lo >= 0);
+        const double top = cross_talk_top(stage, behind_, domain_.hi, true);
+        const auto cube = hue_cube(stage, structure, top, options_.primaries);
+        emit(RangeOp{0, top}, "range");
+        domain_ = {0, top};
+        for (const Stage& part : structure.to_axes)
+            std::visit([&](const auto& s) { lower(s); }, part);
+        flush_curves();
+        emit(MatrixOp{scale(kIdentity3, cube->gain)}, "scale");
+        emit(FixedFunctionOp{"RGB_TO_HSV"}, "HSV");
+        const auto emit_table = [&](const Table3& table, const std::string& what) {
+            Lut1DOp lut{3, table};
+            lut.is_half_domain = false;
+            emit(std::move(lut), what);
+        };
+        const auto emit_affine = [&](const AffineStep& step) {
+            emit(MatrixOp{step.m, step.offset}, "matrix");
+        };
+        emit_table(cube->spread, "LUT of hue and value");
+        emit_affine(cube->less_sum);
+        emit_table(cube->back, "LUT of hue");
+        emit_affine(cube->plus_hue);
+        emit_table(cube->place, "LUT of places");
+        emit(Lut3DOp{cube->edge, cube->nodes, HueCube::kUnit},
+             std::to_string(cube->edge) + "^3 cube of hues to " + shortest(top) + ", fitted");
+        emit_table(cube->light, "LUT of light");
+        emit_affine(cube->ratios);
+        emit(FixedFunctionOp{"XYZ_TO_xyY"}, "xyY inverse", true);
+        emit(MatrixOp{cube->to_rgb}, "matrix");
+        result_.is_exact = false;
+        domain_ = {};
     }
 
     void require_clamp_at_0(const char* stage) const {

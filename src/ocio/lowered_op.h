@@ -44,6 +44,7 @@ struct Lut1DOp {
 struct Lut3DOp {
     int edge;
     std::vector<float> values;  // RGB triplets, blue fastest
+    double unit = 1e-4;         // that files may round the values to
 };
 
 /// One of OpenColorIO's FixedFunctionTransforms.

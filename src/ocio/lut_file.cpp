@@ -10,13 +10,13 @@
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <map>
 #include <mutex>
 #include <optional>
 
 #include "base/atomic_file.h"
+#include "base/input_file.h"
 #include "base/strings.h"
 #include "lut/icc.h"
 #include "lut/lut_text.h"
@@ -31,7 +31,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The text of a cube of 129 has some 80 million characters.
-constexpr std::uintmax_t kLargestFile = 128U << 20U;
+constexpr std::size_t kLargestFile = 128U << 20U;
 
 bool is_device_link(const std::string& extension) {
     return extension == ".icc" || extension == ".icm";
@@ -45,27 +45,6 @@ void check_extension(const std::string& path) {
     known.emplace_back("a picture's");
     throw FileError(fmt::format("read: {}: extension is {}; expected {}", path,
                                 extension.empty() ? "missing" : extension, join_choices(known)));
-}
-
-std::string read_bytes(const std::string& path) {
-    const auto fail = [&](const std::string& reason) {
-        throw FileError("read: " + path + ": " + reason);
-    };
-    std::error_code error;
-    const fs::file_status status = fs::status(path, error);
-    if (status.type() == fs::file_type::not_found) fail("No such file or directory");
-    if (status.type() != fs::file_type::regular) fail("is not a file");
-    const std::uintmax_t size = fs::file_size(path, error);
-    if (error) fail(error.message());
-    if (size > kLargestFile)
-        fail(fmt::format("has {} bytes; expected up to {}", size, kLargestFile));
-    std::ifstream file(path, std::ios::binary);
-    std::string bytes(static_cast<std::size_t>(size), '\0');
-    if (!file) fail(tonewright::reason_of(errno));
-    file.read(bytes.data(), static_cast<std::streamsize>(size));
-    if (file.bad()) fail(tonewright::reason_of(errno));
-    if (!file) fail(fmt::format("ends early, after {} of {} bytes", file.gcount(), size));
-    return bytes;
 }
 
 /// What OpenColorIO says about the file, without its search for a format; in one line.
@@ -109,7 +88,7 @@ OCIO::TransformRcPtr scale_range(const CubeText::Table& table) {
 }
 
 OCIO::GroupTransformRcPtr group_of(const CubeText& file) {
-    const OCIO::GroupTransformRcPtr group = OCIO::GroupTransform::Create();
+    OCIO::GroupTransformRcPtr group = OCIO::GroupTransform::Create();
     if (const auto n = static_cast<unsigned long>(file.table.size); n > 0) {
         const OCIO::Lut1DTransformRcPtr table = OCIO::Lut1DTransform::Create();
         table->setLength(n);
@@ -205,7 +184,7 @@ OCIO::GroupTransformRcPtr group_of(const std::string& path) {
     file->setSrc(path.c_str());
     // Tetrahedral for a cube, linear for a 1D table, and no warning for either.
     file->setInterpolation(OCIO::INTERP_BEST);
-    const OCIO::GroupTransformRcPtr group = OCIO::GroupTransform::Create();
+    OCIO::GroupTransformRcPtr group = OCIO::GroupTransform::Create();
     group->appendTransform(file);
     return group;
 }
@@ -233,12 +212,8 @@ OcioCpu make_cpu(const std::string& path, const std::string& name, OCIO::GroupTr
 void silence_opencolorio() { OCIO::SetLoggingLevel(OCIO::LOGGING_LEVEL_NONE); }
 
 LutInterpolation parse_lut_interpolation(std::string_view text) {
-    const std::vector<std::string> names = {"auto", "tetrahedral", "trilinear"};
-    for (std::size_t i = 0; i < names.size(); ++i) {
-        if (text == names[i]) return static_cast<LutInterpolation>(i);
-    }
-    throw Error("interpolation is " + std::string(text) + "; expected " + join_choices(names) +
-                did_you_mean(text, names));
+    return static_cast<LutInterpolation>(
+        find_choice("interpolation", text, {"auto", "tetrahedral", "trilinear"}));
 }
 
 struct LutFile::Form {
@@ -253,7 +228,9 @@ LutFile::LutFile(const std::string& path, LutInterpolation interpolation) {
     form->is_trilinear = interpolation == LutInterpolation::trilinear;
     const std::string extension = extension_of(path);
     check_extension(path);
-    const std::string bytes = read_bytes(path);
+    const std::string bytes = read_file(path, kLargestFile, [&](const std::string& reason) {
+        throw FileError("read: " + path + ": " + reason);
+    });
     if (is_device_link(extension)) {
         if (form->is_trilinear) {
             throw Error("interpolation is trilinear; expected tetrahedral for " + path +

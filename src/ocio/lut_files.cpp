@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/strings.h"
+#include "lut/in_parallel.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -41,7 +42,7 @@ ClfTable table_of(const Lut3DOp& lut, bool is_exact, bool is_inverted) {
     table.numbers = is_exact      ? Numbers::decimals_7
                     : is_inverted ? Numbers::codes
                                   : Numbers::multiples;
-    table.unit = 1e-4;
+    table.unit = lut.unit;
     return table;
 }
 
@@ -174,9 +175,10 @@ std::string LutFiles::contents_of(const File& file) {
 }
 
 std::vector<GeneratedFile> LutFiles::files() const {
-    std::vector<GeneratedFile> written;
-    for (const File& file : files_)
-        written.push_back({fmt::format("{}/{}", folder_, file.name), contents_of(file)});
+    std::vector<GeneratedFile> written(files_.size());
+    in_parallel(files_.size(), 0, [&](std::size_t i) {
+        written[i] = {fmt::format("{}/{}", folder_, files_[i].name), contents_of(files_[i])};
+    });
     return written;
 }
 

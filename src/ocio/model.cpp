@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ocio/model.h"
+#include "base/format_number.h"
 #include "base/strings.h"
 #include "tonewright/registry.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -19,6 +22,7 @@ using SpaceKind = ConfigModel::SpaceKind;
 
 constexpr const char* kTextureSpace = "sRGB - Texture";
 constexpr const char* kVideoSpace = "Gamma 2.4 Rec.709 - Texture";
+constexpr const char* kFilmSpace = "Cineon";
 
 struct StandardView {
     const char* id;
@@ -146,6 +150,69 @@ const std::vector<BuiltinSpace>& builtin_spaces() {
     return spaces;
 }
 
+/// Logs that OpenColorIO 2.0 has no built-in transform for.
+struct LogSpace {
+    const char* name;
+    std::vector<std::string> aliases;
+    const char* family;
+    const char* description;
+    const Primaries* primaries;
+    ConfigModel::LogCurve curve;
+    const char* interop_id = "";
+};
+
+/// ARRI, "LogC4 Logarithmic Color Space, Specification", 2022, section 4.1.
+ConfigModel::LogCurve arri_logc4() {
+    const double a = (std::exp2(18) - 16) / 117.45;
+    const double b = (1023.0 - 95) / 1023;
+    const double c = 95.0 / 1023;
+    ConfigModel::LogCurve curve;
+    curve.log_slope = b / 14;
+    curve.log_offset = c - 6 * b / 14;
+    curve.linear_slope = a;
+    curve.linear_offset = 64;
+    curve.linear_break = (std::exp2(14 * (-c / b) + 6) - 64) / a;
+    return curve;
+}
+
+/// Kodak, "Conversion of 10-bit Log Film Data To 8-bit Linear or Video Data for The Cineon Digital
+/// Film System", 1995: 0.002 density a code, film gamma 0.6, black at 95, white at 685.
+ConfigModel::LogCurve cineon() {
+    constexpr double kGamma = 0.6;
+    constexpr double kDensityOfCode = 0.002;
+    constexpr double kBlack = 95;
+    constexpr double kWhite = 685;
+    const double black = std::pow(10, (kBlack - kWhite) * kDensityOfCode / kGamma);
+    ConfigModel::LogCurve curve;
+    curve.base = 10;
+    curve.log_slope = kGamma / kDensityOfCode / 1023;
+    curve.log_offset = kWhite / 1023;
+    curve.linear_slope = 1 - black;
+    curve.linear_offset = black;
+    return curve;
+}
+
+const std::vector<LogSpace>& log_spaces() {
+    static const std::vector<LogSpace> spaces = {
+        {"ARRI LogC4",
+         {"arri_logc4"},
+         "Input/ARRI",
+         "ARRI LogC4, ARRI Wide Gamut 4.",
+         &kArriWideGamut4,
+         arri_logc4(),
+         "ocio:arrilogc4_awg4_scene"},
+        // OpenImageIO says KodakLog of a DPX that calls itself logarithmic, and of every Cineon.
+        {kFilmSpace,
+         {"cineon_film", "KodakLog", "Cineon Log"},
+         "Input/Film",
+         "Kodak Cineon film scans (.cin, .dpx): black at code 95 of 1023, white at 685, Rec.709 "
+         "primaries.",
+         &kRec709,
+         cineon()},
+    };
+    return spaces;
+}
+
 /// Pictures and textures in the code values of a display's curve, for other primaries too.
 struct TextureSpace {
     const char* name;
@@ -266,7 +333,7 @@ void check_names(const ConfigModel& model) {
         }
         const auto [it, is_new] = taken.emplace(lowercase(name), owner);
         if (!is_new) {
-            throw Error("config: name is " + name + " for " + owner + "; expected one that " +
+            throw Error("config: name is " + name + " for " + owner + "; expected a name that " +
                         it->second + " does not have");
         }
     };
@@ -288,40 +355,160 @@ void check_names(const ConfigModel& model) {
         const bool known = std::any_of(model.spaces.begin(), model.spaces.end(),
                                        [&](const Space& s) { return s.name == wanted; });
         if (!known)
-            throw Error("config: role " + role + " is " + name +
-                        "; expected a space of the config");
+            throw Error(
+                fmt::format("config: role {} is {}; expected a space of the config", role, name));
     }
 }
 
-/// Where a picture's name says what it is in: "plate_acescg.0001.exr". Words between separators in
-/// the last part of a path, so that a folder "raw" means nothing.
-std::string word_pattern(const std::string& words) {
-    return R"(.*[_.\- ]()" + words + R"()[_.\- ][^/\\]*)";
+/// Words that a picture's name says its space with. Each is spelled as its maker spells it, with a
+/// space wherever people write nothing, a space, a dot, a dash or an underscore.
+struct NamedSpace {
+    std::string space;
+    std::vector<std::string> words;
+    /// Floats are seldom in the code values of a display, and the word means their primaries.
+    bool is_never_exr = false;
+};
+
+std::vector<NamedSpace> named_spaces() {
+    const auto linear = [](const char* id) { return find_input_space(id).title; };
+    return {
+        {linear("lin_ap1"), {"ACEScg", "Lin AP1", "Linear AP1"}},
+        {"ACEScct", {"ACEScct"}},
+        {"ACEScc", {"ACEScc"}},
+        {linear("lin_ap0"), {"ACES2065 1", "ACES2065", "Lin AP0", "Linear AP0", "AP0"}},
+        {linear("lin_rec709"), {"Lin Rec 709", "Linear Rec 709", "Lin sRGB", "Linear sRGB"}},
+        {linear("lin_rec2020"), {"Lin Rec 2020", "Linear Rec 2020"}},
+        {linear("lin_p3d65"), {"Lin P3 D65", "Linear P3 D65", "Lin Display P3"}},
+        {linear("lin_egamut"), {"Lin E Gamut", "Linear E Gamut"}},
+        // Substance Painter, Maya and others write a space's whole name into a texture's.
+        {kTextureSpace, {"sRGB", "sRGB Tx", "sRGB Texture"}},
+        {"sRGB Encoded AP1 - Texture", {"sRGB Encoded AP1", "sRGB AP1"}},
+        {"sRGB Encoded P3-D65 - Texture", {"sRGB Encoded P3 D65", "sRGB P3 D65", "Display P3"}},
+        {"Gamma 2.2 Rec.709 - Texture", {"G22 Rec 709", "Gamma 2 2 Rec 709"}, true},
+        {"Gamma 2.2 AP1 - Texture", {"G22 AP1", "Gamma 2 2 AP1"}},
+        {kVideoSpace, {"G24 Rec 709", "Gamma 2 4 Rec 709", "Rec 709", "BT 709", "Rec 1886"}, true},
+        {find_display("rec2100_pq").title, {"Rec 2100 PQ", "Rec 2020 PQ"}},
+        {find_display("rec2100_hlg").title, {"Rec 2100 HLG", "Rec 2020 HLG"}},
+        {"ADX10", {"ADX10"}},
+        {"ADX16", {"ADX16"}},
+        {kFilmSpace, {"Cineon", "Kodak Log"}},
+        {"ARRI LogC3 (EI800)",
+         {"LogC", "LogC3", "LogC V3", "Alexa V3 LogC", "LogC EI800", "LogC3 EI800"}},
+        {"ARRI LogC4", {"LogC4", "LogC V4", "LogC AWG4", "AWG4 LogC"}},
+        {"CanonLog2 CinemaGamut D55", {"C Log2", "Canon Log2"}},
+        {"CanonLog3 CinemaGamut D55", {"C Log3", "Canon Log3"}},
+        {"V-Log V-Gamut", {"V Log", "V Log V Gamut"}},
+        {"Log3G10 REDWideGamutRGB", {"Log3G10"}},
+        {"REDLogFilm REDWideGamutRGB", {"RED Log Film"}},
+        {"S-Log3 S-Gamut3", {"S Log3", "S Gamut3", "S Log3 S Gamut3", "S Gamut3 S Log3"}},
+        {"S-Log3 S-Gamut3.Cine",
+         {"S Gamut3 Cine", "S Log3 Cine", "S Log3 S Gamut3 Cine", "S Gamut3 Cine S Log3"}},
+        {"S-Log3 Venice S-Gamut3",
+         {"Venice S Log3", "Venice S Gamut3", "S Log3 Venice S Gamut3", "S Log3 S Gamut3 Venice",
+          "Venice S Log3 S Gamut3"}},
+        {"S-Log3 Venice S-Gamut3.Cine",
+         {"Venice S Gamut3 Cine", "S Log3 Venice S Gamut3 Cine", "S Log3 S Gamut3 Cine Venice",
+          "Venice S Log3 S Gamut3 Cine"}},
+        {kDataSpace, {"Raw", "Data", "Non Color", "Utility Raw"}},
+    };
+}
+
+std::string uppercase(std::string text) {
+    for (char& c : text)
+        c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+    return text;
+}
+
+/// A word as a regular expression: every part in lower case, in capitals and as it is spelled.
+/// OpenColorIO's expressions know no flag for case.
+std::string pattern_of(const std::string& word) {
+    std::string pattern;
+    for (std::size_t begin = 0; begin <= word.size();) {
+        const std::size_t end = std::min(word.find(' ', begin), word.size());
+        const std::string part = word.substr(begin, end - begin);
+        std::vector<std::string> spellings = {part};
+        for (const std::string& other : {lowercase(part), uppercase(part)}) {
+            if (std::find(spellings.begin(), spellings.end(), other) == spellings.end())
+                spellings.push_back(other);
+        }
+        if (begin > 0) pattern += R"((?:_|\.|-| - | )?)";
+        pattern += spellings.size() == 1 ? part : fmt::format("(?:{})", fmt::join(spellings, "|"));
+        begin = end + 1;
+    }
+    return pattern;
+}
+
+/// Between separators in the last part of a path, so that a folder "raw" means nothing. Without
+/// sets of characters: OpenColorIO compiles every expression for every file, and sets take longest.
+std::string name_pattern(const std::string& words, bool is_never_exr) {
+    return fmt::format(R"({}(?:.*(?:/|\\|_|\.|-| |\())?(?:{})(?:(?:_|\.|-| |\))(?!.*(?:/|\\)).*)?)",
+                       is_never_exr ? R"((?!.*\.(?:exr|EXR)$))" : "", words);
+}
+
+/// Longer words come first: "slog3_sgamut3cine" is no S-Gamut3 although that is in it.
+std::vector<ConfigModel::FileRule> rules_by_word() {
+    struct Word {
+        std::string text;
+        const NamedSpace* named;
+    };
+    const std::vector<NamedSpace> all = named_spaces();
+    std::vector<Word> words;
+    for (const NamedSpace& named : all) {
+        for (const std::string& word : named.words)
+            words.push_back({word, &named});
+    }
+    const auto letters = [](const Word& word) {
+        return word.text.size() -
+               static_cast<std::size_t>(std::count(word.text.begin(), word.text.end(), ' '));
+    };
+    std::stable_sort(words.begin(), words.end(),
+                     [&](const Word& a, const Word& b) { return letters(a) > letters(b); });
+    std::vector<ConfigModel::FileRule> rules;
+    std::map<std::string, int> counts;
+    for (auto word = words.begin(); word != words.end();) {
+        // Words of one space that follow each other are one rule.
+        const auto end = std::find_if(
+            word, words.end(), [&](const Word& other) { return other.named != word->named; });
+        std::vector<std::string> patterns;
+        for (auto it = word; it != end; ++it)
+            patterns.push_back(pattern_of(it->text));
+        const std::string& space = word->named->space;
+        const int count = ++counts[space];
+        rules.push_back(
+            {count == 1 ? space : fmt::format("{} {}", space, count), space, "",
+             name_pattern(fmt::format("{}", fmt::join(patterns, "|")), word->named->is_never_exr)});
+        word = end;
+    }
+    return rules;
 }
 
 std::vector<ConfigModel::FileRule> make_file_rules(const std::string& working) {
     std::vector<ConfigModel::FileRule> rules;
-    const auto word = [&](const std::string& name, const std::string& space,
-                          const std::string& words) {
-        rules.push_back({name, space, "", word_pattern(words)});
-    };
-    word("ACEScg", find_input_space("lin_ap1").title, "acescg|ACEScg|lin_ap1");
-    word("ACEScct", "ACEScct", "acescct|ACEScct");
-    word("ACES2065-1", find_input_space("lin_ap0").title,
-         "aces2065-1|ACES2065-1|aces2065_1|lin_ap0|ap0");
-    word("Linear Rec.709", find_input_space("lin_rec709").title, "lin_rec709|lin_srgb");
-    word("Linear Rec.2020", find_input_space("lin_rec2020").title, "lin_rec2020");
-    word("Linear P3-D65", find_input_space("lin_p3d65").title, "lin_p3d65|lin_displayp3");
-    word("sRGB", kTextureSpace, "srgb|sRGB|srgb_tx");
-    word("LogC3", "ARRI LogC3 (EI800)", "logc3|LogC3|arri_logc3_ei800");
-    word("S-Log3", "S-Log3 S-Gamut3", "slog3|S-Log3|slog3_sgamut3");
-    word("V-Log", "V-Log V-Gamut", "vlog|V-Log|vlog_vgamut");
-    word("data", kDataSpace, "raw|data|noncolor|Non-Color");
+    // Arnold's automatic textures end in the space that they were converted to,
+    // "wood_sRGB - Texture_ACEScg.png.tx", and other converters keep the name of the source.
+    for (const NamedSpace& named : named_spaces()) {
+        const bool is_linear =
+            std::any_of(all_input_spaces().begin(), all_input_spaces().end(),
+                        [&](const InputSpace& s) { return s.title == named.space; });
+        if (!is_linear) continue;
+        std::vector<std::string> patterns;
+        for (const std::string& word : named.words)
+            patterns.push_back(pattern_of(word));
+        rules.push_back({named.space + " tx", named.space, "",
+                         fmt::format(R"((?:.*(?:/|\\|_|\.|-| ))?(?:{})(?:\..{{3,4}})?\.tx)",
+                                     fmt::join(patterns, "|"))});
+    }
+    const std::vector<ConfigModel::FileRule> by_word = rules_by_word();
+    rules.insert(rules.end(), by_word.begin(), by_word.end());
+    rules.push_back({"linear tx", working, "", R"(.*\.(?:exr|hdr|EXR|HDR)\.tx)"});
     for (const char* extension : {"exr", "hdr", "pfm"})
         rules.push_back({extension, working, extension, ""});
-    for (const char* extension :
-         {"png", "jpg", "jpeg", "tif", "tiff", "tga", "bmp", "gif", "webp", "psd"})
+    for (const char* extension : {"png", "jpg", "jpeg", "tif", "tiff", "tga", "bmp", "gif", "webp",
+                                  "psd", "heic", "heif", "jxl", "avif", "jp2", "j2k", "tx"})
         rules.push_back({extension, kTextureSpace, extension, ""});
+    // What a film scanner or a log recorder wrote; a DPX in other codes says so in its name.
+    for (const char* extension : {"dpx", "cin"})
+        rules.push_back({extension, kFilmSpace, extension, ""});
     for (const char* extension : {"mov", "mp4", "mxf", "mkv", "avi"})
         rules.push_back({extension, kVideoSpace, extension, ""});
     return rules;
@@ -387,42 +574,33 @@ std::vector<ConfigModel::View> choose_views(const ConfigOptions& options) {
     };
     if (options.views.empty()) add_standard();
     for (const std::string& wanted : options.views) {
-        const std::vector<ConfigModel::View> all = every_view();
-        if (wanted == "standard") {
+        if (wanted == "standard") {  // "Standard" is the view of that name, Blender's
             add_standard();
             continue;
         }
-        if (wanted == "all") {
+        if (is_same_name(wanted, "all")) {
             add_standard();
-            for (const auto& view : all)
+            for (const auto& view : every_view())
                 add(view);
             continue;
         }
-        const auto named = std::find_if(all.begin(), all.end(), [&](const ConfigModel::View& v) {
-            return lowercase(v.name) == lowercase(wanted);
-        });
-        if (named != all.end()) {
-            add(*named);
-            continue;
-        }
         try {
-            const ResolvedOperator op = parse_operator(wanted);
-            std::string name = op.op->view;
+            const ResolvedOperator op = resolve_operator(wanted);
+            ConfigModel::View view = view_of(*op.op, op.params.look());
             for (const Preset& preset : op.op->presets) {
-                if (&preset == op.preset) name += " " + preset.title;
+                if (&preset == op.preset) view.name += " " + preset.title;
             }
-            add({name, op, description_of(*op.op)});
+            view.op = op;
+            add(view);
         } catch (const Error& e) {
-            std::vector<std::string> names = {"standard", "all"};
-            for (const auto& view : all)
-                names.push_back(view.name);
-            throw Error("config: view is " + wanted +
-                        "; expected the name of a view or an operator (" + e.what() + ")" +
-                        did_you_mean(wanted, names));
+            throw Error(
+                fmt::format("config: view is {}; expected standard, all, or the name of a "
+                            "view or an operator ({})",
+                            wanted, e.what()));
         }
     }
     for (const auto& custom : options.custom) {
-        const ResolvedOperator op = parse_operator(custom.op);
+        const ResolvedOperator op = resolve_operator(custom.op);
         if (custom.name.empty())
             throw Error("config: the view of " + custom.op + " has no name; expected one");
         views.push_back({custom.name, op, description_of(*op.op) + " As " + op.label + "."});
@@ -454,9 +632,9 @@ std::vector<ConfigModel::Look> choose_looks(const ConfigOptions& options,
     if (options.looks.empty()) return all;
     std::vector<ConfigModel::Look> chosen;
     for (const std::string& wanted : options.looks) {
-        if (wanted == "none") continue;
+        if (is_same_name(wanted, "none")) continue;
         const auto found = std::find_if(all.begin(), all.end(), [&](const auto& look) {
-            return lowercase(look.name) == lowercase(wanted);
+            return is_same_name(look.name, wanted);
         });
         if (found == all.end()) {
             std::vector<std::string> names = {"none"};
@@ -477,6 +655,19 @@ std::string config_view_name(const std::string& name, const ResolvedOperator& op
     const double peak = std::min(op.peak() * kReferenceWhite, display.peak);
     if (!display.is_hdr || peak <= kReferenceWhite) return name;
     return name + fmt::format(" - HDR {:g} nits", peak);
+}
+
+std::string stand_ins(const ResolvedOperator& op) {
+    std::vector<std::string> constants;
+    for (const ParameterSpec& parameter : op.op->parameters) {
+        const bool is_set = op.settings.contains(parameter.name) ||
+                            (op.preset != nullptr && op.preset->settings.contains(parameter.name));
+        if (!parameter.from_picture || is_set) continue;
+        constants.push_back(fmt::format("{} {} for the {}", parameter.name,
+                                        shortest(op.params.number(parameter.name)),
+                                        parameter.statistic));
+    }
+    return fmt::format("{}", fmt::join(constants, ", "));
 }
 
 std::string output_space_name(const std::string& view, const std::string& display) {
@@ -516,6 +707,20 @@ ConfigModel make_config_model(const ConfigOptions& options) {
                                 is_working ? std::vector<std::string>{"file-io", "working-space"}
                                            : std::vector<std::string>{"file-io"},
                                 nullptr, nullptr, space.style, space.interop_id});
+    }
+    for (const LogSpace& space : log_spaces()) {
+        model.spaces.push_back({SpaceKind::log,
+                                space.name,
+                                space.aliases,
+                                space.family,
+                                space.description,
+                                "log",
+                                {"file-io"},
+                                space.primaries,
+                                nullptr,
+                                "",
+                                space.interop_id,
+                                space.curve});
     }
     for (const TextureSpace& space : texture_spaces()) {
         const Display& display = find_display(space.display);
@@ -582,6 +787,10 @@ ConfigModel make_config_model(const ConfigOptions& options) {
             model.displays.push_back(display);
     }
     model.views = choose_views(options);
+    for (auto& view : model.views) {
+        if (const std::string constants = stand_ins(view.op); !constants.empty())
+            view.description += " Measures no picture here: takes " + constants + ".";
+    }
     model.looks = choose_looks(options, model.views);
     model.default_space = find_input_space(options.working).title;
     model.roles = role_table(model.default_space);

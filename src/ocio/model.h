@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,11 +18,24 @@ struct ConfigModel {
         scene_linear,
         /// What OCIO has a BuiltinTransform to ACES2065-1 for: logs of cameras and of ACES.
         builtin,
+        /// A log that OpenColorIO 2.0 has no BuiltinTransform for.
+        log,
         /// Pictures and textures in a display's code values, read as scene light.
         texture,
         data,
         display_reference,
         display
+    };
+    /// Light is (base^((code - log_offset) / log_slope) - linear_offset) / linear_slope: the
+    /// numbers of OpenColorIO's LogAffineTransform.
+    struct LogCurve {
+        double base = 2;
+        double log_slope = 1;
+        double log_offset = 0;
+        double linear_slope = 1;
+        double linear_offset = 0;
+        /// Below this light the curve goes on as a straight line.
+        std::optional<double> linear_break = {};
     };
     struct Space {
         SpaceKind kind;
@@ -31,12 +45,13 @@ struct ConfigModel {
         std::string description;
         std::string encoding;  // OCIO's word
         std::vector<std::string> categories;
-        const Primaries* primaries = nullptr;  // linear spaces, textures and displays
+        const Primaries* primaries = nullptr;  // linear spaces, logs, textures and displays
         const Display* display = nullptr;  // displays, and the display whose curve a texture has
         std::string style = {};            // of a builtin
         /// Of the Color Interop Forum, "ocio:" before it where OpenColorIO's configs have one that
         /// the forum does not; empty: neither has. An alias as well, for libraries before 2.5.
         std::string interop_id = {};
+        LogCurve curve = {};  // of a log
     };
     struct View {
         std::string name;
@@ -57,7 +72,8 @@ struct ConfigModel {
         const Operator* op = nullptr;
         std::string description;
     };
-    /// Names of pictures -> space; the first that fits counts.
+    /// Names of pictures -> space; the first that matches counts. Longer words come first, and
+    /// words before extensions.
     struct FileRule {
         std::string name;
         std::string space;
@@ -80,6 +96,10 @@ struct ConfigModel {
 /// @throws Error  for unknown views, looks and displays, and for names that hosts cannot take: over
 ///                63 bytes, twice the same, an alias that is a role.
 [[nodiscard]] TONEWRIGHT_API ConfigModel make_config_model(const ConfigOptions& options = {});
+
+/// The constants that stand in a view for numbers that `apply` takes from the picture: "maximum 100
+/// for the maximum luminance of the picture". Empty: the operator measures nothing.
+[[nodiscard]] std::string stand_ins(const ResolvedOperator& op);
 
 inline constexpr const char* kDataSpace = "Non-Color";
 inline constexpr const char* kUntonemappedView = "Un-tone-mapped";

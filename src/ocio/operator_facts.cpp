@@ -57,6 +57,15 @@ std::string builtin_style(const ResolvedOperator& op) {
     return "";
 }
 
+std::string blender_difference(const ResolvedOperator& op) {
+    if (op.op->id != "aces_13") return "";
+    // Blender 5.2, config.ocio: its view takes the P3-limited output transforms there.
+    const std::string& limit = op.params.choice("limit");
+    if (limit != "rec2020" && limit != "none") return "";
+    return " Blender limits its ACES 1.3 to P3-D65 on such displays: --operator "
+           "aces_13:limit=p3d65.";
+}
+
 const std::vector<std::string_view>& fitted_operators() {
     static const std::vector<std::string_view> ids = {"aces_20", "agx_blender"};
     return ids;

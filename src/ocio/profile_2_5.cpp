@@ -9,40 +9,12 @@
 
 #include "ocio/interop.h"
 #include "ocio/operator_facts.h"
+#include "ocio/yaml_text.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 constexpr const char* kStandIn = "builtin:";
-
-/// As OpenColorIO writes its configs: its tags, lists and short maps on one line, long texts as
-/// blocks.
-void emit(YAML::Emitter& out, const YAML::Node& node) {
-    const std::string& tag = node.Tag();
-    const bool is_quoted = tag == "!";
-    if (!tag.empty() && tag != "?" && !is_quoted) out << YAML::VerbatimTag(tag);
-    const auto style = node.Style() == YAML::EmitterStyle::Flow ? YAML::Flow : YAML::Block;
-    switch (node.Type()) {
-        case YAML::NodeType::Map:
-            out << style << YAML::BeginMap;
-            for (const auto& item : node) {
-                out << YAML::Key << item.first.Scalar() << YAML::Value;
-                emit(out, item.second);
-            }
-            out << YAML::EndMap;
-            break;
-        case YAML::NodeType::Sequence:
-            out << style << YAML::BeginSeq;
-            for (const auto& item : node)
-                emit(out, item);
-            out << YAML::EndSeq;
-            break;
-        default:
-            if (node.Scalar().find('\n') != std::string::npos) out << YAML::Literal;
-            if (is_quoted) out << YAML::DoubleQuoted;
-            out << node.Scalar();
-    }
-}
 
 /// An empty line before every part and every space, look and view transform.
 std::string spaced(const std::string& yaml) {
@@ -119,7 +91,7 @@ std::string to_profile_2_5(const std::string& yaml, const ConfigModel& model,
         replace_stand_ins(transform);
     }
     YAML::Emitter out;
-    emit(out, config);
+    emit_as_config(out, config);
     return spaced(out.c_str());
 }
 

@@ -1,24 +1,105 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ocio/read_config.h"
 
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <sstream>
+#include <string_view>
+
+#include "base/input_file.h"
+#include "base/strings.h"
+#include "ocio/references.h"
 #include "tonewright/error.h"
+#include "tonewright/ocio.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
+namespace {
+
+/// OpenColorIO compares each name with all others when it loads a config: seconds for thousands,
+/// minutes for tens of thousands. The largest configs that studios share have several hundred.
+constexpr std::size_t kMostSpaces = 4000;
+constexpr std::size_t kMostViews = 4000;
+constexpr std::size_t kMostBytes = std::size_t{64} << 20;
+
+std::size_t count_of(std::string_view text, std::string_view word) {
+    std::size_t count = 0;
+    for (std::size_t at = text.find(word); at != std::string_view::npos;
+         at = text.find(word, at + word.size()))
+        ++count;
+    return count;
+}
+
+void check_size(const std::string& path, std::string_view yaml) {
+    const auto limit = [&](std::string_view tag, const char* what, std::size_t most) {
+        const std::size_t count = count_of(yaml, tag);
+        if (count > most) {
+            throw FileError(
+                fmt::format("read: {}: has {} {}; expected at most {}", path, count, what, most));
+        }
+    };
+    limit("!<ColorSpace>", "color spaces", kMostSpaces);
+    limit("!<View>", "views", kMostViews);
+}
+
+/// @param load  makes OpenColorIO's config
+template <class Load>
+OCIO::ConfigRcPtr checked(const std::string& path, const Load& load) {
+    try {
+        OCIO::ConfigRcPtr config = editable_copy(*load());
+        config->setProcessorCacheFlags(OCIO::PROCESSOR_CACHE_OFF);
+        check_references(*config, path);
+        return config;
+    } catch (const OCIO::Exception& e) {
+        throw FileError("read: " + path + ": " + one_line(e.what()));
+    }
+}
+
+}  // namespace
 
 OCIO::ConfigRcPtr editable_copy(const OCIO::Config& config) {
-    const OCIO::ConfigRcPtr copy = config.createEditableCopy();
+    OCIO::ConfigRcPtr copy = config.createEditableCopy();
     copy->setDefaultViewTransformName(config.getDefaultViewTransformName());
     return copy;
 }
 
+std::string read_config_text(const std::string& path) {
+    return read_file(path, kMostBytes, [&](const std::string& reason) {
+        throw FileError("read: " + path + ": " + reason);
+    });
+}
+
 OCIO::ConfigRcPtr read_config(const std::string& path) {
-    try {
-        const OCIO::ConfigRcPtr config = editable_copy(*OCIO::Config::CreateFromFile(path.c_str()));
-        config->setProcessorCacheFlags(OCIO::PROCESSOR_CACHE_OFF);
+    check_size(path, read_config_text(path));
+    return checked(path, [&] { return OCIO::Config::CreateFromFile(path.c_str()); });
+}
+
+OCIO::ConfigRcPtr read_config(const std::string& path, const std::string& text) {
+    check_size(path, text);
+    return checked(path, [&] {
+        std::istringstream stream(text);
+        OCIO::ConfigRcPtr config = editable_copy(*OCIO::Config::CreateFromStream(stream));
+        config->setWorkingDir(std::filesystem::absolute(path).parent_path().c_str());
         return config;
-    } catch (const OCIO::Exception& e) {
-        throw FileError("read: " + path + ": " + e.what());
-    }
+    });
+}
+
+void redirect_opencolorio_messages(const std::function<void(const std::string&)>& print) {
+    const auto said = std::make_shared<std::set<std::string>>();
+    const auto lock = std::make_shared<std::mutex>();
+    OCIO::SetLoggingFunction([=](const char* text) {
+        // "[OpenColorIO Warning]: ..."
+        std::string message = one_line(text);
+        if (message.starts_with('[')) {
+            const std::size_t end = message.find("]: ");
+            if (end != std::string::npos) message.erase(0, end + 3);
+        }
+        const std::scoped_lock guard(*lock);
+        if (!message.empty() && said->insert(message).second) print(message);
+    });
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -15,7 +15,15 @@ TONEWRIGHT_NAMESPACE_BEGIN
 [[nodiscard]] OCIO::ConfigRcPtr editable_copy(const OCIO::Config& config);
 
 /// Without a cache of processors: its keys ignore what is in tables.
-/// @throws FileError  for a file that is missing or no config, with OpenColorIO's reason
+/// @throws FileError  for a file that is missing or no config, with OpenColorIO's reason; for one
+/// with
+///                    thousands of spaces or views; and what check_references() throws
 [[nodiscard]] OCIO::ConfigRcPtr read_config(const std::string& path);
+
+/// The same of a text, for a config that would be at the path.
+[[nodiscard]] OCIO::ConfigRcPtr read_config(const std::string& path, const std::string& text);
+
+/// The text of a config. @throws FileError
+[[nodiscard]] std::string read_config_text(const std::string& path);
 
 TONEWRIGHT_NAMESPACE_END

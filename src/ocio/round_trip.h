@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <functional>
 #include <vector>
 
@@ -23,6 +24,8 @@ class RoundTrip {
     /// @param samples  scene light; what has negative channels is left out
     /// @param one_of  so many of them, one is taken
     RoundTrip(const View& view, const SampleSet& samples, std::size_t one_of = 1);
+    /// @param codes  that the view makes
+    RoundTrip(const View& view, std::vector<float> codes);
 
     /// Code values -> scene light in the view's input space, of so many pixels.
     using WayBack = std::function<void(const float* in, float* out, std::size_t count)>;
@@ -33,11 +36,15 @@ class RoundTrip {
     [[nodiscard]] Result measure(const WayBack& back) const;
 
   private:
-    [[nodiscard]] std::vector<double> show(const std::vector<float>& scene) const;
+    /// A plane for each channel, as the next.
+    using Planes = std::array<std::vector<double>, 3>;
+    [[nodiscard]] Planes show(const std::vector<float>& scene) const;
+    [[nodiscard]] Planes light_of(Planes codes) const;
 
     ReferenceEngine engine_;
     ReferenceEngine decode_;
     std::vector<float> codes_;
+    Planes light_;
 };
 
 TONEWRIGHT_NAMESPACE_END

@@ -73,7 +73,7 @@ OCIO::TransformRcPtr make(const BuiltinOp& op) {
 }  // namespace
 
 OCIO::TransformRcPtr to_ocio(const LoweredOp& op) {
-    const OCIO::TransformRcPtr t = std::visit([](const auto& o) { return make(o); }, op.op);
+    OCIO::TransformRcPtr t = std::visit([](const auto& o) { return make(o); }, op.op);
     if (op.is_inverse) t->setDirection(OCIO::TRANSFORM_DIR_INVERSE);
     return t;
 }

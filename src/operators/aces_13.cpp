@@ -294,7 +294,7 @@ Pipeline build(const Params& p) {
                                                        : RrtSaturation::before_glow));
     stages.push_back(ClampStage{0, kInfinity});
     stages.push_back(MatrixStage{rgb_to_rgb(kAP0, kAP1)});
-    stages.push_back(ClampStage{0, is_ocio ? kInfinity : kHalfMax});
+    stages.push_back(ClampStage{0, is_ocio ? kInfinity : static_cast<double>(kHalfMax)});
     stages.push_back(MatrixStage{saturation_matrix(0.96, ap1_weights())});
     stages.push_back(curve_stage(tone_curve(form, is_ocio)));
     const Primaries limit = limiting_primaries(p, kAP1);
@@ -352,7 +352,8 @@ std::vector<Operator> define_aces_13() {
         return display.peak >= 2000 ? "hdr_2000" : "hdr_1000";
     });
     ParameterSpec limit = limit_parameter({"none", "rec709", "p3d65", "rec2020"}, "rec709");
-    limit.help += "; none, of an sdr output: the display limits them";
+    limit.help +=
+        "; none, of an sdr output: the display limits them; Blender: p3d65 on Rec.2020 displays";
     op.parameters = {
         output,
         limit,

@@ -29,11 +29,15 @@
 #include <charconv>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <numbers>
 #include <tuple>
+#include <utility>
 
+#include "base/bounded_cache.h"
 #include "base/format_number.h"
 #include "operators/family.h"
+#include "pipeline/hue_structure.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -580,6 +584,13 @@ class OutputTransform {
         cusps_ = tables.cusps();
     }
 
+    [[nodiscard]] OutputTransform with_new_tables() const {
+        OutputTransform copy = *this;
+        for (auto* table : {&copy.reach_, &copy.cusps_[0], &copy.cusps_[1], &copy.cusps_[2]})
+            *table = std::make_shared<const Table>(**table);
+        return copy;
+    }
+
     [[nodiscard]] const Constants& constants() const { return k_; }
 
     /// AP1, limited to the input's range, to the display's RGB, not limited.
@@ -589,18 +600,24 @@ class OutputTransform {
         std::array<Expr, 3> cones = transform<Expr>(ap1_.from_rgb, inputs());
         for (Expr& x : cones)
             x = cone_response(x);
-        const Opponent<Expr> scene = opponent_of(cones);
-        const Hue hue = hue_of(scene);
+        return {rendered(cones)};
+    }
 
-        const Expr luminance = cone_of_response(scene.achromatic) / kLuminanceLevel;
-        const Expr achromatic = achromatic_of_luminance(tone_(luminance));
-        const Expr j = pow(achromatic / k_.achromatic, kLightnessPower);
-        // M goes with (J/J')^(1/kLightnessPower): the ratio of the achromatic responses.
-        const Expr m = compress_chroma(hue.m * (achromatic / max(scene.achromatic, 1e-30)), j,
-                                       achromatic, hue);
-
-        const auto [moved_j, moved_m] = move_along_line(j, m, j, hue, false);
-        return {rgb_of(display_, achromatic_of(moved_j), moved_m, hue)};
+    /// forward() in the axes of a 3D LUT. Gray plus a small multiple of the distances from it: the
+    /// largest axis, HSV's value, is nearly the achromatic response, which tone scale and hull
+    /// depend on.
+    [[nodiscard]] HueStructure structure() const {
+        const Matrix3 axes = hue_axes();
+        HueStructure result = {{MatrixStage{ap1_.from_rgb},
+                                curve_stage(cone_response(Expr::input())), MatrixStage{axes}},
+                               {rendered(transform<Expr>(inverse(axes), inputs()))},
+                               k_.peak};
+        // The hull has edges at the hues of the display's corners, the compression at AP1's.
+        for (const Vector3& corner : kCorners) {
+            result.bends.push_back(multiply(axes, responses_of(display_, scaled(corner, k_.peak))));
+            result.bends.push_back(multiply(axes, responses_of(ap1_, corner)));
+        }
+        return result;
     }
 
     /// The display's RGB, limited to its range, to AP1, not limited.
@@ -630,6 +647,53 @@ class OutputTransform {
     }
 
   private:
+    /// The display's RGB, not limited, of cone responses to light.
+    [[nodiscard]] std::array<Expr, 3> rendered(const std::array<Expr, 3>& responses) const {
+        const Opponent<Expr> scene = opponent_of(responses);
+        const Hue hue = hue_of(scene);
+
+        const Expr luminance = cone_of_response(scene.achromatic) / kLuminanceLevel;
+        const Expr achromatic = achromatic_of_luminance(tone_(luminance));
+        const Expr j = pow(achromatic / k_.achromatic, kLightnessPower);
+        // M goes with (J/J')^(1/kLightnessPower): the ratio of the achromatic responses.
+        const Expr m = compress_chroma(hue.m * (achromatic / max(scene.achromatic, 1e-30)), j,
+                                       achromatic, hue);
+
+        const auto [moved_j, moved_m] = move_along_line(j, m, j, hue, false);
+        return rgb_of(display_, achromatic_of(moved_j), moved_m, hue);
+    }
+
+    static Vector3 responses_of(const Cones& cones, const Vector3& rgb) {
+        Vector3 response = transform(cones.from_rgb, rgb);
+        for (double& x : response)
+            x = signed_cone_response(x);
+        return response;
+    }
+
+    /// Cone responses -> the axes of structure(): rows of sum 1.
+    [[nodiscard]] Matrix3 hue_axes() const {
+        constexpr double kShare = 0.05;
+        // Axes along the responses to AP1's primaries, whose sum is gray: a response grows nearly
+        // with a power of light, so the directions hardly depend on the light.
+        Matrix3 primaries{};
+        for (std::size_t c = 0; c < 3; ++c) {
+            const Vector3 response = responses_of(ap1_, scaled(kCorners[2 * c], 0.1));
+            for (std::size_t i = 0; i < 3; ++i)
+                primaries[i][c] = response[i];
+        }
+        const Vector3 gains = multiply(inverse(primaries), Vector3{1, 1, 1});
+        for (auto& row : primaries) {
+            for (std::size_t c = 0; c < 3; ++c)
+                row[c] *= gains[c];
+        }
+        Matrix3 axes = inverse(primaries);
+        for (auto& row : axes) {
+            for (std::size_t c = 0; c < 3; ++c)
+                row[c] = kShare * row[c] + (1 - kShare) * kOpponent[0][c];
+        }
+        return axes;
+    }
+
     static std::array<Expr, 3> inputs() { return {Expr::input(0), Expr::input(1), Expr::input(2)}; }
 
     [[nodiscard]] Expr achromatic_of(const Expr& j) const {
@@ -802,8 +866,14 @@ Primaries primaries_of(const Params& params) {
     return p;
 }
 
+/// Finding the numbers of the tables takes ten milliseconds: once for a display. The tables are new
+/// ones each time: expressions of the same table would be one, and two displays' views as well.
 OutputTransform transform_of(const Params& params) {
-    return {params.number("peak"), primaries_of(params)};
+    using Key = std::pair<double, Primaries>;
+    static BoundedCache<Key, OutputTransform> cache(16);
+    const Key key = {params.number("peak"), primaries_of(params)};
+    return cache.get(key, [&] { return OutputTransform(key.first, key.second); })
+        ->with_new_tables();
 }
 
 constexpr double kLowestPeak = 100;
@@ -834,7 +904,7 @@ std::vector<Operator> define_aces_20() {
                      "simd: twice as fast as with 1e-6, which takes doubles throughout; a "
                      "cube: the gamut compression bends in every direction, and jumps near the "
                      "edge of AP1"};
-    op.parameters = {
+    op.parameters = fixed_parameters({
         // The tone scale is made for 100 cd/m2 and up; below 49.8 its compression turns around.
         display_parameter(
             number_parameter("peak", "cd/m2", 100, kLowestPeak, kHighestPeak, "of the display"),
@@ -851,7 +921,7 @@ std::vector<Operator> define_aces_20() {
         text_parameter("primaries",
                        "x and y of red, green, blue and white of any other display, eight numbers; "
                        "empty: those of limit"),
-    };
+    });
     op.warnings = {
         "a peak above the display's clips: an SDR display shows light up to 100 cd/m2",
         "primaries with another white than D65 are adapted to the display's: the standard's "
@@ -861,7 +931,9 @@ std::vector<Operator> define_aces_20() {
     op.build = [](const Params& p) -> Pipeline {
         const OutputTransform output = transform_of(p);
         const Constants& k = output.constants();
-        return {ClampStage{0, k.input_limit}, output.forward(), ClampStage{0, k.peak}};
+        const CrossTalkStage forward = output.forward();
+        declare_hue_structure(forward, output.structure());
+        return {ClampStage{0, k.input_limit}, forward, ClampStage{0, k.peak}};
     };
     op.build_inverse = [](const Params& p) -> Pipeline {
         const OutputTransform output = transform_of(p);

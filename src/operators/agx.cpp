@@ -315,22 +315,22 @@ Operator godot() {
                                   {-0.164352742528393, -0.238183969428088,  1.40253671195648}}};
         // clang-format on
         constexpr double cross = 0.18;  // where toe and shoulder meet: in and out
-        const double contrast = p.number("contrast");
-        const double output_max = p.number("output_max");
-        const double a = (1 / cross - 1) * std::pow(cross, contrast);
-        const double toe_end = std::pow(cross, contrast) + a;
-        const double slope = contrast * std::pow(cross, contrast - 1) * a / (toe_end * toe_end);
-        const double height = output_max - cross;
-        const double length = p.number("white") - cross;
-        const double w = length * length / height * slope;
+        const Expr contrast = p.expr("contrast");
+        const Expr output_max = p.expr("output_max");
+        const Expr a = (1 / cross - 1) * pow(cross, contrast);
+        const Expr toe_end = pow(cross, contrast) + a;
+        const Expr slope = contrast * pow(cross, contrast - 1) * a / (toe_end * toe_end);
+        const Expr height = output_max - cross;
+        const Expr length = p.expr("white") - cross;
+        const Expr w = length * length / height * slope;
 
         const Expr x = Expr::input();
         const Expr t = pow(x, contrast);
         const Expr s = max(x - cross, 0);  // below the crossing the shoulder has a pole
         const Expr shoulder = slope * s * (1 + s / w) / (1 + slope * s / height) + cross;
         return {limit_to_positive(), MatrixStage{in},
-                curve_stage(select(less(x, cross), t / (t + a), shoulder)),
-                ClampStage{0, output_max}, MatrixStage{out}};
+                curve_stage(select(less(x, cross), t / (t + a), shoulder)), clamp_stage(output_max),
+                MatrixStage{out}};
     };
     return op;
 }

@@ -77,7 +77,7 @@ std::vector<Operator> define_camera_response() {
     op.negatives = kNegativesClampAtZero;
     op.output = OutputKind::code_value;
     op.code_power = 2.2;
-    op.parameters = {
+    op.parameters = fixed_parameters({
         text_parameter("file",
                        "response curves: .rf, CSV or DoRF's text; none: a synthetic curve, built "
                        "in"),
@@ -86,7 +86,7 @@ std::vector<Operator> define_camera_response() {
                        "columns: red, green or blue for all channels"),
         number_parameter("iso", "scene-linear", 6, 1e-5, 65504,
                          "light that irradiance 1 stands for: it is shown as the curve's end"),
-    };
+    });
     op.warnings = {
         "the response is the encoding: nothing is encoded after it, and for other "
         "displays its light is decoded with 2.2",

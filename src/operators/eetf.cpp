@@ -76,7 +76,7 @@ std::vector<ParameterSpec> with_limits(std::vector<ParameterSpec> own) {
         sdr_or_hdr_parameter("sdr: 1 is target_peak; hdr: 1 is 100 cd/m2"),
     };
     all.insert(all.end(), own.begin(), own.end());
-    return with_apply("channels", all);
+    return with_apply("channels", fixed_parameters(std::move(all)));
 }
 
 Operator eetf_operator() {

@@ -42,12 +42,6 @@ ParameterSpec maximum_luminance(std::string name, double value, double min, std:
         "maximum luminance", [](const SceneStatistics& s) { return s.maximum_luminance; });
 }
 
-/// ln(1 + x) for x >= 0. What 1 + x rounds away is missing in both parts of the quotient.
-Expr log_of_1_plus(const Expr& x) {
-    const Expr u = 1 + x;
-    return select(equal(u, 1), x, x * (log(u) / (u - 1)));
-}
-
 Operator linear() {
     Operator op;
     op.id = "linear";
@@ -64,7 +58,7 @@ Operator linear() {
         {maximum_luminance("divisor", 4, 1e-6, "scene value that is shown as display white")});
     op.build = [](const Params& p) -> Pipeline {
         const Expr x = Expr::input();
-        const double divisor = p.number("divisor");
+        const Expr divisor = p.expr("divisor");
         return tone_curve_pipeline({.f = x / divisor, .inverse = x * divisor}, p) +
                Pipeline{ClampStage{0, 1}};
     };
@@ -89,7 +83,7 @@ Operator exponential() {
             "mean luminance", [](const SceneStatistics& s) { return s.mean_luminance; })});
     op.warnings = {kChannelsMayClip};
     op.build = [](const Params& p) -> Pipeline {
-        return tone_curve_pipeline({.f = 1 - exp(-(Expr::input() / p.number("average")))}, p);
+        return tone_curve_pipeline({.f = 1 - exp(-(Expr::input() / p.expr("average")))}, p);
     };
     return op;
 }
@@ -111,8 +105,8 @@ Operator logarithmic() {
     op.warnings = {kChannelsMayClip};
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, 2.4, ""}};
     op.build = [](const Params& p) -> Pipeline {
-        const double scale = p.number("p");
-        const double at_maximum = std::log1p(scale * p.number("maximum"));
+        const Expr scale = p.expr("p");
+        const Expr at_maximum = log_of_1_plus(scale * p.expr("maximum"));
         return tone_curve_pipeline({.f = log_of_1_plus(scale * Expr::input()) / at_maximum}, p);
     };
     return op;
@@ -140,12 +134,15 @@ Operator log_tonemap() {
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, 3.9, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const Expr x = Expr::input();
-        const double contrast = p.number("contrast");
-        const Pipeline tone =
-            tone_curve_pipeline({.f = log_of_1_plus(x) / std::log1p(p.number("limit"))}, p);
-        if (contrast == 0) return tone;
-        return tone +
-               Pipeline{ClampStage{0, 1}, curve_stage(mix(x, x * x * (3 - 2 * x), contrast))};
+        const Expr contrast = p.expr("contrast");
+        Pipeline tone =
+            tone_curve_pipeline({.f = log_of_1_plus(x) / log_of_1_plus(p.expr("limit"))}, p);
+        if (contrast.is_constant(0)) return tone;
+        const auto curved = [&](const Expr& v) { return mix(v, v * v * (3 - 2 * v), contrast); };
+        if (contrast.is_constant())
+            return tone + Pipeline{ClampStage{0, 1}, curve_stage(curved(x))};
+        const Expr limited = clamp(x, 0, 1);
+        return tone + Pipeline{curve_stage(select(equal(contrast, 0), x, curved(limited)))};
     };
     return op;
 }
@@ -169,7 +166,7 @@ Operator exponentiation() {
     op.bounds.reason = "infinitely steep at black, where half floats end at 6e-8";
     op.build = [](const Params& p) -> Pipeline {
         const Expr x = Expr::input();
-        const Expr power = pow(x / p.number("maximum"), p.number("p"));
+        const Expr power = pow(x / p.expr("maximum"), p.expr("p"));
         return tone_curve_pipeline({.f = select(less(0x1p-100, x), power, 0)}, p);
     };
     return op;

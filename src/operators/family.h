@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
+
 #include "pipeline/tone_curve.h"
 #include "tonewright/pipeline.h"
 
@@ -22,6 +24,28 @@ inline constexpr Vector3 kRec2020Weights = {0.2627, 0.6780, 0.0593};
 inline Pipeline operator+(Pipeline a, const Pipeline& b) {
     a.insert(a.end(), b.begin(), b.end());
     return a;
+}
+
+/// A condition on parameters that does not hold. Of live parameters that is not known.
+inline bool fails(const Expr& condition) { return condition.is_constant(0); }
+
+/// All channels times a number.
+inline Stage scale_stage(const Expr& factor) {
+    if (factor.is_constant()) return MatrixStage{scale(kIdentity3, factor.value())};
+    return curve_stage(factor * Expr::input());
+}
+
+/// min(max(x, 0), hi) per channel.
+inline Stage clamp_stage(const Expr& hi) {
+    if (hi.is_constant()) return ClampStage{0, hi.value()};
+    return curve_stage(clamp(Expr::input(), 0, hi));
+}
+
+/// ln(1 + x) for x >= 0. What 1 + x rounds away is missing in both parts of the quotient.
+inline Expr log_of_1_plus(const Expr& x) {
+    if (x.is_constant()) return std::log1p(x.value());
+    const Expr u = 1 + x;
+    return select(equal(u, 1), x, x * (log(u) / (u - 1)));
 }
 
 /// limit_to_positive(), then the curve as the parameters of with_apply() say.

@@ -106,7 +106,7 @@ Operator hejl_2015() {
             const Expr a = 1.435 * v + 0.05;
             return (v * a + 0.004) / (v * (a + 0.55) + 0.0491) - 0.0821;
         };
-        return tone_curve_pipeline({.f = f(Expr::input()) / f(p.number("white"))}, p);
+        return tone_curve_pipeline({.f = f(Expr::input()) / f(p.expr("white"))}, p);
     };
     return op;
 }
@@ -130,11 +130,13 @@ Operator aldridge() {
         {number_parameter("cutoff", "scene-linear", 0.025, 0.001, 1,
                           "what is taken from the lights; the start is soft up to twice this")});
     op.build = [](const Params& p) -> Pipeline {
-        const double q = p.number("cutoff");
+        const Expr q = p.expr("cutoff");
         const Expr v = Expr::input();
         // v + (2q - v) clamp(2q - v, 0, 1) (0.25/q) - q
         Expr x = select(less(v, 2 * q), v * v / (4 * q), v - q);
-        if (q > 0.5) x = select(less(v, 2 * q - 1), max(v + (2 * q - v) * (0.25 / q) - q, 0), x);
+        // Nothing below 2q - 1 where that is 0.
+        if (!fails(less(0.5, q)))
+            x = select(less(v, 2 * q - 1), max(v + (2 * q - v) * (0.25 / q) - q, 0), x);
         return tone_curve_pipeline({.f = hejl_rational(x), .code_power = kBakedPower}, p);
     };
     return op;
@@ -142,28 +144,28 @@ Operator aldridge() {
 
 /// x^a/(b x^(a d) + c) through (mid_in, mid_out) and (hdr_max, 1).
 Expr lottes_curve(const Params& p) {
-    const double a = p.number("contrast");
-    const double d = p.number("shoulder");
-    const double hdr_max = p.number("hdr_max");
-    const double mid_in = p.number("mid_in");
-    const double mid_out = p.number("mid_out");
-    if (!(hdr_max > mid_in)) {
-        throw Error("hdr_max is " + shortest(hdr_max) + "; expected above mid_in, " +
-                    shortest(mid_in));
+    const Expr a = p.expr("contrast");
+    const Expr d = p.expr("shoulder");
+    const Expr hdr_max = p.expr("hdr_max");
+    const Expr mid_in = p.expr("mid_in");
+    const Expr mid_out = p.expr("mid_out");
+    if (fails(less(mid_in, hdr_max))) {
+        throw Error("hdr_max is " + shortest(hdr_max.value()) + "; expected above mid_in, " +
+                    shortest(mid_in.value()));
     }
-    const double max_a = std::pow(hdr_max, a);
-    const double max_ad = std::pow(hdr_max, a * d);
-    const double mid_a = std::pow(mid_in, a);
-    const double mid_ad = std::pow(mid_in, a * d);
-    const double b = (max_a * mid_out - mid_a) / ((max_ad - mid_ad) * mid_out);
-    const double c = (max_ad * mid_a - max_a * mid_ad * mid_out) / ((max_ad - mid_ad) * mid_out);
-    if (!(b > 0)) {
-        throw Error("mid_out is " + shortest(mid_out) + "; expected above " +
-                    shortest(mid_a / max_a) + ", where the curve has no shoulder");
+    const Expr max_a = pow(hdr_max, a);
+    const Expr max_ad = pow(hdr_max, a * d);
+    const Expr mid_a = pow(mid_in, a);
+    const Expr mid_ad = pow(mid_in, a * d);
+    const Expr b = (max_a * mid_out - mid_a) / ((max_ad - mid_ad) * mid_out);
+    const Expr c = (max_ad * mid_a - max_a * mid_ad * mid_out) / ((max_ad - mid_ad) * mid_out);
+    if (fails(less(0, b))) {
+        throw Error("mid_out is " + shortest(mid_out.value()) + "; expected above " +
+                    shortest((mid_a / max_a).value()) + ", where the curve has no shoulder");
     }
-    if (!(c > 0)) {
-        throw Error("mid_out is " + shortest(mid_out) + "; expected below " +
-                    shortest(max_ad * mid_a / (max_a * mid_ad)) +
+    if (fails(less(0, c))) {
+        throw Error("mid_out is " + shortest(mid_out.value()) + "; expected below " +
+                    shortest((max_ad * mid_a / (max_a * mid_ad)).value()) +
                     ", where the curve has no toe (a larger shoulder allows more)");
     }
     const Expr x = Expr::input();
@@ -204,21 +206,22 @@ Operator lottes() {
 
 /// The same with d = 1, in Filament's letters.
 Expr filament_curve(const Params& p) {
-    const double contrast = p.number("contrast");
-    const double mid_out = p.number("mid_out");
-    const double a = std::pow(p.number("mid_in"), contrast);
-    const double b = std::pow(p.number("hdr_max"), contrast);
-    if (!(b > a)) {
+    const Expr contrast = p.expr("contrast");
+    const Expr mid_out = p.expr("mid_out");
+    const Expr a = pow(p.expr("mid_in"), contrast);
+    const Expr b = pow(p.expr("hdr_max"), contrast);
+    if (fails(less(a, b))) {
         throw Error("hdr_max is " + shortest(p.number("hdr_max")) + "; expected above mid_in, " +
                     shortest(p.number("mid_in")));
     }
-    const double c = a - mid_out * b;
-    if (!(c < 0 && mid_out < 1)) {
-        throw Error("mid_out is " + shortest(mid_out) + "; expected between " + shortest(a / b) +
+    const Expr c = a - mid_out * b;
+    if (fails(less(c, 0) * less(mid_out, 1))) {
+        throw Error("mid_out is " + shortest(mid_out.value()) + "; expected between " +
+                    shortest((a / b).value()) +
                     ", where the curve has no shoulder, and 1, where it has no toe");
     }
-    const double input_scale = a * b * (mid_out - 1) / c;
-    const double output_scale = mid_out * (a - b) / c;
+    const Expr input_scale = a * b * (mid_out - 1) / c;
+    const Expr output_scale = mid_out * (a - b) / c;
     const Expr power = pow(Expr::input(), contrast);
     return output_scale * power / (power + input_scale);
 }
@@ -272,17 +275,17 @@ Operator ue3() {
 
 /// Two hyperbolas that meet in (c, k) with one slope: a toe from black b, a shoulder to white w.
 Expr day_curve(const Params& p) {
-    const double w = p.number("white");
-    const double b = p.number("black");
-    const double t = p.number("toe");
-    const double s = p.number("shoulder");
-    const double c = p.number("crossover");
-    if (!(b < c && c < w)) {
-        throw Error("crossover is " + shortest(c) + "; expected between black, " + shortest(b) +
-                    ", and white, " + shortest(w));
+    const Expr w = p.expr("white");
+    const Expr b = p.expr("black");
+    const Expr t = p.expr("toe");
+    const Expr s = p.expr("shoulder");
+    const Expr c = p.expr("crossover");
+    if (fails(less(b, c) * less(c, w))) {
+        throw Error("crossover is " + shortest(c.value()) + "; expected between black, " +
+                    shortest(b.value()) + ", and white, " + shortest(w.value()));
     }
-    const double k = (1 - t) * (c - b) / ((1 - s) * (w - c) + (1 - t) * (c - b));
-    const Expr x = Expr::input() / p.number("average");
+    const Expr k = (1 - t) * (c - b) / ((1 - s) * (w - c) + (1 - t) * (c - b));
+    const Expr x = Expr::input() / p.expr("average");
     const Expr below = min(x, c);
     const Expr above = max(x, c);
     // c - (1-t) b - t x and s x + (1-s) w - c of the paper
@@ -350,8 +353,8 @@ Operator schlick() {
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, 1.1, ""}};
     op.build = [](const Params& params) -> Pipeline {
         const Expr x = Expr::input();
-        const double p = params.number("p");
-        const Expr f = p * x / (p * x - x + params.number("maximum"));
+        const Expr p = params.expr("p");
+        const Expr f = p * x / (p * x - x + params.expr("maximum"));
         return tone_curve_pipeline({.f = f}, params);
     };
     return op;
@@ -390,9 +393,9 @@ Operator toe() {
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const Expr x = Expr::input();
-        const double width = p.number("width");
-        const double strength = p.number("strength");
-        const double contrast = p.number("contrast");
+        const Expr width = p.expr("width");
+        const Expr strength = p.expr("strength");
+        const Expr contrast = p.expr("contrast");
         Expr y = x;
         if (p.choice("form") == "quadratic") {
             const Expr u = min(x, width);
@@ -400,14 +403,14 @@ Operator toe() {
                 (1 - strength) * u + strength * (u * u * (2 * width - u) / (width * width));
             y = select(less(x, width), toe, x);
         } else {
-            const double white = p.number("white");
+            const Expr white = p.expr("white");
             const Expr r = x * (1 + x / (white * white)) / (1 + x);
             const Expr weight = clamp(1 - r / width, 0, 1);
             y = r - strength * weight * r;
         }
         // (y - 0.5) contrast + 0.5 + brightness
         return tone_curve_pipeline(
-            {.f = contrast * y + (p.number("brightness") + 0.5 - 0.5 * contrast)}, p);
+            {.f = contrast * y + (p.expr("brightness") + 0.5 - 0.5 * contrast)}, p);
     };
     return op;
 }

@@ -57,8 +57,8 @@ std::array<Expr, 3> to_rgb(const std::array<Expr, 3>& ictcp) {
         ictcp);
 }
 
-CrossTalkStage frostbite_mapping(double linear_end) {
-    const double rest = 1 - linear_end;
+CrossTalkStage frostbite_mapping(const Expr& linear_end) {
+    const Expr rest = 1 - linear_end;
     const auto compress = [&](const Expr& v) {
         const Expr above = max(v, linear_end) - linear_end;
         return select(less(v, linear_end), v, linear_end + rest * (1 - exp(-(above / rest))));
@@ -102,7 +102,7 @@ std::vector<Operator> define_frostbite() {
     op.parameters = {number_parameter("linear_end", "scene-linear", 0.25, 0.01, 0.99,
                                       "end of the straight part of the compression")};
     op.build = [](const Params& p) -> Pipeline {
-        return {limit_to_positive(), frostbite_mapping(p.number("linear_end"))};
+        return {limit_to_positive(), frostbite_mapping(p.expr("linear_end"))};
     };
     return {op};
 }

@@ -110,14 +110,14 @@ std::vector<Operator> define_gt7() {
     op.dialects = "Gran Turismo";
     op.bounds = {.cube = 0.26, .reason = "a cube: lights lose their chroma within 1.4 stops"};
     op.working = kRec2020;
-    op.parameters = {
+    op.parameters = fixed_parameters({
         sdr_or_hdr_parameter("sdr: 1 is the peak of a display of 250 cd/m2; hdr: 1 is 100 cd/m2"),
         display_parameter(number_parameter("peak", "cd/m2", 1000, 250, 10000,
                                            "of the display; read with output=hdr"),
                           [](const DisplayFacts& display) -> std::string {
                               return display.is_hdr ? shortest(std::max(display.peak, 250.0)) : "";
                           }),
-    };
+    });
     op.presets = {{"hdr", "for an HDR display, in units of 100 cd/m2", {{"output", "hdr"}}}};
     op.warnings = {
         "scene-linear 1 stands for 100 cd/m2: expose about 1.3 stops more than for "

@@ -38,7 +38,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 struct Hable {
-    double A, B, C, D, E, F;
+    Expr A, B, C, D, E, F;
 
     [[nodiscard]] Expr operator()(const Expr& x) const {
         return (x * (A * x + C * B) + D * E) / (x * (A * x + B) + D * F) - E / F;
@@ -46,12 +46,12 @@ struct Hable {
 };
 
 Pipeline hable_pipeline(const Hable& h, const Params& p) {
-    const double at_white = h(p.number("white")).value();
-    if (!(at_white > 0)) {
-        throw Error("curve at white is " + shortest(at_white) +
+    const Expr at_white = h(p.expr("white"));
+    if (fails(less(0, at_white))) {
+        throw Error("curve at white is " + shortest(at_white.value()) +
                     "; expected above 0 (toe_numerator below toe_denominator, larger white)");
     }
-    return tone_curve_pipeline({.f = h(p.number("exposure_bias") * Expr::input()) / at_white}, p);
+    return tone_curve_pipeline({.f = h(p.expr("exposure_bias") * Expr::input()) / at_white}, p);
 }
 
 ParameterSpec white() {
@@ -98,12 +98,12 @@ Operator uncharted() {
                      {DocumentedDifference::Kind::exceeds_white, 1.1, "gdc"},
                      {DocumentedDifference::Kind::exceeds_white, 1.7, "godot"}};
     op.build = [](const Params& p) -> Pipeline {
-        return hable_pipeline({.A = p.number("shoulder_strength"),
-                               .B = p.number("linear_strength"),
-                               .C = p.number("linear_angle"),
-                               .D = p.number("toe_strength"),
-                               .E = p.number("toe_numerator"),
-                               .F = p.number("toe_denominator")},
+        return hable_pipeline({.A = p.expr("shoulder_strength"),
+                               .B = p.expr("linear_strength"),
+                               .C = p.expr("linear_angle"),
+                               .D = p.expr("toe_strength"),
+                               .E = p.expr("toe_numerator"),
+                               .F = p.expr("toe_denominator")},
                               p);
     };
     return op;
@@ -209,20 +209,23 @@ Operator piecewise() {
     op.dialects = "Hable";
     op.parameters = with_apply(
         "channels",
-        {number_parameter("toe_strength", "", 0, 0, 1, "0: no toe; 1: black to the toe's end"),
-         number_parameter("toe_length", "", 0.5, 0, 1,
-                          "of the toe; its 2.2 power is twice the scene value where the toe ends"),
-         number_parameter("shoulder_strength", "stops", 0, 0, 16,
-                          "by how much the white of the scene is moved up"),
-         number_parameter("shoulder_length", "", 0.5, 1e-5, 1,
-                          "share of what is above the toe that the shoulder takes"),
-         number_parameter("shoulder_angle", "", 0, 0, 1,
-                          "how far the shoulder aims above white, which it then passes"),
-         number_parameter("gamma", "", 1, 0.1, 10, "power of the light that the curve puts out"),
-         display_parameter(
-             number_parameter("max_brightness", "display-linear", 1, 1, 100,
-                              "P: display peak over paper white; the curve f becomes P f(x/P)"),
-             [](const DisplayFacts& display) { return shortest(display.peak / 100); })});
+        fixed_parameters(
+            {number_parameter("toe_strength", "", 0, 0, 1, "0: no toe; 1: black to the toe's end"),
+             number_parameter(
+                 "toe_length", "", 0.5, 0, 1,
+                 "of the toe; its 2.2 power is twice the scene value where the toe ends"),
+             number_parameter("shoulder_strength", "stops", 0, 0, 16,
+                              "by how much the white of the scene is moved up"),
+             number_parameter("shoulder_length", "", 0.5, 1e-5, 1,
+                              "share of what is above the toe that the shoulder takes"),
+             number_parameter("shoulder_angle", "", 0, 0, 1,
+                              "how far the shoulder aims above white, which it then passes"),
+             number_parameter("gamma", "", 1, 0.1, 10,
+                              "power of the light that the curve puts out"),
+             display_parameter(
+                 number_parameter("max_brightness", "display-linear", 1, 1, 100,
+                                  "P: display peak over paper white; the curve f becomes P f(x/P)"),
+                 [](const DisplayFacts& display) { return shortest(display.peak / 100); })}));
     op.peak = [](const Params& params) { return params.number("max_brightness"); };
     op.presets = {{"film",
                    "a toe, two stops of highlights and a shoulder that goes on",

@@ -93,7 +93,7 @@ Operator extended() {
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const Expr x = Expr::input();
-        const double white = p.number("white");
+        const Expr white = p.expr("white");
         const Expr f = x * (1 + x / (white * white)) / (1 + x);
         return tone_curve_pipeline({.f = f}, p);
     };
@@ -127,8 +127,8 @@ Operator nebula() {
         "black: they do not divide by the luminance"};
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
     op.build = [](const Params& p) -> Pipeline {
-        const double white = p.number("maximum");
-        const Expr scaled = Expr::input() * (p.number("middle_grey") / p.number("average"));
+        const Expr white = p.expr("maximum");
+        const Expr scaled = Expr::input() * (p.expr("middle_grey") / p.expr("average"));
         const Expr f = scaled * (1 + scaled / (white * white)) / (1 + scaled);
         return tone_curve_pipeline({.f = f}, p);
     };
@@ -246,28 +246,28 @@ Operator devlin() {
     op.bounds.cube = 0.05;
     op.bounds.reason = "infinitely steep at black, where half floats end at 6e-8; else a cube's";
     op.build = [](const Params& p) -> Pipeline {
-        const double m = p.number("contrast");
+        const Expr m = p.expr("contrast");
         // Of greys the formula makes x^(1-m)/(x^(1-m) + exp(-f m)), whose slope at black has no
         // end. That of this power has none either, and no cube has to hold it.
-        const double steepness = std::max(1 - m, 0.25);
+        const Expr steepness = max(1 - m, 0.25);
         Channels in = inputs();
         for (Expr& channel : in)
             channel = pow(channel, 1 / steepness);
         const Expr L = luminance_of(in);
-        const Vector3 means = {p.number("mean_red"), p.number("mean_green"), p.number("mean_blue")};
-        const double mean_luminance = p.number("mean_luminance");
-        const double c = p.number("chromatic_adaptation");
-        const double a = p.number("light_adaptation");
-        const double f = std::exp(-p.number("intensity"));
+        const Channels means = {p.expr("mean_red"), p.expr("mean_green"), p.expr("mean_blue")};
+        const Expr mean_luminance = p.expr("mean_luminance");
+        const Expr c = p.expr("chromatic_adaptation");
+        const Expr a = p.expr("light_adaptation");
+        const Expr f = exp(-p.expr("intensity"));
         Channels out = in;
         for (std::size_t i = 0; i < 3; ++i) {
             const Expr local = c * in[i] + (1 - c) * L;
-            const double global = c * means[i] + (1 - c) * mean_luminance;
+            const Expr global = c * means[i] + (1 - c) * mean_luminance;
             const Expr adaptation = a * local + (1 - a) * global;
             out[i] = in[i] / (in[i] + pow(max(f * adaptation, 0x1p-100), m));
         }
         return {limit_to_positive(), curve_stage(pow(Expr::input(), steepness)),
-                ClampStage{0, std::pow(kHalfMax, steepness)}, CrossTalkStage{out}};
+                clamp_stage(pow(kHalfMax, steepness)), CrossTalkStage{out}};
     };
     return op;
 }

@@ -56,12 +56,6 @@ ParameterSpec display_max(double value) {
                             "luminance of the display's white");
 }
 
-/// ln(1 + x) for x >= 0. What 1 + x rounds away is missing in both parts of the quotient.
-Expr log_of_1_plus(const Expr& x) {
-    const Expr u = 1 + x;
-    return select(equal(u, 1), x, x * (log(u) / (u - 1)));
-}
-
 Operator drago() {
     Operator op;
     op.id = "drago";
@@ -90,14 +84,14 @@ Operator drago() {
     op.warnings = {kChannelsMayClip};
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, 1.5, ""}};
     op.build = [](const Params& p) -> Pipeline {
-        const double bias = p.number("bias");
-        const double maximum = p.number("maximum");
-        const double adaptation = p.number("log_average") / std::pow(1 + bias - 0.85, 5);
-        const double at_maximum = std::log1p(maximum / adaptation) / std::log(10.0);
-        const double exponent = std::log(bias) / std::log(0.5);
+        const Expr bias = p.expr("bias");
+        const Expr maximum = p.expr("maximum");
+        const Expr adaptation = p.expr("log_average") / pow(1 + bias - 0.85, 5);
+        const Expr at_maximum = log_of_1_plus(maximum / adaptation) / std::log(10.0);
+        const Expr exponent = log(bias) / std::log(0.5);
         const Expr L = Expr::input();
         const Expr base = 2 + 8 * pow(max(L / maximum, 0x1p-100), exponent);
-        const Expr f = (p.number("display_max") / 100 / at_maximum) *
+        const Expr f = (p.expr("display_max") / 100 / at_maximum) *
                        (log_of_1_plus(L / adaptation) / log(base));
         return tone_curve_pipeline({.f = f}, p);
     };
@@ -121,10 +115,10 @@ Operator ward() {
     op.warnings = {kScenesAreLuminances};
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
     op.build = [](const Params& p) -> Pipeline {
-        const double display = p.number("display_max");
-        const double threshold_ratio =
-            (1.219 + std::pow(display / 2, 0.4)) / (1.219 + std::pow(p.number("log_average"), 0.4));
-        const double m = std::pow(threshold_ratio, 2.5);
+        const Expr display = p.expr("display_max");
+        const Expr threshold_ratio =
+            (1.219 + pow(display / 2, 0.4)) / (1.219 + pow(p.expr("log_average"), 0.4));
+        const Expr m = pow(threshold_ratio, 2.5);
         return tone_curve_pipeline({.f = (m / display) * Expr::input()}, p);
     };
     return op;
@@ -133,14 +127,14 @@ Operator ward() {
 /// Tumblin and Rushmeier's fit to Stevens' and Stevens' brightness, for an eye adapted to La cd/m2:
 /// log10 of the brightness is alpha log10(L) + beta.
 struct Brightness {
-    double alpha, beta;
-
-    explicit Brightness(double La) {
-        const double log_adaptation = std::log10(La) + 0.84;
-        alpha = 0.4 * log_adaptation + 2.92;
-        beta = -0.4 * log_adaptation * log_adaptation - 2.584 * log_adaptation + 2.0208;
-    }
+    Expr alpha, beta;
 };
+
+Brightness brightness_of(const Expr& La) {
+    const Expr log_adaptation = log2(La) * std::log10(2.0) + 0.84;
+    return {0.4 * log_adaptation + 2.92,
+            -0.4 * log_adaptation * log_adaptation - 2.584 * log_adaptation + 2.0208};
+}
 
 Operator tumblin_rushmeier() {
     Operator op;
@@ -164,12 +158,11 @@ Operator tumblin_rushmeier() {
     op.deviations = {{DocumentedDifference::Kind::crushes_black, 0.060, ""},
                      {DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
     op.build = [](const Params& p) -> Pipeline {
-        const double display = p.number("display_max");
-        const double contrast = p.number("contrast_max");
-        const Brightness of_scene(p.number("log_average"));
-        const Brightness of_display(display / std::sqrt(contrast));
-        const double scale =
-            std::pow(10, (of_scene.beta - of_display.beta) / of_display.alpha) / display;
+        const Expr display = p.expr("display_max");
+        const Expr contrast = p.expr("contrast_max");
+        const Brightness of_scene = brightness_of(p.expr("log_average"));
+        const Brightness of_display = brightness_of(display / sqrt(contrast));
+        const Expr scale = pow(10, (of_scene.beta - of_display.beta) / of_display.alpha) / display;
         const Expr f = scale * pow(Expr::input(), of_scene.alpha / of_display.alpha) - 1 / contrast;
         return tone_curve_pipeline({.f = f}, p);
     };
@@ -276,7 +269,7 @@ Operator ferwerda() {
     op.licence = "published formula";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Ferwerda";
-    op.parameters = rod_parameters();
+    op.parameters = fixed_parameters(rod_parameters());
     op.bounds = rod_bounds();
     op.warnings = {kScenesAreLuminances};
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
@@ -309,6 +302,7 @@ Operator durand_dorsey_rods() {
     shift("red", 1.05);
     shift("green", 0.97);
     shift("blue", 1.27);
+    op.parameters = fixed_parameters(std::move(op.parameters));
     op.warnings = {kScenesAreLuminances};
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
     op.build = [](const Params& p) -> Pipeline {

@@ -47,17 +47,17 @@ std::vector<Operator> define_uchimura() {
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, 10, "hdr"}};
     op.peak = [](const Params& params) { return params.number("max_brightness"); };
     op.build = [](const Params& params) -> Pipeline {
-        const double P = params.number("max_brightness");
-        const double a = params.number("contrast");
-        const double m = params.number("linear_start");
-        const double l = params.number("linear_length");
-        const double c = params.number("black_tightness");
-        const double b = params.number("pedestal");
+        const Expr P = params.expr("max_brightness");
+        const Expr a = params.expr("contrast");
+        const Expr m = params.expr("linear_start");
+        const Expr l = params.expr("linear_length");
+        const Expr c = params.expr("black_tightness");
+        const Expr b = params.expr("pedestal");
 
-        const double l0 = (P - m) * l / a;
-        const double S0 = m + l0;
-        const double S1 = m + a * l0;
-        const double C2 = a * P / (P - S1);
+        const Expr l0 = (P - m) * l / a;
+        const Expr S0 = m + l0;
+        const Expr S1 = m + a * l0;
+        const Expr C2 = a * P / (P - S1);
 
         const Expr x = Expr::input();
         const Expr w0 = 1 - smoothstep(0, m, x);

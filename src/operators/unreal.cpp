@@ -96,9 +96,10 @@ std::vector<Operator> define_unreal() {
     op.licence = "Epic EULA; formula and constants as facts, no code of it is used";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Unreal";
-    op.bounds = {.cube = 2.4e-2, .reason = "a cube of glow and red modifier, before the contrast"};
+    op.bounds = {.cube = 7e-3,
+                 .reason = "fixed functions of OpenColorIO: another weight of hues about red"};
     op.working = kAP1;
-    op.parameters = {
+    op.parameters = fixed_parameters({
         number_parameter("slope", "", 0.88, 0.01, 1, "slope of the straight part, per log10"),
         number_parameter("toe", "", 0.55, 0.01, 1, "how much of the range is toe"),
         number_parameter("shoulder", "", 0.26, 0.01, 1, "how much of the range is shoulder"),
@@ -109,7 +110,7 @@ std::vector<Operator> define_unreal() {
         choice_parameter("glow_and_red", {"on", "off"}, "on",
                          "glow of dark colors and modifier of reds of the ACES rendering "
                          "transform, in AP0, before the curve"),
-    };
+    });
     op.presets = {{"legacy",
                    "settings near the tone mapper of Unreal Engine 4 before 4.15",
                    {{"slope", "0.98"},

@@ -13,6 +13,7 @@ namespace {
 template <class Items, class Name>
 std::vector<std::string> names_of(const Items& items, Name name) {
     std::vector<std::string> names;
+    names.reserve(std::size(items));
     for (const auto& item : items)
         names.push_back(name(item));
     return names;
@@ -28,6 +29,35 @@ double parse_number(const Operator& op, const ParameterSpec& spec, const std::st
                     ", " + shortest(spec.max) + "]" + (spec.unit.empty() ? "" : " " + spec.unit));
     }
     return value;
+}
+
+/// @throws Error  with the nearest name
+const ParameterSpec& find_parameter(const Operator& op, std::string_view name) {
+    for (const ParameterSpec& spec : op.parameters) {
+        if (is_same_name(spec.name, name)) return spec;
+    }
+    const auto ids = names_of(op.parameters, [](const ParameterSpec& p) { return p.name; });
+    throw Error(op.id + ": parameter is " + std::string(name) + "; expected " +
+                (ids.empty() ? "none, it has no parameters" : join_choices(ids)) +
+                did_you_mean(name, ids));
+}
+
+/// The settings under the names of the parameters, choices as the parameter has them.
+/// @throws Error  for an unknown parameter or choice, and for one parameter with two values
+Settings in_own_words(const Operator& op, const Settings& settings) {
+    Settings result;
+    for (const auto& [key, text] : settings) {
+        const ParameterSpec& spec = find_parameter(op, key);
+        std::string value = text;
+        if (spec.kind == ParameterSpec::Kind::choice)
+            value = spec.choices[find_choice(op.id + ": " + spec.name, text, spec.choices)];
+        const auto [known, is_new] = result.emplace(spec.name, value);
+        if (!is_new && known->second != value) {
+            throw Error(op.id + ": " + spec.name + " is " + known->second + " and " + value +
+                        "; expected it once");
+        }
+    }
+    return result;
 }
 
 }  // namespace
@@ -65,6 +95,12 @@ ParameterSpec display_parameter(ParameterSpec spec,
     return spec;
 }
 
+std::vector<ParameterSpec> fixed_parameters(std::vector<ParameterSpec> specs) {
+    for (ParameterSpec& spec : specs)
+        spec.is_live = false;
+    return specs;
+}
+
 ParameterSpec choice_parameter(std::string name, std::vector<std::string> choices,
                                std::string value, std::string help) {
     ParameterSpec spec;
@@ -79,7 +115,13 @@ ParameterSpec choice_parameter(std::string name, std::vector<std::string> choice
 double Params::number(std::string_view name) const {
     const auto it = numbers_.find(name);
     if (it == numbers_.end()) throw Error("operator has no number parameter " + std::string(name));
+    if (live_.contains(name)) throw Error("parameter " + std::string(name) + " is live");
     return it->second;
+}
+
+Expr Params::expr(std::string_view name) const {
+    if (live_.contains(name)) return Expr::uniform(std::string(name));
+    return number(name);
 }
 
 const std::string& Params::choice(std::string_view name) const {
@@ -94,11 +136,41 @@ const std::string& Params::text(std::string_view name) const {
     return it->second;
 }
 
+std::vector<std::string> live_parameters(const Operator& op) {
+    std::vector<std::string> names;
+    if (op.is_local()) return names;
+    for (const ParameterSpec& spec : op.parameters) {
+        if (spec.kind == ParameterSpec::Kind::number && spec.is_live) names.push_back(spec.name);
+    }
+    return names;
+}
+
+Pipeline build_live(const ResolvedOperator& resolved, const std::vector<std::string>& uniforms) {
+    const Operator& op = *resolved.op;
+    const std::vector<std::string> live = live_parameters(op);
+    Params params = resolved.params;
+    for (const std::string& name : uniforms) {
+        const std::string& own = find_parameter(op, name).name;
+        if (std::find(live.begin(), live.end(), own) == live.end()) {
+            throw Error(op.id + ": uniform is " + own + "; expected " +
+                        (live.empty() ? "none, no parameter of it is live" : join_choices(live)));
+        }
+        params.live_.insert(own);
+    }
+    return op.build(params);
+}
+
 const Preset& find_preset(const Operator& op, std::string_view id) {
     for (const Preset& preset : op.presets) {
-        if (preset.id == id) return preset;
+        if (is_same_name(preset.id, id)) return preset;
     }
     const auto ids = names_of(op.presets, [](const Preset& p) { return p.id; });
+    for (const Look& look : op.looks) {
+        if (!is_same_name(look.id, id)) continue;
+        throw Error(op.id + ": preset is " + std::string(id) + "; expected " +
+                    (ids.empty() ? "none, it has no presets" : join_choices(ids)) +
+                    "; did you mean look=" + look.id + "?");
+    }
     throw Error(op.id + ": preset is " + std::string(id) + "; expected " +
                 (ids.empty() ? "none, it has no presets" : join_choices(ids)) +
                 did_you_mean(id, ids));
@@ -135,43 +207,32 @@ ResolvedOperator resolve(const Operator& op, const Preset* preset, const Setting
     using Kind = ParameterSpec::Kind;
     ResolvedOperator resolved{&op, {}, op.id, preset, settings};
 
+    resolved.settings = in_own_words(op, settings);
     Settings merged;
     if (preset) {
         merged = preset->settings;
         resolved.label += ":" + preset->id;
     }
-    for (const auto& [key, text] : settings)
+    for (const auto& [key, text] : resolved.settings)
         merged[key] = text;
 
     for (const auto& [key, text] : merged) {
-        const ParameterSpec* spec = nullptr;
-        for (const ParameterSpec& p : op.parameters) {
-            if (p.name == key) spec = &p;
-        }
-        if (!spec) {
-            const auto ids = names_of(op.parameters, [](const ParameterSpec& p) { return p.name; });
-            throw Error(op.id + ": parameter is " + key + "; expected " +
-                        (ids.empty() ? "none, it has no parameters" : join_choices(ids)) +
-                        did_you_mean(key, ids));
-        }
-        bool is_default = text == spec->default_choice;
-        if (spec->kind == Kind::number) {
-            const double value = parse_number(op, *spec, text);
+        const ParameterSpec& spec = find_parameter(op, key);
+        // What is there without the setting.
+        const bool is_in_preset = preset && preset->settings.contains(key);
+        bool is_default = text == (is_in_preset ? preset->settings.at(key) : spec.default_choice);
+        if (spec.kind == Kind::number) {
+            const double value = parse_number(op, spec, text);
             resolved.params.numbers_[key] = value;
-            is_default = value == spec->default_value;
-        } else if (spec->kind == Kind::text) {
+            is_default = value == (is_in_preset ? parse_number(op, spec, preset->settings.at(key))
+                                                : spec.default_value);
+        } else if (spec.kind == Kind::text) {
             resolved.params.texts_[key] = text;
         } else {
-            bool known = false;
-            for (const std::string& choice : spec->choices)
-                known = known || choice == text;
-            if (!known) {
-                throw Error(op.id + ": " + key + " is " + text + "; expected " +
-                            join_choices(spec->choices) + did_you_mean(text, spec->choices));
-            }
             resolved.params.choices_[key] = text;
         }
-        if (settings.contains(key) && !is_default) resolved.label += " " + key + "=" + text;
+        if (resolved.settings.contains(key) && !is_default)
+            resolved.label += " " + key + "=" + text;
     }
     for (const ParameterSpec& spec : op.parameters) {
         switch (spec.kind) {
@@ -188,17 +249,18 @@ ResolvedOperator resolve(const Operator& op, const Preset* preset, const Setting
     }
 
     if (!look.empty()) {
-        const auto ids = names_of(op.looks, [](const Look& l) { return l.id; });
-        bool known = false;
-        for (const std::string& id : ids)
-            known = known || id == look;
-        if (!known) {
+        const auto is_meant = [&](const Look& l) {
+            return is_same_name(l.id, look) || is_same_name(l.title, look);
+        };
+        const auto found = std::find_if(op.looks.begin(), op.looks.end(), is_meant);
+        if (found == op.looks.end()) {
+            const auto ids = names_of(op.looks, [](const Look& l) { return l.id; });
             throw Error(op.id + ": look is " + std::string(look) + "; expected " +
                         (ids.empty() ? "none, it has no looks" : join_choices(ids)) +
                         did_you_mean(look, ids));
         }
-        resolved.params.look_ = std::string(look);
-        resolved.label += " look=" + std::string(look);
+        resolved.params.look_ = found->id;
+        resolved.label += " look=" + found->id;
     }
     // Parameters that are each in range can still contradict each other: the operator says so here,
     // not in the middle of a picture.

@@ -14,10 +14,9 @@ namespace {
 template <class Item>
 const Item* look_up(const std::vector<Item>& items, std::string_view name) {
     for (const Item& item : items) {
-        if (equal_ignoring_case(item.id, name) || equal_ignoring_case(item.title, name))
-            return &item;
+        if (is_same_name(item.id, name) || is_same_name(item.title, name)) return &item;
         for (const std::string& alias : item.aliases) {
-            if (equal_ignoring_case(alias, name)) return &item;
+            if (is_same_name(alias, name)) return &item;
         }
     }
     return nullptr;
@@ -27,16 +26,17 @@ template <class Item>
 const Item& find_named(const std::vector<Item>& items, std::string_view name, const char* what,
                        const std::vector<std::string>& extra) {
     if (const Item* found = look_up(items, name)) return *found;
-    std::vector<std::string> all;
+    std::vector<NamedChoice> all;
     std::vector<std::string> ids;
     for (const Item& item : items) {
         ids.push_back(item.id);
-        all.push_back(item.id);
-        all.push_back(item.title);
-        all.insert(all.end(), item.aliases.begin(), item.aliases.end());
+        all.push_back({item.id, item.aliases});
+        all.back().names.push_back(item.title);
     }
-    ids.insert(ids.end(), extra.begin(), extra.end());
-    all.insert(all.end(), extra.begin(), extra.end());
+    for (const std::string& other : extra) {
+        ids.push_back(other);
+        all.push_back({other});
+    }
     throw Error(std::string(what) + " is " + std::string(name) + "; expected " + join_choices(ids) +
                 did_you_mean(name, all));
 }
@@ -107,9 +107,11 @@ SourceColor encoded(std::string name, Pipeline decode, const Primaries& primarie
 
 /// The X.Y of "GammaX.Y", as OIIO names powers of Rec.709; or 0.
 double exponent_of(std::string_view name) {
-    constexpr std::string_view kPrefix = "Gamma";
-    if (!equal_ignoring_case(name.substr(0, kPrefix.size()), kPrefix)) return 0;
-    const std::string_view digits = name.substr(kPrefix.size());
+    constexpr std::string_view kPrefix = "gamma";
+    const std::string folded = folded_name(name);
+    if (!folded.starts_with(kPrefix)) return 0;
+    std::string_view digits = std::string_view(folded).substr(kPrefix.size());
+    if (digits.starts_with('_')) digits.remove_prefix(1);
     double exponent = 0;
     const auto [end, error] =
         std::from_chars(digits.data(), digits.data() + digits.size(), exponent);
@@ -118,29 +120,27 @@ double exponent_of(std::string_view name) {
 }
 
 /// `<curve>_<primaries>_<scene|display>`, the curve `lin`, `srgb` or `gNN` (a power, in tenths).
-std::optional<SourceColor> by_interop_pattern(std::string_view name) {
+std::optional<SourceColor> by_interop_pattern(std::string_view text) {
+    const std::string name = folded_name(text);
     const std::size_t first = name.find('_');
     const std::size_t last = name.rfind('_');
     if (first == std::string_view::npos || first == last) return std::nullopt;
-    const std::string_view curve = name.substr(0, first);
+    const std::string curve = name.substr(0, first);
     const InputSpace* space =
-        look_up(all_input_spaces(), "lin_" + std::string(name.substr(first + 1, last - first - 1)));
-    const std::string_view state = name.substr(last + 1);
-    if (!space || !(equal_ignoring_case(state, "scene") || equal_ignoring_case(state, "display")))
-        return std::nullopt;
-    if (equal_ignoring_case(curve, "lin")) return SourceColor{space->id, space->primaries};
+        look_up(all_input_spaces(), "lin_" + name.substr(first + 1, last - first - 1));
+    const std::string state = name.substr(last + 1);
+    if (!space || !(state == "scene" || state == "display")) return std::nullopt;
+    if (curve == "lin") return SourceColor{space->id, space->primaries};
     const Expr x = Expr::input();
-    if (equal_ignoring_case(curve, "srgb"))
-        return encoded(std::string(name), {curve_stage(srgb_decode(x))}, space->primaries);
+    if (curve == "srgb") return encoded(name, {curve_stage(srgb_decode(x))}, space->primaries);
     int tenths = 0;
     const auto [end, error] =
         std::from_chars(curve.data() + 1, curve.data() + curve.size(), tenths);
-    if (curve.size() != 3 || !equal_ignoring_case(curve.substr(0, 1), "g") ||
-        error != std::errc() || end != curve.data() + curve.size() || tenths < 1) {
+    if (curve.size() != 3 || curve.front() != 'g' || error != std::errc() ||
+        end != curve.data() + curve.size() || tenths < 1) {
         return std::nullopt;
     }
-    return encoded(std::string(name), {curve_stage(power_decode(x, tenths / 10.0))},
-                   space->primaries);
+    return encoded(name, {curve_stage(power_decode(x, tenths / 10.0))}, space->primaries);
 }
 
 }  // namespace
@@ -188,8 +188,9 @@ const std::vector<Display>& all_displays() {
         sdr_display("display_p3", "Display P3", {"displayp3_display", "srgb_p3d65_display"}, kP3D65,
                     srgb_encode, srgb_decode,
                     "SMPTE EG 432-1 primaries, D65, IEC 61966-2-1:1999 curve"),
-        sdr_display("rec1886", "Rec.1886", {"rec1886_rec709_display", "g24_rec709_display"},
-                    kRec709, bt1886_encode, bt1886_decode, "ITU-R BT.1886 (black 0), BT.709-6"),
+        sdr_display("rec1886", "Rec.1886",
+                    {"rec1886_rec709_display", "g24_rec709_display", "bt1886"}, kRec709,
+                    bt1886_encode, bt1886_decode, "ITU-R BT.1886 (black 0), BT.709-6"),
         sdr_display("rec2020", "Rec.2020", {"rec1886_rec2020_display", "g24_rec2020_display"},
                     kRec2020, bt1886_encode, bt1886_decode, "ITU-R BT.1886 (black 0), BT.2020-2"),
         sdr_display(
@@ -215,14 +216,14 @@ SourceColor find_source_color(std::string_view name) {
     if (const Display* display = look_up(all_displays(), name))
         return encoded(display->title, display->decode, display->primaries);
     const Expr x = Expr::input();
-    if (equal_ignoring_case(name, "Rec709"))
+    if (is_same_name(name, "Rec709"))
         return encoded("Rec709", {curve_stage(bt709_inverse_oetf(x))}, kRec709);
     if (const double exponent = exponent_of(name); exponent > 0) {
         return encoded("Gamma" + shortest(exponent), {curve_stage(power_decode(x, exponent))},
                        kRec709);
     }
     // CIE XYZ itself: its primaries are X, Y and Z.
-    if (equal_ignoring_case(name, "lin_ciexyzd65_scene"))
+    if (is_same_name(name, "lin_ciexyzd65_scene"))
         return {"lin_ciexyzd65_scene", {"CIE XYZ", {1, 0}, {0, 1}, {0, 0}, kD65}};
     if (std::optional<SourceColor> color = by_interop_pattern(name)) return *color;
     // The message of the input spaces, with the others.

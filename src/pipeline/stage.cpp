@@ -182,6 +182,32 @@ std::array<Expr, 3> apply_stage(const Stage& stage, const std::array<Expr, 3>& r
         stage);
 }
 
+Pipeline bind_uniforms(const Pipeline& pipeline, const UniformValues& values) {
+    const auto bind_all = [&](std::array<Expr, 3>& f) {
+        for (Expr& e : f)
+            e = bind_uniforms(e, values);
+    };
+    Pipeline bound = pipeline;
+    for (Stage& stage : bound) {
+        std::visit(Overloaded{[](MatrixStage&) {}, [](ClampStage&) {},
+                              [&](CurveStage& s) {
+                                  bind_all(s.f);
+                                  if (s.inverse) bind_all(*s.inverse);
+                              },
+                              [&](ToneScaleStage& s) { s.f = bind_uniforms(s.f, values); },
+                              [&](HuePreservingStage& s) { s.f = bind_uniforms(s.f, values); },
+                              [&](HexconeStage& s) {
+                                  s.offset = bind_uniforms(s.offset, values);
+                                  s.value = bind_uniforms(s.value, values);
+                                  s.chroma = bind_uniforms(s.chroma, values);
+                              },
+                              [&](CrossTalkStage& s) { bind_all(s.f); },
+                              [&](LatticeStage& s) { s.shaper = bind_uniforms(s.shaper, values); }},
+                   stage);
+    }
+    return bound;
+}
+
 std::array<Expr, 3> compose(const Pipeline& pipeline) {
     std::array<Expr, 3> rgb = {Expr::input(0), Expr::input(1), Expr::input(2)};
     for (const Stage& stage : pipeline)

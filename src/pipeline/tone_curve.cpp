@@ -25,16 +25,29 @@ Matrix3 saturation_matrix(double s, const Vector3& weights) {
     return m;
 }
 
+Stage saturation_stage(const Expr& s, const Vector3& weights) {
+    if (s.is_constant()) return MatrixStage{saturation_matrix(s.value(), weights)};
+    CrossTalkStage stage{{0, 0, 0}};
+    for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t j = 0; j < 3; ++j) {
+            const Expr entry = (1 - s) * weights[j] + (i == j ? s : Expr(0));
+            stage.f[i] = stage.f[i] + entry * Expr::input(static_cast<int>(j));
+        }
+    }
+    return stage;
+}
+
 /// The curve as norms need it: light, and 0 at 0.
 Expr norm_curve(const ToneCurve& curve, const std::string& apply) {
     // A tenth of a millionth of white: the rounding of a formula that is 0 at 0.
     constexpr double kZero = 1e-7;
-    const double at_black = evaluate(curve.f, 0.0);
-    if (at_black > kZero) {
+    const Expr black = 0;
+    const Expr at_black = substitute(curve.f, std::span(&black, 1));
+    if (at_black.is_constant() && at_black.value() > kZero) {
         throw Error("apply is " + apply + "; expected channels or hue_preserving: the curve is " +
-                    shortest(at_black) + " at black, and no ratio of the colors makes that of 0");
+                    shortest(at_black.value()) + " at black, which no ratio of colors makes of 0");
     }
-    const Expr f = at_black == 0 ? curve.f : max(curve.f, 0);
+    const Expr f = select(equal(at_black, 0), curve.f, max(curve.f, 0));
     return curve.code_power == 0 ? f : pow(f, curve.code_power);
 }
 
@@ -44,7 +57,8 @@ CrossTalkStage corrected(const Expr& f, const Params& params, const Vector3& w) 
     const Expr L = w[0] * c[0] + w[1] * c[1] + w[2] * c[2];
     const Expr Lo = substitute(f, std::span(&L, 1));
     const bool is_nonlinear = params.choice("color_correction") == "nonlinear";
-    Expr s = params.number("saturation");
+    Expr s = params.expr("saturation");
+    const bool is_live = !s.is_constant();
     if (params.choice("saturation_from") == "contrast") {
         const auto [k1, k2] = is_nonlinear ? kNonlinearFit : kLuminancePreservingFit;
         const Expr slope = derivative(f);
@@ -57,7 +71,9 @@ CrossTalkStage corrected(const Expr& f, const Params& params, const Vector3& w) 
         const Expr ratio = v / L;
         if (s.is_constant(0)) return select(less(0, L), Lo, 0);
         // 0^s is 0 for every s above 0, also where the curve is so flat that s is 0 but for that.
-        const Expr power = s.is_constant() ? pow(ratio, s) : select(less(0, v), pow(ratio, s), 0);
+        const Expr at_0 = is_live ? equal(params.expr("saturation"), 0) : 0;
+        const Expr power =
+            s.is_constant() ? pow(ratio, s) : select(less(0, v), pow(ratio, s), at_0);
         const Expr colored = is_nonlinear ? power : (ratio - 1) * s + 1;
         return select(less(0, L), colored * Lo, 0);
     };
@@ -73,7 +89,7 @@ Pipeline apply_norm(const ToneCurve& curve, const Params& params) {
     if (correction == "ratio") return {scale};
     // ((C/L - 1) s + 1) f(L) with one s for all is linear in what the norm makes.
     if (correction == "luminance_preserving" && params.choice("saturation_from") == "fixed")
-        return {scale, MatrixStage{saturation_matrix(params.number("saturation"), curve.weights)}};
+        return {scale, saturation_stage(params.expr("saturation"), curve.weights)};
     return {corrected(f, params, curve.weights)};
 }
 
@@ -84,8 +100,8 @@ void check(const Params& params) {
         throw Error("color_correction is " + correction + "; expected ratio with apply=" + apply);
     }
     if (correction != "ratio") return;
-    if (params.number("saturation") != 1) {
-        throw Error("saturation is " + shortest(params.number("saturation")) +
+    if (const Expr s = params.expr("saturation"); s.is_constant() && s.value() != 1) {
+        throw Error("saturation is " + shortest(s.value()) +
                     "; expected 1 with color_correction=ratio");
     }
     if (params.choice("saturation_from") != "fixed") {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tonewright/view.h"
 #include "base/format_number.h"
+#include "base/strings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -39,11 +40,14 @@ View make_view(ResolvedOperator op, SourceColor input, double exposure_stops,
     }
     View view{std::move(op),   std::move(input.name), exposure_stops,         std::string(display),
               reference_white, input.primaries,       std::move(input.decode)};
-    const bool is_display = display != kLinearOutput && display != kNativeOutput;
+    for (const std::string_view output : {kLinearOutput, kNativeOutput}) {
+        if (is_same_name(display, output)) view.display = output;
+    }
+    const bool is_display = view.display != kLinearOutput && view.display != kNativeOutput;
     if (reference_white != kReferenceWhite && !(is_display && find_display(display).is_hdr)) {
         throw Error("reference white is " + shortest(reference_white) + "; expected " +
                     shortest(kReferenceWhite) + " with display " + std::string(display) +
-                    ", which is none of HDR");
+                    ", which is not an HDR display");
     }
     if (!is_display) return view;
     const Display& found = find_display(display);

@@ -12,16 +12,17 @@
 #include <cstddef>
 #include <exception>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <new>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/input_file.h"
 #include "base/strings.h"
 #include "image/picture_file.h"
 #include "image/scene_meter.h"
@@ -48,31 +49,58 @@ struct Request {
     Arguments arguments;
 };
 
+/// Of the part before `?`: OpenImageIO looks there for the format, too.
 bool has_extension(const std::string& name) {
-    return OIIO::Strutil::iends_with(name, OIIO::string_view(kExtension.data(), kExtension.size()));
+    return OIIO::Strutil::iends_with(name.substr(0, name.find('?')),
+                                     OIIO::string_view(kExtension.data(), kExtension.size()));
 }
 
-/// A file of lines `name=value`, of which `file` names the picture, beside it.
+/// While a thread opens the picture of a name. Whatever OpenImageIO makes of that picture's name,
+/// it must not be one that this format opens in turn: a text that names itself would never end.
+class Opening {
+  public:
+    /// @throws Error
+    explicit Opening(const std::string& name) {
+        if (is_open_)
+            throw Error("picture is " + name + "; expected one that is not tone mapped yet");
+        is_open_ = true;
+    }
+    ~Opening() { is_open_ = false; }
+    Opening(const Opening&) = delete;
+    Opening& operator=(const Opening&) = delete;
+
+  private:
+    static thread_local bool is_open_;
+};
+thread_local bool Opening::is_open_ = false;
+
+/// A file of lines `name=value`, of which `file` names the picture, beside it. Messages quote
+/// nothing from it: the name may lead to any file that the host can read and its user cannot.
 void read_request_file(const fs::path& path, Request& request) {
-    constexpr std::uintmax_t kMostBytes = 1 << 16;
-    std::ifstream file(path);
-    if (!file || fs::file_size(path) > kMostBytes)
-        throw FileError(path.string() + ": cannot read: expected a short text");
+    constexpr std::size_t kMostBytes = 1 << 16;
+    std::istringstream file(read_file(path.string(), kMostBytes, [&](const std::string& reason) {
+        throw FileError(path.string() + ": cannot read: " + reason);
+    }));
     std::string line;
     for (int number = 1; std::getline(file, line); ++number) {
+        constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+        if (number == 1 && line.starts_with(kByteOrderMark)) line.erase(0, kByteOrderMark.size());
         const std::string_view text = OIIO::Strutil::strip(line);
         if (text.empty() || text.front() == '#') continue;
         const std::size_t equals = text.find('=');
         if (equals == std::string_view::npos || equals == 0) {
-            throw FileError(fmt::format("{}: line {} is {}; expected name=value", path.string(),
-                                        number, printable(text)));
+            throw FileError(fmt::format("{}: line {} is no setting; expected name=value",
+                                        path.string(), number));
         }
         const std::string name(OIIO::Strutil::strip(std::string(text.substr(0, equals))));
         const std::string value(OIIO::Strutil::strip(std::string(text.substr(equals + 1))));
         if (name == "file") {
             request.picture = (path.parent_path() / value).string();
+        } else if (!is_tonemap_argument(name)) {
+            throw FileError(fmt::format("{}: line {} sets something unknown; expected file, {}",
+                                        path.string(), number, tonemap_argument_choices()));
         } else {
-            request.arguments.emplace(name, value);  // what the name says counts more
+            request.arguments.emplace(name, value);  // settings in the name take precedence
         }
     }
     if (request.picture.empty())
@@ -112,7 +140,7 @@ TonemapOptions parse_options(const Arguments& arguments, const ImageSpec& config
     for (const auto& [name, value] : arguments)
         set_tonemap_argument(options, name, value);
     if (options.op.empty())
-        throw Error("op is missing; expected ?op=OPERATOR, of `tonewright list`");
+        throw Error("op is missing; expected ?op=OPERATOR, an id from `tonewright list`");
     return options;
 }
 
@@ -139,14 +167,11 @@ class TonemappedInput final : public ImageInput {
     bool open(const std::string& name, ImageSpec& spec, const ImageSpec& config) override {
         close();
         const bool is_open = guarded([&] {
+            const Opening opening(name);
             const Request request = parse_request(name);
             path_ = request.picture;
             tonemapper_.emplace(parse_options(request.arguments, config));
-            picture_ = ImageInput::open(path_, &config);
-            if (!picture_) {
-                throw FileError(fmt::format("{}: cannot read: {}", path_,
-                                            why_not_open(path_, OIIO::geterror())));
-            }
+            picture_ = open_picture(path_, &config);
             go_to(0, 0);
         });
         if (is_open) {
@@ -227,9 +252,9 @@ class TonemappedInput final : public ImageInput {
                 step();
                 return true;
             } catch (const std::bad_alloc&) {
-                errorfmt("tonewright: {}: not enough memory", path_);
+                errorfmt("tonewright: {}: not enough memory", one_line(path_));
             } catch (const std::exception& e) {
-                errorfmt("tonewright: {}", e.what());
+                errorfmt("tonewright: {}", one_line(e.what()));
             } catch (...) {
                 errorfmt("tonewright: unknown error");
             }
@@ -257,6 +282,7 @@ class TonemappedInput final : public ImageInput {
                 throw Error(path_ + " is deep; expected flat pixels (oiiotool --flatten)");
             check_pixel_type("picture", source.format);
             source.channelformats.clear();  // all channels are read in the widest of them
+            complete_channel_names(source);
             ImageSpec result = result_spec(*tonemapper_, source);
             result.tile_width = source.tile_width;
             result.tile_height = source.tile_height;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The Python module `tonewright`.
+// The compiled part of the Python module `tonewright`. Its __init__.py has the public functions:
+// they check types, so that wrong calls raise what Python raises, and pass options on by their
+// names.
 //
 // OpenImageIO's own Python module and this one know each other's types (pybind11 shares them where
 // both were built with the same of it), so that an ImageBuf of the one goes into the other.
@@ -9,6 +11,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <cerrno>
 #include <cstddef>
 #include <exception>
 #include <optional>
@@ -17,14 +20,19 @@
 #include <vector>
 
 #include "base/atomic_file.h"
+#include "base/strings.h"
 #include "image/lut_picture.h"
 #include "image/tonemap_arguments.h"
 #include "tonewright/engine.h"
+#include "tonewright/generated_files.h"
 #include "tonewright/image_io.h"
 #include "tonewright/lut.h"
 #include "tonewright/lut_applications.h"
+#include "tonewright/meter.h"
+#include "tonewright/ocio.h"
 #include "tonewright/registry.h"
 #include "tonewright/tonemap.h"
+#include "tonewright/verify.h"
 #include "tonewright/view.h"
 
 namespace py = pybind11;
@@ -38,13 +46,37 @@ using OIIO::ImageSpec;
 /// As the command line has it.
 std::string text_of(const py::handle& value) {
     if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "yes" : "no";
-    return py::str(value);
+    std::string text = py::str(value);
+    // The system and messages end there.
+    if (text.find('\0') != std::string::npos) throw py::value_error("embedded null character");
+    return text;
+}
+
+/// The library's messages name the commands that list things; Python has functions.
+std::string in_python(std::string message) {
+    for (const auto& [command, function] :
+         {std::pair<std::string, const char*>("`tonewright list --hosts`", "applications()"),
+          std::pair<std::string, const char*>("`tonewright list`", "operators()")}) {
+        for (std::size_t at = 0; (at = message.find(command)) != std::string::npos;)
+            message.replace(at, command.size(), function);
+    }
+    return message;
+}
+
+/// OSError, or the one of its classes that a reason has.
+PyObject* file_error_of(const std::string& message) {
+    for (const auto& [number, type] :
+         {std::pair(ENOENT, PyExc_FileNotFoundError), std::pair(EACCES, PyExc_PermissionError),
+          std::pair(EISDIR, PyExc_IsADirectoryError)}) {
+        if (message.ends_with(reason_of(number))) return type;
+    }
+    return PyExc_OSError;
 }
 
 /// `settings` is a dictionary of the operator's parameters.
 TonemapOptions parse_options(const std::string& op, const py::kwargs& arguments) {
     TonemapOptions options;
-    options.op = op;
+    options.op = text_of(py::str(op));
     for (const auto& [key, value] : arguments) {
         const std::string name = py::str(key);
         if (name != "settings") {
@@ -53,12 +85,12 @@ TonemapOptions parse_options(const std::string& op, const py::kwargs& arguments)
         }
         if (value.is_none()) continue;
         for (const auto& [parameter, number] : value.cast<py::dict>())
-            options.settings[py::str(parameter)] = py::str(number);
+            options.settings[text_of(parameter)] = text_of(number);
     }
     return options;
 }
 
-OIIO::TypeDesc pixel_type_of(const py::array& array) {
+OIIO::TypeDesc pixel_type_of(const char* function, const py::array& array) {
     const py::dtype type = array.dtype();
     const bool is_native = type.attr("isnative").cast<bool>();
     const std::pair<char, int> kind = {type.kind(), static_cast<int>(type.itemsize())};
@@ -71,7 +103,8 @@ OIIO::TypeDesc pixel_type_of(const py::array& array) {
                                             std::pair(std::pair('u', 4), Type(Type::UINT32))}) {
         if (known == kind && is_native) return pixel_type;
     }
-    throw Error("tonemap: array is of " + py::str(py::handle(type)).cast<std::string>() +
+    throw Error(std::string(function) + ": array is of " +
+                py::str(py::handle(type)).cast<std::string>() +
                 "; expected float16, float32, float64, uint8, uint16 or uint32");
 }
 
@@ -119,21 +152,40 @@ ImageBuf tonemap_picture(const ImageBuf& source, const TonemapOptions& options, 
     return result;
 }
 
-py::array tonemap_array(const py::array& given, const TonemapOptions& options, int nthreads,
-                        const py::object& progress) {
-    const OIIO::TypeDesc type = pixel_type_of(given);
-    const py::array array = py::array::ensure(given, py::array::c_style);
-    if (!array || array.ndim() < 2 || array.ndim() > 3 || array.size() == 0)
-        throw Error("tonemap: array has the shape " + std::string(py::str(given.attr("shape"))) +
+/// An array as a picture, which looks at the array's memory.
+struct ArrayPicture {
+    /// Contiguous: the one that was given, or a copy.
+    py::array array;
+    ImageBuf picture;
+};
+
+ArrayPicture picture_of(const char* function, const py::array& given) {
+    const OIIO::TypeDesc type = pixel_type_of(function, given);
+    py::array array = py::array::ensure(given, py::array::c_style);
+    const std::string shape = py::str(given.attr("shape"));
+    if (!array || array.ndim() < 2 || array.ndim() > 3 || array.size() == 0) {
+        throw Error(std::string(function) + ": array has the shape " + shape +
                     "; expected (height, width) or (height, width, channels)");
+    }
     const auto count = static_cast<int>(array.ndim() == 3 ? array.shape(2) : 1);
+    // Channels first, as in PyTorch: such an array would be taken for a picture of three rows.
+    if (count > 4 && (array.shape(0) == 3 || array.shape(0) == 4)) {
+        throw Error(std::string(function) + ": array has the shape " + shape +
+                    "; expected (height, width, channels), or axis=0");
+    }
     ImageSpec spec(static_cast<int>(array.shape(1)), static_cast<int>(array.shape(0)), count, type);
     if (count == 2) {
         spec.channelnames = {"Y", "A"};
         spec.alpha_channel = 1;
     }
     // The pixels are only read.
-    const ImageBuf source(spec, const_cast<void*>(array.data()));
+    ImageBuf picture(spec, const_cast<void*>(array.data()));
+    return {std::move(array), std::move(picture)};
+}
+
+py::array tonemap_array(const py::array& given, const TonemapOptions& options, int nthreads,
+                        const py::object& progress) {
+    const auto [array, source] = picture_of("tonemap", given);
     const ImageBuf result = tonemap_picture(source, options, {}, nthreads, progress);
     std::vector<py::ssize_t> shape = {array.shape(0), array.shape(1)};
     if (array.ndim() == 3 || result.nchannels() > 1) shape.push_back(result.nchannels());
@@ -174,7 +226,7 @@ py::array evaluate_colors(const std::string& op, const py::object& colors,
                           const py::kwargs& arguments) {
     const TonemapOptions options = parse_options(op, arguments);
     const SourceColor input =
-        find_source_color(options.input == kAutoInput ? "lin_rec709" : options.input);
+        find_source_color(is_same_name(options.input, kAutoInput) ? "lin_rec709" : options.input);
     const View view = make_view(resolve_operator(options.op, options.settings, options.look), input,
                                 options.exposure_stops, options.display, options.reference_white);
     const bool is_float = py::isinstance<py::array_t<float>>(colors);
@@ -202,6 +254,21 @@ py::array evaluate_colors(const std::string& op, const py::object& colors,
     return to;
 }
 
+py::dict describe(const ParameterSpec& p);
+py::dict describe(const Operator& op);
+py::dict describe(const Display& display);
+py::dict describe(const LutApplication& application);
+py::dict describe(const ParityRow& row);
+
+/// A dict for each value.
+template <class Values>
+py::list describe_all(const Values& values) {
+    py::list all;
+    for (const auto& value : values)
+        all.append(describe(value));
+    return all;
+}
+
 py::dict describe(const ParameterSpec& p) {
     py::dict d;
     d["name"] = p.name;
@@ -219,54 +286,93 @@ py::dict describe(const ParameterSpec& p) {
     return d;
 }
 
-py::list list_operators() {
-    py::list all;
-    for (const Operator& op : all_operators()) {
-        py::list parameters;
-        for (const ParameterSpec& p : op.parameters)
-            parameters.append(describe(p));
-        py::dict presets;
-        for (const Preset& preset : op.presets)
-            presets[py::str(preset.id)] = preset.settings;
-        py::dict looks;
-        for (const Look& look : op.looks)
-            looks[py::str(look.id)] = look.help;
-        py::dict d;
-        d["id"] = op.id;
-        d["title"] = op.title;
-        d["view"] = op.view;
-        d["character"] = op.character;
-        d["source"] = op.source;
-        d["parameters"] = parameters;
-        d["presets"] = presets;
-        d["looks"] = looks;
-        all.append(d);
-    }
-    return all;
+py::dict describe(const Operator& op) {
+    py::dict presets;
+    for (const Preset& preset : op.presets)
+        presets[py::str(preset.id)] = preset.settings;
+    py::dict looks;
+    for (const Look& look : op.looks)
+        looks[py::str(look.id)] = look.help;
+    py::dict d;
+    d["id"] = op.id;
+    d["title"] = op.title;
+    d["view"] = op.view;
+    d["character"] = op.character;
+    d["source"] = op.source;
+    d["parameters"] = describe_all(op.parameters);
+    d["presets"] = presets;
+    d["looks"] = looks;
+    return d;
+}
+
+py::dict describe(const Display& display) {
+    py::dict d;
+    d["id"] = display.id;
+    d["title"] = display.title;
+    d["aliases"] = display.aliases;
+    d["source"] = display.source;
+    d["hdr"] = display.is_hdr;
+    d["peak"] = display.peak;
+    return d;
+}
+
+py::dict describe(const LutApplication& application) {
+    py::dict d;
+    d["id"] = application.id;
+    d["title"] = application.title;
+    d["format"] = name_of(application.format);
+    d["size"] = application.size;
+    d["input_encoding"] = application.encoding;
+    d["display"] = application.display;
+    d["steps"] = application.steps;
+    return d;
+}
+
+py::dict describe(const ParityRow& row) {
+    py::dict d;
+    d["operator"] = row.op;
+    d["display"] = row.display;
+    d["backend"] = row.form;
+    d["max"] = row.max;
+    d["p999"] = row.p999;
+    d["mean"] = row.mean;
+    d["bound"] = row.bound;
+    d["ok"] = row.is_ok;
+    d["note"] = row.note;
+    return d;
 }
 
 py::dict bake_file(const std::string& op, const std::string& file, const std::string& host,
-                   std::optional<std::string> format, std::optional<std::string> input_encoding,
-                   std::optional<int> size, std::optional<int> depth, const py::kwargs& arguments) {
+                   const std::optional<std::string>& format,
+                   const std::optional<std::string>& input_encoding, std::optional<int> size,
+                   std::optional<int> depth, const py::kwargs& arguments) {
     TonemapOptions options = parse_options(op, arguments);
     const LutApplication* reader = host.empty() ? nullptr : &find_lut_application(host);
     LutRequest request;
-    request.format =
-        parse_lut_format(format.value_or(reader ? name_of(reader->format) : std::string("cube")));
+    std::optional<LutFormat> named;
+    if (format) named = parse_lut_format(*format);
+    request.format = lut_format_of_file(file, named, reader);
     request.encoding =
         parse_input_encoding(input_encoding.value_or(reader ? reader->encoding : "acescct"));
-    if (options.input == kAutoInput) options.input = request.encoding.default_input;
-    if (reader && !arguments.contains("display")) options.display = reader->display;
-    if (reader && !format) {
-        request.size = reader->size;
-        request.bits = reader->bits;
-        request.dimension = LutDimension::three;
+    const bool is_own_encoding = reader && !input_encoding;
+    if (is_same_name(options.input, kAutoInput)) {
+        options.input = is_own_encoding ? lut_input_of(*reader, *resolve_operator(options.op).op)
+                                        : request.encoding.default_input;
     }
-    if (size) request.size = size;
-    if (depth) request.bits = depth;
+    if (reader && !arguments.contains("display")) options.display = reader->display;
     request.view =
         make_view(resolve_operator(options.op, options.settings, options.look), options.input,
                   options.exposure_stops, options.display, options.reference_white);
+    if (reader && !format) {
+        request.bits = reader->bits;
+        // As `bake` does: one curve for each channel is exact as a 1D table.
+        if (!reader->takes_any_primaries || !is_per_channel(build_view(request.view))) {
+            request.size = reader->size;
+            request.dimension = LutDimension::three;
+        }
+    }
+    if (size) request.size = size;
+    if (depth) request.bits = depth;
     BakedLut baked;
     {
         const py::gil_scoped_release release;
@@ -279,8 +385,7 @@ py::dict bake_file(const std::string& op, const std::string& file, const std::st
             if (bits == 16) type = OIIO::TypeUInt16;
             write_image_atomically(make_lut_picture(baked.lut, request.format), file, type);
         } else {
-            write_text_atomically(file,
-                                  write_lut(baked.lut, request, baked.error, baked.other_error));
+            write_text_atomically(file, write_lut(baked, request));
         }
     }
     py::dict result;
@@ -292,76 +397,153 @@ py::dict bake_file(const std::string& op, const std::string& file, const std::st
     return result;
 }
 
-constexpr const char* kOptions = R"(
-Keyword options, as on the command line:
-  settings         dict of the operator's parameters, see operators()
-  exposure         stops before the operator (0)
-  input            "auto", a scene-linear space ("lin_ap1"), or an encoding ("sRGB", "Gamma2.2")
-  display          "srgb", "rec1886", "rec2100_pq", ..., "linear" or "native"
-  look             look of the operator
-  reference_white  what an HDR display shows light 1 at, cd/m2 (100)
-)";
+void tonemap_into_file(const std::string& in, const std::string& out, const std::string& op,
+                       const std::string& type, int nthreads, int subimage,
+                       const py::kwargs& arguments) {
+    const TonemapOptions options = parse_options(op, arguments);
+    const OIIO::TypeDesc pixel_type =
+        type.empty() ? OIIO::TypeDesc(OIIO::TypeUnknown) : parse_pixel_type(type);
+    const py::gil_scoped_release release;
+    WriteOptions write;
+    write.type = pixel_type;
+    write.says_how = true;
+    tonemap_file(Tonemapper(options), in, out, write, nthreads, subimage);
+}
+
+py::dict describe(const Metering& metering, const ExposureRule& rule, double delta) {
+    py::dict d;
+    d["pixels"] = metering.counted;
+    d["black"] = metering.black;
+    d["nan"] = metering.nan;
+    d["infinite"] = metering.infinite;
+    d["uncovered"] = metering.uncovered;
+    d["log_average"] = metering.log_average;
+    d["geometric_mean"] = metering.geometric_mean;
+    d["mean"] = metering.mean;
+    d["minimum"] = metering.minimum;
+    d["maximum"] = metering.maximum;
+    d["histogram_average"] = metering.histogram_average;
+    py::dict percentiles;
+    for (std::size_t i = 0; i < metering.percentiles.size(); ++i)
+        percentiles[py::float_(Metering::kPercents[i])] = metering.percentiles[i];
+    d["percentiles"] = percentiles;
+    const double luminance = metered_luminance(metering, rule.method, delta);
+    d["luminance"] = luminance;
+    d["ev100"] = ev100(luminance);
+    d["exposure"] = suggested_exposure(luminance, rule);
+    return d;
+}
+
+py::dict meter_any(const py::object& image, const std::string& method, std::optional<double> key,
+                   double compensation, double delta, double low, double high,
+                   const std::string& input, const std::string& unpremult, int subimage,
+                   int nthreads) {
+    TonemapOptions alpha;
+    set_tonemap_argument(alpha, "unpremult", unpremult);
+    MeterOptions options;
+    options.input = input;
+    options.unpremult = alpha.unpremult;
+    options.subimage = subimage;
+    options.delta = delta;
+    options.low_percentile = low;
+    options.high_percentile = high;
+    check_meter_options(options);
+    ExposureRule rule;
+    rule.method = parse_meter_method(method);
+    rule.key = key;
+    rule.compensation = compensation;
+    check_exposure_rule(rule);
+    Metering metering;
+    if (py::isinstance<ImageBuf>(image)) {
+        const auto& picture = image.cast<const ImageBuf&>();
+        const py::gil_scoped_release release;
+        metering = meter(picture, options, nthreads);
+    } else if (py::isinstance<py::array>(image)) {
+        const ArrayPicture pixels = picture_of("meter", image.cast<py::array>());
+        const py::gil_scoped_release release;
+        metering = meter(pixels.picture, options, nthreads);
+    } else if (!py::isinstance<py::str>(image)) {
+        throw py::type_error("meter: image is a " +
+                             std::string(py::str(py::type::of(image).attr("__name__"))) +
+                             "; expected a path, a numpy array or an OpenImageIO.ImageBuf");
+    } else {
+        const auto path = image.cast<std::string>();
+        const py::gil_scoped_release release;
+        metering = meter_file(path, options, nthreads);
+    }
+    return describe(metering, rule, delta);
+}
+
+void write_config(const std::string& folder, const std::vector<std::string>& profiles,
+                  const std::vector<std::string>& views, const std::vector<std::string>& displays,
+                  const std::vector<std::string>& looks, const std::string& working,
+                  const std::vector<std::pair<std::string, std::string>>& custom,
+                  const std::vector<double>& exposure_stops) {
+    ConfigOptions options;
+    options.profiles = profiles;
+    options.views = views;
+    options.displays = displays;
+    options.looks = looks;
+    options.working = find_input_space(working).id;
+    options.exposure_stops = exposure_stops;
+    for (const auto& [name, op] : custom)
+        options.custom.push_back({name, op});
+    const py::gil_scoped_release release;
+    check_config_options(options);
+    require_writable_folder(folder);
+    write_generated_files(folder, make_config(options), "config.ocio");
+}
+
+py::list verify_operators(const std::vector<std::string>& operators,
+                          const std::vector<std::string>& displays, const std::string& input,
+                          const std::string& config, bool is_quick, bool with_gpu) {
+    VerifyOptions options;
+    options.operators = operators;
+    options.displays = displays;
+    options.input = input;
+    options.config = config;
+    options.with_gpu = with_gpu;
+    if (is_quick) {
+        options.lattice_edge = 9;
+        options.random_count = 10000;
+        options.only_best_target = true;
+    }
+    std::vector<ParityRow> rows;
+    {
+        const py::gil_scoped_release release;
+        rows = verify(options);
+    }
+    return describe_all(rows);
+}
 
 }  // namespace
 TONEWRIGHT_NAMESPACE_END
 
-PYBIND11_MODULE(tonewright, m) {
+PYBIND11_MODULE(_tonewright, m) {
     namespace tw = tonewright;
-    m.doc() = "Tone mapping operators: pictures, colors and lookup tables.";
-
+    // NOLINTNEXTLINE(performance-unnecessary-value-param): pybind11 calls it with a copy.
     py::register_exception_translator([](std::exception_ptr error) {
         try {
             if (error) std::rethrow_exception(error);
         } catch (const tw::FileError& e) {
-            PyErr_SetString(PyExc_OSError, e.what());
+            PyErr_SetString(tw::file_error_of(e.what()),
+                            tw::in_python(tw::one_line(e.what())).c_str());
         } catch (const tw::Error& e) {
-            PyErr_SetString(PyExc_ValueError, e.what());
+            PyErr_SetString(PyExc_ValueError, tw::in_python(tw::one_line(e.what())).c_str());
         }
     });
-
-    static const std::string tonemap_doc =
-        std::string(R"(Tone maps a picture into a new one of floats.
-
-image: an OpenImageIO.ImageBuf, or a numpy array of shape (height, width) or (height, width,
-channels): float16, float32, float64, or uint8, uint16, uint32, which stand for [0, 1]. The first
-three channels are color (or the first of one or two), the fourth (second) is alpha, with which
-color is multiplied unless `unpremult` is "no".
-op: operator id, optionally with :preset.
-
-Returns what it was given: an ImageBuf or an array of float32.
-Raises ValueError for options or pictures that cannot be, OSError for files.
-)") + tw::kOptions +
-        R"(  unpremult        "auto", "yes" or "no": divide color by alpha before
-  statistics       "picture" or "defaults": parameters that a picture has
-  roi              OpenImageIO.ROI, of an ImageBuf
-  nthreads         0: all
-  progress         called with the part that is done; True stops
-
-Example: tonewright.tonemap(OpenImageIO.ImageBuf("shot.exr"), "agx_blender", exposure=1)
-)";
+    m.attr("__version__") = TONEWRIGHT_VERSION;
     m.def("tonemap", &tw::tonemap_any, py::arg("image"), py::arg("op"), py::kw_only(),
-          py::arg("roi") = py::none(), py::arg("nthreads") = 0, py::arg("progress") = py::none(),
-          tonemap_doc.c_str());
-    static const std::string evaluate_doc = std::string(R"(The view's code values of colors.
-
-colors: shape (..., 3). float32 goes through the SIMD engine and comes back as float32; all other
-numbers through the double-precision reference, as float64. There is no picture: parameters that one
-has have their defaults.
-)") + tw::kOptions + "\nExample: tonewright.evaluate(\"hable\", [0.18, 0.18, 0.18])\n";
-    m.def("evaluate", &tw::evaluate_colors, py::arg("op"), py::arg("colors"), evaluate_doc.c_str());
-    m.def("operators", &tw::list_operators,
-          "All operators: a list of dicts with id, title, parameters, presets, looks, source.");
-    static const std::string bake_doc =
-        std::string(R"(Writes a lookup table, and returns its size and measured error.
-
-file: replaced only when the new one is whole.
-host: application that reads it ("resolve"; `tonewright list --hosts`): format, size, input and
-display are then what it expects, unless given.
-format, input_encoding, size, depth: as those of `tonewright bake`.
-)") + tw::kOptions +
-        "\nExample: tonewright.bake(\"agx_blender\", \"agx.cube\", host=\"resolve\")\n";
-    m.def("bake", &tw::bake_file, py::arg("op"), py::arg("file"), py::kw_only(),
-          py::arg("host") = "", py::arg("format") = py::none(),
-          py::arg("input_encoding") = py::none(), py::arg("size") = py::none(),
-          py::arg("depth") = py::none(), bake_doc.c_str());
+          py::arg("roi"), py::arg("nthreads"), py::arg("progress"));
+    m.def("tonemap_file", &tw::tonemap_into_file, py::arg("source"), py::arg("target"),
+          py::arg("op"), py::kw_only(), py::arg("type"), py::arg("nthreads"), py::arg("subimage"));
+    m.def("evaluate", &tw::evaluate_colors, py::arg("op"), py::arg("colors"));
+    m.def("meter", &tw::meter_any);
+    m.def("operators", [] { return tw::describe_all(tw::all_operators()); });
+    m.def("displays", [] { return tw::describe_all(tw::all_displays()); });
+    m.def("applications", [] { return tw::describe_all(tw::all_lut_applications()); });
+    m.def("bake", &tw::bake_file, py::arg("op"), py::arg("file"), py::kw_only(), py::arg("host"),
+          py::arg("format"), py::arg("input_encoding"), py::arg("size"), py::arg("depth"));
+    m.def("make_config", &tw::write_config);
+    m.def("verify", &tw::verify_operators);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tonewright/registry.h"
 
-#include <algorithm>
+#include <map>
 
 #include "base/strings.h"
 #include "local/operators.h"
@@ -9,41 +9,173 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-struct OperatorText {
-    std::string name;
-    Settings settings;
+/// What a name stands for.
+struct NamedOperator {
+    const Operator* op = nullptr;
+    const Preset* preset = nullptr;
     std::string look;
 };
 
-OperatorText split_operator_text(std::string_view text) {
-    OperatorText parts;
-    auto& [name, settings, look] = parts;
-    std::size_t begin = 0;
-    while (begin <= text.size()) {
-        const std::size_t end = std::min(text.find(':', begin), text.size());
-        const std::string part(text.substr(begin, end - begin));
-        const std::size_t equals = part.find('=');
-        if (equals == std::string::npos) {
-            name += (name.empty() ? "" : ":") + part;
-        } else if (part.substr(0, equals) == "look") {
-            look = part.substr(equals + 1);
+/// By folded name. Ids come first, so that no title can hide one.
+const std::map<std::string, NamedOperator>& operators_by_name() {
+    static const std::map<std::string, NamedOperator> all = [] {
+        std::map<std::string, NamedOperator> names;
+        const auto for_each = [&](const auto& add) {
+            for (const std::vector<Operator>* operators : {&all_operators(), &local_operators()}) {
+                for (const Operator& op : *operators)
+                    add(op);
+            }
+        };
+        for_each([&](const Operator& op) {
+            names.emplace(folded_name(op.id), NamedOperator{&op, nullptr, {}});
+        });
+        for_each([&](const Operator& op) {
+            for (const std::string& name : {op.view, op.title}) {
+                if (name.empty()) continue;
+                names.emplace(folded_name(name), NamedOperator{&op, nullptr, {}});
+                for (const Look& look : op.looks) {
+                    names.emplace(folded_name(name + " " + look.title),
+                                  NamedOperator{&op, nullptr, look.id});
+                }
+                for (const Preset& preset : op.presets) {
+                    names.emplace(folded_name(name + " " + preset.title),
+                                  NamedOperator{&op, &preset, {}});
+                }
+            }
+        });
+        return names;
+    }();
+    return all;
+}
+
+/// What people look for, and we have no operator for: docs/choosing.md says why.
+struct AbsentOperator {
+    const char* name;
+    const char* note;
+};
+constexpr AbsentOperator kAbsentOperators[] = {
+    {"filmic", "Filmic Blender is a table without a formula (docs/choosing.md)"},
+    {"filmic_blender", "Filmic Blender is a table without a formula (docs/choosing.md)"},
+    {"tony_mcmapface", "Tony McMapface is a table without a formula (docs/choosing.md)"},
+    {"tonymcmapface", "Tony McMapface is a table without a formula (docs/choosing.md)"},
+    {"opendrt", "OpenDRT cannot be derived from its description (docs/choosing.md)"},
+};
+
+const NamedOperator& find_named(std::string_view name) {
+    const auto found = operators_by_name().find(folded_name(name));
+    if (found != operators_by_name().end()) return found->second;
+    std::vector<NamedChoice> choices;
+    for (const std::vector<Operator>* operators : {&all_operators(), &local_operators()}) {
+        for (const Operator& op : *operators)
+            choices.push_back({op.id, {op.view, op.title}});
+    }
+    std::string note;
+    for (const AbsentOperator& absent : kAbsentOperators) {
+        if (is_same_name(absent.name, name)) note = std::string("; ") + absent.note;
+    }
+    throw Error("operator is " + std::string(name) + "; expected an id from `tonewright list`" +
+                note + did_you_mean(name, choices));
+}
+
+const Operator& require_no_surroundings(const Operator& op) {
+    if (!op.is_local()) return op;
+    throw Error("operator is " + op.id +
+                ", a local operator, which needs a picture; expected an operator that `tonewright "
+                "list` does not mark as local, or `tonewright apply` with a picture");
+}
+
+bool is_blank(char c) { return c == ' ' || c == '\t'; }
+
+/// True for a text that begins with `name=`, blanks before it.
+bool begins_with_setting(std::string_view text) {
+    const std::size_t begin = text.find_first_not_of(" \t");
+    if (begin == std::string_view::npos) return false;
+    const std::size_t end = text.find_first_not_of(
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-", begin);
+    return end != std::string_view::npos && end > begin && text[end] == '=';
+}
+
+/// The parts of an operator's text: its name, presets, settings.
+std::vector<std::string> parts_of(std::string_view text) {
+    constexpr std::string_view kMarked = ":\\ \t";
+    std::vector<std::string> parts(1);
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (c == '\\' && i + 1 < text.size() && kMarked.find(text[i + 1]) != kMarked.npos) {
+            parts.back() += text[++i];
+        } else if (c == ':') {
+            parts.emplace_back();
+        } else if (is_blank(c) && begins_with_setting(text.substr(i))) {
+            i = text.find_first_not_of(" \t", i) - 1;
+            if (!parts.back().empty()) parts.emplace_back();
         } else {
-            settings[part.substr(0, equals)] = part.substr(equals + 1);
+            parts.back() += c;
         }
-        begin = end + 1;
     }
     return parts;
 }
 
-ResolvedOperator resolve_by_name(const Operator& op, std::string_view name,
-                                 const Settings& settings, std::string_view look) {
-    const std::size_t colon = name.find(':');
-    const Preset* preset =
-        colon == std::string_view::npos ? nullptr : &find_preset(op, name.substr(colon + 1));
-    return resolve(op, preset, settings, look);
+/// A value as parts_of() reads it back.
+std::string marked(std::string_view value) {
+    std::string text;
+    for (std::size_t i = 0; i < value.size(); ++i) {
+        const char c = value[i];
+        const bool is_apart = is_blank(c) && begins_with_setting(value.substr(i));
+        if (c == ':' || c == '\\' || is_apart) text += '\\';
+        text += c;
+    }
+    return text;
 }
 
-std::string_view id_of(std::string_view name) { return name.substr(0, name.find(':')); }
+/// The parameter's own name, or the text where there is none: resolve() says so.
+std::string parameter_name(const Operator& op, std::string_view text) {
+    for (const ParameterSpec& spec : op.parameters) {
+        if (is_same_name(spec.name, text)) return spec.name;
+    }
+    return std::string(text);
+}
+
+/// Puts a setting beside others. @throws Error  where they contradict each other
+void add_setting(Settings& settings, const Operator& op, std::string_view name,
+                 const std::string& value) {
+    const auto [known, is_new] = settings.emplace(parameter_name(op, name), value);
+    if (is_new || known->second == value) return;
+    throw Error(op.id + ": " + known->first + " is " + known->second + " and " + value +
+                "; expected it once");
+}
+
+void set_look(std::string& look, const Operator& op, std::string_view wanted) {
+    if (wanted.empty() || is_same_name(look, wanted)) return;
+    if (!look.empty())
+        throw Error(op.id + ": look is " + look + " and " + std::string(wanted) + "; expected one");
+    look = wanted;
+}
+
+ResolvedOperator resolve_text(std::string_view text, const Settings& settings,
+                              std::string_view look, bool takes_local) {
+    const std::vector<std::string> parts = parts_of(text);
+    NamedOperator named = find_named(parts.front());
+    const Operator& op = takes_local ? *named.op : require_no_surroundings(*named.op);
+    Settings all;
+    for (std::size_t i = 1; i < parts.size(); ++i) {
+        const std::string& part = parts[i];
+        const std::size_t equals = part.find('=');
+        if (equals == std::string::npos) {
+            if (named.preset)
+                throw Error(op.id + ": preset is " + named.preset->id + " and " + part +
+                            "; expected one");
+            named.preset = &find_preset(op, part);
+        } else if (is_same_name(part.substr(0, equals), "look")) {
+            set_look(named.look, op, part.substr(equals + 1));
+        } else {
+            add_setting(all, op, part.substr(0, equals), part.substr(equals + 1));
+        }
+    }
+    for (const auto& [name, value] : settings)
+        add_setting(all, op, name, value);
+    set_look(named.look, op, look);
+    return resolve(op, named.preset, all, named.look);
+}
 
 }  // namespace
 
@@ -53,53 +185,41 @@ const std::vector<Operator>& local_operators() {
     return all;
 }
 
-const Operator& find_picture_operator(std::string_view id) {
-    std::vector<std::string> ids;
-    for (const std::vector<Operator>* operators : {&all_operators(), &local_operators()}) {
-        for (const Operator& op : *operators) {
-            if (op.id == id) return op;
-            ids.push_back(op.id);
-        }
-    }
-    const std::string nearest = did_you_mean(id, ids);
-    throw Error("operator is " + std::string(id) + "; expected one of `tonewright list`" + nearest);
+const Operator& find_picture_operator(std::string_view name) { return *find_named(name).op; }
+
+const Operator& find_operator(std::string_view name) {
+    return require_no_surroundings(find_picture_operator(name));
 }
 
-const Operator& find_operator(std::string_view id) {
-    const Operator& op = find_picture_operator(id);
-    if (op.is_local()) {
-        throw Error("operator is " + op.id +
-                    ", which looks at a pixel's surroundings: no LUT, config or color by itself "
-                    "holds it; expected an operator that `tonewright list` does not mark as local, "
-                    "or `tonewright apply` with a picture");
-    }
-    return op;
-}
-
-ResolvedOperator resolve_operator(std::string_view name, const Settings& settings,
+ResolvedOperator resolve_operator(std::string_view text, const Settings& settings,
                                   std::string_view look) {
-    return resolve_by_name(find_operator(id_of(name)), name, settings, look);
+    return resolve_text(text, settings, look, false);
 }
 
-ResolvedOperator resolve_picture_operator(std::string_view name, const Settings& settings,
+ResolvedOperator resolve_picture_operator(std::string_view text, const Settings& settings,
                                           std::string_view look) {
-    return resolve_by_name(find_picture_operator(id_of(name)), name, settings, look);
-}
-
-ResolvedOperator parse_operator(std::string_view text) {
-    const OperatorText parts = split_operator_text(text);
-    return resolve_operator(parts.name, parts.settings, parts.look);
-}
-
-ResolvedOperator parse_picture_operator(std::string_view text) {
-    const OperatorText parts = split_operator_text(text);
-    return resolve_picture_operator(parts.name, parts.settings, parts.look);
+    return resolve_text(text, settings, look, true);
 }
 
 std::string operator_text(const ResolvedOperator& op) {
-    std::string text = op.label;
-    std::replace(text.begin(), text.end(), ' ', ':');
-    return text;
+    const std::string& look = op.params.look();
+    const auto params_of = [&](const Settings& settings) {
+        return resolve(*op.op, op.preset, settings, look).params;
+    };
+    std::string text = op.name();
+    const Params all = params_of(op.settings);
+    for (const auto& [name, value] : op.settings) {
+        Settings others = op.settings;
+        others.erase(name);
+        bool matters = true;
+        try {
+            matters = !(params_of(others) == all);
+        } catch (const Error&) {
+            // The others contradict each other without it.
+        }
+        if (matters) text += ":" + name + "=" + marked(value);
+    }
+    return look.empty() ? text : text + ":look=" + look;
 }
 
 std::vector<std::string> invertible_operators() {

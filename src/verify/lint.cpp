@@ -18,6 +18,7 @@
 #include "base/strings.h"
 #include "ocio/gpu.h"
 #include "ocio/read_config.h"
+#include "ocio/references.h"
 #include "ocio/transforms.h"
 #include "tonewright/error.h"
 
@@ -35,21 +36,13 @@ std::vector<std::string> split(const std::string& list) {
     return items;
 }
 
-/// Calls `visit` with every transform of a tree.
-void for_each_transform(const OCIO::ConstTransformRcPtr& transform,
-                        const std::function<void(const OCIO::ConstTransformRcPtr&)>& visit) {
-    if (!transform) return;
-    visit(transform);
-    if (const auto group = OCIO_DYNAMIC_POINTER_CAST<const OCIO::GroupTransform>(transform)) {
-        for (int i = 0; i < group->getNumTransforms(); ++i)
-            for_each_transform(group->getTransform(i), visit);
-    }
-}
-
 class Linter {
   public:
     Linter(std::string path, bool with_gpu)
-        : path_(std::move(path)), with_gpu_(with_gpu), config_(read_config(path_)) {}
+        : path_(std::move(path)),
+          with_gpu_(with_gpu),
+          config_(read_config(path_)),
+          spaces_(*config_) {}
 
     std::vector<LintFinding> run() {
         check_whole();
@@ -119,14 +112,14 @@ class Linter {
             const std::string role = config_->getRoleName(i);
             taken[lowercase(role)] = "role " + role;
         }
-        for_each_space([&](const OCIO::ConstColorSpaceRcPtr& space) {
+        for (const OCIO::ConstColorSpaceRcPtr& space : spaces_.all()) {
             const std::string where = std::string("space ") + space->getName();
             check_name(where, space->getName(), &taken);
             for (std::size_t i = 0; i < space->getNumAliases(); ++i)
                 check_name(where, space->getAlias(i), &taken);
             if (!*space->getEncoding())
                 add(Level::note, where, "has no encoding: hosts guess what it is for");
-        });
+        }
         for (int i = 0; i < config_->getNumLooks(); ++i) {
             const std::string look = config_->getLookNameByIndex(i);
             check_name("look " + look, look, nullptr);
@@ -134,16 +127,6 @@ class Linter {
         for (int i = 0; i < config_->getNumViewTransforms(); ++i) {
             const std::string name = config_->getViewTransformNameByIndex(i);
             check_name("view transform " + name, name, nullptr);
-        }
-    }
-
-    void for_each_space(const std::function<void(const OCIO::ConstColorSpaceRcPtr&)>& visit) const {
-        const int count =
-            config_->getNumColorSpaces(OCIO::SEARCH_REFERENCE_SPACE_ALL, OCIO::COLORSPACE_ALL);
-        for (int i = 0; i < count; ++i) {
-            const char* name = config_->getColorSpaceNameByIndex(OCIO::SEARCH_REFERENCE_SPACE_ALL,
-                                                                 OCIO::COLORSPACE_ALL, i);
-            if (const auto space = config_->getColorSpace(name)) visit(space);
         }
     }
 
@@ -165,7 +148,7 @@ class Linter {
         want("default_sequencer", Level::note, "is missing: Blender takes scene_linear");
         want("compositing_log", Level::note, "is missing: Nuke's OCIOLogConvert has none");
         for (const char* name : {"Linear", "sRGB"}) {
-            if (!config_->getColorSpace(name)) {
+            if (!spaces_.find(name)) {
                 add(Level::note, "config",
                     std::string("no space is called ") + name +
                         ": oiiotool and Blender's older files ask for it");
@@ -176,7 +159,7 @@ class Linter {
     void check_lists() {
         const auto known_spaces = split(config_->getInactiveColorSpaces());
         for (const std::string& name : known_spaces) {
-            if (!config_->getColorSpace(name.c_str()))
+            if (!spaces_.find(name))
                 add(Level::warning, "inactive_colorspaces", "there is no space " + name);
         }
         std::set<std::string> displays;
@@ -224,11 +207,21 @@ class Linter {
     }
 
     void check_transforms() {
-        for_each_space([&](const OCIO::ConstColorSpaceRcPtr& space) {
+        // OpenColorIO looks a space up among all others.
+        constexpr std::size_t kMostTried = 1000;
+        std::size_t count = 0;
+        if (spaces_.all().size() > kMostTried) {
+            add(Level::warning, "config",
+                fmt::format("has {} color spaces: only the first {} were converted to "
+                            "scene_linear and back",
+                            spaces_.all().size(), kMostTried));
+        }
+        for (const OCIO::ConstColorSpaceRcPtr& space : spaces_.all()) {
             const std::string where = std::string("space ") + space->getName();
             check_transform(where, space->getTransform(OCIO::COLORSPACE_DIR_TO_REFERENCE));
             check_transform(where, space->getTransform(OCIO::COLORSPACE_DIR_FROM_REFERENCE));
-            if (space->isData() || !config_->hasRole("scene_linear")) return;
+            if (space->isData() || !config_->hasRole("scene_linear") || ++count > kMostTried)
+                continue;
             // Both ways: a table that is not there, a matrix that has no inverse.
             const auto build = [&](const char* from, const char* to, const char* way) {
                 try {
@@ -247,7 +240,7 @@ class Linter {
                 build(space->getName(), "scene_linear", "to scene_linear");
                 build("scene_linear", space->getName(), "from scene_linear");
             }
-        });
+        }
         for (int i = 0; i < config_->getNumViewTransforms(); ++i) {
             const char* name = config_->getViewTransformNameByIndex(i);
             const auto transform = config_->getViewTransform(name);
@@ -277,7 +270,7 @@ class Linter {
         std::string space_name =
             config_->getDisplayViewColorSpaceName(display.c_str(), view.c_str());
         if (space_name == OCIO::OCIO_VIEW_USE_DISPLAY_NAME) space_name = display;
-        const auto space = config_->getColorSpace(space_name.c_str());
+        const auto space = spaces_.find(space_name);
         if (!space) {
             add(Level::error, where, "its space " + space_name + " is not in the config");
             return;
@@ -370,6 +363,7 @@ class Linter {
     std::string path_;
     bool with_gpu_;
     OCIO::ConstConfigRcPtr config_;
+    SpaceIndex spaces_;
     std::vector<LintFinding> findings_;
 };
 

@@ -2,10 +2,14 @@
 #include "tonewright/lut_match.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <set>
+#include <utility>
 
 #include "base/random.h"
+#include "lut/in_parallel.h"
 #include "measure/error_metric.h"
 #include "tonewright/engine.h"
 #include "tonewright/lut.h"
@@ -36,8 +40,16 @@ constexpr const char* kDisplays[] = {"srgb", "rec1886", "g22", "display_p3", "re
 struct Candidate {
     LutMatch match;
     ResolvedOperator op;
-    Pipeline stages;  // what goes in -> what comes out
 };
+
+/// Three planes.
+using Planes = std::array<std::vector<double>, 3>;
+
+/// What goes in -> light.
+Pipeline decode_of(const std::string& encoding) {
+    if (encoding == kSceneLinear) return {};
+    return {curve_stage(parse_input_encoding(encoding).decode)};
+}
 
 /// What goes in: codes, or light for a table with a shaper.
 std::vector<float> samples_of(bool is_linear, std::size_t count) {
@@ -54,39 +66,79 @@ std::vector<float> samples_of(bool is_linear, std::size_t count) {
     return in;
 }
 
-void measure(Candidate& candidate, const LutFile& table, std::size_t count) {
-    const std::vector<float> in = samples_of(candidate.match.encoding == kSceneLinear, count);
-    std::vector<float> shown(in.size());
-    table.run_rgb(in.data(), shown.data(), count);
-    std::vector<double> truth(in.size());
-    ReferenceEngine(candidate.stages).run_rgb(in.data(), truth.data(), count);
-    std::vector<double> errors;
-    for (std::size_t i = 0; i < count; ++i)
-        errors.push_back(channel_error(&truth[3 * i], &shown[3 * i]));
-    const ErrorStats stats = summarise(errors);
-    candidate.match.max = stats.max;
-    candidate.match.p999 = stats.p999;
-    candidate.match.mean = stats.mean;
+/// Colors, and what a table makes of them.
+struct Shown {
+    std::vector<float> in;
+    std::vector<float> out;
+
+    Shown(const LutFile& table, bool is_linear, std::size_t count)
+        : in(samples_of(is_linear, count)), out(in.size()) {
+        table.run_rgb(in.data(), out.data(), count);
+    }
+};
+
+/// What a pipeline makes of what goes in.
+Planes planes_of(const Pipeline& stages, const std::vector<float>& in) {
+    Planes planes;
+    for (std::size_t i = 0; i < in.size(); ++i)
+        planes[i % 3].push_back(static_cast<double>(in[i]));
+    const std::array<double*, 3> at = {planes[0].data(), planes[1].data(), planes[2].data()};
+    ReferenceEngine(stages).run({at[0], at[1], at[2]}, at, planes[0].size());
+    return planes;
 }
 
-void add_candidates(const ResolvedOperator& op, std::vector<Candidate>& all) {
-    const auto add = [&](const std::string& encoding, const Pipeline& decode,
-                         const std::string& input) {
-        for (const char* display : kDisplays) {
-            const View view = make_view(op, input, 0, display);
-            Pipeline stages = decode;
-            const Pipeline shown = build_view(view);
-            stages.insert(stages.end(), shown.begin(), shown.end());
-            all.push_back({{op.label, encoding, input, display}, op, stages});
-        }
-    };
-    add(kSceneLinear, {}, "lin_rec709");
-    add(kSceneLinear, {}, "lin_ap1");
-    for (const char* text : kEncodings) {
-        const InputEncoding encoding = parse_input_encoding(text);
-        for (const std::string& input : std::set<std::string>{encoding.default_input, "lin_rec709"})
-            add(encoding.id, {curve_stage(encoding.decode)}, input);
+void set_errors(LutMatch& match, const Planes& truth, const std::vector<float>& shown) {
+    std::vector<double> errors;
+    for (std::size_t i = 0; i < truth[0].size(); ++i) {
+        const Vector3 expected = {truth[0][i], truth[1][i], truth[2][i]};
+        errors.push_back(channel_error(expected.data(), &shown[3 * i]));
     }
+    const ErrorStats stats = summarise(errors);
+    match.max = stats.max;
+    match.p999 = stats.p999;
+    match.mean = stats.mean;
+}
+
+/// An encoding of what goes in, and a few colors in it.
+struct Input {
+    std::string encoding;
+    std::vector<std::string> spaces;
+    Planes light;
+    const Shown* shown;
+};
+
+/// Of an operator with all inputs and displays, measured.
+std::vector<Candidate> candidates_of(const ResolvedOperator& op, const std::vector<Input>& inputs) {
+    std::vector<Candidate> all;
+    // A display's view of a space is the same for all encodings.
+    std::map<std::pair<std::string, const char*>, ReferenceEngine> views;
+    for (const Input& input : inputs) {
+        for (const std::string& space : input.spaces) {
+            for (const char* display : kDisplays) {
+                auto view = views.find({space, display});
+                if (view == views.end()) {
+                    ReferenceEngine engine(build_view(make_view(op, space, 0, display)));
+                    view = views.emplace(std::pair(space, display), std::move(engine)).first;
+                }
+                Planes truth = input.light;
+                const std::array<double*, 3> at = {truth[0].data(), truth[1].data(),
+                                                   truth[2].data()};
+                view->second.run({at[0], at[1], at[2]}, at, truth[0].size());
+                all.push_back({{op.label, input.encoding, space, display}, op});
+                set_errors(all.back().match, truth, input.shown->out);
+            }
+        }
+    }
+    return all;
+}
+
+/// With all colors.
+void measure(Candidate& candidate, const Shown& shown) {
+    LutMatch& match = candidate.match;
+    Pipeline stages = decode_of(match.encoding);
+    const Pipeline view = build_view(make_view(candidate.op, match.input, 0, match.display));
+    stages.insert(stages.end(), view.begin(), view.end());
+    set_errors(match, planes_of(stages, shown.in), shown.out);
 }
 
 }  // namespace
@@ -94,8 +146,9 @@ void add_candidates(const ResolvedOperator& op, std::vector<Candidate>& all) {
 std::vector<LutMatch> match_lut(const LutFile& table, const std::vector<std::string>& operators,
                                 std::size_t count) {
     std::vector<ResolvedOperator> chosen;
+    chosen.reserve(operators.size());
     for (const std::string& text : operators)
-        chosen.push_back(parse_operator(text));
+        chosen.push_back(resolve_operator(text));
     if (operators.empty()) {
         for (const Operator& op : all_operators()) {
             if (!op.is_diagnostic) chosen.push_back(resolve_operator(op.id));
@@ -107,21 +160,31 @@ std::vector<LutMatch> match_lut(const LutFile& table, const std::vector<std::str
     };
     constexpr std::size_t kFew = 64;
     constexpr std::size_t kMany = 20000;
+    const std::array<Shown, 2> few = {Shown(table, false, kFew), Shown(table, true, kFew)};
+    std::vector<Input> inputs = {{kSceneLinear, {"lin_rec709"}, {}, &few[1]},
+                                 {kSceneLinear, {"lin_ap1"}, {}, &few[1]}};
+    for (const char* text : kEncodings) {
+        const InputEncoding encoding = parse_input_encoding(text);
+        const std::set<std::string> spaces = {encoding.default_input, "lin_rec709"};
+        inputs.push_back({encoding.id, {spaces.begin(), spaces.end()}, {}, few.data()});
+    }
+    for (Input& input : inputs)
+        input.light = planes_of(decode_of(input.encoding), input.shown->in);
+    std::vector<std::vector<Candidate>> by_operator(chosen.size());
+    in_parallel(chosen.size(), 0,
+                [&](std::size_t i) { by_operator[i] = candidates_of(chosen[i], inputs); });
     std::vector<Candidate> nearest;
-    for (const ResolvedOperator& op : chosen) {
-        std::vector<Candidate> all;
-        add_candidates(op, all);
-        for (Candidate& candidate : all) {
-            measure(candidate, table, kFew);
-            nearest.push_back(candidate);
-        }
+    for (const std::vector<Candidate>& all : by_operator) {
+        nearest.insert(nearest.end(), all.begin(), all.end());
         const std::size_t kept = std::min(nearest.size(), 2 * count);
         std::partial_sort(nearest.begin(), nearest.begin() + static_cast<std::ptrdiff_t>(kept),
                           nearest.end(), by_mean);
         nearest.resize(kept);
     }
-    for (Candidate& candidate : nearest)
-        measure(candidate, table, kMany);
+    const std::array<Shown, 2> many = {Shown(table, false, kMany), Shown(table, true, kMany)};
+    in_parallel(nearest.size(), 0, [&](std::size_t i) {
+        measure(nearest[i], many[nearest[i].match.encoding == kSceneLinear ? 1 : 0]);
+    });
     std::sort(nearest.begin(), nearest.end(), by_mean);
     std::vector<LutMatch> matches;
     for (std::size_t i = 0; i < std::min(count, nearest.size()); ++i)

@@ -10,6 +10,7 @@
 #include <map>
 #include <optional>
 
+#include "base/strings.h"
 #include "measure/error_metric.h"
 #include "measure/sample_set.h"
 #include "ocio/gpu.h"
@@ -404,8 +405,11 @@ std::vector<ResolvedOperator> operators_of(const std::vector<std::string>& names
     std::vector<ResolvedOperator> operators;
     bool has_all = names.empty();
     for (const std::string& name : names) {
-        if (name != "all") operators.push_back(parse_operator(name));
-        has_all = has_all || name == "all";
+        if (is_same_name(name, "all")) {
+            has_all = true;
+        } else {
+            operators.push_back(resolve_operator(name));
+        }
     }
     if (!has_all) return operators;
     operators.clear();
@@ -441,7 +445,7 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
     const InputSpace& input = find_input_space(options.input);
     if (input.is_camera) {
         throw Error("verify: input is " + input.id +
-                    "; expected a space of the config, which has the cameras' logs only");
+                    "; expected a space of the config, which has only log encodings of cameras");
     }
     std::vector<View> views;
     for (const ResolvedOperator& op : operators) {
@@ -534,10 +538,10 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
                 processor = config->getProcessor(config_space_name(view.input).c_str(),
                                                  find_display(view.display).title.c_str(),
                                                  name.c_str(), OCIO::TRANSFORM_DIR_FORWARD);
-                lowering = "config: " + lowering;
+                lowering.insert(0, "config: ");
             } else {
                 processor = make_processor(lowered.ops);
-                lowering = "chain: " + lowering;
+                lowering.insert(0, "chain: ");
             }
         } catch (const OCIO::Exception& e) {
             throw Error("verify: " + view.op.label + ": " + e.what());

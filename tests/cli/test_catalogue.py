@@ -30,8 +30,8 @@ WEIGHTS = np.array([0.2126, 0.7152, 0.0722])
 ORANGE, GREEN, BLUE = np.array([1, 0.25, 0.02]), np.array([0.05, 1, 0.1]), np.array([0.02, 0.06, 1])
 
 WIDTH = 640
-# Of a file; more only for a plot of many variants.
-BYTES, BYTES_A_VARIANT = 12 * 1024, 1200
+# Of a file, half of it the strokes of its words; more only for a plot of many variants.
+BYTES, BYTES_A_VARIANT = 36 * 1024, 4000
 # Pixels: points have two decimals; between them a line may be 0.2 off, and a point is 0.005 off itself.
 POINT, LINE = 0.006, 0.21
 # Code values of lines that count as one.
@@ -147,12 +147,32 @@ class Plot:
             return
         self.left, self.stop, _, self.lowest = numbers[:4]
         scales = [numbers[4:6], numbers[6:8]]
-        for index, group in enumerate(g for g in self.root.iter(SVG + "g") if g.find(SVG + "polyline") is not None):
+        groups = [g for g in self.root.iter(SVG + "g") if g.find(SVG + "polyline") is not None]
+        # Each line of a plot of many has a small graph, too.
+        self.small = {line.get("id") for g in groups for line in g if line.get("id").startswith("small-")}
+        for index, group in enumerate(g for g in groups if not g[0].get("id").startswith("small-")):
             zero, self_unit = scales[index]
             for line in group.iter(SVG + "polyline"):
                 points = np.array([p.split(",") for p in line.get("points").split()], float)
                 stops = (points[:, 0] - self.left) / self.stop - self.lowest
                 self.lines[line.get("id")] = (stops, (zero - points[:, 1]) / self_unit, self_unit)
+
+    def crossed_words(self):
+        """Words that a curve goes through. A letter is about 5.5 pixels wide and 8 high."""
+        curves = [np.array([p.split(",") for p in line.get("points").split()], float)
+                  for line in self.root.iter(SVG + "polyline")]
+        crossed = []
+        for text in self.root.iter(SVG + "text"):
+            width = 5.5 * len(text.text)
+            left = float(text.get("x")) - width * {"c": 0.5, "e": 1}.get((text.get("class") or "-").split()[-1], 0)
+            bottom = float(text.get("y"))
+            at = np.linspace(left, left + width, 50)
+            for curve in curves:
+                y = np.interp(at, curve[:, 0], curve[:, 1], left=np.nan, right=np.nan)
+                if ((y > bottom - 8) & (y < bottom)).any():
+                    crossed.append(text.text)
+                    break
+        return crossed
 
     def patches(self):
         """Rows of (first, last, colour)."""
@@ -266,6 +286,12 @@ def check_files(report, folder, operators, groups):
             if not np.isfinite(values).all():
                 bad.append(f"{path.name}: a value is not finite")
     report.check("plots are well-formed, 640 wide, small, complete in themselves", not bad, bad[:5])
+    plots = {path.name: Plot(path) for path in sorted((folder / "curves").glob("*.svg"))}
+    crossed = {name: words for name, plot in plots.items() if (words := plot.crossed_words())}
+    report.check("no curve goes through words", not crossed, crossed)
+    blender = plots["agx_blender.svg"]
+    report.check("AgX Blender's looks have small graphs",
+                 {"small-look-punchy", "small-look-very_low_contrast"} <= blender.small, blender.small)
 
 
 def evaluate_all(command, arguments, parts):
@@ -411,7 +437,7 @@ def check_group(report, command, folder, page, group, members):
 def check_distances(report, command, page, group, a, b):
     """Figures of a pair, recomputed: own samples, `tonewright eval`, own dE ITP."""
     samples = non_negative_samples()
-    count = int(re.search(r"measured on the (\d+) colours", page)[1])
+    count = int(re.search(r"measured on the (\d+) colors", page)[1])
     # Colours on the hull of a wide gamut: rounding decides which have a channel below 0.
     report.bound("distances: as many samples", abs(count - len(samples)) / len(samples), 1e-4)
     code = [evaluate(command, samples, name) for name in (a, b)]

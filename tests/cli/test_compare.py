@@ -146,6 +146,12 @@ def check_false_color(bench):
         changes = row[np.flatnonzero(np.r_[True, (row[1:] != row[:-1]).any(axis=1)])]
         rows.append(len(changes) == 17 and (changes[1:-1] == colours).all())
     bench.report.check("the legend has the colours of 15 stops", sum(rows) >= 8, sum(rows))
+    # `apply --legend` draws it below the picture, whose pixels stay.
+    with_legend = bench.applied("--false-color", "--legend")
+    bench.report.check("apply --legend: the picture", len(places(with_legend, bench.applied("--false-color"))) == 1)
+    rows = [row[np.flatnonzero(np.r_[True, (row[1:] != row[:-1]).any(axis=1)])] for row in with_legend]
+    rows = sum(len(row) == 17 and (row[1:-1] == colours).all() for row in rows)
+    bench.report.check("apply --legend: the colors of 15 stops", rows >= 8, rows)
     plain = bench.compared("hable", "--cell-width", 200)
     bench.report.check("and is not there without", plain.shape[0] < sheet.shape[0])
 
@@ -219,6 +225,7 @@ def check_errors(bench):
     out = folder / "bad.png"
     (folder / "broken.exr").write_bytes(bench.picture.read_bytes()[:500])
     (folder / "file").write_text("")
+    write_exr(folder / "thin.exr", unstack(np.ones((5000, 1, 3), np.float32)))
     cases = [
         (USAGE, ["compare", picture, "hablee"], ["hablee", "did you mean hable?"]),
         (USAGE, ["compare", picture, "hable:white=0"], ["hable: white is 0"]),
@@ -233,12 +240,16 @@ def check_errors(bench):
         (USAGE, ["compare", picture, "hable", "--split", "0.5"], ["--split", "1 operator", "two"]),
         (USAGE, ["compare", picture, "--split", "0.5"], ["--split", "0 operators", "two"]),
         (USAGE, ["compare", picture, "hable", "clamp", "--split", "0.5", "--false-color"], ["--false-color"]),
+        (USAGE, ["apply", picture, out, "--operator", "hable", "--legend"], ["--false-color"]),
+        (USAGE, ["apply", picture, out, "--false-color", "--legend", "--display", "display_p3"], ["expected srgb"]),
         (USAGE, ["compare", picture, "hable", "clamp", "--horizontal"], ["--split"]),
         (USAGE, ["compare", picture, "hable", "--difference", "4"], ["--difference", "1 operator", "two"]),
         (USAGE, ["compare", picture, "hable", "clamp", "--difference", "0"], ["--difference", "0"]),
-        (USAGE, ["compare"], ["in is required"]),
+        (USAGE, ["compare"], ["IN is missing", "expected a picture"]),
         (FILE, ["compare", folder / "none.exr"], ["none.exr"]),
         (FILE, ["compare", folder / "broken.exr", "hable"], ["broken.exr"]),
+        (FILE, ["compare", folder / "thin.exr", "hable"], ["thin.exr", "1 x 5000 pixels"]),
+        (USAGE, ["compare", folder / "thin.exr", "hable", "-o", folder / "thin.exr"], ["thin.exr"]),
         (FILE, ["compare", picture, "hable", "-o", folder / "none" / "x.png"], ["none"]),
         (FILE, ["compare", picture, "hable", "-o", folder / "file" / "x.png"], ["file"]),
         (FILE, ["compare", picture, "hable", "-o", folder / "x.xyz"], ["xyz"]),

@@ -36,7 +36,7 @@ def kill_runs(command, report, folder, extension):
     """Files of an extension; their part of the kills."""
     rng = random.Random(f"kill {extension}")
     make_shot(folder, range(1, FRAMES + 1), width=96, height=64)
-    arguments = ["in.#.exr", f"out.#.{extension}", "--operator", "hable", "--frames", f"1-{FRAMES}", "--jobs", "3"]
+    arguments = ["in.#.exr", f"out.#.{extension}", "--operator", "hable", "--display", "linear", "--frames", f"1-{FRAMES}", "--jobs", "3"]
 
     code, lines = apply(command, *arguments, folder=folder)
     truth = contents(folder)

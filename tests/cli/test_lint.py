@@ -8,6 +8,7 @@ The last line is `N passed, M failed`.
 
 import argparse
 import json
+import os
 import subprocess
 import sys
 import tempfile
@@ -81,10 +82,52 @@ FAULTS = {
                           "{src: t.cube, interpolation: linear}}", "note", "space aces", "tetrahedra"),
 }
 
+LAST = "  - !<ColorSpace> {name: raw, isdata: true, encoding: data}\n"
+RAW_VIEW = "    - !<View> {name: Raw, colorspace: raw}\n"
+
+
+def space(name, transform):
+    """A color space behind the others."""
+    return f"  - !<ColorSpace> {{name: {name}, encoding: log, {transform}}}\n"
+
+
+def through(name, other):
+    return space(name, f"to_scene_reference: !<ColorSpaceTransform> {{src: {other}, dst: lin}}")
+
+
+# name -> (what is put behind what, words of the one line that is said): what OpenColorIO does not survive, or takes
+# minutes for.
+REFUSED = {
+    "color spaces in a circle": ([(LAST, through("c1", "c2") + through("c2", "c1"))],
+                                 "color space c1 -> color space c2 -> color space c1"),
+    "a color space that is itself": ([(LAST, space("c1", "to_scene_reference: !<LookTransform> {src: c1, dst: lin, looks: ''}"))], "c1 -> color space c1"),
+    "looks in a circle": ([("default_view_transform: plain\n", """looks:
+  - !<Look> {name: l1, process_space: lin, transform: !<LookTransform> {src: lin, dst: lin, looks: "+l2"}}
+  - !<Look> {name: l2, process_space: lin, transform: !<LookTransform> {src: lin, dst: lin, looks: "-L1"}}
+""")], "look l1 -> look l2 -> look L1"),
+    "two spaces of which each needs the other in one direction": (
+        [(LAST, space("c1", "to_scene_reference: !<ColorSpaceTransform> {src: lin, dst: c2}")
+          + space("c2", "to_scene_reference: !<ColorSpaceTransform> {src: c1, dst: lin}"))], "color space c1"),
+    "a view of a space that is the view": (
+        [(RAW_VIEW, "    - !<View> {name: Mine, colorspace: mine}\n"),
+         (LAST, space("mine", "from_scene_reference: !<DisplayViewTransform> {src: lin, display: sRGB, view: Mine}"))],
+        "view sRGB / Mine -> color space mine"),
+    "references 200 deep": ([(LAST, "".join(through(f"d{i}", f"d{i + 1}") for i in range(200)) + space("d200", "isdata: no"))],
+                            "100 deep"),
+    "a LUT that is a pipe": ([(LAST, space("m", "to_scene_reference: !<FileTransform> {src: pipe.cube}"))],
+                             "pipe.cube: is no regular file"),
+    "20,000 color spaces": ([(LAST, "".join(f"  - !<ColorSpace> {{name: s{i}}}\n" for i in range(20000)))],
+                            "has 20005 color spaces; expected at most 4000"),
+    "5,000 views": ([(RAW_VIEW, "".join(f"    - !<View> {{name: v{i}, colorspace: raw}}\n" for i in range(5000)))],
+                    "has 5002 views; expected at most 4000"),
+}
+
 
 def lint(command, folder, text):
     (folder / "luts").mkdir(exist_ok=True)
     (folder / "luts" / "t.cube").write_text(CUBE)
+    if not (folder / "luts" / "pipe.cube").exists():
+        os.mkfifo(folder / "luts" / "pipe.cube")
     path = folder / "config.ocio"
     path.write_text(text, encoding="utf-8")
     done = subprocess.run([command, "verify", "--no-gpu", "--json", "--config", path], capture_output=True, text=True,
@@ -108,6 +151,29 @@ def main():
             code, found, err = lint(command, folder, GOOD.replace(old, new))
             hit = [f for f in found if f["level"] == level and f["where"] == where and words in f["what"]]
             report.check(what, hit and code == (1 if level == "error" else 0), f"{code} {found} {err}")
+        for what, (changes, words) in REFUSED.items():
+            text = GOOD
+            for place, more in changes:
+                report.check(f"{what}: the place is in the file", text.count(place) == 1, place)
+                text = text.replace(place, place + more)
+            code, _, err = lint(command, folder, text)
+            path = folder / "config.ocio"
+            report.check(what, code == 3 and words in err and str(path) in err and err.count("\n") == 1, f"{code} {err}")
+            done = subprocess.run([command, "config", "--into", path, "--views", "clamp"], capture_output=True, text=True,
+                                  check=False, timeout=60)
+            report.check(f"{what}: --into", done.returncode == 3 and done.stderr == err and path.read_text() == text,
+                         f"{done.returncode} {done.stderr}")
+        # A view may be a space's, and spaces may share others, as long as none leads back.
+        shared = GOOD.replace(LAST, LAST + through("a", "aces") + through("b", "a") + through("c", "a") + space(
+            "shown", "from_scene_reference: !<DisplayViewTransform> {src: aces, display: sRGB, view: Plain}"))
+        code, found, err = lint(command, folder, shared)
+        errors = [f for f in found if f["level"] != "note"]
+        report.check("spaces that share others", code == 0 and not errors, f"{code} {found} {err}")
+        # What OpenColorIO itself has to say: once, as a message of the command.
+        text = GOOD.replace(LAST, LAST.replace("encoding: data", "encoding: data, surprise: 1") + through("a", "aces"))
+        code, found, err = lint(command, folder, text)
+        report.check("OpenColorIO's own warning", code == 0 and err.count("\n") == 1 and "surprise" in err
+                     and err.startswith("tonewright: OpenColorIO: "), err)
         code, _, err = lint(command, folder, "not a config")
         report.check("no config", code == 3 and err.count("\n") >= 1 and str(folder) in err, f"{code} {err}")
         done = subprocess.run([command, "verify", "--no-gpu", "--config", folder / "none.ocio"], capture_output=True,

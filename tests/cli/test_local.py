@@ -55,7 +55,7 @@ def check_refusals(report, command, folder):
             code, out, error = call(command, *arguments, stdin=stdin)
             report.check(f"{arguments[0]} {i}",
                          code == 2 and not out and error.count("\n") == 1 and
-                         error.startswith(f"tonewright: operator is {i}, which looks at a pixel's surroundings: ") and
+                         error.startswith(f"tonewright: operator is {i}, a local operator, which needs a picture; ") and
                          "`tonewright apply`" in error, f"{code} {error}")
     report.check("nothing was written", not list(Path(folder).iterdir()))
     for arguments, message in [

@@ -365,7 +365,9 @@ def foreign_corpus():
     for name, text in (("few.spimtx", "1 0 0 0\n0 1 0 0\n0 0 1\n"), ("more.spimtx", MATRIX + "1\n"),
                        ("nan.spimtx", MATRIX.replace("0.5", "nan")), ("word.spimtx", MATRIX.replace("0.5", "x")),
                        ("entities.cc", '<!DOCTYPE x [<!ENTITY a "aaaaaaaaaa">]>\n' + CORRECTION),
-                       ("open.cc", CORRECTION.replace("</SOPNode>", "")), ("utf16.cc", CORRECTION.encode("utf-16-le").decode("latin1"))):
+                       ("open.cc", CORRECTION.replace("</SOPNode>", "")),
+                       ("infinite.cc", CORRECTION.replace("0 0 0.1", "0 -1e90 0.1")),
+                       ("utf16.cc", CORRECTION.encode("utf-16-le").decode("latin1"))):
         yield name, name, text.encode("latin1")
 
 
@@ -517,8 +519,8 @@ def check_paths(report, command, folder):
         file.truncate(10 << 30)
     (folder / "table.txt").write_text(GOOD["adobe.cube"])
     (folder / "noextension").write_text(GOOD["adobe.cube"])
-    for name, words in (("missing.cube", "No such file"), ("folder.cube", "is not a file"), ("pipe.cube", "is not a file"),
-                        ("ten_gigabytes.cube", "10737418240 bytes; expected up to 134217728"), ("missing.png", "No such file"),
+    for name, words in (("missing.cube", "No such file"), ("folder.cube", "is a folder"), ("pipe.cube", "is no regular file"),
+                        ("ten_gigabytes.cube", "10737418240 bytes; expected at most 134217728"), ("missing.png", "No such file"),
                         ("missing.icc", "No such file"), ("table.txt", "extension is .txt; expected .cube"),
                         ("noextension", "extension is missing")):
         for arguments in (["eval", "--lut", folder / name], ["verify", "--lut", folder / name],
@@ -611,7 +613,8 @@ def check_apply(report, command, folder):
     colors = COLORS.reshape(8, 8, 3)
     write_exr(folder / "in.exr", unstack(colors))
     for name in ("adobe.cube", "cube.raw", "hald.png", "both.lut", "link.icc"):
-        run(command, "apply", folder / "in.exr", folder / "out.exr", "--lut", folder / name, "-d", "float")
+        run(command, "apply", folder / "in.exr", folder / "out.exr", "--lut", folder / name, "-d", "float",
+            "--input-encoding", "none")
         report.compare(f"apply --lut {name}: as eval", stack(read_exr(folder / "out.exr")).reshape(-1, 3),
                        evaluate_lut(command, folder / name, COLORS), FLOAT32)
     run(command, "apply", folder / "in.exr", folder / "out.exr", "--lut", path, "-d", "float", "--interpolation", "trilinear",
@@ -630,6 +633,49 @@ def check_apply(report, command, folder):
     report.compare("apply --lut: color that is multiplied by alpha", stack(out).reshape(-1, 3),
                    interpolate(CUBE, COLORS) * alpha.reshape(-1, 1), FLOAT32)
     report.check("apply --lut: alpha stays", np.array_equal(out["A"], alpha.astype(np.float32)))
+
+
+def check_stated(report, command, folder):
+    """apply --lut without --input-encoding: what the header of a file of `bake` says; else a warning."""
+    light = np.random.default_rng(8).uniform(0, 4, (8, 8, 3)).astype(np.float32)
+    write_exr(folder / "light.exr", unstack(light))
+
+    def applied(lut, *arguments):
+        done = subprocess.run([str(command), "apply", str(folder / "light.exr"), str(folder / "out.exr"), "--lut", str(lut),
+                               "-d", "float", *map(str, arguments)], capture_output=True, text=True, check=False)
+        return done, stack(read_exr(folder / "out.exr")) if done.returncode == 0 else None
+
+    bake = ("bake", "agx_sobotka", "--3d", "--size", 17, "--nodes", "sampled", "--input-encoding", "davinci")
+    for name, arguments, explicit in (
+            ("stated.cube", (), ("--input-encoding", "davinci")),
+            ("own.cube", ("--input", "lin_rec709"), ("--input-encoding", "davinci", "--lut-space", "lin_rec709")),
+            ("stated.clf", (), ("--input-encoding", "davinci")), ("stated.ctf", (), ("--input-encoding", "davinci")),
+            ("stated.icc", (), ("--input-encoding", "davinci")),
+            ("stated4.icc", ("--icc-version", 4), ("--input-encoding", "davinci")),
+            ("stated.csp", (), ("--input-encoding", "linear", "--lut-space", "lin_davinci_wg"))):
+        run(command, *bake, *arguments, "-o", folder / name)
+        done, shown = applied(folder / name)
+        _, wanted = applied(folder / name, *explicit)
+        report.check(f"apply --lut {name}: as its header says", shown is not None and np.array_equal(shown, wanted),
+                     done.stderr)
+        lines = done.stderr.splitlines()
+        report.check(f"apply --lut {name}: one line says what was assumed", len(lines) == 1 and name in lines[0]
+                     and "lin_rec709" in lines[0] and ("DaVinci" in lines[0]), done.stderr)
+    done, shown = applied(folder / "stated.cube", "-q")
+    report.check("apply --lut -q: says nothing", done.returncode == 0 and not done.stderr, done.stderr)
+    done, shown = applied(folder / "stated.cube", "--exposure", 1)
+    _, wanted = applied(folder / "stated.cube", "--exposure", 1, "--input-encoding", "davinci")
+    report.check("apply --lut --exposure: of the light before a stated encoding", np.array_equal(shown, wanted))
+    _, plain = applied(folder / "stated.cube", "--input-encoding", "none")
+    report.compare("apply --lut --input-encoding none: colors go in as they are", plain.reshape(-1, 3),
+                   evaluate_lut(command, folder / "stated.cube", light.reshape(-1, 3).astype(float)), FLOAT32)
+    (folder / "adobe.cube").write_text(GOOD["adobe.cube"])
+    done, _ = applied(folder / "adobe.cube")
+    report.check("apply --lut of a file that says nothing: one warning", done.returncode == 0
+                 and len(done.stderr.splitlines()) == 1 and "warning: " in done.stderr and "adobe.cube" in done.stderr,
+                 done.stderr)
+    done, _ = applied(folder / "adobe.cube", "--strict")
+    report.check("apply --lut of a file that says nothing, --strict: exit 1", done.returncode == 1, done.stderr)
 
 
 def check_wild(report, command, folder):
@@ -728,18 +774,17 @@ def check_usage(report, command, folder):
                              (["--lut-space", "lin_ap1"], "--lut-space is given; --input-encoding"),
                              (["--input-encoding", "srgb", "--lut-space", "nowhere"], "nowhere"),
                              (["--input-encoding", "srgb", "--exposure", "99"], "exposure is 99; [-64, 64]"),
-                             (["--display", "srgb"], "excludes; --display"),
-                             (["--set", "white=2"], "excludes; --set")):
+                             (["--display", "srgb"], "--display and --lut are given; expected one of them"),
+                             (["--set", "white=2"], "--set and --lut are given; expected one of them")):
         for before in (["eval"], ["apply", folder / "in.exr", folder / "none.exr"]):
             status, out, err, _ = peak_of([command, *before, "--lut", path, *arguments], "")
             report.check(f"{before[0]} --lut {' '.join(arguments)}: {words}",
                          status == 2 and not out and err.count("\n") == 1 and all(w in err for w in words.split("; "))
                          and not (folder / "none.exr").exists(), err)
-    for arguments, words in ((["eval", "hable", "--lut", path], "excludes; operator"),
-                             (["eval"], "operator is missing; --lut FILE"),
-                             (["eval", "hable", "--interpolation", "trilinear"], "--interpolation requires --lut"),
-                             (["eval", "--lut", folder / "link.icc", "--interpolation", "trilinear"], "tetrahedral; link.icc"),
-                             (["apply", folder / "in.exr", folder / "none.exr"], "operator is missing; --lut FILE")):
+    for arguments, words in ((["eval", "hable", "--lut", path], "OPERATOR and --lut are given; expected one of them"),
+                             (["eval"], "OPERATOR is missing; --lut FILE"),
+                             (["eval", "hable", "--interpolation", "trilinear"], "--interpolation is trilinear; expected --lut FILE with it"),
+                             (["eval", "--lut", folder / "link.icc", "--interpolation", "trilinear"], "tetrahedral; link.icc")):
         status, out, err, _ = peak_of([command, *arguments], "")
         report.check(f"{' '.join(Path(a).name for a in map(str, arguments))}: {words}",
                      status == 2 and not out and err.count("\n") == 1 and all(w in err for w in words.split("; ")), err)
@@ -755,6 +800,7 @@ def main():
         check_eval(report, command, folder)
         check_encoding(report, command, folder)
         check_apply(report, command, folder)
+        check_stated(report, command, folder)
         check_wild(report, command, folder)
         check_xml(report, command, folder)
         check_early_end(report, command, folder)

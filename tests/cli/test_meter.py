@@ -253,7 +253,7 @@ def cache(tool, report, adapt):
         tool.refused(f"a cache that is {what}", 3, "is not a meter cache", "meter", "shot.1003.exr", "--meter-cache", path)
         report.check("stays", path.read_bytes() == (text if isinstance(text, bytes) else text.encode()))
     tool.refused("a cache in no folder", 3, "gone/cache.json", "meter", "shot.1003.exr", "--meter-cache", "gone/cache.json")
-    tool.refused("a cache that is a folder", 3, "it is a directory", "meter", "shot.1003.exr", "--meter-cache", "each")
+    tool.refused("a cache that is a folder", 3, "is a folder", "meter", "shot.1003.exr", "--meter-cache", "each")
 
     (tool.folder / "shot.1006.exr").unlink()
     (tool.folder / "lost").mkdir()
@@ -291,11 +291,11 @@ def refusals(tool, report):
         "bins is 2": apply("--histogram-bins", "2"),
         "histogram minimum is 4": apply("--histogram-range", "4,1"),
         "--auto-exposure": ("apply", "a.exr", "bad.exr", "--operator", "hable", "--delta", "0.1"),
-        "--adapt requires --frames": apply("--adapt"),
-        "--adapt requires --auto-exposure": ("apply", "shot.####.exr", "bad.####.exr", "--operator", "hable", "--frames",
-                                             "1001", "--adapt"),
+        "--adapt is given; expected --frames RANGE with it": apply("--adapt"),
+        "--adapt is given; expected --auto-exposure METHOD with it": ("apply", "shot.####.exr", "bad.####.exr", "--operator",
+                                                                      "hable", "--frames", "1001", "--adapt"),
         "expected --auto-exposure or": ("apply", "a.exr", "bad.exr", "--operator", "hable", "--meter-cache", "c.json"),
-        "--auto-exposure excludes --lut": ("apply", "a.exr", "bad.exr", "--lut", "a.cube", "--auto-exposure", "mean"),
+        "--auto-exposure and --lut are given; expected one of them": ("apply", "a.exr", "bad.exr", "--lut", "a.cube", "--auto-exposure", "mean"),
         "expected --frames": ("apply", "a.exr", "bad.exr", "--operator", "drago", "--statistics", "sequence"),
         "did you mean sequence?": ("apply", "a.exr", "bad.exr", "--operator", "drago", "--statistics", "sequenc"),
         "expected frame 1010 of --frames": ("apply", "shot.####.exr", "bad.####.exr", "--operator", "hable", "--frames",

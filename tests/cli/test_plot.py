@@ -47,9 +47,12 @@ class Plot:
         scale = re.fullmatch(r"x = (\S+) \+ (\S+) \(stops from 0.18 \+ (\S+)\), y = (\S+) - (\S+) (.+)",
                              self.root.findtext(SVG + "desc"))
         self.left, self.stop, self.lowest, self.zero, self.unit = map(float, scale.groups()[:5])
-        self.lines, self.colours = {}, {}
+        self.lines, self.colours, self.small = {}, {}, []
         for line in self.root.iter(SVG + "polyline"):
             points = np.array([p.split(",") for p in line.get("points").split()], float)
+            if line.get("id").startswith("small-"):
+                self.small.append(line.get("id"))
+                continue
             self.lines[line.get("id")] = ((points[:, 0] - self.left) / self.stop - self.lowest,
                                           (self.zero - points[:, 1]) / self.unit)
             self.colours[line.get("id")] = line.get("stroke")
@@ -88,7 +91,7 @@ def check_svg(report, command, folder):
     run(command, "plot", *operators, *options, "-o", path)
     plot = Plot(path)
     check_lines(report, command, "code", plot, {name: codes(name) for name in arguments})
-    report.check("code: names, axes and marks", {"Hable (Uncharted 2)", "mid grey", "white", "code", "light", "0.18",
+    report.check("code: names, axes and marks", {"Hable (Uncharted 2)", "mid gray", "white", "code", "light", "0.18",
                                                  "+10", "100 %"} <= set(plot.words), plot.words)
     report.check("code: colours differ", len(set(plot.colours.values())) == len(plot.colours))
     report.check("code: nothing from elsewhere", not re.search(r"<script|href|url\(|@import|<image", plot.text))
@@ -147,6 +150,41 @@ def check_one(report, command, folder):
                  and {"AgX (minimal, Wrensch), ", "AgX (three.js)"} <= set(plot.words), (list(plot.lines), plot.words))
 
 
+def points_of_words(plot):
+    """Points on the strokes of all words of an SVG file, in its pixels: ends of lines and arcs."""
+    points = []
+    for path in plot.root.iter(SVG + "path"):
+        if "s" not in (path.get("class") or "").split():
+            continue
+        scale, _, _, flip, left, baseline = map(float, re.findall(r"-?[\d.]+", path.get("transform")))
+        x = y = 0
+        for letter, text in re.findall(r"([mlhva])([^mlhva]*)", path.get("d")):
+            numbers = [int(n) for n in re.findall(r"-?\d+", text)]
+            x += 0 if letter == "v" else numbers[0] if letter == "h" else numbers[-2]
+            y += 0 if letter == "h" else numbers[-1]
+            points.append((left + scale * x, baseline + flip * y))
+    return np.array(points)
+
+
+def check_font(report, command, folder):
+    """SVG files and pictures show the same letters at the same places: where the SVG has strokes, the picture has ink."""
+    svg, png = folder / "font.svg", folder / "font.png"
+    arguments = ["plot", "hable", "aces_13", "--title", "QWERTYUIOP asdfghjkl; (zxcvbnm) 1234567890"]
+    run(command, *arguments, "-o", svg)
+    run(command, *arguments, "-o", png, "--width", 1920)
+    points = np.floor(points_of_words(Plot(svg)) * 3).astype(int)
+    pixels = 255 * read_rgb(png, folder)
+    ink = np.array([0x24, 0x29, 0x2f])
+    off = np.abs(pixels[points[:, 1], points[:, 0]] - ink).max(axis=1)
+    report.check("font: letters of the SVG", len(points) > 800, len(points))
+    report.bound("font: the picture has ink at the strokes of the SVG, share without", (off > 60).mean(), 0,
+                 f"{points[off > 60][:5].tolist()}")
+    report.check("font: and nothing at most other places", (np.abs(pixels - ink).max(axis=2) < 60).mean() < 0.05)
+    run(command, "plot", "hable", "--title", "Été", "-o", svg)
+    shown = [text.text for text in Plot(svg).root.iter(SVG + "text") if "v" in (text.get("class") or "").split()]
+    report.check("font: words with other letters are text", shown == ["Été"], shown)
+
+
 def check_pixels(report, command, folder):
     svg, png = folder / "same.svg", folder / "same.png"
     operators = ["agx_sobotka", "hable", "aces_13"]
@@ -168,6 +206,48 @@ def check_pixels(report, command, folder):
         report.check(f"png of {width}: the page is white", (pixels[-1, :, :] == 255).all())
     run(command, "plot", "hable", "-o", folder / "same.jpg", "--dark")
     report.check("jpg: a JPEG file", (folder / "same.jpg").read_bytes()[:3] == b"\xff\xd8\xff")
+
+
+def check_many(report, command, folder):
+    """More lines than can be told apart in one graph: a small graph for each."""
+    names = ["hable", "agx_sobotka", "aces_13", "reinhard", "lottes", "gt7", "uchimura", "khronos_neutral", "drago"]
+    path = folder / "many.svg"
+    run(command, "plot", *names, "-o", path)
+    plot = Plot(path)
+    report.check("many: a small graph for each", {f"small-{n}" for n in names} <= set(plot.small), plot.small)
+    run(command, "plot", *names[:4], "-o", path)
+    report.check("a few: none", not Plot(path).small)
+
+
+def check_pdf(report, command, folder):
+    """The lines and the words of the SVG, in a file whose cross-reference table is right."""
+    svg, pdf = folder / "same.svg", folder / "same.pdf"
+    names = ["hable", "agx_sobotka"]
+    run(command, "plot", *names, "-o", svg, "--title", "A (B)")
+    run(command, "plot", *names, "-o", pdf, "--title", "A (B)")
+    plot, data = Plot(svg), pdf.read_bytes()
+    report.check("pdf: begins and ends as one", data.startswith(b"%PDF-1.4\n") and data.endswith(b"%%EOF\n"))
+    table = int(re.search(rb"startxref\n(\d+)\n", data)[1])
+    offsets = [int(n) for n in re.findall(rb"(\d{10}) 00000 n ", data[table:])]
+    report.check("pdf: cross-reference table", data[table:].startswith(b"xref\n") and len(offsets) == 8 and all(
+        data[at:].startswith(b"%d 0 obj\n" % (i + 1)) for i, at in enumerate(offsets)), offsets)
+    length = int(re.search(rb"/Length (\d+)", data)[1])
+    start = data.index(b"stream\n") + 7
+    report.check("pdf: length of the stream", data[start + length:].startswith(b"endstream"))
+    width, height = map(float, re.search(rb"/MediaBox \[0 0 ([\d.]+) ([\d.]+)\]", data).groups())
+    report.check("pdf: 640 pixels of 1/96 inch", abs(width - 480) < 0.01 and
+                 abs(height - 0.75 * float(plot.root.get("height"))) < 0.01, (width, height))
+    stream = data[start:start + length].decode("latin-1")
+    words = {re.sub(r"\\([()\\])", r"\1", w) for w in re.findall(r"\(((?:[^()\\]|\\.)*)\) Tj", stream)}
+    ascii_words = {w for w in plot.words if w.isascii()}
+    report.check("pdf: the words of the SVG", ascii_words <= words, ascii_words - words)
+    for line in plot.root.iter(SVG + "polyline"):
+        points = [tuple(map(float, p.split(","))) for p in line.get("points").split()]
+        path = "".join(f"{x:.2f} {y:.2f} {'m' if i == 0 else 'l'}\n" for i, (x, y) in enumerate(points))
+        report.check(f"pdf: the line {line.get('id')}", path in stream)
+    again = folder / "again.pdf"
+    run(command, "plot", *names, "-o", again, "--title", "A (B)")
+    report.check("pdf: the same bytes again", again.read_bytes() == data)
 
 
 def check_program_alone(report, command, folder):
@@ -202,7 +282,7 @@ def check_errors(report, command, folder):
         (USAGE, ["hable", "--exposure", "nan"], ["exposure is nan"]),
         (USAGE, ["hable", "--width", "10"], ["--width", "10"]),
         (USAGE, many, ["number of operators is 25", "24"]),
-        (USAGE, [], ["operators"]),
+        (USAGE, [], ["OPERATORS is missing"]),
         (FILE, ["hable", "-o", folder / "none" / "x.svg"], ["none"]),
         (FILE, ["hable", "-o", folder / "file" / "x.png"], ["file"]),
         (FILE, ["hable", "-o", folder / "x.xyz"], ["xyz"]),
@@ -231,6 +311,9 @@ def main():
         check_hdr(report, command, folder)
         check_one(report, command, folder)
         check_pixels(report, command, folder)
+        check_font(report, command, folder)
+        check_many(report, command, folder)
+        check_pdf(report, command, folder)
         check_program_alone(report, command, folder)
         check_errors(report, command, folder)
     return report.finish()

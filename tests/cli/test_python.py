@@ -8,6 +8,7 @@ The last line is `N passed, M failed`.
 
 import argparse
 import json
+import os
 import sys
 import tempfile
 import threading
@@ -102,10 +103,35 @@ def check_arrays(report, tw):
 
 def check_errors(report, tw):
     rgb = light((2, 2, 3))
+    report.check("one grammar", np.array_equal(tw.evaluate("AgX Punchy", [1, .5, .2]),
+                                               tw.evaluate("agx_blender", [1, .5, .2], look="punchy"))
+                 and np.array_equal(tw.tonemap(rgb, "Hable:WHITE=4"), tw.tonemap(rgb, "hable", settings={"white": 4})))
+    raises(report, "an unknown operator with NUL", ValueError, "embedded null character",
+           lambda: tw.tonemap(rgb, "hable\0x"))
     raises(report, "unknown operator", ValueError, "did you mean hable?", lambda: tw.tonemap(rgb, "habel"))
-    raises(report, "unknown option", ValueError, "did you mean exposure?", lambda: tw.tonemap(rgb, "hable", exposur=1))
-    raises(report, "option of the wrong kind", ValueError, "exposure is bright; expected a number",
+    # As Python says it of its own functions.
+    raises(report, "unknown option", TypeError, "tonemap() got an unexpected keyword argument 'exposur'",
+           lambda: tw.tonemap(rgb, "hable", exposur=1))
+    raises(report, "too few arguments", TypeError, "tonemap() missing 1 required positional argument: 'op'",
+           lambda: tw.tonemap(rgb))
+    raises(report, "option of the wrong kind", TypeError, "exposure must be a number, not str",
            lambda: tw.tonemap(rgb, "hable", exposure="bright"))
+    raises(report, "threads", TypeError, "'float' object cannot be interpreted as an integer",
+           lambda: tw.tonemap(rgb, "hable", nthreads=1.5))
+    raises(report, "operator of the wrong kind", TypeError, "op must be str, not int", lambda: tw.tonemap(rgb, 5))
+    raises(report, "settings of the wrong kind", TypeError, "settings must be a mapping, not list",
+           lambda: tw.evaluate("hable", [1, 1, 1], settings=[1]))
+    raises(report, "one text for many", TypeError, "displays must be a sequence of str, not str",
+           lambda: tw.verify(["hable"], displays="srgb"))
+    raises(report, "NUL in a name", ValueError, "embedded null character", lambda: tw.bake("hable", "a\0b.cube"))
+    raises(report, "no operator of that kind", ValueError, "expected an id from operators()", lambda: tw.tonemap(rgb, "xyzzyx"))
+    for shape in ((3, 20, 30), (4, 20, 30)):
+        raises(report, f"channels first {shape}", ValueError, "or axis=0", lambda s=shape: tw.tonemap(np.zeros(s), "hable"))
+        raises(report, f"channels first {shape}", ValueError, "or axis=0", lambda s=shape: tw.meter(np.zeros(s)))
+    planes = light((3, 9, 7)).astype(np.float32)
+    shown = tw.tonemap(planes, "agx_sobotka", axis=0)
+    report.check("axis=0", shown.shape == planes.shape and np.array_equal(
+        np.moveaxis(shown, 0, -1), tw.tonemap(np.moveaxis(planes, 0, -1), "agx_sobotka")))
     raises(report, "unknown parameter", ValueError, "did you mean white?",
            lambda: tw.tonemap(rgb, "hable", settings={"whit": 1}))
     raises(report, "parameter out of range", ValueError, "white is -2",
@@ -130,18 +156,58 @@ def check_lists(report, tw, command):
         for i in expected))
 
 
+    spaces = json.loads(run(command, "list", "--json"))["displays"]
+    report.check("displays(): those of `list`", [d["id"] for d in tw.displays()] == [d["id"] for d in spaces])
+    report.check("displays(): HDR", {d["id"] for d in tw.displays() if d["hdr"]} == {"rec2100_pq", "rec2100_hlg", "p3d65_pq"})
+    report.check("__version__: that of the command", tw.__version__ == run(command, "--version").strip())
+    rows = tw.verify(["linear"], displays=["srgb"], quick=True, gpu=False)
+    report.check("verify()", rows and all(row["ok"] and row["operator"] == "linear" for row in rows), rows)
+
+
+def check_types(report, tw):
+    """Every public function is documented and has types; a type checker finds them."""
+    import inspect
+    folder = Path(tw.__file__).parent
+    report.check("py.typed, and a stub of the compiled part",
+                 (folder / "py.typed").exists() and (folder / "_tonewright.pyi").exists())
+    functions = [getattr(tw, name) for name in tw.__all__ if callable(getattr(tw, name))]
+    bare = [f.__name__ for f in functions if not f.__doc__ or set(inspect.signature(f).parameters) - set(f.__annotations__)
+            or "return" not in f.__annotations__]
+    report.check(f"{len(functions)} functions with types and a docstring", len(functions) == 10 and not bare, bare)
+
+
+def check_config(report, tw, command, scratch):
+    tw.make_config(scratch / "ours", views=["reinhard", "hable"], displays=["srgb"], profiles=["2.1"],
+                   custom={"Mine": "hable:white=4"})
+    run(command, "config", "-o", scratch / "theirs", "--views", "reinhard,hable", "--displays", "srgb", "--profile", "2.1",
+        "--operator", "hable:white=4", "--name", "Mine")
+    same = [(scratch / "ours" / p.relative_to(scratch / "theirs")).read_bytes() == p.read_bytes()
+            for p in (scratch / "theirs").rglob("*") if p.is_file()]
+    report.check(f"make_config(): the {len(same)} files of `config`", len(same) > 3 and all(same))
+    raises(report, "make_config of no view", ValueError, "hablex", lambda: tw.make_config(scratch / "x", views=["hablex"]))
+
+
 def check_luts(report, tw, command, scratch):
     for options, words in (({"size": 17}, ["--size", "17"]),
                            ({"host": "resolve"}, ["--for", "resolve"]),
                            ({"format": "spi3d", "size": 17, "exposure": 1}, ["--format", "spi3d", "--size", "17",
                                                                              "--exposure", "1"])):
-        result = tw.bake("hable", str(scratch / "a.lut"), **options)
-        run(command, "bake", "hable", "-o", scratch / "b.lut", *words)
-        report.check(f"bake {options}: the file of `bake`",
-                     (scratch / "a.lut").read_bytes() == (scratch / "b.lut").read_bytes(), str(result))
-    raises(report, "bake into no folder", OSError, "/nonexistent/a.cube", lambda: tw.bake("hable", "/nonexistent/a.cube"))
-    raises(report, "bake for nobody", ValueError, "did you mean resolve?", lambda: tw.bake("hable", "a", host="resolv"))
-    raises(report, "bake of a kind", ValueError, "format is", lambda: tw.bake("hable", "a", format="cub"))
+        a, b = (scratch / f"{name}.{options.get('format', 'cube')}" for name in "ab")
+        result = tw.bake("hable", str(a), **options)
+        run(command, "bake", "hable", "-o", b, *words)
+        report.check(f"bake {options}: the file of `bake`", a.read_bytes() == b.read_bytes(), str(result))
+    raises(report, "bake under another format's name", ValueError, "expected .cube",
+           lambda: tw.bake("hable", str(scratch / "a.clf"), host="resolve"))
+    raises(report, "bake into no folder", FileNotFoundError, "/nonexistent/a.cube",
+           lambda: tw.bake("hable", "/nonexistent/a.cube"))
+    for path in (scratch / "path.cube", bytes(scratch / "bytes.cube")):
+        tw.bake("hable", path, size=17)
+        report.check(f"bake into a {type(path).__name__}", Path(os.fsdecode(path)).stat().st_size > 10000)
+    raises(report, "bake onto a device", OSError, "is no regular file", lambda: tw.bake("hable", "/dev/null", format="cube", size=17))
+    raises(report, "bake into a folder with control characters", FileNotFoundError, "a?[31mb c",
+           lambda: tw.bake("hable", "a\x1b[31mb\nc/x.cube"))
+    raises(report, "bake for nobody", ValueError, "did you mean resolve?", lambda: tw.bake("hable", "a.cube", host="resolv"))
+    raises(report, "bake of a kind", ValueError, "format is", lambda: tw.bake("hable", "a.cube", format="cub"))
 
 
 def check_pictures(report, tw, command, scratch):
@@ -164,6 +230,21 @@ def check_pictures(report, tw, command, scratch):
     report.check("its color space is said", result.spec().getattribute("oiio:ColorSpace") == "sRGB")
     part = tw.tonemap(oiio.ImageBuf(str(path)), "hable", exposure=1, roi=oiio.ROI(3, 9, 5, 8, 0, 1, 0, 4))
     report.check("roi", np.array_equal(part.get_pixels("float"), applied[5:8, 3:9]))
+    tw.tonemap_file(path, scratch / "c.exr", "hable", exposure=1, dtype="float")
+    report.check("tonemap_file(): the bytes of `apply`", (scratch / "c.exr").read_bytes() == (scratch / "b.exr").read_bytes())
+    raises(report, "tonemap_file: a missing file", FileNotFoundError, "gone.exr",
+           lambda: tw.tonemap_file(scratch / "gone.exr", scratch / "d.exr", "hable"))
+    raises(report, "tonemap_file: a pixel type", ValueError, "expected uint8, uint16, half or float",
+           lambda: tw.tonemap_file(path, scratch / "d.exr", "hable", dtype="int"))
+    metered = tw.meter(path)
+    said = json.loads(run(command, "meter", path, "--json"))["pictures"][0]
+    report.check("meter(): the exposure of `meter`", abs(metered["exposure"] - said["exposure"]) < 1e-12
+                 and abs(metered["luminance"] - said["suggested"]["log-average"]["luminance"]) < 1e-12, (metered, said))
+    report.check("meter() of an ImageBuf", tw.meter(oiio.ImageBuf(str(path))) == metered)
+    # Reinhard 2002, eq. 1, of one luminance: 0.18/(0.5 + 0.001).
+    report.bound("meter() of an array", abs(tw.meter(np.full((4, 5, 3), 0.5))["exposure"] - np.log2(0.18 / 0.501)), 1e-6)
+    raises(report, "meter of a list", TypeError, "expected a path, a numpy array", lambda: tw.meter([1, 2]))
+    raises(report, "meter by no method", ValueError, "did you mean mean?", lambda: tw.meter(path, method="meen"))
     raises(report, "a missing file", OSError, "/nonexistent/a.exr",
            lambda: tw.tonemap(oiio.ImageBuf("/nonexistent/a.exr"), "hable"))
     deep = oiio.ImageSpec(2, 2, 3, "float")
@@ -186,6 +267,8 @@ def main():
     check_lists(report, tw, command)
     with tempfile.TemporaryDirectory(prefix="tonewright-") as folder:
         check_luts(report, tw, command, Path(folder))
+        check_types(report, tw)
+        check_config(report, tw, command, Path(folder))
         check_pictures(report, tw, command, Path(folder))
     return report.finish()
 

@@ -59,4 +59,38 @@ expect "the command: chart" "$prefix/bin/tonewright" chart -o "$work/chart.exr" 
 expect "the command: apply" "$prefix/bin/tonewright" apply "$work/chart.exr" "$work/chart.png" --operator hable
 expect "the command: bake" "$prefix/bin/tonewright" bake hable -o "$work/hable.cube"
 expect "the picture" test -s "$work/chart.png"
+
+# Data and documents, each as it is in the tree, at its place by the FHS.
+root=$(cd "$here/../.." && pwd)
+data=$prefix/share/tonewright
+documents=$prefix/share/doc/tonewright
+for folder in ocio_config luts; do
+    expect "$folder is installed whole" diff -r "$root/$folder" "$data/$folder"
+done
+expect "the license" cmp "$root/LICENSE" "$documents/LICENSE"
+expect "documents" diff -r "$root/docs" "$documents/docs"
+expect "README" cmp "$root/README.md" "$documents/README.md"
+links() { # every relative link of the documents leads to a file, but those to sources
+    local page target missing=0
+    while IFS=: read -r page target; do
+        target=${target%%#*}
+        case $target in *src/* | *tests/* | *python_check/*) continue ;; esac
+        [ -e "$(dirname "$page")/$target" ] || { echo "$page: $target" && missing=1; }
+    done < <(grep -roE --include=*.md '\]\([^)#: ]+(#[^)]*)?\)' "$documents/README.md" "$documents/docs" |
+        sed 's/](//; s/)$//')
+    return $missing
+}
+expect "links of the documents" links
+python=$(command -v /usr/bin/python3 || command -v python3)
+if [ -x "$(command -v ociocheck)" ]; then
+    expect "OpenColorIO takes the config" ociocheck --iconfig "$data/ocio_config/config.ocio"
+fi
+package=$(find "$prefix" -name _tonewright.pyi)
+if [ -n "$package" ]; then
+    site=$(dirname "$(dirname "$package")")
+    expect "the Python module" env PYTHONPATH="$site" "$python" -c '
+import tonewright
+assert tonewright.__file__.startswith("'"$site"'"), tonewright.__file__
+assert abs(tonewright.evaluate("clamp", [0.5, 0.5, 0.5], display="linear")[0] - 0.5) < 1e-12'
+fi
 exit $failed

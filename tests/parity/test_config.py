@@ -19,6 +19,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent / "clients"))
 from pictures import Report, run, skip  # noqa: E402
+from lut_encodings import logc3_decode  # noqa: E402  (python_check/, which pictures.py puts on the path)
 
 try:
     import PyOpenColorIO as ocio
@@ -37,7 +38,7 @@ ALIASES = {"Linear": "Linear Rec.709", "linear": "Linear Rec.709", "lin_srgb": "
            "lin_ap0": "ACES2065-1", "lin_rec2020": "Linear Rec.2020", "lin_p3d65": "Linear P3-D65",
            "srgb_tx": "sRGB - Texture", "Raw": "Non-Color", "Utility - Raw": "Non-Color", "sRGB - Display": "sRGB",
            "Rec.1886 - Display": "Rec.1886", "g22_ap1_tx": "Gamma 2.2 AP1 - Texture",
-           "arri_logc3_ei800": "ARRI LogC3 (EI800)", "acescct_ap1": "ACEScct", "displayp3_display": "Display P3",
+           "arri_logc3_ei800": "ARRI LogC3 (EI800)", "arri_logc4": "ARRI LogC4", "KodakLog": "Cineon", "acescct_ap1": "ACEScct", "displayp3_display": "Display P3",
            "rec2100_pq_display": "Rec.2100-PQ", "out_agx_srgb": "Output - AgX - sRGB"}
 # space of the config -> primaries in python_check/operators.py
 LINEAR = {"Linear Rec.709": "rec709", "ACEScg": "ap1", "ACES2065-1": "ap0", "Linear Rec.2020": "rec2020",
@@ -53,9 +54,17 @@ FILES = {"shot.exr": "Linear Rec.709", "light.hdr": "Linear Rec.709", "logo.png"
          "photo.jpg": "sRGB - Texture", "scan.tif": "sRGB - Texture", "/plates/shot_acescg.0001.exr": "ACEScg",
          "/plates/shot_lin_ap0_v2.exr": "ACES2065-1", "a.LogC3.dpx": "ARRI LogC3 (EI800)",
          "wood_raw.png": "Non-Color", "/raw/wood.png": "sRGB - Texture", "/acescg/data/sky.exr": "Linear Rec.709",
-         "rawhide.png": "sRGB - Texture", "shot_srgb.exr": "sRGB - Texture"}
+         "rawhide.png": "sRGB - Texture", "shot_srgb.exr": "sRGB - Texture",
+         "clip_S-Log3_S-Gamut3.Cine.mov": "S-Log3 S-Gamut3.Cine", "slog3_sgamut3cine": "S-Log3 S-Gamut3.Cine",
+         "clip_S-Log3_S-Gamut3.mov": "S-Log3 S-Gamut3", "A003_LogC4.mxf": "ARRI LogC4",
+         "M001_Log3G10.mov": "Log3G10 REDWideGamutRGB", "scan.0001.dpx": "Cineon", "scan.cin": "Cineon",
+         "plate_rec709.0001.dpx": "Gamma 2.4 Rec.709 - Texture", "photo.jxl": "sRGB - Texture",
+         "photo.heic": "sRGB - Texture", "photo.avif": "sRGB - Texture", "photo.jp2": "sRGB - Texture",
+         "wood.tx": "sRGB - Texture", "sky.exr.tx": "Linear Rec.709", "wood_sRGB - Texture_ACEScg.png.tx": "ACEScg"}
+# ARRI prints LogC3's constants with six digits, OpenColorIO derives them: 3e-5 of code values. The rest is float32.
+CAMERA = 5e-5
 # Bytes of the folder, which people clone.
-LARGEST = 50e6
+LARGEST = 51e6
 NAME_BYTES = 63  # Blender's limit
 # Float32: one product of matrices with entries up to 2.
 MATRIX = 1e-6
@@ -161,6 +170,41 @@ def check_rules(report, config):
     wrong = [(name, config.getColorSpaceFromFilepath(name)) for name in FILES]
     wrong = [f"{name}: {space}, expected {FILES[name]}" for name, (space, _) in wrong if space != FILES[name]]
     report.check(f"{len(FILES)} names of pictures", not wrong, wrong)
+
+
+def slog3_decode(code):
+    """Sony, "Technical Summary for S-Gamut3.Cine/S-Log3 and S-Gamut3/S-Log3"."""
+    return np.where(code >= 171.2102946929 / 1023, 10 ** ((code * 1023 - 420) / 261.5) * 0.19 - 0.01,
+                    (code * 1023 - 95) * 0.01125 / (171.2102946929 - 95))
+
+
+def check_cameras(report, config, command, operators):
+    """What the makers print, and one gamut of a camera in `--input` and in the config."""
+    codes = np.concatenate([np.repeat(np.arange(33)[:, None] / 32, 3, axis=1),
+                            np.random.default_rng(8).uniform(0.2, 0.8, (2000, 3))])
+    # ARRI, "LogC4 Logarithmic Color Space, Specification", 2022, 4.1.
+    a, b, c = (2**18 - 16) / 117.45, (1023 - 95) / 1023, 95 / 1023
+    logc4 = (2 ** (14 * (codes - c) / b + 6) - 64) / a
+    light = logc4 @ operators.spaces.rgb_to_rgb(operators.spaces.CAMERAS["awg4"], "ap0").T
+    shown = apply(config, "ARRI LogC4", "ACES2065-1", codes)
+    scale = np.abs(light).max(axis=1, keepdims=True) + 0.01
+    report.compare("ARRI LogC4 is ARRI's", shown / scale, light / scale, 1e-5)
+    # Kodak's published aims: black at code 95, white at 685, 0.002 density a code, gamma 0.6.
+    black = 10 ** ((95 - 685) * 0.002 / 0.6)
+    film = (10 ** ((codes * 1023 - 685) * 0.002 / 0.6) - black) / (1 - black)
+    shown = apply(config, "Cineon", "Linear Rec.709", codes)
+    scale = np.abs(film).max(axis=1, keepdims=True) + 0.01
+    report.compare("Cineon is Kodak's", shown / scale, film / scale, 1e-5)
+    for name, space, decode in (("ARRI LogC3 (EI800)", "lin_awg3", logc3_decode),
+                                ("S-Log3 S-Gamut3", "lin_sgamut3", slog3_decode),
+                                ("S-Log3 S-Gamut3.Cine", "lin_sgamut3cine", slog3_decode)):
+        image = codes.astype(np.float32)
+        processor = config.getProcessor(name, "sRGB", "Standard", ocio.TRANSFORM_DIR_FORWARD)
+        processor.getOptimizedCPUProcessor(ocio.OPTIMIZATION_LOSSLESS).applyRGB(image)
+        lines = "".join(f"{r!r} {g!r} {b!r}\n" for r, g, b in decode(codes).tolist())
+        done = run(command, "eval", "clamp", "--input", space, stdin=lines)
+        truth = np.array([[float(v) for v in re.split("[ ,]+", line.strip())] for line in done.splitlines()])
+        report.compare(f"{space} is the config's {name}", image, truth, CAMERA)
 
 
 def check_round_trips(report, config, folder):
@@ -300,6 +344,7 @@ def main():
         check_ways_back(report, config)
         check_files(report, folder)
         check_spaces(report, config, operators)
+        check_cameras(report, config, arguments.command.resolve(), operators)
         report.check("check_config.py", check_config.main([str(path)]) == 0)
         report.check("check_config.py without a config", check_config.main([str(folder / "none.ocio")]) == 2)
     return report.finish()

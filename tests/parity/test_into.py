@@ -109,6 +109,57 @@ colorspaces:
         - !<BuiltinTransform> {style: ACEScg_to_ACES2065-1}
   - !<ColorSpace> {name: raw, isdata: true}
 """
+# As people write configs by hand: comments everywhere, an order of their own, both styles, quotes, tabs behind values,
+# blanks at line ends, a list over several lines and a multi-line text with signs that mean something elsewhere.
+BY_HAND = """# studio config, do not let a program sort it
+ocio_profile_version: 2.1
+environment: {}
+
+colorspaces:   # before the displays, as we like it
+# the working space
+- !<ColorSpace>
+  name: ACEScg
+  description: |
+    # not a comment
+    looks: [none]
+
+    two lines
+  to_scene_reference: !<BuiltinTransform> {style: ACEScg_to_ACES2065-1}   # ours
+- !<ColorSpace> {name: ACES2065-1}
+-   !<ColorSpace> {name: Raw, isdata: true}
+    # deeper than the list
+
+# ---- roles ----
+roles: {aces_interchange: ACES2065-1, cie_xyz_d65_interchange: 'CIE-XYZ-D65', data: Raw,
+        scene_linear: ACEScg}\t
+file_rules:
+  - !<Rule> {name: Default, colorspace: ACEScg}
+search_path: "luts"  # where the LUTs are
+active_displays: []
+active_views: [Plain, "Raw",  # the usual ones
+               'It''s',  # ] not the end
+              ]
+displays:
+    Monitor:   # the one on the desk
+        # first
+        - !<View> {name: Plain, view_transform: plain, display_colorspace: sRGB}
+        - !<View> {name: Raw, colorspace: Raw} \t
+
+    Television: [!<View> {name: "It's", view_transform: plain, display_colorspace: tv}]  # flow
+view_transforms:
+  - !<ViewTransform>
+    name: plain
+    from_scene_reference: !<GroupTransform>
+      children:
+        - !<BuiltinTransform> {style: UTILITY - ACES-AP0_to_CIE-XYZ-D65_BFD}
+
+display_colorspaces: [
+    !<ColorSpace> {name: CIE-XYZ-D65},
+    !<ColorSpace> {name: sRGB, from_display_reference: !<BuiltinTransform> {style: DISPLAY - CIE-XYZ-D65_to_sRGB}},
+    !<ColorSpace> {name: tv, from_display_reference:
+      !<BuiltinTransform> {style: DISPLAY - CIE-XYZ-D65_to_REC.1886-REC.709}},
+  ]
+# the end"""
 # OpenColorIO's sRGB operation is 1e-5 from IEC 61966-2-1, its PQ 7e-5 near black; the rest is float32 in matrices.
 BOUND = 1e-4
 
@@ -157,6 +208,91 @@ def check_picture(report, command, path, display, view, operator, option, space)
     name = f"Output - {view} - {display}"
     config.getProcessor(space[0], name).getDefaultCPUProcessor().applyRGB(image)
     report.compare(f"{path.parent.name}: {name}", image, truth, BOUND)
+
+
+def lines_that_are_gone(before, after):
+    """The lines of a text that are not in another, whole and in their order."""
+    rest = iter(after)
+    return [line for line in before if not any(line == other for other in rest)]
+
+
+def check_text(report, command, root):
+    """A config that is written by hand: all of it stays as it is, --update and --remove take out what is ours."""
+    variants = {"by hand": BY_HAND, "Windows": BY_HAND.replace("\n", "\r\n"), "a line end": BY_HAND + "\n",
+                "no search path": BY_HAND.replace('search_path: "luts"  # where the LUTs are\n', ""),
+                "an empty search path": BY_HAND.replace('"luts"', '""'),
+                "a list of paths": BY_HAND.replace('"luts"', "[luts, more]"),
+                "with looks": BY_HAND.replace("view_transforms:", "looks: [!<Look> {name: dark, process_space: ACEScg}]\n"
+                                              "view_transforms:"), "UTF-8": "\ufeff" + BY_HAND.replace("studio", "Süd-Studio")}
+    for kind, text in variants.items():
+        if kind not in ("by hand", "Windows") and not ALL:
+            continue
+        # Only AgX has looks, and it takes ten seconds.
+        second = ("agx_blender", "AgX") if kind == "with looks" else ("clamp", "Standard")
+        folder = root / kind
+        folder.mkdir()
+        path = folder / "mine.ocio"
+        path.write_bytes(text.encode())
+        before = numbers_of(path)
+        done = call(command, "--into", path, "--views", f"hable,{second[0]}", "--backup")
+        report.check(f"{kind}: --into", done.returncode == 0 and not done.stderr, done.stderr)
+        after = path.read_bytes().decode()
+        # Lists on one line have more in them: the flow display, the active views, the search path, the looks.
+        longer = re.compile(r"search_path|    Television|looks|               'It''s'")
+        # A last line without an end gets one, as the others have it.
+        kept = [line for line in text.rstrip().split("\n") if not longer.match(line)]
+        kept[-1] = next(line for line in after.split("\n") if line.rstrip("\r") == kept[-1])
+        changed = lines_that_are_gone(kept, after.split("\n"))
+        report.check(f"{kind}: all other {len(kept)} lines are as they were", len(kept) > 40 and not changed, changed)
+        report.check(f"{kind}: line ends are the config's", ("\r" in text) == ("\r" in after)
+                     and after.count("\r\n") in (0, after.count("\n")), "")
+        report.check(f"{kind}: the backup is the config", (folder / "mine.ocio.bak").read_bytes() == text.encode())
+        now = numbers_of(path)
+        report.check(f"{kind}: all of theirs makes the same numbers", all(now.get(k) == before[k] for k in before))
+        config = ocio.Config.CreateFromFile(str(path))
+        config.validate()
+        report.check(f"{kind}: views are in their order, ours behind",
+                     [list(config.getViews(d)) for d in ("Monitor", "Television")]
+                     == [["Plain", "Raw", "Hable", second[1]], ["It's", "Hable", second[1]]],
+                     [list(config.getViews(d)) for d in ("Monitor", "Television")])
+        report.check(f"{kind}: it says what was added", all(w in done.stdout for w in (
+            "added 4 views: Hable on Monitor", f"2 view transforms: Hable, {second[1]}",
+            "9 looks" if second[1] == "AgX" else "", "4 color spaces: Output - Hable - Monitor")), done.stdout)
+        tables = {p.name for p in (folder / "tonewright").glob("*.clf")}
+        # What is not ours may be changed between the two.
+        path.write_bytes(path.read_bytes().replace(b"the one on the desk", b"the one on the wall"))
+        done = call(command, "--into", path, "--update", "--views", "hable", "--looks", "none")
+        left = {p.name for p in (folder / "tonewright").glob("*.clf")}
+        report.check(f"{kind}: --update", done.returncode == 0 and not done.stderr and left <= tables and left, done.stderr)
+        report.check(f"{kind}: --update replaces", list(ocio.Config.CreateFromFile(str(path)).getViews("Television"))
+                     == ["It's", "Hable"])
+        updated = path.read_bytes()
+        done = call(command, "--into", path, "--update")
+        report.check(f"{kind}: --update alone takes the same views", done.returncode == 0 and path.read_bytes() == updated,
+                     done.stderr)
+        done = call(command, "--into", path, "--remove")
+        report.check(f"{kind}: --remove leaves the config byte for byte", done.returncode == 0 and not done.stderr
+                     and path.read_bytes() == text.encode().replace(b"desk", b"wall"), done.stderr)
+        report.check(f"{kind}: --remove leaves nothing behind", sorted(p.name for p in folder.iterdir())
+                     == ["mine.ocio", "mine.ocio.bak"], list(folder.iterdir()))
+        if kind != "by hand":
+            continue
+        done = call(command, "--into", path, "--remove")
+        report.check("nothing to remove", done.returncode == 3 and "mine.ocio" in done.stderr
+                     and done.stderr.count("\n") == 1, done.stderr)
+        call(command, "--into", path, "--views", "clamp")
+        call(command, "--into", path, "--views", "hable", "--looks", "none")
+        path.write_bytes(path.read_bytes().replace(b"name: Output - Standard", b"name: Other - Standard"))
+        edited = path.read_bytes()
+        done = call(command, "--into", path, "--remove")
+        report.check("what was added and then changed is not removed", done.returncode == 3 and path.read_bytes() == edited
+                     and "changed since" in done.stderr, done.stderr)
+        path.write_bytes(edited.replace(b"name: Other - Standard", b"name: Output - Standard"))
+        done = call(command, "--into", path, "--remove")
+        report.check("--remove takes out what was added twice", done.returncode == 0
+                     and path.read_bytes() == text.encode().replace(b"desk", b"wall"), done.stderr)
+        done = call(command, "-o", folder / "x", "--remove")
+        report.check("--remove without --into", done.returncode == 2 and "--into" in done.stderr, done.stderr)
 
 
 def check_theirs(report, command, folder, path, views):
@@ -225,7 +361,7 @@ def main():
             report.check(f"{kind}: all of theirs makes the same numbers", not changed, changed)
             report.check(f"{kind}: nothing is left behind", sorted(p.name for p in folder.iterdir())
                          == ["mine.ocio", "tonewright"], list(folder.iterdir()))
-            tables = sorted(p.name for p in (folder / "tonewright").iterdir())
+            tables = sorted(p.name for p in (folder / "tonewright").iterdir() if p.name != "mine.ocio.yaml")
             unhashed = [n for n in tables if not re.fullmatch(r"[a-z0-9_]+_[0-9a-f]{8}\.clf", n)]
             report.check(f"{kind}: {len(tables)} tables whose names have a hash", tables and not unhashed, unhashed)
             for display, option in displays.items():
@@ -252,6 +388,7 @@ def main():
             shutil.move(folder, moved)
             report.check(f"{kind}: the folder can be moved", ("AgX" in {k[1] for k in numbers_of(moved / "mine.ocio")
                                                                         if isinstance(k, tuple)}))
+        check_text(report, command, Path(name))
         check_published(report, command, Path(name))
         bare = Path(name) / "bare.ocio"
         bare.write_text(ACES.replace("cie_xyz_d65_interchange: CIE-XYZ-D65, ", ""))

@@ -69,8 +69,9 @@ def nodes_in_picture(path, layout, size, scratch):
     return picture.reshape(size, size, size, 3).transpose(1, 0, 2, 3).reshape(-1, 3)
 
 
-def expected_of(command, codes, encoding, display):
+def expected_of(command, codes, encoding, display, own_space=None):
     decode, space = ENCODINGS[encoding]
+    space = own_space or space
     return evaluate(command, decode(codes), *OPERATOR, "--input", space, "--display", display)
 
 
@@ -83,7 +84,9 @@ def check_host(report, command, host, folder):
     size, codes = host["size"], nodes_of(host["size"])
     # All nodes of a large one are a quarter of a million lines: every 29th, which meets all of all axes.
     step = 29 if size > 33 else 1
-    truth = expected_of(command, codes[::step], host["input_encoding"], host["display"])
+    # AgX (Sobotka) works in Rec.709.
+    truth = expected_of(command, codes[::step], host["input_encoding"], host["display"],
+                        "lin_rec709" if host["takes_any_primaries"] else None)
     if host["bits"]:
         truth = np.clip(truth, 0, 1)
         bound = 0.5 / (2 ** host["bits"] - 1) + EXACT  # rounded once
@@ -268,28 +271,31 @@ def check_match(report, command, folder):
 
 def check_errors(report, command, folder):
     """One line that names what is wrong, exit status 2, and no file."""
-    for arguments, words in ((["--for", "reslove"], "host is reslove; did you mean resolve?"),
+    for arguments, words in ((["--for", "reslove"], "application is reslove; did you mean resolve?"),
                              (["--format", "3dl", "--depth", "8"], "depth is 8; expected 12, 10 or 16 for 3dl"),
                              (["--format", "cube", "--depth", "16"], "depth is 16; expected 32 for cube"),
                              (["--format", "hald", "--size", "33"], "size is 33; a square"),
                              (["--format", "strip", "--size", "65"], "size is 65; [2, 64]"),
-                             (["--size", "33", "--max-error", "0.1"], "size is 33; none with --max-error"),
+                             (["--size", "33", "--max-error", "0.1"], "size is 33; no size with --max-error"),
                              (["--format", "strip", "--max-error", "1e-9"], "max error is 1e-09; at least"),
                              (["--depth", "0"], "depth is 0; expected 32 for cube"),
                              (["--format", "icc", "--depth", "8"], "depth is 8; expected 16 for icc"),
                              (["--format", "icc", "--icc-version", "3"], "--icc-version; 3"),
-                             (["--icc-version", "4"], "ICC version is given for cube; expected icc"),
+                             (["--icc-version", "4"], "--icc-version is given for cube; expected format icc with it"),
                              (["--format", "lut", "--1d"], "format is lut; a 1D format"),
                              (["--format", "resolve_cube", "--input-encoding", "pq:10"], "pq:10; up to 223"),
                              (["--format", "3dl", "--size", "20"], "size is 20; 17, 33 or 65"),
                              (["--format", "csp", "--input-encoding", "log2:-10:15"], "log2:-10:15; up to 223"),
-                             (["--for", "unreal"], "none.cube; .png or .tif for 8 bits"),
-                             (["--format", "hald", "--depth", "32"], "none.cube; .exr or .tif for 32 bits"),
-                             (["--for", "unreal", "--max-error", "0.1"], "max error is given for unreal; 16"),
+                             (["--for", "unreal", "--depth", "8"], "none.exr; .png or .tif for 8 bits"),
+                             (["--format", "hald", "--depth", "32"], "none.png; .exr or .tif for 32 bits"),
+                             (["--for", "unreal", "--max-error", "0.1"], "--max-error is given for unreal; its size is 16"),
                              (["--format", "3dl", "--1d"], "format is 3dl; a 1D format"),
-                             (["--for", "resolve", "--input-encoding", "linear"], "linear; another for a 3D table")):
-        is_picture = {"hald", "strip"} & set(arguments) and "none.cube" not in words
-        path = folder / ("none.png" if is_picture else "none.cube")
+                             (["--for", "resolve", "--3d", "--input-encoding", "linear"], "linear; another for a 3D table")):
+        form = arguments[arguments.index("--format") + 1] if "--format" in arguments else "cube"
+        extension = {"hald": "png", "strip": "png", "resolve_cube": "cube"}.get(form, form)
+        if "unreal" in arguments:
+            extension = "exr" if "none.exr" in words else "png"
+        path = folder / f"none.{extension}"
         done = subprocess.run([command, "bake", "hable", *arguments, "-o", path], capture_output=True, text=True,
                               check=False)
         report.check(f"bake hable {' '.join(arguments)}: {words}",

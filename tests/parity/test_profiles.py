@@ -38,7 +38,7 @@ INTEROP_IDS = {"sRGB": "srgb_rec709_display", "Display P3": "srgb_p3d65_display"
                "ACES2065-1": "lin_ap0_scene", "Linear Rec.709": "lin_rec709_scene",
                "Linear Rec.2020": "lin_rec2020_scene", "Linear P3-D65": "lin_p3d65_scene", "Non-Color": "data",
                "sRGB - Texture": "srgb_rec709_scene", "ACEScct": "ocio:acescct_ap1_scene",
-               "ARRI LogC3 (EI800)": "ocio:arrilogc3_awg3_scene"}
+               "ARRI LogC3 (EI800)": "ocio:arrilogc3_awg3_scene", "ARRI LogC4": "ocio:arrilogc4_awg4_scene"}
 # SMPTE ST 2067-50: what an ACES Metadata File calls the transform of a view and its display.
 AMF = "urn:ampas:aces:transformId:"
 AMF_IDS = {("ACES 2.0", "sRGB"): AMF + "v2.0:Output.Academy.Rec709-D65_100nit_in_Rec709-D65_sRGB-Piecewise.a2.v1",

@@ -1,34 +1,43 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <chrono>
 #include <filesystem>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
+#include "base/atomic_file.h"
 #include "base/strings.h"
+#include "cli/elapsed_line.h"
 #include "cli/lut_input.h"
+#include "cli/messages.h"
 #include "cli/pictures/apply_frames.h"
 #include "cli/pictures/commands.h"
 #include "cli/pictures/frames.h"
+#include "cli/pictures/input_files.h"
+#include "cli/pictures/legend.h"
 #include "cli/pictures/metering.h"
 #include "cli/pictures/picture_input.h"
 #include "cli/pictures/progress_bar.h"
+#include "image/picture_file.h"
 #include "image/source_picture.h"
+#include "image/tonemap_file.h"
 #include "tonewright/engine.h"
 #include "tonewright/image_io.h"
+#include "tonewright/registry.h"
 #include "tonewright/tonemap.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 TonemapOptions::Statistics parse_statistics(const std::string& text) {
-    if (text == "picture" || text == "sequence") return TonemapOptions::Statistics::from_picture;
-    if (text == "defaults") return TonemapOptions::Statistics::defaults;
-    const std::vector<std::string> names = {"picture", "sequence", "defaults"};
-    throw Error("apply: statistics is " + text + "; expected " + join_choices(names) +
-                did_you_mean(text, names));
+    return find_choice("apply: --statistics", text, {"picture", "sequence", "defaults"}) < 2
+               ? TonemapOptions::Statistics::from_picture
+               : TonemapOptions::Statistics::defaults;
 }
 
 OIIO::TypeDesc pixel_type_of(const ApplyOptions& options) {
@@ -36,12 +45,66 @@ OIIO::TypeDesc pixel_type_of(const ApplyOptions& options) {
                                 : parse_pixel_type(options.type);
 }
 
+WriteOptions::Alpha parse_alpha(const ApplyOptions& options) {
+    using Alpha = WriteOptions::Alpha;
+    const std::vector<std::pair<std::string, Alpha>> choices = {
+        {"keep", Alpha::keep}, {"ignore", Alpha::ignore}, {"opaque", Alpha::opaque}};
+    std::vector<std::string> names;
+    for (const auto& [name, alpha] : choices) {
+        names.push_back(name);
+        if (name != options.alpha) continue;
+        if (alpha != Alpha::keep && options.picture.unpremult) {
+            throw Error(fmt::format(
+                "apply: --alpha is {}; expected keep with --unpremult, which divides by alpha",
+                name));
+        }
+        return alpha;
+    }
+    throw Error(fmt::format("apply: --alpha is {}; expected {}{}", options.alpha,
+                            join_choices(names), did_you_mean(options.alpha, names)));
+}
+
+/// @throws Error  what no file of this name can be, before a large picture is read
+WriteOptions write_options_of(const ApplyOptions& options, const std::string& out) {
+    WriteOptions write;
+    write.type = pixel_type_of(options);
+    write.alpha = parse_alpha(options);
+    write.compression = options.compression;
+    write.quality = options.quality;
+    write.max_pixels = options.max_pixels;
+    write.says_how = !options.has_no_metadata;
+    if (options.given.contains("--compression") || options.given.contains("--quality"))
+        (void)PictureWriter(out, write);
+    return write;
+}
+
+/// Where alpha plays no part, color is taken as it is.
+TonemapOptions::Unpremult alpha_of(const ApplyOptions& options) {
+    return options.alpha == "keep" ? alpha_of(options.picture) : TonemapOptions::Unpremult::no;
+}
+
+/// For metering, which sees the same colors.
+PictureInput picture_of(const ApplyOptions& options) {
+    PictureInput picture = options.picture;
+    if (options.alpha != "keep") picture.no_unpremult = true;
+    return picture;
+}
+
+/// A frame that took too long to meter is not tone mapped: if it were faster the second time, it
+/// would have another frame's exposure.
+void take_error(const MeteredShot& shot, FrameFiles& frame) {
+    for (const MeteredPicture& picture : shot.pictures) {
+        if (picture.path == frame.in) frame.error = picture.error;
+    }
+}
+
 /// What the frames of a shot say before any of them is tone mapped: their exposures, the statistics
 /// of all.
 void meter_frames(Tonemapper& tonemapper, std::vector<FrameFiles>& frames,
                   const std::vector<int>& numbers, const ApplyOptions& options) {
     const bool has_exposures = !options.metering.method.empty();
-    const bool has_statistics = options.statistics == "sequence" && tonemapper.takes_statistics();
+    const bool has_statistics =
+        is_same_name(options.statistics, "sequence") && tonemapper.takes_statistics();
     if (!has_exposures && !has_statistics) return;
     const ExposureRule rule = has_exposures ? rule_of(options.metering) : ExposureRule{};
     const Adaptation adaptation = adaptation_of(options.shot);
@@ -63,15 +126,16 @@ void meter_frames(Tonemapper& tonemapper, std::vector<FrameFiles>& frames,
     {
         const QuietStderr quiet;
         ProgressBar bar(quiet.before(), metered.size());
-        shot = meter_shot(
-            options.in, all, meter_options_of(options.metering, options.input, options.picture),
-            options.shot.cache, options.picture.threads, [&](std::size_t) { bar.add(true); });
+        shot = meter_shot(options.in, all,
+                          meter_options_of(options.metering, options.input, picture_of(options)),
+                          options.shot.cache, options.picture, [&](std::size_t) { bar.add(true); });
     }
     if (has_statistics) tonemapper = tonemapper.with_statistics(shot.statistics());
     if (!has_exposures) return;
     const std::map<int, double> exposures =
         shot.exposures(rule, options.metering.delta, options.shot.adapt ? &adaptation : nullptr);
     for (std::size_t i = 0; i < frames.size(); ++i) {
+        if (options.picture.timeout > 0) take_error(shot, frames[i]);
         // A missing frame that is held has the exposure of the one before, too. One that could not
         // be metered cannot be tone mapped either, which says why.
         const auto after = exposures.upper_bound(numbers[i]);
@@ -80,30 +144,44 @@ void meter_frames(Tonemapper& tonemapper, std::vector<FrameFiles>& frames,
     }
 }
 
-/// Of one picture, stops.
-double meter_exposure(const ApplyOptions& options) {
+/// Each picture by itself. @throws  the first error, where there is one picture
+void meter_each(std::vector<FrameFiles>& files, const ApplyOptions& options) {
+    if (options.metering.method.empty()) return;
     const ExposureRule rule = rule_of(options.metering);
-    const MeteredPicture metered =
-        meter_pictures({options.in},
-                       meter_options_of(options.metering, options.input, options.picture),
-                       options.shot.cache, options.picture.threads)
-            .front();
-    if (metered.is_file_error) throw FileError(metered.error);
-    if (!metered.error.empty()) throw Error(metered.error);
-    return suggested_exposure(
-        metered_luminance(metered.metering, rule.method, options.metering.delta), rule);
+    std::vector<std::string> paths;
+    paths.reserve(files.size());
+    for (const FrameFiles& file : files)
+        paths.push_back(file.in);
+    const std::vector<MeteredPicture> metered = meter_pictures(
+        paths, meter_options_of(options.metering, options.input, picture_of(options)),
+        options.shot.cache, options.picture);
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        // Where there are several, tone mapping says why it cannot be read.
+        if (files.size() == 1 && metered[i].is_file_error) throw FileError(metered[i].error);
+        if (files.size() == 1 && !metered[i].error.empty()) throw Error(metered[i].error);
+        if (options.picture.timeout > 0) files[i].error = metered[i].error;
+        if (!metered[i].error.empty()) continue;
+        files[i].exposure_stops =
+            options.exposure +
+            suggested_exposure(
+                metered_luminance(metered[i].metering, rule.method, options.metering.delta), rule);
+    }
 }
 
-void apply_lut(const ApplyOptions& options) {
-    Pipeline before = before_lut("apply", options.lut, options, source_color({}, options.input));
-    const LutFile lut = open_lut(options.lut.file, options.lut.interpolation, load_lut_picture);
-    const OIIO::TypeDesc type = pixel_type_of(options);
-    const QuietStderr quiet;
-    const OIIO::ImageBuf source = read_image(options.in);
-    if (!before.empty()) {
-        before =
-            before_lut("apply", options.lut, options, source_color(source.spec(), options.input));
-    }
+void apply_lut(const ApplyOptions& options, const LutFile& lut, const FrameFiles& file) {
+    WriteOptions write = write_options_of(options, file.out);
+    Warnings warnings(file.out);
+    write.warn = warnings.hearer();
+    auto quiet = std::make_optional<QuietStderr>();
+    const OIIO::ImageBuf source = read_image(file.in);
+    quiet.reset();
+    const SourceColor color = about_picture(file.in, [&] {
+        (void)channel_layout(source.spec());
+        return source_color(source.spec(), options.input);
+    });
+    const LutOptions input = with_stated_input(options.lut, color.name);
+    const Pipeline before = before_lut("apply", input, options, color);
+    quiet.emplace();
     const SimdEngine encode(before);
     OIIO::ImageBuf result;
     const auto map = [&](const float* in, float* out, std::size_t count) {
@@ -115,38 +193,97 @@ void apply_lut(const ApplyOptions& options) {
         encode.run_rgb(in, code.data(), count);
         lut.run_rgb(code.data(), out, count);
     };
-    if (!map_colors(result, source, map, alpha_of(options.picture), {}, options.picture.threads))
-        throw Error("apply: " + options.in + ": " + result.geterror());
-    write_image_atomically(result, options.out, type);
+    if (!map_colors(result, source, map, alpha_of(options), {}, options.picture.threads))
+        throw FileError(file.in + ": " + first_line(result.geterror()));
+    if (write.says_how) {
+        const std::string lut_name = std::filesystem::path(options.lut.file).filename().string();
+        result.specmod().attribute(
+            "Software", fmt::format("Tonewright {}: LUT {}", TONEWRIGHT_VERSION, lut_name));
+    }
+    write_image_atomically(result, file.out, write);
+    quiet.reset();
+    warnings.print();
+}
+
+int apply_lut(const ApplyOptions& options, ApplyFiles& files) {
+    // What is wrong with the options is told before a picture is read.
+    const bool needs_encoding = options.given.contains("--input") ||
+                                options.given.contains("--exposure") ||
+                                options.given.contains("--lut-space");
+    if ((!options.lut.encoding.empty() && options.lut.encoding != "none") ||
+        (needs_encoding && !states_input(options.lut)))
+        (void)before_lut("apply", options.lut, options, source_color({}, options.input));
+    const LutFile lut = with_memory_for(options.lut.file, [&] {
+        return open_lut(options.lut.file, options.lut.interpolation, load_lut_picture);
+    });
+    (void)write_options_of(options, files.files.front().out);
+    check_overwriting(files.files, options.is_in_place);
+    if (files.is_single) {
+        apply_lut(options, lut, files.files.front());
+        return kOk;
+    }
+    require_writable_folder(options.output);
+    int exit_code = kOk;
+    for (FrameFiles& file : files.files) {
+        try {
+            apply_lut(options, lut, file);
+        } catch (const Error& e) {
+            file.error = e.what();
+            exit_code = kCheckFailed;
+        }
+        if (!file.error.empty()) print_message("apply: " + file.error);
+    }
+    return exit_code;
+}
+
+/// "render.exr (640 x 360 half, lin_rec709) -> out.png: AgX (agx_blender), exposure +1, sRGB,
+/// 0.12 s"
+void print_result(const FrameFiles& file, const Tonemapper& tonemapper, double seconds) {
+    const TonemapOptions& options = tonemapper.options();
+    const ResolvedOperator op =
+        resolve_picture_operator(options.op, options.settings, options.look);
+    const PictureReader reader(file.in, 1, file.subimage);
+    const OIIO::ImageSpec& spec = reader.spec();
+    std::string text = fmt::format(
+        "apply: {} ({} x {} {}, {}) -> {}: {} ({}), exposure {:+.3g}, display {}, {:.2f} s",
+        file.in, spec.width, spec.height, spec.format.c_str(),
+        source_color(spec, options.input).name, file.out, op.op->view, operator_text(op),
+        file.exposure_stops.value_or(options.exposure_stops), options.display, seconds);
+    if (message_options().is_verbose) text += fmt::format(", {} threads", thread_count(0));
+    print_message(text);
+}
+
+void write_with_legend(const Tonemapper& tonemapper, const FrameFiles& file,
+                       const ApplyOptions& options, const WriteOptions& write) {
+    OIIO::ImageBuf picture;
+    if (!tonemapper(picture, read_image(file.in), {}, options.picture.threads))
+        throw FileError(file.in + ": " + first_line(picture.geterror()));
+    write_image_atomically(with_legend(picture), file.out, write);
 }
 
 }  // namespace
 
-int run_apply(const ApplyOptions& options) {
+int run_apply(const ApplyOptions& given) {
+    ApplyOptions options = given;
     use_threads(options.picture);
-    if (!options.lut.file.empty()) {
-        apply_lut(options);
-        return kOk;
-    }
-    const std::string op = options.is_false_color ? "false_color" : options.op;
-    if (op.empty()) {
-        throw Error(
-            "apply: operator is missing; expected --operator with an id of `tonewright list`, "
-            "or --lut FILE");
-    }
+    ApplyFiles files = files_of(options);
+    if (!options.lut.file.empty()) return apply_lut(options, files);
+    const bool says_result = !message_options().is_quiet &&
+                             (message_options().is_verbose || ::isatty(STDERR_FILENO) != 0);
     TonemapOptions tonemap;
-    tonemap.op = op;
+    tonemap.op = options.is_false_color ? "false_color" : options.op;
+    if (tonemap.op.empty()) tonemap.op = kDefaultOperator;
     tonemap.settings = options.settings();
     tonemap.look = options.look;
     tonemap.exposure_stops = options.exposure;
     tonemap.input = options.input;
     tonemap.display = options.display;
     tonemap.reference_white = options.reference_white;
-    tonemap.unpremult = alpha_of(options.picture);
+    tonemap.unpremult = alpha_of(options);
     tonemap.dither = options.dither;
     tonemap.statistics = parse_statistics(options.statistics);
-    const bool is_metered =
-        options.given.contains("--auto-exposure") || options.statistics == "sequence";
+    const bool is_of_sequence = is_same_name(options.statistics, "sequence");
+    const bool is_metered = options.given.contains("--auto-exposure") || is_of_sequence;
     for (const auto& [name, value] : {std::pair("--meter-frames", options.shot.meter_frames),
                                       std::pair("--meter-cache", options.shot.cache)}) {
         if (is_metered || !options.given.contains(name)) continue;
@@ -154,32 +291,64 @@ int run_apply(const ApplyOptions& options) {
             "apply: {} is {}; expected --auto-exposure or --statistics sequence with it", name,
             value));
     }
+    const auto tell_default = [&] {
+        if (!options.op.empty() || options.is_false_color || message_options().is_quiet) return;
+        print_message(
+            fmt::format("apply: operator is {} ({}), the default; use --operator "
+                        "for another",
+                        kDefaultOperator, find_operator(kDefaultOperator).view));
+    };
     Tonemapper tonemapper(tonemap);  // a wrong name is told before a large file is read
-    const OIIO::TypeDesc type = pixel_type_of(options);
+    if (options.has_legend && find_display(options.display).id != "srgb") {
+        throw Error("apply: --display is " + options.display + "; expected srgb with --legend");
+    }
+    if (options.has_legend && !files.is_single)
+        throw Error("apply: --legend is given; expected one picture with it");
+    WriteOptions write = write_options_of(options, files.files.front().out);
     if (options.given.contains("--frames")) {
+        options.in = files.files.front().in;
+        options.out = files.files.front().out;
         const auto prepare = [&](std::vector<FrameFiles>& all, const std::vector<int>& numbers) {
             for (FrameFiles& frame : all)
                 frame.subimage = options.picture.subimage;
             meter_frames(tonemapper, all, numbers, options);
         };
-        return apply_to_frames(tonemapper, options.in, options.out, options.frames, type,
-                               options.picture.threads, prepare);
-        return kOk;
+        tell_default();
+        return apply_to_frames(tonemapper, options, write, prepare);
     }
-    if (options.statistics == "sequence")
-        throw Error("apply: statistics is sequence; expected --frames with it");
+    if (is_of_sequence) throw Error("apply: --statistics is sequence; expected --frames with it");
+    check_overwriting(files.files, options.is_in_place);
+    if (!files.is_single) {
+        require_writable_folder(options.output);
+        meter_each(files.files, options);
+        tell_default();
+        return apply_to_files(tonemapper, options, files.files, write);
+    }
+    FrameFiles& file = files.files.front();
+    Warnings warnings(file.out);
+    write.warn = warnings.hearer();
+    const auto start = std::chrono::steady_clock::now();
     try {
         const QuietStderr quiet;
-        if (!options.metering.method.empty()) {
-            const double metered_stops = meter_exposure(options);
-            tonemapper = tonemapper.with_exposure(options.exposure + metered_stops);
+        const ElapsedLine line("apply", quiet.before());
+        meter_each(files.files, options);
+        if (file.exposure_stops) tonemapper = tonemapper.with_exposure(*file.exposure_stops);
+        if (options.has_legend) {
+            write_with_legend(tonemapper, file, options, write);
+        } else if (options.picture.timeout > 0) {
+            tonemap_contained(tonemapper, file, write, options.picture);
+        } else {
+            tonemap_file(tonemapper, file.in, file.out, write, options.picture.threads,
+                         file.subimage);
         }
-        tonemap_file(tonemapper, options.in, options.out, type, options.picture.threads,
-                     options.picture.subimage);
     } catch (const FileError& e) {
-        if (!is_frame_pattern(options.in)) throw;
-        throw FileError(std::string(e.what()) + "; for the frames of a shot: --frames 1-100");
+        if (!is_frame_pattern(file.in)) throw;
+        throw FileError(std::string(e.what()) + "; for the frames of a shot, use --frames 1-100");
     }
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    warnings.print();
+    tell_default();
+    if (says_result) print_result(file, tonemapper, seconds.count());
     return kOk;
 }
 

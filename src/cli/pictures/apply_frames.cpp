@@ -2,6 +2,7 @@
 #include "cli/pictures/apply_frames.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,12 +11,18 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <utility>
 #include <vector>
 
+#include "base/atomic_file.h"
 #include "base/strings.h"
+#include "cli/json.h"
+#include "cli/messages.h"
+#include "cli/pictures/contained.h"
 #include "cli/pictures/frames.h"
 #include "cli/pictures/picture_input.h"
 #include "cli/pictures/progress_bar.h"
+#include "image/tonemap_file.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -25,12 +32,7 @@ namespace fs = std::filesystem;
 enum class Missing { error, skip, hold };
 
 Missing parse_missing(const std::string& text) {
-    if (text == "error") return Missing::error;
-    if (text == "skip") return Missing::skip;
-    if (text == "hold") return Missing::hold;
-    const std::vector<std::string> names = {"error", "skip", "hold"};
-    throw Error("apply: missing is " + text + "; expected " + join_choices(names) +
-                did_you_mean(text, names));
+    return static_cast<Missing>(find_choice("apply: --missing", text, {"error", "skip", "hold"}));
 }
 
 /// The files of a shot, some of whose frames may be missing.
@@ -97,63 +99,217 @@ Plan plan_frames(const std::string& in, const std::string& out, const FrameOptio
         for (const std::string& name : outs) {
             if (!ins.contains(name)) continue;
             throw Error(fmt::format(
-                "apply: out is {}, a frame that is read, too; expected other files with {}", out,
-                options.skip_existing ? "--skip-existing" : "--missing hold"));
+                "apply: output is {}, which is also an input frame; expected other files with {}",
+                out, options.skip_existing ? "--skip-existing" : "--missing hold"));
         }
     }
     return plan;
 }
 
-/// Lines for what failed, and one for all.
-void print_summary(const Plan& plan, bool is_terminal) {
+/// Lines for what failed. @returns  how many
+std::size_t print_failures(const std::vector<FrameFiles>& files) {
     constexpr std::size_t kMostLines = 50;
+    std::size_t failed = 0;
+    std::set<std::string> errors;  // warnings that --strict makes errors are the same for all
+    for (const FrameFiles& file : files) {
+        if (file.error.empty()) continue;
+        ++failed;
+        if (errors.insert(file.error).second && errors.size() <= kMostLines)
+            print_message("apply: " + file.error);
+    }
+    if (errors.size() > kMostLines)
+        print_message(fmt::format("apply: and {} more", errors.size() - kMostLines));
+    return failed;
+}
+
+/// One line for all, on a terminal or where there is more to say than that all were written.
+void print_summary(const std::string& text, bool is_all_written) {
+    const MessageOptions& messages = message_options();
+    const bool is_shown = !is_all_written || messages.is_verbose || ::isatty(STDERR_FILENO) != 0;
+    if (is_shown && !messages.is_quiet) print_message("apply: " + text);
+}
+
+/// Lines for what failed, and one for all.
+void print_summary(const Plan& plan) {
     std::vector<int> failed;
     std::size_t skipped = 0;
     for (std::size_t i = 0; i < plan.frames.size(); ++i) {
         const FrameFiles& frame = plan.frames[i];
         skipped += frame.is_skipped ? 1 : 0;
-        if (frame.error.empty()) continue;
-        failed.push_back(plan.numbers[i]);
-        if (failed.size() <= kMostLines) fmt::print(stderr, "tonewright: apply: {}\n", frame.error);
+        if (!frame.error.empty()) failed.push_back(plan.numbers[i]);
     }
-    if (failed.size() > kMostLines) {
-        fmt::print(stderr, "tonewright: apply: and {} more\n", failed.size() - kMostLines);
-    }
+    print_failures(plan.frames);
     const std::size_t count = plan.frames.size() + plan.missing_count;
     const std::size_t written = plan.frames.size() - skipped - failed.size();
-    if (written == count && plan.held_count == 0 && !is_terminal) return;
     std::string text = fmt::format("{} frame{}: {} written", count, count == 1 ? "" : "s", written);
     if (skipped > 0) text += fmt::format(", {} skipped", skipped);
     if (plan.missing_count > 0) text += fmt::format(", {} missing", plan.missing_count);
     if (plan.held_count > 0) text += fmt::format(", {} held for missing ones", plan.held_count);
     if (!failed.empty())
         text += fmt::format(", {} failed: {}", failed.size(), format_frames(failed));
-    fmt::print(stderr, "tonewright: apply: {}\n", text);
+    print_summary(text, written == count && plan.held_count == 0);
+}
+
+/// For the process of a picture: keeps the warnings, which the program then repeats.
+WriteOptions with_kept_warnings(const WriteOptions& write, std::vector<std::string>& warnings) {
+    WriteOptions keeping = write;
+    keeping.warn = [&warnings, warn = write.warn](const std::string& text) {
+        if (warn) warn(text);  // throws with --strict
+        warnings.push_back(one_line(text));
+    };
+    return keeping;
+}
+
+void repeat_warnings(const Json& warnings, const WriteOptions& write) {
+    if (!write.warn) return;
+    for (const Json& text : std::get<Json::Array>(warnings.value()))
+        write.warn(std::get<std::string>(text.value()));
+}
+
+void run(const Tonemapper& tonemapper, std::vector<FrameFiles>& files, SequenceOptions options,
+         const PictureInput& picture, const char* what) {
+    const QuietStderr quiet;
+    ProgressBar bar(quiet.before(), files.size(), what);
+    options.done = [&](const FrameFiles& frame) { bar.add(!frame.is_skipped); };
+    if (picture.timeout > 0) {
+        tonemap_contained(tonemapper, files, options, picture);
+    } else {
+        tonemap_files(tonemapper, files, options);
+    }
+}
+
+int exit_code_of(const std::vector<FrameFiles>& files) {
+    const bool any_failed = std::any_of(files.begin(), files.end(),
+                                        [](const FrameFiles& f) { return !f.error.empty(); });
+    return any_failed ? kCheckFailed : kOk;
 }
 
 }  // namespace
 
-int apply_to_frames(
-    const Tonemapper& tonemapper, const std::string& in, const std::string& out,
-    const FrameOptions& options, const OIIO::TypeDesc& type, int threads,
-    const std::function<void(std::vector<FrameFiles>&, const std::vector<int>&)>& prepare) {
-    Plan plan = plan_frames(in, out, options);
-    prepare(plan.frames, plan.numbers);
-    {
-        const QuietStderr quiet;
-        ProgressBar bar(quiet.before(), plan.frames.size());
-        SequenceOptions sequence;
-        sequence.type = type;
-        sequence.skip_existing = options.skip_existing;
-        sequence.jobs = options.jobs;
-        sequence.nthreads = threads;
-        sequence.done = [&](const FrameFiles& frame) { bar.add(!frame.is_skipped); };
-        tonemap_files(tonemapper, plan.frames, sequence);
+void tonemap_contained(const Tonemapper& tonemapper, std::vector<FrameFiles>& files,
+                       const SequenceOptions& options, const PictureInput& picture) {
+    std::vector<FrameFiles*> open;
+    std::vector<std::string> names;
+    for (FrameFiles& file : files) {
+        if (!file.error.empty()) continue;
+        open.push_back(&file);
+        names.push_back(file.in);
     }
-    print_summary(plan, ::isatty(STDERR_FILENO) != 0);
-    const bool any_failed = std::any_of(plan.frames.begin(), plan.frames.end(),
-                                        [](const FrameFiles& f) { return !f.error.empty(); });
-    return any_failed ? kCheckFailed : kOk;
+    const auto threads = static_cast<std::size_t>(thread_count(picture.threads));
+    const std::size_t wanted = options.jobs > 0 ? static_cast<std::size_t>(options.jobs) : threads;
+    const std::size_t jobs = std::clamp<std::size_t>(open.size(), 1, wanted);
+    const auto threads_each = static_cast<int>(std::max<std::size_t>(threads / jobs, 1));
+    const auto work = [&](std::size_t i) {
+        use_threads({.threads = threads_each});
+        SequenceOptions one = options;
+        one.jobs = 1;
+        one.nthreads = threads_each;
+        one.done = {};
+        std::vector<std::string> warnings;
+        one.write = with_kept_warnings(options.write, warnings);
+        std::vector<FrameFiles> files_of_one = {*open[i]};
+        tonemap_files(tonemapper, files_of_one, one);
+        const FrameFiles& file = files_of_one.front();
+        return Json{{"error", one_line(file.error)},
+                    {"is_file_error", file.is_file_error},
+                    {"is_skipped", file.is_skipped},
+                    {"warnings", warnings}}
+            .dump();
+    };
+    run_contained(names, jobs, picture.timeout, work,
+                  [&](std::size_t i, const ContainedResult& result) {
+                      FrameFiles& file = *open[i];
+                      file.error = result.error;
+                      file.is_file_error = result.failure == ContainedResult::Failure::file;
+                      if (result.error.empty()) {
+                          const Json told = Json::parse(result.value);
+                          file.error = std::get<std::string>(told.at("error").value());
+                          file.is_file_error = std::get<bool>(told.at("is_file_error").value());
+                          file.is_skipped = std::get<bool>(told.at("is_skipped").value());
+                          repeat_warnings(told.at("warnings"), options.write);
+                      } else {
+                          remove_leftovers({file.out});
+                      }
+                      if (options.done) options.done(file);
+                  });
+}
+
+void tonemap_contained(const Tonemapper& tonemapper, const FrameFiles& file,
+                       const WriteOptions& write, const PictureInput& picture) {
+    const auto work = [&](std::size_t) {
+        use_threads({.threads = picture.threads});
+        std::vector<std::string> warnings;
+        tonemap_file(tonemapper, file.in, file.out, with_kept_warnings(write, warnings),
+                     picture.threads, file.subimage);
+        return Json(warnings).dump();
+    };
+    run_contained({file.in}, 1, picture.timeout, work,
+                  [&](std::size_t, const ContainedResult& result) {
+                      if (!result.error.empty()) remove_leftovers({file.out});
+                      result.require();
+                      repeat_warnings(Json::parse(result.value), write);
+                  });
+}
+
+void check_overwriting(const std::vector<FrameFiles>& files, bool is_in_place) {
+    using Identity = std::pair<dev_t, ino_t>;
+    const auto identity_of = [](const std::string& path) -> std::optional<Identity> {
+        struct stat file {};
+        if (::stat(path.c_str(), &file) != 0) return {};
+        return Identity(file.st_dev, file.st_ino);
+    };
+    std::map<Identity, const FrameFiles*> ins;
+    for (const FrameFiles& file : files) {
+        if (const auto identity = identity_of(file.in)) ins.emplace(*identity, &file);
+    }
+    for (const FrameFiles& file : files) {
+        const auto identity = identity_of(file.out);
+        const auto found = identity ? ins.find(*identity) : ins.end();
+        if (found == ins.end()) continue;
+        const bool is_own = found->second->out == file.out;
+        if (is_own && is_in_place) continue;
+        throw Error(
+            fmt::format("apply: output is {}, the same file as the input {}; expected "
+                        "another file{}",
+                        file.out, found->second->in, is_own ? ", or --in-place" : ""));
+    }
+}
+
+int apply_to_frames(
+    const Tonemapper& tonemapper, const ApplyOptions& options, WriteOptions write,
+    const std::function<void(std::vector<FrameFiles>&, const std::vector<int>&)>& prepare) {
+    Plan plan = plan_frames(options.in, options.out, options.frames);
+    check_overwriting(plan.frames, options.is_in_place);
+    Warnings warnings(options.out);
+    write.warn = warnings.hearer();
+    prepare(plan.frames, plan.numbers);
+    SequenceOptions sequence;
+    sequence.write = write;
+    sequence.skip_existing = options.frames.skip_existing;
+    sequence.jobs = options.frames.jobs;
+    sequence.nthreads = options.picture.threads;
+    run(tonemapper, plan.frames, sequence, options.picture, "frames");
+    warnings.print();
+    print_summary(plan);
+    return exit_code_of(plan.frames);
+}
+
+int apply_to_files(const Tonemapper& tonemapper, const ApplyOptions& options,
+                   std::vector<FrameFiles>& files, WriteOptions write) {
+    Warnings warnings(options.output);
+    write.warn = warnings.hearer();
+    SequenceOptions sequence;
+    sequence.write = write;
+    sequence.nthreads = options.picture.threads;
+    run(tonemapper, files, sequence, options.picture, "pictures");
+    warnings.print();
+    const std::size_t failed = print_failures(files);
+    const std::size_t written = files.size() - failed;
+    std::string text = fmt::format("{} picture{}: {} written", files.size(),
+                                   files.size() == 1 ? "" : "s", written);
+    if (failed > 0) text += fmt::format(", {} failed", failed);
+    print_summary(text, failed == 0);
+    return exit_code_of(files);
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -8,8 +8,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 void run_chart(const ChartOptions& options) {
     const OIIO::TypeDesc type = parse_pixel_type(options.type);
     if (!type.is_floating_point()) {
-        throw Error("chart: -d is " + options.type +
-                    "; expected half or float, the chart holds light up to thousands");
+        throw Error("chart: -d is " + options.type + "; expected half or float");
     }
     write_image_atomically(make_chart(options.width, options.height), options.file, type);
 }

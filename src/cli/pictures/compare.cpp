@@ -4,11 +4,17 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <new>
+#include <utility>
 
 #include "base/atomic_file.h"
+#include "base/strings.h"
 #include "cli/pictures/commands.h"
+#include "cli/pictures/legend.h"
 #include "cli/pictures/picture_input.h"
 #include "image/comparison.h"
+#include "image/contact_sheet.h"
+#include "image/picture_file.h"
 #include "image/source_picture.h"
 #include "ocio/model.h"
 #include "tonewright/contact_sheet.h"
@@ -46,7 +52,7 @@ Rendering rendering_of(const ResolvedOperator& op, const CompareOptions& options
 std::vector<Rendering> renderings_of(const CompareOptions& options) {
     std::vector<Rendering> all;
     for (const std::string& text : options.operators)
-        all.push_back(rendering_of(parse_picture_operator(text), options));
+        all.push_back(rendering_of(resolve_picture_operator(text), options));
     if (options.operators.empty()) {
         for (const ConfigModel::View& view : make_config_model().views) {
             if (!view.op.op->is_diagnostic) all.push_back(rendering_of(view.op, options));
@@ -72,7 +78,7 @@ OIIO::ImageBuf render(const Rendering& rendering, const OIIO::ImageBuf& scene,
                       const std::string& path) {
     OIIO::ImageBuf shown;
     if (!rendering.tonemapper(shown, scene))
-        throw Error("compare: " + path + ": " + shown.geterror());
+        throw FileError("compare: " + path + ": " + first_line(shown.geterror()));
     return shown;
 }
 
@@ -117,30 +123,24 @@ OIIO::ImageBuf decoded(const OIIO::ImageBuf& picture, const SourceColor& source,
     const auto run = [&](const float* in, float* out, std::size_t n) {
         engine.run_rgb(in, out, n);
     };
-    if (!map_colors(scene, picture, run)) throw Error("compare: " + path + ": " + scene.geterror());
+    if (!map_colors(scene, picture, run))
+        throw FileError(path + ": " + first_line(scene.geterror()));
     return scene;
-}
-
-/// What its colors mean, as the operator makes them.
-void add_legend(SheetAnnotations& around) {
-    const ReferenceEngine engine(
-        build_view(make_view(resolve_operator(kDiagnostic), "lin_rec709", 0, "srgb")));
-    constexpr int kStops = 7;
-    for (int stop = -kStops; stop <= kStops; ++stop) {
-        const auto grey = static_cast<float>(0.18 * std::exp2(stop));
-        const std::array<float, 3> scene = {grey, grey, grey};
-        std::array<double, 3> code{};
-        engine.run_rgb(scene.data(), code.data(), 1);
-        around.legend.push_back({fmt::format("{}{}", stop > 0 ? "+" : "", stop),
-                                 {static_cast<float>(code[0]), static_cast<float>(code[1]),
-                                  static_cast<float>(code[2])}});
-    }
-    around.legend_heading =
-        "False color: stops of luminance from mid grey (0.18), after exposure; both ends are open";
 }
 
 void write_sheet(const CompareOptions& options, const std::vector<Rendering>& renderings,
                  const OIIO::ImageBuf& picture, const std::string& remark) {
+    const OIIO::ROI window = shown_window(picture);
+    const auto count = static_cast<double>(renderings.size() + (options.difference ? 1 : 0));
+    const PictureSize size = fitted_size(picture, options.cell_width);
+    constexpr double kMostPixels = 1 << 27;  // some 4 GB with all pictures in memory
+    const double pixels = count * size.width * size.height;
+    if (pixels > kMostPixels) {
+        throw PictureError(fmt::format(
+            "a sheet of {} pictures ({} x {} pixels, shown {} wide) has {:.0f} pixels; expected at "
+            "most {:.0f} (use a smaller --cell-width)",
+            count, window.width(), window.height(), size.width, pixels, kMostPixels));
+    }
     const OIIO::ImageBuf scene = resize_scene(picture, options.cell_width);
     std::vector<std::pair<std::string, OIIO::ImageBuf>> cells;
     SheetAnnotations around;
@@ -180,21 +180,28 @@ void write_split(const CompareOptions& options, const std::vector<Rendering>& re
                            options.file, OIIO::TypeUInt8);
 }
 
-}  // namespace
-
-void run_compare(CompareOptions options) {
+void compare_pictures(CompareOptions options) {
     std::vector<Rendering> renderings = renderings_of(options);
     if (options.split || options.difference) {
         if (options.operators.size() != 2 || options.has_false_color) {
-            throw Error(fmt::format("compare: {} has {} operators; expected two{}",
+            throw Error(fmt::format("compare: {} is given with {} operators; expected two{}",
                                     options.split ? "--split" : "--difference",
                                     options.operators.size(),
                                     options.has_false_color ? ", without --false-color" : ""));
         }
     }
+    if (is_same_file(options.in, options.file)) {
+        throw Error(
+            fmt::format("compare: -o is {}, the same file as the input; expected another "
+                        "file",
+                        options.file));
+    }
     OIIO::ImageBuf picture = read_picture(options.in);
     const QuietStderr quiet;
-    const SourceColor source = source_color(picture.spec(), options.input);
+    const SourceColor source = about_picture(options.in, [&] {
+        (void)channel_layout(picture.spec());
+        return source_color(picture.spec(), options.input);
+    });
     const std::string remark =
         fmt::format("{}, {}, shown on sRGB", exposure_text(options.exposure), title_of(source));
     if (!options.split && !source.decode.empty()) {
@@ -203,12 +210,27 @@ void run_compare(CompareOptions options) {
         options.input = "lin_rec709";
         renderings = renderings_of(options);
     }
-    take_statistics(renderings, picture, options.input);
-    if (options.split) {
-        write_split(options, renderings, picture);
-    } else {
-        write_sheet(options, renderings, picture, remark);
-        if (!options.pictures.empty()) write_pictures(options, renderings, picture);
+    about_picture(options.in, [&] { take_statistics(renderings, picture, options.input); });
+    with_memory_for(options.in, [&] {
+        if (options.split) {
+            write_split(options, renderings, picture);
+        } else {
+            write_sheet(options, renderings, picture, remark);
+            if (!options.pictures.empty()) write_pictures(options, renderings, picture);
+        }
+    });
+}
+
+}  // namespace
+
+void run_compare(CompareOptions options) {
+    const std::string path = options.in;
+    try {
+        compare_pictures(std::move(options));
+    } catch (const PictureError& e) {
+        throw FileError(fmt::format("compare: {}: {}", path, e.what()));
+    } catch (const std::bad_alloc&) {
+        throw FileError(fmt::format("compare: {}: not enough memory", path));
     }
 }
 

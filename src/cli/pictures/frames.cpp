@@ -97,10 +97,11 @@ std::string frame_name(const char* what, const std::string& pattern, int frame) 
         rest = match.suffix();
     }
     if (!has_place) {
-        throw Error(fmt::format(
-            "apply: {} is {}; expected a place for the frame's number, as in shot.%04d.exr, "
-            "shot.####.exr or shot.@@@@.exr",
-            what, pattern));
+        throw Error(
+            fmt::format("apply: {} is {}; expected a placeholder for the frame number, as in "
+                        "shot.%04d.exr, "
+                        "shot.####.exr or shot.@@@@.exr",
+                        what, pattern));
     }
     return name + rest;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/atomic_file.h"
+#include "cli/elapsed_line.h"
 #include "cli/pictures/commands.h"
-
 #include "cli/pictures/picture_input.h"
 #include "image/lut_picture.h"
 #include "image/shipped_pictures.h"
@@ -15,6 +15,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 
 void write_shipped_luts(const std::string& folder, const std::string& application) {
     require_writable_folder(folder);
+    const ElapsedLine line("bake --all");
     std::vector<ShippedLut> luts = bake_shipped_luts(application);
     std::vector<GeneratedFile> files = make_shipped_files(luts);
     const std::vector<GeneratedFile> about = describe_shipped_luts(luts);

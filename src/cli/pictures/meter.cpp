@@ -11,7 +11,9 @@
 #include <optional>
 
 #include "base/format_number.h"
+#include "base/strings.h"
 #include "cli/json.h"
+#include "cli/messages.h"
 #include "cli/pictures/commands.h"
 #include "cli/pictures/frames.h"
 #include "cli/pictures/meter_cache.h"
@@ -132,13 +134,13 @@ void draw_histogram(const Metering& metering, const MeterOptions& options, doubl
         line->erase(line->find_last_not_of(' ') + 1);
         fmt::print("{}\n", *line);
     }
-    fmt::print("  log2 of luminance, 0 = diffuse white, -2.47 = mid grey; ^ metered\n");
+    fmt::print("  log2 of luminance, 0 = diffuse white, -2.47 = mid gray; ^ metered\n");
 }
 
 void print_picture(const Metered& metered, const MeterCommandOptions& options,
                    const MeterOptions& how, const ExposureRule& rule) {
     const Metering& m = metered.picture.metering;
-    fmt::print("{}\n\n", metered.picture.path);
+    fmt::print("{}\n\n", one_line(metered.picture.path));
     fmt::print("  pixels      {} counted, {} of them black", m.counted, m.black);
     for (const auto& [count, what] : {std::pair(m.nan, "NaN"), std::pair(m.infinite, "infinite"),
                                       std::pair(m.uncovered, "without cover")}) {
@@ -231,19 +233,19 @@ std::vector<Metered> meter_all(const MeterCommandOptions& options, const MeterOp
     std::vector<Metered> all;
     if (options.frames.empty()) {
         for (MeteredPicture& picture :
-             meter_pictures(options.in, how, options.shot.cache, options.picture.threads))
+             meter_pictures(options.in, how, options.shot.cache, options.picture))
             all.push_back({std::move(picture), {}, {}});
         return all;
     }
     if (options.in.size() != 1) {
         throw Error(
             fmt::format("meter: --frames is {} with {} pictures; expected one name with a "
-                        "place for the number",
+                        "placeholder for the frame number",
                         options.frames, options.in.size()));
     }
     const Adaptation adaptation = adaptation_of(options.shot);
     const MeteredShot shot = meter_shot(options.in.front(), parse_frames(options.frames), how,
-                                        options.shot.cache, options.picture.threads);
+                                        options.shot.cache, options.picture);
     std::map<int, double> adapted;
     if (options.shot.adapt) adapted = shot.exposures(rule, options.metering.delta, &adaptation);
     for (std::size_t i = 0; i < shot.numbers.size(); ++i) {
@@ -278,7 +280,7 @@ int run_meter(const MeterCommandOptions& options) {
         const MeteredPicture& picture = metered.picture;
         if (picture.error.empty()) continue;
         exit_code = std::max<int>(exit_code, picture.is_file_error ? kFile : kUsage);
-        fmt::print(stderr, "tonewright: meter: {}\n", picture.error);
+        print_message("meter: " + picture.error);
     }
     return exit_code;
 }

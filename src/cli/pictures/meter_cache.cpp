@@ -4,15 +4,13 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cerrno>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <system_error>
 #include <utility>
 
 #include "base/atomic_file.h"
 #include "base/format_number.h"
+#include "base/input_file.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -27,6 +25,8 @@ std::string absolute(const std::string& path) {
     const fs::path full = fs::absolute(path, error);
     return (error ? fs::path(path) : full).lexically_normal().string();
 }
+
+}  // namespace
 
 Metering metering_from(const Json& j) {
     Metering m;
@@ -57,8 +57,6 @@ Metering metering_from(const Json& j) {
     scene.at("lit_count").get_to(m.scene_lit_count);
     return m;
 }
-
-}  // namespace
 
 FileStamp stamp_of(const std::string& path) {
     std::error_code error;
@@ -128,10 +126,8 @@ MeterCache::MeterCache(std::string path, const MeterOptions& options)
     const auto fail = [&](const std::string& reason) {
         throw FileError(fmt::format("meter cache: {}: {}", path_, reason));
     };
-    if (fs::is_directory(path_, error)) fail("it is a directory");
-    std::ifstream file(path_, std::ios::binary);
-    if (!file) fail(std::generic_category().message(errno));
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    constexpr std::size_t kMostBytes = std::size_t{1} << 30;
+    const std::string text = read_file(path_, kMostBytes, fail);
     try {
         const Json all = Json::parse(text);
         std::int64_t version = 0;
@@ -144,7 +140,7 @@ MeterCache::MeterCache(std::string path, const MeterOptions& options)
             known.metering = metering_from(entry.at("metering"));
         }
     } catch (const JsonError&) {
-        fail("is not a meter cache; expected one that --meter-cache wrote, or no file");
+        fail("is not a meter cache; expected a file that --meter-cache wrote, or a new name");
     }
 }
 

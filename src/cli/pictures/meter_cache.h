@@ -21,6 +21,8 @@ struct FileStamp {
 
 [[nodiscard]] Json to_json(const MeterOptions& options);
 [[nodiscard]] Json to_json(const Metering& metering);
+/// @throws JsonError
+[[nodiscard]] Metering metering_from(const Json& j);
 
 /// What was metered, kept in a file.
 class MeterCache {

@@ -9,6 +9,7 @@
 #include <set>
 #include <thread>
 
+#include "cli/pictures/contained.h"
 #include "cli/pictures/frames.h"
 #include "cli/pictures/meter_cache.h"
 #include "cli/pictures/picture_input.h"
@@ -97,8 +98,7 @@ ExposureRule rule_of(const ExposureOptions& options) {
     if (options.calibration == "9.6") {
         r.calibration = ExposureRule::Calibration::saturation;
         if (!key.empty()) {
-            throw Error("meter: --key is " + key +
-                        "; expected none with --calibration 9.6, which has a key of its own");
+            throw Error("meter: --key is " + key + "; expected none with --calibration 9.6");
         }
     } else if (options.calibration != "key") {
         throw Error("meter: --calibration is " + options.calibration + "; expected key or 9.6");
@@ -129,48 +129,81 @@ Adaptation adaptation_of(const ShotOptions& options) {
 
 std::vector<MeteredPicture> meter_pictures(const std::vector<std::string>& paths,
                                            const MeterOptions& options, const std::string& cache,
-                                           int threads,
+                                           const PictureInput& input,
                                            const std::function<void(std::size_t)>& done) {
     std::vector<MeteredPicture> pictures(paths.size());
     if (paths.empty()) return pictures;
     MeterCache known(cache, options);
     std::mutex mutex;
     std::size_t done_count = 0;
-    const auto all =
-        static_cast<std::size_t>(threads > 0 ? static_cast<unsigned>(threads)
-                                             : std::max(std::thread::hardware_concurrency(), 1U));
-    const std::size_t workers = std::min(all, paths.size());
-    in_parallel(paths.size(), static_cast<unsigned>(workers), [&](std::size_t i) {
-        MeteredPicture& picture = pictures[i];
-        picture.path = paths[i];
-        const FileStamp stamp = stamp_of(paths[i]);
-        const Metering* found = known.find(paths[i], stamp);
+    const auto all = static_cast<std::size_t>(
+        input.threads > 0 ? static_cast<unsigned>(input.threads)
+                          : std::max(std::thread::hardware_concurrency(), 1U));
+    std::vector<FileStamp> stamps(paths.size());
+    std::vector<std::size_t> unknown;
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+        pictures[i].path = paths[i];
+        stamps[i] = stamp_of(paths[i]);
+        if (const Metering* found = known.find(paths[i], stamps[i])) {
+            pictures[i].metering = *found;
+            if (done) done(++done_count);
+        } else {
+            unknown.push_back(i);
+        }
+    }
+    const std::size_t workers = std::clamp<std::size_t>(unknown.size(), 1, all);
+    const auto threads_each = static_cast<int>(all / workers);
+    const auto tell = [&](std::size_t i) {
+        if (pictures[i].error.empty()) known.add(paths[i], stamps[i], pictures[i].metering);
+        ++done_count;
+        if (done) done(done_count);
+    };
+    if (input.timeout > 0) {
+        std::vector<std::string> names;
+        names.reserve(unknown.size());
+        for (const std::size_t i : unknown)
+            names.push_back(paths[i]);
+        const auto meter = [&](std::size_t n) {
+            use_threads({.threads = threads_each});
+            return to_json(meter_file(names[n], options, threads_each)).dump();
+        };
+        run_contained(names, workers, input.timeout, meter,
+                      [&](std::size_t n, const ContainedResult& result) {
+                          MeteredPicture& picture = pictures[unknown[n]];
+                          picture.error = result.error;
+                          picture.is_file_error = result.failure == ContainedResult::Failure::file;
+                          if (result.error.empty())
+                              picture.metering = metering_from(Json::parse(result.value));
+                          tell(unknown[n]);
+                      });
+        known.save();
+        return pictures;
+    }
+    in_parallel(unknown.size(), static_cast<unsigned>(workers), [&](std::size_t n) {
+        MeteredPicture& picture = pictures[unknown[n]];
         try {
-            picture.metering =
-                found ? *found : meter_file(paths[i], options, static_cast<int>(all / workers));
+            picture.metering = meter_file(picture.path, options, threads_each);
         } catch (const std::exception& e) {
             picture.error = e.what();
             picture.is_file_error = dynamic_cast<const FileError*>(&e) != nullptr;
         }
         const std::lock_guard lock(mutex);
-        if (!found && picture.error.empty()) known.add(paths[i], stamp, picture.metering);
-        ++done_count;
-        if (done) done(done_count);
+        tell(unknown[n]);
     });
     known.save();
     return pictures;
 }
 
 MeteredShot meter_shot(const std::string& pattern, std::vector<int> frames,
-                       const MeterOptions& options, const std::string& cache, int threads,
-                       const std::function<void(std::size_t)>& done) {
+                       const MeterOptions& options, const std::string& cache,
+                       const PictureInput& input, const std::function<void(std::size_t)>& done) {
     std::sort(frames.begin(), frames.end());
     frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
     std::vector<std::string> paths;
     paths.reserve(frames.size());
     for (const int frame : frames)
         paths.push_back(frame_name("in", pattern, frame));
-    return {std::move(frames), meter_pictures(paths, options, cache, threads, done)};
+    return {std::move(frames), meter_pictures(paths, options, cache, input, done)};
 }
 
 void MeteredShot::require_all() const {

@@ -29,15 +29,16 @@ struct MeteredPicture {
     bool is_file_error = false;
 };
 
-/// Meters files, several at the same time. What a cache has of a file that has not changed since
-/// (size and time) and of the same options is not measured; what is measured, it has afterwards.
+/// Meters files, several at the same time, with a timeout each in a process of its own. What a
+/// cache has of a file that has not changed since (size and time) and of the same options is not
+/// measured; what is measured, it has afterwards.
 ///
 /// @param cache  file, or empty
 /// @param done   called after each picture with the number that are done, from one thread at a time
 /// @throws FileError  a cache that cannot be read or written, or is something else
 [[nodiscard]] std::vector<MeteredPicture> meter_pictures(
     const std::vector<std::string>& paths, const MeterOptions& options, const std::string& cache,
-    int threads, const std::function<void(std::size_t)>& done = {});
+    const PictureInput& input, const std::function<void(std::size_t)>& done = {});
 
 /// What a shot was metered for.
 struct MeteredShot {
@@ -56,7 +57,7 @@ struct MeteredShot {
 /// @param frames  any order; of `pattern`
 [[nodiscard]] MeteredShot meter_shot(const std::string& pattern, std::vector<int> frames,
                                      const MeterOptions& options, const std::string& cache,
-                                     int threads,
+                                     const PictureInput& input,
                                      const std::function<void(std::size_t)>& done = {});
 
 TONEWRIGHT_NAMESPACE_END

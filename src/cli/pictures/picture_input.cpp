@@ -2,10 +2,15 @@
 #include "cli/pictures/picture_input.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <filesystem>
+#include <system_error>
 
+#include "cli/messages.h"
 #include "cli/pictures/commands.h"
 #include "tonewright/image_io.h"
 
@@ -25,6 +30,23 @@ QuietStderr::~QuietStderr() {
     ::close(saved_);
 }
 
+bool is_same_file(const std::string& a, const std::string& b) {
+    std::error_code error;
+    return std::filesystem::equivalent(a, b, error) && !error;
+}
+
+void Warnings::add(const std::string& text) {
+    const std::string named = fmt::format("{}: {}", name_, text);
+    if (message_options().is_strict) warn(named);  // throws
+    if (std::find(texts_.begin(), texts_.end(), named) == texts_.end()) texts_.push_back(named);
+}
+
+void Warnings::print() {
+    for (const std::string& text : texts_)
+        warn(text);
+    texts_.clear();
+}
+
 TonemapOptions::Unpremult alpha_of(const PictureInput& input) {
     if (input.unpremult) return TonemapOptions::Unpremult::yes;
     if (input.no_unpremult) return TonemapOptions::Unpremult::no;
@@ -32,6 +54,7 @@ TonemapOptions::Unpremult alpha_of(const PictureInput& input) {
 }
 
 void use_threads(const PictureInput& input) {
+    if (input.timeout > 0) return;
     OIIO::attribute("threads", input.threads);
     // OpenEXR has threads of its own; there, 0 is all cores and less is none.
     OIIO::attribute("exr_threads", input.threads == 1 ? -1 : input.threads);
@@ -46,8 +69,8 @@ std::vector<float> read_picture_pixels(const std::string& path) {
     const OIIO::ImageBuf image = read_picture(path);
     const int channels = image.nchannels();
     if (channels < 3)
-        throw Error("verify: picture " + path + " has " + std::to_string(channels) +
-                    " channels; expected 3");
+        throw FileError(
+            fmt::format("verify: picture {} has {} channels; expected 3", path, channels));
     const auto& spec = image.spec();
     const auto step = static_cast<int>(spec.image_pixels() / 1000000 + 1);
     std::vector<float> pixel(static_cast<std::size_t>(channels));

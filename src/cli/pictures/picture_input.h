@@ -3,7 +3,10 @@
 
 #include <OpenImageIO/imagebuf.h>
 
+#include <functional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "cli/picture_options.h"
 #include "tonewright/tonemap.h"
@@ -27,9 +30,32 @@ class QuietStderr {
     int saved_;
 };
 
+/// Two names of one file: the same, or through links. False where one does not exist.
+[[nodiscard]] bool is_same_file(const std::string& a, const std::string& b);
+
+/// Warnings of the library, which come while QuietStderr lives and from several threads. Each text
+/// is printed once, by print().
+class Warnings {
+  public:
+    /// @param name  of the file or the files, before each text
+    explicit Warnings(std::string name) : name_(std::move(name)) {}
+    /// @throws std::runtime_error  --strict was given
+    void add(const std::string& text);
+    void print();
+    /// For WriteOptions.
+    [[nodiscard]] std::function<void(const std::string&)> hearer() {
+        return [this](const std::string& text) { add(text); };
+    }
+
+  private:
+    std::string name_;
+    std::vector<std::string> texts_;
+};
+
 [[nodiscard]] TonemapOptions::Unpremult alpha_of(const PictureInput& input);
 
-/// Tells OpenImageIO and OpenEXR how many threads.
+/// Tells OpenImageIO and OpenEXR how many threads. With a timeout, does nothing: their thread pools
+/// belong to the processes of the pictures. @see run_contained
 void use_threads(const PictureInput& input);
 
 /// read_image() with the terminal kept clean.

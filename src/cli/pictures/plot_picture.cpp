@@ -28,37 +28,20 @@ Rgb parse_color(std::string_view text) {
     return color;
 }
 
-/// The stroke font has ASCII alone.
-std::string to_ascii(std::string_view words) {
-    struct Replacement {
-        std::string_view character, ascii;
-    };
-    constexpr std::array<Replacement, 3> kReplacements = {
-        {{"\u2212", "-"}, {"\u2192", "->"}, {"\u00d7", "x"}}};
-    std::string text(words);
-    for (const auto& [character, ascii] : kReplacements) {
-        for (std::size_t at = 0; (at = text.find(character, at)) != std::string::npos;)
-            text.replace(at, character.size(), ascii);
-    }
-    return text;
-}
-
 class CanvasSurface : public PlotSurface {
   public:
     CanvasSurface(Canvas& canvas, double scale, const PlotColors& colors)
         : canvas_(canvas), scale_(scale), colors_(colors) {}
 
     void text(Point at, const TextStyle& style, std::string_view words) override {
-        // Of Helvetica, whose capitals are 0.72 of its size.
-        const double cap_height = 0.72 * (style.is_heading ? 13 : 11) * scale_;
+        const Lettering letters = lettering_of(style, words);
         const auto align = static_cast<Canvas::Align>(style.anchor);
-        const std::string ascii = to_ascii(words);
         const auto draw = [&](std::string_view color, double extra) {
-            canvas_.text(ascii, at.x * scale_, at.y * scale_, cap_height, parse_color(color), align,
-                         extra);
+            canvas_.text(letters.ascii, at.x * scale_, at.y * scale_, letters.cap_height * scale_,
+                         parse_color(color), align, extra * scale_);
         };
-        if (style.has_halo) draw(colors_.page, 3 * scale_);
-        draw(colors_.text, style.is_heading ? 0.6 * scale_ : 0);
+        if (style.has_halo) draw(colors_.page, kHaloWidth);
+        draw(colors_.text, letters.extra_width);
     }
     void rules(Rule kind, std::span<const Segment> segments) override {
         const Rgb color = parse_color(kind == Rule::grid ? colors_.grid : colors_.frame);

@@ -4,10 +4,14 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "cli/messages.h"
+
 TONEWRIGHT_NAMESPACE_BEGIN
 
-ProgressBar::ProgressBar(int terminal, std::size_t count)
-    : terminal_(terminal >= 0 && ::isatty(terminal) ? terminal : -1), count_(count) {}
+ProgressBar::ProgressBar(int terminal, std::size_t count, const char* what)
+    : terminal_(!message_options().is_quiet && terminal >= 0 && ::isatty(terminal) ? terminal : -1),
+      count_(count),
+      what_(what) {}
 
 ProgressBar::~ProgressBar() { show("\r\033[K"); }
 
@@ -21,8 +25,8 @@ void ProgressBar::add(bool took_time) {
     next_ = seconds + kInterval;
     constexpr std::size_t kWidth = 40;
     const std::size_t filled = kWidth * done_ / count_;
-    std::string text = fmt::format("\r[{}{}] {}/{} frames", std::string(filled, '#'),
-                                   std::string(kWidth - filled, ' '), done_, count_);
+    std::string text = fmt::format("\r[{}{}] {}/{} {}", std::string(filled, '#'),
+                                   std::string(kWidth - filled, ' '), done_, count_, what_);
     if (made_ > 0) {
         const double rate = static_cast<double>(made_) / seconds;
         text += fmt::format(", {:.1f} per second, {:.0f} s left", rate,

@@ -9,11 +9,13 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// How far the frames of a shot are, on a terminal only, from its first half second on.
+/// How far the frames of a shot or several pictures are, on a terminal only, from its first half
+/// second on.
 class ProgressBar {
   public:
     /// @param terminal  a file descriptor, or -1
-    ProgressBar(int terminal, std::size_t count);
+    /// @param what      is counted: "frames"
+    ProgressBar(int terminal, std::size_t count, const char* what = "frames");
     ~ProgressBar();
     ProgressBar(const ProgressBar&) = delete;
     ProgressBar& operator=(const ProgressBar&) = delete;
@@ -27,6 +29,7 @@ class ProgressBar {
     static constexpr double kFirst = 0.5;
     int terminal_;
     std::size_t count_;
+    const char* what_;
     std::size_t done_ = 0;
     std::size_t made_ = 0;
     double next_ = kFirst;

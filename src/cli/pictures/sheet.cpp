@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include "cli/pictures/commands.h"
 #include "cli/pictures/picture_input.h"
+#include "image/contact_sheet.h"
+#include "image/source_picture.h"
 #include "tonewright/contact_sheet.h"
 #include "tonewright/image_io.h"
 
@@ -11,8 +15,17 @@ void run_sheet(const SheetOptions& options) {
     for (const std::string& text : options.pictures) {
         const std::size_t equals = text.find('=');
         const std::string path = equals == std::string::npos ? text : text.substr(equals + 1);
+        if (is_same_file(path, options.file)) {
+            throw Error(fmt::format(
+                "sheet: -o is {}, the same file as an input; expected another file", options.file));
+        }
         labelled.emplace_back(equals == std::string::npos ? text : text.substr(0, equals),
                               read_picture(path));
+        try {
+            check_shown_window(labelled.back().second);
+        } catch (const PictureError& e) {
+            throw FileError(fmt::format("sheet: {}: {}", path, e.what()));
+        }
     }
     write_image_atomically(make_contact_sheet(labelled, options.columns, options.cell_width),
                            options.file, OIIO::TypeUInt8);

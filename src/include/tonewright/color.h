@@ -85,10 +85,12 @@ inline constexpr Primaries kDaVinciWideGamut = {
 /// Bradford chromatic adaptation of XYZ from one white to another (Lam 1985; ICC.1:2010 annex E).
 [[nodiscard]] TONEWRIGHT_API Matrix3 bradford_adaptation(Chromaticity from, Chromaticity to);
 
-/// Linear RGB -> linear RGB, Bradford-adapted where the whites differ; rows sum to 1.
+/// Linear RGB -> linear RGB, Bradford-adapted where the whites differ; rows sum to 1. Gamuts of
+/// ARRI and Sony go through ACES2065-1, by their makers' own matrices, which adapt white by CAT02:
+/// the same light as an OpenColorIO config makes of their logs.
 [[nodiscard]] TONEWRIGHT_API Matrix3 rgb_to_rgb(const Primaries& from, const Primaries& to);
 
-/// Linear RGB -> CIE XYZ under D65 (Bradford where the white differs).
+/// Linear RGB -> CIE XYZ under D65 (Bradford where the white differs; see rgb_to_rgb()).
 [[nodiscard]] TONEWRIGHT_API Matrix3 rgb_to_xyz_d65(const Primaries& primaries);
 
 /// Weights of relative luminance as nearly all code and papers print them for Rec.709 (ITU-R

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -39,6 +40,7 @@ enum class ExprOp : unsigned char {
     select,   // b where a is not 0, else c
     lookup,   // table, index
     lattice,  // one channel of a lattice at three coordinates
+    uniform,  // a number that has a name and no value yet
 };
 
 /// Samples of a function, at equal distances over [0, 1] or where `positions` says; outside, the
@@ -108,6 +110,10 @@ class TONEWRIGHT_API Expr {
     /// blue).
     [[nodiscard]] static Expr input(int index = 0);
 
+    /// A number that bind_uniforms() gives a value, or that stays an argument of what is made of
+    /// the expression. Engines take bound expressions only.
+    [[nodiscard]] static Expr uniform(std::string name);
+
     [[nodiscard]] ExprOp op() const noexcept;
     [[nodiscard]] bool is_constant() const noexcept { return op() == ExprOp::constant; }
     [[nodiscard]] bool is_constant(double value) const noexcept;
@@ -115,6 +121,8 @@ class TONEWRIGHT_API Expr {
     [[nodiscard]] double value() const noexcept;
     /// @pre op() is input
     [[nodiscard]] int input_index() const noexcept;
+    /// @pre op() is uniform
+    [[nodiscard]] const std::string& uniform_name() const noexcept;
     /// @pre op() is lookup
     [[nodiscard]] const std::shared_ptr<const Table>& table() const noexcept;
     /// @pre op() is lattice
@@ -177,8 +185,19 @@ TONEWRIGHT_API Expr smoothstep(const Expr& edge0, const Expr& edge1, const Expr&
 /// The expression with input i replaced by `inputs[i]`. Inputs beyond the span stay.
 [[nodiscard]] TONEWRIGHT_API Expr substitute(const Expr& expr, Span<const Expr> inputs);
 
+/// Values of uniforms, by name.
+using UniformValues = std::map<std::string, double, std::less<>>;
+
+/// The expression with the named uniforms replaced by constants, and folded: the same nodes as if
+/// it had been built with the constants. Uniforms without a value stay.
+[[nodiscard]] TONEWRIGHT_API Expr bind_uniforms(const Expr& expr, const UniformValues& values);
+
+/// Names of the uniforms that the expressions read, sorted.
+[[nodiscard]] TONEWRIGHT_API std::vector<std::string> uniforms_of(Span<const Expr> exprs);
+
 /// The value, in double, by plain recursion over the shared nodes: the meaning of an expression.
 /// Slow; engines compile a Tape instead, and a test holds the two equal bit for bit.
+/// @throws Error  the expression has a uniform.
 [[nodiscard]] TONEWRIGHT_API double evaluate(const Expr& expr, Span<const double> inputs);
 [[nodiscard]] TONEWRIGHT_API double evaluate(const Expr& expr, double input);
 

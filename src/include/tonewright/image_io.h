@@ -3,6 +3,7 @@
 
 #include <OpenImageIO/imagebuf.h>
 
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -21,6 +22,37 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// @throws FileError  missing, truncated, unreadable, of unknown format, or deep. One line.
 [[nodiscard]] TONEWRIGHT_API OIIO::ImageBuf read_image(const std::string& path);
 
+/// How a picture file is written.
+struct WriteOptions {
+    /// Pixel type of the file; UNKNOWN: the buffer's, or what OIIO takes for it in this format (8
+    /// bits for a float picture as PNG or JPEG, but 16 for PNG in PQ or HLG).
+    OIIO::TypeDesc type = OIIO::TypeUnknown;
+    /// What becomes of the alpha channel.
+    enum class Alpha : unsigned char {
+        keep,
+        /// It is left out.
+        ignore,
+        /// It is 1 everywhere.
+        opaque,
+    };
+    Alpha alpha = Alpha::keep;
+    /// As oiiotool's `--compression`: a method of the format, with `:quality` where it has one.
+    /// Empty: the source's where the format has it, else the format's default.
+    std::string compression = {};
+    /// As oiiotool's `--quality`, [1, 100]. 0: the format's default.
+    int quality = 0;
+    /// A format without display window holds the display window, filled up with black: at most
+    /// this many pixels, or four times those of the data window.
+    double max_pixels = 1e8;
+    /// tonemap_file() says in the file how it was made: `Software` is the version, operator,
+    /// parameters, exposure and display; OpenEXR and PNG files also have the attributes
+    /// `tonewright:operator`, `tonewright:exposure` and `tonewright:display`.
+    bool says_how = false;
+    /// Hears, before the file gets its name, why the file is not what a user may expect, in one
+    /// line without its name. What it throws stops the writing.
+    std::function<void(const std::string&)> warn = {};
+};
+
 /// Writes a picture under a temporary name beside `path`
 /// (`.<stem>.<machine>.<pid>.<n>.tmp.<extension>`; machine: eight digits that are those of this
 /// machine and container), syncs it to the disk and renames it: `path` holds the old file or the
@@ -31,10 +63,16 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// replaced stay; a symbolic link stays and its target is replaced. A file that may not be written
 /// is not replaced.
 ///
-/// @param type        pixel type of the file; UNKNOWN: the buffer's, or what OIIO
-///                    takes for it in this format (8 bits for a float picture as PNG or JPEG).
+/// The file says what its colors are, from `oiio:ColorSpace` and `chromaticities`: PNG, JPEG and
+/// TIFF files get an ICC profile (PNG: the chunk sRGB for sRGB), PNG files in PQ or HLG the chunk
+/// cICP. A build without Little CMS writes no profiles. Where a format cannot say it, `warn` hears
+/// so.
+///
+/// @throws Error      compression or quality that the format does not have
 /// @throws FileError  unknown extension, directory missing or not writable, disk full, ... In one
 ///                    line; nothing is left behind.
+TONEWRIGHT_API void write_image_atomically(const OIIO::ImageBuf& image, const std::string& path,
+                                           const WriteOptions& options);
 TONEWRIGHT_API void write_image_atomically(const OIIO::ImageBuf& image, const std::string& path,
                                            const OIIO::TypeDesc& type = OIIO::TypeUnknown);
 

@@ -103,6 +103,8 @@ struct Lut {
 /// Distance of a table, interpolated as its readers do, from the double reference; display code
 /// values for a display, the operator's numbers for `linear` and `native`.
 struct LutError {
+    /// Of all colors of the input range: of a cube, a search finds the largest from the worst
+    /// samples on. The other figures are those of the samples.
     double max = 0;
     double p999 = 0;
     double mean = 0;
@@ -134,6 +136,36 @@ struct LutError {
 [[nodiscard]] TONEWRIGHT_API LutError measure_lut(const Lut& lut, const LutRequest& request,
                                                   bool trilinear = false);
 
+/// How a cube behaves along rays of rising exposure: the lamps and hues of the test chart (pure and
+/// half saturated hues, the primaries and secondaries of Rec.709, P3 and Rec.2020), from -12 to +12
+/// stops, as far as the encoding holds them.
+///
+/// A cube rings where a clip or a kink of the operator runs through its cells: a channel rises and
+/// falls between the nodes where the operator's does not, and shows as rings around a lamp.
+struct LutRinging {
+    /// The largest fall of a channel on a ray, less what the operator itself falls by between the
+    /// same exposures; code values, of `linear` those of sRGB.
+    double fall = 0;
+    /// 99.9th percentile of the errors along the rays, in the same unit.
+    double p999 = 0;
+    /// Where the largest fall ends.
+    std::string color;    // "blue of Rec.2020"
+    std::string channel;  // "red"
+    double stops = 0;     // from 0.18
+};
+/// One code of 8 bits: what falls by more than that rings.
+inline constexpr double kLargestFall = 1.0 / 255;
+/// Of `p999`: what is beyond does not follow the operator in saturated lights.
+inline constexpr double kLargestRayError = 0.02;
+/// Of a 1D table: nothing.
+[[nodiscard]] TONEWRIGHT_API LutRinging measure_ringing(const Lut& lut, const LutRequest& request,
+                                                        bool trilinear = false);
+[[nodiscard]] TONEWRIGHT_API bool rings(const LutRinging& ringing);
+/// It does not ring, and its errors along the rays are within kLargestRayError.
+[[nodiscard]] TONEWRIGHT_API bool follows_operator(const LutRinging& ringing);
+/// "red falls by 0.19 at +9.4 stops of blue of Rec.2020".
+[[nodiscard]] TONEWRIGHT_API std::string to_string(const LutRinging& ringing);
+
 /// Light beyond the ends of an encoding that the operator would still show as something else than
 /// the light at the end: by more than one code of 10 bits (of `linear` and `native`: more than
 /// 1/1023), on greys, and above also on the six saturated colors of Rec.709.
@@ -155,8 +187,10 @@ struct LutClipping {
 /// by up to 1.8e-03"; empty where nothing is.
 [[nodiscard]] TONEWRIGHT_API std::string to_string(const LutClipping& clipping);
 
-/// Which values the nodes of a cube have: sampled, fitted, or of these the one that is nearer in
-/// the mean and in the 99.9th percentile.
+/// Which values the nodes of a cube have: sampled, fitted, or `automatic`. Automatic nodes are
+/// sampled and fitted; where a cube rings, its nodes are changed as little as it takes not to ring.
+/// Of the two it is the one that follows the operator along the rays of LutRinging; where both or
+/// neither do, the one that is nearer in the mean and in the 99.9th percentile.
 enum class LutNodes : unsigned char { automatic, sampled, fitted };
 
 struct BakedLut {
@@ -165,6 +199,8 @@ struct BakedLut {
     /// Of a cube: with the other interpolation.
     std::optional<LutError> other_error;
     bool is_fitted = false;
+    /// Interpolated as for `error`.
+    LutRinging ringing = {};
 };
 
 /// A table as its format holds it, and how far it is from the view.
@@ -183,11 +219,14 @@ struct BakedLut {
 TONEWRIGHT_API void quantize(Lut& lut, const LutRequest& request);
 
 /// The contents of the file: what it is, what goes in, what clips, what comes out, the measured
-/// errors and a hash of the numbers; then numbers with 9 significant digits (enough for every
-/// float), never in exponent notation. Of no picture.
+/// errors, whether it rings, and a hash of the numbers; then numbers with 9 significant digits
+/// (enough for every float), never in exponent notation. Of no picture.
 /// @param other_error  of a cube: with the other interpolation
 [[nodiscard]] TONEWRIGHT_API std::string write_lut(
     const Lut& lut, const LutRequest& request, const LutError& error,
-    const std::optional<LutError>& other_error = std::nullopt);
+    const std::optional<LutError>& other_error = std::nullopt,
+    const std::optional<LutRinging>& ringing = std::nullopt);
+[[nodiscard]] TONEWRIGHT_API std::string write_lut(const BakedLut& baked,
+                                                   const LutRequest& request);
 
 TONEWRIGHT_NAMESPACE_END

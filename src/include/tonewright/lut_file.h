@@ -17,7 +17,7 @@ enum class LutInterpolation : unsigned char { automatic, tetrahedral, trilinear 
 /// @throws Error with the nearest name.
 [[nodiscard]] TONEWRIGHT_API LutInterpolation parse_lut_interpolation(std::string_view text);
 
-/// A LUT of any format and of anybody's, ready to run.
+/// A LUT file of any format, ready to run.
 ///
 /// OpenColorIO runs what it reads (.cube, .clf, .ctf, .spi1d, .spi3d, .csp, .3dl, .lut, .itx,
 /// .spimtx, .cc), LittleCMS an ICC device link (.icc, .icm), and our

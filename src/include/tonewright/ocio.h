@@ -42,7 +42,7 @@ struct ConfigOptions {
 /// its own ACES 2.0 where the others have a cube.
 ///
 /// Scene reference ACES2065-1, display reference CIE XYZ D65. Every view of an operator is a view
-/// transform and a view of every display, and a colour space for hosts that know no views
+/// transform and a view of every display, and a color space for applications that know no views
 /// ("Output - AgX - sRGB"); descriptions carry the measured error.
 /// @throws Error  for unknown views, looks and displays, and for names that would break a host
 /// (over
@@ -53,7 +53,12 @@ struct ConfigOptions {
 /// What make_config() would throw for the options, before anything is computed or written.
 TONEWRIGHT_API void check_config_options(const ConfigOptions& options);
 
-/// One view that was added to somebody's config, and how far its code values are from the double
+/// What a config cannot do as `tonewright apply` does, one line each: operators that take numbers
+/// from the picture have constants there.
+/// @throws Error  as check_config_options()
+[[nodiscard]] TONEWRIGHT_API std::vector<std::string> config_warnings(const ConfigOptions& options);
+
+/// One view that was added to an existing config, and how far its code values are from the double
 /// reference, for light of all of AP0.
 struct ExtendedView {
     std::string display;
@@ -62,25 +67,49 @@ struct ExtendedView {
     double p999 = 0;
 };
 
+/// A config that views were added to, or taken out of.
 struct ExtendedConfig {
-    /// Tables, by their paths beside the config.
+    /// Tables, by their paths beside the config; their names have a hash of their contents.
     std::vector<GeneratedFile> files;
-    /// The config.
+    /// What a later update or removal needs to know, beside the config. An empty text: to be
+    /// deleted.
+    GeneratedFile record;
+    /// Tables that nothing needs any more, by their paths beside the config.
+    std::vector<std::string> unused_files;
+    /// The config: the text that it was, byte for byte, with more in it or less.
     std::string text;
+    /// Names of what was added, by its kind: "view transforms", "looks", "views", "color spaces".
+    struct Added {
+        std::string kind;
+        std::vector<std::string> names;
+    };
+    std::vector<Added> added;
     /// Reads the config where it was written, its tables beside it: OpenColorIO takes it, every
     /// space and view that was there before makes the same numbers, and the new views are the
     /// operators. @throws Error  for what is not so.
     std::function<std::vector<ExtendedView>(const std::string& path)> check;
 };
 
-/// Somebody's config with views, looks and output spaces of ours, on those of its displays that are
-/// one of ours by their numbers. Nothing of theirs is changed.
-/// @param options  views, displays (of the config), looks, custom, exposure_stops
+/// A user's config with more views, looks and output spaces, on those of its displays that are one
+/// of ours by their numbers. All else in the file stays as it is, comments and order included.
+/// @param options     views, displays (of the config), looks, custom, exposure_stops
+/// @param is_updated  take out what was added before; options that are all empty are those of then
 /// @throws FileError  for a config that cannot be read
 /// @throws Error  for a config without both interchange roles or such a display, for a name that is
 ///                taken
 [[nodiscard]] TONEWRIGHT_API ExtendedConfig extend_config(const std::string& path,
-                                                          const ConfigOptions& options);
+                                                          const ConfigOptions& options,
+                                                          bool is_updated = false);
+
+/// The config without all that extend_config() added.
+/// @throws FileError  for a config that cannot be read, that nothing was added to, or where what
+///                    was added has been changed
+[[nodiscard]] TONEWRIGHT_API ExtendedConfig reduce_config(const std::string& path);
+
+/// Hands OpenColorIO's own messages to a function, each once and without its prefix, instead of
+/// standard error: for all of the process, so for a program to call, not for a library.
+TONEWRIGHT_API void redirect_opencolorio_messages(
+    const std::function<void(const std::string&)>& print);
 
 /// What the configs that make_config() writes are called inside.
 inline constexpr const char* kConfigName = "tonewright";

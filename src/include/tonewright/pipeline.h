@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -149,6 +150,9 @@ struct ParameterSpec {
     double min = 0;  // closed interval
     double max = 1;
     std::string help;
+    /// A number that an operator takes through Params::expr(): one expression serves every value.
+    /// @see fixed_parameters()
+    bool is_live = true;
     /// Of an enumeration.
     std::vector<std::string> choices;
     /// Of an enumeration or text.
@@ -166,6 +170,10 @@ struct ParameterSpec {
 [[nodiscard]] TONEWRIGHT_API ParameterSpec number_parameter(std::string name, std::string unit,
                                                             double value, double min, double max,
                                                             std::string help);
+/// The same, none of them live: the operator branches on their numbers, or derives others from them
+/// that no expression holds.
+[[nodiscard]] TONEWRIGHT_API std::vector<ParameterSpec> fixed_parameters(
+    std::vector<ParameterSpec> specs);
 [[nodiscard]] TONEWRIGHT_API ParameterSpec choice_parameter(std::string name,
                                                             std::vector<std::string> choices,
                                                             std::string value, std::string help);
@@ -189,8 +197,11 @@ struct ResolvedOperator;
 /// Complete, checked values of an operator's parameters, and its look.
 class TONEWRIGHT_API Params {
   public:
-    /// @pre the operator declares a number parameter of this name
+    /// @pre the operator declares a number parameter of this name, which is not live here
     [[nodiscard]] double number(std::string_view name) const;
+    /// The number as a constant; a uniform of that name where it is live.
+    /// @pre the operator declares a number parameter of this name
+    [[nodiscard]] Expr expr(std::string_view name) const;
     /// @pre the operator declares an enumeration of this name
     [[nodiscard]] const std::string& choice(std::string_view name) const;
     /// @pre the operator declares a text parameter of this name
@@ -200,16 +211,18 @@ class TONEWRIGHT_API Params {
 
     friend bool operator==(const Params& a, const Params& b) {
         return a.numbers_ == b.numbers_ && a.choices_ == b.choices_ && a.texts_ == b.texts_ &&
-               a.look_ == b.look_;
+               a.look_ == b.look_ && a.live_ == b.live_;
     }
 
   private:
     friend ResolvedOperator resolve(const Operator&, const Preset*, const Settings&,
                                     std::string_view);
+    friend Pipeline build_live(const ResolvedOperator&, const std::vector<std::string>&);
     std::map<std::string, double, std::less<>> numbers_;
     std::map<std::string, std::string, std::less<>> choices_;
     std::map<std::string, std::string, std::less<>> texts_;
     std::string look_;
+    std::set<std::string, std::less<>> live_;
 };
 
 // ---------------------------------------------------------------------------------------------
@@ -331,6 +344,20 @@ struct ResolvedOperator {
     /// Largest light of the output that a display should show; 1 is white.
     [[nodiscard]] double peak() const { return op->peak ? op->peak(params) : 1; }
 };
+
+/// Names of the operator's live parameters; none of a local operator.
+[[nodiscard]] TONEWRIGHT_API std::vector<std::string> live_parameters(const Operator& op);
+
+/// The operator with these parameters as uniforms of their names, the others as they are resolved.
+/// bind_uniforms() of its stages is what resolve() builds with the same values. What resolve()
+/// refuses, parameters that contradict each other, is not looked for.
+/// @throws Error  a parameter that the operator does not have or that is not live.
+[[nodiscard]] TONEWRIGHT_API Pipeline build_live(const ResolvedOperator& resolved,
+                                                 const std::vector<std::string>& uniforms);
+
+/// The stages with the named uniforms replaced by constants.
+[[nodiscard]] TONEWRIGHT_API Pipeline bind_uniforms(const Pipeline& pipeline,
+                                                    const UniformValues& values);
 
 /// @throws Error  naming the nearest id when the operator has no such preset.
 [[nodiscard]] TONEWRIGHT_API const Preset& find_preset(const Operator& op, std::string_view id);

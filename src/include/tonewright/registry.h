@@ -16,28 +16,34 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// All operators that look at a pixel's surroundings, sorted by id. They work on pictures only.
 [[nodiscard]] TONEWRIGHT_API const std::vector<Operator>& local_operators();
 
-/// @throws Error  naming the nearest id when there is no such operator, or for a local operator.
-[[nodiscard]] TONEWRIGHT_API const Operator& find_operator(std::string_view id);
-/// The same, but accepts local operators.
-[[nodiscard]] TONEWRIGHT_API const Operator& find_picture_operator(std::string_view id);
+/// What the config shows first, and `apply` where no operator is named.
+inline constexpr std::string_view kDefaultOperator = "agx_blender";
 
-/// Looks up `id` or `id:preset` and checks the settings against the operator's parameters.
+// Names are the same in any case, and with `-`, `_` or blanks. An operator has three: its id
+// ("agx_blender"), its view in the config ("AgX") and its title ("AgX (Blender)").
+
+/// @throws Error  with the nearest name when there is no such operator, or for a local operator.
+[[nodiscard]] TONEWRIGHT_API const Operator& find_operator(std::string_view name);
+/// The same, but accepts local operators.
+[[nodiscard]] TONEWRIGHT_API const Operator& find_picture_operator(std::string_view name);
+
+/// An operator and what a text says about it: `name[:preset][:parameter=value...][:look=id]`, and
+/// names of views with a look or a preset ("AgX Punchy"). Blanks may stand where a `:` stands
+/// before `parameter=`. `\` takes its meaning from a `:`, a blank or a `\` of a value.
 ///
-/// @param name      operator id, optionally `:preset`.
-/// @param settings  parameter name -> text; they win over the preset's.
-/// @param look      look id, or empty.
-/// @throws Error    as find_operator(), find_preset() and resolve().
-[[nodiscard]] TONEWRIGHT_API ResolvedOperator resolve_operator(std::string_view name,
+/// @param settings  parameter name -> text, beside those of the text.
+/// @param look      look id or title, or empty.
+/// @throws Error    as find_operator(), find_preset() and resolve(), and where the text and the
+///                  other arguments contradict each other.
+[[nodiscard]] TONEWRIGHT_API ResolvedOperator resolve_operator(std::string_view text,
                                                                const Settings& settings = {},
                                                                std::string_view look = {});
 /// The same, but accepts local operators.
 [[nodiscard]] TONEWRIGHT_API ResolvedOperator resolve_picture_operator(
-    std::string_view name, const Settings& settings = {}, std::string_view look = {});
+    std::string_view text, const Settings& settings = {}, std::string_view look = {});
 
-/// The same from one text: `id[:preset][:parameter=value...][:look=id]`.
-[[nodiscard]] TONEWRIGHT_API ResolvedOperator parse_operator(std::string_view text);
-[[nodiscard]] TONEWRIGHT_API ResolvedOperator parse_picture_operator(std::string_view text);
-/// The inverse of parse_operator(). A value that contains a colon does not survive it.
+/// The inverse of resolve_operator(): a text that names the operator with its preset, its look and
+/// the settings that make a difference.
 [[nodiscard]] TONEWRIGHT_API std::string operator_text(const ResolvedOperator& op);
 
 /// Ids of the operators that have an inverse.

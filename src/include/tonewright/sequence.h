@@ -28,8 +28,8 @@ struct FrameFiles {
 };
 
 struct SequenceOptions {
-    /// Of the files. @see write_image_atomically
-    OIIO::TypeDesc type = OIIO::TypeUnknown;
+    /// Of the files. `warn` is called from one thread at a time.
+    WriteOptions write = {};
     /// Leaves a frame's `out` as it is if it is newer than `in`, has the size and the pixel type
     /// that it would have, and can be read to its end. What it was made with nobody knows: with
     /// another operator or another exposure it would have other colors.

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "tonewright/error.h"
+#include "tonewright/image_io.h"
 #include "tonewright/view.h"
 
 /// Tone mapping of OpenImageIO images.
@@ -206,11 +207,13 @@ TONEWRIGHT_API bool map_colors(
 /// @param type      @see write_image_atomically
 /// @param nthreads  0: OIIO's `threads` attribute. 1: one step after the other in the calling
 ///                  thread (OpenEXR has threads of its own: OIIO's `exr_threads` attribute).
-/// @throws FileError  @see read_image, write_image_atomically
-/// @throws Error      a picture that cannot be tone mapped, with its name.
+/// @throws FileError  @see read_image, write_image_atomically; a picture that cannot be tone mapped
 TONEWRIGHT_API void tonemap_file(const Tonemapper& tonemapper, const std::string& in,
                                  const std::string& out,
                                  const OIIO::TypeDesc& type = OIIO::TypeUnknown, int nthreads = 0,
                                  int subimage = 0);
+TONEWRIGHT_API void tonemap_file(const Tonemapper& tonemapper, const std::string& in,
+                                 const std::string& out, const WriteOptions& options,
+                                 int nthreads = 0, int subimage = 0);
 
 TONEWRIGHT_NAMESPACE_END

@@ -12,8 +12,8 @@ TONEWRIGHT_NAMESPACE_BEGIN
 
 /// What to compare with the reference.
 struct VerifyOptions {
-    /// As parse_operator() takes them. Empty or `all`: every operator, preset and look. Empty, with
-    /// a config: those that it has views of.
+    /// As resolve_operator() takes them. Empty or `all`: every operator, preset and look. Empty,
+    /// with a config: those that it has views of.
     std::vector<std::string> operators;
     /// Empty = sRGB; of a config without operators named, all that it has.
     std::vector<std::string> displays;
@@ -38,11 +38,11 @@ struct ParityRow {
     std::string display;
     std::string form;      // "simd AVX3", "ocio cpu lossless", "ocio cpu default", "ocio gpu"
     std::string lowering;  // of OCIO forms: "config" or "chain", and what was emitted
-    /// Colours with all channels >= 0.
+    /// Colors with all channels >= 0.
     double max = 0, p999 = 0, mean = 0;
-    /// Every colour, negatives and mixed signs of thousands included.
+    /// Every color, negatives and mixed signs of thousands included.
     double max_all = 0;
-    /// The largest error of the colours beyond the bound; 0 where there are none. Near black of a
+    /// The largest error of the colors beyond the bound; 0 where there are none. Near black of a
     /// display with a pure power it is an error of light (times 12.92, sRGB's slope there), because
     /// the code value's own slope is infinite. With the mixed metric only what exceeds float32
     /// rounding counts: the change of the exact result when each channel of the input, and of what
@@ -56,7 +56,7 @@ struct ParityRow {
     /// Every output finite and inside [0, 1], NaN and infinities going in.
     bool is_total = true;
     bool is_ok = true;
-    std::string note;  // why a form is missing, or the worst colour of a failure
+    std::string note;  // why a form is missing, or the worst color of a failure
 };
 
 /// @throws Error  unknown operators, displays, spaces; FileError for the config folder.

@@ -15,8 +15,7 @@ struct InputSpace {
     std::string title;  // as the OCIO config names it: "Linear Rec.709"
     std::vector<std::string> aliases;
     Primaries primaries;
-    /// A camera's, for LUTs of its log. The config has the log itself, OpenColorIO's, which adapts
-    /// white in another way.
+    /// A camera's or an editor's, for LUTs of its log. The config has the logs of cameras instead.
     bool is_camera = false;
 };
 
@@ -41,7 +40,8 @@ struct Display {
 
 [[nodiscard]] TONEWRIGHT_API const std::vector<InputSpace>& all_input_spaces();
 [[nodiscard]] TONEWRIGHT_API const std::vector<Display>& all_displays();
-/// By id, title or alias; letters' case does not matter. @throws Error with the nearest name.
+/// By id, title or alias, in any case, with `-`, `_` and blanks alike.
+/// @throws Error  with the nearest name.
 [[nodiscard]] TONEWRIGHT_API const InputSpace& find_input_space(std::string_view name);
 [[nodiscard]] TONEWRIGHT_API const Display& find_display(std::string_view name);
 
@@ -55,7 +55,7 @@ struct SourceColor {
 /// An input space by id, title or alias; or what pictures are encoded in: a display (its code
 /// values), `Rec709` (the camera curve of ITU-R BT.709), `GammaX.Y`, or a curve of an input space's
 /// primaries by the Color Interop Forum's pattern (`srgb_ap1_scene`, `g22_rec709_scene`).
-/// Letters' case does not matter.
+/// In any case, with `-`, `_` and blanks alike.
 /// @throws Error  with the nearest name.
 [[nodiscard]] TONEWRIGHT_API SourceColor find_source_color(std::string_view name);
 

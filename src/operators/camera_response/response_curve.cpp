@@ -2,28 +2,23 @@
 #include "operators/camera_response/response_curve.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <fstream>
 #include <optional>
 #include <set>
-#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "base/format_number.h"
+#include "base/input_file.h"
 #include "base/strings.h"
 #include "tonewright/error.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
-namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::uintmax_t kMaxBytes = std::uintmax_t{64} << 20;
+constexpr std::size_t kMaxBytes = std::size_t{64} << 20;
 constexpr const char* kLayouts =
     "columns irradiance and intensity, columns irradiance, red, green, blue, or DoRF's six lines a "
     "curve";
@@ -437,32 +432,9 @@ class Reader {
 };
 
 std::string contents_of(const std::string& file) {
-    const auto cannot_read = [&](const std::string& reason) -> FileError {
-        return FileError(file + ": cannot read: " + reason);
-    };
-    std::error_code error;
-    const fs::file_status status = fs::status(file, error);
-    if (!fs::exists(status)) {
-        throw cannot_read(
-            (error ? error : std::make_error_code(std::errc::no_such_file_or_directory)).message());
-    }
-    // A pipe or a device may have no end.
-    if (!fs::is_regular_file(status)) {
-        throw cannot_read(fs::is_directory(status) ? "is a directory" : "is no regular file");
-    }
-    const std::uintmax_t size = fs::file_size(file, error);
-    if (error) throw cannot_read(error.message());
-    if (size > kMaxBytes) {
-        throw cannot_read("it has " + std::to_string(size) + " bytes; expected at most " +
-                          std::to_string(kMaxBytes));
-    }
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) throw cannot_read(std::generic_category().message(errno));
-    std::string text(static_cast<std::size_t>(size), '\0');
-    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-    if (stream.bad()) throw cannot_read(std::generic_category().message(errno));
-    text.resize(static_cast<std::size_t>(stream.gcount()));
-    return text;
+    return read_file(file, kMaxBytes, [&](const std::string& reason) {
+        throw FileError(file + ": cannot read: " + reason);
+    });
 }
 
 }  // namespace

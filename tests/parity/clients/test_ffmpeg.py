@@ -8,6 +8,9 @@ Real pictures join the test chart where they are found, see pictures.shared_pict
 `N passed, M failed`.
 """
 
+import json
+import shlex
+
 import numpy as np
 
 from lut_client import BITS16, FLOAT32, HEIGHT, WIDTH, Client, lut_test
@@ -70,6 +73,84 @@ def check_modes(test):
         test.compare(f"haldclut of 36, {name}, 16 bits", shown, interpolate(table, test.flat), stated, BITS16)
 
 
+# ITU-R BT.2020-2, table 4, and BT.709-6, item 3.2: weights of R, G, B in luma. Limited range: item 3.5 of both.
+LUMA = {"bt2020": np.array([0.2627, 0.6780, 0.0593]), "bt709": np.array([0.2126, 0.7152, 0.0722])}
+HDR10 = ("colorprim=bt2020:transfer=smpte2084:colormatrix=bt2020nc:hdr10=1:max-cll=1000,400:master-display="
+         "G(8500,39850)B(6550,2300)R(35400,14600)WP(15635,16450)L(10000000,1):lossless=1:log-level=error")
+
+
+def ycc_of(rgb, standard, bits):
+    """Whole codes of limited range, of R'G'B' in 0..1."""
+    r, _, b = rgb.T
+    y = rgb @ LUMA[standard]
+    red, _, blue = LUMA[standard]
+    c = np.stack([219 * y + 16, 224 * (b - y) / (2 - 2 * blue) + 128, 224 * (r - y) / (2 - 2 * red) + 128], axis=-1)
+    return np.round(c * 2 ** (bits - 8))
+
+
+def rgb_of(ycc, standard, bits):
+    y, cb, cr = ((ycc / 2 ** (bits - 8) - [16, 128, 128]) / [219, 224, 224]).T
+    red, green, blue = LUMA[standard]
+    r, b = y + (2 - 2 * red) * cr, y + (2 - 2 * blue) * cb
+    return np.stack([r, (y - red * r - blue * b) / green, b], axis=-1)
+
+
+def planes_420(ycc, side):
+    """Square patches in a row, as planes of 4:2:0."""
+    shape = (side, side * len(ycc))
+    y, cb, cr = (np.broadcast_to(np.repeat(c, side), shape) for c in ycc.T)
+    return [y, cb[::2, ::2], cr[::2, ::2]]
+
+
+def check_hdr10(test):
+    """The line that `list --hosts` prints, on an HDR10 clip: SDR that says that it is SDR."""
+    scratch, report = test.scratch, test.report
+    if "libx265" not in run("ffmpeg", "-v", "error", "-encoders") or "zscale" not in run("ffmpeg", "-v", "error", "-filters"):
+        print("skipped: HDR10 video (ffmpeg has no libx265 or no zscale)")
+        return
+    hosts = json.loads(run(test.command, "list", "--hosts", "--json"))
+    steps = next(host["steps"] for host in hosts if host["id"] == "ffmpeg")
+    run(test.command, "bake", "agx_sobotka", "--for", "ffmpeg", "--nodes", "sampled", "-o", scratch / "sdr.cube")
+    # PQ codes of the eight corners of a cube, two grays and two skins, light of up to some 1000 cd/m2.
+    corners = np.array([[r, g, b] for r in (0.1, 0.7) for g in (0.1, 0.7) for b in (0.1, 0.7)])
+    patches = np.concatenate([corners, [[0.3] * 3, [0.58] * 3, [0.5, 0.42, 0.37], [0.62, 0.53, 0.47]]])
+    side, ycc = 32, ycc_of(patches, "bt2020", 10)
+    planes = planes_420(ycc, side)
+    (scratch / "hdr10.yuv").write_bytes(b"".join(plane.astype("<u2").tobytes() for plane in planes) * 3)
+    tags = ("-color_primaries", "bt2020", "-color_trc", "smpte2084", "-colorspace", "bt2020nc", "-color_range", "tv")
+    run("ffmpeg", "-v", "error", "-nostdin", "-y", "-f", "rawvideo", "-pix_fmt", "yuv420p10le", "-s",
+        f"{side * len(patches)}x{side}", *tags, "-i", "hdr10.yuv", "-c:v", "libx265", "-x265-params", HDR10, *tags,
+        "hdr10.mkv", folder=scratch)
+    line = shlex.split(steps.split(": HDR10")[0].replace("FILE", "sdr.cube"))
+    run(line[0], "-v", "error", "-nostdin", "-y", *line[1:], folder=scratch)
+
+    def fields(name):
+        text = run("ffprobe", "-v", "error", "-show_streams", "-show_frames", "-read_intervals", "%+#1", "-of", "json",
+                   scratch / name)
+        return json.loads(text)
+
+    want = {"pix_fmt": "yuv420p", "color_space": "bt709", "color_transfer": "bt709", "color_primaries": "bt709",
+            "color_range": "tv"}
+    for what, found in (("stream", fields("out.mkv")["streams"][0]), ("frame", fields("out.mkv")["frames"][0])):
+        report.check(f"HDR10 to SDR: the {what}'s tags", {key: found.get(key) for key in want} == want, found)
+        sides = [one["side_data_type"] for one in found.get("side_data_list", [])]
+        report.check(f"HDR10 to SDR: the {what} says nothing of HDR",
+                     not any("Mastering" in one or "Content light" in one for one in sides), sides)
+    report.check("HDR10 to SDR: the clip itself was HDR10",
+                 fields("hdr10.mkv")["streams"][0].get("color_transfer") == "smpte2084")
+    run("ffmpeg", "-v", "error", "-nostdin", "-y", "-i", "out.mkv", "-frames:v", 1, "-f", "rawvideo", "-pix_fmt", "yuv420p",
+        "out.yuv", folder=scratch)
+    y, cb, cr = np.split(np.fromfile(scratch / "out.yuv", np.uint8)[:side * side * len(patches) * 3 // 2].astype(float),
+                         [side * side * len(patches), side * side * len(patches) * 5 // 4])
+    middle = side * np.arange(len(patches)) + side // 2
+    shown = np.stack([y.reshape(side, -1)[side // 2, middle], cb.reshape(side // 2, -1)[side // 4, middle // 2],
+                      cr.reshape(side // 2, -1)[side // 4, middle // 2]], axis=-1)
+    table = read_cube(scratch / "sdr.cube")[0]
+    wanted = ycc_of(tetrahedral(table, np.clip(rgb_of(ycc, "bt2020", 10), 0, 1)), "bt709", 8)
+    # The encoder's own loss, at the quality that it takes by default, in flat patches.
+    report.compare("HDR10 to SDR: the pixels, in codes of 8 bits", shown, wanted, 2.5)
+
+
 def main(test):
     command, scratch = test.command, test.scratch
     if " exr " not in run("ffmpeg", "-v", "error", "-encoders"):
@@ -99,6 +180,7 @@ def main(test):
         compare(test, f"lut1d, .cube 4096 of Hable, {name}", codes, graded, curve, curve_stated, linear,
                 log2_decode, ("hable",))
     check_modes(test)
+    check_hdr10(test)
 
 
 if __name__ == "__main__":

@@ -22,8 +22,8 @@ from pictures import (PROJECT, Report, need_program, read_exr, read_planes, read
 # half-domain curves in OpenColorIO may be 3e-7 from it: code values, on the other side of the reference at worst.
 EXACT = 3e-7 + 1e-6
 # Where a chain is not that exact, the config says by how much: the largest error of its README, which is that of
-# random colours. A picture may find more between them.
-BETWEEN_PROBES = 3
+# random colors. A picture may find more between them.
+BETWEEN_PROBES = 4
 
 
 def bound_of(config, view):

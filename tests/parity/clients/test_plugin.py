@@ -108,6 +108,9 @@ def make_pictures(scratch):
 def check_bits(report, command, scratch, made):
     for path in made.values():
         check_same(report, command, path, scratch, OPTIONS)
+    fits = scratch / "nameless.fits"  # its reader gives channels no names
+    run("oiiotool", made["rgb"], "-o", fits)
+    check_same(report, command, fits, scratch, OPTIONS)
     check_same(report, command, made["rgb"], scratch, {"op": "drago"})  # measures the picture
     check_same(report, command, made["alpha"], scratch, {"op": "drago", "exposure": "-1"})
     check_same(report, command, made["rgb"], scratch, {"op": "drago", "statistics": "defaults"})
@@ -169,7 +172,10 @@ def check_errors(report, scratch, made):
     (scratch / "empty.exr").write_bytes(b"")
     (scratch / "text.exr").write_bytes(b"no picture")
     for bad, text in (("a", "file=half.exr\nop=habel\n"), ("b", "op=hable\n"), ("c", "what\n"), ("d", "file=gone.exr\nop=hable"),
-                      ("e", "file=e.tonewright\nop=hable\n"), ("f", "\0\xff" * 9), ("g", "#" * 70000)):
+                      ("e", "file=e.tonewright\nop=hable\n"), ("f", "\0\xff" * 9), ("g", "#" * 70000),
+                      ("rec", "file = rec.tonewright?op=hable\nop = hable\n"), ("one", "file=other.TONEWRIGHT?op=hable\nop=hable\n"),
+                      ("other", "file=one.tonewright?op=hable\nop=hable\n"), ("secret", "s3cret_key=hunter2\n"),
+                      ("words", "s3cret hunter2\n")):
         (scratch / f"{bad}.tonewright").write_text(text, "latin-1")
     good = made["half"].name
     faults = {name("gone.exr", op="hable"): "gone.exr: cannot read: No such file or directory",
@@ -188,18 +194,23 @@ def check_errors(report, scratch, made):
               name(good, op="hable", input="lin_rec708"): "did you mean lin_rec709?",
               name(good, op="hable", display="native", look="x"): "look is x",
               name(good + ".tonewright", op="hable"): "expected one that is not tone mapped yet",
-              "a.tonewright": "did you mean hable?", "b.tonewright": "file is missing", "c.tonewright": "line 1 is what",
+              "a.tonewright": "did you mean hable?", "b.tonewright": "file is missing", "c.tonewright": "line 1 is no setting",
+              "rec.tonewright": "not tone mapped yet", "rec.tonewright?op=hable": "not tone mapped yet",
+              "one.tonewright": "not tone mapped yet",
+              "secret.tonewright": "line 1 sets something unknown", "words.tonewright": "line 1 is no setting",
               "d.tonewright": "gone.exr: cannot read", "e.tonewright": "not tone mapped yet",
-              "f.tonewright": "expected name=value", "g.tonewright": "expected a short text"}
+              "f.tonewright": "expected name=value", "g.tonewright": "it has 70000 bytes; expected at most 65536"}
     os.chdir(scratch)
     for bad, words in faults.items():
         image = oiio.ImageBuf(bad)
         image.read(force=True)
         said = image.geterror()
-        report.check(f"{bad}: {words}", words in said, said)
-    programs = ((("oiiotool", "-o", "never.exr"), ("gone.exr", "cut.exr", "habel")),
-                (("iinfo", "-v"), ("gone.exr", "habel")), (("idiff", "rgb.exr"), ("gone.exr", "cut.exr")),
-                (("maketx", "-o", "never.tx"), ("gone.exr", "a.tonewright", "d.tonewright")))
+        report.check(f"{bad}: {words}", words in said and "s3cret" not in said and "hunter2" not in said, said)
+    (scratch / "bom.tonewright").write_bytes(b"\xef\xbb\xbffile=" + made["half"].name.encode() + b"\nop=hable\n")
+    report.check("a text with a byte order mark", is_same("bom.tonewright", name(made["half"], op="hable")))
+    programs = ((("oiiotool", "-o", "never.exr"), ("gone.exr", "cut.exr", "habel", "rec.")),
+                (("iinfo", "-v"), ("gone.exr", "habel", "rec.")), (("idiff", "rgb.exr"), ("gone.exr", "cut.exr")),
+                (("maketx", "-o", "never.tx"), ("gone.exr", "a.tonewright", "d.tonewright", "rec.")))
     for (program, *words), parts in programs:
         for bad in (next(n for n in faults if part in n) for part in parts):
             done = call(program, bad, *words)

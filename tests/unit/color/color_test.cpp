@@ -60,6 +60,28 @@ TEST(Color, MatricesFromChromaticities) {
     EXPECT_NEAR(ap1[1][2], 0.053689517407937, kGolden);
 }
 
+TEST(Color, CamerasGoToAcesByTheirMakersMatrices) {
+    // ARRI in the Academy's IDT.ARRI.Alexa-v3-logC-EI800.ctl (a1.v2), six decimals.
+    expect_matrix(rgb_to_rgb(kArriWideGamut3, kAP0),
+                  {{{0.680206, 0.236137, 0.083658},
+                    {0.085415, 1.017471, -0.102886},
+                    {0.002057, -0.062563, 1.060506}}},
+                  1e-6);
+    // Sony in the Academy's IDT.Sony.SLog3_SGamut3.ctl (a1.v1), ten decimals.
+    expect_matrix(rgb_to_rgb(kSGamut3, kAP0),
+                  {{{0.7529825954, 0.1433702162, 0.1036471884},
+                    {0.0217076974, 1.0153188355, -0.0370265329},
+                    {-0.0094160528, 0.0033704179, 1.0060456349}}},
+                  2e-10);
+    // To other gamuts through ACES2065-1, and back.
+    expect_matrix(rgb_to_rgb(kArriWideGamut3, kRec709),
+                  multiply(rgb_to_rgb(kAP0, kRec709), rgb_to_rgb(kArriWideGamut3, kAP0)), kGolden);
+    for (const Primaries& camera : {kArriWideGamut3, kArriWideGamut4, kSGamut3, kSGamut3Cine}) {
+        expect_matrix(multiply(rgb_to_rgb(kRec2020, camera), rgb_to_rgb(camera, kRec2020)),
+                      kIdentity3, kGolden);
+    }
+}
+
 TEST(Color, EGamutAsFilmLightPrintsIt) {
     // The white paper's own ten significant digits.
     expect_matrix(rgb_to_xyz(kEGamut),

@@ -88,6 +88,26 @@ TEST(MachineCode, ComputesTheInterpretersBits) {
     }
 }
 
+/// A processor with Intel's CET stops a call through a pointer that leads anywhere else than to an
+/// ENDBR64 (Intel SDM, volume 1, chapter 17).
+TEST(MachineCode, BeginsWhereIndirectCallsMayGo) {
+    if (const char* reason = missing()) GTEST_SKIP() << reason;
+    struct Functions : simd::MachineCode {
+        static const auto& of(const simd::MachineCode& code) {
+            return code.*(&Functions::function_);
+        }
+    };
+    const simd::Code code =
+        simd::compile(build_view(make_view(resolve_operator("hable"), "lin_rec709", 0, "srgb")));
+    ASSERT_TRUE(code.machine);
+    constexpr unsigned char kEndbr64[] = {0xF3, 0x0F, 0x1E, 0xFA};
+    for (const auto& parts : Functions::of(*code.machine)) {
+        ASSERT_FALSE(parts.empty());
+        for (const auto function : parts)
+            EXPECT_EQ(std::memcmp(reinterpret_cast<const void*>(function), kEndbr64, 4), 0);
+    }
+}
+
 /// What no operator of the catalogue makes of its own.
 TEST(MachineCode, ComputesEveryOperation) {
     if (const char* reason = missing()) GTEST_SKIP() << reason;

@@ -4,6 +4,7 @@
 
 #include <OpenImageIO/imagebufalgo.h>
 #include <gtest/gtest.h>
+#include "unit/image/pictures.h"
 
 #include <cmath>
 #include <limits>
@@ -200,6 +201,30 @@ TEST(ResizeScene, RepeatsPixelsAndKeepsShapes) {
     ImageSpec deep(4, 4, 3, TypeDesc::FLOAT);
     deep.deep = true;
     EXPECT_THROW((void)resize_scene(ImageBuf(deep), 64), Error);
+}
+
+TEST(ResizeScene, OfASmallPictureInALargeWindowTakesTheDataAlone) {
+    // As if black were there.
+    ImageBuf picture = make_rgb(30, 20);
+    picture.set_origin(200, 333);
+    OIIO::ImageSpec& spec = picture.specmod();
+    spec.full_x = spec.full_y = 0;
+    spec.full_width = 1000;
+    spec.full_height = 700;
+    ImageBuf filled(OIIO::ImageSpec(1000, 700, 3, OIIO::TypeDesc::FLOAT));
+    OIIO::ImageBufAlgo::paste(filled, 0, 0, 0, 0, picture);
+    const ImageBuf small = resize_scene(picture, 100);
+    EXPECT_LE(OIIO::ImageBufAlgo::compare(small, resize_scene(filled, 100), 1, 1).maxerror, 1e-6);
+    EXPECT_GT(OIIO::ImageBufAlgo::computePixelStats(small).max[1], 0.1F);
+    spec.full_width = spec.full_height = 30'000;  // 11 GB of floats
+    EXPECT_EQ(resize_scene(picture, 480).spec().height, 480);
+    spec.full_width = spec.full_height = 1'000'000;
+    EXPECT_THROW((void)resize_scene(picture, 480), FileError);
+}
+
+TEST(ResizeScene, ThinPicturesAreRefused) {
+    EXPECT_THROW((void)resize_scene(make_rgb(1, 5000), 480), FileError);
+    EXPECT_EQ(resize_scene(make_rgb(1, 50), 16).spec().height, 800);
 }
 
 TEST(ChooseColumns, LooksLikeAScreenAndFillsRows) {

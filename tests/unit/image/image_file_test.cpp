@@ -277,10 +277,10 @@ TEST_F(ImageFile, PlacesThatCannotBeWritten) {
     put(file("plain"), "x");
     expect_file_error(write(file("plain/a.exr")), file("plain/a.exr"), "Not a directory");
     fs::create_directory(file("folder.exr"));
-    expect_file_error(write(file("folder.exr")), file("folder.exr"), "it is a directory");
+    expect_file_error(write(file("folder.exr")), file("folder.exr"), "is a folder");
     expect_file_error(write(file("a.xyz")), file("a.xyz"), "xyz");
     expect_file_error(write(file("noextension")), file("noextension"), "no extension");
-    expect_file_error(write("/dev/null"), "/dev/null", "it is no regular file");
+    expect_file_error(write("/dev/null"), "/dev/null", "is no regular file");
 }
 
 TEST_F(ImageFile, FolderWithoutPermission) {
@@ -336,7 +336,7 @@ TEST_F(ImageFile, FilesThatAreNoPictures) {
         return message_of([&] { (void)read_image(path); });
     };
     expect_file_error(read(file("missing.exr")), file("missing.exr"), "No such file or directory");
-    expect_file_error(read(folder_.string()), folder_.string(), "it is a directory");
+    expect_file_error(read(folder_.string()), folder_.string(), "is a folder");
     put(file("empty.exr"), "");
     expect_file_error(read(file("empty.exr")), file("empty.exr"), "the file is empty");
     put(file("text.exr"), "certainly no picture, and long enough to have a header of some kind");

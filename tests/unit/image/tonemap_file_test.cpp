@@ -30,6 +30,13 @@ using OIIO::TypeDesc;
 constexpr int kWidth = 300;
 constexpr int kHeight = 200;
 constexpr std::size_t kSmallBatch = 1;  // 64 rows: the least
+constexpr int kTall = 100'000;
+
+WriteOptions written_as(TypeDesc type) {
+    WriteOptions options;
+    options.type = type;
+    return options;
+}
 
 std::string bytes_of(const std::string& path) {
     std::ifstream in(path, std::ios::binary);
@@ -62,7 +69,8 @@ class TonemapFile : public testing::Test {
         ASSERT_GT(wanted.size(), 100U);
         for (const int threads : {1, 3}) {
             const std::string path = folder_.file(out);
-            tonemap_in_batches(Tonemapper(options), in, path, type, threads, kSmallBatch);
+            tonemap_in_batches(Tonemapper(options), in, path, written_as(type), threads,
+                               kSmallBatch);
             EXPECT_TRUE(bytes_of(path) == wanted) << in << " -> " << out << ", " << threads;
             fs::remove(path);
         }
@@ -72,11 +80,13 @@ class TonemapFile : public testing::Test {
 };
 
 TEST_F(TonemapFile, BatchesAreSomeSixteenMegabytesOfWholeTiles) {
-    EXPECT_EQ(rows_of_batch(1 << 14, 1), 1024);
-    EXPECT_EQ(rows_of_batch(1 << 20, 1), 64);    // and never fewer
-    EXPECT_EQ(rows_of_batch(1 << 14, 48), 960);  // 10 x 96
-    EXPECT_EQ(rows_of_batch(1 << 20, 200), 200);
-    EXPECT_EQ(rows_of_batch(1 << 10, 1, kSmallBatch), 64);
+    EXPECT_EQ(rows_of_batch(1 << 14, 1, kTall), 1024);
+    EXPECT_EQ(rows_of_batch(1 << 20, 1, kTall), 64);    // and never fewer
+    EXPECT_EQ(rows_of_batch(1 << 14, 48, kTall), 960);  // 10 x 96
+    EXPECT_EQ(rows_of_batch(1 << 20, 200, kTall), 200);
+    EXPECT_EQ(rows_of_batch(1 << 10, 1, kTall, kSmallBatch), 64);
+    EXPECT_EQ(rows_of_batch(std::size_t{1} << 30, 1, 1), 1);  // unless the picture has fewer
+    EXPECT_EQ(rows_of_batch(1 << 10, 1 << 30, 7), 7);
 }
 
 TEST_F(TonemapFile, EqualsTheWholePicture) {
@@ -137,7 +147,8 @@ TEST_F(TonemapFile, AnySubimage) {
                 << op << ", " << page;
         }
     }
-    EXPECT_THROW(tonemap_file(Tonemapper({.op = "hable"}), in, out, {}, 1, 2), FileError);
+    EXPECT_THROW(tonemap_file(Tonemapper({.op = "hable"}), in, out, OIIO::TypeUnknown, 1, 2),
+                 FileError);
 }
 
 TEST_F(TonemapFile, RowsInFilesThatBeginAtTheBottom) {
@@ -188,7 +199,8 @@ TEST_F(TonemapFile, GreyStaysGreyOrBecomesColor) {
     ASSERT_EQ(spec.nchannels, 1);
     for (const char* op : {"hable", "false_color"}) {
         const std::string out = folder_.file("out.exr"), whole = folder_.file("whole.exr");
-        tonemap_in_batches(Tonemapper({.op = op}), in, out, TypeDesc::HALF, 2, kSmallBatch);
+        tonemap_in_batches(Tonemapper({.op = op}), in, out, written_as(TypeDesc::HALF), 2,
+                           kSmallBatch);
         write_image_atomically(tonemap(read_image(in), {.op = op}), whole, TypeDesc::HALF);
         EXPECT_TRUE(bytes_of(out) == bytes_of(whole)) << op;
     }
@@ -198,7 +210,8 @@ TEST_F(TonemapFile, OntoItself) {
     const std::string in = folder_.file("a.exr"), out = folder_.file("b.exr");
     put(spec_of({"R", "G", "B"}), in);
     tonemap_file(Tonemapper({.op = "hable"}), in, out, TypeDesc::HALF);
-    tonemap_in_batches(Tonemapper({.op = "hable"}), in, in, TypeDesc::HALF, 3, kSmallBatch);
+    tonemap_in_batches(Tonemapper({.op = "hable"}), in, in, written_as(TypeDesc::HALF), 3,
+                       kSmallBatch);
     EXPECT_TRUE(bytes_of(in) == bytes_of(out));
 }
 
@@ -220,8 +233,8 @@ TEST_F(TonemapFile, FailuresLeaveTheOldFile) {
     std::ofstream(out) << "the old file";
     const auto run = [&](int threads) {
         return message_of([&] {
-            tonemap_in_batches(Tonemapper({.op = "hable"}), in, out, TypeDesc::HALF, threads,
-                               kSmallBatch);
+            tonemap_in_batches(Tonemapper({.op = "hable"}), in, out, written_as(TypeDesc::HALF),
+                               threads, kSmallBatch);
         });
     };
     const auto expect_old = [&] {
@@ -258,7 +271,7 @@ TEST_F(TonemapFile, PicturesThatCannotBeToneMappedAreNamed) {
     put(spec_of({"X", "Y"}), in);
     const std::string message =
         message_of([&] { tonemap_file(Tonemapper({.op = "hable"}), in, folder_.file("out.exr")); });
-    EXPECT_TRUE(message.starts_with(in + ": ")) << message;
+    EXPECT_TRUE(message.starts_with("file: " + in + ": ")) << message;
     EXPECT_NE(message.find("2 channels (X, Y)"), std::string::npos) << message;
 }
 

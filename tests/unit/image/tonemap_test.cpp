@@ -587,7 +587,7 @@ TEST(Tonemap, AlphaMayBeAnyLaterChannel) {
     ImageBuf first = make_picture(make_spec(1, 1, {"A", "R", "G", "B"}, TypeDesc::FLOAT));
     ImageBuf dst;
     expect_error(dst, tonemap(dst, first, hable()),
-                 "alpha channel is 0; expected none or 3 and above");
+                 "alpha channel is 0; expected none, or 3 and above");
 }
 
 TEST(Tonemap, PositionDecidesNotTheName) {

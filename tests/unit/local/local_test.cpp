@@ -73,8 +73,7 @@ TEST(LocalOperators, WhatCannotHoldThemSaysWhy) {
             } catch (const Error& e) {
                 const std::string message = e.what();
                 EXPECT_TRUE(message.starts_with("operator is " + op.id +
-                                                ", which looks at a "
-                                                "pixel's surroundings: no LUT, config or color"))
+                                                ", a local operator, which needs a picture"))
                     << message;
                 EXPECT_NE(message.find("tonewright apply"), std::string::npos) << message;
             }

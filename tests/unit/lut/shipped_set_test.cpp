@@ -73,7 +73,7 @@ TEST(ShippedSet, DecimalsAreRefusedWhereTheyMeanNothing) {
     EXPECT_EQ(message(hable_cube(2)), "bake: decimals is 2; expected [3, 9]");
     LutRequest clf = hable_cube(4);
     clf.format = LutFormat::clf;
-    EXPECT_EQ(message(clf), "bake: decimals is 4; expected none for clf, only cube has them");
+    EXPECT_EQ(message(clf), "bake: decimals is 4; expected none for clf; only cube has decimals");
 }
 
 }  // namespace

@@ -263,8 +263,9 @@ TEST(ResponseCurve, RefusesFilesThatAreNone) {
     };
     const std::string missing = (folder / "missing.rf").string();
     EXPECT_EQ(why(missing), missing + ": cannot read: No such file or directory");
-    EXPECT_EQ(why(folder.string()), folder.string() + ": cannot read: is a directory");
-    EXPECT_EQ(why("/dev/null"), "/dev/null: cannot read: is no regular file");
+    EXPECT_EQ(why(folder.string()), folder.string() + ": cannot read: is a folder");
+    EXPECT_EQ(why("/dev/null"),
+              "/dev/null: cannot read: is no regular file (a pipe or a device); expected a file");
     EXPECT_NE(why(""), "");
 
     const std::string huge = (folder / "huge.rf").string();

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <random>
 #include <set>
 
 #include "base/format_number.h"
+#include "base/strings.h"
 #include "pipeline/tone_curve.h"
 #include "tonewright/registry.h"
 #include "tonewright/view.h"
@@ -350,6 +352,81 @@ TEST(Resolve, PresetsSetAndSettingsWin) {
     EXPECT_EQ(look.label, "agx_sobotka look=punchy");
 }
 
+TEST(Resolve, OneGrammarForAll) {
+    const auto label_of = [](std::string_view text) { return resolve_operator(text).label; };
+    for (const char* text : {"hable", "Hable", "HABLE", "Hable (Uncharted 2)", " hable "})
+        EXPECT_EQ(label_of(text), "hable") << text;
+    for (const char* text : {"AgX", "agx", "AgX (Blender)", "agx-blender", "AGX BLENDER"})
+        EXPECT_EQ(label_of(text), "agx_blender") << text;
+    for (const char* text :
+         {"AgX Punchy", "agx_punchy", "AgX - Punchy", "agx_blender:look=punchy", "AgX:look=Punchy",
+          "agx_blender look=punchy", "AgX Punchy:look=punchy"})
+        EXPECT_EQ(label_of(text), "agx_blender look=punchy") << text;
+    for (const char* text : {"hable:white=4:exposure_bias=1", "Hable:Exposure-Bias=1:WHITE=4",
+                             "hable white=4 exposure_bias=1"})
+        EXPECT_EQ(label_of(text), "hable exposure_bias=1 white=4") << text;
+    EXPECT_EQ(label_of("reinhard:luminance"), "reinhard:luminance");
+    EXPECT_EQ(label_of("Reinhard:Apply=Hue-Preserving"), "reinhard apply=hue_preserving");
+    EXPECT_EQ(label_of("reinhard:luminance:apply=channels"), "reinhard:luminance apply=channels")
+        << "the operator's default, but not the preset's";
+    EXPECT_EQ(resolve_operator("hable:white=4", {{"White", "4"}}).settings,
+              (Settings{{"white", "4"}}));
+}
+
+TEST(Resolve, WhatContradictsItselfIsRefused) {
+    EXPECT_EQ(resolve_error("hable:white=4:white=5"), "hable: white is 4 and 5; expected it once");
+    EXPECT_EQ(resolve_error("hable:white=4", {{"white", "5"}}),
+              "hable: white is 4 and 5; expected it once");
+    EXPECT_EQ(resolve_error("hable", {{"white", "4"}, {"WHITE", "5"}}),
+              "hable: white is 5 and 4; expected it once");
+    EXPECT_EQ(resolve_error("AgX Punchy", {}, "greyscale"),
+              "agx_blender: look is punchy and greyscale; expected one");
+    EXPECT_EQ(resolve_error("reinhard:luminance:max"),
+              "reinhard: preset is luminance and max; expected one");
+}
+
+/// Every operator with each preset and look, and with a setting that is hard to write.
+TEST(Resolve, WhatIsPrintedCanBeTyped) {
+    const auto expect_same = [](const ResolvedOperator& op) {
+        const ResolvedOperator again = resolve_picture_operator(operator_text(op));
+        EXPECT_EQ(again.op, op.op) << operator_text(op);
+        EXPECT_EQ(again.params, op.params) << operator_text(op);
+        EXPECT_EQ(resolve_picture_operator(op.label).params, op.params) << op.label;
+    };
+    for (const OperatorVariant& v : all_variants())
+        expect_same(resolve_operator(v.name, {}, v.look));
+    for (const Operator& op : local_operators())
+        expect_same(resolve_picture_operator(op.id));
+    expect_same(
+        resolve_operator("reinhard_extended:luminance", {{"white", "2.5"}, {"apply", "max"}}));
+    const std::string primaries = "0.64 0.33 0.3 0.6 0.15 0.06 0.3127 0.329";
+    const ResolvedOperator spaced = resolve_operator("aces_20", {{"primaries", primaries}});
+    EXPECT_EQ(operator_text(spaced), "aces_20:primaries=" + primaries);
+    expect_same(spaced);
+    EXPECT_EQ(operator_text(resolve_operator("hable", {{"white", "11.2"}})), "hable")
+        << "the default says nothing";
+}
+
+TEST(Resolve, NamesMeanOneOperator) {
+    std::map<std::string, std::string> meant;
+    const auto claim = [&](const std::string& name, const std::string& what) {
+        const auto [known, is_new] = meant.emplace(folded_name(name), what);
+        EXPECT_TRUE(is_new || known->second == what)
+            << name << " is " << known->second << " and " << what;
+        EXPECT_EQ(name.find(':'), std::string::npos) << name;
+    };
+    for (const Operator& op : all_operators()) {
+        for (const std::string& name : {op.id, op.view, op.title}) {
+            claim(name, op.id);
+            EXPECT_EQ(&find_operator(name), &op) << name;
+        }
+        for (const std::string& name : {op.view, op.title}) {
+            for (const Look& look : op.looks)
+                claim(name + " " + look.title, op.id + " look=" + look.id);
+        }
+    }
+}
+
 TEST(Resolve, ReadsNumbersAsTyped) {
     for (const auto& [text, value] : std::map<std::string, double>{{"2", 2},
                                                                    {"2.50", 2.5},
@@ -365,11 +442,16 @@ TEST(Resolve, ReadsNumbersAsTyped) {
 
 TEST(Resolve, UnknownNamesGetTheNearest) {
     EXPECT_EQ(resolve_error("habel"),
-              "operator is habel; expected one of `tonewright list`; did you mean hable?");
-    EXPECT_EQ(resolve_error("Reinhard"),
-              "operator is Reinhard; expected one of `tonewright list`; did you mean reinhard?");
+              "operator is habel; expected an id from `tonewright list`; did you mean hable?");
+    EXPECT_EQ(resolve_error("foo"), "operator is foo; expected an id from `tonewright list`");
+    EXPECT_EQ(
+        resolve_error("filmic"),
+        "operator is filmic; expected an id from `tonewright list`; Filmic Blender is a table "
+        "without a formula (docs/choosing.md); did you mean unreal?");
+    EXPECT_EQ(resolve_error("agx_blender:punchy"),
+              "agx_blender: preset is punchy; expected formula or hdr; did you mean look=punchy?");
     EXPECT_EQ(resolve_error("photoshop"),
-              "operator is photoshop; expected one of `tonewright list`");
+              "operator is photoshop; expected an id from `tonewright list`");
     EXPECT_EQ(resolve_error("reinhard_extended", {{"whit", "2"}}),
               "reinhard_extended: parameter is whit; expected white, apply, "
               "color_correction, saturation or saturation_from; did you mean white?");
@@ -698,10 +780,11 @@ Params apply_params(const std::string& apply) {
 TEST(Apply, NormsNeedACurveThatStartsAtBlack) {
     const ToneCurve lifted{.f = kX / (1 + kX) + 0.125};
     for (const char* apply : {"luminance", "max"}) {
-        EXPECT_EQ(error_of([&] { (void)apply_tone_curve(lifted, apply_params(apply)); }),
-                  std::string("apply is ") + apply +
-                      "; expected channels or hue_preserving: the curve is 0.125 at black, and no "
-                      "ratio of the colors makes that of 0");
+        EXPECT_EQ(
+            error_of([&] { (void)apply_tone_curve(lifted, apply_params(apply)); }),
+            std::string("apply is ") + apply +
+                "; expected channels or hue_preserving: the curve is 0.125 at black, which no "
+                "ratio of colors makes of 0");
     }
     for (const char* apply : {"channels", "hue_preserving"}) {
         expect_rgb(shown(apply_tone_curve(lifted, apply_params(apply)), {0, 0, 0}),
@@ -1250,9 +1333,15 @@ TEST(View, NamesAreFoundByIdTitleAliasAndInAnyCase) {
     EXPECT_EQ(find_input_space("aces2065_1").id, "lin_ap0");
     for (const char* name : {"display_p3", "Display P3", "displayP3_Display"})
         EXPECT_EQ(find_display(name).id, "display_p3") << name;
+    for (const char* name : {"display-p3", "DISPLAY p3", "displayP3-Display"})
+        EXPECT_EQ(find_display(name).id, "display_p3") << name;
+    EXPECT_EQ(find_input_space("Linear_Rec.2020").id, "lin_rec2020");
+    EXPECT_EQ(find_source_color("SRGB-AP1 scene").name, "srgb_ap1_scene");
+    EXPECT_EQ(find_source_color("gamma 1.8").name, "Gamma1.8");
     const View view = make_view(resolve_operator("clamp"), "acescg", 0, "REC.1886");
     EXPECT_EQ(view.input, "lin_ap1") << "views hold ids";
     EXPECT_EQ(view.display, "rec1886");
+    EXPECT_EQ(make_view(resolve_operator("clamp"), "acescg", 0, "Native").display, "native");
 }
 
 TEST(View, NamesAreUnambiguous) {
@@ -1302,6 +1391,18 @@ TEST(View, UnknownNamesGetTheNearest) {
               "exposure is inf; expected [-64, 64] stops");
     for (const double end : {-64.0, 64.0})
         EXPECT_EQ(view_error("lin_rec709", end, "srgb"), "no error");
+}
+
+TEST(View, SuggestionsAreOfTheSameFamily) {
+    const auto said = [](std::string_view display) {
+        const std::string message = error_of([&] { (void)find_display(display); });
+        const std::size_t at = message.find("did you mean");
+        return at == std::string::npos ? std::string() : message.substr(at);
+    };
+    EXPECT_EQ(said("rec709"), "did you mean srgb, rec1886 or g22?") << "those of its primaries";
+    EXPECT_EQ(said("p3"), "did you mean display_p3 or p3d65_pq?");
+    EXPECT_EQ(said("hlg"), "did you mean rec2100_hlg?");
+    EXPECT_EQ(said("crt"), "");
 }
 
 TEST(View, MisspeltOutputsGetTheNearestToo) {

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <new>
+#include <stdexcept>
+#include <string>
+
+#include "tonewright/error.h"
+#include "tonewright/version.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+
+/// Why a path is no file, where something is there that is none: "is a folder", or "is no regular
+/// file ..." for a pipe, a device or a socket, which may have no end. Empty for a file, and where
+/// nothing is there.
+[[nodiscard]] TONEWRIGHT_API std::string why_no_file(const std::string& path);
+/// Why a file cannot be read: what why_no_file() says, or the system's reason. Empty if it can.
+[[nodiscard]] TONEWRIGHT_API std::string why_not_readable(const std::string& path);
+/// For files that another library opens.
+/// @throws FileError  "read: <path>: <what why_no_file() says>"
+TONEWRIGHT_API void require_regular_file(const std::string& path);
+/// The whole file, opened so that a pipe cannot block it.
+/// @param longest  bytes
+/// @param fail     called with the reason where it cannot be read, or is longer; throws
+[[nodiscard]] TONEWRIGHT_API std::string read_file(
+    const std::string& path, std::size_t longest,
+    const std::function<void(const std::string& reason)>& fail);
+
+/// Runs `step`. Where the memory does not do for it, the message has the file's name.
+/// @throws FileError  "<path>: not enough memory", and what the step throws
+template <class Step>
+decltype(auto) with_memory_for(const std::string& path, const Step& step) {
+    try {
+        return step();
+    } catch (const std::bad_alloc&) {
+        throw FileError(path + ": not enough memory");
+    } catch (const std::length_error&) {  // more than any memory
+        throw FileError(path + ": not enough memory");
+    }
+}
+
+TONEWRIGHT_NAMESPACE_END

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/number_cache.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "base/atomic_file.h"
+#include "base/strings.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uintmax_t kLargestFolder = std::uintmax_t{256} << 20;
+constexpr std::string_view kEnding = ".numbers";
+/// Of the format of the file.
+constexpr std::string_view kBeginning = "tonewright numbers 1\n";
+
+/// FNV-1a of 64 bits.
+std::uint64_t check_sum(std::string_view bytes) {
+    std::uint64_t sum = 0xCBF29CE484222325ULL;
+    for (const char c : bytes)
+        sum = (sum ^ static_cast<unsigned char>(c)) * 0x100000001B3ULL;
+    return sum;
+}
+
+std::string bytes_of(const std::vector<double>& numbers) {
+    return {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(double)};
+}
+
+/// Beginning, key, a line with the count and the check sum of the numbers, numbers.
+std::string header_of(const std::string& key, std::size_t count, std::uint64_t sum) {
+    return fmt::format("{}{}\n{} {:016x}\n", kBeginning, key, count, sum);
+}
+
+std::optional<std::vector<double>> read(const fs::path& path, const std::string& key) {
+    std::error_code error;
+    if (!fs::is_regular_file(path, error)) return std::nullopt;
+    const std::uintmax_t size = fs::file_size(path, error);
+    if (error || size > kLargestFolder) return std::nullopt;
+    std::ifstream file(path, std::ios::binary);
+    std::string text(static_cast<std::size_t>(size), '\0');
+    if (!file.read(text.data(), static_cast<std::streamsize>(size))) return std::nullopt;
+    const std::string beginning = fmt::format("{}{}\n", kBeginning, key);
+    if (!text.starts_with(beginning)) return std::nullopt;
+    const std::size_t end = text.find('\n', beginning.size());
+    if (end == std::string::npos) return std::nullopt;
+    const std::string_view bytes = std::string_view(text).substr(end + 1);
+    const std::size_t count = bytes.size() / sizeof(double);
+    if (std::string_view(text).substr(0, end + 1) != header_of(key, count, check_sum(bytes)) ||
+        bytes.size() % sizeof(double) != 0)
+        return std::nullopt;
+    std::vector<double> numbers(count);
+    std::memcpy(numbers.data(), bytes.data(), bytes.size());
+    // Those that are used last go last.
+    fs::last_write_time(path, fs::file_time_type::clock::now(), error);
+    return numbers;
+}
+
+void drop_oldest(const fs::path& folder) {
+    struct File {
+        fs::file_time_type time;
+        fs::path path;
+        std::uintmax_t size;
+    };
+    std::error_code error;
+    std::vector<File> files;
+    std::uintmax_t whole = 0;
+    for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+        if (it->path().extension() != kEnding) continue;
+        std::error_code of_file;
+        const File file = {it->last_write_time(of_file), it->path(), it->file_size(of_file)};
+        if (of_file) continue;
+        whole += file.size;
+        files.push_back(file);
+    }
+    std::sort(files.begin(), files.end(),
+              [](const File& a, const File& b) { return a.time < b.time; });
+    for (const File& file : files) {
+        if (whole <= kLargestFolder) return;
+        if (fs::remove(file.path, error)) whole -= file.size;
+    }
+}
+
+void write(const fs::path& path, const std::string& key, const std::vector<double>& numbers) {
+    std::error_code error;
+    fs::create_directories(path.parent_path(), error);
+    if (error) return;
+    const std::string bytes = bytes_of(numbers);
+    try {
+        write_text_atomically(path.string(),
+                              header_of(key, numbers.size(), check_sum(bytes)) + bytes);
+    } catch (const std::exception&) {
+        return;  // the numbers are known all the same
+    }
+    drop_oldest(path.parent_path());
+}
+
+}  // namespace
+
+std::string cache_folder() {
+    const auto from = [](const char* variable) -> fs::path {
+        const char* value = std::getenv(variable);
+        return value ? fs::path(value) : fs::path();
+    };
+    // As the XDG Base Directory Specification has it, a path that is not absolute is ignored.
+    if (const fs::path folder = from("XDG_CACHE_HOME"); folder.is_absolute())
+        return (folder / "tonewright").string();
+    if (const fs::path home = from("HOME"); home.is_absolute())
+        return (home / ".cache" / "tonewright").string();
+    return "";
+}
+
+std::vector<double> cached_numbers(const std::string& name, const std::string& key,
+                                   const std::function<std::vector<double>()>& make) {
+    const std::string folder = cache_folder();
+    if (folder.empty()) return make();
+    const fs::path path =
+        fs::path(folder) / fmt::format("{}_{}{}", name, content_hash(key), kEnding);
+    if (auto known = read(path, key)) return *std::move(known);
+    std::vector<double> numbers = make();
+    write(path, key, numbers);
+    return numbers;
+}
+
+std::string key_of_numbers(const std::vector<double>& numbers) {
+    return fmt::format("{} {:016x} {}", numbers.size(), check_sum(bytes_of(numbers)),
+                       content_hash(bytes_of(numbers)));
+}
+
+TONEWRIGHT_NAMESPACE_END

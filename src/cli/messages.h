@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What the command tells its user on stderr: one line each.
+#pragma once
+
+#include <string>
+
+#include "tonewright/version.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+
+/// Of all commands.
+struct MessageOptions {
+    bool is_strict = false;
+    bool is_quiet = false;
+    bool is_verbose = false;
+};
+
+/// The options of this process. The module of the picture commands has its own: the program hands
+/// them over when it loads the module.
+[[nodiscard]] MessageOptions& message_options();
+
+/// `tonewright: TEXT` on stderr, on one line whatever the text holds.
+void print_message(const std::string& text);
+
+/// What a command did, on stderr, on one line; not with --quiet.
+void print_result(const std::string& text);
+
+/// `tonewright: warning: TEXT`, where a result may not be what the user means. Call it before the
+/// result is written.
+/// @throws std::runtime_error  --strict was given
+void warn(const std::string& text);
+
+TONEWRIGHT_NAMESPACE_END

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/pictures/contained.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstring>
+#include <exception>
+#include <new>
+#include <optional>
+#include <stdexcept>
+#include <string_view>
+
+#include "base/atomic_file.h"
+#include "base/strings.h"
+#include "tonewright/error.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+using Failure = ContainedResult::Failure;
+
+/// What a process sends: one byte that says what follows, and the value or the message.
+std::string message(Failure failure, const std::string& text) {
+    return static_cast<char>('0' + static_cast<int>(failure)) + text;
+}
+
+ContainedResult file_failure(const std::string& name, const std::string& reason) {
+    return {.failure = Failure::file, .error = fmt::format("{}: {}", name, reason)};
+}
+
+/// What the new process does. It ends without destructors and exit handlers, which would wait for
+/// threads that only the old process has.
+[[noreturn]] void run_child(const std::function<std::string(std::size_t)>& work, std::size_t item,
+                            int pipe, pid_t parent) {
+    // SIGTERM removes unfinished files, as in the program itself.
+    ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (::getppid() != parent) ::_exit(1);
+    std::string text;
+    try {
+        text = message(Failure::none, work(item));
+    } catch (const FileError& e) {
+        text = message(Failure::file, one_line(e.what()));
+    } catch (const std::bad_alloc&) {
+        text = message(Failure::file, "not enough memory");
+    } catch (const Error& e) {
+        text = message(Failure::usage, one_line(e.what()));
+    } catch (const std::exception& e) {
+        text = message(Failure::other, one_line(e.what()));
+    }
+    std::string_view left = text;
+    while (!left.empty()) {
+        const ssize_t count = ::write(pipe, left.data(), left.size());
+        if (count < 0 && errno != EINTR) ::_exit(1);
+        if (count > 0) left.remove_prefix(static_cast<std::size_t>(count));
+    }
+    ::_exit(0);
+}
+
+struct Process {
+    std::size_t item;
+    pid_t id;
+    int pipe;
+    Clock::time_point deadline;
+    std::string text = {};
+};
+
+/// @returns  nothing where no process can be made; then errno says why
+std::optional<Process> start(std::size_t item, double seconds,
+                             const std::function<std::string(std::size_t)>& work) {
+    std::array<int, 2> ends{};
+    if (::pipe(ends.data()) != 0) return {};
+    const pid_t parent = ::getpid();
+    const pid_t id = ::fork();
+    if (id == 0) {
+        ::close(ends[0]);
+        run_child(work, item, ends[1], parent);
+    }
+    const int error = errno;
+    ::close(ends[1]);
+    if (id < 0) {
+        ::close(ends[0]);
+        errno = error;
+        return {};
+    }
+    const auto limit =
+        std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+    return Process{item, id, ends[0], Clock::now() + limit};
+}
+
+/// Reads what is there. @returns  true at the end
+bool read_more(Process& process) {
+    std::array<char, 65536> bytes;
+    const ssize_t count = ::read(process.pipe, bytes.data(), bytes.size());
+    if (count < 0) return errno != EINTR;
+    process.text.append(bytes.data(), static_cast<std::size_t>(count));
+    return count == 0;
+}
+
+/// What a process that has closed its pipe became.
+ContainedResult result_of(const Process& process, const std::string& name) {
+    int status = 0;
+    while (::waitpid(process.id, &status, 0) < 0 && errno == EINTR) {
+    }
+    if (WIFSIGNALED(status)) {
+        const int number = WTERMSIG(status);
+        return file_failure(
+            name, fmt::format("the process crashed (signal {}, {})", number, ::strsignal(number)));
+    }
+    if (process.text.empty() || WEXITSTATUS(status) != 0) {
+        return file_failure(
+            name, fmt::format("the process ended early (exit code {})", WEXITSTATUS(status)));
+    }
+    const auto failure = static_cast<Failure>(process.text.front() - '0');
+    const std::string rest = process.text.substr(1);
+    if (failure == Failure::none) return {.value = rest};
+    return {.failure = failure, .error = rest};
+}
+
+/// A process that waits for a device may outlive even this; then nobody waits for it.
+void kill_process(const Process& process) {
+    constexpr int kMostWaits = 200;
+    ::kill(process.id, SIGKILL);
+    for (int wait = 0; wait < kMostWaits && ::waitpid(process.id, nullptr, WNOHANG) == 0; ++wait)
+        ::usleep(10000);
+}
+
+}  // namespace
+
+void ContainedResult::require() const {
+    if (failure == Failure::file) throw FileError(error);
+    if (failure == Failure::usage) throw Error(error);
+    if (failure == Failure::other) throw std::runtime_error(error);
+}
+
+void run_contained(const std::vector<std::string>& names, std::size_t jobs, double seconds,
+                   const std::function<std::string(std::size_t)>& work,
+                   const std::function<void(std::size_t, const ContainedResult&)>& done) {
+    std::vector<Process> running;
+    std::size_t next = 0;
+    while (next < names.size() || !running.empty()) {
+        while (next < names.size() && running.size() < std::max<std::size_t>(jobs, 1)) {
+            const std::size_t item = next++;
+            if (const std::optional<Process> process = start(item, seconds, work)) {
+                running.push_back(*process);
+            } else {
+                done(item,
+                     file_failure(names[item], "cannot start a process: " + reason_of(errno)));
+            }
+        }
+        std::vector<pollfd> pipes;
+        Clock::time_point first = Clock::time_point::max();
+        for (const Process& process : running) {
+            pipes.push_back({process.pipe, POLLIN, 0});
+            first = std::min(first, process.deadline);
+        }
+        constexpr double kMostMilliseconds = 60000;
+        const std::chrono::duration<double, std::milli> left = first - Clock::now();
+        (void)::poll(pipes.data(), pipes.size(),
+                     static_cast<int>(std::clamp(std::ceil(left.count()), 0.0, kMostMilliseconds)));
+        std::vector<Process> others;
+        for (std::size_t i = 0; i < running.size(); ++i) {
+            Process& process = running[i];
+            const bool is_ended = pipes[i].revents != 0 && read_more(process);
+            const bool is_late = !is_ended && Clock::now() >= process.deadline;
+            if (!is_ended && !is_late) {
+                others.push_back(std::move(process));
+                continue;
+            }
+            if (is_late) kill_process(process);
+            ::close(process.pipe);
+            const std::string& name = names[process.item];
+            done(process.item, is_ended ? result_of(process, name)
+                                        : file_failure(name, fmt::format("no result after {} s "
+                                                                         "(--timeout)",
+                                                                         seconds)));
+        }
+        running = std::move(others);
+    }
+}
+
+TONEWRIGHT_NAMESPACE_END

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/picture_options.h"
+#include "tonewright/sequence.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+
+/// What `apply` reads and writes.
+struct ApplyFiles {
+    /// One picture, or the pattern of a shot.
+    bool is_single = true;
+    std::vector<FrameFiles> files;
+};
+
+/// The files that the arguments name: those of folders and lists, too.
+/// @throws Error      no output, two outputs of one name
+/// @throws FileError  a folder without pictures, a list that cannot be read
+[[nodiscard]] ApplyFiles files_of(const ApplyOptions& options);
+
+TONEWRIGHT_NAMESPACE_END

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+
+#include "engine/tape.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+
+/// Runs one operation of the reference over n values: all but inputs, constants and lattices.
+/// @param out  may be one of the operands
+using RunInstruction = void (*)(const TapeInstruction& step, double* out, const double* a,
+                                const double* b, const double* c, std::size_t n);
+
+/// For this processor; with the same bits for all.
+[[nodiscard]] RunInstruction reference_operations();
+
+TONEWRIGHT_NAMESPACE_END

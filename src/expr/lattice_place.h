@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <utility>
+
+#include "tonewright/version.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+
+/// The tetrahedron of a place: its four nodes, from the one nearest to the origin on, each one step
+/// along another coordinate, in the order of the fractions.
+struct LatticePlace {
+    std::array<std::size_t, 4> node{};
+    std::array<double, 4> weight{};
+    std::array<std::size_t, 3> axis{0, 1, 2};
+
+    LatticePlace(int edge, const std::array<double, 3>& at) noexcept {
+        const auto n = static_cast<std::size_t>(edge);
+        const std::array<std::size_t, 3> stride = {n * n, n, 1};
+        std::array<double, 3> fraction{};
+        std::size_t corner = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const double t = at[i] > 0 ? (at[i] < 1 ? at[i] : 1.0) : 0.0;  // NaN -> 0
+            const double place = t * static_cast<double>(n - 1);
+            const std::size_t cell = std::min(static_cast<std::size_t>(place), n - 2);
+            fraction[i] = place - static_cast<double>(cell);
+            corner += cell * stride[i];
+        }
+        const auto order = [&](std::size_t i, std::size_t k) {
+            if (fraction[axis[i]] < fraction[axis[k]]) std::swap(axis[i], axis[k]);
+        };
+        order(0, 1);
+        order(1, 2);
+        order(0, 1);
+        node[0] = corner;
+        weight[0] = 1 - fraction[axis[0]];
+        for (std::size_t i = 0; i < 3; ++i) {
+            node[i + 1] = node[i] + stride[axis[i]];
+            weight[i + 1] = fraction[axis[i]] - (i < 2 ? fraction[axis[i + 1]] : 0.0);
+        }
+    }
+
+    /// @param channel  of the first node; the next node is three numbers further.
+    [[nodiscard]] double interpolate(const double* channel) const noexcept {
+        double sum = 0;
+        for (std::size_t i = 0; i < 4; ++i)
+            sum += weight[i] * channel[3 * node[i]];
+        return sum;
+    }
+    /// Lattice::gradient().
+    /// @param at  the place
+    [[nodiscard]] std::array<double, 3> gradient(const double* channel, int edge,
+                                                 const std::array<double, 3>& at) const noexcept {
+        std::array<double, 3> slope{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (!(at[axis[i]] > 0 && at[axis[i]] < 1)) continue;
+            slope[axis[i]] = (channel[3 * node[i + 1]] - channel[3 * node[i]]) * (edge - 1);
+        }
+        return slope;
+    }
+};
+
+TONEWRIGHT_NAMESPACE_END

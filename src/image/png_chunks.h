@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Chunks of PNG files that OpenImageIO does not write.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "tonewright/version.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+
+/// Coding-independent code points of RGB of full range: ITU-T H.273 (07/2021), tables 2 and 3.
+struct CodePoints {
+    std::uint8_t primaries;
+    std::uint8_t transfer;
+};
+
+/// The place of the first chunk after the header: 8 bytes of signature, 25 of IHDR.
+inline constexpr std::size_t kAfterPngHeader = 33;
+
+/// A chunk with its length and its checksum. W3C PNG (third edition), 5.3.
+/// @param type  four letters
+[[nodiscard]] TONEWRIGHT_API std::string png_chunk(std::string_view type, std::string_view data);
+
+/// The cICP chunk. W3C PNG (third edition), 11.3.2.6. It belongs before PLTE and IDAT.
+[[nodiscard]] TONEWRIGHT_API std::string cicp_chunk(const CodePoints& points);
+
+TONEWRIGHT_NAMESPACE_END

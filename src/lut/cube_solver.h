@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "engine/gradient.h"
+#include "lut/tetrahedron.h"
+#include "tonewright/color.h"
+#include "tonewright/pipeline.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+
+/// RGB at the nodes of a cube, blue fastest.
+using CubeNodes = std::vector<double>;
+
+/// What a cube has to give at a place.
+struct CubeSample : Tetrahedron {
+    float root_weight;                             // square root of what it counts
+    std::array<float, 3> code;                     // wanted behind the cube
+    std::array<float, 3> missing;                  // of the code, now
+    std::array<std::array<float, 3>, 3> gradient;  // d code / d what the cube gives
+};
+
+struct CubeSolverOptions {
+    /// Weight of the squared second differences between nodes, where one sample at a node counts 1.
+    double evenness = 0;
+    /// Keeps a step finite where neither samples nor evenness decide.
+    double damping = 1e-6;
+    /// Nodes that stay as they are.
+    std::vector<std::size_t> held = {};
+    /// 0: as many as the machine has. The nodes do not depend on it.
+    unsigned thread_count = 0;
+};
+
+/// Finds the nodes of a cube whose tetrahedral interpolation is best behind a pipeline: Gauss and
+/// Newton's method, whose linear equations conjugate gradients solve. The same nodes on every run.
+///
+/// The normal matrix connects a node with the seven that share an edge of a tetrahedron above it
+/// and with seven below, so it is eight blocks of 3 x 3 numbers a node, however many samples are in
+/// it.
+class CubeSolver {
+  public:
+    /// @param forward  what the cube gives -> codes whose distances are nearly what the eye sees
+    CubeSolver(int edge, const Pipeline& forward, CubeSolverOptions options);
+
+    void reserve(std::size_t count) { samples_.reserve(count); }
+    void add(const Vector3& place, const Vector3& code, double weight);
+    [[nodiscard]] std::vector<CubeSample>& samples() { return samples_; }
+    /// By cell: what is added to the matrix stays in the processor's cache. Call after the last
+    /// add().
+    void sort_samples();
+
+    [[nodiscard]] std::array<float, 3> shown(const CubeNodes& nodes, const CubeSample& s) const;
+    /// Sets what is missing of each code, and how it moves with what the cube gives.
+    void linearize(const CubeNodes& nodes);
+    /// One step from what linearize() set.
+    void improve(CubeNodes& nodes) const;
+    /// So many times both.
+    void solve(CubeNodes& nodes, int rounds);
+
+  private:
+    using Block = std::array<float, 6>;  // of a symmetric matrix: 00, 01, 02, 11, 12, 22
+    using Vector = std::vector<std::array<float, 3>>;  // padded, so that neighbors can be read
+
+    struct Matrix {
+        std::array<std::vector<Block>, 8> blocks;  // from node i to the one that many steps above
+        Vector right;
+    };
+
+    template <class F>
+    void at_corners(const CubeSample& s, const F& f) const {
+        const auto [second, third, far] = s.weight;
+        f(0U, s.cell, 1 - second - third - far);
+        f(unsigned{s.second}, s.cell + step_[s.second], second);
+        f(unsigned{s.third}, s.cell + step_[s.third], third);
+        f(7U, s.cell + step_[7], far);
+    }
+
+    template <class F>
+    void over_nodes(const F& f) const;
+    [[nodiscard]] Matrix add_up() const;
+    void add_sample(const CubeSample& s, Matrix& m) const;
+    void add_evenness(const Vector& x, Vector& out, double sign) const;
+    void multiply_by(const Matrix& m, const Vector& x, Vector& out) const;
+    void hold(Vector& x) const;
+    [[nodiscard]] Vector make_vector() const { return Vector(node_count_ + 2 * pad_); }
+
+    std::size_t n_;
+    std::size_t node_count_;
+    std::size_t pad_;
+    GradientEngine code_;  // of what the cube gives
+    CubeSolverOptions options_;
+    std::array<std::size_t, 8> step_{};  // from a node to the one that a mask of steps leads to
+    std::vector<CubeSample> samples_;
+};
+
+TONEWRIGHT_NAMESPACE_END

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "base/strings.h"
+#include "tonewright/lut.h"
+#include "tonewright/lut_applications.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace {
+
+/// In the order of LutFormat.
+const std::array<std::vector<std::string>, 14>& extensions() {
+    static const std::vector<std::string> picture = {".png", ".tif", ".tiff", ".exr"};
+    static const std::array<std::vector<std::string>, 14> all = {{{".cube"},
+                                                                  {".clf"},
+                                                                  {".ctf"},
+                                                                  {".spi1d"},
+                                                                  {".spi3d"},
+                                                                  {".csp"},
+                                                                  {".cube"},
+                                                                  {".3dl"},
+                                                                  {".lut"},
+                                                                  {".icc", ".icm"},
+                                                                  picture,
+                                                                  picture,
+                                                                  picture,
+                                                                  {".raw"}}};
+    return all;
+}
+
+const std::vector<std::string>& extensions_of(LutFormat format) {
+    return extensions()[static_cast<std::size_t>(format)];
+}
+
+bool has(const std::vector<std::string>& all, const std::string& one) {
+    return std::find(all.begin(), all.end(), one) != all.end();
+}
+
+std::vector<std::string> known_extensions() {
+    std::vector<std::string> known;
+    for (const std::vector<std::string>& some : extensions()) {
+        for (const std::string& extension : some) {
+            if (!has(known, extension)) known.push_back(extension);
+        }
+    }
+    return known;
+}
+
+}  // namespace
+
+LutFormat lut_format_of_file(const std::string& path, std::optional<LutFormat> format,
+                             const LutApplication* application) {
+    const std::string extension = extension_of(path);
+    const std::vector<std::string> known = known_extensions();
+    if (!format && application) format = application->format;
+    if (format) {
+        const std::vector<std::string>& own = extensions_of(*format);
+        // A name of no LUT format contradicts nothing: a device, a name without an extension.
+        if (!has(known, extension) || has(own, extension)) return *format;
+        const std::string reason =
+            application && *format == application->format
+                ? fmt::format("{} reads {}", application->title, name_of(*format))
+                : fmt::format("the format is {}", name_of(*format));
+        throw Error(
+            fmt::format("bake: file is {}; expected {}: {}", path, join_choices(own), reason));
+    }
+    if (has(extensions_of(LutFormat::hald), extension)) {
+        throw Error(
+            fmt::format("bake: file is {}; expected --format hald, strip or strip_up with a "
+                        "picture, or --for",
+                        path));
+    }
+    // Of two formats of one extension, the first is the usual one.
+    for (std::size_t i = 0; i < extensions().size(); ++i) {
+        if (has(extensions()[i], extension)) return static_cast<LutFormat>(i);
+    }
+    throw Error(fmt::format("bake: file is {}; expected a name that ends in {}, or --format", path,
+                            join_choices(known)) +
+                did_you_mean(extension, known));
+}
+
+TONEWRIGHT_NAMESPACE_END

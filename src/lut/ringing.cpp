@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lut/ringing.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/format_number.h"
+#include "lut/in_parallel.h"
+#include "lut/node_weights.h"
+#include "lut/table_input.h"
+#include "measure/chart_colors.h"
+#include "measure/error_metric.h"
+#include "tonewright/engine.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace {
+
+/// Exposures of a ray. Several lie in each cell of a LUT of 65 nodes.
+constexpr double kDarkest = -12;
+constexpr double kBrightest = 12;
+constexpr int kStepsPerStop = 16;
+constexpr std::size_t kPlaces =
+    static_cast<std::size_t>((kBrightest - kDarkest) * kStepsPerStop) + 1;
+
+double stops_of(std::size_t place) { return kDarkest + static_cast<double>(place) / kStepsPerStop; }
+
+/// Whether what comes out is light, not a code value.
+bool is_light(const View& view) {
+    if (view.display == kNativeOutput) return view.op.op->output != OutputKind::code_value;
+    return view.display == kLinearOutput;
+}
+
+/// Colors at rising exposures, as a LUT gets them, and what the operator makes of them. All planes
+/// hold kPlaces entries of each color, one color after the other.
+struct Rays {
+    /// Interleaved RGB.
+    std::vector<double> input;
+    std::array<std::vector<double>, 3> wanted;
+    std::size_t count = 0;
+};
+
+Rays make_rays(const std::vector<NamedColor>& colors, const Lut& lut, const LutRequest& request) {
+    const Matrix3 to_input = rgb_to_rgb(kRec709, find_input_space(request.view.input).primaries);
+    std::vector<float> light;
+    for (const NamedColor& color : colors) {
+        const Vector3 unit = multiply(to_input, color.rgb);
+        for (std::size_t i = 0; i < kPlaces; ++i) {
+            const double gain = 0.18 * std::exp2(stops_of(i));
+            // What the encoding does not hold clips before the table: that is not its error.
+            for (const double channel : unit) {
+                light.push_back(static_cast<float>(std::clamp(
+                    gain * channel, request.encoding.scene_lo, request.encoding.scene_hi)));
+            }
+        }
+    }
+    Rays rays;
+    rays.count = colors.size();
+    rays.input = table_input(lut, request, light);
+    std::vector<double> wanted(light.size());
+    ReferenceEngine(build_view(request.view))
+        .run_rgb(light.data(), wanted.data(), light.size() / 3);
+    for (std::size_t i = 0; i < wanted.size(); ++i)
+        rays.wanted[i % 3].push_back(wanted[i]);
+    return rays;
+}
+
+/// Light as a display of sRGB shows it: a step of 1/255 is then as visible as one in code values.
+class Code {
+  public:
+    explicit Code(const View& view) : is_light_(is_light(view)) {
+        if (!is_light_) return;
+        const Expr encode = srgb_encode(Expr::input());
+        const Expr decode = srgb_decode(Expr::input());
+        for (std::size_t i = 0; i <= kSteps; ++i) {
+            const double x = static_cast<double>(i) / kSteps;
+            encode_.push_back(evaluate(encode, x * x));
+            decode_.push_back(evaluate(decode, x));
+        }
+    }
+
+    [[nodiscard]] double of(double value) const {
+        return is_light_ ? at(encode_, std::sqrt(std::clamp(value, 0.0, 1.0))) : value;
+    }
+    [[nodiscard]] double value(double code) const {
+        return is_light_ ? at(decode_, std::clamp(code, 0.0, 1.0)) : code;
+    }
+    void encode(std::vector<double>& values) const {
+        if (!is_light_) return;
+        for (double& value : values)
+            value = of(value);
+    }
+
+  private:
+    /// Straight lines between so many are 1e-6 off, and the bounds are 1/255 and 0.02.
+    static constexpr std::size_t kSteps = 4096;
+
+    static double at(const std::vector<double>& table, double x) {
+        const double place = x * kSteps;
+        const auto i = std::min(static_cast<std::size_t>(place), kSteps - 1);
+        return table[i] + (place - static_cast<double>(i)) * (table[i + 1] - table[i]);
+    }
+
+    bool is_light_;
+    std::vector<double> encode_;  // over the square root of light
+    std::vector<double> decode_;
+};
+
+/// The largest fall between two places of a ray, less what the operator falls by between these.
+struct Fall {
+    double size = 0;
+    double allowed = 0;
+    std::size_t from = 0;
+    std::size_t to = 0;
+};
+
+/// @param shown, wanted  kPlaces codes of one channel
+/// @param ignored        falls up to this are not looked for
+Fall largest_fall(const double* shown, const double* wanted, double ignored) {
+    Fall worst;
+    worst.size = ignored;
+    // Most rays only rise.
+    double highest_shown = shown[0];
+    bool falls = false;
+    for (std::size_t i = 1; i < kPlaces && !falls; ++i) {
+        falls = highest_shown - shown[i] > ignored;
+        highest_shown = std::max(highest_shown, shown[i]);
+    }
+    if (!falls) return {};
+    for (std::size_t i = 0; i < kPlaces; ++i) {
+        // A fall that begins at a lower place than the one before is part of that one's.
+        if (i + 1 < kPlaces && shown[i + 1] >= shown[i]) continue;
+        double highest = wanted[i];
+        double allowed = 0;
+        for (std::size_t j = i + 1; j < kPlaces; ++j) {
+            highest = std::max(highest, wanted[j]);
+            allowed = std::max(allowed, highest - wanted[j]);
+            const double fall = shown[i] - shown[j] - allowed;
+            if (fall > worst.size) worst = {fall, allowed, i, j};
+        }
+    }
+    return worst.to == 0 ? Fall{} : worst;
+}
+
+/// Of all hues and saturations of three gamuts, and of the chart.
+std::vector<NamedColor> dense_colors() {
+    std::vector<NamedColor> colors = chart_colors();
+    for (const Primaries* gamut : {&kRec709, &kP3D65, &kRec2020}) {
+        const Matrix3 to_rec709 = rgb_to_rgb(*gamut, kRec709);
+        for (const double saturation : {1.0, 0.9, 0.7, 0.4, 0.2, 0.08}) {
+            // Near gray, the gamuts have the same colors.
+            if (saturation < 0.4 && gamut != &kRec709) continue;
+            // Operators bend most along the faces of a gamut.
+            const int hues = saturation == 1.0 ? 144 : 48;
+            for (int i = 0; i < hues; ++i) {
+                const double hue = (i + 0.5) / hues;
+                colors.push_back({{}, multiply(to_rec709, hue_color(hue, saturation, 1))});
+            }
+        }
+    }
+    return colors;
+}
+
+/// What a weighted sum of values changes by with each node.
+struct Slopes {
+    std::array<std::size_t, 16> node{};
+    std::array<double, 16> slope{};
+    std::size_t count = 0;
+
+    void add(const NodeWeights& at, double sign) {
+        for (std::size_t k = 0; k < at.count; ++k) {
+            const auto end = node.begin() + static_cast<std::ptrdiff_t>(count);
+            const auto found = std::find(node.begin(), end, at.node[k]);
+            const auto slot = static_cast<std::size_t>(found - node.begin());
+            if (found == end) {
+                node[slot] = at.node[k];
+                ++count;
+            }
+            slope[slot] += sign * at.weight[k];
+        }
+    }
+};
+
+}  // namespace
+
+LutRinging measure_ringing(const Lut& lut, const LutRequest& request, bool trilinear) {
+    LutRinging result;
+    if (lut.dimension != 3) return result;
+    const std::vector<NamedColor> colors = chart_colors();
+    Rays rays = make_rays(colors, lut, request);
+    std::array<std::vector<double>, 3> shown;
+    for (std::size_t i = 0; i < rays.input.size(); i += 3) {
+        const Vector3 out =
+            interpolate(lut, {rays.input[i], rays.input[i + 1], rays.input[i + 2]}, trilinear);
+        for (std::size_t c = 0; c < 3; ++c)
+            shown[c].push_back(out[c]);
+    }
+    const Code code(request.view);
+    std::vector<double> errors(shown[0].size(), 0);
+    for (std::size_t c = 0; c < 3; ++c) {
+        code.encode(shown[c]);
+        code.encode(rays.wanted[c]);
+        for (std::size_t i = 0; i < errors.size(); ++i)
+            errors[i] = std::max(errors[i], std::fabs(shown[c][i] - rays.wanted[c][i]));
+        for (std::size_t ray = 0; ray < rays.count; ++ray) {
+            constexpr std::array<const char*, 3> kChannels = {"red", "green", "blue"};
+            const Fall fall =
+                largest_fall(&shown[c][ray * kPlaces], &rays.wanted[c][ray * kPlaces], result.fall);
+            if (fall.size <= result.fall) continue;
+            result.fall = fall.size;
+            result.color = colors[ray].name;
+            result.channel = kChannels[c];
+            result.stops = stops_of(fall.to);
+        }
+    }
+    result.p999 = summarise(errors).p999;
+    return result;
+}
+
+void fit_rays(Lut& lut, const LutRequest& request, bool trilinear) {
+    // In most rounds only rays that broke a bound in the one before are looked at.
+    constexpr int kRounds = 128;
+    constexpr int kAllEvery = 8;
+    constexpr int kFallsEach = 4;
+    // Where both bounds cannot be met, the falls are what shows as rings: they have the last
+    // rounds.
+    constexpr int kFallsOnly = 40;
+    // As for kFittedRayError.
+    constexpr double kTolerance = 0.6 * kLargestFall;
+    const auto edge = static_cast<std::size_t>(lut.size);
+    Rays rays = make_rays(dense_colors(), lut, request);
+    const Code code(request.view);
+    std::vector<NodeWeights> weights;
+    weights.reserve(rays.input.size() / 3);
+    for (std::size_t i = 0; i < rays.input.size(); i += 3) {
+        weights.push_back(
+            node_weights({rays.input[i], rays.input[i + 1], rays.input[i + 2]}, edge, trilinear));
+    }
+    const auto [lowest, highest] = std::minmax_element(lut.values.begin(), lut.values.end());
+    const float lo = *lowest;
+    const float hi = *highest;
+    in_parallel(3, 0, [&](std::size_t c) {
+        code.encode(rays.wanted[c]);
+        const auto value_at = [&](const NodeWeights& at) {
+            double value = 0;
+            for (std::size_t k = 0; k < at.count; ++k)
+                value += at.weight[k] * static_cast<double>(lut.values[3 * at.node[k] + c]);
+            return value;
+        };
+        // Kaczmarz's method: the nearest nodes with which a sum of theirs is larger by so much.
+        const auto raise = [&](const Slopes& slopes, double by) {
+            double square = 0;
+            for (std::size_t k = 0; k < slopes.count; ++k)
+                square += slopes.slope[k] * slopes.slope[k];
+            if (square < 1e-9) return;
+            for (std::size_t k = 0; k < slopes.count; ++k) {
+                float& v = lut.values[3 * slopes.node[k] + c];
+                v = std::clamp(v + static_cast<float>(by / square * slopes.slope[k]), lo, hi);
+            }
+        };
+        std::vector<bool> is_active(rays.count, true);
+        // What each place showed last: encoding takes longest, and few places change in a step.
+        std::vector<double> values(weights.size());
+        std::vector<double> codes(weights.size());
+        for (std::size_t i = 0; i < weights.size(); ++i) {
+            values[i] = value_at(weights[i]);
+            codes[i] = code.of(values[i]);
+        }
+        const auto look = [&](std::size_t i) {
+            const double value = value_at(weights[i]);
+            if (value == values[i]) return;
+            values[i] = value;
+            codes[i] = code.of(value);
+        };
+        for (int round = 0; round < kRounds; ++round) {
+            const bool takes_all = round % kAllEvery == 0;
+            const bool has_band = round < kRounds - kFallsOnly;
+            bool is_done = true;
+            for (std::size_t ray = 0; ray < rays.count; ++ray) {
+                if (!takes_all && !is_active[ray]) continue;
+                const NodeWeights* at = &weights[ray * kPlaces];
+                const double* wanted = &rays.wanted[c][ray * kPlaces];
+                double* shown = &codes[ray * kPlaces];
+                is_active[ray] = false;
+                for (std::size_t i = 0; i < kPlaces; ++i) {
+                    look(ray * kPlaces + i);
+                    const double limit = std::clamp(shown[i], wanted[i] - kFittedRayError,
+                                                    wanted[i] + kFittedRayError);
+                    if (!has_band || std::fabs(shown[i] - limit) < 1e-9) continue;
+                    is_active[ray] = true;
+                    Slopes slopes;
+                    slopes.add(at[i], 1);
+                    raise(slopes, code.value(limit) - values[ray * kPlaces + i]);
+                    look(ray * kPlaces + i);
+                }
+                for (int k = 0; k < kFallsEach; ++k) {
+                    const Fall fall = largest_fall(shown, wanted, kTolerance);
+                    if (fall.size <= 0) break;
+                    is_active[ray] = true;
+                    const double least = shown[fall.from] - fall.allowed - kTolerance;
+                    Slopes slopes;
+                    slopes.add(at[fall.from], -1);
+                    slopes.add(at[fall.to], 1);
+                    raise(slopes, code.value(least) - value_at(at[fall.to]));
+                    for (std::size_t i = 0; i < kPlaces; ++i)
+                        look(ray * kPlaces + i);
+                }
+                is_done = is_done && !is_active[ray];
+            }
+            if (is_done && takes_all) break;
+        }
+    });
+}
+
+bool rings(const LutRinging& ringing) { return ringing.fall > kLargestFall; }
+
+bool follows_operator(const LutRinging& ringing) {
+    return !rings(ringing) && ringing.p999 <= kLargestRayError;
+}
+
+std::string to_string(const LutRinging& ringing) {
+    if (ringing.fall <= 0) return "no channel falls where the operator's does not";
+    return fmt::format("{} falls by {} up to {:+.1f} stops of {}", ringing.channel,
+                       rounded_up(ringing.fall), ringing.stops, ringing.color);
+}
+
+TONEWRIGHT_NAMESPACE_END

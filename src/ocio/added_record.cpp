@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ocio/added_record.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "base/input_file.h"
+#include "base/strings.h"
+#include "tonewright/error.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Enough of what stands before a short piece to find it again.
+constexpr std::size_t kContext = 80;
+
+std::string file_of(const std::string& config) {
+    return (fs::absolute(config).parent_path() / AddedRecord::path_of(config)).string();
+}
+
+std::vector<std::string> texts(const YAML::Node& list) {
+    std::vector<std::string> found;
+    for (const YAML::Node& item : list)
+        found.push_back(item.as<std::string>());
+    return found;
+}
+
+/// Where the piece begins, if it is there exactly once.
+std::size_t find_once(const std::string& text, const std::string& before,
+                      const std::string& piece) {
+    const std::string wanted = before + piece;
+    const std::size_t at = text.find(wanted);
+    if (at == std::string::npos || text.find(wanted, at + 1) != std::string::npos)
+        return std::string::npos;
+    return at + before.size();
+}
+
+}  // namespace
+
+std::string AddedRecord::path_of(const std::string& config) {
+    return "tonewright/" + fs::path(config).filename().string() + ".yaml";
+}
+
+AddedRecord AddedRecord::read(const std::string& config) {
+    const std::string path = file_of(config);
+    require_regular_file(path);
+    std::ifstream file(path, std::ios::binary);
+    if (!file) {
+        throw FileError("config: " + config + ": has no record of an earlier --into; " + path +
+                        " is missing");
+    }
+    std::stringstream text;
+    text << file.rdbuf();
+    AddedRecord record;
+    try {
+        const YAML::Node root = YAML::Load(text.str());
+        for (const YAML::Node& piece : root["added"])
+            record.pieces.push_back(
+                {piece["before"].as<std::string>(), piece["text"].as<std::string>()});
+        record.files = texts(root["files"]);
+        const YAML::Node options = root["options"];
+        record.options.views = texts(options["views"]);
+        record.options.displays = texts(options["displays"]);
+        record.options.looks = texts(options["looks"]);
+        for (const YAML::Node& custom : options["operators"])
+            record.options.custom.push_back(
+                {custom["name"].as<std::string>(), custom["operator"].as<std::string>()});
+        for (const YAML::Node& stops : options["exposures"])
+            record.options.exposure_stops.push_back(stops.as<double>());
+    } catch (const YAML::Exception& e) {
+        throw FileError("read: " + path + ": " + one_line(e.what()));
+    }
+    return record;
+}
+
+std::string AddedRecord::text() const {
+    YAML::Emitter out;
+    const auto list = [&](const char* key, const std::vector<std::string>& items) {
+        out << YAML::Key << key << YAML::Value << YAML::BeginSeq;
+        for (const std::string& item : items)
+            out << YAML::DoubleQuoted << item;
+        out << YAML::EndSeq;
+    };
+    out << YAML::BeginMap << YAML::Key << "options" << YAML::Value << YAML::BeginMap;
+    list("views", options.views);
+    list("displays", options.displays);
+    list("looks", options.looks);
+    out << YAML::Key << "operators" << YAML::Value << YAML::BeginSeq;
+    for (const auto& custom : options.custom) {
+        out << YAML::BeginMap << YAML::Key << "name" << YAML::Value << YAML::DoubleQuoted
+            << custom.name << YAML::Key << "operator" << YAML::Value << YAML::DoubleQuoted
+            << custom.op << YAML::EndMap;
+    }
+    out << YAML::EndSeq << YAML::Key << "exposures" << YAML::Value << YAML::BeginSeq;
+    for (const double stops : options.exposure_stops)
+        out << fmt::format("{}", stops);
+    out << YAML::EndSeq << YAML::EndMap;
+    list("files", files);
+    out << YAML::Key << "added" << YAML::Value << YAML::BeginSeq;
+    for (const Piece& piece : pieces) {
+        out << YAML::BeginMap << YAML::Key << "before" << YAML::Value << YAML::DoubleQuoted
+            << piece.before << YAML::Key << "text" << YAML::Value << YAML::DoubleQuoted
+            << piece.text << YAML::EndMap;
+    }
+    out << YAML::EndSeq << YAML::EndMap;
+    return "# Written by `tonewright config --into`; --update and --remove read it.\n" +
+           std::string(out.c_str()) + "\n";
+}
+
+void AddedRecord::add(const std::vector<YamlText::Insertion>& insertions,
+                      const std::string& result) {
+    std::size_t inserted = 0;
+    for (const YamlText::Insertion& insertion : insertions) {
+        const std::size_t at = insertion.at + inserted;
+        const std::size_t length = std::min(at, kContext);
+        pieces.push_back({result.substr(at - length, length), insertion.text});
+        inserted += insertion.text.size();
+    }
+}
+
+std::string AddedRecord::without(std::string text, const std::string& config) const {
+    // What was put in last is what the context of the others may have before it.
+    for (auto piece = pieces.rbegin(); piece != pieces.rend(); ++piece) {
+        std::size_t at = find_once(text, piece->before, piece->text);
+        if (at == std::string::npos && piece->text.size() >= kContext)
+            at = find_once(text, "", piece->text);
+        if (at == std::string::npos) {
+            throw FileError(
+                fmt::format("config: {}: what --into added was changed since: {}; expected it as "
+                            "{} has it",
+                            config, printable(trimmed(piece->text)), path_of(config)));
+        }
+        text.erase(at, piece->text.size());
+    }
+    return text;
+}
+
+TONEWRIGHT_NAMESPACE_END

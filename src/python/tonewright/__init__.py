@@ -1,0 +1,236 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Tone mapping operators: pictures, colors, LUTs and OpenColorIO configs.
+
+    import tonewright
+    tonewright.tonemap_file("shot.exr", "shot.png", "agx_blender", exposure=1)
+
+Functions that take an operator share these options:
+
+    settings         dict of the operator's parameters, see operators()
+    exposure         exposure before the operator, in stops
+    input            "auto" (what the picture says), a color space ("acescg") or an encoding ("sRGB", "Gamma2.2")
+    display          "srgb", "rec1886", "rec2100_pq", ... (see displays()), "linear" or "native"
+    look             look of the operator
+    reference_white  luminance of scene-linear 1.0 on HDR displays, in cd/m2
+
+A wrong type raises TypeError, a wrong value ValueError, a file OSError or one of its subclasses. Other threads run while
+a function works.
+"""
+
+from __future__ import annotations
+
+import operator as _operator
+import os as _os
+from collections.abc import Callable, Iterable, Mapping
+from typing import TYPE_CHECKING, Any, Union
+
+import numpy as _np
+
+from . import _tonewright
+from ._tonewright import __version__
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+    import OpenImageIO
+
+    Path = Union[str, bytes, _os.PathLike]
+    Picture = Union[npt.NDArray[Any], "OpenImageIO.ImageBuf"]
+
+__all__ = ["__version__", "applications", "bake", "displays", "evaluate", "make_config", "meter", "operators", "tonemap",
+           "tonemap_file", "verify"]
+
+
+def _text(name: str, value: Any) -> str:
+    if not isinstance(value, str):
+        raise TypeError(f"{name} must be str, not {type(value).__name__}")
+    if "\0" in value:
+        raise ValueError(f"{name}: embedded null character")
+    return value
+
+
+def _number(name: str, value: Any) -> float:
+    if isinstance(value, (str, bytes)):
+        raise TypeError(f"{name} must be a number, not {type(value).__name__}")
+    return float(value)
+
+
+def _path(name: str, value: Any) -> str:
+    return _text(name, _os.fsdecode(value))
+
+
+def _texts(name: str, values: Any) -> list[str]:
+    if isinstance(values, str):
+        raise TypeError(f"{name} must be a sequence of str, not str")
+    return [_text(name, value) for value in values]
+
+
+def _choice(name: str, value: Any) -> str:
+    """A text, or a bool for yes or no."""
+    return ("yes" if value else "no") if isinstance(value, bool) else _text(name, value)
+
+
+def _options(settings: Mapping[str, Any] | None, exposure: float, input: str, display: str, look: str,
+             reference_white: float) -> dict[str, Any]:
+    if settings is not None and not isinstance(settings, Mapping):
+        raise TypeError(f"settings must be a mapping, not {type(settings).__name__}")
+    return {"settings": {_text("settings", name): value for name, value in (settings or {}).items()},
+            "exposure": _number("exposure", exposure), "input": _text("input", input), "display": _text("display", display),
+            "look": _text("look", look), "reference_white": _number("reference_white", reference_white)}
+
+
+def tonemap(image: Picture, op: str, *, settings: Mapping[str, Any] | None = None, exposure: float = 0, input: str = "auto",
+            display: str = "srgb", look: str = "", reference_white: float = 100, unpremult: str | bool = "auto",
+            statistics: str = "picture", axis: int | None = None, roi: OpenImageIO.ROI | None = None, nthreads: int = 0,
+            progress: Callable[[float], object] | None = None) -> Picture:
+    """Tone map a picture and return the result as float32 values of the same kind.
+
+    image: an OpenImageIO.ImageBuf, or an array of shape (height, width) or (height, width, channels) of float16, float32,
+    float64, uint8, uint16 or uint32; integers stand for [0, 1]. The first three channels are color (or the first of one or
+    two channels); the fourth (or second) is alpha.
+    op: operator id, optionally with :preset.
+    unpremult: "auto", "yes" or "no": divide color by alpha first.
+    statistics: "picture" (measure it for operators that need it) or "defaults".
+    axis: the axis of the channels of an array, such as 0 for (channels, height, width).
+    roi: part of an ImageBuf.
+    nthreads: number of threads; 0 uses all cores.
+    progress: called with the finished part, from 0 to 1; a true result cancels.
+
+    Example: tonewright.tonemap(OpenImageIO.ImageBuf("shot.exr"), "agx_blender", exposure=1)
+    """
+    options = _options(settings, exposure, input, display, look, reference_white)
+    options.update(unpremult=_choice("unpremult", unpremult), statistics=_text("statistics", statistics))
+    if axis is not None:
+        if not isinstance(image, _np.ndarray) or image.ndim != 3:
+            raise ValueError("axis is given; expected an array of three dimensions")
+        image = _np.moveaxis(image, axis, -1)
+    result = _tonewright.tonemap(image, _text("op", op), roi=roi, nthreads=_operator.index(nthreads), progress=progress,
+                                 **options)
+    return result if axis is None else _np.moveaxis(result, -1, axis)
+
+
+def tonemap_file(source: Path, target: Path, op: str, *, settings: Mapping[str, Any] | None = None, exposure: float = 0,
+                 input: str = "auto", display: str = "srgb", look: str = "", reference_white: float = 100,
+                 unpremult: str | bool = "auto", statistics: str = "picture", dtype: str | None = None, subimage: int = 0,
+                 nthreads: int = 0) -> None:
+    """Tone map a picture file into another file, as `tonewright apply` does.
+
+    target: replaced only when the new file is complete; its extension sets the format.
+    dtype: "uint8", "uint16", "half" or "float" (default: what suits the format).
+    subimage: subimage of a multi-part file, counted from 0.
+    Other options: as tonemap().
+
+    Example: tonewright.tonemap_file("shot.exr", "shot.png", "hable", settings={"white": 8})
+    """
+    options = _options(settings, exposure, input, display, look, reference_white)
+    options.update(unpremult=_choice("unpremult", unpremult), statistics=_text("statistics", statistics))
+    _tonewright.tonemap_file(_path("source", source), _path("target", target), _text("op", op),
+                             type="" if dtype is None else _text("dtype", dtype), nthreads=_operator.index(nthreads),
+                             subimage=_operator.index(subimage), **options)
+
+
+def evaluate(op: str, colors: npt.ArrayLike, *, settings: Mapping[str, Any] | None = None, exposure: float = 0,
+             input: str = "auto", display: str = "srgb", look: str = "",
+             reference_white: float = 100) -> npt.NDArray[Any]:
+    """Return the code values of scene-linear colors.
+
+    colors: shape (..., 3). float32 goes through the SIMD engine and stays float32; other numbers go through the
+    double-precision reference and become float64. Parameters that operators measure from a picture keep their defaults.
+
+    Example: tonewright.evaluate("hable", [0.18, 0.18, 0.18])
+    """
+    return _tonewright.evaluate(_text("op", op), colors,
+                                **_options(settings, exposure, input, display, look, reference_white))
+
+
+def meter(image: Path | Picture, *, method: str = "log-average", key: float | None = None, compensation: float = 0,
+          delta: float = 1e-3, percentiles: tuple[float, float] = (0, 100), input: str = "auto",
+          unpremult: str | bool = "auto", subimage: int = 0, nthreads: int = 0) -> dict[str, Any]:
+    """Measure the luminance of a picture and suggest an exposure, in stops, as `tonewright meter` does.
+
+    image: a file, an OpenImageIO.ImageBuf or an array (see tonemap()).
+    method: "log-average", "histogram", "mean" or "max".
+    key: what the metered luminance becomes (default 0.18; 1 with "max").
+    compensation: stops on top of the metered exposure.
+    delta: added to each luminance inside the logarithm.
+    percentiles: between which "histogram" averages.
+
+    Example: tonewright.meter("shot.exr")["exposure"]
+    """
+    low, high = percentiles
+    if isinstance(image, (str, bytes, _os.PathLike)):
+        image = _path("image", image)
+    return _tonewright.meter(image, _text("method", method), None if key is None else _number("key", key),
+                             _number("compensation", compensation), _number("delta", delta), _number("percentiles", low),
+                             _number("percentiles", high), _text("input", input), _choice("unpremult", unpremult),
+                             _operator.index(subimage), _operator.index(nthreads))
+
+
+def operators() -> list[dict[str, Any]]:
+    """Return all operators: dicts with id, title, view, character, source, parameters, presets and looks."""
+    return _tonewright.operators()
+
+
+def displays() -> list[dict[str, Any]]:
+    """Return all displays: dicts with id, title, aliases, source, hdr and peak (cd/m2)."""
+    return _tonewright.displays()
+
+
+def applications() -> list[dict[str, Any]]:
+    """Return the applications of bake(host=...): dicts with id, title, format, size, input_encoding, display and steps."""
+    return _tonewright.applications()
+
+
+def bake(op: str, file: Path, *, host: str = "", format: str | None = None, input_encoding: str | None = None,
+         size: int | None = None, depth: int | None = None, settings: Mapping[str, Any] | None = None, exposure: float = 0,
+         input: str = "auto", display: str | None = None, look: str = "", reference_white: float = 100) -> dict[str, Any]:
+    """Write an operator as a LUT file and return its size and measured error.
+
+    file: replaced only when the new file is complete.
+    host: id of the application that reads it, see applications(); sets format, size, input and display.
+    format, input_encoding, size, depth: as the options of `tonewright bake`.
+
+    Example: tonewright.bake("agx_blender", "agx.cube", host="resolve")
+    """
+    options = _options(settings, exposure, input, "srgb" if display is None else display, look, reference_white)
+    if display is None:
+        del options["display"]
+    return _tonewright.bake(_text("op", op), _path("file", file), host=_text("host", host),
+                            format=None if format is None else _text("format", format),
+                            input_encoding=None if input_encoding is None else _text("input_encoding", input_encoding),
+                            size=None if size is None else _operator.index(size),
+                            depth=None if depth is None else _operator.index(depth), **options)
+
+
+def make_config(folder: Path, *, views: Iterable[str] = (), displays: Iterable[str] = (), looks: Iterable[str] = (),
+                working: str = "lin_rec709", profiles: Iterable[str] = ("2.1", "2.0", "2.5"),
+                custom: Mapping[str, str] | None = None, exposure_views: Iterable[float] = ()) -> None:
+    """Write an OpenColorIO config of the operators into a folder. It takes up to two minutes.
+
+    views: names of views or operators, in order; empty: a dozen; ["all"]: all.
+    displays, looks: empty: all.
+    working: color space in which applications compute.
+    profiles: versions of OpenColorIO; the first becomes config.ocio.
+    custom: names of views -> operators with their settings, such as {"Studio": "reinhard_extended:white=6"}.
+    exposure_views: stops; every view is added again with each of them.
+
+    Example: tonewright.make_config("ocio_config", views=["AgX", "hable"], profiles=["2.1"])
+    """
+    _tonewright.make_config(_path("folder", folder), _texts("profiles", profiles), _texts("views", views),
+                            _texts("displays", displays), _texts("looks", looks), _text("working", working),
+                            [(_text("custom", name), _text("custom", op)) for name, op in (custom or {}).items()],
+                            [_number("exposure_views", stops) for stops in exposure_views])
+
+
+def verify(operators: Iterable[str] = (), *, displays: Iterable[str] = (), input: str = "lin_rec709",
+           config: Path | None = None, quick: bool = False, gpu: bool = True) -> list[dict[str, Any]]:
+    """Compare every backend with the double-precision reference and return the errors, one dict for each comparison.
+
+    operators: empty: all, or those of the config.
+    displays: empty: sRGB, or those of the config.
+    config: a config to check, or its folder (default: a new config).
+    quick: use smaller sample sets.
+
+    Example: all(row["ok"] for row in tonewright.verify(["hable"], quick=True))
+    """
+    return _tonewright.verify(_texts("operators", operators), _texts("displays", displays), _text("input", input),
+                              "" if config is None else _path("config", config), bool(quick), bool(gpu))

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "lut/stated_input.h"
+#include "tonewright/lut.h"
+#include "tonewright/registry.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace {
+
+std::string file_of(const std::string& encoding, const std::string& space, LutFormat format) {
+    LutRequest request;
+    request.encoding = parse_input_encoding(encoding);
+    request.view = make_view(resolve_operator("hable"), space, 0, "srgb");
+    request.format = format;
+    request.size = 17;
+    request.dimension = LutDimension::three;
+    return write_lut(sample_lut(request), request, {});
+}
+
+TEST(StatedInput, IsWhatTheFileWasMadeFor) {
+    for (const char* encoding : {"acescct", "logc3", "logc4", "slog3", "davinci", "unity_logc",
+                                 "unreal_log", "srgb", "pq:100", "pq:203", "log2:-10:6.5"}) {
+        const auto stated = read_stated_input(file_of(encoding, "lin_ap1", LutFormat::cube));
+        ASSERT_TRUE(stated) << encoding;
+        EXPECT_EQ(stated->encoding, encoding);
+        EXPECT_EQ(stated->space, "lin_ap1");
+    }
+    for (const InputSpace& space : all_input_spaces()) {
+        const auto stated = read_stated_input(file_of("davinci", space.id, LutFormat::cube));
+        ASSERT_TRUE(stated) << space.id;
+        EXPECT_EQ(stated->space, space.id);
+    }
+}
+
+TEST(StatedInput, IsInAllFormatsWithText) {
+    for (const LutFormat format : {LutFormat::cube, LutFormat::clf, LutFormat::ctf, LutFormat::csp,
+                                   LutFormat::resolve_cube}) {
+        const auto stated = read_stated_input(file_of("acescct", "lin_ap1", format));
+        ASSERT_TRUE(stated) << name_of(format);
+        EXPECT_EQ(stated->encoding, has_shaper(format) ? "linear" : "acescct");
+        EXPECT_EQ(stated->space, "lin_ap1");
+    }
+}
+
+TEST(StatedInput, IsInTheDescriptorsOfAClf) {
+    const std::string clf = file_of("acescct", "lin_ap1", LutFormat::clf);
+    EXPECT_NE(clf.find("<InputDescriptor>ACEScct (Academy S-2016-001: AP1 primaries, log with a "
+                       "linear toe), of scene-linear ACEScg</InputDescriptor>"),
+              std::string::npos);
+    EXPECT_NE(clf.find("<OutputDescriptor>sRGB code values"), std::string::npos);
+}
+
+TEST(StatedInput, IsNotWhatOtherProgramsWrite) {
+    EXPECT_FALSE(
+        read_stated_input("LUT_3D_SIZE 2\n# Input: DaVinci Intermediate, of scene-linear "
+                          "ACEScg\n"));
+    EXPECT_FALSE(
+        read_stated_input("# Tonewright: x\n# Input: somebody's log, of scene-linear ACEScg"));
+    EXPECT_FALSE(
+        read_stated_input("# Tonewright: x\n# Input: PQ (SMPTE ST 2084), scene-linear 1 at x "
+                          "cd/m2, of scene-linear ACEScg"));
+    EXPECT_FALSE(read_stated_input(""));
+}
+
+}  // namespace
+TONEWRIGHT_NAMESPACE_END

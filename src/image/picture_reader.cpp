@@ -91,6 +91,10 @@ std::string why_not_open(const std::string& path, const std::string& reported) {
     return first_line(reported);
 }
 
+/// OpenImageIO 2.4 keeps errors by the address of a reader and by thread. Those of a reader that
+/// another thread destroyed are still there for the next one at its address.
+void forget_errors(const OIIO::ImageInput& in) { (void)in.geterror(); }
+
 }  // namespace
 
 std::unique_ptr<OIIO::ImageInput> open_picture(const std::string& path,
@@ -103,6 +107,7 @@ std::unique_ptr<OIIO::ImageInput> open_picture(const std::string& path,
         // OpenImageIO would take what follows the ? for arguments of a reader.
         const std::string extension = extension_of(path);
         in = OIIO::ImageInput::create(extension.empty() ? extension : extension.substr(1));
+        if (in) forget_errors(*in);
         OIIO::ImageSpec spec;
         const bool is_open = in && in->open(path, spec, config ? *config : OIIO::ImageSpec());
         if (!is_open && in) cannot_read(path, why_not_open(path, in->geterror()));
@@ -154,6 +159,7 @@ void PictureReader::check(bool was_read) const {
 
 void PictureReader::read_rows(int ybegin, int yend, std::byte* to) {
     const OIIO::ImageSpec& s = spec_;
+    forget_errors(*in_);
     // This reader delivers less than it says, without a word.
     if (std::string_view(in_->format_name()) == "dpx")
         std::fill_n(to, s.scanline_bytes() * static_cast<std::size_t>(yend - ybegin), std::byte{});
@@ -169,6 +175,7 @@ ImageBuf PictureReader::read_all() {
     if (!image.localpixels()) {
         cannot_read(path_, fmt::format("no memory for {} x {} pixels", spec_.width, spec_.height));
     }
+    forget_errors(*in_);
     check(in_->read_image(subimage_, 0, 0, spec_.nchannels, image.spec().format,
                           image.localpixels()));
     return image;

@@ -54,14 +54,9 @@ double interpolate_1d(const Lut& lut, double x, std::size_t channel) {
 /// What the table before a cube makes of light: straight lines between equal steps.
 void run_shaper(const InputEncoding& encoding, std::span<const float> light,
                 std::vector<double>& code) {
-    std::vector<float> steps;
-    steps.reserve(kShaperSteps);
     const double lo = encoding.scene_lo;
     const double span = encoding.scene_hi - lo;
-    for (int i = 0; i < kShaperSteps; ++i)
-        steps.push_back(
-            static_cast<float>(evaluate(encoding.encode, lo + span * i / (kShaperSteps - 1.0))));
-    const Lut shaper = {1, kShaperSteps, 1, false, std::move(steps)};
+    const Lut shaper = {1, kShaperSteps, 1, false, shaper_table(encoding)};
     for (std::size_t i = 0; i < light.size(); ++i)
         code[i] = interpolate_1d(shaper, (static_cast<double>(light[i]) - lo) / span, 0);
 }

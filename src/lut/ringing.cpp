@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/format_number.h"
@@ -128,12 +129,18 @@ Fall largest_fall(const double* shown, const double* wanted, double ignored) {
         highest_shown = std::max(highest_shown, shown[i]);
     }
     if (!falls) return {};
-    for (std::size_t i = 0; i < kPlaces; ++i) {
+    std::array<double, kPlaces> lowest_from{};
+    lowest_from[kPlaces - 1] = shown[kPlaces - 1];
+    for (std::size_t i = kPlaces - 1; i-- > 0;)
+        lowest_from[i] = std::min(shown[i], lowest_from[i + 1]);
+    for (std::size_t i = 0; i + 1 < kPlaces; ++i) {
         // A fall that begins at a lower place than the one before is part of that one's.
-        if (i + 1 < kPlaces && shown[i + 1] >= shown[i]) continue;
+        if (shown[i + 1] >= shown[i]) continue;
         double highest = wanted[i];
         double allowed = 0;
         for (std::size_t j = i + 1; j < kPlaces; ++j) {
+            // No lower place follows.
+            if (shown[i] - lowest_from[j] - allowed <= worst.size) break;
             highest = std::max(highest, wanted[j]);
             allowed = std::max(allowed, highest - wanted[j]);
             const double fall = shown[i] - shown[j] - allowed;

@@ -230,10 +230,9 @@ std::string write_resolve_cube(const Lut& lut, const LutRequest& r, const Lines&
         "LUT_1D_SIZE {}\nLUT_1D_INPUT_RANGE {:.9f} {:.9f}\nLUT_3D_SIZE {}\nLUT_3D_INPUT_RANGE 0 "
         "1\n",
         kShaperSteps, lo, hi, lut.size);
-    for (int i = 0; i < kShaperSteps; ++i) {
-        const double light = lo + (hi - lo) * i / (kShaperSteps - 1.0);
+    for (const float code : shaper_table(r.encoding)) {
         std::string number;
-        append_number(number, static_cast<float>(evaluate(r.encoding.encode, light)));
+        append_number(number, code);
         text += fmt::format("{0} {0} {0}\n", number);
     }
     return text + triplets(lut);

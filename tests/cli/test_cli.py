@@ -26,7 +26,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
 from pictures import (Report, acescct_decode, evaluate, files_of, log2_decode, need_program, read_planes,  # noqa: E402
-                      read_rgb, run, share_of_refusals, stack, unstack, views, write_exr)
+                      read_rgb, run, share_of, share_of_refusals, stack, unstack, views, write_exr)
 
 try:
     import PyOpenColorIO as ocio
@@ -1084,18 +1084,11 @@ def main():
                 arguments = (own, *arguments)
             jobs.append((check, (report, command, *arguments)))
 
-        add(check_apply)
-        add(check_statistics)
-        add(check_frames, picture)
-        add(check_bake)
-        add(check_verify, config, picture)
-        add(check_archive)
-        add(check_chart, picture)
-        add(check_sheet, picture)
-        add(check_full_disks)
-        add(check_apply_many, picture)
-        add(check_limits, picture)
-        add(check_module)
+        for check, *arguments in share_of([
+                (check_apply,), (check_statistics,), (check_frames, picture), (check_bake,), (check_verify, config, picture),
+                (check_archive,), (check_chart, picture), (check_sheet, picture), (check_full_disks,),
+                (check_apply_many, picture), (check_limits, picture), (check_module,)], 2):
+            add(check, *arguments)
         for check in (check_start, check_help, check_list, check_eval_text, check_engines, check_names, check_coprocess):
             add(check, in_folder=False)
         errors = [(USAGE, *case) for case in usage_errors(bad, picture)]

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import PROJECT, Report, read_rgb, run, share_of_refusals, unstack, views, write_exr  # noqa: E402
+from pictures import PROJECT, Report, read_rgb, run, share_of, share_of_refusals, unstack, views, write_exr  # noqa: E402
 
 USAGE, FILE = 2, 3
 WIDTH, HEIGHT = 48, 32
@@ -275,14 +275,9 @@ def main():
     report = Report()
     with tempfile.TemporaryDirectory() as scratch:
         bench = Bench(report, command, Path(scratch))
-        check_sheet(bench)
-        check_scaled(bench)
-        check_default(bench)
-        check_pictures(bench)
-        check_false_color(bench)
-        check_difference(bench)
-        check_split(bench)
-        check_other_pictures(bench)
+        for check in share_of([check_sheet, check_scaled, check_default, check_pictures, check_false_color,
+                               check_difference, check_split, check_other_pictures], 2):
+            check(bench)
         check_errors(bench)
     return report.finish()
 

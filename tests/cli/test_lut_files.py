@@ -798,12 +798,9 @@ def main():
     with tempfile.TemporaryDirectory(prefix="tonewright-") as name:
         folder = Path(name)
         check_eval(report, command, folder)
-        check_encoding(report, command, folder)
         check_apply(report, command, folder)
-        check_stated(report, command, folder)
-        check_wild(report, command, folder)
-        check_xml(report, command, folder)
-        check_early_end(report, command, folder)
+        for check in share_of([check_encoding, check_stated, check_wild, check_xml, check_early_end], 2):
+            check(report, command, folder)
         check_usage(report, command, folder)
         check_paths(report, command, folder)
         check_corpus(report, command, folder)

@@ -419,10 +419,8 @@ def main():
     report = Report()
     with tempfile.TemporaryDirectory(prefix="tonewright-") as folder:
         check = Check(report, command, folder)
-        check_files(check, Path(folder))
-        check_color(check, Path(folder))
-        check_parts(check, Path(folder))
-        check_writing(check, Path(folder))
+        for part in share_of([check_files, check_color, check_parts, check_writing], 2):
+            part(check, Path(folder))
         check_hostile(check)
         check_real(check)
     return report.finish()

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from pictures import Report, need_program, run, shared_picture, skip, write_exr
+from pictures import Report, need_program, run, share_of, shared_picture, skip, write_exr
 
 try:
     import OpenImageIO as oiio
@@ -267,8 +267,8 @@ def main():
     with tempfile.TemporaryDirectory(prefix="tonewright-") as temporary:
         scratch = Path(temporary)
         made = make_pictures(scratch)
-        check_bits(report, command, scratch, made)
-        check_structure(report, command, scratch, made)
+        for check in share_of([check_bits, check_structure], 2):
+            check(report, command, scratch, made)
         check_errors(report, scratch, made)
         check_threads(report, command, scratch, made)
     return report.finish()

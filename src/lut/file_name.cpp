@@ -58,8 +58,10 @@ LutFormat lut_format_of_file(const std::string& path, std::optional<LutFormat> f
     if (!format && application) format = application->format;
     if (format) {
         const std::vector<std::string>& own = extensions_of(*format);
-        // A name of no LUT format contradicts nothing: a device, a name without an extension.
-        if (!has(known, extension) || has(own, extension)) return *format;
+        // A name of no LUT format contradicts no --format: a device, a name without an extension.
+        // Applications look at the extension.
+        const bool is_known = application ? !extension.empty() : has(known, extension);
+        if (!is_known || has(own, extension)) return *format;
         const std::string reason =
             application && *format == application->format
                 ? fmt::format("{} reads {}", application->title, name_of(*format))

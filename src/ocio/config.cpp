@@ -80,7 +80,7 @@ std::string readme(const ConfigModel& model, const std::vector<std::string>& pro
         "and the view\n"
         "again; by default is what applications and the GPU do. Every space's description has its "
         "own figures.\n"
-        "False Color has no way back: it shows many colors as one, and OpenColorIO refuses it.\n",
+        "False Color has no inverse: it shows many colors as one, and OpenColorIO refuses it.\n",
         OCIO::GetVersion());
     return text;
 }

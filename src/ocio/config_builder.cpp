@@ -225,7 +225,7 @@ std::optional<LoweredOps> inverse_space(const ConfigModel::View& view, const Dis
 }
 
 /// @param back  display reference -> scene reference
-WayBackError measure_round_trip(const View& view, const LoweredOps& back, const RoundTrip& trip) {
+RoundTripError measure_round_trip(const View& view, const LoweredOps& back, const RoundTrip& trip) {
     const Display& display = find_display(view.display);
     LoweredOps ops =
         lower_to_ocio(joined(display.decode, {MatrixStage{rgb_to_xyz_d65(display.primaries)}})).ops;
@@ -259,10 +259,10 @@ std::string describe(const ConfigModel::View& view, const DisplayedView& shown) 
 }
 
 /// For descriptions: what comes back, and how near.
-std::string describe_way_back(const WayBackError& back, bool is_diagnostic) {
-    if (is_diagnostic) return " There is no way back: many colors of a scene are shown as one.";
+std::string describe_inverse(const RoundTripError& back, bool is_diagnostic) {
+    if (is_diagnostic) return " There is no inverse: many colors of a scene are shown as one.";
     if (!back.is_measured) return "";
-    if (!back.exists) return " There is no way back.";
+    if (!back.exists) return " There is no inverse.";
     const auto figures = [](const ErrorStats& stats) {
         return fmt::format("max {}, 99.9 % {}, mean {}", rounded_up(stats.max),
                            rounded_up(stats.p999), rounded_up(stats.mean));
@@ -523,7 +523,7 @@ void ConfigBuilder::add_output_spaces() {
     for (const auto& view : model_.views) {
         for (const DisplayedView& shown : displayed_[view.name])
             config_->addColorSpace(
-                make_output_space(shown, shown.display->title, ways_back_.at(shown.transform)));
+                make_output_space(shown, shown.display->title, inverses_.at(shown.transform)));
     }
 }
 
@@ -541,7 +541,7 @@ void ConfigBuilder::add_views_to(const Display& display, const std::string& host
             if (!active.empty() && listed.find(", " + shown.name + ",") == std::string::npos)
                 active += ", " + shown.name;
             const OCIO::ColorSpaceRcPtr space =
-                make_output_space(shown, host_display, ways_back_.at(shown.transform));
+                make_output_space(shown, host_display, inverses_.at(shown.transform));
             OCIO::GroupTransformRcPtr whole = OCIO::GroupTransform::Create();
             append_conversion(whole, *scene_, OCIO::COLORSPACE_DIR_FROM_REFERENCE);
             OCIO::DisplayViewTransformRcPtr through = OCIO::DisplayViewTransform::Create();
@@ -687,8 +687,8 @@ void ConfigBuilder::add_view_transform(const ConfigModel::View& view, const Disp
             rounded_up(lowered.wide.max), rounded_up(lowered.wide.p999),
             rounded_up(lowered.wide.mean));
     }
-    const std::string inverse_space_text = describe_way_back(error.back, view.op.op->is_diagnostic);
-    ways_back_[shown.transform] = inverse_space_text;
+    const std::string inverse_space_text = describe_inverse(error.back, view.op.op->is_diagnostic);
+    inverses_[shown.transform] = inverse_space_text;
     text += inverse_space_text;
     OCIO::ViewTransformRcPtr vt = OCIO::ViewTransform::Create(OCIO::REFERENCE_SPACE_SCENE);
     vt->setName(shown.transform.c_str());

@@ -29,9 +29,9 @@ struct DisplayedView {
 [[nodiscard]] std::vector<DisplayedView> displayed_views(
     const ConfigModel::View& view, const std::vector<const Display*>& displays);
 
-/// How far code values that a view makes are from themselves after the way back to the scene and
+/// How far code values that a view makes are from themselves after the inverse to the scene and
 /// the view again.
-struct WayBackError {
+struct RoundTripError {
     /// Without loss, and as applications have it: with OpenColorIO's default optimisation.
     ErrorStats lossless;
     ErrorStats by_default;
@@ -40,12 +40,12 @@ struct WayBackError {
     bool exists = false;
 };
 
-/// How far a view is from the reference, and its way back from itself.
+/// How far a view is from the reference, and its inverse from itself.
 struct ViewError {
     ErrorStats in_gamut;
     double delta_e = 0;
     bool is_exact = true;
-    WayBackError back;
+    RoundTripError back;
 };
 
 /// Makes the parts of a config from the model and adds them to an OCIO one: to a new one, or to
@@ -125,8 +125,8 @@ class ConfigBuilder {
     std::map<std::string, ViewError> errors_;
     /// View transforms that are cubes.
     std::set<std::string> cubes_;
-    /// Of each view transform, what its way back is.
-    std::map<std::string, std::string> ways_back_;
+    /// Of each view transform, what its inverse is.
+    std::map<std::string, std::string> inverses_;
     /// Colors that errors are measured on; none has a negative channel.
     SampleSet samples_, wide_samples_, few_samples_;
 };

@@ -135,7 +135,7 @@ constexpr const char* kFolder = "tonewright";
 /// @param before  pictures that it must make; others may be added or missing
 OCIO::ConfigRcPtr check_result(const std::string& path, const std::string& written,
                                const std::map<std::string, std::vector<float>>& before) {
-    const OCIO::ConfigRcPtr made = read_config(written);
+    OCIO::ConfigRcPtr made = read_config(written);
     try {
         made->validate();
     } catch (const OCIO::Exception& e) {
@@ -159,6 +159,7 @@ std::vector<YAML::Node> named(const YAML::Node& list, const std::vector<std::str
         if (item.IsMap() && item["name"]) items[item["name"].Scalar()] = item;
     }
     std::vector<YAML::Node> found;
+    found.reserve(names.size());
     for (const std::string& name : names)
         found.push_back(items.at(name));
     return found;
@@ -183,6 +184,7 @@ void append_names(YamlText& yaml, const std::string& key, const std::string& sep
     const YAML::Node list = yaml.root()[key];
     if (list && list.IsSequence() && list.size() > 0) {
         std::vector<YAML::Node> items;
+        items.reserve(names.size());
         for (const std::string& name : names)
             items.emplace_back(name);
         yaml.append(list, items);

@@ -8,7 +8,7 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// The way back from a display's light, of the limit's primaries and [0, peak], to scene-linear in
+/// The inverse from a display's light, of the limit's primaries and [0, peak], to scene-linear in
 /// the operator's working space. The first that there is of
 ///
 /// - OpenColorIO's built-in transform, where the operator equals one;

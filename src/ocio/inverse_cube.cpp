@@ -25,7 +25,7 @@ namespace {
 /// comes from all that is brighter.
 constexpr double kBrightest = 4096;
 
-/// Nodes a side, for a table of 0.9 MB: 25 are twice as far from the way back in the mean.
+/// Nodes a side, for a table of 0.9 MB: 25 are twice as far from the inverse in the mean.
 constexpr int kEdge = 37;
 /// Of a fitted one, for 0.6 MB: 37 are a fifth nearer.
 constexpr int kFittedEdge = 33;
@@ -70,9 +70,9 @@ Pipeline sampled_inverse(const Pipeline& back, double peak) {
         constexpr double step = 1.0 / (kEdge - 1);
         std::array<std::vector<double>, 3> planes;
         for (std::size_t i = 0; i < n * n * n; ++i) {
-            planes[0].push_back(static_cast<double>(i / (n * n)) * step);
-            planes[1].push_back(static_cast<double>(i / n % n) * step);
-            planes[2].push_back(static_cast<double>(i % n) * step);
+            const std::array<std::size_t, 3> node = {i / (n * n), i / n % n, i % n};
+            for (std::size_t c = 0; c < 3; ++c)
+                planes[c].push_back(static_cast<double>(node[c]) * step);
         }
         const std::array<double*, 3> at = {planes[0].data(), planes[1].data(), planes[2].data()};
         ReferenceEngine(stages).run({at[0], at[1], at[2]}, at, n * n * n);
@@ -113,7 +113,7 @@ Pipeline fitted_inverse(const Pipeline& forward, const Primaries& primaries, dou
             problem.forward = {ClampStage{0, 1}, curve_stage(light_of(x))};
             problem.forward.insert(problem.forward.end(), forward.begin(), forward.end());
             problem.primaries = primaries;
-            constexpr int kFitVersion = 2;  // another one where the fit makes other nodes
+            constexpr int kFitVersion = 3;  // another one where the fit makes other nodes
             const std::string key =
                 fmt::format("inverse cube {}, {} nodes a side: {}, {}, {}, {}", kFitVersion,
                             problem.edge, key_of_numbers({peak}), key_of_primaries(primaries),

@@ -50,7 +50,7 @@ RoundTrip::RoundTrip(const View& view, std::vector<float> codes)
       codes_(std::move(codes)),
       light_(light_of(planes_of(codes_))) {}
 
-RoundTrip::Result RoundTrip::measure(const WayBack& back) const {
+RoundTrip::Result RoundTrip::measure(const Inverse& back) const {
     std::vector<float> scene(codes_.size());
     back(codes_.data(), scene.data(), codes_.size() / 3);
     const Planes again = show(scene);

@@ -17,7 +17,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// light too faint to see is many code values.
 [[nodiscard]] double visible_error(double code, double light);
 
-/// How far code values that a view makes are from themselves after a way back and the view once
+/// How far code values that a view makes are from themselves after an inverse and the view once
 /// more, by the reference.
 class RoundTrip {
   public:
@@ -28,12 +28,12 @@ class RoundTrip {
     RoundTrip(const View& view, std::vector<float> codes);
 
     /// Code values -> scene light in the view's input space, of so many pixels.
-    using WayBack = std::function<void(const float* in, float* out, std::size_t count)>;
+    using Inverse = std::function<void(const float* in, float* out, std::size_t count)>;
     struct Result {
         ErrorStats errors;
         bool is_finite = true;
     };
-    [[nodiscard]] Result measure(const WayBack& back) const;
+    [[nodiscard]] Result measure(const Inverse& back) const;
 
   private:
     /// A plane for each channel, as the next.

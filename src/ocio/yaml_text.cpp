@@ -166,8 +166,10 @@ void YamlText::add(const std::string& key, const std::vector<YAML::Node>& items)
     const std::string margin(static_cast<std::size_t>(root_.Mark().column), ' ');
     std::string text = line_end_ + line_end_ + margin + key + ":";
     for (const YAML::Node& item : items) {
-        for (const std::string& line : block_lines(item))
-            text += line_end_ + (line.empty() ? "" : margin + "  " + line);
+        for (const std::string& line : block_lines(item)) {
+            text += line_end_;
+            if (!line.empty()) text.append(margin).append("  ").append(line);
+        }
     }
     append_to_document(std::move(text));
 }

@@ -76,7 +76,7 @@ std::array<T, 3> transform(const Matrix3& m, const std::array<T, 3>& v) {
 constexpr double kLuminanceLevel = 0.7937005275461673;  // F_L of L_A, CIECAM02
 constexpr double kConePower = 0.42;
 constexpr double kConeHalf = 27.13;
-constexpr double kConeLimit = 0.99;  // of the compressed response, on the way back
+constexpr double kConeLimit = 0.99;                    // of the compressed response, in the inverse
 constexpr double kLightnessPower = 1.137056021344975;  // 0.59 (1.48 + sqrt(Y_b / 100))
 constexpr double kOpponentScale = 400 * 43 * 0.9;
 

@@ -263,7 +263,7 @@ Operator godot44() {
                      {DocumentedDifference::Kind::not_monotone, 16, ""}};
     op.build = [](const Params&) -> Pipeline {
         // clang-format off
-        // Rec.709 to Rec.2020 and Blender's inset in one; its outset and the way back in one.
+        // Rec.709 to Rec.2020 and Blender's inset in one; its outset and the inverse in one.
         constexpr Matrix3 in = {{{0.544908138163631, 0.373779459598123, 0.081384976686408},
                                  {0.140440058840013, 0.754109598640138, 0.105433585368578},
                                  {0.088827411851915, 0.178877124650438, 0.732249999569484}}};

@@ -247,7 +247,7 @@ class Comparison {
     std::vector<RoundingPoint> rounding_points_;
 };
 
-/// What the structure of a way back allows to 99.9 % of the colors, in code values; 0 where it has
+/// What the structure of an inverse allows to 99.9 % of the colors, in code values; 0 where it has
 /// none of its own.
 double round_trip_bound(const OCIO::ConstProcessorRcPtr& back, const ResolvedOperator& op) {
     // Inverse tables of 16384 entries; a curve that is steep next to white has few of them there.
@@ -292,7 +292,7 @@ OCIO::ConstProcessorRcPtr builtin_processor(const View& view) {
     return make_processor(ops);
 }
 
-/// Rows of the way back from the config's output space, in the forms that applications have it.
+/// Rows of the inverse from the config's output space, in the forms that applications have it.
 template <class Add>
 void add_inverse_space(const OCIO::ConstConfigRcPtr& config, const View& view,
                        const std::string& space, const SampleSet& samples, bool with_gpu,
@@ -319,7 +319,7 @@ void add_inverse_space(const OCIO::ConstConfigRcPtr& config, const View& view,
     }
     // A fifth of the colors: two more passes through every form.
     const RoundTrip trip(view, samples, 5);
-    const auto measure = [&](const std::string& form, const RoundTrip::WayBack& run) {
+    const auto measure = [&](const std::string& form, const RoundTrip::Inverse& run) {
         ParityRow measured = row;
         measured.form = form;
         const auto [errors, is_finite] = trip.measure(run);

@@ -836,6 +836,7 @@ def usage_errors(bad, picture):
         (["bake", "hable", "-o", "out", "--format", "cub"], "format is cub; did you mean cube?"),
         (["bake", "hable", "-o", "out"], "file is out; .cube; --format"),
         (["bake", "hable", "-o", "out.txt"], "file is out.txt; .cube; --format"),
+        (["bake", "hable", "--for", "resolve", "-o", "out.txt"], "file is out.txt; .cube; DaVinci Resolve reads"),
         (["bake", "hable", "-o", "out.cub"], "file is out.cub; did you mean .cube?"),
         (["bake", "hable", "-o", "out.png"], "file is out.png; --format hald, strip or strip_up"),
         (["bake", "hable", "-o", "out.clf", "--format", "cube"], "file is out.clf; .cube; the format is cube"),

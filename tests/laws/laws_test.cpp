@@ -408,7 +408,7 @@ TEST_P(Law, ExposureIsAFactorOnTheScene) {
                 // matrix may leave standing (2.4 is its largest sum of coefficients) where the
                 // others cancel, times the steepest slope of the sRGB curve, 12.92.
                 const double largest = std::max({scaled[0][i], scaled[1][i], scaled[2][i]});
-                // PQ's power of 78.84, and 1/0.159 on the way back, multiply a rounding by
+                // PQ's power of 78.84, and 1/0.159 in the inverse, multiply a rounding by
                 // thousands where chroma cancels.
                 const double tolerance = 2e-11 + 6 * 0x1p-53 * 2.4 * 12.92 * largest;
                 for (std::size_t c = 0; c < 3; ++c) {

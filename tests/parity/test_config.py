@@ -208,13 +208,13 @@ def check_cameras(report, config, command, operators):
 
 
 def check_round_trips(report, config, folder):
-    """What the README says of the way back, for colours of its kind, without loss and by default."""
+    """What the README says of the inverse, for colours of its kind, without loss and by default."""
     stated = {}
     for line in (folder / "README.md").read_text().splitlines():
         cells = [c.strip() for c in line.split("|")]
         if len(cells) > 8 and cells[1] in VIEWS:
             stated[cells[1]] = None if cells[7] == "none" else (float(cells[7]), float(cells[8]))
-    report.check("every view but False Color has a way back",
+    report.check("every view but False Color has an inverse",
                  [view for view, bounds in stated.items() if bounds is None] == ["False Color"], stated)
     rng = np.random.default_rng(21)
     light = np.exp2(rng.uniform(-12, 12, (4000, 3))).astype(np.float32)
@@ -230,7 +230,7 @@ def check_round_trips(report, config, folder):
                          np.quantile(np.abs(again - there).max(1), 0.999), 3 * bound + 1e-6)
 
 
-def check_ways_back(report, config):
+def check_inverses(report, config):
     """Cubes that lead back are tables of their own: OpenColorIO's inversion of a cube is coarse on the GPU."""
     inverted, silent, dark, count = [], [], [], 0
     for space in config.getColorSpaces():
@@ -249,13 +249,13 @@ def check_ways_back(report, config):
         inverted += [name for part in processor.createGroupTransform() if isinstance(part, ocio.Lut3DTransform)
                      and part.getDirection() == ocio.TRANSFORM_DIR_INVERSE]
         # Black codes of logos and frames: no light that is seen. Half a code of 16 bits on sRGB is 6e-7. The
-        # Academy's own way back of ACES 1.3, OpenColorIO's built-in, has 0.002 for black.
+        # Academy's own inverse of ACES 1.3, OpenColorIO's built-in, has 0.002 for black.
         black = np.abs(apply(config, name, "Linear Rec.709", [[0, 0, 0]], ocio.OPTIMIZATION_DEFAULT)).max()
         if not black <= 6e-7 and "ACES 1.3" not in name:
             dark.append(f"{name}: {black}")
     report.check(f"no cube of {count} output spaces is inverted by OpenColorIO", count > 50 and not inverted,
                  inverted[:3])
-    report.check("OpenColorIO refuses the way back of False Color, and of nothing else", not silent, silent[:3])
+    report.check("OpenColorIO refuses the inverse of False Color, and of nothing else", not silent, silent[:3])
     report.check("black comes back as black", not dark, dark[:5])
 
 
@@ -341,7 +341,7 @@ def main():
         check_looks(report, config)
         check_rules(report, config)
         check_round_trips(report, config, folder)
-        check_ways_back(report, config)
+        check_inverses(report, config)
         check_files(report, folder)
         check_spaces(report, config, operators)
         check_cameras(report, config, arguments.command.resolve(), operators)

@@ -174,7 +174,7 @@ def numbers_of(path):
         image = light.copy()
         try:
             config.getProcessor(*arguments).getOptimizedCPUProcessor(ocio.OPTIMIZATION_LOSSLESS).applyRGB(image)
-        except ocio.Exception as error:  # such as no way back
+        except ocio.Exception as error:  # such as no inverse
             return str(error)
         return image.tobytes()
 

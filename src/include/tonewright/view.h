@@ -122,7 +122,7 @@ struct DisplayLimit {
 /// @see sanitise in engine.h: NaN -> 0, then each channel to +-kHalfMax
 [[nodiscard]] TONEWRIGHT_API Pipeline build_view(const View& view);
 
-/// The way back: what the view shows -> scene-linear in the view's input primaries. What the view
+/// The inverse: what the view shows -> scene-linear in the view's input primaries. What the view
 /// limits is not brought back.
 /// @throws Error  when the operator has no inverse.
 [[nodiscard]] TONEWRIGHT_API Pipeline build_inverse_view(const View& view);

@@ -15,7 +15,7 @@ namespace {
 const Expr kX = Expr::input();
 constexpr int kEdge = 13;
 
-/// Light is the scene desaturated; nodes hold the scene's square root. So the way back is known:
+/// Light is the scene desaturated; nodes hold the scene's square root. So the inverse is known:
 /// the root of the matrix's inverse, steep where a channel of the scene is near 0, next to lights
 /// that no scene makes.
 const Matrix3 kDesaturate = {{{0.4, 0.35, 0.25}, {0.25, 0.5, 0.25}, {0.25, 0.35, 0.4}}};

@@ -710,7 +710,7 @@ TEST(LowerHexcone, PbrNeutralBackByHand) {
     const std::vector<float> in(light.begin(), light.end());
     const LoweredOps back = inverse(lower_to_ocio({kPositive, neutral(0.8, 0.15, false)}).ops);
     for (const Form& form : run_forms(make_processor(back), in)) {
-        // Without loss the tables' own precision, times the slope of the way back, 2.44^2/0.0576 at
+        // Without loss the tables' own precision, times the slope of the inverse, 2.44^2/0.0576 at
         // most; else OpenColorIO's resampling of the inverse at half floats.
         const double bound = form.name == "cpu lossless" ? 1e-4 : 2e-3;
         for (std::size_t i = 0; i < scene.size(); ++i)

@@ -232,7 +232,7 @@ ResolvedOperator resolve(const Operator& op, const Preset* preset, const Setting
             resolved.params.choices_[key] = text;
         }
         if (resolved.settings.contains(key) && !is_default)
-            resolved.label += " " + key + "=" + text;
+            resolved.label.append(" ").append(key).append("=").append(text);
     }
     for (const ParameterSpec& spec : op.parameters) {
         switch (spec.kind) {

@@ -138,7 +138,8 @@ Operator filament() {
     op.dialects = "ACES";
     op.negatives = kNegativesClampAtZero;
     op.working = kRec2020;
-    op.bounds = {.cube = 7e-3,
+    // Measured: 3.7e-3 with Rec.709, 7.2e-3 with AP1.
+    op.bounds = {.cube = 8e-3,
                  .reason = "fixed functions of OpenColorIO: another weight of hues about red"};
     op.parameters = {number_parameter("brightness", "", 1, 0.01, 100,
                                       "factor before the curve: 1 in ACES, 1/0.6 in ACESLegacy")};

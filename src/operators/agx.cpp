@@ -223,8 +223,12 @@ Operator filament() {
     op.looks = {{"golden", "Golden", "warm: slope 1 0.9 0.5, power 0.8, saturation 1.3"},
                 {"punchy", "Punchy", "darker and stronger: power 1.35, saturation 1.4"}};
     // Punchy takes black below 0 before it is light: there the lifted black is gone.
-    op.bounds = {.cube = 2.4e-2,
-                 .reason = "looks saturate about a luma taken before their power: a cube"};
+    // Measured with AP1: 3.1e-7 beyond the rounding of the outset.
+    op.bounds = {.ocio_cpu = 4e-7,
+                 .cube = 2.4e-2,
+                 .reason =
+                     "the outset enlarges roundings of the curve's table; looks saturate "
+                     "about a luma taken before their power: a cube"};
     op.deviations = {{DocumentedDifference::Kind::black, 2.5e-6, ""},
                      {DocumentedDifference::Kind::black, 5.2e-5, "golden"},
                      {DocumentedDifference::Kind::black, 0, "punchy"},

@@ -19,9 +19,10 @@ for folder, direct in {
     "local": ["measure"],
     "registry": ["local"],
     "lut": ["registry"],
+    "shader": ["registry"],
     "ocio": ["lut"],
     "image": ["lut"],
-    "verify": ["ocio"],
+    "verify": ["ocio", "shader"],
     "cli": ["verify"],
     "cli/pictures": ["cli", "image"],  # the module that the program loads
     "plugin": ["image"],
@@ -34,7 +35,7 @@ PUBLIC = {
     "pipeline": "pipeline", "view": "pipeline", "engine": "engine", "local": "local", "registry": "registry",
     "lut": "lut", "lut_applications": "lut", "ocio": "ocio", "lut_file": "ocio", "tonemap": "image",
     "image_io": "image", "chart": "image", "contact_sheet": "image", "sequence": "image", "meter": "image",
-    "verify": "verify", "lint": "verify", "lut_match": "verify",
+    "shader": "shader", "verify": "verify", "lint": "verify", "lut_match": "verify",
 }
 THIRD_PARTY = {
     "hwy": ["engine", "image"],
@@ -48,7 +49,7 @@ THIRD_PARTY = {
     "CLI": ["cli/options.cpp"],  # one file each: they take seconds to compile
     "nlohmann": ["cli/json.cpp"],
     "pybind11": ["python"],
-    "fmt": ["base", "measure", "lut", "ocio", "image", "verify", "cli", "cli/pictures", "plugin", "python"],
+    "fmt": ["base", "measure", "lut", "shader", "ocio", "image", "verify", "cli", "cli/pictures", "plugin", "python"],
 }
 
 

@@ -69,25 +69,6 @@ void take_from_host(Options& options, const LutApplication& host) {
     if (!options.one) options.three = true;
 }
 
-/// An operator that measures its picture has none here.
-void warn_of_constants(const ResolvedOperator& op) {
-    std::vector<std::string> constants;
-    for (const ParameterSpec& parameter : op.op->parameters) {
-        const bool is_set = op.settings.contains(parameter.name) ||
-                            (op.preset && op.preset->settings.contains(parameter.name));
-        if (!parameter.from_picture || is_set) continue;
-        constants.push_back(fmt::format("{} {} for the {}", parameter.name,
-                                        shortest(op.params.number(parameter.name)),
-                                        parameter.statistic));
-    }
-    if (constants.empty()) return;
-    warn(
-        fmt::format("{} measures each picture, which a LUT cannot do; the LUT uses {} (--set "
-                    "{}=... changes it)",
-                    op.label, fmt::join(constants, ", "),
-                    constants.front().substr(0, constants.front().find(' '))));
-}
-
 /// A 3D LUT that does not follow its operator in saturated lights.
 void warn_of_ringing(const std::string& file, const LutRequest& request, const BakedLut& baked) {
     if (baked.lut.dimension != 3 || follows_operator(baked.ringing)) return;
@@ -145,7 +126,7 @@ void bake_one(Options& options) {
     if (options.nodes == "fitted") nodes = LutNodes::fitted;
     const bool is_picture = is_picture_format(request.format);
     if (is_picture) require_lut_picture(options.file, request.bits.value_or(16));
-    warn_of_constants(request.view.op);
+    warn_of_constants(request.view.op, "LUT", {});
     const BakedLut baked = bake_lut(request, nodes, trilinear, options.max_error);
     const Lut& lut = baked.lut;
     const LutError& error = baked.error;

@@ -38,6 +38,7 @@ void add_eval(CommandLine& program);
 void add_apply(CommandLine& program);
 void add_meter(CommandLine& program);
 void add_bake(CommandLine& program);
+void add_shader(CommandLine& program);
 void add_config(CommandLine& program);
 void add_verify(CommandLine& program);
 void add_chart(CommandLine& program);

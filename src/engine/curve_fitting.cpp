@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "engine/precision.h"
+#include "expr/interval.h"
 #include "expr/scalar_ops.h"
 #include "tonewright/pipeline.h"
 
@@ -57,84 +58,12 @@ int cost_of(const TapeInstruction& step) {
     }
 }
 
-struct Interval {
-    double lo = -kInfinity;
-    double hi = kInfinity;
-};
-
-Interval hull(std::initializer_list<double> values) {
-    Interval r{kInfinity, -kInfinity};
-    for (const double v : values) {
-        if (std::isnan(v)) return {};
-        r = {std::min(r.lo, v), std::max(r.hi, v)};
-    }
-    return r;
-}
-
-/// Between which values a result lies; both infinities where that is not looked into.
+/// Between which values a result lies.
 Interval interval_of(const TapeInstruction& step, const Interval& a, const Interval& b,
                      const Interval& c) {
-    const auto rising = [&] {
-        return hull({scalar_op(step.op, a.lo, 0, 0, step.table),
-                     scalar_op(step.op, a.hi, 0, 0, step.table)});
-    };
-    switch (step.op) {
-        case ExprOp::constant:
-            return {step.value, step.value};
-        case ExprOp::uniform:
-            return {};
-        case ExprOp::input:
-            return {-kHalfMax, kHalfMax};
-        case ExprOp::add:
-            return hull({a.lo + b.lo, a.hi + b.hi});
-        case ExprOp::subtract:
-            return hull({a.lo - b.hi, a.hi - b.lo});
-        case ExprOp::multiply:
-            return hull({a.lo * b.lo, a.lo * b.hi, a.hi * b.lo, a.hi * b.hi});
-        case ExprOp::divide:
-            if (b.lo <= 0 && b.hi >= 0) return {};
-            return hull({a.lo / b.lo, a.lo / b.hi, a.hi / b.lo, a.hi / b.hi});
-        case ExprOp::minimum:
-            return {std::min(a.lo, b.lo), std::min(a.hi, b.hi)};
-        case ExprOp::maximum:
-            return {std::max(a.lo, b.lo), std::max(a.hi, b.hi)};
-        case ExprOp::power:
-            if (a.lo < 0 || b.lo != b.hi) return {};
-            return hull({std::pow(a.lo, b.lo), std::pow(a.hi, b.lo)});
-        case ExprOp::negate:
-            return {-a.hi, -a.lo};
-        case ExprOp::absolute:
-            return {0, std::max(std::fabs(a.lo), std::fabs(a.hi))};
-        case ExprOp::square_root:
-            return a.lo < 0 ? Interval{} : rising();
-        case ExprOp::exp2:
-        case ExprOp::floor:
-            return rising();
-        case ExprOp::log2:
-            return a.lo < 0 ? Interval{} : rising();
-        case ExprOp::less:
-        case ExprOp::less_equal:
-        case ExprOp::equal:
-            return {0, 1};
-        case ExprOp::sine:
-        case ExprOp::cosine:
-            return {-1, 1};
-        case ExprOp::select:
-            return {std::min(b.lo, c.lo), std::max(b.hi, c.hi)};
-        case ExprOp::lookup: {
-            const auto [lo, hi] =
-                std::minmax_element(step.table->samples.begin(), step.table->samples.end());
-            return {*lo, *hi};
-        }
-        case ExprOp::atan2:
-            return {-4, 4};
-        case ExprOp::lattice: {
-            const std::vector<double>& nodes = step.lattice->nodes();
-            const auto [lo, hi] = std::minmax_element(nodes.begin(), nodes.end());
-            return {*lo, *hi};
-        }
-    }
-    return {};
+    if (step.op == ExprOp::constant) return {step.value, step.value};
+    if (step.op == ExprOp::input) return {-kHalfMax, kHalfMax};
+    return tonewright::interval_of(step.op, a, b, c, step.table, step.lattice);
 }
 
 class CurveFitter {

@@ -9,6 +9,7 @@
 
 #include "base/format_number.h"
 #include "expr/node.h"
+#include "expr/nodes.h"
 #include "expr/scalar_ops.h"
 #include "tonewright/error.h"
 #include "tonewright/expr.h"
@@ -199,13 +200,17 @@ Expr bind_uniforms(const Expr& expr, const UniformValues& values) {
         done);
 }
 
-std::vector<std::string> uniforms_of(Span<const Expr> exprs) {
+std::vector<Expr> nodes_of(Span<const Expr> exprs) {
     std::unordered_set<const ExprNode*> seen;
     std::vector<Expr> order;
     for (const Expr& e : exprs)
         collect(e, seen, order);
+    return order;
+}
+
+std::vector<std::string> uniforms_of(Span<const Expr> exprs) {
     std::vector<std::string> names;
-    for (const Expr& e : order) {
+    for (const Expr& e : nodes_of(exprs)) {
         if (e.op() == ExprOp::uniform) names.push_back(e.uniform_name());
     }
     std::sort(names.begin(), names.end());
@@ -226,13 +231,7 @@ Expr derivative(const Expr& expr, int index) {
     return differentiate(expr, index, done);
 }
 
-std::size_t node_count(Span<const Expr> exprs) {
-    std::unordered_set<const ExprNode*> seen;
-    std::vector<Expr> order;
-    for (const Expr& e : exprs)
-        collect(e, seen, order);
-    return order.size();
-}
+std::size_t node_count(Span<const Expr> exprs) { return nodes_of(exprs).size(); }
 
 bool depends_on(const Expr& expr, int index) {
     std::unordered_set<const ExprNode*> seen;

@@ -38,9 +38,7 @@ uniform sampler2D tonewright_input;
 out vec4 tonewright_output;
 void main() {
     vec4 color = texelFetch(tonewright_input, ivec2(gl_FragCoord.xy), 0);
-    tonewright_output = tonewright_convert(vec4(color.rgb, 1));
-}
-)";
+    tonewright_output = )";
 constexpr const char* kFunctionName = "tonewright_convert";
 constexpr const char* kInputName = "tonewright_input";
 
@@ -354,7 +352,7 @@ std::string first_line(const GetLog& get_log, GLuint object) {
 
 }  // namespace
 
-struct OcioGpu::Impl {
+struct GpuProgram {
     struct LutTexture {
         GLenum target;
         GLuint texture;
@@ -364,10 +362,10 @@ struct OcioGpu::Impl {
     GLuint program = 0;
     std::vector<LutTexture> luts;  // texture unit = index + 1
 
-    Impl() = default;
-    Impl(const Impl&) = delete;
-    Impl& operator=(const Impl&) = delete;
-    ~Impl() {
+    GpuProgram() = default;
+    GpuProgram(const GpuProgram&) = delete;
+    GpuProgram& operator=(const GpuProgram&) = delete;
+    ~GpuProgram() {
         if (!device) return;
         const Device::Session session(*device);
         if (!session.ok()) return;  // the context is gone, and with it all that was in it
@@ -384,15 +382,32 @@ struct OcioGpu::Impl {
         // Behind the lock, too: OCIO reads its environment variables into one static string.
         const OCIO::GpuShaderDescRcPtr desc = describe(processor, flags);
         const Gl& gl = session.gl;
-        link(gl, std::string(kFragmentHead) + desc->getShaderText() + kFragmentTail);
-        gl.use_program(program);
-        gl.uniform_1i(gl.get_uniform_location(program, kInputName), 0);
+        link(gl, desc->getShaderText(), std::string(kFunctionName) + "(vec4(color.rgb, 1))");
         upload_1d(gl, *desc);
         upload_3d(gl, *desc);
         gl.check("uploading the LUTs");
     }
 
-    void link(const Gl& gl, const std::string& fragment_shader) {
+    void build(const std::string& text, const std::string& function,
+               const std::vector<GlslTexture>& textures) {
+        if (!device) throw Error("gpu: " + availability().reason);
+        const Device::Session session(*device);
+        session.require();
+        const Gl& gl = session.gl;
+        link(gl, text, "vec4(" + function + "(color.rgb), 1)");
+        for (const GlslTexture& texture : textures) {
+            const auto n = static_cast<GLsizei>(texture.edge);
+            add_texture(gl, GL_TEXTURE_3D, texture.sampler.c_str(), OCIO::INTERP_NEAREST);
+            gl.tex_image_3d(GL_TEXTURE_3D, 0, GL_RGBA32F, n, n, n, 0, GL_RGBA, GL_FLOAT,
+                            texture.rgba);
+        }
+        gl.check("uploading the textures");
+    }
+
+    /// The functions of `text`, and `result` as what a texel becomes; the program is in use then.
+    void link(const Gl& gl, const std::string& text, const std::string& result) {
+        const std::string fragment_shader =
+            kFragmentHead + text + kFragmentTail + result + ";\n}\n";
         program = gl.create_program();
         const auto attach = [&](GLenum type, const char* source) {
             const GLuint shader = gl.create_shader(type);
@@ -416,6 +431,8 @@ struct OcioGpu::Impl {
             throw Error("gpu: the shader does not link: " +
                         first_line(gl.get_program_info_log, program));
         }
+        gl.use_program(program);
+        gl.uniform_1i(gl.get_uniform_location(program, kInputName), 0);
     }
 
     /// Binds a new texture to the next unit and that unit to the sampler.
@@ -506,9 +523,10 @@ TONEWRIGHT_NAMESPACE_END
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-struct OcioGpu::Impl {
-    [[noreturn]] static void build(const OCIO::ConstProcessorRcPtr&, OCIO::OptimizationFlags) {
-        throw Error("gpu: " + unavailable_reason());
+struct GpuProgram {
+    template <class... Arguments>
+    [[noreturn]] static void build(const Arguments&...) {
+        throw Error("gpu: " + OcioGpu::unavailable_reason());
     }
     static void run_rgb(const float*, float*, std::size_t) {}
 };
@@ -524,16 +542,28 @@ TONEWRIGHT_NAMESPACE_END
 TONEWRIGHT_NAMESPACE_BEGIN
 
 OcioGpu::OcioGpu(const OCIO::ConstProcessorRcPtr& processor, OCIO::OptimizationFlags flags)
-    : impl_(std::make_unique<Impl>()) {
-    impl_->build(processor, flags);
+    : program_(std::make_unique<GpuProgram>()) {
+    program_->build(processor, flags);
 }
-
 OcioGpu::OcioGpu(OcioGpu&&) noexcept = default;
 OcioGpu& OcioGpu::operator=(OcioGpu&&) noexcept = default;
 OcioGpu::~OcioGpu() = default;
 
 void OcioGpu::run_rgb(const float* in, float* out, std::size_t pixel_count) const {
-    impl_->run_rgb(in, out, pixel_count);
+    program_->run_rgb(in, out, pixel_count);
+}
+
+GlslGpu::GlslGpu(const std::string& text, const std::string& function,
+                 const std::vector<GlslTexture>& textures)
+    : program_(std::make_unique<GpuProgram>()) {
+    program_->build(text, function, textures);
+}
+GlslGpu::GlslGpu(GlslGpu&&) noexcept = default;
+GlslGpu& GlslGpu::operator=(GlslGpu&&) noexcept = default;
+GlslGpu::~GlslGpu() = default;
+
+void GlslGpu::run_rgb(const float* in, float* out, std::size_t pixel_count) const {
+    program_->run_rgb(in, out, pixel_count);
 }
 
 TONEWRIGHT_NAMESPACE_END

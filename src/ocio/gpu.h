@@ -6,12 +6,15 @@
 #include <cstddef>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "tonewright/version.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
 namespace OCIO = OCIO_NAMESPACE;
+
+struct GpuProgram;
 
 /// Runs OCIO's GPU path, without a window: the GLSL 4.0 and the textures that OCIO gives to an
 /// application, drawn by OpenGL (reached through EGL) from float texels into float texels.
@@ -48,8 +51,31 @@ class TONEWRIGHT_API OcioGpu {
     [[nodiscard]] static std::string renderer();
 
   private:
-    struct Impl;
-    std::unique_ptr<Impl> impl_;
+    std::unique_ptr<GpuProgram> program_;
+};
+
+/// A 3D texture of edge^3 texels, RGBA float, that a GLSL text reads without a filter.
+struct GlslTexture {
+    std::string sampler;
+    int edge;
+    const float* rgba;
+};
+
+/// Runs a GLSL function `vec3 <function>(vec3)` in the same way.
+class TONEWRIGHT_API GlslGpu {
+  public:
+    /// @throws Error  as OcioGpu does
+    GlslGpu(const std::string& text, const std::string& function,
+            const std::vector<GlslTexture>& textures = {});
+    GlslGpu(GlslGpu&&) noexcept;
+    GlslGpu& operator=(GlslGpu&&) noexcept;
+    ~GlslGpu();
+
+    /// As OcioGpu::run_rgb().
+    void run_rgb(const float* in, float* out, std::size_t pixel_count) const;
+
+  private:
+    std::unique_ptr<GpuProgram> program_;
 };
 
 TONEWRIGHT_NAMESPACE_END

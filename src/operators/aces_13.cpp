@@ -286,25 +286,25 @@ Pipeline build(const Params& p) {
     }
     Pipeline stages = {ClampStage{-kHalfMax, kHalfMax}};
     if (p.choice("gamut_compression") == "yes") {
-        stages.push_back(MatrixStage{rgb_to_rgb(kAP0, kAP1)});
+        stages.push_back(MatrixStage{rgb_to_rgb(kAP0, kAP1), "ap0_to_ap1"});
         stages.push_back(reference_gamut_compression());
-        stages.push_back(MatrixStage{rgb_to_rgb(kAP1, kAP0)});
+        stages.push_back(MatrixStage{rgb_to_rgb(kAP1, kAP0), "ap1_to_ap0"});
     }
     stages.push_back(rrt_glow_and_red_modifier(is_ocio ? RrtSaturation::after_glow
                                                        : RrtSaturation::before_glow));
     stages.push_back(ClampStage{0, kInfinity});
-    stages.push_back(MatrixStage{rgb_to_rgb(kAP0, kAP1)});
+    stages.push_back(MatrixStage{rgb_to_rgb(kAP0, kAP1), "ap0_to_ap1"});
     stages.push_back(ClampStage{0, is_ocio ? kInfinity : static_cast<double>(kHalfMax)});
-    stages.push_back(MatrixStage{saturation_matrix(0.96, ap1_weights())});
-    stages.push_back(curve_stage(tone_curve(form, is_ocio)));
+    stages.push_back(MatrixStage{saturation_matrix(0.96, ap1_weights()), "rrt_saturation"});
+    stages.push_back(named("tone_curve", curve_stage(tone_curve(form, is_ocio))));
     const Primaries limit = limiting_primaries(p, kAP1);
     if (form.is_hdr) return stages + hdr_light(limit, form.peak);
     if (form.is_video) {
         stages.push_back(dim_surround(is_ocio));
-        stages.push_back(MatrixStage{saturation_matrix(0.93, ap1_weights())});
+        stages.push_back(MatrixStage{saturation_matrix(0.93, ap1_weights()), "odt_saturation"});
     }
     if (is_limited) {
-        stages.push_back(MatrixStage{rgb_to_rgb(kAP1, limit)});
+        stages.push_back(MatrixStage{rgb_to_rgb(kAP1, limit), "to_limit"});
         stages.push_back(ClampStage{0, 1});
     }
     return stages;

@@ -110,9 +110,10 @@ Operator hill() {
                         shortest(0.0033 / prescale.value()) +
                         " with this prescale: the curve is not above 0 there");
         }
-        Pipeline stages = {limit_to_positive(), scale_stage(prescale), MatrixStage{kHillInput},
-                           curve_stage(hill_curve(Expr::input()) / at_white),
-                           MatrixStage{kHillOutput}};
+        Pipeline stages = {
+            limit_to_positive(), scale_stage(prescale), MatrixStage{kHillInput, "input"},
+            named("rrt_and_odt_fit", curve_stage(hill_curve(Expr::input()) / at_white)),
+            MatrixStage{kHillOutput, "output"}};
         if (p.choice("clamp") == "yes") stages.push_back(ClampStage{0, 1});
         stages.push_back(scale_stage(p.expr("gain")));
         return stages;
@@ -149,15 +150,17 @@ Operator filament() {
         const Matrix3 to_ap1 = rec2020_to_ap1_unadapted();
         const Vector3 w = ap1_weights();
         const Expr x = Expr::input();
-        return {limit_to_positive(), MatrixStage{to_ap1},
+        return {limit_to_positive(), MatrixStage{to_ap1, "to_ap1"},
                 ClampStage{0, kInfinity},  // finds nothing: Rec.2020 lies inside AP1
                 ap1_glow_and_red_modifier(1e-5), ClampStage{0, kHalfMax},
-                MatrixStage{saturation_matrix(0.96, w)}, scale_stage(p.expr("brightness")),
+                MatrixStage{saturation_matrix(0.96, w), "rrt_saturation"},
+                scale_stage(p.expr("brightness")),
                 curve_stage((x * (2.785085 * x + 0.107772)) /
                             (x * (2.936045 * x + 0.887122) + 0.806889)),
                 // To the dim surround: Y^0.9811 with the chromaticity kept.
                 ToneScaleStage{ToneScaleStage::Norm::luminance, w, pow(x, 0.9811)},
-                MatrixStage{saturation_matrix(0.93, w)}, MatrixStage{inverse(to_ap1)}};
+                MatrixStage{saturation_matrix(0.93, w), "odt_saturation"},
+                MatrixStage{inverse(to_ap1), "from_ap1"}};
     };
     return op;
 }

@@ -85,12 +85,12 @@ Expr polynomial7(const Expr& n) {
 /// ASC CDL without clamps, as OCIO 2 configs apply it, on code values.
 Pipeline cdl(const Vector3& slope, double power, double saturation) {
     const Expr x = Expr::input();
-    CurveStage curve = curve_stage(x);
+    CurveStage curve = named("slope_power", curve_stage(x));
     for (std::size_t i = 0; i < 3; ++i)
         curve.f[i] = pow(slope[i] * x, power);
     // The clamp keeps the power's infinite slope at 0 out of the sigmoid's table.
     return {ClampStage{0, kInfinity}, curve,
-            MatrixStage{saturation_matrix(saturation, kRec709Weights)}};
+            MatrixStage{saturation_matrix(saturation, kRec709Weights), "saturation"}};
 }
 
 Operator sobotka() {
@@ -114,8 +114,8 @@ Operator sobotka() {
                      {DocumentedDifference::Kind::exceeds_white, 1.06, "golden"}};
     op.build = [](const Params& p) -> Pipeline {
         const AgxSigmoid sigmoid(10 / 16.5, 0.5, 2.0, 3.0, 3.25);
-        Pipeline stages = {limit_to_positive(), MatrixStage{kInset}, limit_to_shaper(),
-                           curve_stage(sigmoid(normalised_log(Expr::input())))};
+        Pipeline stages = {limit_to_positive(), MatrixStage{kInset, "inset"}, limit_to_shaper(),
+                           named("contrast", curve_stage(sigmoid(normalised_log(Expr::input()))))};
         Pipeline look;
         if (p.look() == "golden") look = cdl({1, 0.9, 0.5}, 0.8, 1.3);
         if (p.look() == "punchy") look = cdl({1, 1, 1}, 1.35, 1.4);
@@ -149,16 +149,16 @@ Operator minimal() {
     op.build = [](const Params& p) -> Pipeline {
         const Expr n = normalised_log(Expr::input());
         const Expr f = p.choice("order") == "6" ? polynomial6(n) : polynomial7(n);
-        return {limit_to_positive(), MatrixStage{kInset}, limit_to_shaper(), curve_stage(f),
-                MatrixStage{kOutset}};
+        return {limit_to_positive(), MatrixStage{kInset, "inset"}, limit_to_shaper(),
+                named("contrast", curve_stage(f)), MatrixStage{kOutset, "outset"}};
     };
     return op;
 }
 
 /// Outset, and code values to light: what is below 0 has no power.
 Pipeline outset_to_light() {
-    return {MatrixStage{kAgxOutsetRec2020}, ClampStage{0, kInfinity},
-            curve_stage(pow(Expr::input(), 2.2))};
+    return {MatrixStage{kAgxOutsetRec2020, "outset"}, ClampStage{0, kInfinity},
+            named("to_light", curve_stage(pow(Expr::input(), 2.2)))};
 }
 
 Operator threejs() {
@@ -188,10 +188,11 @@ Operator threejs() {
                                         {-0.1246,  1.1329, -0.0083},
                                         {-0.0182, -0.1006,  1.1187}}};
         // clang-format on
-        const Pipeline stages = {MatrixStage{to_rec2020}, MatrixStage{kAgxInsetRec2020},
-                                 limit_to_shaper(),
-                                 curve_stage(polynomial6(normalised_log(Expr::input())))};
-        return stages + outset_to_light() + Pipeline{MatrixStage{to_rec709}};
+        const Pipeline stages = {
+            MatrixStage{to_rec2020, "to_rec2020"}, MatrixStage{kAgxInsetRec2020, "inset"},
+            limit_to_shaper(),
+            named("contrast", curve_stage(polynomial6(normalised_log(Expr::input()))))};
+        return stages + outset_to_light() + Pipeline{MatrixStage{to_rec709, "to_rec709"}};
     };
     return op;
 }
@@ -202,7 +203,7 @@ CrossTalkStage filament_look(const Vector3& slope, double power, double saturati
     const std::array<Expr, 3> v = {Expr::input(0), Expr::input(1), Expr::input(2)};
     const Expr luma =
         kRec709Weights[0] * v[0] + kRec709Weights[1] * v[1] + kRec709Weights[2] * v[2];
-    CrossTalkStage look{v};
+    CrossTalkStage look = named("look", CrossTalkStage{v});
     for (std::size_t i = 0; i < 3; ++i)
         look.f[i] = luma + saturation * (pow(slope[i] * v[i], power) - luma);
     return look;
@@ -239,8 +240,9 @@ Operator filament() {
                      {DocumentedDifference::Kind::exceeds_white, 1.24, "golden"},
                      {DocumentedDifference::Kind::not_monotone, 0.00021, "golden"}};
     op.build = [](const Params& p) -> Pipeline {
-        Pipeline stages = {limit_to_positive(), MatrixStage{kAgxInsetRec2020}, limit_to_shaper(),
-                           curve_stage(polynomial7(normalised_log(Expr::input())))};
+        Pipeline stages = {
+            limit_to_positive(), MatrixStage{kAgxInsetRec2020, "inset"}, limit_to_shaper(),
+            named("contrast", curve_stage(polynomial7(normalised_log(Expr::input()))))};
         if (!p.look().empty()) {
             stages.push_back(ClampStage{0, 1});  // finds nothing: the polynomial stays inside
             stages.push_back(p.look() == "golden" ? filament_look({1, 0.9, 0.5}, 0.8, 1.3)
@@ -284,9 +286,9 @@ Operator godot44() {
         const Expr code = 0.021 * n + 4.0111 * n2 - 25.682 * n2 * n + 70.359 * n4 -
                           74.778 * n4 * n + 27.069 * n4 * n2;
         // n, and the code with it, may be rounded to below 0 at the lower end.
-        return {ClampStage{2e-10, kHalfMax}, MatrixStage{in},
+        return {ClampStage{2e-10, kHalfMax}, MatrixStage{in, "inset"},
                 ClampStage{std::exp2(lowest), std::exp2(highest)},
-                curve_stage(pow(max(code, 0), 2.4)), MatrixStage{out}};
+                curve_stage(pow(max(code, 0), 2.4)), MatrixStage{out, "outset"}};
     };
     return op;
 }
@@ -332,9 +334,9 @@ Operator godot() {
         const Expr t = pow(x, contrast);
         const Expr s = max(x - cross, 0);  // below the crossing the shoulder has a pole
         const Expr shoulder = slope * s * (1 + s / w) / (1 + slope * s / height) + cross;
-        return {limit_to_positive(), MatrixStage{in},
+        return {limit_to_positive(), MatrixStage{in, "inset"},
                 curve_stage(select(less(x, cross), t / (t + a), shoulder)), clamp_stage(output_max),
-                MatrixStage{out}};
+                MatrixStage{out, "outset"}};
     };
     return op;
 }

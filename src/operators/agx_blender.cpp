@@ -254,8 +254,8 @@ Vector3 weights_of(const Primaries& gamut, const Vector3& weights) {
 Pipeline sdr_formula(const Pipeline& look, const Primaries& limit) {
     Pipeline chain =
         look + Pipeline{CrossTalkStage{scene_rail(inputs(), kRailWeights)},
-                        MatrixStage{kAgxInsetRec2020}, CrossTalkStage{sdr_map(inputs())},
-                        MatrixStage{kAgxOutsetRec2020}};
+                        MatrixStage{kAgxInsetRec2020, "inset"}, CrossTalkStage{sdr_map(inputs())},
+                        MatrixStage{kAgxOutsetRec2020, "outset"}};
     if (!(limit == kRec2020)) {
         chain.push_back(MatrixStage{rgb_to_rgb(kRec2020, limit)});
         chain.push_back(CrossTalkStage{display_rail(inputs(), weights_of(limit, kRailWeights))});
@@ -267,9 +267,9 @@ Pipeline hdr_formula(const Pipeline& look) {
     const Pipeline chain =
         look +
         Pipeline{CrossTalkStage{scene_rail(inputs(), kRailWeights2025)},
-                 MatrixStage{kAgxInsetRec2020},
+                 MatrixStage{kAgxInsetRec2020, "inset"},
                  CrossTalkStage{hdr_map(inputs())},
-                 MatrixStage{kAgxOutsetRec2020},
+                 MatrixStage{kAgxOutsetRec2020, "outset"},
                  MatrixStage{rgb_to_rgb(kRec2020, kP3D65)},
                  CrossTalkStage{display_rail(inputs(), weights_of(kP3D65, kRailWeights2025))}};
     return {CrossTalkStage{compose(chain)}, MatrixStage{rgb_to_rgb(kP3D65, kRec2020)},
@@ -405,7 +405,8 @@ Expr log_decode(const Expr& v) { return exp2(kLowest + (kHighest - kLowest) * v)
 
 /// Rec.2020 -> what the cube has.
 Pipeline through(const std::shared_ptr<const Lattice>& lattice) {
-    return {MatrixStage{rec2020_to_e_gamut()}, ClampStage{std::exp2(kLowest), std::exp2(kHighest)},
+    return {MatrixStage{rec2020_to_e_gamut(), "to_e_gamut"},
+            ClampStage{std::exp2(kLowest), std::exp2(kHighest)},
             LatticeStage{log_encode(Expr::input()), lattice}};
 }
 
@@ -487,11 +488,13 @@ Pipeline apply_look(const std::string& look, bool is_lattice) {
     if (look.empty()) return {};
     Pipeline rail = {CrossTalkStage{scene_rail(inputs(), kRailWeights)}};
     if (is_lattice) {
-        rail = through(rail_lattice()) + Pipeline{curve_stage(log_decode(Expr::input())),
-                                                  MatrixStage{inverse(rec2020_to_e_gamut())}};
+        rail = through(rail_lattice()) +
+               Pipeline{curve_stage(log_decode(Expr::input())),
+                        MatrixStage{inverse(rec2020_to_e_gamut()), "from_e_gamut"}};
     }
-    return rail + Pipeline{MatrixStage{kAgxInsetRec2020}, ClampStage{kSmallestLog, kLargestLog}} +
-           look_stages(look) + Pipeline{MatrixStage{inverse(kAgxInsetRec2020)}};
+    return rail +
+           Pipeline{MatrixStage{kAgxInsetRec2020, "inset"}, ClampStage{kSmallestLog, kLargestLog}} +
+           look_stages(look) + Pipeline{MatrixStage{inverse(kAgxInsetRec2020), "inverse_inset"}};
 }
 
 std::vector<Look> looks() {

@@ -32,13 +32,13 @@ inline bool fails(const Expr& condition) { return condition.is_constant(0); }
 /// All channels times a number.
 inline Stage scale_stage(const Expr& factor) {
     if (factor.is_constant()) return MatrixStage{scale(kIdentity3, factor.value())};
-    return curve_stage(factor * Expr::input());
+    return named("scale", curve_stage(factor * Expr::input()));
 }
 
 /// min(max(x, 0), hi) per channel.
 inline Stage clamp_stage(const Expr& hi) {
     if (hi.is_constant()) return ClampStage{0, hi.value()};
-    return curve_stage(clamp(Expr::input(), 0, hi));
+    return named("limit", curve_stage(clamp(Expr::input(), 0, hi)));
 }
 
 /// ln(1 + x) for x >= 0. What 1 + x rounds away is missing in both parts of the quotient.

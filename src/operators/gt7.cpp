@@ -48,15 +48,16 @@ constexpr Matrix3 kLmsToRgb = {{{ 3.43661,   -2.50645,    0.0698454},
 constexpr double kReferenceLuminance = 100;  // cd/m2 of 1.0
 
 Pipeline to_ictcp() {
-    return {MatrixStage{kRgbToLms},
+    return {MatrixStage{kRgbToLms, "rgb_to_lms"},
             curve_stage(pq_encode_nits(kReferenceLuminance * Expr::input())),
-            MatrixStage{kLmsToIctcp}};
+            MatrixStage{kLmsToIctcp, "lms_to_ictcp"}};
 }
 
 Pipeline from_ictcp() {
     const Expr code = clamp(Expr::input(), 0, 1);
-    return {MatrixStage{kIctcpToLms}, curve_stage(pq_decode_nits(code) / kReferenceLuminance),
-            MatrixStage{kLmsToRgb}, ClampStage{0, kInfinity}};
+    return {MatrixStage{kIctcpToLms, "ictcp_to_lms"},
+            curve_stage(pq_decode_nits(code) / kReferenceLuminance),
+            MatrixStage{kLmsToRgb, "lms_to_rgb"}, ClampStage{0, kInfinity}};
 }
 
 /// The source's "curve V2": toe, straight line, exponential shoulder.

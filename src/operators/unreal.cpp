@@ -128,9 +128,9 @@ std::vector<Operator> define_unreal() {
             stages.push_back(ap1_glow_and_red_modifier(1e-10));
             stages.push_back(ClampStage{0, kInfinity});
         }
-        stages.push_back(MatrixStage{saturation_matrix(0.96, ap1_weights())});
-        stages.push_back(curve_stage(f));
-        stages.push_back(MatrixStage{saturation_matrix(0.93, ap1_weights())});
+        stages.push_back(MatrixStage{saturation_matrix(0.96, ap1_weights()), "rrt_saturation"});
+        stages.push_back(named("film_curve", curve_stage(f)));
+        stages.push_back(MatrixStage{saturation_matrix(0.93, ap1_weights()), "odt_saturation"});
         stages.push_back(ClampStage{0, kInfinity});
         return stages;
     };

@@ -49,8 +49,8 @@ Display sdr_display(std::string id, std::string title, std::vector<std::string> 
             .title = std::move(title),
             .aliases = std::move(aliases),
             .primaries = primaries,
-            .encode = {curve_stage(encode(x), decode(x))},
-            .decode = {curve_stage(decode(x), encode(x))},
+            .encode = {named("encode", curve_stage(encode(x), decode(x)))},
+            .decode = {named("decode", curve_stage(decode(x), encode(x)))},
             .source = std::move(source)};
 }
 
@@ -66,8 +66,8 @@ Display pq_display(std::string id, std::string title, std::vector<std::string> a
             .title = std::move(title),
             .aliases = std::move(aliases),
             .primaries = primaries,
-            .encode = {curve_stage(encode, decode)},
-            .decode = {curve_stage(decode, encode)},
+            .encode = {named("encode", curve_stage(encode, decode))},
+            .decode = {named("decode", curve_stage(decode, encode))},
             .source = std::move(source),
             .is_hdr = true,
             .peak = kHdrPeak,
@@ -87,11 +87,11 @@ Display hlg_display() {
             .primaries = kRec2020,
             .encode = {MatrixStage{scale(kIdentity3, 1 / unit)},
                        luminance(hlg_inverse_ootf_luminance(x)),
-                       curve_stage(hlg_oetf(x), hlg_inverse_oetf(x)),
+                       named("encode", curve_stage(hlg_oetf(x), hlg_inverse_oetf(x))),
                        // A color of one bright channel has a luminance below 1, so a channel's
                        // scene light may be above 1 where its display light is the largest.
                        ClampStage{0, 1}},
-            .decode = {curve_stage(hlg_inverse_oetf(x), hlg_oetf(x)),
+            .decode = {named("decode", curve_stage(hlg_inverse_oetf(x), hlg_oetf(x))),
                        luminance(hlg_ootf_luminance(x)), MatrixStage{scale(kIdentity3, unit)}},
             .source = "ITU-R BT.2100-2 HLG, a display of 1000 cd/m2",
             .is_hdr = true,

@@ -31,7 +31,9 @@ std::string to_text(const Matrix3& m) {
 
 }  // namespace
 
-MatrixStage exposure_stage(double stops) { return {scale(kIdentity3, std::exp2(stops))}; }
+MatrixStage exposure_stage(double stops) {
+    return {scale(kIdentity3, std::exp2(stops)), "exposure"};
+}
 CurveStage curve_stage(const Expr& f) { return {{f, f, f}, std::nullopt}; }
 CurveStage curve_stage(const Expr& f, const Expr& inverse) {
     return {{f, f, f}, std::array{inverse, inverse, inverse}};

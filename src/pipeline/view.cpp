@@ -15,7 +15,7 @@ Pipeline decode_stages(const Operator& op) {
     const Expr x = Expr::input(0);
     // A curve may undershoot 0 (AgX's polynomials do); a power of a negative is no number.
     return {ClampStage{0, kInfinity},
-            curve_stage(pow(x, op.code_power), pow(x, 1 / op.code_power))};
+            named("decode", curve_stage(pow(x, op.code_power), pow(x, 1 / op.code_power)))};
 }
 
 void append(Pipeline& to, const Pipeline& from) { to.insert(to.end(), from.begin(), from.end()); }
@@ -77,28 +77,38 @@ DisplayLimit display_limit(const ResolvedOperator& op, const Display& display) {
 Pipeline display_light_stages(const ResolvedOperator& op, const DisplayLimit& limit) {
     Pipeline stages = decode_stages(*op.op);
     if (!(limit.primaries == op.output_primaries()))
-        stages.push_back(MatrixStage{rgb_to_rgb(op.output_primaries(), limit.primaries)});
+        stages.push_back(
+            MatrixStage{rgb_to_rgb(op.output_primaries(), limit.primaries), "to_limit"});
     stages.push_back(ClampStage{0, limit.peak});
     return stages;
 }
 
-Pipeline build_view(const View& view) {
+Pipeline build_view(const View& view) { return build_live_view(view, {}); }
+
+Pipeline build_live_view(const View& view, const std::vector<std::string>& uniforms) {
     const Operator& op = *view.op.op;
+    std::vector<std::string> parameters = uniforms;
+    const bool is_exposure_live = std::erase(parameters, kExposureUniform) > 0;
     Pipeline stages = view.input_decode;
-    Matrix3 to_working = rgb_to_rgb(view.input_primaries, op.working);
-    stages.push_back(MatrixStage{scale(to_working, std::exp2(view.exposure_stops))});
-    append(stages, view.op.build());
+    if (is_exposure_live) {
+        const Expr stops = Expr::uniform(std::string(kExposureUniform));
+        stages.push_back(named("expose", curve_stage(Expr::input() * exp2(stops))));
+    }
+    const double exposure = is_exposure_live ? 1 : std::exp2(view.exposure_stops);
+    const Matrix3 to_working = rgb_to_rgb(view.input_primaries, op.working);
+    stages.push_back(MatrixStage{scale(to_working, exposure), "to_working"});
+    append(stages, parameters.empty() ? view.op.build() : build_live(view.op, parameters));
     if (view.display == kNativeOutput) return stages;
     if (view.display == kLinearOutput) {
         append(stages, decode_stages(op));
-        stages.push_back(MatrixStage{rgb_to_rgb(view.op.output_primaries(), kRec709)});
+        stages.push_back(MatrixStage{rgb_to_rgb(view.op.output_primaries(), kRec709), "to_rec709"});
         return stages;
     }
     const Display& display = find_display(view.display);
     const DisplayLimit limit = display_limit(view.op, display);
     append(stages, display_light_stages(view.op, limit));
     if (!(limit.primaries == display.primaries)) {
-        stages.push_back(MatrixStage{rgb_to_rgb(limit.primaries, display.primaries)});
+        stages.push_back(MatrixStage{rgb_to_rgb(limit.primaries, display.primaries), "to_display"});
         stages.push_back(ClampStage{0, limit.peak});
     }
     if (display.is_hdr && view.reference_white != kReferenceWhite) {

@@ -30,6 +30,8 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Linear mixing of channels: y = M x.
 struct MatrixStage {
     Matrix3 m;
+    /// What its source calls it, lower_snake: the name of a shader's function. Empty: none.
+    const char* name = "";
 };
 
 /// One function of each channel alone.
@@ -38,6 +40,7 @@ struct CurveStage {
     std::array<Expr, 3> f;
     /// Analytic inverse where the source has one; of input 0.
     std::optional<std::array<Expr, 3>> inverse;
+    const char* name = "";  // as a matrix's
 
     [[nodiscard]] bool is_uniform() const { return same(f[0], f[1]) && same(f[1], f[2]); }
 };
@@ -78,6 +81,7 @@ struct ClampStage {
 /// other stages expresses.
 struct CrossTalkStage {
     std::array<Expr, 3> f;
+    const char* name = "";  // as a matrix's
 };
 
 /// A picture that a host defines by a cube: every channel placed on the cube's axes by one curve,
@@ -95,6 +99,12 @@ using Pipeline = std::vector<Stage>;
 /// One curve for all channels; `f` is of input 0.
 [[nodiscard]] TONEWRIGHT_API CurveStage curve_stage(const Expr& f);
 [[nodiscard]] TONEWRIGHT_API CurveStage curve_stage(const Expr& f, const Expr& inverse);
+/// The stage with the name that its source has for it.
+template <class NamedStage>
+[[nodiscard]] NamedStage named(const char* name, NamedStage stage) {
+    stage.name = name;
+    return stage;
+}
 
 /// What the stage is called in messages and docs: "matrix", "curve", "tone scale", "hue-preserving
 /// curve", "hexcone", "clamp", "cross-talk", "lattice".

@@ -122,6 +122,16 @@ struct DisplayLimit {
 /// @see sanitise in engine.h: NaN -> 0, then each channel to +-kHalfMax
 [[nodiscard]] TONEWRIGHT_API Pipeline build_view(const View& view);
 
+/// The name of the exposure, in stops, as a uniform.
+inline constexpr std::string_view kExposureUniform = "exposure";
+
+/// The same with numbers that are not known yet: uniforms of those names.
+/// @param uniforms  live parameters of the operator, and kExposureUniform, which takes the place of
+///                  the view's own exposure
+/// @throws Error    as build_live() does
+[[nodiscard]] TONEWRIGHT_API Pipeline build_live_view(const View& view,
+                                                      const std::vector<std::string>& uniforms);
+
 /// The inverse: what the view shows -> scene-linear in the view's input primaries. What the view
 /// limits is not brought back.
 /// @throws Error  when the operator has no inverse.

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <cstring>
+#include <filesystem>
+#include <memory>
+
+#include "base/atomic_file.h"
+#include "base/input_file.h"
+#include "cli/messages.h"
+#include "cli/shared_options.h"
+#include "measure/error_metric.h"
+#include "tonewright/generated_files.h"
+#include "tonewright/registry.h"
+#include "tonewright/shader.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace {
+
+struct Options : ViewOptions {
+    std::string language;
+    std::string file;
+    std::vector<std::string> uniforms;
+    std::string all;
+    bool is_inverse = false;
+    bool list = false;
+};
+
+int list_languages() {
+    for (const ShaderLanguageInfo& info : shader_languages())
+        fmt::print("{:<8}  {}\n", info.id, info.title);
+    return kOk;
+}
+
+/// Raw little-endian floats beside the text: FOLDER/NAME.rgba32f.
+std::vector<GeneratedFile> texture_files(const Shader& shader, const std::string& text_file) {
+    std::vector<GeneratedFile> files;
+    for (const ShaderTexture& texture : shader.textures) {
+        const std::filesystem::path path =
+            std::filesystem::path(text_file).parent_path() / (texture.name + ".rgba32f");
+        std::string bytes(texture.rgba.size() * sizeof(float), '\0');
+        std::memcpy(bytes.data(), texture.rgba.data(), bytes.size());
+        files.push_back({path.string(), std::move(bytes)});
+    }
+    return files;
+}
+
+void write_one(const Options& options) {
+    if (options.op.empty())
+        throw Error("shader: OPERATOR is missing; expected an id from `tonewright list`");
+    if (options.language.empty())
+        throw Error("shader: --language is missing; expected one of `tonewright shader --list`");
+    ShaderRequest request;
+    request.language = find_shader_language(options.language).language;
+    request.view = options.view();
+    request.uniforms = options.uniforms;
+    request.is_inverse = options.is_inverse;
+    if (!options.file.empty()) {
+        if (const std::string why = why_no_file(options.file); !why.empty())
+            throw FileError(fmt::format("write: {}: {}", options.file, why));
+    }
+    warn_of_constants(request.view.op, "shader", options.uniforms);
+    const Shader shader = write_shader(request);
+    constexpr double kTenBits = 1.0 / 1023;
+    if (shader.float_error > kTenBits) {
+        warn(
+            fmt::format("{} is up to {} off in float, more than a code value of 10 bits: its "
+                        "formulas need more digits than a shader has",
+                        shader.function, rounded_up(shader.float_error)));
+    }
+    if (!shader.textures.empty() && options.file.empty()) {
+        throw Error(
+            fmt::format("shader: {} has a texture; expected -o FILE, beside which it is "
+                        "written",
+                        shader.function));
+    }
+    if (options.file.empty()) {
+        fmt::print("{}", shader.text);
+        return;
+    }
+    for (const auto& [path, contents] : texture_files(shader, options.file)) {
+        write_text_atomically(path, contents);
+        print_result(path + ": its texture");
+    }
+    write_text_atomically(options.file, shader.text);
+    print_result(fmt::format("{}: {}(), in float within {} of the reference", options.file,
+                             shader.function, rounded_up(shader.float_error)));
+}
+
+/// Every operator, preset and look in one language or all: FOLDER/LANGUAGE/tw_NAME.EXTENSION.
+void write_all(const Options& options) {
+    std::vector<ShaderLanguageInfo> languages = shader_languages();
+    if (!options.language.empty()) languages = {find_shader_language(options.language)};
+    require_writable_folder(options.all);
+    std::vector<GeneratedFile> files;
+    std::string manifest = "path,operator,function,float_error\n";
+    for (const ShaderLanguageInfo& language : languages) {
+        for (const OperatorVariant& variant : all_variants()) {
+            ShaderRequest request;
+            request.language = language.language;
+            request.view = make_view(resolve_operator(variant.name, {}, variant.look),
+                                     options.input, options.exposure, options.display);
+            const Shader shader = write_shader(request);
+            const std::string path = language.id + "/" + shader.function + language.extension;
+            manifest += fmt::format("{},{},{},{}\n", path, operator_text(request.view.op),
+                                    shader.function, rounded_up(shader.float_error));
+            files.push_back({path, shader.text});
+            for (GeneratedFile& file : texture_files(shader, path))
+                files.push_back(std::move(file));
+        }
+    }
+    print_result(fmt::format("{}: {} shaders", options.all, files.size()));
+    files.push_back({"MANIFEST.csv", manifest});
+    write_generated_files(options.all, files, "MANIFEST.csv");
+}
+
+int run_shader(const Options& options) {
+    if (options.list) return list_languages();
+    if (options.all.empty()) {
+        write_one(options);
+    } else {
+        write_all(options);
+    }
+    return kOk;
+}
+
+}  // namespace
+
+void add_shader(CommandLine& program) {
+    auto options = std::make_shared<Options>();
+    options->display = kLinearOutput;
+    const Command command = program.add("shader", "Write an operator as shader source.");
+    command.group("LUTs and configs");
+    const char* const output = "Output";
+    command.add("operator", options->op, "operator, or operator:preset");
+    command.add("--language", options->language, "language of the text; see --list")
+        .value("NAME")
+        .group(output);
+    command.add("-o", options->file, "file to write (default: standard output)")
+        .value("FILE")
+        .group(output);
+    command
+        .add("--all", options->all,
+             "write all operators, presets and looks in one language or in all")
+        .value("FOLDER")
+        .group(output);
+    command
+        .add("--uniforms", options->uniforms,
+             "arguments behind the color: exposure, and live parameters (see `tonewright list "
+             "OPERATOR`)")
+        .value("NAME,...")
+        .separated_by(',')
+        .one_value_each()
+        .group(output);
+    command.add_flag("--inverse", options->is_inverse, "write the inverse").group(output);
+    command.add_flag("--list", options->list, "list the languages").group(output);
+    add_view_options(command, *options);
+    command.footer(
+        "The function is tw_<operator>, with _<preset>, _<look>, _inverse or _encoded behind it. "
+        "It "
+        "takes scene-linear light and returns display-linear light (--display linear, the default: "
+        "for renderers that encode their pictures themselves) or code values (--display srgb).\n"
+        "Examples:\n"
+        "  tonewright shader agx_threejs --language glsl -o agx.glsl\n"
+        "  tonewright shader hable --language hlsl --uniforms exposure,white -o hable.hlsl\n"
+        "  tonewright shader khronos_neutral --language c --display srgb -o neutral.h");
+    command.action([options, command] {
+        options->given = command.given();
+        return run_shader(*options);
+    });
+}
+
+TONEWRIGHT_NAMESPACE_END

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tonewright/view.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+
+enum class ShaderLanguage : unsigned char { glsl, glsl_es, hlsl, wgsl, msl, dctl, c, osl };
+
+struct ShaderLanguageInfo {
+    ShaderLanguage language;
+    std::string id;         // glsl-es
+    std::string title;      // "GLSL ES 3.00 (WebGL 2)"
+    std::string extension;  // of a file
+};
+[[nodiscard]] TONEWRIGHT_API const std::vector<ShaderLanguageInfo>& shader_languages();
+/// In any case, with `-`, `_` and blanks alike.
+/// @throws Error  with the nearest id.
+[[nodiscard]] TONEWRIGHT_API const ShaderLanguageInfo& find_shader_language(std::string_view name);
+
+/// What a shader function computes, and how it is written.
+struct ShaderRequest {
+    /// Display `linear` for a renderer that encodes its picture itself, a display for finished
+    /// pixels.
+    View view;
+    ShaderLanguage language = ShaderLanguage::glsl;
+    /// Arguments behind the color, in this order: kExposureUniform and live parameters of the
+    /// operator. All other numbers are constants of the text.
+    std::vector<std::string> uniforms = {};
+    /// What the view shows -> scene-linear.
+    bool is_inverse = false;
+};
+
+/// What a shader reads and its text cannot hold: edge^3 texels of four 32-bit floats, RGB and 1, x
+/// running fastest. The text fetches texels and interpolates itself, in tetrahedra: the texture
+/// needs no filter.
+struct ShaderTexture {
+    std::string name;  // in the text
+    int edge = 0;
+    std::vector<float> rgba;
+};
+
+/// Source text: comments that say what it is, functions that its last one calls, and that one.
+struct Shader {
+    /// tw_<id>[_preset][_look], with _inverse or _encoded behind it.
+    std::string function;
+    std::string text;
+    /// Largest difference between the function in float, each operation rounded once, and the
+    /// double reference, over the standard sample set with fewer colors; in code values of the
+    /// display, or of sRGB where the output is `linear` or `native`. What is above 1 counts
+    /// relatively. Of an inverse: relative to the scene value, or to 1 where that is less.
+    double float_error = 0;
+    /// What roundings may add up to with the errors that the Vulkan specification allows each
+    /// operation, in the same unit. To first order and over probe colors: an estimate, no bound.
+    double vulkan_estimate = 0;
+    std::vector<ShaderTexture> textures = {};
+};
+
+/// Text in ASCII, the same on every machine.
+///
+/// The function takes a color, scene-linear in the view's input primaries, 1.0 = diffuse white, and
+/// returns what the view shows; all in 32-bit float. Every finite color and both infinities give a
+/// finite result; what NaN gives depends on the compiler.
+///
+/// @throws Error  a local operator; a uniform that the operator does not have, that is not live, or
+///                that is named twice; an inverse with uniforms other than the exposure, or of an
+///                operator that has none; a lattice in a language that has no textures.
+[[nodiscard]] TONEWRIGHT_API Shader write_shader(const ShaderRequest& request);
+
+/// The name of the function that write_shader() writes.
+[[nodiscard]] TONEWRIGHT_API std::string shader_function_name(const ShaderRequest& request);
+
+TONEWRIGHT_NAMESPACE_END

@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "shader/body.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "shader/print.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace {
+
+// Binding strength, weakest first.
+enum Precedence { kAny = 0, kComparison = 1, kSum = 2, kProduct = 3, kUnary = 4, kAtom = 5 };
+
+/// An expression that is longer becomes a variable before it is part of another one.
+constexpr std::size_t kLongest = 72;
+
+bool is_leaf(const Expr& e) { return e.operand_count() == 0; }
+
+/// True when all leaves below operations of this kind are the channels of the color.
+bool is_of_channels(const Expr& e, ExprOp op) {
+    if (e.op() == ExprOp::input) return e.input_index() < 3;
+    return e.op() == op && is_of_channels(e.operand(0), op) && is_of_channels(e.operand(1), op);
+}
+
+/// a r + b g + c b
+bool is_weighted_sum(const Expr& e) {
+    if (e.op() == ExprOp::add)
+        return is_weighted_sum(e.operand(0)) && is_weighted_sum(e.operand(1));
+    return e.op() == ExprOp::multiply && e.operand(0).is_constant() &&
+           e.operand(1).op() == ExprOp::input && e.operand(1).input_index() < 3;
+}
+
+const char* word_for(const Expr& e) {
+    if (e.op() == ExprOp::maximum && is_of_channels(e, ExprOp::maximum)) return "largest";
+    if (e.op() == ExprOp::minimum && is_of_channels(e, ExprOp::minimum)) return "smallest";
+    if (e.op() == ExprOp::add && is_weighted_sum(e)) return "weighted";
+    switch (e.op()) {
+        case ExprOp::add:
+            return "sum";
+        case ExprOp::subtract:
+            return "difference";
+        case ExprOp::multiply:
+            return "product";
+        case ExprOp::divide:
+            return "ratio";
+        case ExprOp::minimum:
+        case ExprOp::maximum:
+            return "limited";
+        case ExprOp::power:
+        case ExprOp::exp2:
+            return "power";
+        case ExprOp::log2:
+            return "logarithm";
+        case ExprOp::square_root:
+            return "root";
+        case ExprOp::negate:
+            return "opposite";
+        case ExprOp::absolute:
+            return "magnitude";
+        case ExprOp::atan2:
+            return "angle";
+        case ExprOp::sine:
+            return "sine";
+        case ExprOp::cosine:
+            return "cosine";
+        case ExprOp::floor:
+            return "whole";
+        case ExprOp::select:
+            return "chosen";
+        case ExprOp::lookup:
+            return "entry";
+        case ExprOp::less:
+        case ExprOp::less_equal:
+            return "is_below";
+        case ExprOp::equal:
+            return "is_equal";
+        default:
+            return "value";
+    }
+}
+
+}  // namespace
+
+FunctionBody::FunctionBody(const LanguageFacts& language, std::vector<std::string> inputs,
+                           std::set<std::string> taken,
+                           std::map<const void*, std::string> table_functions)
+    : language_(language),
+      inputs_(std::move(inputs)),
+      taken_(std::move(taken)),
+      table_functions_(std::move(table_functions)) {}
+
+void FunctionBody::count(const Expr& e) {
+    if (++uses_[e.node()] > 1) return;
+    for (int i = 0; i < e.operand_count(); ++i)
+        count(e.operand(i));
+}
+
+std::string FunctionBody::value(const Expr& e) { return number(print(e), kAny); }
+
+void FunctionBody::add_input(const std::string& name, const std::string& value) {
+    const std::string own = unique(name);
+    add_line(language_.number, own, value);
+    inputs_.push_back(own);
+}
+
+FunctionBody::Text FunctionBody::print(const Expr& e) {
+    if (const auto known = known_.find(e.node()); known != known_.end()) return known->second;
+    Text text = compose(e);
+    if (is_leaf(e) || uses_[e.node()] < 2) return text;
+    const std::string name = name_for(e);
+    add_line(text.is_condition ? language_.boolean : language_.number, name, text.text);
+    text = {name, kAtom, text.is_condition};
+    known_.emplace(e.node(), text);
+    return text;
+}
+
+FunctionBody::Text FunctionBody::compose(const Expr& e) {
+    const auto part = [&](int i) { return e.operand(i); };
+    // A right operand of the same strength keeps its brackets: a + (b + c) rounds differently from
+    // (a + b) + c.
+    const auto binary = [&](const char* sign, int precedence) -> Text {
+        std::string a = operand(part(0), precedence);
+        return {a + sign + operand(part(1), precedence + 1), precedence};
+    };
+    const auto call = [&](const char* name) -> Text {
+        std::string text = std::string(name) + "(";
+        for (int i = 0; i < e.operand_count(); ++i)
+            text += (i ? ", " : "") + operand(part(i), kAny);
+        return {text + ")", kAtom};
+    };
+    const auto compare = [&](const char* sign) -> Text {
+        std::string a = operand(part(0), kSum);
+        return {a + sign + operand(part(1), kSum), kComparison, true};
+    };
+    /// Of two conditions; else a call.
+    const auto both = [&](const char* sign) -> Text {
+        const Text a = print(part(0));
+        const Text b = print(part(1));
+        if (!a.is_condition || !b.is_condition) return {};
+        return {"(" + a.text + sign + b.text + ")", kAtom, true};
+    };
+    switch (e.op()) {
+        case ExprOp::constant: {
+            std::string text = float_literal(e.value(), language_);
+            const int precedence = text.front() == '-' ? kUnary : kAtom;
+            return {std::move(text), precedence};
+        }
+        case ExprOp::input:
+            return {inputs_.at(static_cast<std::size_t>(e.input_index())), kAtom};
+        case ExprOp::uniform:
+            return {e.uniform_name(), kAtom};
+        case ExprOp::add:
+            if (part(1).is_constant() && part(1).value() < 0) {
+                return {operand(part(0), kSum) + " - " + float_literal(-part(1).value(), language_),
+                        kSum};
+            }
+            return binary(" + ", kSum);
+        case ExprOp::subtract:
+            if (part(1).is_constant() && part(1).value() < 0) {
+                return {operand(part(0), kSum) + " + " + float_literal(-part(1).value(), language_),
+                        kSum};
+            }
+            return binary(" - ", kSum);
+        case ExprOp::multiply:
+            if (Text text = both(" && "); text.is_condition) return text;
+            return binary(" * ", kProduct);
+        case ExprOp::divide:
+            return binary(" / ", kProduct);
+        case ExprOp::negate:
+            return {"-" + operand(part(0), kAtom), kUnary};
+        case ExprOp::minimum:
+            if (Text text = both(" && "); text.is_condition) return text;
+            return call(language_.minimum);
+        case ExprOp::maximum:
+            if (Text text = both(" || "); text.is_condition) return text;
+            return call(language_.maximum);
+        case ExprOp::power:
+            return call(language_.power);
+        case ExprOp::atan2:
+            return call(language_.atan2);
+        case ExprOp::absolute:
+            return call(language_.absolute);
+        case ExprOp::square_root:
+            return call(language_.square_root);
+        case ExprOp::exp2:
+            return call(language_.exp2);
+        case ExprOp::log2:
+            return call(language_.log2);
+        case ExprOp::sine:
+            return call(language_.sine);
+        case ExprOp::cosine:
+            return call(language_.cosine);
+        case ExprOp::floor:
+            return call(language_.floor);
+        case ExprOp::less:
+            return compare(" < ");
+        case ExprOp::less_equal:
+            return compare(" <= ");
+        case ExprOp::equal:
+            return compare(" == ");
+        case ExprOp::select:
+            return {choose(e), *language_.choose == '{' ? kAny : kAtom};
+        case ExprOp::lookup:
+            return call(table_functions_.at(e.table().get()).c_str());
+        case ExprOp::lattice:
+            return {lattice_channel(e), kAtom};
+    }
+    return {};
+}
+
+std::string FunctionBody::lattice_channel(const Expr& e) {
+    std::string color;
+    for (int i = 0; i < 3; ++i)
+        color += (i ? ", " : "") + operand(e.operand(i), kAny);
+    const std::string call = fmt::format("{}({}({}))", table_functions_.at(e.lattice().get()),
+                                         language_.make_color, color);
+    std::string& name = lattice_colors_[call];
+    if (name.empty()) {
+        name = unique("node");
+        add_line(language_.color, name, call);
+    }
+    return name + language_.channel[static_cast<std::size_t>(e.channel())];
+}
+
+std::string FunctionBody::operand(const Expr& e, int precedence) {
+    Text text = print(e);
+    if (text.text.size() > kLongest && !is_leaf(e)) {
+        const std::string name = name_for(e);
+        add_line(text.is_condition ? language_.boolean : language_.number, name, text.text);
+        text = {name, kAtom, text.is_condition};
+        known_.emplace(e.node(), text);
+    }
+    return number(text, precedence);
+}
+
+std::string FunctionBody::number(const Text& t, int precedence) const {
+    if (!t.is_condition) return t.precedence < precedence ? "(" + t.text + ")" : t.text;
+    const std::string text = fmt::format(
+        fmt::runtime(language_.choose), fmt::arg("condition", t.text),
+        fmt::arg("yes", float_literal(1, language_)), fmt::arg("no", float_literal(0, language_)));
+    return precedence > kAny && *language_.choose == '{' ? "(" + text + ")" : text;
+}
+
+std::string FunctionBody::condition(const Text& t) const {
+    if (t.is_condition) return t.text;
+    return number(t, kSum) + " != " + float_literal(0, language_);
+}
+
+std::string FunctionBody::choose(const Expr& e) {
+    const std::string is_true = condition(print(e.operand(0)));
+    const std::string yes = operand(e.operand(1), kComparison);
+    const std::string no = operand(e.operand(2), kComparison);
+    return fmt::format(fmt::runtime(language_.choose), fmt::arg("condition", is_true),
+                       fmt::arg("yes", yes), fmt::arg("no", no));
+}
+
+std::string FunctionBody::name_for(const Expr& e) {
+    // x2, x4, x6 of x: the powers of a polynomial.
+    if (e.op() == ExprOp::multiply) {
+        const auto power_of = [&](const Expr& factor) -> std::pair<std::string, int> {
+            if (const auto power = powers_.find(factor.node()); power != powers_.end())
+                return power->second;
+            const auto known = known_.find(factor.node());
+            if (known != known_.end()) return {known->second.text, 1};
+            if (factor.op() == ExprOp::input && inputs_.size() == 1) return {inputs_[0], 1};
+            return {"", 0};
+        };
+        const auto [a, m] = power_of(e.operand(0));
+        const auto [b, n] = power_of(e.operand(1));
+        const std::string name = a + std::to_string(m + n);
+        if (m > 0 && a == b && !taken_.contains(name)) {
+            powers_.emplace(e.node(), std::pair(a, m + n));
+            return unique(name);
+        }
+    }
+    return unique(word_for(e));
+}
+
+std::string FunctionBody::unique(const std::string& name) {
+    std::string result = name;
+    for (int number = 2; !taken_.insert(result).second; ++number)
+        result = name + "_" + std::to_string(number);
+    return result;
+}
+
+void FunctionBody::add_line(const char* type, const std::string& name, const std::string& value) {
+    lines_ += "    " +
+              fmt::format(fmt::runtime(language_.let), fmt::arg("type", type),
+                          fmt::arg("name", name), fmt::arg("value", value)) +
+              "\n";
+}
+
+TONEWRIGHT_NAMESPACE_END

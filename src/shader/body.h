@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "shader/language.h"
+#include "tonewright/expr.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+
+/// Prints expressions as the body of a function: what is read twice, or is too long for a line,
+/// becomes a local variable.
+class FunctionBody {
+  public:
+    /// @param inputs  the text of input 0, 1, ...
+    /// @param taken   names that no variable may have
+    /// @param table_functions  names of the functions that read tables and lattices
+    FunctionBody(const LanguageFacts& language, std::vector<std::string> inputs,
+                 std::set<std::string> taken, std::map<const void*, std::string> table_functions);
+
+    /// What is going to be printed, all of it, before the first value().
+    void count(const Expr& e);
+    /// The text of the expression; what it needs has been added to lines().
+    [[nodiscard]] std::string value(const Expr& e);
+    /// The same as a variable of this name, which becomes the next input.
+    void add_input(const std::string& name, const std::string& value);
+    [[nodiscard]] const std::string& lines() const { return lines_; }
+
+  private:
+    struct Text {
+        std::string text;
+        int precedence = 0;
+        bool is_condition = false;
+    };
+    [[nodiscard]] Text print(const Expr& e);
+    [[nodiscard]] Text compose(const Expr& e);
+    [[nodiscard]] std::string operand(const Expr& e, int precedence);
+    [[nodiscard]] std::string number(const Text& t, int precedence) const;
+    [[nodiscard]] std::string condition(const Text& t) const;
+    [[nodiscard]] std::string choose(const Expr& e);
+    [[nodiscard]] std::string name_for(const Expr& e);
+    [[nodiscard]] std::string unique(const std::string& name);
+    [[nodiscard]] std::string lattice_channel(const Expr& e);
+    void add_line(const char* type, const std::string& name, const std::string& value);
+
+    const LanguageFacts& language_;
+    std::vector<std::string> inputs_;
+    std::set<std::string> taken_;
+    std::map<const void*, std::string> table_functions_;
+    std::unordered_map<const ExprNode*, int> uses_;
+    std::unordered_map<const ExprNode*, Text> known_;
+    /// Of a power of a variable by multiplication: the variable, and the exponent.
+    std::unordered_map<const ExprNode*, std::pair<std::string, int>> powers_;
+    /// Colors that lattices gave, by the call.
+    std::map<std::string, std::string> lattice_colors_;
+    std::string lines_;
+};
+
+TONEWRIGHT_NAMESPACE_END

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "shader/language.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "base/strings.h"
+#include "tonewright/error.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace {
+
+constexpr LanguageFacts kGlsl = {
+    .language = ShaderLanguage::glsl,
+    .number = "float",
+    .color = "vec3",
+    .boolean = "bool",
+    .integer = "int",
+    .suffix = "",
+    .make_color = "vec3",
+    .channel = {".r", ".g", ".b"},
+    .before_function = "",
+    .function = "{result} {name}({parameters})",
+    .parameter = "{type} {name}",
+    .let = "{type} {name} = {value};",
+    .variable = "{type} {name} = {value};",
+    .loop = "for (int i = 0; i < {count}; i++)",
+    .choose = "{condition} ? {yes} : {no}",
+    .to_integer = "int({value})",
+    .to_number = "float({value})",
+    .array = "const float {name}[{count}] = float[{count}](\n{values});",
+    .texture = "uniform highp sampler3D {name};",
+    .fetch = "texelFetch({name}, ivec3({x}, {y}, {z}), 0).rgb",
+    .largest_array = 4096,
+    .has_local_arrays = false,
+    .has_color_math = true,
+    .splat = "vec3({value})",
+    .product = "dot({a}, {b})",
+    .minimum = "min",
+    .maximum = "max",
+    .absolute = "abs",
+    .square_root = "sqrt",
+    .exp2 = "exp2",
+    .log2 = "log2",
+    .power = "pow",
+    .sine = "sin",
+    .cosine = "cos",
+    .atan2 = "atan",
+    .floor = "floor",
+    .prologue = "",
+    .entry = LanguageFacts::Entry::function,
+};
+
+constexpr LanguageFacts glsl_es() {
+    LanguageFacts f = kGlsl;
+    f.language = ShaderLanguage::glsl_es;
+    f.prologue = "precision highp float;\nprecision highp int;\n";
+    return f;
+}
+
+constexpr LanguageFacts hlsl() {
+    LanguageFacts f = kGlsl;
+    f.language = ShaderLanguage::hlsl;
+    f.color = "float3";
+    f.make_color = "float3";
+    f.to_integer = "(int)({value})";
+    f.to_number = "(float)({value})";
+    f.array = "static const float {name}[{count}] = {{\n{values}}};";
+    f.texture = "Texture3D<float4> {name};";
+    f.fetch = "{name}.Load(int4({x}, {y}, {z}, 0)).rgb";
+    f.splat = "float3({value}, {value}, {value})";
+    f.atan2 = "atan2";
+    return f;
+}
+
+constexpr LanguageFacts wgsl() {
+    LanguageFacts f = kGlsl;
+    f.language = ShaderLanguage::wgsl;
+    f.number = "f32";
+    f.color = "vec3<f32>";
+    f.integer = "i32";
+    f.make_color = "vec3<f32>";
+    f.function = "fn {name}({parameters}) -> {result}";
+    f.parameter = "{name}: {type}";
+    f.let = "let {name} = {value};";
+    f.variable = "var {name}: {type} = {value};";
+    f.loop = "for (var i: i32 = 0; i < {count}; i++)";
+    f.choose = "select({no}, {yes}, {condition})";
+    f.to_integer = "i32({value})";
+    f.to_number = "f32({value})";
+    // Not `const`: older compilers refuse an index into one that is no constant.
+    f.array = "var<private> {name}: array<f32, {count}> = array<f32, {count}>(\n{values});";
+    f.texture = "@group(0) @binding({binding}) var {name}: texture_3d<f32>;";
+    f.fetch = "textureLoad({name}, vec3<i32>({x}, {y}, {z}), 0).rgb";
+    f.splat = "vec3<f32>({value})";
+    f.atan2 = "atan2";
+    return f;
+}
+
+constexpr LanguageFacts msl() {
+    LanguageFacts f = hlsl();
+    f.language = ShaderLanguage::msl;
+    f.suffix = "f";
+    f.before_function = "inline ";
+    f.to_integer = "int({value})";
+    f.to_number = "float({value})";
+    f.texture = "";
+    f.array = "constant float {name}[{count}] = {{\n{values}}};";
+    f.splat = "float3({value})";
+    f.prologue = "#include <metal_stdlib>\nusing namespace metal;\n";
+    return f;
+}
+
+/// C, and what has its functions under other names.
+constexpr LanguageFacts c() {
+    LanguageFacts f = kGlsl;
+    f.language = ShaderLanguage::c;
+    f.color = "tw_rgb";
+    f.boolean = "int";
+    f.suffix = "f";
+    f.make_color = "tw_make_rgb";
+    f.before_function = "static inline ";
+    f.to_integer = "(int)({value})";
+    f.to_number = "(float)({value})";
+    f.array = "static const float {name}[{count}] = {{\n{values}}};";
+    f.texture = "";
+    f.largest_array = std::numeric_limits<std::size_t>::max();
+    f.has_color_math = false;
+    f.product = "";
+    f.minimum = "fminf";
+    f.maximum = "fmaxf";
+    f.absolute = "fabsf";
+    f.square_root = "sqrtf";
+    f.exp2 = "exp2f";
+    f.log2 = "log2f";
+    f.power = "powf";
+    f.sine = "sinf";
+    f.cosine = "cosf";
+    f.atan2 = "atan2f";
+    f.floor = "floorf";
+    f.prologue =
+        "#include <math.h>\n"
+        "\n"
+        "#ifndef TONEWRIGHT_RGB\n"
+        "#define TONEWRIGHT_RGB\n"
+        "typedef struct { float r, g, b; } tw_rgb;\n"
+        "static inline tw_rgb tw_make_rgb(float r, float g, float b) {\n"
+        "    tw_rgb c;\n"
+        "    c.r = r;\n"
+        "    c.g = g;\n"
+        "    c.b = b;\n"
+        "    return c;\n"
+        "}\n"
+        "#endif\n";
+    f.entry = LanguageFacts::Entry::pointers;
+    return f;
+}
+
+constexpr LanguageFacts dctl() {
+    LanguageFacts f = c();
+    f.language = ShaderLanguage::dctl;
+    f.color = "float3";
+    f.boolean = "bool";
+    f.make_color = "make_float3";
+    f.channel = {".x", ".y", ".z"};
+    f.before_function = "__DEVICE__ ";
+    f.largest_array = 4096;
+    f.array = "__CONSTANT__ float {name}[{count}] = {{\n{values}}};";
+    f.minimum = "_fminf";
+    f.maximum = "_fmaxf";
+    f.absolute = "_fabs";
+    f.square_root = "_sqrtf";
+    f.exp2 = "_exp2f";
+    f.log2 = "_log2f";
+    f.power = "_powf";
+    f.sine = "_sinf";
+    f.cosine = "_cosf";
+    f.atan2 = "_atan2f";
+    f.floor = "_floor";
+    f.prologue = "";
+    f.entry = LanguageFacts::Entry::function;
+    return f;
+}
+
+constexpr LanguageFacts osl() {
+    LanguageFacts f = kGlsl;
+    f.language = ShaderLanguage::osl;
+    f.color = "color";
+    f.boolean = "int";
+    f.make_color = "color";
+    f.channel = {"[0]", "[1]", "[2]"};
+    f.array = "float {name}[{count}] = {{\n{values}}};";
+    f.to_integer = "(int)({value})";
+    f.to_number = "(float)({value})";
+    f.texture = "";
+    f.has_local_arrays = true;
+    f.splat = "color({value})";
+    f.product = "";  // of vectors alone
+    f.atan2 = "atan2";
+    f.entry = LanguageFacts::Entry::shader;
+    return f;
+}
+
+constexpr std::array kFacts = {kGlsl, glsl_es(), hlsl(), wgsl(), msl(), dctl(), c(), osl()};
+
+}  // namespace
+
+const std::vector<ShaderLanguageInfo>& shader_languages() {
+    static const std::vector<ShaderLanguageInfo> languages = {
+        {ShaderLanguage::glsl, "glsl", "GLSL 3.30 and later", ".glsl"},
+        {ShaderLanguage::glsl_es, "glsl-es", "GLSL ES 3.00 (WebGL 2)", ".glsl"},
+        {ShaderLanguage::hlsl, "hlsl", "HLSL", ".hlsl"},
+        {ShaderLanguage::wgsl, "wgsl", "WGSL (WebGPU)", ".wgsl"},
+        {ShaderLanguage::msl, "msl", "Metal Shading Language", ".metal"},
+        {ShaderLanguage::dctl, "dctl", "DCTL (DaVinci Resolve)", ".h"},
+        {ShaderLanguage::c, "c", "C99 and C++", ".h"},
+        {ShaderLanguage::osl, "osl", "Open Shading Language", ".osl"},
+    };
+    return languages;
+}
+
+const ShaderLanguageInfo& find_shader_language(std::string_view name) {
+    std::vector<std::string> ids;
+    for (const ShaderLanguageInfo& info : shader_languages())
+        ids.push_back(info.id);
+    return shader_languages()[find_choice("language", name, ids)];
+}
+
+const LanguageFacts& facts_of(ShaderLanguage language) {
+    return *std::find_if(kFacts.begin(), kFacts.end(),
+                         [&](const LanguageFacts& f) { return f.language == language; });
+}
+
+TONEWRIGHT_NAMESPACE_END

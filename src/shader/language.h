@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "tonewright/shader.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+
+/// What the printer has to know of a language. Patterns are those of fmt, with named fields.
+struct LanguageFacts {
+    ShaderLanguage language;
+    const char* number;  // the type of a number, of a color, ...
+    const char* color;
+    const char* boolean;
+    const char* integer;
+    const char* suffix;      // of a literal
+    const char* make_color;  // of three numbers
+    std::array<const char*, 3> channel;
+    const char* before_function;
+    const char* function;    // {result}, {name}, {parameters}
+    const char* parameter;   // {type}, {name}
+    const char* let;         // {type}, {name}, {value}
+    const char* variable;    // the same
+    const char* loop;        // {count}; the counter is i
+    const char* choose;      // {condition}, {yes}, {no}
+    const char* to_integer;  // {value}
+    const char* to_number;   // {value}
+    const char* array;       // {name}, {count}, {values}
+    /// Of 3D, its {name} and {binding}; empty: none can be read without being an argument.
+    const char* texture;
+    const char* fetch;  // of a texture's {name} at {x}, {y}, {z}
+    /// The largest array that a text of the language should hold.
+    std::size_t largest_array;
+    /// Arrays stand in the function that reads them.
+    bool has_local_arrays;
+    /// min, max and clamp take colors, `*` takes a color and a number.
+    bool has_color_math;
+    const char* splat;    // a color of one {value}; read where it has color math
+    const char* product;  // of two colors {a}, {b}: their dot product; empty: there is none
+    const char* minimum;
+    const char* maximum;
+    const char* absolute;
+    const char* square_root;
+    const char* exp2;
+    const char* log2;
+    const char* power;
+    const char* sine;
+    const char* cosine;
+    const char* atan2;
+    const char* floor;
+    /// Before everything else.
+    const char* prologue;
+    enum class Entry : unsigned char { function, pointers, shader } entry;
+};
+
+[[nodiscard]] const LanguageFacts& facts_of(ShaderLanguage language);
+
+TONEWRIGHT_NAMESPACE_END

@@ -1,0 +1,514 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "shader/print.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include "expr/nodes.h"
+#include "shader/body.h"
+#include "tonewright/error.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace {
+
+template <class... F>
+struct Overloaded : F... {
+    using F::operator()...;
+};
+template <class... F>
+Overloaded(F...) -> Overloaded<F...>;
+
+template <class Item>
+void add_once(std::vector<Item>& items, Item item) {
+    if (std::find(items.begin(), items.end(), item) == items.end()) items.push_back(item);
+}
+
+class ProgramPrinter {
+  public:
+    ProgramPrinter(const ShaderProgram& program, const LanguageFacts& language, std::string name,
+                   std::vector<std::string> uniforms)
+        : program_(program),
+          language_(language),
+          name_(std::move(name)),
+          uniforms_(std::move(uniforms)) {}
+
+    PrintedProgram print() {
+        print_tables();
+        for (const MatrixFunction& function : program_.matrices)
+            print_matrix(function);
+        for (const ScalarFunction& function : program_.scalars)
+            print_scalar(function);
+        for (const ColorFunction& function : program_.colors)
+            print_color(function);
+        print_entry();
+        return {std::move(text_), std::move(textures_)};
+    }
+
+  private:
+    [[nodiscard]] std::string helper(const std::string& name) const { return name_ + "_" + name; }
+    [[nodiscard]] std::string literal(double value) const {
+        return float_literal(value, language_);
+    }
+    [[nodiscard]] std::string declared(const char* type, const std::string& name) const {
+        return fmt::format(fmt::runtime(language_.parameter), fmt::arg("type", type),
+                           fmt::arg("name", name));
+    }
+    [[nodiscard]] std::string made(const std::array<std::string, 3>& c) const {
+        return fmt::format("{}({}, {}, {})", language_.make_color, c[0], c[1], c[2]);
+    }
+    /// The same on lines of their own.
+    [[nodiscard]] std::string made_on_lines(const std::array<std::string, 3>& c) const {
+        return fmt::format("{}(\n        {},\n        {},\n        {})", language_.make_color, c[0],
+                           c[1], c[2]);
+    }
+    [[nodiscard]] std::array<std::string, 3> channels_of(const std::string& color) const {
+        return {color + language_.channel[0], color + language_.channel[1],
+                color + language_.channel[2]};
+    }
+    void line(const std::string& text) { text_ += "    " + text + "\n"; }
+
+    void begin(const char* result, const std::string& name,
+               const std::vector<std::string>& parameters) {
+        text_ += fmt::format("\n{}{} {{\n", language_.before_function,
+                             fmt::format(fmt::runtime(language_.function),
+                                         fmt::arg("result", result), fmt::arg("name", name),
+                                         fmt::arg("parameters", fmt::join(parameters, ", "))));
+    }
+    void end() { text_ += "}\n"; }
+
+    /// Those of the program's uniforms that the expressions read, in the program's order.
+    [[nodiscard]] std::vector<std::string> read_uniforms(std::span<const Expr> exprs) const {
+        const std::vector<std::string> read = uniforms_of(exprs);
+        std::vector<std::string> result;
+        for (const std::string& uniform : uniforms_) {
+            if (std::find(read.begin(), read.end(), uniform) != read.end())
+                result.push_back(uniform);
+        }
+        return result;
+    }
+    [[nodiscard]] std::vector<std::string> parameters(const char* type, const std::string& name,
+                                                      const std::vector<std::string>& uniforms) {
+        std::vector<std::string> result = {declared(type, name)};
+        for (const std::string& uniform : uniforms)
+            result.push_back(declared(language_.number, uniform));
+        return result;
+    }
+    static std::string call(const std::string& name, const std::string& argument,
+                            const std::vector<std::string>& uniforms) {
+        std::string text = name + "(" + argument;
+        for (const std::string& uniform : uniforms)
+            text += ", " + uniform;
+        return text + ")";
+    }
+    [[nodiscard]] std::string scalar_call(std::size_t function, const std::string& argument) const {
+        const ScalarFunction& f = program_.scalars[function];
+        return call(helper(f.name), argument, read_uniforms(std::span(&f.f, 1)));
+    }
+    [[nodiscard]] std::vector<std::string> uniforms_of_color(const ColorFunction& function) const {
+        std::vector<Expr> all(function.f.begin(), function.f.end());
+        for (const ColorFunction::Call& c : function.calls) {
+            all.push_back(c.argument);
+            all.push_back(program_.scalars[c.function].f);
+        }
+        return read_uniforms(all);
+    }
+
+    void print_tables() {
+        std::vector<Expr> all;
+        for (const ScalarFunction& function : program_.scalars)
+            all.push_back(function.f);
+        for (const ColorFunction& function : program_.colors) {
+            for (const ColorFunction::Call& c : function.calls)
+                all.push_back(c.argument);
+            all.insert(all.end(), function.f.begin(), function.f.end());
+        }
+        std::vector<const Table*> tables;
+        std::vector<const Lattice*> lattices;
+        for (const Expr& e : nodes_of(all)) {
+            if (e.op() == ExprOp::lookup) add_once(tables, e.table().get());
+            if (e.op() == ExprOp::lattice) add_once(lattices, e.lattice().get());
+        }
+        const auto name_of = [&](const char* what, std::size_t i) {
+            return helper(what + (i ? std::to_string(i + 1) : ""));
+        };
+        for (std::size_t i = 0; i < tables.size(); ++i) {
+            table_functions_[tables[i]] = name_of("table", i);
+            print_table(name_of("table", i), *tables[i]);
+        }
+        for (std::size_t i = 0; i < lattices.size(); ++i) {
+            table_functions_[lattices[i]] = name_of("lattice_at", i);
+            print_lattice(name_of("lattice_at", i), *lattices[i]);
+        }
+    }
+
+    [[nodiscard]] std::string array(const std::string& name, std::span<const double> numbers) {
+        std::string values;
+        std::string row;
+        for (std::size_t i = 0; i < numbers.size(); ++i) {
+            const std::string number = literal(numbers[i]) + (i + 1 < numbers.size() ? "," : "");
+            if (row.size() + number.size() > 92) {
+                values += "    " + row + "\n";
+                row.clear();
+            }
+            row += (row.empty() ? "" : " ") + number;
+        }
+        values += "    " + row;
+        return fmt::format(fmt::runtime(language_.array), fmt::arg("name", name),
+                           fmt::arg("count", numbers.size()), fmt::arg("values", values)) +
+               "\n";
+    }
+
+    [[nodiscard]] std::string let(const char* type, const char* name,
+                                  const std::string& value) const {
+        return fmt::format(fmt::runtime(language_.let), fmt::arg("type", type),
+                           fmt::arg("name", name), fmt::arg("value", value));
+    }
+    [[nodiscard]] std::string variable(const char* name, const std::string& value) const {
+        return fmt::format(fmt::runtime(language_.variable), fmt::arg("type", language_.integer),
+                           fmt::arg("name", name), fmt::arg("value", value));
+    }
+    [[nodiscard]] std::string to_integer(const std::string& value) const {
+        return fmt::format(fmt::runtime(language_.to_integer), fmt::arg("value", value));
+    }
+    [[nodiscard]] std::string to_number(const std::string& value) const {
+        return fmt::format(fmt::runtime(language_.to_number), fmt::arg("value", value));
+    }
+    [[nodiscard]] std::string limited(const std::string& x, const std::string& lo,
+                                      const std::string& hi) const {
+        return fmt::format("{}({}({}, {}), {})", language_.minimum, language_.maximum, x, lo, hi);
+    }
+
+    void print_table(const std::string& name, const Table& table) {
+        const std::string values = name + "_values";
+        const std::string positions = name + "_positions";
+        const std::string arrays =
+            array(values, table.samples) +
+            (table.positions.empty() ? "" : array(positions, table.positions));
+        if (!language_.has_local_arrays) text_ += "\n" + arrays;
+        begin(language_.number, name, {declared(language_.number, "x")});
+        if (language_.has_local_arrays) text_ += arrays;
+        const auto n = static_cast<int>(table.samples.size());
+        const bool is_step = table.interpolation == Table::Interpolation::step;
+        const int last = is_step ? n - 1 : n - 2;  // of the first samples of cells
+        const std::string from = fmt::format("{}[cell]", values);
+        const std::string to = fmt::format("{}[cell + 1]", values);
+        const char* const number = language_.number;
+        if (n == 1) {
+            line(fmt::format("return {}[0];", values));
+            return end();
+        }
+        if (table.positions.empty()) {
+            line(let(number, "place",
+                     fmt::format("{} * {}", limited("x", literal(0), literal(1)),
+                                 literal(is_step ? n : n - 1))));
+            line(let(
+                language_.integer, "cell",
+                to_integer(fmt::format("{}({}, {})", language_.minimum, "place", literal(last)))));
+            if (!is_step) line(let(number, "t", fmt::format("place - {}", to_number("cell"))));
+        } else {
+            const int steps = static_cast<int>(std::ceil(std::log2(last + 1)));
+            line(variable("cell", "0"));
+            line(variable("next", std::to_string(last + 1)));
+            line(fmt::format(fmt::runtime(language_.loop), fmt::arg("count", steps)) + " {");
+            line("    " + let(language_.integer, "middle", "(cell + next) / 2"));
+            line(fmt::format(
+                "    if (x < {}[middle]) {{ next = middle; }} else {{ cell = middle; }}",
+                positions));
+            line("}");
+            if (!is_step) {
+                line(let(number, "width", fmt::format("{0}[cell + 1] - {0}[cell]", positions)));
+                line(let(number, "t",
+                         limited(fmt::format("(x - {}[cell]) / width", positions), literal(0),
+                                 literal(1))));
+            }
+        }
+        line(is_step ? fmt::format("return {};", from)
+                     : fmt::format("return {0} + t * ({1} - {0});", from, to));
+        end();
+    }
+
+    /// How the text of a node of the lattice is had: from an array, or from a texture.
+    std::string print_nodes(const std::string& name, const Lattice& lattice) {
+        const std::vector<double>& numbers = lattice.nodes();
+        const std::string nodes = name + "_nodes";
+        if (numbers.size() <= language_.largest_array) {
+            text_ += "\n" + array(nodes, numbers);
+            const std::string node = name + "_node";
+            begin(language_.color, node,
+                  {declared(language_.integer, "r"), declared(language_.integer, "g"),
+                   declared(language_.integer, "b")});
+            line(let(language_.integer, "i",
+                     fmt::format("3 * ((r * {0} + g) * {0} + b)", lattice.edge())));
+            line("return " + made({nodes + "[i]", nodes + "[i + 1]", nodes + "[i + 2]"}) + ";");
+            end();
+            return node + "({r}, {g}, {b})";
+        }
+        if (!*language_.texture) {
+            throw Error(fmt::format(
+                "shader: {} reads a lattice of {}^3 colors; expected a language with textures: "
+                "glsl, glsl-es, hlsl, wgsl; or c",
+                name_, lattice.edge()));
+        }
+        ShaderTexture texture{nodes, lattice.edge(), {}};
+        for (std::size_t i = 0; i < numbers.size(); ++i) {
+            texture.rgba.push_back(static_cast<float>(numbers[i]));
+            if (i % 3 == 2) texture.rgba.push_back(1);
+        }
+        text_ +=
+            "\n// " + nodes + ": " +
+            fmt::format("{0} x {0} x {0} texels, RGBA, 32-bit float, no filter", lattice.edge()) +
+            "\n" +
+            fmt::format(fmt::runtime(language_.texture), fmt::arg("name", nodes),
+                        fmt::arg("binding", textures_.size())) +
+            "\n";
+        textures_.push_back(std::move(texture));
+        // The third coordinate runs fastest.
+        return fmt::format(fmt::runtime(language_.fetch), fmt::arg("name", nodes),
+                           fmt::arg("x", "{b}"), fmt::arg("y", "{g}"), fmt::arg("z", "{r}"));
+    }
+
+    void print_lattice(const std::string& name, const Lattice& lattice) {
+        const std::string fetch = print_nodes(name, lattice);
+        const auto node = [&](const char* r, const char* g, const char* b) {
+            return fmt::format(fmt::runtime(fetch), fmt::arg("r", r), fmt::arg("g", g),
+                               fmt::arg("b", b));
+        };
+        const char* const number = language_.number;
+        const char* const integer = language_.integer;
+        const auto yes_or_no = [&](const std::string& condition) {
+            return fmt::format(fmt::runtime(language_.choose), fmt::arg("condition", condition),
+                               fmt::arg("yes", "1"), fmt::arg("no", "0"));
+        };
+        const std::string min = language_.minimum;
+        const std::string max = language_.maximum;
+        begin(language_.color, name, {declared(language_.color, "c")});
+        line("// Between the nodes of a tetrahedron along the gray diagonal.");
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::string channel(1, "rgb"[i]);
+            line(let(number, ("place_" + channel).c_str(),
+                     limited(channels_of("c")[i], literal(0), literal(1)) + " * " +
+                         literal(lattice.edge() - 1)));
+            line(let(integer, channel.c_str(),
+                     to_integer(fmt::format("{}(place_{}, {})", min, channel,
+                                            literal(lattice.edge() - 2)))));
+            line(let(number, ("f" + channel).c_str(),
+                     "place_" + channel + " - " + to_number(channel)));
+        }
+        // The first step goes along the largest fraction, the last along the smallest.
+        line(let(integer, "r1", yes_or_no("fr >= fg && fr >= fb")));
+        line(let(integer, "g1", yes_or_no("r1 == 0 && fg >= fb")));
+        line(let(integer, "b1", "1 - r1 - g1"));
+        line(let(integer, "b3", yes_or_no("fb <= fr && fb <= fg")));
+        line(let(integer, "g3", yes_or_no("b3 == 0 && fg <= fr")));
+        line(let(integer, "r3", "1 - b3 - g3"));
+        line(let(number, "largest", fmt::format("{0}({0}(fr, fg), fb)", max)));
+        line(let(number, "smallest", fmt::format("{0}({0}(fr, fg), fb)", min)));
+        line(
+            let(number, "middle", fmt::format("{1}({0}(fr, fg), {0}({1}(fr, fg), fb))", min, max)));
+        const char* const color = language_.color;
+        line(let(color, "n0", node("r", "g", "b")));
+        line(let(color, "n1", node("r + r1", "g + g1", "b + b1")));
+        line(let(color, "n2", node("r + 1 - r3", "g + 1 - g3", "b + 1 - b3")));
+        line(let(color, "n3", node("r + 1", "g + 1", "b + 1")));
+        std::array<std::string, 3> out;
+        for (std::size_t i = 0; i < 3; ++i) {
+            out[i] = fmt::format(
+                "({1} - largest) * n0{0} + (largest - middle) * n1{0} + (middle - smallest) * "
+                "n2{0} + smallest * n3{0}",
+                language_.channel[i], literal(1));
+        }
+        line("return " + made_on_lines(out) + ";");
+        end();
+    }
+
+    void print_matrix(const MatrixFunction& function) {
+        begin(language_.color, helper(function.name), {declared(language_.color, "c")});
+        const std::array<std::string, 3> c = channels_of("c");
+        std::array<std::string, 3> rows;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const auto& row = function.m[i];
+            if (*language_.product) {
+                const std::string weights =
+                    made({literal(row[0]), literal(row[1]), literal(row[2])});
+                rows[i] = fmt::format(fmt::runtime(language_.product), fmt::arg("a", weights),
+                                      fmt::arg("b", "c"));
+                continue;
+            }
+            for (std::size_t j = 0; j < 3; ++j) {
+                const bool is_minus = j > 0 && row[j] < 0;
+                rows[i] += (j ? (is_minus ? " - " : " + ") : "") +
+                           literal(is_minus ? -row[j] : row[j]) + " * " + c[j];
+            }
+        }
+        line("return " + made_on_lines(rows) + ";");
+        end();
+    }
+
+    void print_scalar(const ScalarFunction& function) {
+        const std::vector<std::string> uniforms = read_uniforms(std::span(&function.f, 1));
+        std::set<std::string> taken(uniforms_.begin(), uniforms_.end());
+        taken.insert("x");
+        FunctionBody body(language_, {"x"}, taken, table_functions_);
+        body.count(function.f);
+        const std::string value = body.value(function.f);
+        begin(language_.number, helper(function.name), parameters(language_.number, "x", uniforms));
+        text_ += body.lines();
+        line("return " + value + ";");
+        end();
+    }
+
+    void print_color(const ColorFunction& function) {
+        const std::array<std::string, 3> c = channels_of("c");
+        std::set<std::string> taken(uniforms_.begin(), uniforms_.end());
+        taken.insert("c");
+        FunctionBody body(language_, {c.begin(), c.end()}, taken, table_functions_);
+        for (const ColorFunction::Call& call : function.calls)
+            body.count(call.argument);
+        for (const Expr& e : function.f)
+            body.count(e);
+        for (const ColorFunction::Call& call : function.calls) {
+            const std::string argument = body.value(call.argument);
+            body.add_input(call.result, scalar_call(call.function, argument));
+        }
+        std::array<std::string, 3> out;
+        for (std::size_t i = 0; i < 3; ++i)
+            out[i] = body.value(function.f[i]);
+        begin(language_.color, helper(function.name),
+              parameters(language_.color, "c", uniforms_of_color(function)));
+        text_ += body.lines();
+        const bool is_short = out[0].size() + out[1].size() + out[2].size() < 70;
+        line("return " + (is_short ? made(out) : made_on_lines(out)) + ";");
+        end();
+    }
+
+    /// The color, each channel through what `f` makes of its text.
+    template <class F>
+    [[nodiscard]] std::string of_each(const std::string& color, const F& f) const {
+        std::array<std::string, 3> c = channels_of(color);
+        std::size_t length = 0;
+        for (std::string& channel : c) {
+            channel = f(channel);
+            length += channel.size();
+        }
+        return length < 70 ? made(c) : made_on_lines(c);
+    }
+
+    [[nodiscard]] std::string clamped(const ClampStage& s) const {
+        const auto limit = [&](std::string value, const auto& end_of) {
+            if (s.lo != -kInfinity)
+                value = fmt::format("{}({}, {})", language_.maximum, value, end_of(s.lo));
+            if (s.hi != kInfinity)
+                value = fmt::format("{}({}, {})", language_.minimum, value, end_of(s.hi));
+            return value;
+        };
+        if (!language_.has_color_math) {
+            return of_each("c", [&](const std::string& channel) {
+                return limit(channel, [&](double x) { return literal(x); });
+            });
+        }
+        const auto splat = [&](double x) {
+            return fmt::format(fmt::runtime(language_.splat), fmt::arg("value", literal(x)));
+        };
+        if (s.lo == -kInfinity || s.hi == kInfinity) return limit("c", splat);
+        return fmt::format("clamp(c, {}, {})", splat(s.lo), splat(s.hi));
+    }
+
+    [[nodiscard]] std::string after(const ProgramStep& step) const {
+        return std::visit(
+            Overloaded{[&](const ScaleStep& s) {
+                           const std::string factor = literal(s.factor);
+                           if (language_.has_color_math) return "c * " + factor;
+                           return of_each("c",
+                                          [&](const std::string& x) { return x + " * " + factor; });
+                       },
+                       [&](const MatrixStep& s) {
+                           return helper(program_.matrices[s.function].name) + "(c)";
+                       },
+                       [&](const ClampStage& s) { return clamped(s); },
+                       [&](const ScalarStep& s) {
+                           return of_each("c", [&](const std::string& channel) {
+                               return scalar_call(s.function, channel);
+                           });
+                       },
+                       [&](const ColorStep& s) {
+                           const ColorFunction& function = program_.colors[s.function];
+                           return call(helper(function.name), "c", uniforms_of_color(function));
+                       }},
+            step);
+    }
+
+    void print_steps(const std::string& scene) {
+        line(fmt::format(fmt::runtime(language_.variable), fmt::arg("type", language_.color),
+                         fmt::arg("name", "c"), fmt::arg("value", scene)));
+        for (const ProgramStep& step : program_.steps)
+            line("c = " + after(step) + ";");
+    }
+
+    void print_entry() {
+        switch (language_.entry) {
+            case LanguageFacts::Entry::function:
+                begin(language_.color, name_, parameters(language_.color, "scene", uniforms_));
+                print_steps("scene");
+                line("return c;");
+                return end();
+            case LanguageFacts::Entry::pointers: {
+                std::vector<std::string> all = {"const float in[3]"};
+                for (const std::string& uniform : uniforms_)
+                    all.push_back(declared(language_.number, uniform));
+                all.emplace_back("float out[3]");
+                begin("void", name_, all);
+                print_steps(made({"in[0]", "in[1]", "in[2]"}));
+                for (std::size_t i = 0; i < 3; ++i)
+                    line(fmt::format("out[{}] = c{};", i, language_.channel[i]));
+                return end();
+            }
+            case LanguageFacts::Entry::shader: {
+                std::vector<std::string> all = {"color Cin = color(0)"};
+                for (const std::string& uniform : uniforms_)
+                    all.push_back(fmt::format("float {} = 0", uniform));
+                all.emplace_back("output color Cout = color(0)");
+                text_ +=
+                    fmt::format("\nshader {}(\n    {}) {{\n", name_, fmt::join(all, ",\n    "));
+                print_steps("Cin");
+                line("Cout = c;");
+                return end();
+            }
+        }
+    }
+
+    const ShaderProgram& program_;
+    const LanguageFacts& language_;
+    std::string name_;
+    std::vector<std::string> uniforms_;
+    std::map<const void*, std::string> table_functions_;
+    std::vector<ShaderTexture> textures_;
+    std::string text_;
+};
+
+}  // namespace
+
+PrintedProgram print_program(const ShaderProgram& program, const LanguageFacts& language,
+                             const std::string& name, const std::vector<std::string>& uniforms) {
+    return ProgramPrinter(program, language, name, uniforms).print();
+}
+
+std::string float_literal(double value, const LanguageFacts& language) {
+    constexpr double kMost = std::numeric_limits<float>::max();
+    auto number = static_cast<float>(std::clamp(value, -kMost, kMost));
+    if (std::fpclassify(number) == FP_SUBNORMAL) number = 0;
+    std::array<char, 32> buffer{};
+    const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), number);
+    std::string text(buffer.data(), end);
+    const std::size_t exponent = text.find('e');
+    std::string digits = text.substr(0, exponent);
+    if (digits.find('.') == std::string::npos) digits += ".0";
+    return digits + (exponent == std::string::npos ? "" : text.substr(exponent)) + language.suffix;
+}
+
+TONEWRIGHT_NAMESPACE_END

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "shader/language.h"
+#include "shader/program.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+
+struct PrintedProgram {
+    std::string text;
+    std::vector<ShaderTexture> textures;
+};
+/// The functions of a program, each before the ones that call it.
+/// @param name      of the last function, with which the names of all others begin
+/// @param uniforms  its arguments behind the color
+/// @throws Error    a lattice that the language cannot hold
+[[nodiscard]] PrintedProgram print_program(const ShaderProgram& program,
+                                           const LanguageFacts& language, const std::string& name,
+                                           const std::vector<std::string>& uniforms);
+
+/// The shortest decimal that reads back as the same float, with a point.
+[[nodiscard]] std::string float_literal(double value, const LanguageFacts& language);
+
+TONEWRIGHT_NAMESPACE_END

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "shader/float_form.h"
+#include "tonewright/pipeline.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+
+/// A function of one number.
+struct ScalarFunction {
+    std::string name;
+    Expr f;  // of input 0
+};
+
+/// A function of a color. Inputs 0, 1, 2 are its channels; input 3 + i is what calls[i] returns.
+struct ColorFunction {
+    struct Call {
+        std::size_t function;  // index of a scalar function
+        Expr argument;         // of inputs 0, 1, 2 and of earlier calls
+        std::string result;    // its name
+    };
+    std::string name;
+    std::vector<Call> calls;
+    std::array<Expr, 3> f;
+};
+
+struct MatrixFunction {
+    std::string name;
+    Matrix3 m;
+};
+
+/// What the function does with its color c, one after another.
+struct ScaleStep {
+    double factor;
+};
+struct MatrixStep {
+    std::size_t function;
+};
+struct ScalarStep {  // each channel alone
+    std::size_t function;
+};
+struct ColorStep {
+    std::size_t function;
+};
+using ProgramStep = std::variant<ScaleStep, MatrixStep, ClampStage, ScalarStep, ColorStep>;
+
+/// A pipeline as functions that call each other, in float: what is the same in all languages.
+struct ShaderProgram {
+    std::vector<ScalarFunction> scalars;
+    std::vector<ColorFunction> colors;
+    std::vector<MatrixFunction> matrices;
+    std::vector<ProgramStep> steps;
+};
+
+/// The first step limits the color to +-kHalfMax, as every engine does.
+/// @param uniforms  of every uniform that the pipeline reads
+[[nodiscard]] ShaderProgram make_program(const Pipeline& pipeline, const UniformRanges& uniforms);
+
+/// The program as three expressions of the color.
+[[nodiscard]] std::array<Expr, 3> compose(const ShaderProgram& program);
+
+TONEWRIGHT_NAMESPACE_END

@@ -1,0 +1,335 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tonewright/shader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <unordered_map>
+
+#include "base/format_number.h"
+#include "base/strings.h"
+#include "expr/nodes.h"
+#include "measure/error_metric.h"
+#include "measure/sample_set.h"
+#include "shader/first_order.h"
+#include "shader/float_run.h"
+#include "shader/print.h"
+#include "tonewright/engine.h"
+#include "tonewright/registry.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace {
+
+constexpr double kLargestExposure = 64;
+
+std::string joined(const std::string& name, const std::string& part) {
+    return part.empty() ? name : name + "_" + part;
+}
+
+/// The operator's name as an identifier: id, preset, look.
+std::string identifier(const ResolvedOperator& op) {
+    std::string name = op.op->id;
+    if (op.preset) {
+        const std::string with_preset = joined(name, op.preset->id);
+        // hable:gdc is not hable_gdc.
+        const auto& all = all_operators();
+        const bool is_taken = std::any_of(
+            all.begin(), all.end(), [&](const Operator& other) { return other.id == with_preset; });
+        name = is_taken ? joined(name, "preset_" + op.preset->id) : with_preset;
+    }
+    return joined(name, op.params.look());
+}
+
+bool is_of_a_display(const View& view) {
+    return view.display != kLinearOutput && view.display != kNativeOutput;
+}
+
+/// @throws Error  as write_shader()
+void check(const ShaderRequest& request) {
+    const Operator& op = *request.view.op.op;
+    if (op.is_local()) {
+        throw Error("shader: " + op.id +
+                    " looks at the surroundings of a pixel; expected an operator that maps each "
+                    "pixel by itself");
+    }
+    const std::vector<std::string> live = live_parameters(op);
+    std::vector<std::string> choices = {std::string(kExposureUniform)};
+    if (!request.is_inverse) choices.insert(choices.end(), live.begin(), live.end());
+    for (auto at = request.uniforms.begin(); at != request.uniforms.end(); ++at) {
+        if (std::find(choices.begin(), choices.end(), *at) == choices.end()) {
+            throw Error("shader: uniform is " + printable(*at) + "; expected " +
+                        join_choices(choices) + did_you_mean(*at, choices));
+        }
+        if (std::find(request.uniforms.begin(), at, *at) != at)
+            throw Error("shader: uniform is " + *at + " twice; expected it once");
+    }
+}
+
+Pipeline pipeline_of(const ShaderRequest& request) {
+    if (!request.is_inverse) return build_live_view(request.view, request.uniforms);
+    if (request.uniforms.empty()) return build_inverse_view(request.view);
+    View view = request.view;
+    view.exposure_stops = 0;
+    Pipeline stages = build_inverse_view(view);
+    const Expr stops = Expr::uniform(std::string(kExposureUniform));
+    stages.push_back(named("expose", curve_stage(Expr::input() * exp2(-stops))));
+    return stages;
+}
+
+UniformRanges ranges_of(const ShaderRequest& request) {
+    UniformRanges ranges;
+    for (const std::string& uniform : request.uniforms) {
+        ranges[uniform] = {-kLargestExposure, kLargestExposure};
+        for (const ParameterSpec& spec : request.view.op.op->parameters) {
+            if (spec.name == uniform) ranges[uniform] = {spec.min, spec.max};
+        }
+    }
+    return ranges;
+}
+
+/// What the uniforms are in the view as it is.
+UniformValues values_of(const ShaderRequest& request) {
+    UniformValues values;
+    for (const std::string& uniform : request.uniforms) {
+        values[uniform] = uniform == kExposureUniform ? request.view.exposure_stops
+                                                      : request.view.op.params.number(uniform);
+    }
+    return values;
+}
+
+ShaderProgram bound(ShaderProgram program, const UniformValues& values) {
+    const auto bind = [&](Expr& e) { e = bind_uniforms(e, values); };
+    for (ScalarFunction& function : program.scalars)
+        bind(function.f);
+    for (ColorFunction& function : program.colors) {
+        for (ColorFunction::Call& call : function.calls)
+            bind(call.argument);
+        for (Expr& e : function.f)
+            bind(e);
+    }
+    return program;
+}
+
+/// True when the result is light, whose errors are those of its sRGB code values.
+bool is_light(const ShaderRequest& request) {
+    const View& view = request.view;
+    if (request.is_inverse || is_of_a_display(view)) return false;
+    return view.display == kLinearOutput || view.op.op->output == OutputKind::display_linear;
+}
+
+/// Light as sRGB code values, without an upper end: what is above 1 counts relatively.
+Expr code_value(const Expr& light) {
+    const Expr x = max(light, 0);
+    return select(less_equal(x, 0.0031308), 12.92 * x,
+                  1.055 * pow(max(x, 0.0031308), 1 / 2.4) - 0.055);
+}
+
+double measure(const ShaderRequest& request, const ShaderProgram& program) {
+    const UniformValues values = values_of(request);
+    const FloatRun in_float(bound(program, values));
+    const ReferenceEngine reference(bind_uniforms(pipeline_of(request), values));
+    SampleSet samples;
+    if (request.is_inverse) {
+        constexpr int kEdge = 17;
+        for (int i = 0; i < kEdge * kEdge * kEdge; ++i) {
+            const auto at = [&](int k) { return static_cast<double>(k % kEdge) / (kEdge - 1); };
+            samples.add(at(i / kEdge / kEdge), at(i / kEdge), at(i), SampleKind::lattice);
+        }
+    } else {
+        // A source that is no input space has its samples in Rec.709: numbers are numbers.
+        const InputSpace* space = &find_input_space("lin_rec709");
+        for (const InputSpace& candidate : all_input_spaces()) {
+            if (candidate.id == request.view.input) space = &candidate;
+        }
+        samples = make_sample_set(*space, {.lattice_edge = 6, .random_count = 3000});
+    }
+    std::vector<float> got(samples.rgb.size());
+    std::vector<double> truth(samples.rgb.size());
+    in_float.run_rgb(samples.rgb.data(), got.data(), samples.size());
+    reference.run_rgb(samples.rgb.data(), truth.data(), samples.size());
+    const Expr light = code_value(Expr::input());
+    double worst = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        bool is_number = true;
+        for (std::size_t c = 0; c < 3; ++c)
+            is_number = is_number && !std::isnan(samples.rgb[3 * i + c]);
+        if (!is_number) continue;
+        for (std::size_t c = 3 * i; c < 3 * i + 3; ++c) {
+            const auto code = [&](double x) { return is_light(request) ? evaluate(light, x) : x; };
+            const double right = code(truth[c]);
+            const double error = std::fabs(code(static_cast<double>(got[c])) - right) /
+                                 std::max(1.0, std::fabs(right));
+            worst = std::isnan(error) ? kInfinity : std::max(worst, error);
+        }
+    }
+    return worst;
+}
+
+/// Of every operation and every number, of tables and lattices, too.
+std::string definition_hash(const Pipeline& pipeline) {
+    const std::array<Expr, 3> rgb = compose(pipeline);
+    std::string text;
+    std::unordered_map<const ExprNode*, std::size_t> number;
+    std::set<const void*> seen;
+    const auto add_numbers = [&](const void* what, const std::vector<double>& numbers) {
+        if (!seen.insert(what).second) return;
+        for (const double x : numbers)
+            text += shortest(x) + " ";
+    };
+    for (const Expr& e : nodes_of(rgb)) {
+        text += std::to_string(static_cast<int>(e.op()));
+        for (int i = 0; i < e.operand_count(); ++i)
+            text += " " + std::to_string(number.at(e.operand(i).node()));
+        if (e.is_constant()) text += " " + shortest(e.value());
+        if (e.op() == ExprOp::input) text += " " + std::to_string(e.input_index());
+        if (e.op() == ExprOp::uniform) text += " " + e.uniform_name();
+        if (e.op() == ExprOp::lookup) {
+            add_numbers(e.table().get(), e.table()->samples);
+            add_numbers(&e.table()->positions, e.table()->positions);
+        }
+        if (e.op() == ExprOp::lattice) {
+            text += " " + std::to_string(e.channel());
+            add_numbers(e.lattice().get(), e.lattice()->nodes());
+        }
+        text += "\n";
+        number.emplace(e.node(), number.size());
+    }
+    return content_hash(text);
+}
+
+std::string settings_text(const ResolvedOperator& op, const std::vector<std::string>& uniforms) {
+    std::string text;
+    for (const ParameterSpec& spec : op.op->parameters) {
+        if (std::find(uniforms.begin(), uniforms.end(), spec.name) != uniforms.end()) continue;
+        const std::string value =
+            spec.kind == ParameterSpec::Kind::number   ? shortest(op.params.number(spec.name))
+            : spec.kind == ParameterSpec::Kind::choice ? op.params.choice(spec.name)
+                                                       : op.params.text(spec.name);
+        if (!value.empty()) text += (text.empty() ? "" : ", ") + spec.name + " " + value;
+    }
+    if (!op.params.look().empty())
+        text += (text.empty() ? "" : ", ") + ("look " + op.params.look());
+    return text;
+}
+
+std::string output_text(const ShaderRequest& request) {
+    const View& view = request.view;
+    if (view.display == kNativeOutput) return "the operator's own output";
+    if (view.display == kLinearOutput)
+        return "display-linear, Rec.709, 1.0 = display peak, not limited";
+    const Display& display = find_display(view.display);
+    return "code values for " + display.title + " (" + display.source + ")";
+}
+
+/// Words that fit on lines of comments behind a label.
+std::string comment(const std::string& label, const std::string& words) {
+    constexpr std::size_t kWidth = 100;
+    std::string text;
+    std::string row = fmt::format("// {:<11}", label);
+    bool is_first = true;
+    std::size_t begin = 0;
+    while (begin < words.size()) {
+        const std::size_t end = std::min(words.find(' ', begin), words.size());
+        const std::string word = words.substr(begin, end - begin);
+        if (!is_first && row.size() + 1 + word.size() > kWidth) {
+            text += row + "\n";
+            row = fmt::format("// {:<11}", "");
+            is_first = true;
+        }
+        row += (is_first ? "" : " ") + word;
+        is_first = false;
+        begin = end + 1;
+    }
+    return text + row + "\n";
+}
+
+/// Text for sources that may be ASCII only.
+std::string ascii(std::string text) {
+    for (char& c : text) {
+        if (static_cast<unsigned char>(c) >= 0x80) c = '?';
+    }
+    return text;
+}
+
+std::string header(const ShaderRequest& request, const Shader& shader, const Pipeline& pipeline) {
+    const View& view = request.view;
+    const Operator& op = *view.op.op;
+    std::string text = "// " + op.title;
+    if (view.op.preset) text += ", " + view.op.preset->title;
+    if (request.is_inverse) text += ", inverse";
+    text += "\n// Written by Tonewright " TONEWRIGHT_VERSION ", definition " +
+            definition_hash(pipeline) + "\n//\n";
+    std::string space = view.input;
+    for (const InputSpace& candidate : all_input_spaces()) {
+        if (candidate.id == view.input) space = candidate.title;
+    }
+    const std::string scene = space + ", 1.0 = diffuse white";
+    const std::string shown = output_text(request);
+    const auto add = [&](const char* label, const std::string& words) {
+        if (!words.empty()) text += comment(label, ascii(words));
+    };
+    add("Source", op.source);
+    add("License", op.licence + "; this text: Apache-2.0");
+    add("Settings", settings_text(view.op, request.uniforms));
+    const bool has_exposure = std::find(request.uniforms.begin(), request.uniforms.end(),
+                                        kExposureUniform) != request.uniforms.end();
+    add("Exposure", has_exposure ? "the argument, in stops: scene values times 2^exposure"
+                                 : shortest(view.exposure_stops) + " stops");
+    for (const std::string& uniform : request.uniforms) {
+        for (const ParameterSpec& spec : op.parameters) {
+            if (spec.name != uniform) continue;
+            add("Argument",
+                fmt::format("{}: {}; [{}, {}]{}{}", spec.name, spec.help, shortest(spec.min),
+                            shortest(spec.max), spec.unit.empty() ? "" : " ", spec.unit));
+        }
+    }
+    add("Input", request.is_inverse ? shown : scene);
+    add("Output", request.is_inverse ? scene : shown);
+    add("Negatives", request.is_inverse ? "" : op.negatives);
+    const std::string unit = request.is_inverse      ? "scene values, relative above 1"
+                             : is_of_a_display(view) ? "code values from 0 to 1"
+                                                     : "sRGB code values from 0 to 1";
+    add("Precision",
+        fmt::format("32-bit float throughout. Each operation rounded once: within {} of the double "
+                    "reference, in {} (measured). With the errors that Vulkan and WGSL allow each "
+                    "operation: about {} (first order: an estimate, no bound). Not measured on a "
+                    "GPU here; see docs/shaders.md",
+                    rounded_up(shader.float_error), unit, rounded_up(shader.vulkan_estimate)));
+    add("NaN", "whatever the compiler makes of it; all other inputs give finite results");
+    return text;
+}
+
+}  // namespace
+
+std::string shader_function_name(const ShaderRequest& request) {
+    std::string name = "tw_" + identifier(request.view.op);
+    if (request.is_inverse) name += "_inverse";
+    if (is_of_a_display(request.view)) name += "_encoded";
+    return name;
+}
+
+Shader write_shader(const ShaderRequest& request) {
+    check(request);
+    const Pipeline pipeline = pipeline_of(request);
+    const ShaderProgram program = make_program(pipeline, ranges_of(request));
+    const LanguageFacts& language = facts_of(request.language);
+    Shader shader;
+    shader.function = shader_function_name(request);
+    shader.float_error = measure(request, program);
+    std::array<Expr, 3> outputs = compose(bound(program, values_of(request)));
+    if (is_light(request)) {
+        for (Expr& e : outputs)
+            e = code_value(e);
+    }
+    shader.vulkan_estimate = first_order_error(outputs).vulkan;
+    const std::string prologue =
+        *language.prologue ? std::string("\n") + language.prologue : std::string();
+    PrintedProgram printed = print_program(program, language, shader.function, request.uniforms);
+    shader.text = header(request, shader, pipeline) + prologue + printed.text;
+    shader.textures = std::move(printed.textures);
+    return shader;
+}
+
+TONEWRIGHT_NAMESPACE_END

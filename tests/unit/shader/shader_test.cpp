@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tonewright/shader.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "base/format_number.h"
+
+#include "base/random.h"
+#include "full_counts.h"
+#include "shader/float_form.h"
+#include "shader/float_run.h"
+#include "shader/print.h"
+#include "tonewright/error.h"
+#include "tonewright/registry.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace {
+
+ShaderRequest request_of(const std::string& op, const std::string& look = "",
+                         const std::string& display = "linear",
+                         ShaderLanguage language = ShaderLanguage::glsl) {
+    ShaderRequest request;
+    request.view = make_view(resolve_operator(op, {}, look), "lin_rec709", 0, display);
+    request.language = language;
+    return request;
+}
+
+std::string error_of(const ShaderRequest& request) {
+    try {
+        (void)write_shader(request);
+    } catch (const Error& e) {
+        return e.what();
+    }
+    return "";
+}
+
+/// Numbers that break shaders: 0, denormals, the largest half float, far beyond it, infinity; all
+/// signs, all combinations.
+std::vector<float> hostile_colors(std::size_t random_count) {
+    constexpr float kInf = std::numeric_limits<float>::infinity();
+    const std::vector<float> values = {0.0F,    -0.0F,   1e-45F, 1e-38F, 1e-30F, 1e-10F,
+                                       0.18F,   1.0F,    16.3F,  65504,  1e30F,  kInf,
+                                       -1e-45F, -1e-10F, -0.2F,  -65504, -1e30F, -kInf};
+    std::vector<float> rgb;
+    for (const float r : values) {
+        for (const float g : values) {
+            for (const float b : values)
+                rgb.insert(rgb.end(), {r, g, b});
+        }
+    }
+    SampleRandom random(19);
+    for (std::size_t i = 0; i < 3 * random_count; ++i) {
+        const auto x = static_cast<float>(std::exp2(random.uniform(-149, 127)));
+        rgb.push_back(random.uniform(0, 1) < 0.3 ? -x : x);
+    }
+    return rgb;
+}
+
+/// Every finite color and both infinities give finite numbers, as float computes them.
+void expect_finite(const ShaderProgram& program, const std::vector<float>& rgb,
+                   const std::string& what) {
+    std::vector<float> out(rgb.size());
+    FloatRun(program).run_rgb(rgb.data(), out.data(), rgb.size() / 3);
+    for (std::size_t i = 0; i < rgb.size(); ++i) {
+        if (std::isfinite(out[i])) continue;
+        const std::size_t c = i / 3 * 3;
+        FAIL() << what << ": (" << rgb[c] << ", " << rgb[c + 1] << ", " << rgb[c + 2] << ") gives "
+               << out[i];
+    }
+}
+
+TEST(Shader, EveryVariantInEveryLanguageIsAsciiAndHasItsOwnName) {
+    std::set<std::string> names;
+    int count = 0;
+    for (const OperatorVariant& variant : all_variants()) {
+        // All names; a fifth of the texts.
+        EXPECT_TRUE(
+            names.insert(shader_function_name(request_of(variant.name, variant.look))).second)
+            << variant.name;
+        if (count++ % count_of(1, 5) != 0) continue;
+        const bool is_lattice =
+            !write_shader(request_of(variant.name, variant.look, "srgb")).textures.empty();
+        for (const ShaderLanguageInfo& language : shader_languages()) {
+            const bool has_textures =
+                *facts_of(language.language).texture || language.language == ShaderLanguage::c;
+            const ShaderRequest request =
+                request_of(variant.name, variant.look, "srgb", language.language);
+            if (is_lattice && !has_textures) {
+                EXPECT_NE(error_of(request).find("expected a language with textures"),
+                          std::string::npos)
+                    << variant.name << " " << language.id;
+                continue;
+            }
+            const Shader shader = write_shader(request);
+            EXPECT_EQ(shader.function, shader_function_name(request));
+            EXPECT_NE(shader.text.find(" " + shader.function + "("), std::string::npos);
+            for (const char c : shader.text)
+                ASSERT_TRUE((c >= ' ' && c <= '~') || c == '\n') << variant.name << " " << int{c};
+            const std::string code = shader.text.substr(shader.text.find("\n\n"));
+            EXPECT_EQ(code.find(" inf"), std::string::npos) << variant.name;
+            EXPECT_EQ(code.find(" nan"), std::string::npos) << variant.name;
+            EXPECT_EQ(shader.textures.empty(), !is_lattice || language.id == "c")
+                << variant.name << " " << language.id;
+            for (const ShaderTexture& texture : shader.textures) {
+                EXPECT_NE(shader.text.find(" " + texture.name), std::string::npos);
+                EXPECT_EQ(texture.rgba.size(),
+                          4U * static_cast<std::size_t>(std::pow(texture.edge, 3)));
+            }
+        }
+    }
+}
+
+TEST(Shader, NamesTellPresetFromOperator) {
+    EXPECT_EQ(shader_function_name(request_of("hable_gdc")), "tw_hable_gdc");
+    EXPECT_EQ(shader_function_name(request_of("hable:gdc")), "tw_hable_preset_gdc");
+    EXPECT_EQ(shader_function_name(request_of("reinhard:luminance", "", "srgb")),
+              "tw_reinhard_luminance_encoded");
+    EXPECT_EQ(shader_function_name(request_of("agx_sobotka", "golden")), "tw_agx_sobotka_golden");
+    ShaderRequest inverse = request_of("reinhard", "", "srgb");
+    inverse.is_inverse = true;
+    EXPECT_EQ(shader_function_name(inverse), "tw_reinhard_inverse_encoded");
+}
+
+// Written by hand, from E. Reinhard et al. 2002, equation 3, in each language's own grammar.
+TEST(Shader, ReinhardReadsLikeItsFormula) {
+    const auto body = [](const std::string& text) { return text.substr(text.find("\n\n") + 2); };
+    EXPECT_EQ(body(write_shader(request_of("reinhard")).text),
+              "float tw_reinhard_curve(float x) {\n"
+              "    return x / (1.0 + x);\n"
+              "}\n"
+              "\n"
+              "vec3 tw_reinhard(vec3 scene) {\n"
+              "    vec3 c = scene;\n"
+              "    c = clamp(c, vec3(-65504.0), vec3(65504.0));\n"
+              "    c = clamp(c, vec3(0.0), vec3(65504.0));\n"
+              "    c = vec3(tw_reinhard_curve(c.r), tw_reinhard_curve(c.g), "
+              "tw_reinhard_curve(c.b));\n"
+              "    return c;\n"
+              "}\n");
+    EXPECT_EQ(body(write_shader(request_of("reinhard", "", "linear", ShaderLanguage::wgsl)).text),
+              "fn tw_reinhard_curve(x: f32) -> f32 {\n"
+              "    return x / (1.0 + x);\n"
+              "}\n"
+              "\n"
+              "fn tw_reinhard(scene: vec3<f32>) -> vec3<f32> {\n"
+              "    var c: vec3<f32> = scene;\n"
+              "    c = clamp(c, vec3<f32>(-65504.0), vec3<f32>(65504.0));\n"
+              "    c = clamp(c, vec3<f32>(0.0), vec3<f32>(65504.0));\n"
+              "    c = vec3<f32>(tw_reinhard_curve(c.r), tw_reinhard_curve(c.g), "
+              "tw_reinhard_curve(c.b));\n"
+              "    return c;\n"
+              "}\n");
+}
+
+TEST(Shader, MatricesAreRowsWhateverTheLanguageTakes) {
+    const Pipeline pipeline = {MatrixStage{{{{0.5, 0.25, 0.25}, {0, 1, 0}, {-0.125, 0, 1}}}, "m"}};
+    const ShaderProgram program = make_program(pipeline, {});
+    const std::string in_glsl =
+        print_program(program, facts_of(ShaderLanguage::glsl), "f", {}).text;
+    EXPECT_NE(in_glsl.find("dot(vec3(0.5, 0.25, 0.25), c),\n        dot(vec3(0.0, 1.0, 0.0), c),"),
+              std::string::npos)
+        << in_glsl;
+    const std::string in_c = print_program(program, facts_of(ShaderLanguage::c), "f", {}).text;
+    EXPECT_NE(in_c.find("0.5f * c.r + 0.25f * c.g + 0.25f * c.b"), std::string::npos) << in_c;
+    EXPECT_NE(in_c.find("-0.125f * c.r + 0.0f * c.g + 1.0f * c.b"), std::string::npos) << in_c;
+}
+
+TEST(Shader, LiteralsReadBackAsTheSameFloat) {
+    const LanguageFacts& c = facts_of(ShaderLanguage::c);
+    EXPECT_EQ(float_literal(1, c), "1.0f");
+    EXPECT_EQ(float_literal(0.1, c), "0.1f");
+    EXPECT_EQ(float_literal(-2.5, facts_of(ShaderLanguage::glsl)), "-2.5");
+    EXPECT_EQ(float_literal(1e30, c), "1.0e+30f");
+    EXPECT_EQ(float_literal(1e-42, c), "0.0f");  // a denormal, which GPUs take for 0
+    EXPECT_EQ(float_literal(kInfinity, c), "3.4028235e+38f");
+    for (const double x : {1.0 / 3, 12.47393, 65504.0, 1e-30})
+        EXPECT_EQ(std::stof(float_literal(x, c)), static_cast<float>(x));
+}
+
+TEST(FloatForm, GuardsOnlyWhatCanGoWrong) {
+    const Expr x = Expr::input();
+    const auto form = [&](const Expr& e, const Interval& in) {
+        return to_string(FloatForm({in}, {})(e));
+    };
+    EXPECT_EQ(form(log2(x), {0.1, 1}), "log2(x)");
+    EXPECT_EQ(form(sqrt(x), {0, 1}), "sqrt(x)");
+    EXPECT_EQ(form(sqrt(x), {-1, 1}), "sqrt(max(x, 0))");
+    EXPECT_EQ(form(1 / (x + 1), {0, 1}), "1/(x + 1)");
+    EXPECT_EQ(form(1 / x, {0, 1}), "1/max(x, 1e-30)");
+    EXPECT_EQ(form(1 / x, {-1, 1}), "1/select(less(abs(x), 1e-30), 1e-30, x)");
+    EXPECT_EQ(form(pow(x, 2), {-1, 1}), "x*x");
+    EXPECT_EQ(form(pow(x, 0.5), {0, 1}), "sqrt(x)");
+    EXPECT_EQ(form(pow(x, 2.2), {0.5, 1}), "pow(x, 2.2)");
+    EXPECT_EQ(form(pow(x, 2.2), {0, 1}), "pow(max(x, 1.1754943508222875e-38), 2.2)");
+    // The smallest float to the power of 0.01 is 0.42: 0 has to be told apart.
+    EXPECT_EQ(form(pow(x, 0.01), {0, 1}),
+              "select(less(0, x), pow(max(x, 1.1754943508222875e-38), 0.01), 0)");
+}
+
+TEST(Shader, FiniteInFloatForHostileColors) {
+    const std::vector<float> rgb = hostile_colors(2000);
+    for (const OperatorVariant& variant : all_variants()) {
+        for (const char* display : {"linear", "srgb", "rec2100_pq"}) {
+            const ShaderRequest request = request_of(variant.name, variant.look, display);
+            expect_finite(make_program(build_view(request.view), {}), rgb,
+                          variant.name + " " + variant.look + " " + display);
+        }
+    }
+}
+
+// Parameters at the ends of their intervals and between, as constants and as uniforms.
+TEST(Shader, FiniteInFloatForAllSettings) {
+    const std::vector<float> rgb = hostile_colors(200);
+    SampleRandom random(7);
+    int count = 0;
+    for (const Operator& op : all_operators()) {
+        const std::vector<std::string> live = live_parameters(op);
+        if (live.empty()) continue;
+        for (int round = 0; round < 12; ++round) {
+            Settings settings;
+            UniformValues values;
+            UniformRanges ranges;
+            for (const ParameterSpec& spec : op.parameters) {
+                if (std::find(live.begin(), live.end(), spec.name) == live.end()) continue;
+                const double at = random.uniform(0, 1);
+                const double value = at < 0.25   ? spec.min
+                                     : at > 0.75 ? spec.max
+                                                 : random.uniform(spec.min, spec.max);
+                values[spec.name] = value;
+                ranges[spec.name] = {spec.min, spec.max};
+                settings[spec.name] = shortest(value);
+            }
+            try {
+                (void)resolve(op, nullptr, settings, "");
+            } catch (const Error&) {
+                continue;  // parameters that contradict each other
+            }
+            ++count;
+            const ResolvedOperator resolved = resolve(op, nullptr, {}, "");
+            const View view = make_view(resolved, "lin_rec709", 0, "linear");
+            const Pipeline pipeline = build_live_view(view, live);
+            std::string what = op.id;
+            for (const auto& [name, value] : values)
+                what += " " + name + "=" + std::to_string(value);
+            ShaderProgram program = make_program(pipeline, ranges);
+            for (ScalarFunction& function : program.scalars)
+                function.f = bind_uniforms(function.f, values);
+            for (ColorFunction& function : program.colors) {
+                for (ColorFunction::Call& call : function.calls)
+                    call.argument = bind_uniforms(call.argument, values);
+                for (Expr& e : function.f)
+                    e = bind_uniforms(e, values);
+            }
+            expect_finite(program, rgb, what + " with uniforms");
+            expect_finite(make_program(bind_uniforms(pipeline, values), {}), rgb, what);
+        }
+    }
+    EXPECT_GE(count, 200);
+}
+
+TEST(Shader, ExposureIsAnArgumentInStops) {
+    ShaderRequest request = request_of("reinhard");
+    request.uniforms = {"exposure"};
+    EXPECT_NE(write_shader(request).text.find("vec3 tw_reinhard(vec3 scene, float exposure) {"),
+              std::string::npos);
+    const Pipeline live = build_live_view(request.view, {"exposure"});
+    View exposed = request.view;
+    exposed.exposure_stops = 1.5;
+    const auto a = compose(bind_uniforms(live, {{"exposure", 1.5}}));
+    const auto b = compose(build_view(exposed));
+    const std::array<double, 3> color = {0.3, 1.7, 0.02};
+    for (std::size_t c = 0; c < 3; ++c)
+        EXPECT_NEAR(evaluate(a[c], color), evaluate(b[c], color), 1e-15);  // two roundings
+}
+
+TEST(Shader, BadRequestsAreToldInOneLine) {
+    ShaderRequest request = request_of("hable");
+    request.uniforms = {"whit"};
+    EXPECT_NE(error_of(request).find("shader: uniform is whit; expected exposure"),
+              std::string::npos);
+    EXPECT_NE(error_of(request).find("did you mean white?"), std::string::npos);
+    request.uniforms = {"white", "white"};
+    EXPECT_EQ(error_of(request), "shader: uniform is white twice; expected it once");
+    request = request_of("hable_piecewise");
+    request.uniforms = {"toe_length"};  // fixed
+    EXPECT_NE(error_of(request).find("uniform is toe_length"), std::string::npos);
+    request = request_of("drago");
+    request.is_inverse = true;
+    EXPECT_EQ(error_of(request), "drago has no inverse");
+    EXPECT_THROW((void)find_shader_language("cg"), Error);
+    EXPECT_EQ(find_shader_language("GLSL_ES").id, "glsl-es");
+}
+
+}  // namespace
+TONEWRIGHT_NAMESPACE_END

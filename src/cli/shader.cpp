@@ -93,20 +93,32 @@ void write_all(const Options& options) {
     if (!options.language.empty()) languages = {find_shader_language(options.language)};
     require_writable_folder(options.all);
     std::vector<GeneratedFile> files;
-    std::string manifest = "path,operator,function,float_error\n";
+    std::string manifest = "path,operator,function,float_error,vulkan_estimate\n";
     for (const ShaderLanguageInfo& language : languages) {
+        std::size_t left_out = 0;
         for (const OperatorVariant& variant : all_variants()) {
             ShaderRequest request;
             request.language = language.language;
             request.view = make_view(resolve_operator(variant.name, {}, variant.look),
                                      options.input, options.exposure, options.display);
+            if (!language.holds_lattices && reads_lattice(request.view)) {
+                ++left_out;
+                continue;
+            }
             const Shader shader = write_shader(request);
             const std::string path = language.id + "/" + shader.function + language.extension;
-            manifest += fmt::format("{},{},{},{}\n", path, operator_text(request.view.op),
-                                    shader.function, rounded_up(shader.float_error));
+            manifest += fmt::format("{},{},{},{},{}\n", path, operator_text(request.view.op),
+                                    shader.function, rounded_up(shader.float_error),
+                                    rounded_up(shader.vulkan_estimate));
             files.push_back({path, shader.text});
             for (GeneratedFile& file : texture_files(shader, path))
                 files.push_back(std::move(file));
+        }
+        if (left_out > 0) {
+            print_result(
+                fmt::format("{}: {} without a shader, because they read lattices, which "
+                            "it cannot hold",
+                            language.id, left_out));
         }
     }
     print_result(fmt::format("{}: {} shaders", options.all, files.size()));

@@ -207,13 +207,13 @@ constexpr std::array kFacts = {kGlsl, glsl_es(), hlsl(), wgsl(), msl(), dctl(), 
 
 const std::vector<ShaderLanguageInfo>& shader_languages() {
     static const std::vector<ShaderLanguageInfo> languages = {
-        {ShaderLanguage::glsl, "glsl", "GLSL 3.30 and later", ".glsl"},
-        {ShaderLanguage::glsl_es, "glsl-es", "GLSL ES 3.00 (WebGL 2)", ".glsl"},
-        {ShaderLanguage::hlsl, "hlsl", "HLSL", ".hlsl"},
-        {ShaderLanguage::wgsl, "wgsl", "WGSL (WebGPU)", ".wgsl"},
+        {ShaderLanguage::glsl, "glsl", "GLSL 3.30 and later", ".glsl", true},
+        {ShaderLanguage::glsl_es, "glsl-es", "GLSL ES 3.00 (WebGL 2)", ".glsl", true},
+        {ShaderLanguage::hlsl, "hlsl", "HLSL", ".hlsl", true},
+        {ShaderLanguage::wgsl, "wgsl", "WGSL (WebGPU)", ".wgsl", true},
         {ShaderLanguage::msl, "msl", "Metal Shading Language", ".metal"},
         {ShaderLanguage::dctl, "dctl", "DCTL (DaVinci Resolve)", ".h"},
-        {ShaderLanguage::c, "c", "C99 and C++", ".h"},
+        {ShaderLanguage::c, "c", "C99 and C++", ".h", true},
         {ShaderLanguage::osl, "osl", "Open Shading Language", ".osl"},
     };
     return languages;

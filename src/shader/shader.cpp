@@ -303,6 +303,12 @@ std::string header(const ShaderRequest& request, const Shader& shader, const Pip
 
 }  // namespace
 
+bool reads_lattice(const View& view) {
+    const std::vector<Expr> nodes = nodes_of(compose(build_view(view)));
+    return std::any_of(nodes.begin(), nodes.end(),
+                       [](const Expr& e) { return e.op() == ExprOp::lattice; });
+}
+
 std::string shader_function_name(const ShaderRequest& request) {
     std::string name = "tw_" + identifier(request.view.op);
     if (request.is_inverse) name += "_inverse";

@@ -16,6 +16,8 @@ struct ShaderLanguageInfo {
     std::string id;         // glsl-es
     std::string title;      // "GLSL ES 3.00 (WebGL 2)"
     std::string extension;  // of a file
+    /// A view that reads a lattice can be written.
+    bool holds_lattices = false;
 };
 [[nodiscard]] TONEWRIGHT_API const std::vector<ShaderLanguageInfo>& shader_languages();
 /// In any case, with `-`, `_` and blanks alike.
@@ -68,8 +70,11 @@ struct Shader {
 ///
 /// @throws Error  a local operator; a uniform that the operator does not have, that is not live, or
 ///                that is named twice; an inverse with uniforms other than the exposure, or of an
-///                operator that has none; a lattice in a language that has no textures.
+///                operator that has none; a lattice in a language that cannot hold one.
 [[nodiscard]] TONEWRIGHT_API Shader write_shader(const ShaderRequest& request);
+
+/// True when the view reads a lattice: colors on a grid, more than a text should hold.
+[[nodiscard]] TONEWRIGHT_API bool reads_lattice(const View& view);
 
 /// The name of the function that write_shader() writes.
 [[nodiscard]] TONEWRIGHT_API std::string shader_function_name(const ShaderRequest& request);

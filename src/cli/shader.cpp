@@ -19,6 +19,7 @@ namespace {
 
 struct Options : ViewOptions {
     std::string language;
+    std::string application;
     std::string file;
     std::vector<std::string> uniforms;
     std::string all;
@@ -27,8 +28,14 @@ struct Options : ViewOptions {
 };
 
 int list_languages() {
+    fmt::print("languages\n");
     for (const ShaderLanguageInfo& info : shader_languages())
-        fmt::print("{:<8}  {}\n", info.id, info.title);
+        fmt::print("  {:<12}  {}\n", info.id, info.title);
+    fmt::print("applications\n");
+    for (const ShaderApplication& application : shader_applications()) {
+        fmt::print("  {:<12}  {}, {} out. {}\n", application.id, application.title,
+                   application.display, application.steps);
+    }
     return kOk;
 }
 
@@ -45,13 +52,21 @@ std::vector<GeneratedFile> texture_files(const Shader& shader, const std::string
     return files;
 }
 
-void write_one(const Options& options) {
+void write_one(Options& options) {
     if (options.op.empty())
         throw Error("shader: OPERATOR is missing; expected an id from `tonewright list`");
-    if (options.language.empty())
-        throw Error("shader: --language is missing; expected one of `tonewright shader --list`");
+    if (options.language.empty() == options.application.empty()) {
+        throw Error(fmt::format("shader: {}; expected one of them (`tonewright shader --list`)",
+                                options.language.empty() ? "--language and --for are missing"
+                                                         : "--language and --for are given"));
+    }
     ShaderRequest request;
-    request.language = find_shader_language(options.language).language;
+    if (options.application.empty()) {
+        request.language = find_shader_language(options.language).language;
+    } else {
+        request.application = &find_shader_application(options.application);
+        if (!options.given.contains("--display")) options.display = request.application->display;
+    }
     request.view = options.view();
     request.uniforms = options.uniforms;
     request.is_inverse = options.is_inverse;
@@ -59,8 +74,8 @@ void write_one(const Options& options) {
         if (const std::string why = why_no_file(options.file); !why.empty())
             throw FileError(fmt::format("write: {}: {}", options.file, why));
     }
-    warn_of_constants(request.view.op, "shader", options.uniforms);
     const Shader shader = write_shader(request);
+    warn_of_constants(request.view.op, "shader", options.uniforms);
     constexpr double kTenBits = 1.0 / 1023;
     if (shader.float_error > kTenBits) {
         warn(
@@ -85,6 +100,8 @@ void write_one(const Options& options) {
     write_text_atomically(options.file, shader.text);
     print_result(fmt::format("{}: {}(), in float within {} of the reference", options.file,
                              shader.function, rounded_up(shader.float_error)));
+    if (request.application)
+        print_result(request.application->title + ": " + request.application->steps);
 }
 
 /// Every operator, preset and look in one language or all: FOLDER/LANGUAGE/tw_NAME.EXTENSION.
@@ -126,7 +143,7 @@ void write_all(const Options& options) {
     write_generated_files(options.all, files, "MANIFEST.csv");
 }
 
-int run_shader(const Options& options) {
+int run_shader(Options& options) {
     if (options.list) return list_languages();
     if (options.all.empty()) {
         write_one(options);
@@ -148,6 +165,11 @@ void add_shader(CommandLine& program) {
     command.add("--language", options->language, "language of the text; see --list")
         .value("NAME")
         .group(output);
+    command
+        .add("--for", options->application,
+             "application that takes the whole file; see --list. Sets language and display")
+        .value("NAME")
+        .group(output);
     command.add("-o", options->file, "file to write (default: standard output)")
         .value("FILE")
         .group(output);
@@ -165,8 +187,10 @@ void add_shader(CommandLine& program) {
         .one_value_each()
         .group(output);
     command.add_flag("--inverse", options->is_inverse, "write the inverse").group(output);
-    command.add_flag("--list", options->list, "list the languages").group(output);
+    command.add_flag("--list", options->list, "list languages and applications").group(output);
     add_view_options(command, *options);
+    command.common({"--language", "--for", "-o", "--uniforms", "--list", "--set", "--look",
+                    "--exposure", "--input", "--display"});
     command.footer(
         "The function is tw_<operator>, with _<preset>, _<look>, _inverse or _encoded behind it. "
         "It "
@@ -174,7 +198,8 @@ void add_shader(CommandLine& program) {
         "for renderers that encode their pictures themselves) or code values (--display srgb).\n"
         "Examples:\n"
         "  tonewright shader agx_threejs --language glsl -o agx.glsl\n"
-        "  tonewright shader hable --language hlsl --uniforms exposure,white -o hable.hlsl\n"
+        "  tonewright shader hable --language hlsl --uniforms white -o hable.hlsl\n"
+        "  tonewright shader agx_threejs --for threejs -o agx.js\n"
         "  tonewright shader khronos_neutral --language c --display srgb -o neutral.h");
     command.action([options, command] {
         options->given = command.given();

@@ -31,7 +31,7 @@ struct Precision {
                                          double max_error);
 
 /// What values are, and how much of their errors reaches an output: the largest derivative of an
-/// output by each value, relative to outputs above 1; very large where there is none.
+/// output by each value, relative to outputs above 1; 1e12 where it has no end.
 /// [probe][index], over a set of probe colours.
 struct Sensitivity {
     std::vector<std::vector<double>> value;

@@ -67,7 +67,8 @@ Pipeline neutral_inverse(const Params& params) {
             HexconeStage{.offset = Expr(0),
                          .value = select(is_base, x, p),
                          .chroma = select(is_base, 1, to_light)},
-            HexconeStage{.offset = select(less(x, 0.04), x - sqrt(x / 6.25), -0.04),
+            // A color that the operator never puts out may have a channel below 0 here.
+            HexconeStage{.offset = select(less(x, 0.04), x - sqrt(max(x, 0) / 6.25), -0.04),
                          .value = x,
                          .chroma = Expr(1)}};
 }

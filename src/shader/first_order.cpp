@@ -12,6 +12,8 @@ namespace {
 
 /// Half a unit in the last place of 1 in float.
 constexpr double kHalfUlp = 0x1p-24;
+/// What measure_influence() gives where a derivative has no end.
+constexpr double kPole = 1e12;
 
 /// Errors of single operations, absolute.
 struct Rounding {
@@ -71,6 +73,7 @@ FirstOrderError first_order_error(const std::array<Expr, 3>& outputs) {
     for (std::size_t p = 0; p < probes.value.size(); ++p) {
         const std::vector<double>& value = probes.value[p];
         FirstOrderError sum;
+        bool has_pole = false;
         for (std::size_t i = 0; i < code.size(); ++i) {
             const Rounding error =
                 rounding_of(code[i], value[i], value[code[i].a], value[code[i].b]);
@@ -88,9 +91,12 @@ FirstOrderError first_order_error(const std::array<Expr, 3>& outputs) {
                 sum.rounded_once += of_place;
                 sum.vulkan += of_place;
             }
+            has_pole = has_pole || probes.sensitivity[p][i] >= kPole;
             sum.rounded_once += error.once * probes.sensitivity[p][i];
             sum.vulkan += error.vulkan * probes.sensitivity[p][i];
         }
+        // At a pole, such as a root of 0, first order says nothing.
+        if (has_pole) continue;
         worst.rounded_once = std::max(worst.rounded_once, sum.rounded_once);
         worst.vulkan = std::max(worst.vulkan, sum.vulkan);
     }

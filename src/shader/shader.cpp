@@ -16,6 +16,7 @@
 #include "shader/first_order.h"
 #include "shader/float_run.h"
 #include "shader/print.h"
+#include "shader/wrapper.h"
 #include "tonewright/engine.h"
 #include "tonewright/registry.h"
 
@@ -99,6 +100,20 @@ UniformValues values_of(const ShaderRequest& request) {
     return values;
 }
 
+std::vector<ShaderArgument> arguments_of(const ShaderRequest& request) {
+    std::vector<ShaderArgument> arguments;
+    const UniformValues values = values_of(request);
+    for (const std::string& uniform : request.uniforms) {
+        ShaderArgument argument{uniform, "exposure in stops", values.at(uniform), -8, 8};
+        for (const ParameterSpec& spec : request.view.op.op->parameters) {
+            if (spec.name == uniform)
+                argument = {uniform, spec.help, values.at(uniform), spec.min, spec.max};
+        }
+        arguments.push_back(argument);
+    }
+    return arguments;
+}
+
 ShaderProgram bound(ShaderProgram program, const UniformValues& values) {
     const auto bind = [&](Expr& e) { e = bind_uniforms(e, values); };
     for (ScalarFunction& function : program.scalars)
@@ -115,7 +130,7 @@ ShaderProgram bound(ShaderProgram program, const UniformValues& values) {
 /// True when the result is light, whose errors are those of its sRGB code values.
 bool is_light(const ShaderRequest& request) {
     const View& view = request.view;
-    if (request.is_inverse || is_of_a_display(view)) return false;
+    if (is_of_a_display(view)) return false;
     return view.display == kLinearOutput || view.op.op->output == OutputKind::display_linear;
 }
 
@@ -126,25 +141,46 @@ Expr code_value(const Expr& light) {
                   1.055 * pow(max(x, 0.0031308), 1 / 2.4) - 0.055);
 }
 
+/// What the view shows of what the inverse makes of display colors, against those colors, where
+/// the view can show them at all.
+double measure_inverse(const ShaderRequest& request, const ShaderProgram& program) {
+    constexpr int kEdge = 17;
+    constexpr double kShown = 1e-6;
+    const UniformValues values = values_of(request);
+    const FloatRun in_float(bound(program, values));
+    const ReferenceEngine inverse(bind_uniforms(pipeline_of(request), values));
+    const ReferenceEngine view(build_view(request.view));
+    double worst = 0;
+    for (int i = 0; i < kEdge * kEdge * kEdge; ++i) {
+        const auto at = [&](int k) { return static_cast<float>(k % kEdge) / (kEdge - 1); };
+        const std::array<float, 3> color = {at(i / kEdge / kEdge), at(i / kEdge), at(i)};
+        const Vector3 exact = {double{color[0]}, double{color[1]}, double{color[2]}};
+        const auto distance = [&](const Vector3& scene) {
+            const Vector3 shown = view(scene);
+            double largest = 0;
+            for (std::size_t c = 0; c < 3; ++c)
+                largest = std::max(largest, std::fabs(shown[c] - exact[c]));
+            return largest;
+        };
+        if (!(distance(inverse(exact)) <= kShown)) continue;
+        std::array<float, 3> scene{};
+        in_float.run_rgb(color.data(), scene.data(), 1);
+        worst = std::max(worst, distance({double{scene[0]}, double{scene[1]}, double{scene[2]}}));
+    }
+    return worst;
+}
+
 double measure(const ShaderRequest& request, const ShaderProgram& program) {
+    if (request.is_inverse) return measure_inverse(request, program);
     const UniformValues values = values_of(request);
     const FloatRun in_float(bound(program, values));
     const ReferenceEngine reference(bind_uniforms(pipeline_of(request), values));
-    SampleSet samples;
-    if (request.is_inverse) {
-        constexpr int kEdge = 17;
-        for (int i = 0; i < kEdge * kEdge * kEdge; ++i) {
-            const auto at = [&](int k) { return static_cast<double>(k % kEdge) / (kEdge - 1); };
-            samples.add(at(i / kEdge / kEdge), at(i / kEdge), at(i), SampleKind::lattice);
-        }
-    } else {
-        // A source that is no input space has its samples in Rec.709: numbers are numbers.
-        const InputSpace* space = &find_input_space("lin_rec709");
-        for (const InputSpace& candidate : all_input_spaces()) {
-            if (candidate.id == request.view.input) space = &candidate;
-        }
-        samples = make_sample_set(*space, {.lattice_edge = 6, .random_count = 3000});
+    // A source that is no input space has its samples in Rec.709: numbers are numbers.
+    const InputSpace* space = &find_input_space("lin_rec709");
+    for (const InputSpace& candidate : all_input_spaces()) {
+        if (candidate.id == request.view.input) space = &candidate;
     }
+    const SampleSet samples = make_sample_set(*space, {.lattice_edge = 6, .random_count = 3000});
     std::vector<float> got(samples.rgb.size());
     std::vector<double> truth(samples.rgb.size());
     in_float.run_rgb(samples.rgb.data(), got.data(), samples.size());
@@ -288,15 +324,22 @@ std::string header(const ShaderRequest& request, const Shader& shader, const Pip
     add("Input", request.is_inverse ? shown : scene);
     add("Output", request.is_inverse ? scene : shown);
     add("Negatives", request.is_inverse ? "" : op.negatives);
-    const std::string unit = request.is_inverse      ? "scene values, relative above 1"
-                             : is_of_a_display(view) ? "code values from 0 to 1"
-                                                     : "sRGB code values from 0 to 1";
-    add("Precision",
-        fmt::format("32-bit float throughout. Each operation rounded once: within {} of the double "
-                    "reference, in {} (measured). With the errors that Vulkan and WGSL allow each "
-                    "operation: about {} (first order: an estimate, no bound). Not measured on a "
-                    "GPU here; see docs/shaders.md",
-                    rounded_up(shader.float_error), unit, rounded_up(shader.vulkan_estimate)));
+    std::string precision = fmt::format(
+        "32-bit float throughout. Each operation rounded once: within {} of the double reference, "
+        "in {} (measured)",
+        rounded_up(shader.float_error),
+        request.is_inverse      ? "what the view shows of it"
+        : is_of_a_display(view) ? "code values from 0 to 1"
+                                : "sRGB code values from 0 to 1");
+    if (std::isinf(shader.vulkan_estimate)) {
+        precision += ". With the errors that Vulkan and WGSL allow: no useful estimate";
+    } else if (!request.is_inverse) {
+        precision += fmt::format(
+            ". With the errors that Vulkan and WGSL allow each operation: about {} (first order: "
+            "an estimate, no bound)",
+            rounded_up(shader.vulkan_estimate));
+    }
+    add("Precision", precision + ". Not measured on a GPU here; see docs/shaders.md");
     add("NaN", "whatever the compiler makes of it; all other inputs give finite results");
     return text;
 }
@@ -320,21 +363,34 @@ Shader write_shader(const ShaderRequest& request) {
     check(request);
     const Pipeline pipeline = pipeline_of(request);
     const ShaderProgram program = make_program(pipeline, ranges_of(request));
-    const LanguageFacts& language = facts_of(request.language);
+    const LanguageFacts& language =
+        facts_of(request.application ? request.application->language : request.language);
     Shader shader;
     shader.function = shader_function_name(request);
     shader.float_error = measure(request, program);
-    std::array<Expr, 3> outputs = compose(bound(program, values_of(request)));
-    if (is_light(request)) {
-        for (Expr& e : outputs)
-            e = code_value(e);
+    if (!request.is_inverse) {
+        std::array<Expr, 3> outputs = compose(bound(program, values_of(request)));
+        if (is_light(request)) {
+            for (Expr& e : outputs)
+                e = code_value(e);
+        }
+        constexpr double kUseless = 0.1;
+        const double estimate = first_order_error(outputs).vulkan;
+        shader.vulkan_estimate = estimate < kUseless ? estimate : kInfinity;
     }
-    shader.vulkan_estimate = first_order_error(outputs).vulkan;
     const std::string prologue =
         *language.prologue ? std::string("\n") + language.prologue : std::string();
     PrintedProgram printed = print_program(program, language, shader.function, request.uniforms);
     shader.text = header(request, shader, pipeline) + prologue + printed.text;
     shader.textures = std::move(printed.textures);
+    if (request.application) {
+        if (!shader.textures.empty()) {
+            throw Error("shader: " + shader.function + " reads a texture; expected --language " +
+                        "instead of --for: a file for " + request.application->title +
+                        " holds none");
+        }
+        shader.text = wrap(*request.application, shader, arguments_of(request));
+    }
     return shader;
 }
 

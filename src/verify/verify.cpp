@@ -22,6 +22,7 @@
 #include "tonewright/generated_files.h"
 #include "tonewright/ocio.h"
 #include "tonewright/registry.h"
+#include "tonewright/shader.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -418,6 +419,13 @@ std::vector<ResolvedOperator> operators_of(const std::vector<std::string>& names
     return operators;
 }
 
+std::vector<GlslTexture> textures_of(const Shader& shader) {
+    std::vector<GlslTexture> textures;
+    for (const ShaderTexture& texture : shader.textures)
+        textures.push_back({texture.name, texture.edge, texture.rgba.data()});
+    return textures;
+}
+
 SampleSet every_nth(const SampleSet& all, std::size_t n) {
     SampleSet chosen;
     for (std::size_t i = 0; i < all.size(); i += n) {
@@ -592,6 +600,16 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
         const OcioGpu gpu(processor);
         add(comparison, "ocio gpu", bounds.gpu, declared.ocio_gpu > 0, bounds.is_mixed_metric,
             lowering, [&] { gpu.run_rgb(samples.rgb.data(), shown.data(), samples.size()); });
+        if (is_of_config) continue;  // no shader of ours reads it
+        const Shader shader = write_shader({.view = view});
+        const GlslGpu glsl(shader.text, shader.function, textures_of(shader));
+        // An estimate over probe colors; between them derivatives may be larger, and twice is what
+        // that is taken to be. Without one: what float is enough for.
+        constexpr double kEnough = 2e-6;
+        const double bound =
+            std::isinf(shader.vulkan_estimate) ? kEnough : 2 * shader.vulkan_estimate;
+        add(comparison, "glsl", bound, false, false, "",
+            [&] { glsl.run_rgb(samples.rgb.data(), shown.data(), samples.size()); });
     }
     return rows;
 }

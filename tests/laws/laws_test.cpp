@@ -715,6 +715,23 @@ TEST(Laws, CoverEveryPresetAndLook) {
     EXPECT_EQ(all_variants().size(), expected);
 }
 
+// Of every display color, those that the operator never shows included.
+TEST(Laws, InversesAreFinite) {
+    for (const std::string& id : invertible_operators()) {
+        for (const char* display : {"srgb", "linear"}) {
+            const ReferenceEngine inverse(
+                build_inverse_view(make_view(resolve_operator(id), "lin_rec709", 0, display)));
+            for (int i = 0; i < 9 * 9 * 9; ++i) {
+                const Vector3 color = {i / 81 / 8.0, i / 9 % 9 / 8.0, i % 9 / 8.0};
+                const Vector3 scene = inverse(color);
+                EXPECT_TRUE(std::isfinite(scene[0] + scene[1] + scene[2]))
+                    << id << " " << display << " (" << color[0] << ", " << color[1] << ", "
+                    << color[2] << ")";
+            }
+        }
+    }
+}
+
 }  // namespace
 
 TONEWRIGHT_NAMESPACE_END

@@ -108,9 +108,10 @@ def main(tonewright: str) -> int:
                 error = np.abs(got - truth[operator]).max()
                 worst_of[operator] = max(error, worst_of.get(operator, 0))
                 # The estimate of the text: Vulkan's errors, which a C library's are below; twice, because it is
-                # computed over probe colors.
-                if not error <= 2 * float(row["vulkan_estimate"]):
-                    failures.append(f"{what}: {error:.2g} off; expected at most twice {row['vulkan_estimate']}")
+                # computed over probe colors. Where first order says nothing: what float is enough for.
+                bound = 2 * float(row["vulkan_estimate"])
+                if not error <= (bound if np.isfinite(bound) else 2e-6):
+                    failures.append(f"{what}: {error:.2g} off; expected at most {bound:.2g}")
     within = sum(error <= 2e-6 for error in worst_of.values())
     print(f"{len(worst_of)} functions, {len(runs)} compilers and settings; {within} within 2e-6")
     if os.environ.get("TONEWRIGHT_TABLE"):

@@ -24,6 +24,23 @@ struct ShaderLanguageInfo {
 /// @throws Error  with the nearest id.
 [[nodiscard]] TONEWRIGHT_API const ShaderLanguageInfo& find_shader_language(std::string_view name);
 
+/// A program that takes shader source, and what it takes: a whole file.
+struct ShaderApplication {
+    std::string id;     // threejs
+    std::string title;  // "three.js (WebGL)"
+    std::string extension;
+    ShaderLanguage language;
+    /// What the function should return there: `linear`, or a display.
+    std::string display;
+    /// What the user has to do there; one sentence or two.
+    std::string steps;
+};
+[[nodiscard]] TONEWRIGHT_API const std::vector<ShaderApplication>& shader_applications();
+/// In any case, with `-`, `_` and blanks alike.
+/// @throws Error  with the nearest id.
+[[nodiscard]] TONEWRIGHT_API const ShaderApplication& find_shader_application(
+    std::string_view name);
+
 /// What a shader function computes, and how it is written.
 struct ShaderRequest {
     /// Display `linear` for a renderer that encodes its picture itself, a display for finished
@@ -35,6 +52,9 @@ struct ShaderRequest {
     std::vector<std::string> uniforms = {};
     /// What the view shows -> scene-linear.
     bool is_inverse = false;
+    /// Not null: the whole file that it takes, in its language, whatever `language` says. Uniforms
+    /// become its own sliders or inputs.
+    const ShaderApplication* application = nullptr;
 };
 
 /// What a shader reads and its text cannot hold: edge^3 texels of four 32-bit floats, RGB and 1, x
@@ -54,10 +74,12 @@ struct Shader {
     /// Largest difference between the function in float, each operation rounded once, and the
     /// double reference, over the standard sample set with fewer colors; in code values of the
     /// display, or of sRGB where the output is `linear` or `native`. What is above 1 counts
-    /// relatively. Of an inverse: relative to the scene value, or to 1 where that is less.
+    /// relatively. Of an inverse: what the view shows of its result, against what it was made
+    /// of, where the view can show that.
     double float_error = 0;
     /// What roundings may add up to with the errors that the Vulkan specification allows each
     /// operation, in the same unit. To first order and over probe colors: an estimate, no bound.
+    /// Infinite where first order says nothing; 0 of an inverse, of which it is not computed.
     double vulkan_estimate = 0;
     std::vector<ShaderTexture> textures = {};
 };

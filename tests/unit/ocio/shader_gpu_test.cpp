@@ -74,12 +74,10 @@ TEST(ShaderGpu, GlslShowsTheReference) {
             worst = std::max(worst, std::fabs(static_cast<double>(got[i]) - truth[i]));
         }
         // An estimate of the worst case, over a thousand probe colors: between them the derivatives
-        // may be larger, and twice is what that is taken to be.
-        EXPECT_LE(worst, 2 * shader.vulkan_estimate) << text_of(variant);
-        // Of most operators float is enough for 2e-6; docs/shaders.md says which and why.
-        if (shader.vulkan_estimate < 6e-6) {
-            EXPECT_LE(worst, 2e-6) << text_of(variant);
-        }
+        // may be larger, and twice is what that is taken to be. Float is enough for 2e-6 where the
+        // estimate is small or first order has none; docs/shaders.md says of which it is not.
+        const bool is_small = shader.vulkan_estimate < 6e-6 || std::isinf(shader.vulkan_estimate);
+        EXPECT_LE(worst, is_small ? 2e-6 : 2 * shader.vulkan_estimate) << text_of(variant);
     }
 }
 

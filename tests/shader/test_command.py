@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`tonewright shader` as a user meets it: languages, applications, files, warnings, wrong usage.
+
+    python3 tests/shader/test_command.py build/release/bin/tonewright
+
+The last line is `N passed, M failed`. Files for applications go through glslangValidator where it is installed.
+"""
+
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
+from pictures import Report  # noqa: E402
+
+OK, USAGE, FILE = 0, 2, 3  # exit codes
+
+
+def call(command, *arguments):
+    """(exit code, standard output, standard error)"""
+    done = subprocess.run([command, "shader", *map(str, arguments)], capture_output=True, text=True, check=False)
+    return done.returncode, done.stdout, done.stderr
+
+
+def check_refusals(report, command, scratch):
+    for arguments, code, words in [
+        (["hable"], USAGE, "shader: --language and --for are missing; expected one of them"),
+        (["hable", "--language", "c", "--for", "mpv"], USAGE, "shader: --language and --for are given"),
+        (["--language", "c"], USAGE, "shader: OPERATOR is missing"),
+        (["hable", "--language", "glls"], USAGE, "did you mean glsl?"),
+        (["hable", "--for", "three"], USAGE, "did you mean threejs"),
+        (["hable", "--language", "c", "--uniforms", "whit"], USAGE, "did you mean white?"),
+        (["hable", "--language", "c", "--uniforms", "white,white"], USAGE, "white twice"),
+        (["hable_piecewise", "--language", "c", "--uniforms", "toe_length"], USAGE, "uniform is toe_length"),
+        (["reinhard_local", "--language", "c"], USAGE, "reinhard_local"),
+        (["drago", "--language", "c", "--inverse"], USAGE, "drago has no inverse"),
+        (["agx_blender", "--language", "dctl"], USAGE, "expected a language with textures"),
+        (["agx_blender", "--language", "glsl"], USAGE, "has a texture; expected -o FILE"),
+        (["agx_blender", "--for", "shadertoy"], USAGE, "reads a texture"),
+        (["hable", "--language", "c", "-o", scratch / "no" / "x.h"], FILE, "write: "),
+        (["hable", "--language", "c", "-o", "/dev/null"], FILE, "/dev/null"),
+    ]:
+        got, out, err = call(command, *arguments)
+        what = " ".join(map(str, arguments))
+        report.check(what, (got, out) == (code, "") and words in err and err.count("\n") == 1, f"{got} {out} {err}")
+
+
+def check_files(report, command, scratch):
+    path = scratch / "hable.h"
+    code, out, err = call(command, "hable", "--language", "c", "-o", path)
+    report.check("-o says what it wrote", (code, out) == (OK, "") and "tw_hable(), in float within" in err, err)
+    code, text, err = call(command, "hable", "--language", "c")
+    report.check("without -o: standard output", (code, text, err) == (OK, path.read_text(), ""), err)
+    # Blender's AgX: 57^3 nodes, the last of them the whitest.
+    code, _, err = call(command, "agx_blender", "--language", "glsl", "-o", scratch / "agx.glsl")
+    textures = sorted(scratch.glob("*.rgba32f"))
+    report.check("textures beside the text", code == OK and textures and all(t.name in err for t in textures), err)
+    for texture in textures:
+        texels = np.fromfile(texture, "<f4").reshape(-1, 4)
+        edge = round(len(texels) ** (1 / 3))
+        report.check(f"{texture.name} is a cube of RGBA", edge**3 == len(texels) and (texels[:, 3] == 1).all())
+        report.check(f"{texture.name} is what the text reads", texture.stem in (scratch / "agx.glsl").read_text())
+    for operator, words in [("gt7", "warning: tw_gt7 is up to"), ("drago", "measures each picture, which a shader cannot do")]:
+        code, text, err = call(command, operator, "--language", "c")
+        report.check(f"{operator} warns", code == OK and words in err and f"tw_{operator}(" in text, err)
+    # Khronos PBR Neutral takes 0.04 from colors whose smallest channel is 0.08 or more, and nothing else from dark ones.
+    code, text, _ = call(command, "khronos_neutral", "--language", "c", "--inverse")
+    report.check("--inverse", code == OK and "tw_khronos_neutral_inverse(const float in[3], float out[3])" in text, text)
+    source = scratch / "inverse.c"
+    source.write_text(text + '#include <stdio.h>\nint main(void) { float a[3] = {0.26f, 0.16f, 0.06f}, b[3];'
+                      ' tw_khronos_neutral_inverse(a, b); printf("%g %g %g", b[0], b[1], b[2]); return 0; }\n')
+    subprocess.run(["gcc", source, "-o", scratch / "inverse", "-lm"], check=True)
+    numbers = [float(x) for x in subprocess.run([scratch / "inverse"], capture_output=True, check=True).stdout.split()]
+    report.check("the inverse brings light back", np.allclose(numbers, [0.3, 0.2, 0.1], atol=1e-6), numbers)
+
+
+def check_applications(report, command, scratch):
+    code, listing, _ = call(command, "--list")
+    applications = [line.split()[0] for line in listing.split("applications\n")[1].splitlines()]
+    report.check("--list names them", code == OK and {"threejs", "bevy", "godot", "mpv", "resolve"} <= set(applications))
+    texts = {}
+    for application in applications:
+        path = scratch / f"file.{application}"
+        code, _, err = call(command, "hable", "--for", application, "--uniforms", "exposure,white", "-o", path)
+        texts[application] = path.read_text()
+        report.check(f"--for {application}", code == OK and "tw_hable" in texts[application] and
+                     not {"@function", "@call", "@arguments", "@declarations"} & set(texts[application].split()), err)
+    report.check("sliders of mpv", "//!PARAM white" in texts["mpv"])
+    report.check("sliders of Resolve", "DEFINE_UI_PARAMS(white, white, DCTLUI_SLIDER_FLOAT, 11.2f, 0.1f, 65504.0f, 0.01)" in texts["resolve"])
+    report.check("the first line of Godot", texts["godot"].startswith("#[compute]\n#version 450\n"))
+    if not shutil.which("glslangValidator"):
+        print("files for Godot, mpv, Shadertoy and GStreamer were not validated: glslangValidator is not installed")
+        return
+    no_parameters = "\n".join(line for line in texts["mpv"].split("//!HOOK")[1].splitlines()[1:] if not line.startswith("//!"))
+    for name, stage, options, text in [
+        ("godot", "comp", ["-V", "-o", "/dev/null"], texts["godot"].split("\n", 1)[1]),
+        ("gstreamer", "frag", [], texts["gstreamer"]),
+        ("shadertoy", "frag", [], "#version 300 es\nprecision highp float;\nuniform sampler2D iChannel0;\nuniform vec3 iResolution;\n"
+         "out vec4 o;\n" + texts["shadertoy"] + "void main() { mainImage(o, gl_FragCoord.xy); }\n"),
+        ("mpv", "frag", [], "#version 330\nuniform float exposure, white;\nvec4 HOOKED_texOff(float x) { return vec4(x); }\n"
+         "out vec4 o;\n" + no_parameters + "\nvoid main() { o = hook(); }\n"),
+    ]:
+        path = scratch / f"{name}.{stage}"
+        path.write_text(text)
+        done = subprocess.run(["glslangValidator", *options, path], capture_output=True, text=True, check=False)
+        report.check(f"glslangValidator takes the file for {name}", done.returncode == 0, done.stdout)
+
+
+def main(command):
+    report = Report()
+    with tempfile.TemporaryDirectory() as folder:
+        scratch = Path(folder)
+        check_refusals(report, command, scratch)
+        check_files(report, command, scratch)
+        check_applications(report, command, scratch)
+    return report.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1]))

@@ -110,6 +110,7 @@ void write_all(const Options& options) {
     if (!options.language.empty()) languages = {find_shader_language(options.language)};
     require_writable_folder(options.all);
     std::vector<GeneratedFile> files;
+    std::size_t count = 0;
     std::string manifest = "path,operator,function,float_error,vulkan_estimate\n";
     for (const ShaderLanguageInfo& language : languages) {
         std::size_t left_out = 0;
@@ -128,6 +129,7 @@ void write_all(const Options& options) {
                                     shader.function, rounded_up(shader.float_error),
                                     rounded_up(shader.vulkan_estimate));
             files.push_back({path, shader.text});
+            ++count;
             for (GeneratedFile& file : texture_files(shader, path))
                 files.push_back(std::move(file));
         }
@@ -138,7 +140,7 @@ void write_all(const Options& options) {
                             language.id, left_out));
         }
     }
-    print_result(fmt::format("{}: {} shaders", options.all, files.size()));
+    print_result(fmt::format("{}: {} shaders", options.all, count));
     files.push_back({"MANIFEST.csv", manifest});
     write_generated_files(options.all, files, "MANIFEST.csv");
 }

@@ -198,6 +198,22 @@ TEST(FloatForm, GuardsOnlyWhatCanGoWrong) {
               "select(less(0, x), pow(max(x, 1.1754943508222875e-38), 0.01), 0)");
 }
 
+// 1 - e^-x of small x, which float rounds away as it is written.
+TEST(FloatForm, OneMinusAnExponentialKeepsItsDigits) {
+    const Expr x = Expr::input();
+    const Expr f = FloatForm({{0, 4}}, {})(1 - exp(-x));
+    ShaderProgram program;
+    program.scalars.push_back({"f", f});
+    program.steps.emplace_back(ScalarStep{0});
+    const FloatRun run(program);
+    for (const float at : {0.0F, 1e-8F, 1e-4F, 0.01F, 0.1F, 0.24F, 0.26F, 1.0F, 4.0F}) {
+        std::array<float, 3> color = {at, at, at};
+        run.run_rgb(color.data(), color.data(), 1);
+        const double right = -std::expm1(-double{at});
+        EXPECT_NEAR(double{color[0]}, right, 4e-7 * right) << at;  // a few roundings
+    }
+}
+
 TEST(Shader, FiniteInFloatForHostileColors) {
     const std::vector<float> rgb = hostile_colors(2000);
     for (const OperatorVariant& variant : all_variants()) {

@@ -213,7 +213,8 @@ const std::vector<ShaderApplication>& shader_applications() {
          "A post-process material at `Replacing the Tonemapper` with a Custom node; bloom and "
          "vignette are left out there."},
         {"mpv", "mpv", ".glsl", ShaderLanguage::glsl, "srgb",
-         "mpv --vo=gpu --glsl-shader=FILE on scene-linear pictures (EXR); sliders need mpv 0.36."},
+         "mpv --vo=gpu --vf=format=gamma=srgb --glsl-shader=FILE on scene-linear pictures (EXR); "
+         "sliders need mpv 0.36."},
         {"reshade", "ReShade", ".fx", ShaderLanguage::hlsl, "linear",
          "For games that hand scRGB (linear light) to ReShade; elsewhere the picture is tone "
          "mapped already."},

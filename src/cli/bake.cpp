@@ -97,15 +97,15 @@ void bake_one(Options& options) {
         throw Error(
             "bake: OPERATOR is missing; expected an id from `tonewright list`, or --all FOLDER");
     if (options.file.empty()) throw Error("bake: -o is missing; expected -o FILE");
+    // Told before minutes of work, and before what is expected of the name: a device has none.
+    if (const std::string why = why_no_file(options.file); !why.empty())
+        throw FileError(fmt::format("write: {}: {}", options.file, why));
     const LutApplication* host =
         options.host.empty() ? nullptr : &find_lut_application(options.host);
     LutRequest request;
     std::optional<LutFormat> format;
     if (!options.format.empty()) format = parse_lut_format(options.format);
     request.format = lut_format_of_file(options.file, format, host);
-    // Told before minutes of work.
-    if (const std::string why = why_no_file(options.file); !why.empty())
-        throw FileError(fmt::format("write: {}: {}", options.file, why));
     if (!options.given.contains("--input"))
         options.input = parse_input_encoding(options.encoding).default_input;
     if (host) take_from_host(options, *host);

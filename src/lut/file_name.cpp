@@ -54,14 +54,11 @@ std::vector<std::string> known_extensions() {
 LutFormat lut_format_of_file(const std::string& path, std::optional<LutFormat> format,
                              const LutApplication* application) {
     const std::string extension = extension_of(path);
-    const std::vector<std::string> known = known_extensions();
     if (!format && application) format = application->format;
     if (format) {
         const std::vector<std::string>& own = extensions_of(*format);
-        // A name of no LUT format contradicts no --format: a device, a name without an extension.
-        // Applications look at the extension.
-        const bool is_known = application ? !extension.empty() : has(known, extension);
-        if (!is_known || has(own, extension)) return *format;
+        // Every reader of LUTs looks at the extension, so no other one will do, and none neither.
+        if (has(own, extension)) return *format;
         const std::string reason =
             application && *format == application->format
                 ? fmt::format("{} reads {}", application->title, name_of(*format))
@@ -79,7 +76,8 @@ LutFormat lut_format_of_file(const std::string& path, std::optional<LutFormat> f
     for (std::size_t i = 0; i < extensions().size(); ++i) {
         if (has(extensions()[i], extension)) return static_cast<LutFormat>(i);
     }
-    throw Error(fmt::format("bake: file is {}; expected a name that ends in {}, or --format", path,
+    const std::vector<std::string> known = known_extensions();
+    throw Error(fmt::format("bake: file is {}; expected a name that ends in {}", path,
                             join_choices(known)) +
                 did_you_mean(extension, known));
 }

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "base/atomic_file.h"
+#include "base/input_file.h"
 #include "base/strings.h"
 #include "image/lut_picture.h"
 #include "image/tonemap_arguments.h"
@@ -351,6 +352,8 @@ py::dict bake_file(const std::string& op, const std::string& file, const std::st
     LutRequest request;
     std::optional<LutFormat> named;
     if (format) named = parse_lut_format(*format);
+    if (const std::string why = why_no_file(file); !why.empty())
+        throw FileError(fmt::format("write: {}: {}", file, why));
     request.format = lut_format_of_file(file, named, reader);
     request.encoding =
         parse_input_encoding(input_encoding.value_or(reader ? reader->encoding : "acescct"));

@@ -198,6 +198,8 @@ def check_luts(report, tw, command, scratch):
         report.check(f"bake {options}: the file of `bake`", a.read_bytes() == b.read_bytes(), str(result))
     raises(report, "bake under another format's name", ValueError, "expected .cube",
            lambda: tw.bake("hable", str(scratch / "a.clf"), host="resolve"))
+    raises(report, "bake under no format's name", ValueError, "expected .cube: the format is cube",
+           lambda: tw.bake("hable", str(scratch / "a.txt"), format="cube"))
     raises(report, "bake into no folder", FileNotFoundError, "/nonexistent/a.cube",
            lambda: tw.bake("hable", "/nonexistent/a.cube"))
     for path in (scratch / "path.cube", bytes(scratch / "bytes.cube")):

@@ -42,7 +42,7 @@ struct LutApplication {
 /// The format of a LUT file: `format`, else what the application reads, else what the extension of
 /// the file says.
 /// @param application  null: none
-/// @throws Error  the extension is that of another format, or none says the format
+/// @throws Error  the extension is none of the format's, or says no format
 [[nodiscard]] TONEWRIGHT_API LutFormat lut_format_of_file(const std::string& path,
                                                           std::optional<LutFormat> format,
                                                           const LutApplication* application);

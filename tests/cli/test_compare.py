@@ -90,6 +90,27 @@ def check_sheet(bench):
     bench.report.check("drago without statistics is another picture", not places(bench.sheet("drago"), statistics))
 
 
+def check_titles(bench):
+    """Below a cell stands the operator's title; of a look, the name of its view in the config. Both can be typed."""
+    width, margin, line = 200, 10, 15  # of a sheet of such cells: make_contact_sheet()
+    below = margin + round(width * HEIGHT / WIDTH)
+    titles = {"agx_blender": "AgX (Blender)", "agx_blender:look=punchy": "AgX Punchy",
+              "agx_sobotka:look=golden": "AgX Sobotka Golden"}
+    shown = bench.folder / "shown.png"
+    run(bench.command, "apply", bench.picture, shown, "--operator", "hable")
+    strips = {}
+    for title in (*titles.values(), "AgX (Sobotka)"):
+        out = bench.folder / "titled.png"
+        run(bench.command, "sheet", f"{title}={shown}", "-o", out, "--cell-width", width)
+        strips[title] = bench.bytes_of(out)[below:below + line, margin:margin + width]
+    for operator, title in titles.items():
+        sheet = bench.compared(operator, "--cell-width", width)
+        found = [other for other, strip in strips.items() if places(sheet, strip)]
+        bench.report.check(f"sheet: the title of {operator} is {title}", found == [title], found)
+        same = bench.applied("--operator", title) == bench.applied("--operator", operator)
+        bench.report.check(f"{title} can be typed", same.all())
+
+
 def check_pictures(bench):
     """Full size, whatever the cells; the files are those of `apply`."""
     cells = {"hable": ["hable"], "agx_blender:look=punchy": ["agx_blender", "--look", "punchy"], "drago": ["drago"]}
@@ -275,7 +296,7 @@ def main():
     report = Report()
     with tempfile.TemporaryDirectory() as scratch:
         bench = Bench(report, command, Path(scratch))
-        for check in share_of([check_sheet, check_scaled, check_default, check_pictures, check_false_color,
+        for check in share_of([check_sheet, check_titles, check_scaled, check_default, check_pictures, check_false_color,
                                check_difference, check_split, check_other_pictures], 2):
             check(bench)
         check_errors(bench)

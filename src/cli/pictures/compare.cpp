@@ -30,12 +30,20 @@ namespace {
 
 constexpr const char* kDiagnostic = "false_color";
 
+/// "AgX (Blender)"; with a look, the name of its view in the config: "AgX Punchy".
+std::string title_of(const ResolvedOperator& op) {
+    for (const Look& look : op.op->looks) {
+        if (look.id == op.params.look()) return op.op->view + " " + look.title;
+    }
+    return op.op->title;
+}
+
 /// One picture of the comparison.
 struct Rendering {
     ResolvedOperator op;
     Tonemapper tonemapper;
 
-    [[nodiscard]] std::string label() const { return op.op->title + "\n" + operator_text(op); }
+    [[nodiscard]] std::string label() const { return title_of(op) + "\n" + operator_text(op); }
 };
 
 Rendering rendering_of(const ResolvedOperator& op, const CompareOptions& options) {
@@ -169,8 +177,8 @@ void write_sheet(const CompareOptions& options, const std::vector<Rendering>& re
 void write_split(const CompareOptions& options, const std::vector<Rendering>& renderings,
                  const OIIO::ImageBuf& picture) {
     SplitOptions split;
-    split.before = {renderings[0].op.op->title, operator_text(renderings[0].op)};
-    split.after = {renderings[1].op.op->title, operator_text(renderings[1].op)};
+    split.before = {title_of(renderings[0].op), operator_text(renderings[0].op)};
+    split.after = {title_of(renderings[1].op), operator_text(renderings[1].op)};
     split.remark = fmt::format("{}, {}", name_of(options.in), exposure_text(options.exposure));
     split.position = *options.split;
     split.is_horizontal = options.is_horizontal;

@@ -7,10 +7,12 @@
 // OpenImageIO's own Python module and this one know each other's types (pybind11 shares them where
 // both were built with the same of it), so that an ImageBuf of the one goes into the other.
 #include <OpenImageIO/imagebuf.h>
+#include <fmt/format.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <array>
 #include <cerrno>
 #include <cstddef>
 #include <exception>
@@ -53,15 +55,28 @@ std::string text_of(const py::handle& value) {
     return text;
 }
 
-/// The library's messages name the commands that list things; Python has functions.
+/// The library's messages name commands and their options; Python has functions and arguments.
 std::string in_python(std::string message) {
-    for (const auto& [command, function] :
+    for (const auto& [command, python] :
          {std::pair<std::string, const char*>("`tonewright list --hosts`", "applications()"),
-          std::pair<std::string, const char*>("`tonewright list`", "operators()")}) {
+          std::pair<std::string, const char*>("`tonewright list`", "operators()"),
+          std::pair<std::string, const char*>("--alpha ignore", "alpha=\"ignore\""),
+          std::pair<std::string, const char*>("--alpha opaque", "alpha=\"opaque\""),
+          std::pair<std::string, const char*>("--display linear", "display=\"linear\"")}) {
         for (std::size_t at = 0; (at = message.find(command)) != std::string::npos;)
-            message.replace(at, command.size(), function);
+            message.replace(at, command.size(), python);
     }
     return message;
+}
+
+/// A UserWarning at the line that called the package's function.
+/// @throws py::error_already_set  Python's filters make it an error.
+void warn(const std::string& text) {
+    constexpr Py_ssize_t kCallerOfPackage = 2;
+    const py::gil_scoped_acquire acquire;
+    const std::string message = in_python(one_line(text));
+    if (PyErr_WarnEx(PyExc_UserWarning, message.c_str(), kCallerOfPackage) != 0)
+        throw py::error_already_set();
 }
 
 /// OSError, or the one of its classes that a reason has.
@@ -400,16 +415,30 @@ py::dict bake_file(const std::string& op, const std::string& file, const std::st
     return result;
 }
 
+WriteOptions::Alpha parse_alpha(const std::string& text) {
+    using Alpha = WriteOptions::Alpha;
+    constexpr std::array<Alpha, 3> kAlphas = {Alpha::keep, Alpha::ignore, Alpha::opaque};
+    return kAlphas[find_choice("alpha", text, {"keep", "ignore", "opaque"})];
+}
+
 void tonemap_into_file(const std::string& in, const std::string& out, const std::string& op,
-                       const std::string& type, int nthreads, int subimage,
-                       const py::kwargs& arguments) {
-    const TonemapOptions options = parse_options(op, arguments);
+                       const std::string& type, const std::string& alpha, int nthreads,
+                       int subimage, const py::kwargs& arguments) {
+    TonemapOptions options = parse_options(op, arguments);
+    WriteOptions write;
+    write.alpha = parse_alpha(alpha);
+    if (write.alpha != WriteOptions::Alpha::keep) {
+        if (options.unpremult == TonemapOptions::Unpremult::yes)
+            throw Error("alpha is " + alpha + "; expected keep where color is divided by alpha");
+        // Where alpha plays no part, color is taken as it is.
+        options.unpremult = TonemapOptions::Unpremult::no;
+    }
     const OIIO::TypeDesc pixel_type =
         type.empty() ? OIIO::TypeDesc(OIIO::TypeUnknown) : parse_pixel_type(type);
     const py::gil_scoped_release release;
-    WriteOptions write;
     write.type = pixel_type;
     write.says_how = true;
+    write.warn = [&](const std::string& text) { warn(fmt::format("{}: {}", out, text)); };
     tonemap_file(Tonemapper(options), in, out, write, nthreads, subimage);
 }
 
@@ -539,7 +568,8 @@ PYBIND11_MODULE(_tonewright, m) {
     m.def("tonemap", &tw::tonemap_any, py::arg("image"), py::arg("op"), py::kw_only(),
           py::arg("roi"), py::arg("nthreads"), py::arg("progress"));
     m.def("tonemap_file", &tw::tonemap_into_file, py::arg("source"), py::arg("target"),
-          py::arg("op"), py::kw_only(), py::arg("type"), py::arg("nthreads"), py::arg("subimage"));
+          py::arg("op"), py::kw_only(), py::arg("type"), py::arg("alpha"), py::arg("nthreads"),
+          py::arg("subimage"));
     m.def("evaluate", &tw::evaluate_colors, py::arg("op"), py::arg("colors"));
     m.def("meter", &tw::meter_any);
     m.def("operators", [] { return tw::describe_all(tw::all_operators()); });

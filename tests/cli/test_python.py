@@ -9,9 +9,11 @@ The last line is `N passed, M failed`.
 import argparse
 import json
 import os
+import subprocess
 import sys
 import tempfile
 import threading
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -212,6 +214,46 @@ def check_luts(report, tw, command, scratch):
     raises(report, "bake of a kind", ValueError, "format is", lambda: tw.bake("hable", "a.cube", format="cub"))
 
 
+def check_warnings(report, tw, command, path, scratch):
+    """tonemap_file() warns where `apply` does, in Python's words; as an error, no file is written."""
+    blank = scratch / "blank.exr"
+    run("oiiotool", path, "--mulc", "1,1,1,0", "-o", blank)
+    for what, source, name, options, arguments, words in (
+            ("alpha is 0", blank, "blank.png", {}, [],
+             'alpha is 0 everywhere, so viewers show nothing; alpha="ignore" leaves it out, alpha="opaque" makes it 1'),
+            ("PQ in a JPEG", path, "pq.jpg", {"display": "rec2100_pq", "alpha": "ignore"},
+             ["--display", "rec2100_pq", "--alpha", "ignore"], "JPEG does not say that its colors are "),
+            ("code values in an EXR", path, "code.exr", {}, [], 'for linear light, use display="linear"'),
+            ("opaque", blank, "opaque.png", {"alpha": "opaque"}, ["--alpha", "opaque"], None),
+            ("no cause", path, "plain.png", {}, [], None)):
+        target = scratch / name
+        with warnings.catch_warnings(record=True) as heard:
+            warnings.simplefilter("always")
+            tw.tonemap_file(source, target, "hable", **options)
+        said = subprocess.run([command, "apply", source, scratch / f"said.{name}", "--operator", "hable", *arguments],
+                              capture_output=True, text=True, check=True).stderr
+        expected = 1 if words else 0
+        report.check(f"tonemap_file: {what}: {expected} warnings, as of `apply`",
+                     len(heard) == expected == said.count("warning: "), (heard, said))
+        report.check(f"tonemap_file: {what}: the bytes of `apply`",
+                     target.read_bytes() == (scratch / f"said.{name}").read_bytes())
+        for warning in heard:
+            text = str(warning.message)
+            report.check(f"tonemap_file: {what}: a UserWarning of the caller's line", warning.category is UserWarning
+                         and warning.filename == __file__ and text.startswith(f"{target}: ") and words in text
+                         and "--" not in text, warning)
+            target.unlink()
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")
+                raises(report, f"tonemap_file: {what}: as an error", UserWarning, words,
+                       lambda: tw.tonemap_file(source, target, "hable", **options))  # noqa: B023
+            report.check(f"tonemap_file: {what}: no file then", not target.exists() and not list(scratch.glob(".*")))
+    raises(report, "tonemap_file: alpha", ValueError, "expected keep, ignore or opaque",
+           lambda: tw.tonemap_file(path, scratch / "d.exr", "hable", alpha="drop"))
+    raises(report, "tonemap_file: alpha that divides", ValueError, "alpha is opaque; expected keep",
+           lambda: tw.tonemap_file(path, scratch / "d.exr", "hable", alpha="opaque", unpremult="yes"))
+
+
 def check_pictures(report, tw, command, scratch):
     try:
         import OpenImageIO as oiio
@@ -238,6 +280,7 @@ def check_pictures(report, tw, command, scratch):
            lambda: tw.tonemap_file(scratch / "gone.exr", scratch / "d.exr", "hable"))
     raises(report, "tonemap_file: a pixel type", ValueError, "expected uint8, uint16, half or float",
            lambda: tw.tonemap_file(path, scratch / "d.exr", "hable", dtype="int"))
+    check_warnings(report, tw, command, path, scratch)
     metered = tw.meter(path)
     said = json.loads(run(command, "meter", path, "--json"))["pictures"][0]
     report.check("meter(): the exposure of `meter`", abs(metered["exposure"] - said["exposure"]) < 1e-12

@@ -13,7 +13,8 @@ Functions that take an operator share these options:
     look             look of the operator
     reference_white  luminance of scene-linear 1.0 on HDR displays, in cd/m2
 
-A wrong type raises TypeError, a wrong value ValueError, a file OSError or one of its subclasses. Other threads run while
+A wrong type raises TypeError, a wrong value ValueError, a file OSError or one of its subclasses. A file that is not what a
+user may expect is a UserWarning; where `python -W error` makes it an error, the file is not written. Other threads run while
 a function works.
 """
 
@@ -110,12 +111,13 @@ def tonemap(image: Picture, op: str, *, settings: Mapping[str, Any] | None = Non
 
 def tonemap_file(source: Path, target: Path, op: str, *, settings: Mapping[str, Any] | None = None, exposure: float = 0,
                  input: str = "auto", display: str = "srgb", look: str = "", reference_white: float = 100,
-                 unpremult: str | bool = "auto", statistics: str = "picture", dtype: str | None = None, subimage: int = 0,
-                 nthreads: int = 0) -> None:
-    """Tone map a picture file into another file, as `tonewright apply` does.
+                 unpremult: str | bool = "auto", statistics: str = "picture", dtype: str | None = None,
+                 alpha: str = "keep", subimage: int = 0, nthreads: int = 0) -> None:
+    """Tone map a picture file into another file, as `tonewright apply` does. Its warnings are UserWarnings.
 
     target: replaced only when the new file is complete; its extension sets the format.
     dtype: "uint8", "uint16", "half" or "float" (default: what suits the format).
+    alpha: "keep", "ignore" (leave it out) or "opaque" (make it 1).
     subimage: subimage of a multi-part file, counted from 0.
     Other options: as tonemap().
 
@@ -124,8 +126,8 @@ def tonemap_file(source: Path, target: Path, op: str, *, settings: Mapping[str, 
     options = _options(settings, exposure, input, display, look, reference_white)
     options.update(unpremult=_choice("unpremult", unpremult), statistics=_text("statistics", statistics))
     _tonewright.tonemap_file(_path("source", source), _path("target", target), _text("op", op),
-                             type="" if dtype is None else _text("dtype", dtype), nthreads=_operator.index(nthreads),
-                             subimage=_operator.index(subimage), **options)
+                             type="" if dtype is None else _text("dtype", dtype), alpha=_text("alpha", alpha),
+                             nthreads=_operator.index(nthreads), subimage=_operator.index(subimage), **options)
 
 
 def evaluate(op: str, colors: npt.ArrayLike, *, settings: Mapping[str, Any] | None = None, exposure: float = 0,

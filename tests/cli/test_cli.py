@@ -121,6 +121,17 @@ def check_list(report, command):
     text = run(command, "list", "hable")
     report.check("list OPERATOR", "Uncharted" in text and "--set white=11.2" in text, text)
     report.check("list OPERATOR --markdown", run(command, "list", "hable", "--markdown") in markdown)
+    # Live are the numbers of a formula without branches on them: Hable's are the letters of one fraction. BT.2390 and
+    # Unreal's curve solve for their segments first, aces_20 builds tables, and a local operator has no expression.
+    for name, live in (("hable", "shoulder_strength, linear_strength, linear_angle, toe_strength, toe_numerator, "
+                        "toe_denominator, white, exposure_bias, saturation"), ("frostbite", "linear_end"),
+                       ("bt2390", "saturation"), ("unreal", None), ("aces_20", None), ("clamp", None),
+                       ("exposure_fusion", None)):
+        lines = [line for line in run(command, "list", name).splitlines() if line.split()[:1] == ["live"]]
+        report.check(f"list {name}: live parameters", lines == (
+            [f"  live        {live} (one expression serves all their values)"] if live else []), lines)
+        said = [p["name"] for p in json.loads(run(command, "list", name, "--json"))["parameters"] if p.get("live")]
+        report.check(f"list {name} --json: live parameters", said == (live.split(", ") if live else []), said)
 
 
 def check_eval_text(report, command):

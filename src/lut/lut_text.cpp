@@ -63,7 +63,7 @@ class Text {
         line_ = rest_.substr(0, end);
         rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
         if (line_.find('\0') != std::string_view::npos)
-            fail("holds bytes that are not text; expected a text file");
+            fail("the line holds bytes that are not text; expected a text file");
         words_ = line_;
         return true;
     }
@@ -90,7 +90,7 @@ class Text {
     /// What OpenColorIO reads into a buffer of its own.
     void check_length() const {
         if (line_.size() > kLongestLine)
-            fail(fmt::format("is {} characters long; expected up to {}", line_.size(),
+            fail(fmt::format("the line has {} characters; expected at most {}", line_.size(),
                              kLongestLine));
     }
     [[nodiscard]] std::string_view line() const { return line_; }
@@ -103,15 +103,25 @@ class Text {
     }
     /// "line 3: 0 0 x; expected three numbers".
     [[noreturn]] void refuse(const std::string& expected) const {
-        fail(printable(line_) + "; expected " + expected);
+        const bool is_blank = line_.find_first_not_of(kBlank) == std::string_view::npos;
+        fail((is_blank ? "the line is empty" : printable(trimmed(line_))) + "; expected " +
+             expected);
     }
     /// "line 2: LUT_3D_SIZE is 1000; expected [2, 129]".
     [[noreturn]] void refuse(std::string_view name, std::string_view value,
                              const std::string& expected) const {
-        fail(fmt::format("{} is {}; expected {}", printable(name), printable(value), expected));
+        fail(fmt::format("{} is {}; expected {}", printable(name),
+                         value.empty() ? "missing" : printable(value), expected));
+    }
+    /// At the end of the file: "line 9: the file ends; expected 9 rows".
+    [[noreturn]] void end(const std::string& expected) const {
+        fail("the file ends; expected " + expected);
     }
     [[noreturn]] void end_early(std::size_t found, std::size_t expected) const {
-        fail(fmt::format("ends after {} rows; expected {}", found, expected));
+        fail(fmt::format("the table ends after {} rows; expected {}", found, expected));
+    }
+    [[noreturn]] void too_many_rows(std::size_t expected) const {
+        fail(fmt::format("the table has more than {0} rows; expected {0}", expected));
     }
 
     double number(std::string_view name, std::string_view text) const {
@@ -123,7 +133,7 @@ class Text {
     int size(std::string_view name, std::string_view text, int lo, int hi) const {
         int value = 0;
         const auto r = std::from_chars(text.data(), text.data() + text.size(), value);
-        const std::string expected = fmt::format("[{}, {}]", lo, hi);
+        const std::string expected = fmt::format("a whole number in [{}, {}]", lo, hi);
         if (r.ptr != text.data() + text.size() || r.ec != std::errc() || value < lo || value > hi)
             refuse(name, text, expected);
         return value;
@@ -159,12 +169,11 @@ class Rows {
     std::array<float, 3> add(Text& text) {
         if (expected_ == 0) text.refuse("a size before the first row");
         const std::array<float, 3> row = text.numbers(3);
-        if (++found_ > expected_)
-            text.fail(fmt::format("is row {}; expected {}", found_, expected_));
+        if (++found_ > expected_) text.too_many_rows(expected_);
         return row;
     }
     void finish(const Text& text) const {
-        if (expected_ == 0) text.fail("ends without a size; expected LUT_1D_SIZE or LUT_3D_SIZE");
+        if (expected_ == 0) text.end("a size and as many rows");
         if (found_ < expected_) text.end_early(found_, expected_);
     }
 
@@ -237,7 +246,11 @@ CubeText read_cube(Text& text) {
             text.refuse("input ranges where there are two tables");
     }
     for (std::size_t c = 0; c < 3; ++c) {
-        if (!(lo[c] < hi[c])) text.fail_at(domain_line, "DOMAIN_MIN is not below DOMAIN_MAX");
+        if (lo[c] < hi[c]) continue;
+        text.fail_at(domain_line,
+                     fmt::format("DOMAIN_MIN is {}, DOMAIN_MAX {}; expected DOMAIN_MIN "
+                                 "below DOMAIN_MAX in each channel",
+                                 fmt::join(lo, " "), fmt::join(hi, " ")));
     }
     if (domain_line > 0) {
         CubeText::Table& table = result.cube.size > 0 ? result.cube : result.table;
@@ -291,10 +304,10 @@ void check_spi1d(Text& text) {
             text.refuse("keyword", key, "Version, From, Length, Components or {");
         }
     }
-    if (!has_version) text.fail("has no Version before it; expected Version 1");
-    if (!length) text.fail("has no Length before it; expected Length and a number");
-    if (!components) text.fail("has no Components before it; expected Components 1 or 3");
-    if (!is_open) text.fail("ends without {");
+    if (!has_version) text.fail("Version is missing; expected Version 1 before {");
+    if (!length) text.fail("Length is missing; expected Length and a number before {");
+    if (!components) text.fail("Components is missing; expected Components 1, 2 or 3 before {");
+    if (!is_open) text.end("{");
     const auto expected = static_cast<std::size_t>(*length);
     std::size_t found = 0;
     while (text.next_filled(false)) {
@@ -305,18 +318,18 @@ void check_spi1d(Text& text) {
         }
         text.rewind();
         text.numbers(*components);
-        if (++found > expected) text.fail(fmt::format("is row {}; expected {}", found, expected));
+        if (++found > expected) text.too_many_rows(expected);
     }
     if (found < expected) text.end_early(found, expected);
-    text.fail("ends without }");
+    text.end("}");
 }
 
 void check_spi3d(Text& text) {
     if (!text.next_line() || !lowercase(text.line()).starts_with("spilut"))
         text.refuse("SPILUT 1.0");
-    if (!text.next_line()) text.fail("ends here; expected 3 3");
+    if (!text.next_line()) text.end("3 3");
     text.numbers(2);
-    if (!text.next_line()) text.fail("ends here; expected three sizes");
+    if (!text.next_line()) text.end("three sizes");
     int n = 0;
     for (int c = 0; c < 3; ++c) {
         const int size = text.size("size", text.word(), 2, kLargestCube);
@@ -344,7 +357,7 @@ void check_spi3d(Text& text) {
 /// cineSpace: three preluts, then the table.
 void check_csp(Text& text) {
     const auto next = [&](const char* expected) {
-        if (!text.next_filled(false)) text.fail(fmt::format("ends here; expected {}", expected));
+        if (!text.next_filled(false)) text.end(expected);
     };
     const auto only = [&](const char* expected) {
         if (!text.word().empty()) text.refuse(expected);
@@ -357,7 +370,7 @@ void check_csp(Text& text) {
     next("a prelut");
     if (lowercase(text.line()).starts_with("begin metadata")) {
         do {
-            if (!text.next_line()) text.fail("ends here; expected END METADATA");
+            if (!text.next_line()) text.end("END METADATA");
         } while (!lowercase(text.line()).starts_with("end metadata"));
         next("a prelut");
     }
@@ -372,12 +385,12 @@ void check_csp(Text& text) {
             int found = 0;
             for (std::string_view word = text.word(); !word.empty(); word = text.word()) {
                 const double value = text.number("number", word);
-                if (is_input && !(value > last)) text.fail("the prelut's input does not rise");
+                if (is_input && !(value > last)) text.refuse("rising numbers");
                 last = value;
                 if (++found > points) break;
             }
             if (found != points)
-                text.fail(fmt::format("has {} {} numbers; expected {}",
+                text.fail(fmt::format("the prelut has {} {} numbers; expected {}",
                                       found > points ? "more than" : "only",
                                       found > points ? points : found, points));
         }
@@ -429,12 +442,14 @@ void check_3dl(Text& text) {
         } else {
             if (count != 3) text.refuse("three numbers");
             if (++rows > cubed(kLargestCube))
-                text.fail(fmt::format("is row {}; expected up to {}", rows, cubed(kLargestCube)));
+                text.fail(fmt::format("the table has more than {0} rows; expected at most {0}",
+                                      cubed(kLargestCube)));
         }
     }
     const int n = static_cast<int>(std::lround(std::cbrt(static_cast<double>(rows))));
     if (n < 2 || cubed(n) != rows)
-        text.fail(fmt::format("ends after {} rows; expected the cube of a number", rows));
+        text.fail(fmt::format(
+            "the table ends after {} rows; expected N x N x N, such as 4913 with N = 17", rows));
 }
 
 /// Houdini, and Discreet's 1D tables, which have the same extension.
@@ -457,8 +472,7 @@ void check_lut(Text& text) {
             std::size_t found = 0;
             while (text.next_filled()) {
                 text.numbers(1);
-                if (++found > expected)
-                    text.fail(fmt::format("is row {}; expected {}", found, expected));
+                if (++found > expected) text.too_many_rows(expected);
             }
             if (found < expected) text.end_early(found, expected);
             return;
@@ -470,9 +484,10 @@ void check_lut(Text& text) {
         if (key == "version" || key == "format" || key == "sampling") {
             if (text.word().empty()) text.refuse("a value");
         } else if (key == "type") {
-            type = lowercase(text.word());
+            const std::string_view word = text.word();
+            type = lowercase(word);
             if (type != "3d" && type != "3d+1d" && type != "c")
-                text.refuse(first, type, "3D, 3D+1D or C");
+                text.refuse(first, word, "3D, 3D+1D or C");
         } else if (key == "from" || key == "to") {
             text.numbers(2);
         } else if (key == "black" || key == "white") {
@@ -490,21 +505,27 @@ void check_lut(Text& text) {
         keys.push_back(key);
     }
     for (const char* key :
-         {"version", "format", "type", "from", "to", "black", "white", "length"}) {
-        if (std::find(keys.begin(), keys.end(), key) == keys.end())
-            text.fail(fmt::format("has no {} before it", key));
+         {"Version", "Format", "Type", "From", "To", "Black", "White", "Length"}) {
+        if (std::find(keys.begin(), keys.end(), lowercase(key)) == keys.end())
+            text.fail(fmt::format("{} is missing; expected it before LUT:", key));
     }
-    if (!is_open) text.fail("ends without LUT:");
+    if (!is_open) text.end("LUT:");
     const bool is_cube = type != "c";
     if (is_cube && length[0] > kLargestCube)
         text.fail(fmt::format("Length is {}; expected [2, {}]", length[0], kLargestCube));
-    if ((type == "3d+1d") != (length.size() == 2)) text.fail("Length lacks sizes that Type needs");
+    const std::size_t sizes = type == "3d+1d" ? 2 : 1;
+    if (length.size() != sizes)
+        text.fail(fmt::format("number of sizes in Length is {}; expected {} with this Type",
+                              length.size(), sizes));
     // Blocks: "Pre {", "3D {" or "{", "RGB {"; numbers; "}".
     std::string block;
     std::size_t found = 0;
     std::size_t expected = 0;
     std::vector<std::string> blocks;
     std::string name;
+    const auto title_of = [](const std::string& id) {
+        return id == "pre" ? "Pre" : id == "3d" ? "3D" : "RGB";
+    };
     while (text.next_filled(false)) {
         for (std::string_view word = text.word(); !word.empty(); word = text.word()) {
             if (word == "{") {
@@ -512,7 +533,9 @@ void check_lut(Text& text) {
                 block = name.empty() ? "3d" : name;
                 name.clear();
                 if (block != (is_cube ? "3d" : "rgb") && !(block == "pre" && length.size() == 2))
-                    text.refuse("block", block, is_cube ? "3D or Pre" : "RGB");
+                    text.refuse(
+                        "block", block,
+                        length.size() == 2 ? "Pre or 3D" : title_of(is_cube ? "3d" : "rgb"));
                 expected = block == "3d"    ? 3 * cubed(length[0])
                            : block == "pre" ? static_cast<std::size_t>(length[1])
                                             : static_cast<std::size_t>(length[0]);
@@ -520,7 +543,7 @@ void check_lut(Text& text) {
             } else if (word == "}") {
                 if (block.empty()) text.refuse("{ before }");
                 if (found != expected)
-                    text.fail(fmt::format("ends block {} after {} numbers; expected {}", block,
+                    text.fail(fmt::format("block {} has {} numbers; expected {}", title_of(block),
                                           found, expected));
                 blocks.push_back(block);
                 block.clear();
@@ -530,19 +553,19 @@ void check_lut(Text& text) {
             } else {
                 (void)text.number("number", word);
                 if (++found > expected)
-                    text.fail(fmt::format("is number {} of block {}; expected {}", found, block,
-                                          expected));
+                    text.fail(fmt::format("block {0} has more than {1} numbers; expected {1}",
+                                          title_of(block), expected));
             }
         }
     }
-    if (!block.empty() || !name.empty()) text.fail("ends inside a block; expected }");
+    if (!block.empty() || !name.empty()) text.end("}");
     for (const std::string& needed :
          is_cube ? std::vector<std::string>{"3d"} : std::vector<std::string>{"rgb"}) {
         if (std::find(blocks.begin(), blocks.end(), needed) == blocks.end())
-            text.fail("ends without block " + needed);
+            text.end(fmt::format("a block {}", title_of(needed)));
     }
     if (length.size() == 2 && std::find(blocks.begin(), blocks.end(), "pre") == blocks.end())
-        text.fail("ends without block pre");
+        text.end("a block Pre");
 }
 
 /// A 3 by 4 matrix.
@@ -553,11 +576,12 @@ void check_spimtx(Text& text) {
         for (std::string_view word = text.word(); !word.empty(); word = text.word()) {
             (void)text.number("number", word);
             if (++found > kNumbers)
-                text.fail(fmt::format("has number {}; expected {}", found, kNumbers));
+                text.fail(
+                    fmt::format("the file has more than {0} numbers; expected {0}", kNumbers));
         }
     }
     if (found < kNumbers)
-        text.fail(fmt::format("ends after {} numbers; expected {}", found, kNumbers));
+        text.fail(fmt::format("the file ends after {} numbers; expected {}", found, kNumbers));
 }
 
 /// CLF, CTF and CC, which are XML: well nested elements and arrays as large as they say;
@@ -570,40 +594,44 @@ class XmlText {
     void check() {
         if (const std::size_t nul = text_.find('\0'); nul != std::string_view::npos) {
             advance(nul);
-            fail("holds bytes that are not text; expected a text file");
+            fail("the line holds bytes that are not text; expected a text file");
         }
         const std::size_t first = text_.find_first_not_of(" \t\r\n");
         advance(first);
         if (text_[first] != '<')
-            fail(printable(text_.substr(first, 12)) + "; expected XML, which begins with <");
+            fail(printable(first_line(text_.substr(first, 100))) +
+                 "; expected XML, which begins with <");
         bool has_root = false;
         for (std::size_t open = first; open != std::string_view::npos;
              open = text_.find('<', at_)) {
             advance(open);
             if (text_.substr(at_, 4) == "<!--") {
-                skip_past("-->");
+                skip_past("the comment", "-->");
             } else if (text_.substr(at_, 2) == "<?") {
-                skip_past("?>");
+                skip_past("the instruction", "?>");
             } else if (text_.substr(at_, 2) == "<!") {
-                fail(printable(text_.substr(at_, 12)) + "; expected no document type or entities");
+                fail(printable(first_line(text_.substr(at_, 100))) +
+                     "; expected no document type or entities");
             } else {
                 const std::size_t end = end_of_tag();
                 const std::string_view tag = text_.substr(at_ + 1, end - at_ - 1);
                 if (!has_root && name_of(tag) != lowercase(root_))
                     fail(fmt::format("<{}> is the first element; expected {}",
-                                     printable(tag.substr(0, tag.find_first_of(kNameEnd))), root_));
+                                     printable(title_of(tag)), root_));
                 has_root = true;
                 check_element(tag, end);
             }
         }
         advance(text_.size());
-        if (!has_root) fail(fmt::format("ends without a {}", root_));
-        if (!open_.empty()) fail(fmt::format("ends inside {}", printable(open_.back().name)));
+        if (!has_root) fail(fmt::format("the file ends; expected <{}>", root_));
+        if (!open_.empty())
+            fail(fmt::format("the file ends; expected </{}>", printable(open_.back().title)));
     }
 
   private:
     struct Element {
         std::string name;  // in lower case
+        std::string title;
         bool is_half_domain = false;
     };
     static constexpr std::string_view kNameEnd = " \t\r\n/";
@@ -619,11 +647,11 @@ class XmlText {
                                         text_.begin() + static_cast<std::ptrdiff_t>(to), '\n'));
         at_ = to;
     }
-    void skip_past(std::string_view what) {
-        const std::size_t end = text_.find(what, at_);
+    void skip_past(const char* what, std::string_view end_mark) {
+        const std::size_t end = text_.find(end_mark, at_);
         if (end == std::string_view::npos)
-            fail(fmt::format("opens an element that never closes; expected {}", what));
-        advance(end + what.size());
+            fail(fmt::format("{} does not close; expected {}", what, end_mark));
+        advance(end + end_mark.size());
     }
     /// Where the > of the tag stands: none of those in quotation marks.
     [[nodiscard]] std::size_t end_of_tag() const {
@@ -640,11 +668,12 @@ class XmlText {
                 break;
             }
         }
-        fail("ends inside a tag; expected >");
+        fail("the tag does not close; expected >");
     }
-    static std::string name_of(std::string_view tag) {
-        return lowercase(tag.substr(0, tag.find_first_of(kNameEnd)));
+    static std::string_view title_of(std::string_view tag) {
+        return tag.substr(0, tag.find_first_of(kNameEnd));
     }
+    static std::string name_of(std::string_view tag) { return lowercase(title_of(tag)); }
     /// The value of an attribute, by its whole name.
     [[nodiscard]] std::optional<std::string_view> attribute(std::string_view tag,
                                                             std::string_view name) const {
@@ -658,7 +687,8 @@ class XmlText {
             if (open == std::string_view::npos || (tag[open] != '"' && tag[open] != '\''))
                 fail(printable(tag) + "; expected attributes such as dim=\"...\"");
             const std::size_t close = tag.find(tag[open], open + 1);
-            if (close == std::string_view::npos) fail("an attribute does not close");
+            if (close == std::string_view::npos)
+                fail("the attribute does not close; expected a quotation mark");
             if (lowercase(tag.substr(0, end)) == name)
                 return tag.substr(open + 1, close - open - 1);
             tag.remove_prefix(close + 1);
@@ -669,7 +699,9 @@ class XmlText {
         if (tag.starts_with('/')) {
             tag.remove_prefix(1);
             if (open_.empty() || name_of(tag) != open_.back().name)
-                fail(fmt::format("</{}> closes an element that is not open", printable(tag)));
+                fail(fmt::format("</{}> closes no element; expected {}", printable(tag),
+                                 open_.empty() ? "nothing behind the document"
+                                               : "</" + printable(open_.back().title) + ">"));
             open_.pop_back();
             advance(end + 1);
             return;
@@ -681,13 +713,13 @@ class XmlText {
         const bool is_closed = tag.ends_with('/');
         if (!is_closed) {
             if (open_.size() == kDeepest)
-                fail(fmt::format("opens element {} inside of others; expected up to {}",
-                                 kDeepest + 1, kDeepest));
+                fail(
+                    fmt::format("elements are more than {0} deep; expected at most {0}", kDeepest));
             const std::string_view is_half = attribute(tag, "halfdomain").value_or("");
-            open_.push_back({name, lowercase(is_half) == "true"});
+            open_.push_back({name, std::string(title_of(tag)), lowercase(is_half) == "true"});
         }
         std::size_t count = 0;
-        if (name == "array") count = declared(sizes_of(tag, "Array"), parent.name);
+        if (name == "array") count = declared(sizes_of(tag, "Array"), parent);
         if (name == "indexmap") {
             const std::vector<int> sizes = sizes_of(tag, "IndexMap");
             count = static_cast<std::size_t>(sizes[0]);
@@ -739,17 +771,19 @@ class XmlText {
             int value = 0;
             const auto r = std::from_chars(dim->data() + i, dim->data() + dim->size(), value);
             if (r.ec != std::errc() || value < 1 || sizes.size() == 4)
-                refuse(*dim, "up to four whole numbers");
-            if (value > kLargestTable) refuse(*dim, fmt::format("up to {}", kLargestTable));
+                refuse(*dim, "one to four whole numbers above 0");
+            if (value > kLargestTable)
+                refuse(*dim, fmt::format("numbers of at most {}", kLargestTable));
             sizes.push_back(value);
             i = static_cast<std::size_t>(r.ptr - dim->data());
         }
-        if (sizes.empty()) refuse(*dim, "up to four whole numbers");
+        if (sizes.empty()) refuse(*dim, "one to four whole numbers above 0");
         return sizes;
     }
     /// How many numbers an Array says that it has.
     [[nodiscard]] std::size_t declared(const std::vector<int>& sizes,
-                                       const std::string& parent) const {
+                                       const Element& element) const {
+        const std::string& parent = element.name;
         const std::string dim = fmt::format("{}", fmt::join(sizes, " "));
         if (parent == "lut3d" || parent == "inverselut3d") {
             const bool is_cube = sizes.size() == 4 && sizes[0] == sizes[1] &&
@@ -767,12 +801,12 @@ class XmlText {
         } else {
             fail(fmt::format(
                 "Array is inside {}; expected LUT1D, LUT3D, InverseLUT1D, InverseLUT3D or Matrix",
-                parent.empty() ? "no element" : printable(parent)));
+                parent.empty() ? "no element" : printable(element.title)));
         }
         return static_cast<std::size_t>(sizes[0]) * static_cast<std::size_t>(sizes[1]);
     }
     [[noreturn]] void refuse(std::string_view dim, const std::string& expected) const {
-        fail("dim is " + printable(dim) + "; expected " + expected);
+        fail("dim is " + (dim.empty() ? "empty" : printable(dim)) + "; expected " + expected);
     }
 
     void check_array(std::size_t expected, bool is_half_domain, bool is_closed) {
@@ -783,14 +817,14 @@ class XmlText {
                 ++at_;
                 continue;
             }
-            const std::size_t end = std::min(text_.find_first_of(" \t\r\n<,", at_), text_.size());
+            const std::size_t end = std::min(text_.find_first_of(" \t\r\n<", at_), text_.size());
             check_number(text_.substr(at_, end - at_), is_half_domain);
             at_ = end;
             if (++found > expected)
-                fail(fmt::format("is number {} of the Array; expected {}", found, expected));
+                fail(fmt::format("the Array has more than {0} numbers; expected {0}", expected));
         }
         if (found != expected)
-            fail(fmt::format("ends the Array after {} numbers; expected {}", found, expected));
+            fail(fmt::format("the Array has {} numbers; expected {}", found, expected));
     }
     void check_number(std::string_view text, bool is_half_domain) const {
         const std::optional<double> value = parse_number(text);
@@ -826,7 +860,7 @@ void check_for_other_readers(Text& text, std::string_view bytes) {
     if (is_first && (first.starts_with("# truelight") || first.starts_with("#inventor")))
         text.refuse("no Truelight cube, and no Nuke .vf");
     if (bytes.substr(std::min<std::size_t>(36, bytes.size()), 4) == "acsp")
-        text.fail("is that of an ICC profile; expected text");
+        text.fail("the file has the signature of an ICC profile; expected text");
     do {
         const std::string line = lowercase(text.word().substr(0, 64));
         const Size* size = std::find_if(std::begin(kSizes), std::end(kSizes),
@@ -846,9 +880,10 @@ void check_for_other_readers(Text& text, std::string_view bytes) {
 
 Text begin(const std::string& path, std::string_view text) {
     Text lines(path, text);
-    if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) lines.fail("is empty");
+    if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
+        lines.fail("the file is empty; expected a LUT");
     if (text.starts_with("\xEF\xBB\xBF"))
-        lines.fail("begins with a byte order mark; expected plain text");
+        lines.fail("the file begins with a byte order mark; expected plain text");
     return lines;
 }
 

@@ -446,6 +446,11 @@ def peak_of(arguments, stdin):
         return process.returncode, out.read().decode(), err.read().decode(errors="replace"), usage.ru_maxrss * 1024
 
 
+# "tonewright: read: FILE: line 3: WHAT IS WRONG; expected ...", where what is wrong has a subject; or OpenColorIO's words.
+MESSAGE = re.compile(r"tonewright: read: [^:]+: (line [1-9][0-9]*: (?!(is|has|ends|holds|begins|opens) )[^; ].*(?<! is); expected .+"
+                     r"|.*At line \d+: ?.*)")
+
+
 def refuse(command, folder, index, case):
     """None, or what is wrong with how a malformed file is refused."""
     name, what, contents = case
@@ -464,6 +469,8 @@ def refuse(command, folder, index, case):
         return f"{name}, {what}: exit {status}: {(out + err).strip()[:300]}"
     if has_lines and not re.search(r"(?i)\bline \(?\d+", err):
         return f"{name}, {what}: no line: {err.strip()}"
+    if has_lines and not MESSAGE.fullmatch(err.strip()):
+        return f"{name}, {what}: not of the form of a message: {err.strip()}"
     if not err.isascii() or max(len(line) for line in err.split("\n")) > 600:
         return f"{name}, {what}: {err[:600]!r}"
     return f"{name}, {what}: {peak / 2 ** 20:.0f} MB" if peak > LARGEST else None
@@ -481,6 +488,37 @@ def check_corpus(report, command, folder):
     for name, found in kinds.items():
         bad = [fault for fault in found if fault]
         report.check(f"{name}: {len(found)} malformed files are refused, each in one line", not bad, "\n     ".join(bad))
+
+
+def check_messages(report, command, folder):
+    """Each names the line at fault, what is wrong there and what is expected."""
+    for name, old, new, message in (
+            ("adobe.cube", f"LUT_3D_SIZE {SIZE}", "LUT_3D_SIZE", "line 3: LUT_3D_SIZE is missing; expected a whole number in [2, 129]"),
+            ("adobe.cube", "DOMAIN_MAX 1 1 1", "DOMAIN_MAX 1 0 1", "line 5: DOMAIN_MIN is 0 0 0, DOMAIN_MAX 1 0 1; expected "
+             "DOMAIN_MIN below DOMAIN_MAX in each channel"),
+            ("adobe1d.cube", "SIZE 9", "SIZE 8", "line 10: the table has more than 8 rows; expected 8"),
+            ("adobe1d.cube", "SIZE 9", "SIZE 10", "line 10: the table ends after 9 rows; expected 10"),
+            ("curve.spi1d", "Version 1\n", "", "line 4: Version is missing; expected Version 1 before {"),
+            ("curve.spi1d", "}\n", "", "line 14: the file ends; expected }"),
+            ("cube.spi3d", "SPILUT 1.0", "", "line 1: the line is empty; expected SPILUT 1.0"),
+            ("cube.csp", "0 1\n", "1 0\n", "line 9: 1 0; expected rising numbers"),
+            ("cube.csp", "END METADATA", "END", "line 45: the file ends; expected END METADATA"),
+            ("cube.3dl", "0 256", "0.5 256", "line 3: number is 0.5; expected a whole number in [-131071, 131071]"),
+            ("cube.lut", "Type 3D", "Type RGBA", "line 3: Type is RGBA; expected 3D, 3D+1D or C"),
+            ("cube.lut", "From 0 1\n", "", "line 8: From is missing; expected it before LUT:"),
+            ("both.lut", f"Length {SIZE} 9", f"Length {SIZE}", "line 9: number of sizes in Length is 1; expected 2 with this Type"),
+            ("both.lut", f"Length {SIZE} 9", f"Length {SIZE} 10", "line 20: block Pre has 9 numbers; expected 10"),
+            ("curve.clf", "9 1", "8 1", "line 13: the Array has more than 8 numbers; expected 8"),
+            ("curve.clf", "0.1125", "0,1125", "line 6: number is 0,1125; expected a number"),
+            ("curve.clf", "</LUT1D>", "</LUT3D>", "line 15: </LUT3D> closes no element; expected </LUT1D>"),
+            ("curve.clf", "</ProcessList>\n", "", "line 16: the file ends; expected </ProcessList>"),
+            ("curve.clf", '<?xml version="1.0" encoding="UTF-8"?>', "2 0 0", "line 1: 2 0 0; expected XML, which begins with <")):
+        path = folder / name
+        if old not in GOOD[name]:
+            raise ValueError(f"{name}: {old}")
+        path.write_text(GOOD[name].replace(old, new, 1))
+        _, _, err, _ = peak_of([command, "eval", "--lut", path], "")
+        report.check(f"{name}: {message}", err == f"tonewright: read: {path}: {message}\n", err)
 
 
 def check_noise(report, command, folder):
@@ -803,6 +841,7 @@ def main():
             check(report, command, folder)
         check_usage(report, command, folder)
         check_paths(report, command, folder)
+        check_messages(report, command, folder)
         check_corpus(report, command, folder)
         check_noise(report, command, folder)
     return report.finish()

@@ -6,6 +6,7 @@
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 
 #include "tonewright/error.h"
 #include "tonewright/version.h"
@@ -38,6 +39,9 @@ decltype(auto) with_memory_for(const std::string& path, const Step& step) {
         throw FileError(path + ": not enough memory");
     } catch (const std::length_error&) {  // more than any memory
         throw FileError(path + ": not enough memory");
+    } catch (const std::system_error& e) {
+        if (e.code() != std::errc::resource_unavailable_try_again) throw;
+        throw FileError(path + ": not enough memory or threads");  // none for a thread's stack
     }
 }
 

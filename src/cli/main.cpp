@@ -40,7 +40,9 @@ int run(int argc, char** argv) {
         const int exit_code = program.run(argc, argv);
         if (std::fflush(stdout) != 0) return report("write: standard output: cannot write", kFile);
         return exit_code;
-    } catch (const std::system_error& e) {  // what printing throws
+    } catch (const std::system_error& e) {  // what printing throws, and a thread that has no stack
+        if (e.code() == std::errc::resource_unavailable_try_again)
+            return report("not enough memory or threads", kFile);
         return report("write: standard output: " + e.code().message(), kFile);
     } catch (const std::bad_alloc&) {
         return report("not enough memory", kFile);

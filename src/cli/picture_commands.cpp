@@ -2,14 +2,59 @@
 #include "cli/picture_commands.h"
 
 #include <dlfcn.h>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <filesystem>
+#include <optional>
+#include <string_view>
 #include <system_error>
 
 #include "tonewright/error.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
+
+// Functions that are bound when they are first called save an eighth of the time.
+constexpr int kBinding = RTLD_LAZY | RTLD_LOCAL;
+
+/// Of `ulimit -v`, in MB.
+std::optional<double> address_limit() {
+    struct rlimit limit {};
+    if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return {};
+    return static_cast<double>(limit.rlim_cur) / 1e6;
+}
+
+/// Static objects of the libraries below OpenImageIO start threads and take memory without asking
+/// whether they got them. Where addresses are limited, loading can therefore abort the process,
+/// crash or wait forever; a process of its own finds out.
+bool survives_loading(const std::string& path) {
+    constexpr unsigned kLongestSeconds = 10;
+    const pid_t child = ::fork();
+    if (child == 0) {
+        const struct rlimit none {};
+        (void)::setrlimit(RLIMIT_CORE, &none);
+        if (const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC); nowhere >= 0)
+            (void)::dup2(nowhere, STDERR_FILENO);
+        (void)::alarm(kLongestSeconds);
+        (void)::dlopen(path.c_str(), kBinding);  // where it fails in order, ours says why
+        ::_exit(0);
+    }
+    int status = 0;
+    while (child > 0 && ::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
+    return child > 0 && WIFEXITED(status);
+}
+
+/// What the loader says when it has no addresses for a library.
+bool is_about_memory(std::string_view reason) {
+    return reason.find("failed to map segment") != reason.npos ||
+           reason.find("annot allocate memory") != reason.npos;
+}
 
 /// The module stays loaded until the process ends.
 const PictureCommands& load() {
@@ -22,9 +67,20 @@ const PictureCommands& load() {
     const auto fail = [&](const std::string& reason) {
         throw FileError("start: cannot load the picture commands: " + reason);
     };
-    // Functions that are bound when they are first called save an eighth of the time.
-    void* module = ::dlopen(path.c_str(), RTLD_LAZY | RTLD_LOCAL);
-    if (!module) fail(::dlerror());
+    const std::optional<double> limit = address_limit();
+    const auto fail_for_memory = [&] {
+        fail(
+            fmt::format("not enough memory; expected more addresses than the limit of {:.0f} MB "
+                        "(ulimit -v)",
+                        *limit));
+    };
+    if (limit && !survives_loading(path)) fail_for_memory();
+    void* module = ::dlopen(path.c_str(), kBinding);
+    if (!module) {
+        const std::string reason = ::dlerror();
+        if (limit && is_about_memory(reason)) fail_for_memory();
+        fail(reason);
+    }
     using Entry = decltype(&tonewright_picture_commands);
     const auto entry = reinterpret_cast<Entry>(::dlsym(module, kPictureCommandsEntry));
     const PictureCommands* commands = entry ? entry(kPictureCommandsBuild) : nullptr;

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <future>
 #include <memory>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -49,9 +50,13 @@ void in_parallel(std::size_t count, unsigned thread_count,
             f(i);
     };
     std::vector<std::future<void>> others;  // which wait for their threads when they are destroyed
-    for (std::size_t t = 1; t < std::min<std::size_t>(thread_count, count); ++t) {
-        if (takes_idle && helper_count + 1 >= static_cast<int>(thread_count)) break;
-        others.push_back(start_helper(run));
+    try {
+        for (std::size_t t = 1; t < std::min<std::size_t>(thread_count, count); ++t) {
+            if (takes_idle && helper_count + 1 >= static_cast<int>(thread_count)) break;
+            others.push_back(start_helper(run));
+        }
+    } catch (const std::system_error&) {
+        // No more threads are to be had: these do the work.
     }
     run();
     const Counted waits(others.empty() ? 0 : -1);

@@ -319,6 +319,16 @@ def check_limits(report, command, scratch, picture):
         code, _, err = call(command, ["compare", picture, "hable", "--cell-width", "12000", "-o", "x.png"], folder=scratch,
                             prefix=["sh", "-c", 'ulimit -v 1200000; exec "$0" "$@"'])
         report.check("memory that does not do", code == FILE and err == f"tonewright: {picture}: not enough memory\n", err)
+        # From some 60 MB to where pictures can be read. In between, libraries that get no memory or thread while they are
+        # loaded abort, crash or wait forever; where that is depends on the libraries.
+        for limit in (60000, *range(395000, 500000, 15000)):
+            code, out, err = call(command, ["apply", picture, "x.png", "--operator", "hable"], folder=scratch,
+                                  prefix=["sh", "-c", f'ulimit -v {limit}; exec "$0" "$@"'])
+            (scratch / "x.png").unlink(missing_ok=True)
+            report.check(f"addresses limited to {limit} kB", not out and not os.listdir(scratch) and (
+                (code, err) == (OK, "") if limit > 60000 and code == OK else
+                code == FILE and err.startswith("tonewright: ") and err.count("\n") == 1 and "not enough memory" in err),
+                f"exit {code}: {err}")
     with subprocess.Popen([command, "config", "-o", scratch / "new" / "config", "--views", "all"],
                           stderr=subprocess.DEVNULL) as process:
         while not (scratch / "new" / "config").exists() and process.poll() is None:

@@ -12,9 +12,11 @@ import importlib
 import json
 import os
 import pkgutil
+import re
 import sys
 import warnings
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 
@@ -22,7 +24,7 @@ import check_operators
 import check_values
 import make_operator_rows
 import operators
-from operators import aces_13, aces_20, hable, reinhard
+from operators import aces, aces_13, aces_20, hable, reinhard, spaces
 
 FLOOR = 1e-3  # errors are relative to max(|expected|, FLOOR), as in operators.csv
 counts = {True: 0, False: 0}
@@ -204,6 +206,37 @@ def check_sobotka_table():
     report(f"agx_sobotka through a table like the LUT ({len(errors)})", max(errors), 1e-9)
 
 
+def check_filament_bound():
+    """The bound that aces_filament declares: OpenColorIO's fixed functions have the CTL's hue weight in place of Filament's.
+
+    The largest difference on an sRGB display, of any light: a search from the worst of random colors on.
+    """
+    def ctl_red_modifier(ap0, _):
+        weight = aces_13.hue_weight(ap0) * aces_13.saturation_of(ap0)
+        return ap0 + (weight * (0.03 - ap0[..., 0]) * (1 - 0.82))[..., None] * [1, 0, 0]
+
+    def shown(light):
+        return spaces.srgb_encode(np.clip(aces.aces_filament(light) @ spaces.rgb_to_rgb("rec2020", "rec709").T, 0, 1))
+
+    def difference(light):
+        with mock.patch.object(aces, "red_modifier", ctl_red_modifier):
+            other = shown(light)
+        return np.abs(shown(light) - other).max(axis=-1)
+
+    random = np.random.default_rng(1)
+    light = 2.0 ** random.uniform(-14, 8, (100000, 3)) * (random.random((100000, 3)) > 0.08)
+    light = light[np.argsort(difference(light))[-200:]]
+    largest = difference(light)
+    for step in np.geomspace(0.3, 1e-4, 200):
+        moved = light * 2.0 ** random.normal(0, step, light.shape)
+        light = np.where((difference(moved) > largest)[:, None], moved, light)
+        largest = difference(light)
+    source = (Path(__file__).resolve().parents[1] / "src" / "operators" / "aces_fits.cpp").read_text()
+    bound = float(re.search(r"op\.id = \"aces_filament\";.*?\.cube = ([0-9.e-]+)", source, re.DOTALL)[1])
+    report("aces_filament: what another hue weight makes of any color", largest.max(), bound)
+    report("aces_filament: the declared bound is not above it by more than a hundredth", bound / largest.max() - 1, 0.01)
+
+
 def check_shared(shared):
     """Figures of check_values.json: the committed rows are theirs, and the parts that have no row."""
     published = list(make_operator_rows.published_rows(shared))
@@ -272,6 +305,7 @@ def main():
     check_apply()
     check_extremes()
     check_sobotka_table()
+    check_filament_bound()
     shared = os.environ.get("TONEWRIGHT_SHARED", "")
     if shared and (Path(shared) / "reference" / "check_values.json").is_file():
         check_shared(shared)

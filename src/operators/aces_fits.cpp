@@ -140,7 +140,7 @@ Operator filament() {
     op.negatives = kNegativesClampAtZero;
     op.working = kRec2020;
     // The largest difference that the formulas of the two weights, up to 0.0074 apart, make for any
-    // color: 7.37e-3 on sRGB (Rec.2020 light 11.4, 0, 6.8), 3.8e-3 on Display P3.
+    // color (test_operators.py): 7.37e-3 on sRGB, at Rec.2020 light 11.4, 0, 6.8.
     op.bounds = {.cube = 7.4e-3,
                  .reason = "fixed functions of OpenColorIO: another weight of hues about red"};
     op.parameters = {number_parameter("brightness", "", 1, 0.01, 100,

@@ -77,11 +77,11 @@ void write_one(Options& options) {
     const Shader shader = write_shader(request);
     warn_of_constants(request.view.op, "shader", options.uniforms);
     constexpr double kTenBits = 1.0 / 1023;
-    if (shader.float_error > kTenBits) {
+    if (shader.errors.in_float > kTenBits) {
         warn(
             fmt::format("{} is up to {} off in float, more than a code value of 10 bits: its "
                         "formulas need more digits than a shader has",
-                        shader.function, rounded_up(shader.float_error)));
+                        shader.function, rounded_up(shader.errors.in_float)));
     }
     if (!shader.textures.empty() && options.file.empty()) {
         throw Error(
@@ -99,7 +99,7 @@ void write_one(Options& options) {
     }
     write_text_atomically(options.file, shader.text);
     print_result(fmt::format("{}: {}(), in float within {} of the reference", options.file,
-                             shader.function, rounded_up(shader.float_error)));
+                             shader.function, rounded_up(shader.errors.in_float)));
     if (request.application)
         print_result(request.application->title + ": " + request.application->steps);
 }
@@ -110,35 +110,38 @@ void write_all(const Options& options) {
     if (!options.language.empty()) languages = {find_shader_language(options.language)};
     require_writable_folder(options.all);
     std::vector<GeneratedFile> files;
+    std::map<std::string, std::size_t> left_out;
+    std::string manifest = "path,operator,function,float_error,guaranteed,vulkan_estimate\n";
     std::size_t count = 0;
-    std::string manifest = "path,operator,function,float_error,vulkan_estimate\n";
-    for (const ShaderLanguageInfo& language : languages) {
-        std::size_t left_out = 0;
-        for (const OperatorVariant& variant : all_variants()) {
-            ShaderRequest request;
-            request.language = language.language;
-            request.view = make_view(resolve_operator(variant.name, {}, variant.look),
-                                     options.input, options.exposure, options.display);
-            if (!language.holds_lattices && reads_lattice(request.view)) {
-                ++left_out;
+    for (const OperatorVariant& variant : all_variants()) {
+        ShaderRequest request;
+        request.view = make_view(resolve_operator(variant.name, {}, variant.look), options.input,
+                                 options.exposure, options.display);
+        const bool is_lattice = reads_lattice(request.view);
+        const ShaderErrors errors = measure_shader(request);
+        for (const ShaderLanguageInfo& language : languages) {
+            if (is_lattice && !language.holds_lattices) {
+                ++left_out[language.id];
                 continue;
             }
-            const Shader shader = write_shader(request);
+            request.language = language.language;
+            const Shader shader = write_shader(request, &errors);
             const std::string path = language.id + "/" + shader.function + language.extension;
-            manifest += fmt::format("{},{},{},{},{}\n", path, operator_text(request.view.op),
-                                    shader.function, rounded_up(shader.float_error),
-                                    rounded_up(shader.vulkan_estimate));
+            manifest +=
+                fmt::format("{},{},{},{},{},{}\n", path, operator_text(request.view.op),
+                            shader.function, rounded_up(errors.in_float),
+                            rounded_up(errors.guaranteed), rounded_up(errors.vulkan_estimate));
             files.push_back({path, shader.text});
             ++count;
             for (GeneratedFile& file : texture_files(shader, path))
                 files.push_back(std::move(file));
         }
-        if (left_out > 0) {
-            print_result(
-                fmt::format("{}: {} without a shader, because they read lattices, which "
-                            "it cannot hold",
-                            language.id, left_out));
-        }
+    }
+    for (const auto& [language, lattices] : left_out) {
+        print_result(
+            fmt::format("{}: {} without a shader, because they read lattices, which it "
+                        "cannot hold",
+                        language, lattices));
     }
     print_result(fmt::format("{}: {} shaders", options.all, count));
     files.push_back({"MANIFEST.csv", manifest});

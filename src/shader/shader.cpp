@@ -15,6 +15,7 @@
 #include "measure/sample_set.h"
 #include "shader/first_order.h"
 #include "shader/float_run.h"
+#include "shader/guaranteed_bound.h"
 #include "shader/print.h"
 #include "shader/wrapper.h"
 #include "tonewright/engine.h"
@@ -170,7 +171,7 @@ double measure_inverse(const ShaderRequest& request, const ShaderProgram& progra
     return worst;
 }
 
-double measure(const ShaderRequest& request, const ShaderProgram& program) {
+double measure_in_float(const ShaderRequest& request, const ShaderProgram& program) {
     if (request.is_inverse) return measure_inverse(request, program);
     const UniformValues values = values_of(request);
     const FloatRun in_float(bound(program, values));
@@ -324,22 +325,29 @@ std::string header(const ShaderRequest& request, const Shader& shader, const Pip
     add("Input", request.is_inverse ? shown : scene);
     add("Output", request.is_inverse ? scene : shown);
     add("Negatives", request.is_inverse ? "" : op.negatives);
+    const char* const unit = request.is_inverse      ? "what the view shows of it"
+                             : is_of_a_display(view) ? "code values from 0 to 1"
+                                                     : "sRGB code values from 0 to 1";
     std::string precision = fmt::format(
         "32-bit float throughout. Each operation rounded once: within {} of the double reference, "
-        "in {} (measured)",
-        rounded_up(shader.float_error),
-        request.is_inverse      ? "what the view shows of it"
-        : is_of_a_display(view) ? "code values from 0 to 1"
-                                : "sRGB code values from 0 to 1");
-    if (std::isinf(shader.vulkan_estimate)) {
-        precision += ". With the errors that Vulkan and WGSL allow: no useful estimate";
-    } else if (!request.is_inverse) {
+        "in {} (measured).",
+        rounded_up(shader.errors.in_float), unit);
+    if (std::isfinite(shader.errors.guaranteed)) {
         precision += fmt::format(
-            ". With the errors that Vulkan and WGSL allow each operation: about {} (first order: "
-            "an estimate, no bound)",
-            rounded_up(shader.vulkan_estimate));
+            " Guaranteed: within {} of these formulas wherever each operation is as exact as "
+            "Vulkan and WGSL demand, for channels from 0 to 65504.",
+            rounded_up(shader.errors.guaranteed));
+    } else if (!request.is_inverse) {
+        precision += fmt::format(" No useful guaranteed bound: too much may arise in {}_{}.",
+                                 shader.function, shader.errors.arises_in);
+        if (std::isfinite(shader.errors.vulkan_estimate)) {
+            precision += fmt::format(
+                " With the errors that Vulkan and WGSL allow each operation: about {} (first "
+                "order: an estimate, no bound).",
+                rounded_up(shader.errors.vulkan_estimate));
+        }
     }
-    add("Precision", precision + ". Not measured on a GPU here; see docs/shaders.md");
+    add("Precision", precision + " Not measured on a GPU here; see docs/shaders.md");
     add("NaN", "whatever the compiler makes of it; all other inputs give finite results");
     return text;
 }
@@ -359,7 +367,30 @@ std::string shader_function_name(const ShaderRequest& request) {
     return name;
 }
 
-Shader write_shader(const ShaderRequest& request) {
+ShaderErrors measure_shader(const ShaderRequest& request) {
+    check(request);
+    const ShaderProgram program = make_program(pipeline_of(request), ranges_of(request));
+    ShaderErrors errors;
+    errors.in_float = measure_in_float(request, program);
+    if (request.is_inverse) return errors;
+    const ShaderProgram constant = bound(program, values_of(request));
+    const Expr metric = is_light(request) ? code_value(Expr::input()) : Expr::input();
+    // Of a function that measures as exact: half a unit in the last place of white.
+    constexpr double kUseful = 300;
+    const GuaranteedBound guaranteed =
+        guaranteed_bound(constant, metric, kUseful * std::max(errors.in_float, 0x1p-24));
+    errors.guaranteed = guaranteed.error;
+    if (std::isinf(guaranteed.error)) errors.arises_in = guaranteed.arises_in;
+    std::array<Expr, 3> outputs = compose(constant);
+    for (Expr& e : outputs)
+        e = substitute(metric, Span<const Expr>(&e, 1));
+    constexpr double kUseless = 0.1;
+    const double estimate = first_order_error(outputs).vulkan;
+    if (estimate < kUseless) errors.vulkan_estimate = estimate;
+    return errors;
+}
+
+Shader write_shader(const ShaderRequest& request, const ShaderErrors* errors) {
     check(request);
     const Pipeline pipeline = pipeline_of(request);
     const ShaderProgram program = make_program(pipeline, ranges_of(request));
@@ -367,17 +398,7 @@ Shader write_shader(const ShaderRequest& request) {
         facts_of(request.application ? request.application->language : request.language);
     Shader shader;
     shader.function = shader_function_name(request);
-    shader.float_error = measure(request, program);
-    if (!request.is_inverse) {
-        std::array<Expr, 3> outputs = compose(bound(program, values_of(request)));
-        if (is_light(request)) {
-            for (Expr& e : outputs)
-                e = code_value(e);
-        }
-        constexpr double kUseless = 0.1;
-        const double estimate = first_order_error(outputs).vulkan;
-        shader.vulkan_estimate = estimate < kUseless ? estimate : kInfinity;
-    }
+    shader.errors = errors ? *errors : measure_shader(request);
     const std::string prologue =
         *language.prologue ? std::string("\n") + language.prologue : std::string();
     PrintedProgram printed = print_program(program, language, shader.function, request.uniforms);

@@ -424,9 +424,9 @@ constexpr double kTenBits = 1.0 / 1023;
 double shader_bound(const Shader& shader, bool is_hdr) {
     // An estimate over probe colors; between them derivatives may be larger, and twice is what that
     // is taken to be.
-    if (std::isfinite(shader.vulkan_estimate)) return 2 * shader.vulkan_estimate;
+    if (std::isfinite(shader.errors.vulkan_estimate)) return 2 * shader.errors.vulkan_estimate;
     // Bounded by nothing but the display: a cancelled channel below PQ's steepest part.
-    if (shader.float_error > kTenBits) return 1;
+    if (shader.errors.in_float > kTenBits) return 1;
     // Where first order has a pole: a logarithm near 1 may be 2^-21 off, which the exponent 78.84
     // of PQ makes 2.6e-5; without PQ, what float is enough for.
     return is_hdr ? 2.6e-5 : 2e-6;
@@ -620,7 +620,7 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
         const GlslGpu glsl(shader.text, shader.function, textures_of(shader));
         add(comparison, "glsl", shader_bound(shader, is_hdr), false, bounds.is_mixed_metric, "",
             [&] { glsl.run_rgb(samples.rgb.data(), shown.data(), samples.size()); });
-        if (shader.float_error > kTenBits) rows.back().note = "float is not enough";
+        if (shader.errors.in_float > kTenBits) rows.back().note = "float is not enough";
     }
     return rows;
 }

@@ -66,23 +66,39 @@ struct ShaderTexture {
     std::vector<float> rgba;
 };
 
+/// How exact the function is: the same in all languages. Code values of the display, or of sRGB
+/// where the output is `linear` or `native`; what is above 1 counts relatively.
+struct ShaderErrors {
+    /// Largest difference between the function in float, each operation rounded once, and the
+    /// double reference, over the standard sample set with fewer colors. Of an inverse: what the
+    /// view shows of its result, against what it was made of, where the view can show that.
+    double in_float = 0;
+    /// No result differs by more from what the text's formulas say, on whatever computes each
+    /// operation as exactly as the Vulkan and WGSL specifications demand, for every color whose
+    /// channels lie from 0 to 65504, with the uniforms' values of the view. Sums of matrices may be
+    /// taken in any order. Infinite where no bound was found that is at most 300 times `in_float`,
+    /// and of an inverse.
+    double guaranteed = kInfinity;
+    /// Where `guaranteed` is infinite: the function of the text in which most of the error may
+    /// arise.
+    std::string arises_in;
+    /// What roundings may add up to with the errors that the Vulkan specification allows each
+    /// operation. To first order and over probe colors: an estimate, no bound. Infinite where
+    /// first order says nothing, and of an inverse.
+    double vulkan_estimate = kInfinity;
+};
+
 /// Source text: comments that say what it is, functions that its last one calls, and that one.
 struct Shader {
     /// tw_<id>[_preset][_look], with _inverse or _encoded behind it.
     std::string function;
     std::string text;
-    /// Largest difference between the function in float, each operation rounded once, and the
-    /// double reference, over the standard sample set with fewer colors; in code values of the
-    /// display, or of sRGB where the output is `linear` or `native`. What is above 1 counts
-    /// relatively. Of an inverse: what the view shows of its result, against what it was made
-    /// of, where the view can show that.
-    double float_error = 0;
-    /// What roundings may add up to with the errors that the Vulkan specification allows each
-    /// operation, in the same unit. To first order and over probe colors: an estimate, no bound.
-    /// Infinite where first order says nothing; 0 of an inverse, of which it is not computed.
-    double vulkan_estimate = 0;
+    ShaderErrors errors;
     std::vector<ShaderTexture> textures = {};
 };
+
+/// @throws Error  as write_shader()
+[[nodiscard]] TONEWRIGHT_API ShaderErrors measure_shader(const ShaderRequest& request);
 
 /// Text in ASCII, the same on every machine.
 ///
@@ -93,7 +109,10 @@ struct Shader {
 /// @throws Error  a local operator; a uniform that the operator does not have, that is not live, or
 ///                that is named twice; an inverse with uniforms other than the exposure, or of an
 ///                operator that has none; a lattice in a language that cannot hold one.
-[[nodiscard]] TONEWRIGHT_API Shader write_shader(const ShaderRequest& request);
+/// @param errors  what measure_shader() gave for the same request in whatever language; null: it is
+///                called
+[[nodiscard]] TONEWRIGHT_API Shader write_shader(const ShaderRequest& request,
+                                                 const ShaderErrors* errors = nullptr);
 
 /// True when the view reads a lattice: colors on a grid, more than a text should hold.
 [[nodiscard]] TONEWRIGHT_API bool reads_lattice(const View& view);

@@ -83,6 +83,7 @@ TEST(Shader, EveryVariantInEveryLanguageIsAsciiAndHasItsOwnName) {
             << variant.name;
         if (count++ % count_of(1, 5) != 0) continue;
         const bool is_lattice = reads_lattice(request_of(variant.name, variant.look).view);
+        const ShaderErrors errors = measure_shader(request_of(variant.name, variant.look, "srgb"));
         for (const ShaderLanguageInfo& language : shader_languages()) {
             const ShaderRequest request =
                 request_of(variant.name, variant.look, "srgb", language.language);
@@ -92,7 +93,7 @@ TEST(Shader, EveryVariantInEveryLanguageIsAsciiAndHasItsOwnName) {
                     << variant.name << " " << language.id;
                 continue;
             }
-            const Shader shader = write_shader(request);
+            const Shader shader = write_shader(request, &errors);
             EXPECT_EQ(shader.function, shader_function_name(request));
             EXPECT_NE(shader.text.find(" " + shader.function + "("), std::string::npos);
             for (const char c : shader.text)

@@ -168,7 +168,7 @@ int run_bake(Options& options) {
 void add_bake(CommandLine& program) {
     auto options = std::make_shared<Options>();
     const Command command = program.add("bake", "Write an operator as a LUT file.");
-    command.group("LUTs and configs");
+    command.group("LUTs, shaders and configs");
     const char* const output = "Output";
     const char* const table = "Table";
     command.add("operator", options->op, "operator, or operator:preset");

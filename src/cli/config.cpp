@@ -171,7 +171,7 @@ int run_config(Options& options) {
 void add_config(CommandLine& program) {
     auto options = std::make_shared<Options>();
     const Command command = program.add("config", "Write an OpenColorIO config of the operators.");
-    command.group("LUTs and configs");
+    command.group("LUTs, shaders and configs");
     const char* const output = "Output";
     const char* const contents = "Contents";
     const char* const own = "Custom views";

@@ -164,7 +164,7 @@ void add_shader(CommandLine& program) {
     auto options = std::make_shared<Options>();
     options->display = kLinearOutput;
     const Command command = program.add("shader", "Write an operator as shader source.");
-    command.group("LUTs and configs");
+    command.group("LUTs, shaders and configs");
     const char* const output = "Output";
     command.add("operator", options->op, "operator, or operator:preset");
     command.add("--language", options->language, "language of the text; see --list")

@@ -135,7 +135,13 @@ class ProgramMaker {
     void limit(const ClampStage& s) {
         for (Interval& r : range_)
             r = {std::clamp(r.lo, s.lo, s.hi), std::clamp(r.hi, s.lo, s.hi)};
-        program_.steps.emplace_back(s);
+        auto* const last =
+            program_.steps.empty() ? nullptr : std::get_if<ClampStage>(&program_.steps.back());
+        if (last) {
+            *last = {std::clamp(last->lo, s.lo, s.hi), std::clamp(last->hi, s.lo, s.hi)};
+        } else {
+            program_.steps.emplace_back(s);
+        }
     }
 
     void add_to_each_channel(const std::string& name, const Expr& f) {

@@ -209,9 +209,9 @@ const std::vector<ShaderApplication>& shader_applications() {
         {"unity", "Unity (URP)", ".shader", ShaderLanguage::hlsl, "linear",
          "A Full Screen Pass Renderer Feature after post-processing, with Tonemapping None and HDR "
          "on."},
-        {"unreal", "Unreal Engine", ".ush", ShaderLanguage::hlsl, "linear",
-         "A post-process material at `Replacing the Tonemapper` with a Custom node; bloom and "
-         "vignette are left out there."},
+        {"unreal", "Unreal Engine", ".ush", ShaderLanguage::hlsl, "srgb",
+         "A post-process material at `Replacing the Tonemapper` with a Custom node; what it "
+         "returns is not encoded again, and bloom and vignette are left out there."},
         {"mpv", "mpv", ".glsl", ShaderLanguage::glsl, "srgb",
          "mpv --vo=gpu --vf=format=gamma=srgb --glsl-shader=FILE on scene-linear pictures (EXR); "
          "sliders need mpv 0.36."},

@@ -23,7 +23,8 @@ int report(const std::string& message, int exit_code) {
 int run(int argc, char** argv) {
     try {
         CommandLine program(
-            "tonewright", "Tone map pictures, and write operators as LUTs, shaders and OpenColorIO configs.",
+            "tonewright",
+            "Tone map pictures, and write operators as LUTs, shaders and OpenColorIO configs.",
             TONEWRIGHT_VERSION);
         program.footer(
             "Examples:\n"

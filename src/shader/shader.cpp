@@ -16,6 +16,7 @@
 #include "shader/first_order.h"
 #include "shader/float_run.h"
 #include "shader/guaranteed_bound.h"
+#include "shader/measured_errors.h"
 #include "shader/print.h"
 #include "shader/wrapper.h"
 #include "tonewright/engine.h"
@@ -204,22 +205,26 @@ double measure_in_float(const ShaderRequest& request, const ShaderProgram& progr
     return worst;
 }
 
-/// Of every operation and every number, of tables and lattices, too.
+/// Of every operation and every number, of tables and lattices, too. Numbers as floats: what a
+/// mathematical library rounds differently is the same definition.
 std::string definition_hash(const Pipeline& pipeline) {
     const std::array<Expr, 3> rgb = compose(pipeline);
     std::string text;
     std::unordered_map<const ExprNode*, std::size_t> number;
     std::set<const void*> seen;
+    const auto digits = [](double x) {
+        return shortest(static_cast<double>(static_cast<float>(x)));
+    };
     const auto add_numbers = [&](const void* what, const std::vector<double>& numbers) {
         if (!seen.insert(what).second) return;
         for (const double x : numbers)
-            text += shortest(x) + " ";
+            text += digits(x) + " ";
     };
     for (const Expr& e : nodes_of(rgb)) {
         text += std::to_string(static_cast<int>(e.op()));
         for (int i = 0; i < e.operand_count(); ++i)
             text += " " + std::to_string(number.at(e.operand(i).node()));
-        if (e.is_constant()) text += " " + shortest(e.value());
+        if (e.is_constant()) text += " " + digits(e.value());
         if (e.op() == ExprOp::input) text += " " + std::to_string(e.input_index());
         if (e.op() == ExprOp::uniform) text += " " + e.uniform_name();
         if (e.op() == ExprOp::lookup) {
@@ -347,7 +352,16 @@ std::string header(const ShaderRequest& request, const Shader& shader, const Pip
                 rounded_up(shader.errors.vulkan_estimate));
         }
     }
-    add("Precision", precision + " Not measured on a GPU here; see docs/shaders.md");
+    add("Precision", precision);
+    if (!request.is_inverse) {
+        View on_srgb = view;
+        on_srgb.display = "srgb";
+        const std::string measured = measured_errors(definition_hash(build_view(on_srgb)));
+        add("Measured",
+            measured.empty()
+                ? "not with these settings; `tonewright verify` measures GLSL on a machine's GPU"
+                : "in code values of sRGB, negatives included: " + measured);
+    }
     add("NaN", "whatever the compiler makes of it; all other inputs give finite results");
     return text;
 }

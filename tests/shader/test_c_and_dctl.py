@@ -4,10 +4,12 @@
 C by every compiler there is, with -O2 and -ffast-math; DCTL as C++, with the words of DCTL defined, and with
 -ffast-math, as Resolve compiles it. All operators, presets and looks with TONEWRIGHT_TEST_ALL=1, else a dozen.
 
-Usage: test_c_and_dctl.py TONEWRIGHT
+Usage: test_c_and_dctl.py TONEWRIGHT [--record FILE]
+--record merges the largest errors into a JSON file: implementation -> function -> error.
 """
 import csv
 import ctypes
+import json
 import os
 import pathlib
 import shutil
@@ -58,8 +60,14 @@ def run(library: pathlib.Path, function: str, rgb: np.ndarray) -> np.ndarray:
     return out
 
 
-def main(tonewright: str) -> int:
+def record(path: pathlib.Path, errors: dict) -> None:
+    known = json.loads(path.read_text()) if path.exists() else {}
+    path.write_text(json.dumps(known | errors, indent=1))
+
+
+def main(tonewright: str, record_file: str = "") -> int:
     failures = []
+    recorded = {"C": {}, "DCTL": {}}
     rgb = colors()
     text = "\n".join(" ".join(repr(float(x)) for x in row) for row in rgb) + "\n"
     c_compilers = [c for c in ("gcc", "clang") if shutil.which(c)]
@@ -106,6 +114,8 @@ def main(tonewright: str) -> int:
                 error_of = np.abs(got - truth[operator])
                 error = error_of.max()
                 worst_of[operator] = max(error, worst_of.get(operator, 0))
+                of_language = recorded[language.upper()]
+                of_language[function] = max(error, of_language.get(function, 0))
                 # The estimate of the text: Vulkan's errors, which a C library's are below; twice, because it is
                 # computed over probe colors. Where first order says nothing: what float is enough for.
                 bound = 2 * float(row["vulkan_estimate"])
@@ -117,13 +127,12 @@ def main(tonewright: str) -> int:
                     failures.append(f"{what}: {bounded:.2g} off; guaranteed are {row['guaranteed']}")
     within = sum(error <= 2e-6 for error in worst_of.values())
     print(f"{len(worst_of)} functions, {len(runs)} compilers and settings; {within} within 2e-6")
-    if os.environ.get("TONEWRIGHT_TABLE"):
-        for operator, error in sorted(worst_of.items(), key=lambda item: -item[1]):
-            print(f"{operator}  {error:.2g}")
+    if record_file:
+        record(pathlib.Path(record_file), recorded)
     for failure in failures:
         print(failure)
     return 1 if failures else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1]))
+    sys.exit(main(sys.argv[1], *(sys.argv[3:] if sys.argv[2:3] == ["--record"] else [])))

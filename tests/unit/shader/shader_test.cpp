@@ -112,6 +112,23 @@ TEST(Shader, EveryVariantInEveryLanguageIsAsciiAndHasItsOwnName) {
     }
 }
 
+TEST(Shader, HeadersSayWhatWasMeasured) {
+    const std::string not_measured = "not with these settings";
+    const ShaderErrors errors;
+    for (const OperatorVariant& variant : all_variants()) {
+        const Shader shader = write_shader(request_of(variant.name, variant.look), &errors);
+        ASSERT_NE(shader.text.find("// Measured   in code values of sRGB"), std::string::npos)
+            << shader.function << " is not in src/shader/measured_errors.inc: its definition has "
+            << "changed; run tests/shader/record_errors.py";
+    }
+    ShaderRequest request = request_of("hable");
+    request.view.op = resolve_operator("hable", {{"white", "5"}});
+    EXPECT_NE(write_shader(request).text.find(not_measured), std::string::npos);
+    request = request_of("hable");
+    request.view.exposure_stops = 1;
+    EXPECT_NE(write_shader(request).text.find(not_measured), std::string::npos);
+}
+
 TEST(Shader, NamesTellPresetFromOperator) {
     EXPECT_EQ(shader_function_name(request_of("hable_gdc")), "tw_hable_gdc");
     EXPECT_EQ(shader_function_name(request_of("hable:gdc")), "tw_hable_preset_gdc");

@@ -36,7 +36,7 @@ struct VerifyOptions {
 struct ParityRow {
     std::string op;
     std::string display;
-    std::string form;      // "simd AVX3", "ocio cpu lossless", "ocio cpu default", "ocio gpu", "glsl"
+    std::string form;  // "simd AVX3", "ocio cpu lossless", "ocio cpu default", "ocio gpu", "glsl"
     std::string lowering;  // of OCIO forms: "config" or "chain", and what was emitted
     /// Colors with all channels >= 0.
     double max = 0, p999 = 0, mean = 0;

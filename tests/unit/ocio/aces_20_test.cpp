@@ -57,7 +57,8 @@ double p999_of(const std::string& display, const std::string& input) {
 TEST(Aces20, OpenColorIOShowsColorsThatTheLutWasNotFittedTo) {
     std::vector<std::string> displays = {"srgb"};
     if (takes_full_counts()) {
-        for (const char* other : {"display_p3", "rec1886", "rec2020", "g22"})
+        for (const char* other :
+             {"display_p3", "rec1886", "rec2020", "g22", "rec2100_pq", "rec2100_hlg", "p3d65_pq"})
             displays.emplace_back(other);
     }
     for (const std::string& display : displays) {

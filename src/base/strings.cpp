@@ -211,13 +211,25 @@ std::string_view trimmed(std::string_view text) {
     return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
 }
 
+namespace {
+
+/// Libraries that run out of memory name the exception or the function that failed.
+bool is_about_memory(std::string_view message) {
+    return message.find("bad_alloc") != message.npos;
+}
+constexpr const char* kNotEnoughMemory = "not enough memory";
+
+}  // namespace
+
 std::string first_line(std::string_view text) {
+    if (is_about_memory(text)) return kNotEnoughMemory;
     const std::size_t begin = text.find_first_not_of("\r\n ");
     if (begin == std::string_view::npos) return "unknown error";
     return std::string(text.substr(begin, text.find_first_of("\r\n", begin) - begin));
 }
 
 std::string one_line(std::string_view text, std::size_t longest) {
+    if (is_about_memory(text)) return kNotEnoughMemory;
     std::string line;
     bool is_blank = false;
     for (std::size_t i = 0; i < text.size() && line.size() < longest;) {

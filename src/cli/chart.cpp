@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <memory>
 
+#include <fmt/format.h>
+
+#include "cli/messages.h"
 #include "cli/options.h"
 #include "cli/picture_commands.h"
 
@@ -27,7 +30,10 @@ void add_chart(CommandLine& program) {
         .group(group);
     command.footer("Example:\n  tonewright chart -o chart.exr");
     command.action([options] {
+        const ResultLine line;
         picture_commands().chart(*options);
+        line.print(fmt::format("chart: {} ({} x {} {})", options->file, options->width,
+                               options->height, options->type));
         return kOk;
     });
 }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <memory>
 
+#include <fmt/format.h>
+
+#include "cli/messages.h"
 #include "cli/options.h"
 #include "cli/picture_commands.h"
 
@@ -79,7 +82,9 @@ void add_compare(CommandLine& program) {
         "  tonewright compare render.exr hable:white=4 hable:white=11.2 -o sheet.jpg\n"
         "  tonewright compare render.exr clamp agx_blender --split 0.5 -o split.png");
     command.action([options] {
+        const ResultLine line;
         picture_commands().compare(*options);
+        line.print(fmt::format("compare: {} -> {}", options->in, options->file));
         return kOk;
     });
 }

@@ -152,17 +152,29 @@ int run_config(Options& options) {
     if (!options.folder.empty()) require_writable_folder(options.folder);
     if (!options.archive.empty())
         require_writable_folder(std::filesystem::absolute(archive).parent_path().string());
+    const ResultLine result;
     const std::vector<GeneratedFile> files = [&] {
         const ElapsedLine line("config");
         return make_config(wanted);
     }();
-    if (!options.folder.empty()) write_generated_files(options.folder, files, "config.ocio");
+    const auto tell = [&](const std::string& path, const std::vector<GeneratedFile>& written) {
+        double bytes = 0;
+        for (const GeneratedFile& file : written)
+            bytes += static_cast<double>(file.contents.size());
+        result.print(
+            fmt::format("config: {}: {} files, {:.1f} MB", path, written.size(), bytes / 1e6));
+    };
+    if (!options.folder.empty()) {
+        write_generated_files(options.folder, files, "config.ocio");
+        tell(options.folder, files);
+    }
     if (options.archive.empty()) return kOk;
     std::vector<GeneratedFile> packed;
     for (const GeneratedFile& file : files) {
         if (file.path == "config.ocio" || file.path.starts_with("luts/")) packed.push_back(file);
     }
     write_text_atomically(options.archive, make_archive(packed));
+    tell(options.archive, packed);
     return kOk;
 }
 
@@ -250,7 +262,9 @@ void add_config(CommandLine& program) {
         .range(-16.0, 16.0)
         .group(own);
     command.footer(
-        "LIST is separated by commas.\n"
+        "LIST is separated by commas. The standard config takes some 20 seconds the first time, "
+        "for "
+        "the fits of 3D LUTs that it keeps in ~/.cache/tonewright, and 7 seconds afterwards.\n"
         "Examples:\n"
         "  tonewright config -o ocio_config\n"
         "  tonewright config -o everything --views all\n"

@@ -164,12 +164,15 @@ ColorMap through_floats(std::function<void(const float*, float*, std::size_t)> r
 
 ColorMap map_of_lut(const Options& options) {
     const InputSpace& input = find_input_space(options.input);
-    const Pipeline before = before_lut("eval", options.lut, options, {input.id, input.primaries});
+    const SourceColor color = {input.id, input.primaries};
+    check_lut_options("eval", options.lut, options, color);
     const auto lut = with_memory_for(options.lut.file, [&] {
         return std::make_shared<const LutFile>(
             open_lut(options.lut.file, options.lut.interpolation,
                      [](const std::string& path) { return picture_commands().read_lut(path); }));
     });
+    const Pipeline before =
+        before_lut("eval", with_stated_input(options.lut, input.id), options, color);
     const auto encode = before.empty() ? nullptr : std::make_shared<const ReferenceEngine>(before);
     return through_floats([lut, encode](const float* in, float* out, std::size_t count) {
         if (!encode) {

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "base/format_number.h"
+#include "base/input_file.h"
 #include "base/strings.h"
 #include "cli/messages.h"
 #include "lut/stated_input.h"
@@ -31,6 +32,7 @@ namespace {
 std::optional<StatedInput> stated_input(const LutOptions& options) {
     // Our text stands at the beginning, but behind the table in a device link.
     constexpr std::size_t kBeginning = 1U << 16U;
+    if (!why_no_file(options.file).empty()) return {};  // opening a pipe would wait
     const std::string extension = extension_of(options.file);
     const bool is_link = extension == ".icc" || extension == ".icm";
     std::string contents(is_link ? std::size_t{1} << 26U : kBeginning, '\0');
@@ -41,8 +43,6 @@ std::optional<StatedInput> stated_input(const LutOptions& options) {
 }
 
 }  // namespace
-
-bool states_input(const LutOptions& options) { return stated_input(options).has_value(); }
 
 LutOptions with_stated_input(const LutOptions& options, const std::string& input) {
     if (!options.encoding.empty()) return options;
@@ -59,7 +59,7 @@ LutOptions with_stated_input(const LutOptions& options, const std::string& input
     if (found.space.empty()) found.space = stated->space;
     if (!message_options().is_quiet) {
         print_message(fmt::format(
-            "{}: the LUT expects {}, by its header; the picture is {} (--input-encoding none "
+            "{}: the LUT expects {}, by its header; the input is {} (--input-encoding none "
             "passes colors unchanged)",
             options.file, stated->text, input));
     }
@@ -88,6 +88,12 @@ Pipeline before_lut(const char* command, const LutOptions& options, const ViewOp
     stages.push_back(MatrixStage{scale(matrix, std::exp2(view.exposure))});
     stages.push_back(curve_stage(encoding.encode));
     return stages;
+}
+
+void check_lut_options(const char* command, const LutOptions& options, const ViewOptions& view,
+                       const SourceColor& input) {
+    if (options.encoding.empty() && stated_input(options)) return;
+    (void)before_lut(command, options, view, input);
 }
 
 TONEWRIGHT_NAMESPACE_END

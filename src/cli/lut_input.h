@@ -24,9 +24,6 @@ struct LutOptions {
 [[nodiscard]] LutFile open_lut(const std::string& path, const std::string& interpolation,
                                const std::function<Lut(const std::string&)>& read_picture);
 
-/// Whether the file itself says what goes in.
-[[nodiscard]] bool states_input(const LutOptions& options);
-
 /// Without --input-encoding: what the file itself says that goes in, in one line on stderr; where
 /// it says nothing, a warning that colors go in as they are.
 [[nodiscard]] LutOptions with_stated_input(const LutOptions& options, const std::string& input);
@@ -38,5 +35,9 @@ struct LutOptions {
 /// @throws Error  unknown names; --input, --exposure or --lut-space without --input-encoding.
 [[nodiscard]] Pipeline before_lut(const char* command, const LutOptions& options,
                                   const ViewOptions& view, const SourceColor& input);
+
+/// Throws what before_lut() will throw, before pictures are read.
+void check_lut_options(const char* command, const LutOptions& options, const ViewOptions& view,
+                       const SourceColor& input);
 
 TONEWRIGHT_NAMESPACE_END

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "base/atomic_file.h"
+#include "base/strings.h"
 #include "cli/command.h"
 #include "cli/messages.h"
 #include "cli/options.h"
@@ -21,6 +22,7 @@ int report(const std::string& message, int exit_code) {
 }
 
 int run(int argc, char** argv) {
+    const std::string command = argc > 1 ? one_line(argv[1]) + ": " : "";
     try {
         CommandLine program(
             "tonewright",
@@ -43,10 +45,10 @@ int run(int argc, char** argv) {
         return exit_code;
     } catch (const std::system_error& e) {  // what printing throws, and a thread that has no stack
         if (e.code() == std::errc::resource_unavailable_try_again)
-            return report("not enough memory or threads", kFile);
+            return report(command + "not enough memory or threads", kFile);
         return report("write: standard output: " + e.code().message(), kFile);
     } catch (const std::bad_alloc&) {
-        return report("not enough memory", kFile);
+        return report(command + "not enough memory", kFile);
     } catch (const FileError& e) {
         return report(e.what(), kFile);
     } catch (const Error& e) {

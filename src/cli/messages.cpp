@@ -2,6 +2,7 @@
 #include "cli/messages.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <stdexcept>
@@ -21,6 +22,17 @@ void print_message(const std::string& text) {
 
 void print_result(const std::string& text) {
     if (!message_options().is_quiet) fmt::print(stderr, "{}\n", one_line(text));
+}
+
+bool says_what_was_done() {
+    const MessageOptions& messages = message_options();
+    return !messages.is_quiet && (messages.is_verbose || ::isatty(STDERR_FILENO) != 0);
+}
+
+void ResultLine::print(const std::string& text) const {
+    if (!says_what_was_done()) return;
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start_;
+    print_message(fmt::format("{}, {:.2f} s", text, seconds.count()));
 }
 
 void warn(const std::string& text) {

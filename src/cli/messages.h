@@ -3,6 +3,7 @@
 // What the command tells its user on stderr: one line each.
 #pragma once
 
+#include <chrono>
 #include <string>
 
 #include "tonewright/version.h"
@@ -25,6 +26,19 @@ void print_message(const std::string& text);
 
 /// What a command did, on stderr, on one line; not with --quiet.
 void print_result(const std::string& text);
+
+/// What a command did, for people: on a terminal or with --verbose, not with --quiet.
+[[nodiscard]] bool says_what_was_done();
+
+/// For commands that write one thing. Measures the time from when it is made.
+class ResultLine {
+  public:
+    /// `tonewright: TEXT, 1.23 s` on stderr, where says_what_was_done()
+    void print(const std::string& text) const;
+
+  private:
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
 
 /// `tonewright: warning: TEXT`, where a result may not be what the user means. Call it before the
 /// result is written.

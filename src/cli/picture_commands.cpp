@@ -4,15 +4,19 @@
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cerrno>
+#include <algorithm>
+#include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <optional>
 #include <string_view>
 #include <system_error>
+#include <thread>
 
 #include "tonewright/error.h"
 
@@ -29,31 +33,44 @@ std::optional<double> address_limit() {
     return static_cast<double>(limit.rlim_cur) / 1e6;
 }
 
-/// Static objects of the libraries below OpenImageIO start threads and take memory without asking
-/// whether they got them. Where addresses are limited, loading can therefore abort the process,
-/// crash or wait forever; a process of its own finds out.
-bool survives_loading(const std::string& path) {
-    constexpr unsigned kLongestSeconds = 10;
-    const pid_t child = ::fork();
-    if (child == 0) {
-        const struct rlimit none {};
-        (void)::setrlimit(RLIMIT_CORE, &none);
-        if (const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC); nowhere >= 0)
-            (void)::dup2(nowhere, STDERR_FILENO);
-        (void)::alarm(kLongestSeconds);
-        (void)::dlopen(path.c_str(), kBinding);  // where it fails in order, ours says why
-        ::_exit(0);
-    }
-    int status = 0;
-    while (child > 0 && ::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-    }
-    return child > 0 && WIFEXITED(status);
-}
-
 /// What the loader says when it has no addresses for a library.
 bool is_about_memory(std::string_view reason) {
     return reason.find("failed to map segment") != reason.npos ||
            reason.find("annot allocate memory") != reason.npos;
+}
+
+/// Static objects of the libraries below OpenImageIO start threads and take memory without asking
+/// whether they got them. Where addresses are limited, loading can therefore abort the process,
+/// crash or wait forever, with all signals blocked; a process of its own finds out.
+bool survives_loading(const std::string& path) {
+    constexpr std::chrono::seconds kLongest{10};
+    // What a second process may take more than the first: stacks and arenas of its threads.
+    constexpr rlim_t kHeadroom = rlim_t{32} << 20U;
+    const pid_t parent = ::getpid();
+    const pid_t child = ::fork();
+    if (child == 0) {
+        (void)::prctl(PR_SET_PDEATHSIG, SIGKILL);
+        if (::getppid() != parent) ::_exit(0);
+        const struct rlimit none {};
+        (void)::setrlimit(RLIMIT_CORE, &none);
+        struct rlimit addresses {};
+        (void)::getrlimit(RLIMIT_AS, &addresses);
+        addresses.rlim_cur -= std::min(addresses.rlim_cur, kHeadroom);
+        (void)::setrlimit(RLIMIT_AS, &addresses);
+        if (const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC); nowhere >= 0)
+            (void)::dup2(nowhere, STDERR_FILENO);
+        void* const module = ::dlopen(path.c_str(), kBinding);
+        // Where it fails in order, the second try says why.
+        ::_exit(module || !is_about_memory(::dlerror()) ? 0 : 1);
+    }
+    if (child < 0) return false;
+    const auto end = std::chrono::steady_clock::now() + kLongest;
+    int status = 0;  // stays where the caller ignores how children end
+    while (::waitpid(child, &status, WNOHANG) == 0) {
+        if (std::chrono::steady_clock::now() > end) (void)::kill(child, SIGKILL);
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
 /// The module stays loaded until the process ends.

@@ -250,18 +250,18 @@ CurvePlot plot_of(const Options& options) {
 }
 
 int run_plot(const Options& options) {
+    const ResultLine line;
     const CurvePlot plot = plot_of(options);
     const std::string extension = extension_of(options.file);
     const int vector_width = options.width > 0 ? options.width : 640;
     if (extension == ".pdf") {
         write_text_atomically(options.file, to_pdf(plot, vector_width));
-        return kOk;
-    }
-    if (extension != ".svg") {
+    } else if (extension == ".svg") {
+        write_text_atomically(options.file, to_svg(plot, vector_width));
+    } else {
         picture_commands().write_plot(plot, options.file, options.width > 0 ? options.width : 1280);
-        return kOk;
     }
-    write_text_atomically(options.file, to_svg(plot, vector_width));
+    line.print(fmt::format("plot: {}: {}", options.file, plot.title));
     return kOk;
 }
 

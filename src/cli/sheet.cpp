@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <memory>
 
+#include <fmt/format.h>
+
+#include "cli/messages.h"
 #include "cli/options.h"
 #include "cli/picture_commands.h"
 
@@ -27,7 +30,9 @@ void add_sheet(CommandLine& program) {
         .group(group);
     command.footer("Example:\n  tonewright sheet -o sheet.png Hable=hable.png AgX=agx.png");
     command.action([options] {
+        const ResultLine line;
         picture_commands().sheet(*options);
+        line.print(fmt::format("sheet: {}: {} pictures", options->file, options->pictures.size()));
         return kOk;
     });
 }

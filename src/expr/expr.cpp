@@ -132,11 +132,16 @@ std::shared_ptr<const ExprNode> share(ExprNode node) {
         key.operands[i] = node.operands[i].node();
 
     SharedNodes& shared = shared_nodes();
-    const std::lock_guard lock(shared.mutex);
-    if (auto it = shared.nodes.find(key); it != shared.nodes.end()) {
-        if (auto alive = it->second.lock()) return alive;
+    const auto known = [&]() -> std::shared_ptr<const ExprNode> {
+        const auto it = shared.nodes.find(key);
+        return it == shared.nodes.end() ? nullptr : it->second.lock();
+    };
+    {
+        const std::lock_guard lock(shared.mutex);
+        if (auto alive = known()) return alive;
     }
-    // The deleter takes the entry out before the operands (whose addresses are in the key) go.
+    // The deleter takes the entry out before the operands (whose addresses are in the key) go. It
+    // locks: `made` is made and destroyed where nobody holds the lock, whatever throws for memory.
     auto deleter = [key](const ExprNode* p) {
         {
             SharedNodes& all = shared_nodes();
@@ -147,6 +152,8 @@ std::shared_ptr<const ExprNode> share(ExprNode node) {
         delete p;
     };
     std::shared_ptr<const ExprNode> made(new ExprNode(std::move(node)), deleter);
+    const std::lock_guard lock(shared.mutex);
+    if (auto alive = known()) return alive;  // another thread was faster
     shared.nodes[key] = made;
     return made;
 }

@@ -574,6 +574,9 @@ def check_paths(report, command, folder):
 
 
 def evaluate_lut(command, path, colors, *arguments):
+    """Colors as the table takes them, unless the arguments say what stands before it."""
+    if "--input-encoding" not in arguments:
+        arguments += ("--input-encoding", "none")
     text = "".join(f"{r!r} {g!r} {b!r}\n" for r, g, b in colors.tolist())
     return np.array(run(command, "eval", "--lut", path, *arguments, stdin=text).split(), float).reshape(-1, 3)
 
@@ -699,6 +702,11 @@ def check_stated(report, command, folder):
         lines = done.stderr.splitlines()
         report.check(f"apply --lut {name}: one line says what was assumed", len(lines) == 1 and name in lines[0]
                      and "lin_rec709" in lines[0] and ("DaVinci" in lines[0]), done.stderr)
+    said = subprocess.run([str(command), "eval", "--lut", str(folder / "stated.cube")], input="4 2 .5\n", capture_output=True,
+                          text=True, check=True)
+    report.compare("eval --lut: as its header says", np.array([said.stdout.split()], float),
+                   evaluate_lut(command, folder / "stated.cube", np.array([[4, 2, 0.5]]), "--input-encoding", "davinci"), 0)
+    report.check("eval --lut: one line says what was assumed", "DaVinci" in said.stderr and said.stderr.count("\n") == 1)
     done, shown = applied(folder / "stated.cube", "-q")
     report.check("apply --lut -q: says nothing", done.returncode == 0 and not done.stderr, done.stderr)
     done, shown = applied(folder / "stated.cube", "--exposure", 1)
@@ -769,7 +777,7 @@ def check_xml(report, command, folder):
                        interpolate(CUBE, (COLORS - lowest) / (highest - lowest)), FLOAT32)
     path = folder / "wild.clf"
     path.write_text(cube.replace("<LUT3D", "<Unknown/>\n<LUT3D"))
-    status, out, err, _ = peak_of([command, "eval", "--lut", path], "0.1 0.2 0.3\n")
+    status, out, err, _ = peak_of([command, "eval", "--lut", path, "--input-encoding", "none"], "0.1 0.2 0.3\n")
     report.check(".clf: an element that OpenColorIO warns of, without its warning",
                  status == 0 and len(out.split()) == 3 and not err, (status, err))
     corrected = np.clip(COLORS, 0, None)

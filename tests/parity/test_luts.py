@@ -170,7 +170,7 @@ def check_formats(report, command, folder):
         path = folder / f"way_up_{layout}.{suffix}"
         depth = 32 if suffix == "exr" else 16
         run(command, "bake", *OPERATOR, "--nodes", "sampled", "--format", layout, "--size", 16, "--depth", depth, "-o", path)
-        got = [float(v) for v in run(command, "eval", "--lut", path, stdin="0.8 0.2 0.4\n").split()]
+        got = [float(v) for v in run(command, "eval", "--lut", path, "--input-encoding", "none", stdin="0.8 0.2 0.4\n").split()]
         report.compare(f"eval --lut of {layout} in .{suffix}", np.array([got]), truth_16[[12 + 16 * 3 + 256 * 6]], 0.5 / 65535 + EXACT)
     for bits in (10, 12, 16):
         path = folder / f"x{bits}.3dl"

@@ -207,12 +207,7 @@ void apply_lut(const ApplyOptions& options, const LutFile& lut, const FrameFiles
 
 int apply_lut(const ApplyOptions& options, ApplyFiles& files) {
     // What is wrong with the options is told before a picture is read.
-    const bool needs_encoding = options.given.contains("--input") ||
-                                options.given.contains("--exposure") ||
-                                options.given.contains("--lut-space");
-    if ((!options.lut.encoding.empty() && options.lut.encoding != "none") ||
-        (needs_encoding && !states_input(options.lut)))
-        (void)before_lut("apply", options.lut, options, source_color({}, options.input));
+    check_lut_options("apply", options.lut, options, source_color({}, options.input));
     const LutFile lut = with_memory_for(options.lut.file, [&] {
         return open_lut(options.lut.file, options.lut.interpolation, load_lut_picture);
     });
@@ -238,19 +233,20 @@ int apply_lut(const ApplyOptions& options, ApplyFiles& files) {
 
 /// "render.exr (640 x 360 half, lin_rec709) -> out.png: AgX (agx_blender), exposure +1, sRGB,
 /// 0.12 s"
-void print_result(const FrameFiles& file, const Tonemapper& tonemapper, double seconds) {
+void print_result(const FrameFiles& file, const Tonemapper& tonemapper, const ResultLine& line) {
+    if (!says_what_was_done()) return;
     const TonemapOptions& options = tonemapper.options();
     const ResolvedOperator op =
         resolve_picture_operator(options.op, options.settings, options.look);
     const PictureReader reader(file.in, 1, file.subimage);
     const OIIO::ImageSpec& spec = reader.spec();
     std::string text = fmt::format(
-        "apply: {} ({} x {} {}, {}) -> {}: {} ({}), exposure {:+.3g}, display {}, {:.2f} s",
-        file.in, spec.width, spec.height, spec.format.c_str(),
-        source_color(spec, options.input).name, file.out, op.op->view, operator_text(op),
-        file.exposure_stops.value_or(options.exposure_stops), options.display, seconds);
+        "apply: {} ({} x {} {}, {}) -> {}: {} ({}), exposure {:+.3g}, display {}", file.in,
+        spec.width, spec.height, spec.format.c_str(), source_color(spec, options.input).name,
+        file.out, op.op->view, operator_text(op),
+        file.exposure_stops.value_or(options.exposure_stops), options.display);
     if (message_options().is_verbose) text += fmt::format(", {} threads", thread_count(0));
-    print_message(text);
+    line.print(text);
 }
 
 void write_with_legend(const Tonemapper& tonemapper, const FrameFiles& file,
@@ -268,8 +264,6 @@ int run_apply(const ApplyOptions& given) {
     use_threads(options.picture);
     ApplyFiles files = files_of(options);
     if (!options.lut.file.empty()) return apply_lut(options, files);
-    const bool says_result = !message_options().is_quiet &&
-                             (message_options().is_verbose || ::isatty(STDERR_FILENO) != 0);
     TonemapOptions tonemap;
     tonemap.op = options.is_false_color ? "false_color" : options.op;
     if (tonemap.op.empty()) tonemap.op = kDefaultOperator;
@@ -327,7 +321,7 @@ int run_apply(const ApplyOptions& given) {
     FrameFiles& file = files.files.front();
     Warnings warnings(file.out);
     write.warn = warnings.hearer();
-    const auto start = std::chrono::steady_clock::now();
+    const ResultLine result;
     try {
         const QuietStderr quiet;
         const ElapsedLine line("apply", quiet.before());
@@ -345,10 +339,9 @@ int run_apply(const ApplyOptions& given) {
         if (!is_frame_pattern(file.in)) throw;
         throw FileError(std::string(e.what()) + "; for the frames of a shot, use --frames 1-100");
     }
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
     warnings.print();
     tell_default();
-    if (says_result) print_result(file, tonemapper, seconds.count());
+    print_result(file, tonemapper, result);
     return kOk;
 }
 

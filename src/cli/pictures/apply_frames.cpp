@@ -124,9 +124,8 @@ std::size_t print_failures(const std::vector<FrameFiles>& files) {
 
 /// One line for all, on a terminal or where there is more to say than that all were written.
 void print_summary(const std::string& text, bool is_all_written) {
-    const MessageOptions& messages = message_options();
-    const bool is_shown = !is_all_written || messages.is_verbose || ::isatty(STDERR_FILENO) != 0;
-    if (is_shown && !messages.is_quiet) print_message("apply: " + text);
+    if (says_what_was_done() || (!is_all_written && !message_options().is_quiet))
+        print_message("apply: " + text);
 }
 
 /// Lines for what failed, and one for all.

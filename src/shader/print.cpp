@@ -499,8 +499,9 @@ PrintedProgram print_program(const ShaderProgram& program, const LanguageFacts& 
 }
 
 std::string float_literal(double value, const LanguageFacts& language) {
-    constexpr double kMost = std::numeric_limits<float>::max();
-    auto number = static_cast<float>(std::clamp(value, -kMost, kMost));
+    // The largest float has no short literal that is not above it, and WGSL refuses those.
+    const double most = std::nextafter(std::numeric_limits<float>::max(), 0.0F);
+    auto number = static_cast<float>(std::clamp(value, -most, most));
     if (std::fpclassify(number) == FP_SUBNORMAL) number = 0;
     std::array<char, 32> buffer{};
     const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), number);

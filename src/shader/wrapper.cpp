@@ -107,9 +107,9 @@ constexpr Wrapper kWrappers[] = {
      "}\n",
      "    _@name(\"@name\", Range(@min, @max)) = @value\n", "_@name"},
     {"unreal", "#pragma once\n\n",
-     "\n// In a Custom node with one input, color:\n"
-     "//   #include \"/Project/Tonewright/@function.ush\"\n"
-     "//   return @function(color@call);\n"
+     "\n// A Custom node with the input color:\n"
+     "//   Include File Paths: /Project/Tonewright/@function.ush\n"
+     "//   Code: return @function(color.rgb@call);\n"
      "@arguments",
      "// @name is another input of the node: @help, @value\n"},
     {"mpv",

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Shared by the tests that execute shaders: colors, what the operators show of them, and the comparison."""
 import csv
+import fcntl
 import json
 import os
 import pathlib
@@ -21,18 +22,19 @@ def skip(reason: str):
 
 
 def npm_modules(tonewright: str) -> pathlib.Path:
-    """Their folder in the build folder. `./run test --all` installs them, 60 MB; else they are there or not."""
+    """Installs the packages into the build folder, 60 MB, unless they are there; returns their folder."""
     folder = pathlib.Path(tonewright).resolve().parent.parent / "npm-shaders"
     wanted = folder / "packages.txt"
-    if not wanted.is_file() or wanted.read_text().split() != PACKAGES:
-        if not IS_FULL:
-            skip("packages of npm are missing; `./run test --all` installs them")
-        folder.mkdir(exist_ok=True)
-        done = subprocess.run(["npm", "install", "--prefix", str(folder), "--no-audit", "--no-fund", *PACKAGES],
-                              capture_output=True, text=True, check=False)
-        if done.returncode:
-            skip(f"npm cannot install {' '.join(PACKAGES)} ({(done.stderr.strip().splitlines() or ['no reason'])[-1]})")
-        wanted.write_text("\n".join(PACKAGES))
+    folder.mkdir(exist_ok=True)
+    with open(folder / "lock", "w") as lock:  # tests run at the same time
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not wanted.is_file() or wanted.read_text().split() != PACKAGES:
+            done = subprocess.run(["npm", "install", "--prefix", str(folder), "--no-audit", "--no-fund", "--ignore-scripts",
+                                   "--fetch-retries=1", *PACKAGES], capture_output=True, text=True, check=False)
+            if done.returncode:
+                reason = (done.stderr.strip().splitlines() or ["no reason"])[-1]
+                skip(f"npm cannot install {' '.join(PACKAGES)} ({reason})")
+            wanted.write_text("\n".join(PACKAGES))
     return folder / "node_modules"
 
 
@@ -56,52 +58,65 @@ def hostile_colors(count: int) -> np.ndarray:
     return np.concatenate([first, rest]).astype(np.float32)
 
 
-def write_shaders(tonewright: str, folder: pathlib.Path) -> dict:
-    """All shaders in all languages, code values of sRGB; language -> rows of the manifest, a dozen unless in full."""
-    subprocess.run([tonewright, "shader", "--all", str(folder), "--display", "srgb", "-q"], check=True)
-    rows = {}
-    for row in csv.DictReader(open(folder / "MANIFEST.csv")):
-        rows.setdefault(row["path"].split("/")[0], []).append(row)
-    return rows if IS_FULL else {language: some[3::8] for language, some in rows.items()}
+def pick(rows: list, count: int) -> list:
+    """That many of them, evenly."""
+    return [rows[i * len(rows) // count] for i in range(count)]
 
 
 class Comparison:
     """Of what implementations of shaders show with what the double reference does."""
 
-    def __init__(self, tonewright: str):
+    def __init__(self, tonewright: str, shaders: pathlib.Path):
+        """shaders: the folder that `tonewright shader --all FOLDER --display srgb` wrote."""
         self.tonewright = tonewright
+        self.rows = {}  # language -> rows of the manifest, of a dozen operators unless in full
+        for row in csv.DictReader(open(shaders / "MANIFEST.csv")):
+            self.rows.setdefault(row["path"].split("/")[0], []).append(row)
+        names = [row["operator"] for row in self.rows["dctl"]]  # DCTL holds no lattices
+        dozen = pick(names, 11) + ["agx_blender"]
+        if not IS_FULL:
+            self.rows = {key: [row for row in rows if row["operator"] in dozen] for key, rows in self.rows.items()}
         self.rgb = colors()
+        # Ten operators have to be right for a million hostile colors as well; in the quick run, a dozen for fewer.
+        self.hostile = pick(names, 10) if IS_FULL else dozen
+        self.all_rgb = np.concatenate([self.rgb, hostile_colors(1_000_000 if IS_FULL else 3_000)])
         self.truth = {}
         self.failures = []
         self.recorded = {}  # language -> function -> largest error
 
-    def expected(self, operator: str) -> np.ndarray:
+    def colors_of(self, row: dict) -> np.ndarray:
+        """What the function of this row should be run over."""
+        return self.all_rgb if row["operator"] in self.hostile else self.rgb
+
+    def expected(self, operator: str, rgb: np.ndarray) -> np.ndarray:
         if operator not in self.truth:
-            text = "\n".join(" ".join(repr(float(x)) for x in row) for row in self.rgb) + "\n"
-            lines = subprocess.run([self.tonewright, "eval", operator, "--digits", "12"], input=text, check=True,
-                                   capture_output=True, text=True).stdout
-            self.truth[operator] = np.array([line.split() for line in lines.splitlines()], float)
+            self.truth[operator] = reference(self.tonewright, operator, rgb)
         return self.truth[operator]
 
     def add(self, language: str, what: str, row: dict, got: np.ndarray, is_as_written: bool) -> None:
-        """is_as_written: no compiler may have rearranged operations; the guaranteed bound then has to hold."""
+        """got: of colors_of(row). is_as_written: no compiler may have rearranged operations; the guaranteed bound then
+        has to hold."""
         what = f"{row['operator']} by {what}"
+        rgb = self.colors_of(row)
         got = got.astype(float)
         if not np.isfinite(got).all():
-            self.failures.append(f"{what}: not finite for {self.rgb[~np.isfinite(got).all(axis=1)][0]}")
+            self.failures.append(f"{what}: not finite for {rgb[~np.isfinite(got).all(axis=1)][0]}")
             return
-        error_of = np.abs(got - self.expected(row["operator"]))
-        error = error_of.max()
+        error_of = np.abs(got - self.expected(row["operator"], rgb))
         known = self.recorded.setdefault(language, {})
-        known[row["function"]] = max(error, known.get(row["function"], 0))
+        known[row["function"]] = max(error_of[:len(self.rgb)].max(), known.get(row["function"], 0))
         # The estimate of the text: Vulkan's errors. Twice, because it is computed over probe colors. Where first order
-        # says nothing: what float is enough for.
+        # says nothing: what float is enough for. Hostile colors, whose channels cancel, may be a code of 10 bits off:
+        # nobody sees such a speckle.
         bound = 2 * float(row["vulkan_estimate"])
-        if not error <= (bound if np.isfinite(bound) else 2e-6):
-            at = self.rgb[np.unravel_index(error_of.argmax(), error_of.shape)[0]]
-            self.failures.append(f"{what}: {error:.2g} off at {at}; expected at most {bound:.2g}")
+        bound = np.full(len(rgb), bound if np.isfinite(bound) else 2e-6)
+        bound[len(self.rgb):] = np.maximum(bound[len(self.rgb):], 1 / 1023)
+        far = ~(error_of.max(axis=1) <= bound)
+        if far.any():
+            self.failures.append(f"{what}: {error_of[far].max():.2g} off at {rgb[far][0]}; expected at most "
+                                 f"{bound[far][0]:.2g} ({far.sum()} colors)")
         # 1e-8: what the series of 1 - 2^x may be off.
-        bounded = error_of[((self.rgb >= 0) & (self.rgb <= 65504)).all(axis=1)].max()
+        bounded = error_of[((rgb >= 0) & (rgb <= 65504)).all(axis=1)].max()
         if is_as_written and not bounded <= float(row["guaranteed"]) + 1e-8:
             self.failures.append(f"{what}: {bounded:.2g} off; guaranteed are {row['guaranteed']}")
 
@@ -120,6 +135,14 @@ class Comparison:
         return 1 if self.failures else 0
 
 
+def reference(tonewright: str, operator: str, rgb: np.ndarray, *options: str) -> np.ndarray:
+    """What `tonewright eval` answers."""
+    text = "\n".join(" ".join(map(repr, row)) for row in rgb.astype(float).tolist()) + "\n"
+    lines = subprocess.run([tonewright, "eval", operator, "--digits", "12", *options], input=text, check=True,
+                           capture_output=True, text=True).stdout
+    return np.array(lines.split(), float).reshape(-1, 3)
+
+
 def start(main) -> None:
-    """main(tonewright, record_file), with the arguments of the command line."""
-    sys.exit(main(sys.argv[1], sys.argv[3] if sys.argv[2:3] == ["--record"] else ""))
+    """main(tonewright, folder of shaders, record_file), with the arguments of the command line."""
+    sys.exit(main(sys.argv[1], pathlib.Path(sys.argv[2]), sys.argv[4] if sys.argv[3:4] == ["--record"] else ""))

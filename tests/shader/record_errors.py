@@ -17,17 +17,21 @@ import tempfile
 HERE = pathlib.Path(__file__).parent
 TABLE = HERE.parent.parent / "src/shader/measured_errors.inc"
 # Tests that execute shaders, and what their implementations are called.
-TESTS = {"test_c_and_dctl.py": {"C": "C (GCC, Clang)", "DCTL": "DCTL (as C++, fast math)"}}
+TESTS = {
+    "test_wgsl_and_hlsl.py": {"wgsl": "WGSL (SwiftShader)", "hlsl": "HLSL (SwiftShader)"},
+    "test_c_and_dctl.py": {"dctl": "DCTL (pocl)", "c": "C (GCC, Clang)"},
+}
 
 
 def main(tonewright: str) -> int:
     names = ["GLSL (llvmpipe)"]
     with tempfile.TemporaryDirectory() as folder_name:
         folder = pathlib.Path(folder_name)
-        subprocess.run([tonewright, "shader", "--all", str(folder / "all"), "--display", "srgb", "-q"], check=True)
+        shaders = folder / "all"
+        subprocess.run([tonewright, "shader", "--all", str(shaders), "--display", "srgb", "-q"], check=True)
         hashes, functions = {}, {}
-        for row in csv.DictReader(open(folder / "all/MANIFEST.csv")):
-            text = (folder / "all" / row["path"]).read_text()
+        for row in csv.DictReader(open(shaders / "MANIFEST.csv")):
+            text = (shaders / row["path"]).read_text()
             hashes[row["function"]] = re.search(r"definition (\w+)", text)[1]
             functions[row["operator"]] = row["function"]
         errors = {name: {} for name in names}
@@ -37,8 +41,8 @@ def main(tonewright: str) -> int:
             if row["form"] == "glsl":
                 errors[names[0]][functions[row["operator"].replace(" look=", ":look=")]] = row["max_all"]
         for test, implementations in TESTS.items():
-            subprocess.run([sys.executable, str(HERE / test), tonewright, "--record", str(folder / "errors.json")],
-                           check=True, env=os.environ | {"TONEWRIGHT_TEST_ALL": "1"})
+            subprocess.run([sys.executable, str(HERE / test), tonewright, str(shaders), "--record",
+                            str(folder / "errors.json")], check=True, env=os.environ | {"TONEWRIGHT_TEST_ALL": "1"})
             recorded = json.loads((folder / "errors.json").read_text())
             for key, name in implementations.items():
                 names.append(name)

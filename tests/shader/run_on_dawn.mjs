@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Runs shader functions on Dawn, the implementation of WebGPU in Chromium, without a browser.
+// Runs shaders on Dawn, the implementation of WebGPU in Chromium, without a browser.
 //
 //   VK_ICD_FILENAMES=.../vk_swiftshader_icd.json node run_on_dawn.mjs NODE_MODULES JOB.json
 //
-// The job: input (a file of float32 RGB) and for each function source (WGSL text, or a SPIR-V file), textures (files of
-// float32 RGBA with their edge, at group 0) and out (a file of float32 RGB to write). The entry point is `main`, 64 colors
-// to a group, input and output at group 1. Prints the adapter; messages of the compiler are an error.
+// The job is a list. A source is a file of WGSL or SPIR-V (.spv).
+//   {source, input, out, textures: [{file, edge}]}   calls the entry point `main`, 64 colors to a group. Input and output
+//       are float32 RGB at group 1; the textures are cubes of float32 RGBA at group 0.
+//   {vertex, fragment, picture, size, out, bindings}   draws one triangle: vertex and fragment are {source, entryPoint,
+//       constants}, the picture is RGBA in half floats, the output in floats. Bindings are the entries of group 0:
+//       "picture", "sampler", or a list of floats in a uniform buffer.
+// Prints the adapter; messages of the compiler are an error.
 import { createRequire } from 'node:module';
 import { readFile, writeFile } from 'node:fs/promises';
 import path from 'node:path';
@@ -17,69 +21,108 @@ const require = createRequire(path.join(modules, 'none.js'));
 const load = async (name) => import(pathToFileURL(require.resolve(name)).href);
 const { create, globals } = await load('webgpu');
 Object.assign(globalThis, globals);
-const job = JSON.parse(await readFile(jobPath, 'utf8'));
 
-const floatsOf = async (file) => {
-    const bytes = await readFile(file);
-    return new Float32Array(bytes.buffer, bytes.byteOffset, bytes.length / 4);
+const gpu = create(['backend=vulkan']);  // stays referenced, because Dawn crashes where it is collected before its devices
+const adapter = await gpu.requestAdapter();
+const device = await adapter.requestDevice();
+const fail = (message) => {
+    console.error(message);
+    process.exit(1);
 };
-const wgslOf = async (source) => {
+device.addEventListener('uncapturederror', (event) => fail(event.error.message));
+console.log(`${adapter.info.vendor} ${adapter.info.architecture}`);
+
+async function wgslOf(source) {
     if (!source.endsWith('.spv')) return readFile(source, 'utf8');
     const { translate } = await load('naga-wasm');
     const bytes = await readFile(source);
     return translate({ from: 'spirv', to: 'wgsl', source: new Uint32Array(bytes.buffer, bytes.byteOffset, bytes.length / 4) });
-};
+}
 
-const adapter = await create(['backend=vulkan']).requestAdapter();
-const device = await adapter.requestDevice();
-device.addEventListener('uncapturederror', (event) => {
-    console.error(event.error.message);
-    process.exit(1);
-});
-const rgb = await floatsOf(job.input);
-const groups = Math.ceil(rgb.length / 3 / 64);
-const size = groups * 64 * 3 * 4;
-const buffer = (usage) => device.createBuffer({ size, usage });
-const input = buffer(GPUBufferUsage.STORAGE | GPUBufferUsage.COPY_DST);
-const output = buffer(GPUBufferUsage.STORAGE | GPUBufferUsage.COPY_SRC);
-const result = buffer(GPUBufferUsage.MAP_READ | GPUBufferUsage.COPY_DST);
-device.queue.writeBuffer(input, 0, rgb);
-console.log(`${adapter.info.vendor} ${adapter.info.architecture}`);
-
-for (const { source, textures, out } of job.functions) {
+async function moduleOf(source) {
     const module = device.createShaderModule({ code: await wgslOf(source) });
     const { messages } = await module.getCompilationInfo();
-    if (messages.length > 0) {
-        console.error(`${source}:${messages[0].lineNum}: ${messages[0].message}`);
-        process.exit(1);
-    }
-    const pipeline = device.createComputePipeline({ layout: 'auto', compute: { module, entryPoint: 'main' } });
+    if (messages.length > 0) fail(`${source}:${messages[0].lineNum}: ${messages[0].message}`);
+    return module;
+}
+
+function bufferOf(size, usage, contents) {
+    const buffer = device.createBuffer({ size, usage: usage | GPUBufferUsage.COPY_DST });
+    if (contents) device.queue.writeBuffer(buffer, 0, contents);
+    return buffer;
+}
+
+function textureOf(bytes, size, format, bytesPerTexel) {
+    const texture = device.createTexture({
+        dimension: `${size.length}d`, size, format, usage: GPUTextureUsage.TEXTURE_BINDING | GPUTextureUsage.COPY_DST,
+    });
+    device.queue.writeTexture({ texture }, bytes, { bytesPerRow: bytesPerTexel * size[0], rowsPerImage: size[1] }, size);
+    return texture.createView();
+}
+
+function bind(pass, pipeline, group, resources) {
+    const entries = resources.map((resource, binding) => ({ binding, resource }));
+    pass.setBindGroup(group, device.createBindGroup({ layout: pipeline.getBindGroupLayout(group), entries }));
+}
+
+/** Submits the commands and writes what the buffer then holds. */
+async function finish(encoder, result, out, length) {
+    device.queue.submit([encoder.finish()]);
+    await result.mapAsync(GPUMapMode.READ);
+    await writeFile(out, new Uint8Array(result.getMappedRange(), 0, length));
+    result.destroy();
+}
+
+async function compute({ source, input, out, textures }) {
+    const rgb = await readFile(input);
+    const groups = Math.ceil(rgb.length / 12 / 64);
+    const size = groups * 64 * 12;
+    const colors = bufferOf(size, GPUBufferUsage.STORAGE, rgb);
+    const shown = bufferOf(size, GPUBufferUsage.STORAGE | GPUBufferUsage.COPY_SRC);
+    const result = bufferOf(size, GPUBufferUsage.MAP_READ);
+    const pipeline = device.createComputePipeline({ layout: 'auto', compute: { module: await moduleOf(source) } });
+    const views = [];
+    for (const { file, edge } of textures) views.push(textureOf(await readFile(file), [edge, edge, edge], 'rgba32float', 16));
     const encoder = device.createCommandEncoder();
     const pass = encoder.beginComputePass();
     pass.setPipeline(pipeline);
-    const bind = (group, resources) => pass.setBindGroup(group, device.createBindGroup({
-        layout: pipeline.getBindGroupLayout(group),
-        entries: resources.map((resource, binding) => ({ binding, resource })),
-    }));
-    const views = [];
-    for (const { file, edge } of textures) {
-        const texture = device.createTexture({
-            dimension: '3d', size: [edge, edge, edge], format: 'rgba32float',
-            usage: GPUTextureUsage.TEXTURE_BINDING | GPUTextureUsage.COPY_DST,
-        });
-        device.queue.writeTexture({ texture }, await floatsOf(file), { bytesPerRow: 16 * edge, rowsPerImage: edge },
-            [edge, edge, edge]);
-        views.push(texture.createView());
-    }
-    if (views.length > 0) bind(0, views);
-    bind(1, [{ buffer: input }, { buffer: output }]);
+    if (views.length > 0) bind(pass, pipeline, 0, views);
+    bind(pass, pipeline, 1, [{ buffer: colors }, { buffer: shown }]);
     pass.dispatchWorkgroups(groups);
     pass.end();
-    encoder.copyBufferToBuffer(output, 0, result, 0, size);
-    device.queue.submit([encoder.finish()]);
-    await result.mapAsync(GPUMapMode.READ);
-    await writeFile(out, new Uint8Array(result.getMappedRange(), 0, rgb.length * 4));
-    result.unmap();
+    encoder.copyBufferToBuffer(shown, 0, result, 0, size);
+    await finish(encoder, result, out, rgb.length);
+    colors.destroy();
+    shown.destroy();
 }
-device.destroy();
+
+async function draw({ vertex, fragment, picture, size, out, bindings }) {
+    const stage = async ({ source, entryPoint, constants }) => ({ module: await moduleOf(source), entryPoint, constants });
+    const pipeline = device.createRenderPipeline({
+        layout: 'auto', vertex: await stage(vertex), fragment: { ...await stage(fragment), targets: [{ format: 'rgba32float' }] },
+    });
+    const target = device.createTexture({
+        size, format: 'rgba32float', usage: GPUTextureUsage.RENDER_ATTACHMENT | GPUTextureUsage.COPY_SRC,
+    });
+    const known = {
+        picture: textureOf(await readFile(picture), size, 'rgba16float', 8),
+        // Without a filter: in the middle of a texel, SwiftShader mixes some of its neighbors in.
+        sampler: device.createSampler(),
+    };
+    const resources = bindings.map((binding) => known[binding] ?? {
+        buffer: bufferOf(4 * binding.length, GPUBufferUsage.UNIFORM, Float32Array.from(binding)),
+    });
+    const encoder = device.createCommandEncoder();
+    const pass = encoder.beginRenderPass({ colorAttachments: [{ view: target.createView(), loadOp: 'clear', storeOp: 'store' }] });
+    pass.setPipeline(pipeline);
+    bind(pass, pipeline, 0, resources);
+    pass.draw(3);
+    pass.end();
+    const length = 16 * size[0] * size[1];
+    const result = bufferOf(length, GPUBufferUsage.MAP_READ);
+    encoder.copyTextureToBuffer({ texture: target }, { buffer: result, bytesPerRow: 16 * size[0] }, size);
+    await finish(encoder, result, out, length);
+}
+
+for (const step of JSON.parse(await readFile(jobPath, 'utf8'))) await (step.source ? compute(step) : draw(step));
 process.exit(0);

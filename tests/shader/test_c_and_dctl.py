@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """C and DCTL that `tonewright shader` writes, compiled and run against `tonewright eval`.
 
-C by every compiler there is, with -O2 and -ffast-math; DCTL as C++, with the words of DCTL defined, and with
--ffast-math, as Resolve compiles it. All operators, presets and looks with TONEWRIGHT_TEST_ALL=1, else a dozen.
+C by every compiler there is, with -O2 and -ffast-math; DCTL by pocl, as OpenCL with Resolve's flags and without. All
+operators, presets and looks with TONEWRIGHT_TEST_ALL=1, and a million hostile colors through ten of them; else a dozen.
 
-Usage: test_c_and_dctl.py TONEWRIGHT [--record FILE]
---record merges the largest errors into a JSON file: implementation -> function -> error.
+Usage: test_c_and_dctl.py TONEWRIGHT SHADERS [--record FILE]
+SHADERS is the folder that `tonewright shader --all SHADERS --display srgb` wrote.
+--record merges the largest errors into a JSON file: language -> function -> error.
 """
 import ctypes
 import pathlib
@@ -15,65 +16,50 @@ import tempfile
 
 import numpy as np
 
-from executed import Comparison, skip, start, write_shaders
-
-# Words of DCTL, for a C++ compiler.
-DCTL = """
-#include <cmath>
-struct float3 { float x, y, z; };
-static inline float3 make_float3(float x, float y, float z) { return {x, y, z}; }
-#define __DEVICE__ static inline
-#define __CONSTANT__ static const
-#define _powf powf
-#define _log2f log2f
-#define _exp2f exp2f
-#define _fmaxf fmaxf
-#define _fminf fminf
-#define _fabs fabsf
-#define _sqrtf sqrtf
-#define _sinf sinf
-#define _cosf cosf
-#define _atan2f atan2f
-#define _floor floorf
-"""
+from executed import Comparison, skip, start
+from opencl import RESOLVE, OpenCl
 
 
-def run(library: pathlib.Path, function: str, rgb: np.ndarray) -> np.ndarray:
+def compiled(command: list, rows: list, shaders: pathlib.Path, folder: pathlib.Path) -> ctypes.CDLL:
+    """A library with run_FUNCTION of each row."""
+    source = folder / "all.c"
+    source.write_text("".join(f'#include "{shaders.resolve()}/{row["path"]}"\n'
+                              f"void run_{row['function']}(const float* a, float* b, long n) "
+                              f"{{ for (; n > 0; --n, a += 3, b += 3) {row['function']}(a, b); }}\n" for row in rows))
+    library = folder / ("_".join(command).replace("/", "") + ".so")
+    subprocess.run([*command, "-std=c99", "-Wall", "-Wextra", "-Werror", "-shared", "-fPIC", str(source), "-o", str(library),
+                    "-lm"], check=True)
+    return ctypes.CDLL(str(library))
+
+
+def run(library: ctypes.CDLL, function: str, rgb: np.ndarray) -> np.ndarray:
     out = np.empty_like(rgb)
     pointer = ctypes.POINTER(ctypes.c_float)
-    ctypes.CDLL(str(library))[f"run_{function}"](rgb.ctypes.data_as(pointer), out.ctypes.data_as(pointer),
-                                                  ctypes.c_long(len(rgb)))
+    library[f"run_{function}"](rgb.ctypes.data_as(pointer), out.ctypes.data_as(pointer), ctypes.c_long(len(rgb)))
     return out
 
 
-def main(tonewright: str, record_file: str) -> int:
-    comparison = Comparison(tonewright)
-    c_compilers = [c for c in ("gcc", "clang") if shutil.which(c)]
-    if not c_compilers:
+def main(tonewright: str, shaders: pathlib.Path, record_file: str) -> int:
+    comparison = Comparison(tonewright, shaders)
+    compilers = [c for c in ("gcc", "clang") if shutil.which(c)]
+    if not compilers:
         skip("no C compiler")
-    runs = [("c", [c, "-x", "c", "-std=c99", *flags]) for c in c_compilers for flags in (["-O2"], ["-O2", "-ffast-math"])]
-    runs += [("dctl", ["g++", "-x", "c++", "-O2", "-ffast-math"])]
+    commands = [[c, *flags] for c in compilers for flags in (["-O2"], ["-O2", "-ffast-math"])]
     with tempfile.TemporaryDirectory() as folder_name:
-        folder = pathlib.Path(folder_name)
-        rows = write_shaders(tonewright, folder)
-        for number, (language, command) in enumerate(runs):
-            source = DCTL if language == "dctl" else ""
-            for row in rows[language]:
-                function = row["function"]
-                source += f'#include "{folder}/{row["path"]}"\n'
-                body = (f"float3 c = {function}(make_float3(a[0], a[1], a[2])); b[0] = c.x; b[1] = c.y; b[2] = c.z;"
-                        if language == "dctl" else f"{function}(a, b);")
-                linkage = 'extern "C" ' if language == "dctl" else ""
-                source += (f"{linkage}void run_{function}(const float* a, float* b, long n) "
-                           f"{{ for (; n > 0; --n, a += 3, b += 3) {{ {body} }} }}\n")
-            (folder / "all.src").write_text(source)
-            library = folder / f"all{number}.so"
-            subprocess.run([*command, "-Wall", "-Wextra", "-Werror", "-shared", "-fPIC", str(folder / "all.src"), "-o",
-                            str(library), "-lm"], check=True)
-            for row in rows[language]:
-                comparison.add(language, " ".join(command), row, run(library, row["function"], comparison.rgb),
+        for command in commands:
+            library = compiled(command, comparison.rows["c"], shaders, pathlib.Path(folder_name))
+            for row in comparison.rows["c"]:
+                comparison.add("c", " ".join(command), row, run(library, row["function"], comparison.colors_of(row)),
                                is_as_written="-ffast-math" not in command)
-    return comparison.report(f"{len(runs)} compilers and settings", record_file)
+    rows = comparison.rows["dctl"]
+    texts = {row["function"]: (shaders / row["path"]).read_text() for row in rows}
+    calls = {function: f"{function}(vload3(0, a + i))" for function in texts}
+    for flags in ((), RESOLVE):
+        opencl = OpenCl(texts, calls, flags)
+        for row in rows:
+            comparison.add("dctl", " ".join(["pocl", *flags]), row, opencl.run(row["function"], comparison.colors_of(row)),
+                           is_as_written=not flags)
+    return comparison.report(f"{', '.join(map(' '.join, commands))}; pocl", record_file)
 
 
 if __name__ == "__main__":

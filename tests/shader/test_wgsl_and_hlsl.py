@@ -2,24 +2,20 @@
 """WGSL and HLSL that `tonewright shader` writes, run on Dawn and SwiftShader against `tonewright eval`.
 
 HLSL goes through glslangValidator to SPIR-V and through naga to WGSL. All operators, presets and looks with
-TONEWRIGHT_TEST_ALL=1, and then a million hostile colors through ten of them; else a dozen.
+TONEWRIGHT_TEST_ALL=1, and a million hostile colors through ten of them; else a dozen.
 
-Usage: test_wgsl_and_hlsl.py TONEWRIGHT [--record FILE]
+Usage: test_wgsl_and_hlsl.py TONEWRIGHT SHADERS [--record FILE]
+SHADERS is the folder that `tonewright shader --all SHADERS --display srgb` wrote.
 --record merges the largest errors into a JSON file: language -> function -> error.
 """
-import json
-import os
 import pathlib
-import shutil
-import subprocess
 import tempfile
 
 import numpy as np
 
-from executed import IS_FULL, Comparison, hostile_colors, npm_modules, skip, start, write_shaders
+from dawn import Dawn, spirv_of
+from executed import Comparison, start
 
-HERE = pathlib.Path(__file__).parent
-SWIFTSHADER = pathlib.Path("/usr/lib/chromium/vk_swiftshader_icd.json")
 MAIN = {
     "wgsl": """
 @group(1) @binding(0) var<storage, read> colors: array<f32>;
@@ -54,61 +50,29 @@ def textures_of(text_file: pathlib.Path) -> list:
     return [{"file": str(file), "edge": round((file.stat().st_size / 16) ** (1 / 3))} for file in named]
 
 
-def programs(language: str, rows: list, folder: pathlib.Path) -> list:
-    """What run_on_dawn.mjs takes of each function."""
-    functions = []
-    for row in rows:
-        text_file = folder / row["path"]
-        program = folder / f"{row['function']}.main.{language}"
-        program.write_text(text_file.read_text() + MAIN[language].replace("FUNCTION", row["function"]))
-        if language == "hlsl":
-            spirv = program.with_suffix(".spv")
-            subprocess.run(["glslangValidator", "-D", "-V", "--quiet", "--auto-map-bindings", "-S", "comp", "-e", "main",
-                            str(program), "-o", str(spirv)], check=True)
-            program = spirv
-        functions.append({"source": str(program), "textures": textures_of(text_file),
-                          "out": str(folder / f"{row['function']}.{language}.out")})
-    return functions
+def step_of(language: str, row: dict, shaders: pathlib.Path, rgb: np.ndarray, folder: pathlib.Path) -> dict:
+    """What run_on_dawn.mjs takes of this function."""
+    text_file = shaders / row["path"]
+    program = folder / f"{row['function']}.{language}"
+    program.write_text(text_file.read_text() + MAIN[language].replace("FUNCTION", row["function"]))
+    colors = folder / f"{len(rgb)}.colors"
+    rgb.tofile(colors)
+    source = spirv_of(program, "comp", "main") if language == "hlsl" else program
+    return {"source": str(source), "textures": textures_of(text_file), "input": str(colors), "out": f"{program}.out"}
 
 
-def run(functions: list, rgb: np.ndarray, modules: pathlib.Path, folder: pathlib.Path) -> str:
-    """Writes the files `out`; returns what ran them."""
-    rgb.tofile(folder / "colors.raw")
-    (folder / "job.json").write_text(json.dumps({"input": str(folder / "colors.raw"), "functions": functions}))
-    done = subprocess.run(["node", str(HERE / "run_on_dawn.mjs"), str(modules), str(folder / "job.json")],
-                          env=os.environ | {"VK_ICD_FILENAMES": str(SWIFTSHADER)}, capture_output=True, text=True, check=False)
-    if done.returncode:
-        raise SystemExit(f"run_on_dawn.mjs: {done.stderr.strip()}")
-    return done.stdout.strip()
-
-
-def shown(function: dict) -> np.ndarray:
-    return np.fromfile(function["out"], np.float32).reshape(-1, 3)
-
-
-def main(tonewright: str, record_file: str) -> int:
-    for program, package in (("node", "nodejs"), ("npm", "npm"), ("glslangValidator", "glslang-tools")):
-        if not shutil.which(program):
-            skip(f"{program} is missing (Debian: {package})")
-    if not SWIFTSHADER.is_file():
-        skip("SwiftShader is missing (Debian: chromium-common)")
-    modules = npm_modules(tonewright)
-    comparison = Comparison(tonewright)
+def main(tonewright: str, shaders: pathlib.Path, record_file: str) -> int:
+    dawn = Dawn(tonewright)
+    comparison = Comparison(tonewright, shaders)
     with tempfile.TemporaryDirectory() as folder_name:
         folder = pathlib.Path(folder_name)
-        rows = write_shaders(tonewright, folder)
-        for language in ("wgsl", "hlsl"):
-            functions = programs(language, rows[language], folder)
-            adapter = run(functions, comparison.rgb, modules, folder)
-            for row, function in zip(rows[language], functions):
-                comparison.add(language, f"{adapter} from {language}", row, shown(function), is_as_written=True)
-            hostile = functions[::len(functions) // 10][:10] if IS_FULL else functions[:2]
-            rgb = hostile_colors(1_000_000 if IS_FULL else 20_000)
-            run(hostile, rgb, modules, folder)
-            for function in hostile:
-                finite = np.isfinite(shown(function)).all(axis=1)
-                if not finite.all():
-                    comparison.failures.append(f"{function['source']}: not finite for {rgb[~finite][0]}")
+        for language in MAIN:
+            rows = comparison.rows[language]
+            steps = [step_of(language, row, shaders, comparison.colors_of(row), folder) for row in rows]
+            adapter = dawn.run(steps, folder)
+            for row, step in zip(rows, steps):
+                shown = np.fromfile(step["out"], np.float32).reshape(-1, 3)
+                comparison.add(language, f"{adapter} from {language}", row, shown, is_as_written=True)
     return comparison.report(adapter, record_file)
 
 

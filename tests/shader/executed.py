@@ -29,10 +29,11 @@ def npm_modules(tonewright: str) -> pathlib.Path:
     with open(folder / "lock", "w") as lock:  # tests run at the same time
         fcntl.flock(lock, fcntl.LOCK_EX)
         if not wanted.is_file() or wanted.read_text().split() != PACKAGES:
-            done = subprocess.run(["npm", "install", "--prefix", str(folder), "--no-audit", "--no-fund", "--ignore-scripts",
-                                   "--fetch-retries=1", *PACKAGES], capture_output=True, text=True, check=False)
+            options = ["--no-audit", "--no-fund", "--ignore-scripts", "--fetch-retries=1", "--fetch-retry-mintimeout=1000"]
+            done = subprocess.run(["npm", "install", "--prefix", str(folder), *options, *PACKAGES], capture_output=True,
+                                  text=True, check=False)
             if done.returncode:
-                reason = (done.stderr.strip().splitlines() or ["no reason"])[-1]
+                reason = (done.stderr.strip().splitlines() or ["no reason"])[0]
                 skip(f"npm cannot install {' '.join(PACKAGES)} ({reason})")
             wanted.write_text("\n".join(PACKAGES))
     return folder / "node_modules"

@@ -5,6 +5,11 @@ import tempfile
 
 import numpy as np
 
+try:
+    import pyopencl
+except ImportError:
+    pyopencl = None
+
 from executed import skip
 
 CACHE = tempfile.TemporaryDirectory()  # else pocl, which reads the variable once, fills the user's cache
@@ -38,29 +43,34 @@ kernel void run_{name}(global const float* a, global float* b) {{
 """
 
 
+def device():
+    """pocl's. Skips the test where it is missing."""
+    if not pyopencl:
+        skip("pyopencl is missing (Debian: python3-pyopencl)")
+    try:
+        platforms = [p for p in pyopencl.get_platforms() if p.name == "Portable Computing Language"]
+    except pyopencl.LogicError:  # no platform at all
+        platforms = []
+    if not platforms:
+        skip("pocl is missing (Debian: pocl-opencl-icd)")
+    return platforms[0].get_devices()[0]
+
+
 class OpenCl:
-    """Functions of DCTL, compiled. Skips the test where pocl is missing."""
+    """Functions of DCTL, compiled."""
 
     def __init__(self, texts: dict, calls: dict, flags: tuple = RESOLVE):
         """texts: name -> DCTL. calls: name -> expression of `a` and `i`, where the color is."""
-        try:
-            import pyopencl
-            platforms = [p for p in pyopencl.get_platforms() if p.name == "Portable Computing Language"]
-        except (ImportError, RuntimeError):
-            platforms = []
-        if not platforms:
-            skip("OpenCL is missing (Debian: pocl-opencl-icd, python3-pyopencl)")
-        self.cl = pyopencl
-        self.context = pyopencl.Context(platforms[0].get_devices()[:1])
+        self.context = pyopencl.Context([device()])
         self.queue = pyopencl.CommandQueue(self.context)
         source = WORDS + "".join(text + KERNEL.format(name=name, call=calls[name]) for name, text in texts.items())
         self.program = pyopencl.Program(self.context, source).build([*flags, "-cl-std=CL1.2"])
 
     def run(self, name: str, rgb: np.ndarray) -> np.ndarray:
         shown = np.empty_like(rgb)
-        flags = self.cl.mem_flags
-        colors = self.cl.Buffer(self.context, flags.READ_ONLY | flags.COPY_HOST_PTR, hostbuf=rgb)
-        results = self.cl.Buffer(self.context, flags.WRITE_ONLY, rgb.nbytes)
+        flags = pyopencl.mem_flags
+        colors = pyopencl.Buffer(self.context, flags.READ_ONLY | flags.COPY_HOST_PTR, hostbuf=rgb)
+        results = pyopencl.Buffer(self.context, flags.WRITE_ONLY, rgb.nbytes)
         getattr(self.program, f"run_{name}")(self.queue, (len(rgb),), None, colors, results)
-        self.cl.enqueue_copy(self.queue, shown, results)
+        pyopencl.enqueue_copy(self.queue, shown, results)
         return shown

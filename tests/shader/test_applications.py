@@ -18,7 +18,7 @@ import numpy as np
 
 from dawn import Dawn, spirv_of
 from executed import reference
-from opencl import OpenCl
+from opencl import OpenCl, device
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "parity" / "clients"))
 from pictures import read_rgb  # noqa: E402, I001  (makes the next one findable)
@@ -120,6 +120,7 @@ def resolve(text: str, function: str, picture: np.ndarray) -> np.ndarray:
 
 def main(tonewright: str, pictures: str) -> int:
     dawn = Dawn(tonewright)
+    device()
     failures = 0
     with tempfile.TemporaryDirectory() as folder_name:
         folder = pathlib.Path(folder_name)

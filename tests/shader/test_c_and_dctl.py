@@ -17,7 +17,7 @@ import tempfile
 import numpy as np
 
 from executed import Comparison, skip, start
-from opencl import RESOLVE, OpenCl
+from opencl import RESOLVE, OpenCl, device
 
 
 def compiled(command: list, rows: list, shaders: pathlib.Path, folder: pathlib.Path) -> ctypes.CDLL:
@@ -40,6 +40,7 @@ def run(library: ctypes.CDLL, function: str, rgb: np.ndarray) -> np.ndarray:
 
 
 def main(tonewright: str, shaders: pathlib.Path, record_file: str) -> int:
+    device()
     comparison = Comparison(tonewright, shaders)
     compilers = [c for c in ("gcc", "clang") if shutil.which(c)]
     if not compilers:

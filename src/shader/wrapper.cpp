@@ -94,6 +94,8 @@ constexpr Wrapper kWrappers[] = {
      "HLSLPROGRAM\n"
      "#pragma vertex Vert\n"
      "#pragma fragment Fragment\n"
+     "#include "
+     "\"Packages/com.unity.render-pipelines.universal/ShaderLibrary/Core.hlsl\"\n"
      "#include \"Packages/com.unity.render-pipelines.core/Runtime/Utilities/Blit.hlsl\"\n\n",
      "\n@declarations"
      "float4 Fragment(Varyings input) : SV_Target {\n"

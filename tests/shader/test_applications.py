@@ -40,12 +40,16 @@ struct FullscreenVertexOutput {
     return FullscreenVertexOutput(vec4<f32>(2.0 * uv.x - 1.0, 1.0 - 2.0 * uv.y, 0.0, 1.0), uv);
 }
 """
-# The names of Unity's Blit.hlsl that the file takes.
-UNITY = """
-[[vk::binding(0)]] Texture2D _BlitTexture;
-[[vk::binding(1)]] SamplerState sampler_LinearClamp;
+# The names that the file takes of Unity's includes. Blit.hlsl takes names of Core.hlsl.
+UNITY = {
+    "Packages/com.unity.render-pipelines.universal/ShaderLibrary/Core.hlsl": """
+#define TEXTURE2D_X Texture2D
 #define SAMPLE_TEXTURE2D_X(picture, sampling, place) picture.Sample(sampling, place)
 #define UNITY_SETUP_STEREO_EYE_INDEX_POST_VERTEX(input)
+""",
+    "Packages/com.unity.render-pipelines.core/Runtime/Utilities/Blit.hlsl": """
+[[vk::binding(0)]] TEXTURE2D_X _BlitTexture;
+[[vk::binding(1)]] SamplerState sampler_LinearClamp;
 struct Varyings {
     float4 positionCS : SV_POSITION;
     float2 texcoord : TEXCOORD0;
@@ -57,9 +61,10 @@ Varyings Vert(uint index : SV_VertexID) {
     output.texcoord = uv;
     return output;
 }
-"""
+""",
+}
 # A material of Unreal calls the Custom node as a function of its inputs.
-UNREAL = UNITY + """
+UNREAL = "".join(UNITY.values()) + """
 #include "INCLUDE"
 float exposure;
 float3 CustomExpression0(float4 color, float exposure) {
@@ -97,9 +102,9 @@ def hlsl(text: str, vertex: str, fragment: str, function: str, folder: pathlib.P
 def unity(text: str, function: str, folder: pathlib.Path) -> dict:
     assert found(r'_exposure\("exposure", Range\((.*?)\)\)', text) == "-8.0, 8.0", "the slider of exposure"
     program = found(r"HLSLPROGRAM\n(.*?)ENDHLSL", text)
-    include = folder / found('#include "(.*?)"', program)
-    include.parent.mkdir(parents=True, exist_ok=True)
-    include.write_text(UNITY)
+    for name, stand_in in UNITY.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(stand_in)
     vertex, fragment = (found(rf"#pragma {stage} (\w+)", program) for stage in ("vertex", "fragment"))
     return hlsl(program, vertex, fragment, function, folder)
 

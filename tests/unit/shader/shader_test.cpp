@@ -189,7 +189,8 @@ TEST(Shader, LiteralsReadBackAsTheSameFloat) {
     EXPECT_EQ(float_literal(-2.5, facts_of(ShaderLanguage::glsl)), "-2.5");
     EXPECT_EQ(float_literal(1e30, c), "1.0e+30f");
     EXPECT_EQ(float_literal(1e-42, c), "0.0f");  // a denormal, which GPUs take for 0
-    EXPECT_EQ(float_literal(kInfinity, c), "3.4028235e+38f");
+    // WGSL refuses decimals above the largest float, as its own shortest one is.
+    EXPECT_EQ(float_literal(kInfinity, c), "3.4028233e+38f");
     for (const double x : {1.0 / 3, 12.47393, 65504.0, 1e-30})
         EXPECT_EQ(std::stof(float_literal(x, c)), static_cast<float>(x));
 }

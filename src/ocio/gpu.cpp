@@ -24,17 +24,35 @@ constexpr GLsizei kBatchWidth = 1024;
 constexpr GLsizei kBatchHeight = 256;
 constexpr std::size_t kBatchPixels = std::size_t{kBatchWidth} * kBatchHeight;
 
+/// What desktop OpenGL and OpenGL ES do not share.
+struct Api {
+    EGLenum api;
+    EGLint renderable;
+    EGLint major;
+    EGLint profile_key, profile;  // EGL_NONE: there are no profiles
+    const char* name;
+    const char* version_line;
+};
+constexpr Api kOpenGl = {EGL_OPENGL_API,
+                         EGL_OPENGL_BIT,
+                         4,
+                         EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                         EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                         "OpenGL 4.0",
+                         "#version 400 core\n"};
+constexpr Api kOpenGlEs = {EGL_OPENGL_ES_API, EGL_OPENGL_ES3_BIT, 3, EGL_NONE, EGL_NONE,
+                           "OpenGL ES 3.0",   "#version 300 es\n"};
+
 /// One triangle that covers the viewport.
-constexpr const char* kVertexShader = R"(#version 400 core
+constexpr const char* kVertexShader = R"(
 void main() {
     gl_Position = vec4(4 * (gl_VertexID & 1) - 1, 2 * (gl_VertexID & 2) - 1, 0, 1);
 }
 )";
 
-/// Around OCIO's function: every fragment is the colour of the texel in the same place.
-constexpr const char* kFragmentHead = "#version 400 core\n";
+/// Behind the function: every fragment is the colour of the texel in the same place.
 constexpr const char* kFragmentTail = R"(
-uniform sampler2D tonewright_input;
+uniform highp sampler2D tonewright_input;
 out vec4 tonewright_output;
 void main() {
     vec4 color = texelFetch(tonewright_input, ivec2(gl_FragCoord.xy), 0);
@@ -46,14 +64,14 @@ constexpr const char* kInputName = "tonewright_input";
 /// program that we are a part of may draw, too.
 class Current {
   public:
-    Current(EGLDisplay display, EGLContext context)
+    Current(EGLenum api, EGLDisplay display, EGLContext context)
         : display_(display),
           previous_api_(eglQueryAPI()),
           previous_display_(eglGetCurrentDisplay()),
           previous_context_(eglGetCurrentContext()),
           previous_draw_(eglGetCurrentSurface(EGL_DRAW)),
           previous_read_(eglGetCurrentSurface(EGL_READ)) {
-        eglBindAPI(EGL_OPENGL_API);  // per thread; EGL begins with OpenGL ES
+        eglBindAPI(api);  // per thread; EGL begins with OpenGL ES
         ok_ = eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) == EGL_TRUE;
     }
     Current(const Current&) = delete;
@@ -97,12 +115,12 @@ std::vector<EGLDisplay> candidate_displays() {
     return displays;
 }
 
-/// A display and a context of desktop OpenGL 4.0 core that needs no surface. Destroying the context
+/// A display and a context that needs no surface. Destroying the context
 /// frees all that was made in it. The display stays initialised: eglTerminate() would end it for
 /// all its users in the process, and Mesa leaks its driver's tables when it unloads the driver.
 class EglContext {
   public:
-    EglContext() = default;
+    explicit EglContext(const Api& api) : api_(api) {}
     EglContext(const EglContext&) = delete;
     EglContext& operator=(const EglContext&) = delete;
     ~EglContext() { close(); }
@@ -113,11 +131,11 @@ class EglContext {
             if (display != EGL_NO_DISPLAY && open(display)) return;
             close();
         }
-        throw Error("no EGL display offers OpenGL 4.0 without a window");
+        throw Error(std::string("no EGL display offers ") + api_.name + " without a window");
     }
 
-    [[nodiscard]] EGLDisplay display() const noexcept { return display_; }
-    [[nodiscard]] EGLContext context() const noexcept { return context_; }
+    [[nodiscard]] const Api& api() const noexcept { return api_; }
+    [[nodiscard]] Current make_current() const { return {api_.api, display_, context_}; }
 
   private:
     bool open(EGLDisplay display) {
@@ -125,22 +143,23 @@ class EglContext {
         display_ = display;
 
         // clang-format off
-        constexpr std::array kConfig = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT,
-                                        EGL_SURFACE_TYPE, 0,
-                                        EGL_NONE};
-        constexpr std::array kContext = {EGL_CONTEXT_MAJOR_VERSION, 4,
-                                         EGL_CONTEXT_MINOR_VERSION, 0,
-                                         EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                         EGL_NONE};
+        const std::array config_wanted = {EGL_RENDERABLE_TYPE, api_.renderable,
+                                          EGL_SURFACE_TYPE, 0,
+                                          EGL_NONE};
+        const std::array context_wanted = {EGL_CONTEXT_MAJOR_VERSION, api_.major,
+                                           EGL_CONTEXT_MINOR_VERSION, 0,
+                                           api_.profile_key, api_.profile,
+                                           EGL_NONE};
         // clang-format on
         EGLConfig config = EGL_NO_CONFIG_KHR;  // will do when none is offered: there is no surface
         EGLint config_count = 0;
-        eglChooseConfig(display, kConfig.data(), &config, 1, &config_count);
+        eglChooseConfig(display, config_wanted.data(), &config, 1, &config_count);
         const EGLenum previous_api = eglQueryAPI();
-        eglBindAPI(EGL_OPENGL_API);  // where it is not supported, OpenGL ES refuses the attributes
-        context_ = eglCreateContext(display, config, EGL_NO_CONTEXT, kContext.data());
+        // Where OpenGL is not supported, OpenGL ES refuses the attributes.
+        eglBindAPI(api_.api);
+        context_ = eglCreateContext(display, config, EGL_NO_CONTEXT, context_wanted.data());
         eglBindAPI(previous_api);
-        return context_ != EGL_NO_CONTEXT && Current(display_, context_).ok();
+        return context_ != EGL_NO_CONTEXT && make_current().ok();
     }
 
     void close() noexcept {
@@ -148,6 +167,7 @@ class EglContext {
         context_ = EGL_NO_CONTEXT;
     }
 
+    const Api& api_;
     EGLDisplay display_ = EGL_NO_DISPLAY;
     EGLContext context_ = EGL_NO_CONTEXT;
 };
@@ -223,14 +243,14 @@ struct Gl {
     }
 };
 
-/// The context of the process, and in it what all processors share: the texels that colours are
+/// A context of the process, and in it what all processors share: the texels that colours are
 /// read from and drawn into. Texture unit 0 stays with the input.
 class Device {
   public:
     /// @throws Error  (without "gpu: ") when there is none.
-    Device() {
+    explicit Device(const Api& api) : egl_(api) {
         egl_.open();
-        const Current current(egl_.display(), egl_.context());
+        const Current current = egl_.make_current();
         gl_ = std::make_unique<const Gl>();
         renderer_ = reinterpret_cast<const char*>(gl_->get_string(GL_RENDERER));
 
@@ -255,6 +275,7 @@ class Device {
     }
 
     [[nodiscard]] const std::string& renderer() const noexcept { return renderer_; }
+    [[nodiscard]] const char* version_line() const noexcept { return egl_.api().version_line; }
 
     /// While it lives, this thread and no other can use the OpenGL functions.
     class Session {
@@ -262,7 +283,7 @@ class Device {
         explicit Session(Device& device)
             : gl(*device.gl_),
               lock_(device.mutex_),
-              current_(device.egl_.display(), device.egl_.context()) {}
+              current_(device.egl_.make_current()) {}
 
         [[nodiscard]] bool ok() const noexcept { return current_.ok(); }
         void require() const {
@@ -281,24 +302,28 @@ class Device {
         const Gl& gl = session.gl;
         const auto full_rows = static_cast<GLsizei>(pixel_count / kBatchWidth);
         const auto rest = static_cast<GLsizei>(pixel_count % kBatchWidth);
-        const std::size_t rest_offset = 3 * (pixel_count - static_cast<std::size_t>(rest));
+        float* const rest_rgba = &rgba_[4 * (pixel_count - static_cast<std::size_t>(rest))];
+        // OpenGL ES moves no other float texels than RGBA.
+        for (std::size_t i = 0; i < pixel_count; ++i)
+            std::copy_n(in + 3 * i, 3, &rgba_[4 * i]);
 
         gl.active_texture(GL_TEXTURE0);
         gl.bind_texture(GL_TEXTURE_2D, input_);
         if (full_rows > 0) {
-            gl.tex_sub_image_2d(GL_TEXTURE_2D, 0, 0, 0, kBatchWidth, full_rows, GL_RGB, GL_FLOAT,
-                                in);
+            gl.tex_sub_image_2d(GL_TEXTURE_2D, 0, 0, 0, kBatchWidth, full_rows, GL_RGBA, GL_FLOAT,
+                                rgba_.data());
         }
         if (rest > 0) {
-            gl.tex_sub_image_2d(GL_TEXTURE_2D, 0, 0, full_rows, rest, 1, GL_RGB, GL_FLOAT,
-                                in + rest_offset);
+            gl.tex_sub_image_2d(GL_TEXTURE_2D, 0, 0, full_rows, rest, 1, GL_RGBA, GL_FLOAT,
+                                rest_rgba);
         }
         gl.viewport(0, 0, full_rows > 0 ? kBatchWidth : rest, full_rows + (rest > 0 ? 1 : 0));
         gl.draw_arrays(GL_TRIANGLES, 0, 3);
-        if (full_rows > 0) {
-            gl.read_pixels(0, 0, kBatchWidth, full_rows, GL_RGB, GL_FLOAT, out);
-        }
-        if (rest > 0) gl.read_pixels(0, full_rows, rest, 1, GL_RGB, GL_FLOAT, out + rest_offset);
+        if (full_rows > 0)
+            gl.read_pixels(0, 0, kBatchWidth, full_rows, GL_RGBA, GL_FLOAT, rgba_.data());
+        if (rest > 0) gl.read_pixels(0, full_rows, rest, 1, GL_RGBA, GL_FLOAT, rest_rgba);
+        for (std::size_t i = 0; i < pixel_count; ++i)
+            std::copy_n(&rgba_[4 * i], 3, out + 3 * i);
     }
 
   private:
@@ -307,6 +332,7 @@ class Device {
     std::mutex mutex_;
     std::string renderer_;
     GLuint input_ = 0;
+    mutable std::vector<float> rgba_ = std::vector<float>(4 * kBatchPixels, 1.0F);  // of a session
 };
 
 struct Availability {
@@ -314,15 +340,21 @@ struct Availability {
     std::string reason;              // when there is none
 };
 
-const Availability& availability() {
-    static const Availability once = []() -> Availability {
-        try {
-            return {std::make_shared<Device>(), ""};
-        } catch (const Error& e) {
-            return {nullptr, e.what()};
-        }
-    }();
-    return once;
+Availability try_device(const Api& api) {
+    try {
+        return {std::make_shared<Device>(api), ""};
+    } catch (const Error& e) {
+        return {nullptr, e.what()};
+    }
+}
+
+const Availability& availability(GlslDialect dialect = GlslDialect::desktop) {
+    if (dialect == GlslDialect::es) {
+        static const Availability es = try_device(kOpenGlEs);
+        return es;
+    }
+    static const Availability desktop = try_device(kOpenGl);
+    return desktop;
 }
 
 OCIO::GpuShaderDescRcPtr describe(const OCIO::ConstProcessorRcPtr& processor,
@@ -358,7 +390,7 @@ struct GpuProgram {
         GLuint texture;
     };
 
-    std::shared_ptr<Device> device = availability().device;
+    std::shared_ptr<Device> device;
     GLuint program = 0;
     std::vector<LutTexture> luts;  // texture unit = index + 1
 
@@ -374,10 +406,15 @@ struct GpuProgram {
         session.gl.delete_program(program);
     }
 
+    Device::Session open(GlslDialect dialect) {
+        device = availability(dialect).device;
+        if (!device) throw Error("gpu: " + availability(dialect).reason);
+        return Device::Session(*device);
+    }
+
     // Apart from the constructor, so that the destructor frees what a failed build leaves.
     void build(const OCIO::ConstProcessorRcPtr& processor, OCIO::OptimizationFlags flags) {
-        if (!device) throw Error("gpu: " + availability().reason);
-        const Device::Session session(*device);
+        const Device::Session session = open(GlslDialect::desktop);
         session.require();
         // Behind the lock, too: OCIO reads its environment variables into one static string.
         const OCIO::GpuShaderDescRcPtr desc = describe(processor, flags);
@@ -389,9 +426,8 @@ struct GpuProgram {
     }
 
     void build(const std::string& text, const std::string& function,
-               const std::vector<GlslTexture>& textures) {
-        if (!device) throw Error("gpu: " + availability().reason);
-        const Device::Session session(*device);
+               const std::vector<GlslTexture>& textures, GlslDialect dialect) {
+        const Device::Session session = open(dialect);
         session.require();
         const Gl& gl = session.gl;
         link(gl, text, "vec4(" + function + "(color.rgb), 1)");
@@ -406,8 +442,9 @@ struct GpuProgram {
 
     /// The functions of `text`, and `result` as what a texel becomes; the program is in use then.
     void link(const Gl& gl, const std::string& text, const std::string& result) {
+        const std::string vertex_shader = std::string(device->version_line()) + kVertexShader;
         const std::string fragment_shader =
-            kFragmentHead + text + kFragmentTail + result + ";\n}\n";
+            device->version_line() + text + kFragmentTail + result + ";\n}\n";
         program = gl.create_program();
         const auto attach = [&](GLenum type, const char* source) {
             const GLuint shader = gl.create_shader(type);
@@ -422,7 +459,7 @@ struct GpuProgram {
                             first_line(gl.get_shader_info_log, shader));
             }
         };
-        attach(GL_VERTEX_SHADER, kVertexShader);
+        attach(GL_VERTEX_SHADER, vertex_shader.c_str());
         attach(GL_FRAGMENT_SHADER, fragment_shader.c_str());
         gl.link_program(program);
         GLint ok = GL_FALSE;
@@ -554,9 +591,9 @@ void OcioGpu::run_rgb(const float* in, float* out, std::size_t pixel_count) cons
 }
 
 GlslGpu::GlslGpu(const std::string& text, const std::string& function,
-                 const std::vector<GlslTexture>& textures)
+                 const std::vector<GlslTexture>& textures, GlslDialect dialect)
     : program_(std::make_unique<GpuProgram>()) {
-    program_->build(text, function, textures);
+    program_->build(text, function, textures, dialect);
 }
 GlslGpu::GlslGpu(GlslGpu&&) noexcept = default;
 GlslGpu& GlslGpu::operator=(GlslGpu&&) noexcept = default;

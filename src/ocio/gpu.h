@@ -22,7 +22,7 @@ struct GpuProgram;
 /// A software rasteriser will do, and is the more exact one: texture units of real GPUs filter 1D
 /// LUTs with 8-bit weights, Mesa's llvmpipe with float weights.
 ///
-/// All objects of a process share one OpenGL context; any thread may use any of them, one at a
+/// All objects of a process that speak one dialect share one OpenGL context; any thread may use any of them, one at a
 /// time. What the calling thread has current in EGL is the same after each call as before.
 class TONEWRIGHT_API OcioGpu {
   public:
@@ -61,12 +61,15 @@ struct GlslTexture {
     const float* rgba;
 };
 
+enum class GlslDialect : unsigned char { desktop, es };  // OpenGL 4.0, OpenGL ES 3.0
+
 /// Runs a GLSL function `vec3 <function>(vec3)` in the same way.
 class TONEWRIGHT_API GlslGpu {
   public:
     /// @throws Error  as OcioGpu does
     GlslGpu(const std::string& text, const std::string& function,
-            const std::vector<GlslTexture>& textures = {});
+            const std::vector<GlslTexture>& textures = {},
+            GlslDialect dialect = GlslDialect::desktop);
     GlslGpu(GlslGpu&&) noexcept;
     GlslGpu& operator=(GlslGpu&&) noexcept;
     ~GlslGpu();

@@ -168,12 +168,13 @@ int run_verify(Options& options) {
         fmt::print("{}", format_row(row));
         std::fflush(stdout);
     };
-    const std::vector<ParityRow> rows = [&] {
+    const VerifyResult result = [&] {
         // Rows on the terminal show how far it is.
         const bool has_rows = !options.json && !options.summary && ::isatty(STDOUT_FILENO) != 0;
         const ElapsedLine line("verify", has_rows ? -1 : STDERR_FILENO);
         return verify(verify_options, print);
     }();
+    const std::vector<ParityRow>& rows = result.rows;
     std::size_t failed = 0;
     for (const ParityRow& row : rows)
         failed += row.is_ok ? 0 : 1;
@@ -195,11 +196,18 @@ int run_verify(Options& options) {
                            {"ok", r.is_ok},
                            {"note", r.note}});
         }
-        // Rows alone, of operators; of a config, what the lint found, too.
-        if (is_of_config) all = Json{{"lint", lint}, {"rows", all}};
-        fmt::print("{}\n", all.dump(2));
+        Json not_executed = Json::array();
+        for (const NotExecuted& n : result.not_executed)
+            not_executed.push_back({{"name", n.name}, {"reason", n.reason}});
+        Json object;
+        if (is_of_config) object.add("lint", lint);
+        object.add("rows", all);
+        object.add("not_executed", not_executed);
+        fmt::print("{}\n", object.dump(2));
     } else if (!rows.empty() || !is_of_config) {
         fmt::print("{} comparisons, {} beyond their bound\n", rows.size(), failed);
+        if (!result.not_executed.empty() && !options.summary)
+            fmt::print("{}", format_not_executed(result.not_executed));
     }
     if (failed) exit_code = kCheckFailed;
     return exit_code;
@@ -250,13 +258,23 @@ void add_verify(CommandLine& program) {
         .add_flag("--best-target", options->verify.only_best_target,
                   "measure only the fastest instruction set of this machine")
         .group(how);
-    command.add_flag("--no-gpu", options->no_gpu, "leave out OpenColorIO's GPU path").group(how);
+    command.add_flag("--no-gpu", options->no_gpu, "leave out OpenColorIO's GPU path and shaders")
+        .group(how);
+    command
+        .add(
+            "--shaders", options->verify.shaders,
+            "run shaders in these languages: glsl, glsl-es, wgsl, hlsl, dctl, c, or none (default: "
+            "all that this machine can run)")
+        .one_value_each()
+        .separated_by(',')
+        .value("LIST")
+        .group(how);
     command.add_flag("--summary", options->summary, "print one line for each operator")
         .group(output);
     command.add_flag("--json", options->json, "print JSON").group(output);
     const Option lut = command.option("--lut");
     for (const char* other : {"--display", "--input", "--config", "--picture", "--quick",
-                              "--summary", "--best-target", "--no-gpu"})
+                              "--summary", "--best-target", "--no-gpu", "--shaders"})
         lut.excludes(command.option(other));
     command.footer(
         "The columns max, 99.9 % and mean are errors of code values over samples >= 0; max all "

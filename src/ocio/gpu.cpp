@@ -281,9 +281,7 @@ class Device {
     class Session {
       public:
         explicit Session(Device& device)
-            : gl(*device.gl_),
-              lock_(device.mutex_),
-              current_(device.egl_.make_current()) {}
+            : gl(*device.gl_), lock_(device.mutex_), current_(device.egl_.make_current()) {}
 
         [[nodiscard]] bool ok() const noexcept { return current_.ok(); }
         void require() const {
@@ -550,8 +548,9 @@ struct GpuProgram {
 
 std::string OcioGpu::unavailable_reason() { return availability().reason; }
 
-std::string OcioGpu::renderer() {
-    return availability().device ? availability().device->renderer() : "";
+std::string GlslGpu::renderer(GlslDialect dialect) {
+    const auto& device = availability(dialect).device;
+    return device ? device->renderer() : "";
 }
 
 TONEWRIGHT_NAMESPACE_END
@@ -570,7 +569,7 @@ struct GpuProgram {
 
 std::string OcioGpu::unavailable_reason() { return "built without EGL"; }
 
-std::string OcioGpu::renderer() { return ""; }
+std::string GlslGpu::renderer(GlslDialect) { return ""; }
 
 TONEWRIGHT_NAMESPACE_END
 
@@ -589,6 +588,8 @@ OcioGpu::~OcioGpu() = default;
 void OcioGpu::run_rgb(const float* in, float* out, std::size_t pixel_count) const {
     program_->run_rgb(in, out, pixel_count);
 }
+
+std::string OcioGpu::renderer() { return GlslGpu::renderer(GlslDialect::desktop); }
 
 GlslGpu::GlslGpu(const std::string& text, const std::string& function,
                  const std::vector<GlslTexture>& textures, GlslDialect dialect)

@@ -22,8 +22,9 @@ struct GpuProgram;
 /// A software rasteriser will do, and is the more exact one: texture units of real GPUs filter 1D
 /// LUTs with 8-bit weights, Mesa's llvmpipe with float weights.
 ///
-/// All objects of a process that speak one dialect share one OpenGL context; any thread may use any of them, one at a
-/// time. What the calling thread has current in EGL is the same after each call as before.
+/// All objects of a process that speak one dialect share one OpenGL context; any thread may use any
+/// of them, one at a time. What the calling thread has current in EGL is the same after each call
+/// as before.
 class TONEWRIGHT_API OcioGpu {
   public:
     /// Compiles the shader and uploads the LUTs.
@@ -76,6 +77,9 @@ class TONEWRIGHT_API GlslGpu {
 
     /// As OcioGpu::run_rgb().
     void run_rgb(const float* in, float* out, std::size_t pixel_count) const;
+
+    /// As OcioGpu::renderer().
+    [[nodiscard]] static std::string renderer(GlslDialect dialect);
 
   private:
     std::unique_ptr<GpuProgram> program_;

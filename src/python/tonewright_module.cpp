@@ -528,13 +528,15 @@ void write_config(const std::string& folder, const std::vector<std::string>& pro
 
 py::list verify_operators(const std::vector<std::string>& operators,
                           const std::vector<std::string>& displays, const std::string& input,
-                          const std::string& config, bool is_quick, bool with_gpu) {
+                          const std::string& config, bool is_quick, bool with_gpu,
+                          const std::vector<std::string>& shaders) {
     VerifyOptions options;
     options.operators = operators;
     options.displays = displays;
     options.input = input;
     options.config = config;
     options.with_gpu = with_gpu;
+    options.shaders = shaders;
     if (is_quick) {
         options.lattice_edge = 9;
         options.random_count = 10000;
@@ -543,7 +545,7 @@ py::list verify_operators(const std::vector<std::string>& operators,
     std::vector<ParityRow> rows;
     {
         const py::gil_scoped_release release;
-        rows = verify(options);
+        rows = verify(options).rows;
     }
     return describe_all(rows);
 }

@@ -2,7 +2,6 @@
 #include "tonewright/verify.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,6 +22,8 @@
 #include "tonewright/ocio.h"
 #include "tonewright/registry.h"
 #include "tonewright/shader.h"
+#include "verify/private_folder.h"
+#include "verify/shader_runs/shader_run.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -33,22 +34,12 @@ namespace fs = std::filesystem;
 class TemporaryConfig {
   public:
     explicit TemporaryConfig(const std::vector<std::string>& views) {
-        std::string pattern = (fs::temp_directory_path() / "tonewright-XXXXXX").string();
-        if (!::mkdtemp(pattern.data()))
-            throw FileError("write: " + pattern + ": cannot make a folder");
-        folder_ = pattern;
-        write_generated_files(folder_, make_config({.views = views}), "config.ocio");
+        write_generated_files(folder_.path(), make_config({.views = views}), "config.ocio");
     }
-    ~TemporaryConfig() {
-        std::error_code ignored;
-        fs::remove_all(folder_, ignored);
-    }
-    TemporaryConfig(const TemporaryConfig&) = delete;
-    TemporaryConfig& operator=(const TemporaryConfig&) = delete;
-    [[nodiscard]] const std::string& folder() const { return folder_; }
+    [[nodiscard]] const std::string& folder() const { return folder_.path(); }
 
   private:
-    std::string folder_;
+    PrivateFolder folder_;
 };
 
 /// Of a folder: the one that it has for any application.
@@ -151,13 +142,15 @@ class Comparison {
     /// @param unit  relative rounding of the form, see ParityRow::max_beyond_rounding
     /// @param loses_negatives  the form has a cube that sees negatives of the working primaries as
     ///                         0: colors outside of them are shown, not held to the bound
+    /// @param answers_nan  the form has to show NaN as a color
     void measure(const std::vector<float>& shown, double unit, bool loses_negatives,
-                 ParityRow& row) const {
+                 bool answers_nan, ParityRow& row) const {
         std::vector<double> errors;
         errors.reserve(samples_.size());
         std::size_t worst = 0;
         for (std::size_t i = 0; i < samples_.size(); ++i) {
             const float* v = &shown[3 * i];
+            if (!answers_nan && has_nan(i)) continue;
             for (std::size_t c = 0; c < 3; ++c) {
                 // A clamp in float32 can be off by a rounding of the encoding's constants.
                 row.is_total = row.is_total && v[c] >= -1e-6F && v[c] <= 1 + 1e-6F;
@@ -185,6 +178,11 @@ class Comparison {
     }
 
   private:
+    [[nodiscard]] bool has_nan(std::size_t i) const {
+        const float* const v = &samples_.rgb[3 * i];
+        return std::any_of(v, v + 3, [](float x) { return std::isnan(x); });
+    }
+
     [[nodiscard]] bool is_inside_working(std::size_t i) const {
         const Vector3 v =
             multiply(to_working_, Vector3{static_cast<double>(samples_.rgb[3 * i]),
@@ -420,6 +418,8 @@ std::vector<ResolvedOperator> operators_of(const std::vector<std::string>& names
 }
 
 constexpr double kTenBits = 1.0 / 1023;
+/// Drivers sum a row in any order, and round more often.
+constexpr double kGpuRounding = 0x1p-21;
 
 double shader_bound(const Shader& shader, bool is_hdr) {
     // An estimate over probe colors; between them derivatives may be larger, and twice is what that
@@ -430,13 +430,6 @@ double shader_bound(const Shader& shader, bool is_hdr) {
     // Where first order has a pole: a logarithm near 1 may be 2^-21 off, which the exponent 78.84
     // of PQ makes 2.6e-5; without PQ, what float is enough for.
     return is_hdr ? 2.6e-5 : 2e-6;
-}
-
-std::vector<GlslTexture> textures_of(const Shader& shader) {
-    std::vector<GlslTexture> textures;
-    for (const ShaderTexture& texture : shader.textures)
-        textures.push_back({texture.name, texture.edge, texture.rgba.data()});
-    return textures;
 }
 
 SampleSet every_nth(const SampleSet& all, std::size_t n) {
@@ -450,8 +443,8 @@ SampleSet every_nth(const SampleSet& all, std::size_t n) {
 
 }  // namespace
 
-std::vector<ParityRow> verify(const VerifyOptions& options,
-                              const std::function<void(const ParityRow&)>& on_row) {
+VerifyResult verify(const VerifyOptions& options,
+                    const std::function<void(const ParityRow&)>& on_row) {
     // The views of a config, on its displays; of nobody else's: its AgX may be another.
     const bool is_of_config = options.operators.empty() && !options.config.empty();
     OCIO::ConstConfigRcPtr config;
@@ -478,6 +471,10 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
             views.push_back(std::move(view));
         }
     }
+
+    // Shaders of ours do not read a config.
+    ShaderRuns shaders;
+    if (options.with_gpu && !is_of_config) shaders = make_shader_runs(options.shaders);
 
     // Every view on every display, in a minute.
     SampleSetOptions counts = {options.lattice_edge, options.random_count};
@@ -516,26 +513,36 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
         const Lowered lowered = lower_to_ocio(pipeline, lower_options(*view.op.op));
         const bool is_hdr = find_display(view.display).is_hdr;
         const Bounds bounds = bounds_of(pipeline, lowered, is_hdr, declared);
-        const auto add = [&](const Comparison& compared, const std::string& form, double bound,
-                             bool is_declared, bool mixed, const std::string& lowering,
-                             const auto& run) {
+        const auto row_of = [&](const std::string& form) {
             ParityRow row;
             row.op = view.op.label;
             row.display = view.display;
             row.form = form;
+            return row;
+        };
+        const auto add_row = [&](const ParityRow& row) {
+            rows.push_back(row);
+            if (on_row) on_row(rows.back());
+        };
+        const auto add_note = [&](const std::string& form, const std::string& note) {
+            ParityRow row = row_of(form);
+            row.note = note;
+            add_row(row);
+        };
+        const auto add = [&](const Comparison& compared, const std::string& form, double bound,
+                             bool is_declared, bool mixed, const std::string& lowering,
+                             const auto& run) {
+            ParityRow row = row_of(form);
             row.lowering = lowering;
             row.bound = bound;
             row.is_mixed_metric = mixed;
             run();
-            const bool is_ocio = form.starts_with("ocio");
-            // Drivers sum a row in any order, and round more often.
-            const bool is_gpu = form == "ocio gpu" || form == "glsl";
-            compared.measure(shown, is_gpu ? 0x1p-21 : 0x1p-23, is_ocio && lowered.loses_negatives,
+            const double unit = form == "ocio gpu" ? kGpuRounding : 0x1p-23;
+            compared.measure(shown, unit, form.starts_with("ocio") && lowered.loses_negatives, true,
                              row);
             if (is_declared)
                 row.note += (row.note.empty() ? "" : "; ") + ("bound: " + declared.reason);
-            rows.push_back(row);
-            if (on_row) on_row(rows.back());
+            add_row(row);
         };
 
         std::vector<SimdEngine> engines;
@@ -595,34 +602,43 @@ std::vector<ParityRow> verify(const VerifyOptions& options,
             const std::string space = output_space_name(
                 config_view_name(view_name(view.op), view.op, find_display(view.display)),
                 find_display(view.display).title);
-            add_inverse_space(config, view, space, samples, options.with_gpu,
-                              [&](const ParityRow& row) {
-                                  rows.push_back(row);
-                                  if (on_row) on_row(rows.back());
-                              });
+            add_inverse_space(config, view, space, samples, options.with_gpu, add_row);
         }
-        if (!options.with_gpu) continue;
-        if (const std::string reason = OcioGpu::unavailable_reason(); !reason.empty()) {
-            ParityRow row;
-            row.op = view.op.label;
-            row.display = view.display;
-            row.form = "ocio gpu";
-            row.note = "skipped: " + reason;
-            rows.push_back(row);
-            if (on_row) on_row(rows.back());
-            continue;
+        if (const std::string reason = OcioGpu::unavailable_reason();
+            options.with_gpu && reason.empty()) {
+            const OcioGpu gpu(processor);
+            add(comparison, "ocio gpu", bounds.gpu, declared.ocio_gpu > 0, bounds.is_mixed_metric,
+                lowering, [&] { gpu.run_rgb(samples.rgb.data(), shown.data(), samples.size()); });
+        } else if (options.with_gpu) {
+            add_note("ocio gpu", "skipped: " + reason);
         }
-        const OcioGpu gpu(processor);
-        add(comparison, "ocio gpu", bounds.gpu, declared.ocio_gpu > 0, bounds.is_mixed_metric,
-            lowering, [&] { gpu.run_rgb(samples.rgb.data(), shown.data(), samples.size()); });
-        if (is_of_config) continue;  // no shader of ours reads it
-        const Shader shader = write_shader({.view = view});
-        const GlslGpu glsl(shader.text, shader.function, textures_of(shader));
-        add(comparison, "glsl", shader_bound(shader, is_hdr), false, bounds.is_mixed_metric, "",
-            [&] { glsl.run_rgb(samples.rgb.data(), shown.data(), samples.size()); });
-        if (shader.errors.in_float > kTenBits) rows.back().note = "float is not enough";
+        std::optional<ShaderErrors> errors;
+        for (const ShaderRuns::Of& shader_run : shaders.runs) {
+            const ShaderLanguageInfo& language = shader_run.language;
+            if (!language.holds_lattices && reads_lattice(view)) {
+                add_note(language.id, "none: it cannot hold the operator's lattice");
+                continue;
+            }
+            const ShaderRequest request = {.view = view, .language = language.language};
+            if (!errors) errors = measure_shader(request);
+            const Shader shader = write_shader(request, &*errors);
+            ParityRow row = row_of(language.id);
+            row.bound = shader_bound(shader, is_hdr);
+            row.is_mixed_metric = bounds.is_mixed_metric;
+            row.lowering = shader_run.run->by();
+            try {
+                shader_run.run->run_rgb(shader, samples.rgb.data(), shown.data(), samples.size());
+                comparison.measure(shown, kGpuRounding, false, false, row);
+                if (row.is_ok && shader.errors.in_float > kTenBits)
+                    row.note = "float is not enough";
+            } catch (const Error& e) {
+                row.is_ok = false;
+                row.note = one_line(e.what(), 200);
+            }
+            add_row(row);
+        }
     }
-    return rows;
+    return {std::move(rows), std::move(shaders.not_executed)};
 }
 
 std::string parity_heading() {
@@ -640,6 +656,20 @@ std::string format_row(const ParityRow& row) {
         row.display, row.form, row.max, row.p999, row.mean, row.max_all,
         row.max_all <= row.bound ? "-" : fmt::format("{:.1e}", row.max_beyond_rounding), row.bound,
         row.is_ok ? "ok" : "FAILED", row.note.empty() ? "" : ", " + row.note);
+}
+
+std::string format_not_executed(const std::vector<NotExecuted>& all) {
+    std::string text = "written, not executed: ";
+    for (auto first = all.begin(), last = first; first != all.end(); first = last) {
+        last = std::find_if(first, all.end(), [&](const NotExecuted& other) {
+            return other.reason != first->reason;
+        });
+        if (first != all.begin()) text += "; ";
+        for (auto one = first; one != last; ++one)
+            text += (one == first ? "" : ", ") + one->name;
+        text += " (" + first->reason + ")";
+    }
+    return text + "\n";
 }
 
 TONEWRIGHT_NAMESPACE_END

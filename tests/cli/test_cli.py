@@ -694,7 +694,7 @@ def check_verify(report, command, scratch, folder, picture):
     code, out, err = call(command, arguments)
     report.check("verify --config", code == OK and not err and out.splitlines()[-1].endswith(", 0 beyond their bound"),
                  out + err)
-    rows = json.loads(run(command, *arguments, "--json"))
+    rows = json.loads(run(command, *arguments, "--json"))["rows"]
     report.check("verify --json", rows and all(row["ok"] and 0 <= row["max"] <= row["bound"] for row in rows))
     code, out, err = call(command, ["verify", "hable", "reinhard:look=none", "--summary"])
     report.check("verify --summary: a bad operator", code == USAGE and "look is none" in err and not out, out + err)

@@ -31,4 +31,5 @@ if [ "$TONEWRIGHT_TEST_ALL" != 1 ]; then
 elif [ "$1" = --best-target ]; then
     shift
 fi
-exec "$command" verify $operators "$@"
+# shader.verify runs the other languages.
+exec "$command" verify $operators --shaders glsl "$@"

@@ -8,6 +8,7 @@ import subprocess
 
 from executed import npm_modules, skip
 
+RUNNER = pathlib.Path(__file__).parent.parent.parent / "src/verify/shader_runs/run_on_dawn.mjs"  # of `verify`
 SWIFTSHADER = pathlib.Path("/usr/lib/chromium/vk_swiftshader_icd.json")
 
 
@@ -23,15 +24,14 @@ class Dawn:
             skip("SwiftShader is missing (Debian: chromium-common)")
         self.modules = npm_modules(tonewright)
 
-    def run(self, steps: list, folder: pathlib.Path) -> str:
+    def run(self, steps: list) -> str:
         """Steps of run_on_dawn.mjs; returns what ran them."""
-        (folder / "job.json").write_text(json.dumps(steps))
-        script = pathlib.Path(__file__).with_name("run_on_dawn.mjs")
-        done = subprocess.run(["node", str(script), str(self.modules), str(folder / "job.json")], check=False,
-                              env=os.environ | {"VK_ICD_FILENAMES": str(SWIFTSHADER)}, capture_output=True, text=True)
+        lines = "".join(json.dumps(step) + "\n" for step in steps)
+        done = subprocess.run(["node", str(RUNNER), str(self.modules)], input=lines, capture_output=True, text=True,
+                              env=os.environ | {"VK_ICD_FILENAMES": str(SWIFTSHADER)}, check=False)
         if done.returncode:
             raise SystemExit(f"run_on_dawn.mjs: status {done.returncode}: {done.stderr.strip()}")
-        return done.stdout.strip()
+        return done.stdout.splitlines()[0]
 
 
 def spirv_of(hlsl: pathlib.Path, stage: str, entry: str, *options: str) -> pathlib.Path:

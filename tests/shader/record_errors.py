@@ -35,9 +35,9 @@ def main(tonewright: str) -> int:
             hashes[row["function"]] = re.search(r"definition (\w+)", text)[1]
             functions[row["operator"]] = row["function"]
         errors = {name: {} for name in names}
-        verified = json.loads(subprocess.run([tonewright, "verify", "--quick", "--best-target", "--json"], check=True,
-                                             capture_output=True, text=True).stdout)
-        for row in verified:
+        verified = json.loads(subprocess.run([tonewright, "verify", "--quick", "--best-target", "--shaders", "glsl", "--json"],
+                                             check=True, capture_output=True, text=True).stdout)
+        for row in verified["rows"]:
             if row["form"] == "glsl":
                 errors[names[0]][functions[row["operator"].replace(" look=", ":look=")]] = row["max_all"]
         for test, implementations in TESTS.items():

@@ -149,7 +149,7 @@ def main(tonewright: str, pictures: str) -> int:
                     shown = resolve(text, function, scene)
                     np.concatenate([shown, np.ones((len(shown), 1), np.float32)], 1).tofile(out)
                 drawn[application, operator] = out, display
-        adapter = dawn.run(steps, folder)
+        adapter = dawn.run(steps)
         for (application, operator), (out, display) in drawn.items():
             shown = np.fromfile(out, np.float32).reshape(-1, 4)[:, :3].astype(float)
             expected = reference(tonewright, operator, scene, "--display", display, "--exposure", str(STOPS))

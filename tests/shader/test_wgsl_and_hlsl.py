@@ -69,7 +69,7 @@ def main(tonewright: str, shaders: pathlib.Path, record_file: str) -> int:
         for language in MAIN:
             rows = comparison.rows[language]
             steps = [step_of(language, row, shaders, comparison.colors_of(row), folder) for row in rows]
-            adapter = dawn.run(steps, folder)
+            adapter = dawn.run(steps)
             for row, step in zip(rows, steps):
                 shown = np.fromfile(step["out"], np.float32).reshape(-1, 3)
                 comparison.add(language, f"{adapter} from {language}", row, shown, is_as_written=True)

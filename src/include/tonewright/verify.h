@@ -25,7 +25,11 @@ struct VerifyOptions {
     int lattice_edge = 33;
     /// Random colors; colors near black and with negative channels in proportion.
     std::size_t random_count = 100000;
+    /// OpenColorIO's GPU path, and shaders.
     bool with_gpu = true;
+    /// Languages to run shaders of, as shader_languages() names them. Empty or `all`: each that
+    /// something on this machine can run. `none`.
+    std::vector<std::string> shaders;
     /// Our engine only with the instruction set that it takes on this processor.
     bool only_best_target = false;
     /// Scene-linear RGB pixels to add to the sample set, in the input space.
@@ -36,8 +40,10 @@ struct VerifyOptions {
 struct ParityRow {
     std::string op;
     std::string display;
-    std::string form;  // "simd AVX3", "ocio cpu lossless", "ocio cpu default", "ocio gpu", "glsl"
-    std::string lowering;  // of OCIO forms: "config" or "chain", and what was emitted
+    /// "simd AVX3", "ocio cpu lossless", "ocio cpu default", "ocio gpu", or a shader's language
+    std::string form;
+    /// Of OCIO forms "config" or "chain" and what was emitted; of shaders the compiler or driver.
+    std::string lowering;
     /// Colors with all channels >= 0.
     double max = 0, p999 = 0, mean = 0;
     /// Every color, negatives and mixed signs of thousands included.
@@ -53,18 +59,36 @@ struct ParityRow {
     double bound = 0;
     /// True where a matrix of the chain has negative coefficients.
     bool is_mixed_metric = false;
-    /// Every output finite and inside [0, 1], NaN and infinities going in.
+    /// Every output finite and inside [0, 1], NaN and infinities going in. Of shaders without NaN:
+    /// compilers may take it that there is none.
     bool is_total = true;
     bool is_ok = true;
     std::string note;  // why a form is missing, or the worst color of a failure
 };
 
-/// @throws Error  unknown operators, displays, spaces; FileError for the config folder.
-[[nodiscard]] TONEWRIGHT_API std::vector<ParityRow> verify(
-    const VerifyOptions& options, const std::function<void(const ParityRow&)>& on_row = {});
+/// A language or an application whose shaders are written but were not run.
+struct NotExecuted {
+    std::string name;
+    std::string reason;
+};
+
+struct VerifyResult {
+    std::vector<ParityRow> rows;
+    /// Of the languages that were asked for; with all of them, what nothing can run, too.
+    std::vector<NotExecuted> not_executed;
+};
+
+/// Shaders run on OpenGL and OpenGL ES through EGL, by the C compiler `$CC` (else cc, gcc, clang),
+/// on OpenCL (DCTL), and on Dawn for Node.js (WGSL, HLSL) where TONEWRIGHT_NODE_MODULES names a
+/// folder with the packages webgpu and naga-wasm.
+/// @throws Error  unknown operators, displays, spaces, languages; FileError for the config folder.
+[[nodiscard]] TONEWRIGHT_API VerifyResult
+verify(const VerifyOptions& options, const std::function<void(const ParityRow&)>& on_row = {});
 
 /// Lines of a table for the terminal: a heading, one row each.
 [[nodiscard]] TONEWRIGHT_API std::string parity_heading();
 [[nodiscard]] TONEWRIGHT_API std::string format_row(const ParityRow& row);
+/// One line, with reasons behind names.
+[[nodiscard]] TONEWRIGHT_API std::string format_not_executed(const std::vector<NotExecuted>& all);
 
 TONEWRIGHT_NAMESPACE_END

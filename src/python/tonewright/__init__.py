@@ -224,15 +224,19 @@ def make_config(folder: Path, *, views: Iterable[str] = (), displays: Iterable[s
 
 
 def verify(operators: Iterable[str] = (), *, displays: Iterable[str] = (), input: str = "lin_rec709",
-           config: Path | None = None, quick: bool = False, gpu: bool = True) -> list[dict[str, Any]]:
+           config: Path | None = None, quick: bool = False, gpu: bool = True,
+           shaders: Iterable[str] = ()) -> list[dict[str, Any]]:
     """Compare every backend with the double-precision reference and return the errors, one dict for each comparison.
 
     operators: empty: all, or those of the config.
     displays: empty: sRGB, or those of the config.
     config: a config to check, or its folder (default: a new config).
     quick: use smaller sample sets.
+    gpu: run OpenColorIO's GPU path and shaders.
+    shaders: languages to run shaders of, or "none"; empty: all that this machine can run.
 
     Example: all(row["ok"] for row in tonewright.verify(["hable"], quick=True))
     """
     return _tonewright.verify(_texts("operators", operators), _texts("displays", displays), _text("input", input),
-                              "" if config is None else _path("config", config), bool(quick), bool(gpu))
+                              "" if config is None else _path("config", config), bool(quick), bool(gpu),
+                              _texts("shaders", shaders))

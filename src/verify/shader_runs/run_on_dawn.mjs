@@ -1,34 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Runs shaders on Dawn, the implementation of WebGPU in Chromium, without a browser.
+// Runs shaders on Dawn, the implementation of WebGPU in Chromium, without a browser: for `tonewright verify` and tests.
 //
-//   VK_ICD_FILENAMES=.../vk_swiftshader_icd.json node run_on_dawn.mjs NODE_MODULES JOB.json
+//   node run_on_dawn.mjs NODE_MODULES <STEPS
 //
-// The job is a list. A source is a file of WGSL or SPIR-V (.spv).
+// A step is a line of JSON. A source is a file of WGSL or SPIR-V (.spv).
 //   {source, input, out, textures: [{file, edge}]}   calls the entry point `main`, 64 colors to a group. Input and output
 //       are float32 RGB at group 1; the textures are cubes of float32 RGBA at group 0.
 //   {vertex, fragment, picture, size, out, bindings}   draws one triangle: vertex and fragment are {source, entryPoint,
 //       constants}, the picture is RGBA in half floats, the output in floats. Bindings are the entries of group 0:
 //       "picture", "sampler", or a list of floats in a uniform buffer.
-// Prints the adapter; messages of the compiler are an error.
+// Prints the adapter, then `done` after each step. Messages of the compiler and other errors end it.
 import { createRequire } from 'node:module';
 import { readFile, writeFile } from 'node:fs/promises';
 import path from 'node:path';
+import { createInterface } from 'node:readline';
 import { pathToFileURL } from 'node:url';
 
-const [modules, jobPath] = process.argv.slice(2);
+const [modules] = process.argv.slice(2);
 const require = createRequire(path.join(modules, 'none.js'));
 const load = async (name) => import(pathToFileURL(require.resolve(name)).href);
 const { create, globals } = await load('webgpu');
 Object.assign(globalThis, globals);
 
 const gpu = create(['backend=vulkan']);  // stays referenced, because Dawn crashes where it is collected before its devices
-const adapter = await gpu.requestAdapter();
-const device = await adapter.requestDevice();
 const fail = (message) => {
     console.error(message);
     process.exit(1);
 };
+const adapter = await gpu.requestAdapter() ?? fail('Dawn finds no driver of Vulkan that it takes');
+const device = await adapter.requestDevice();
 device.addEventListener('uncapturederror', (event) => fail(event.error.message));
 console.log(`${adapter.info.vendor} ${adapter.info.architecture}`);
 
@@ -124,5 +125,9 @@ async function draw({ vertex, fragment, picture, size, out, bindings }) {
     await finish(encoder, result, out, length);
 }
 
-for (const step of JSON.parse(await readFile(jobPath, 'utf8'))) await (step.source ? compute(step) : draw(step));
+for await (const line of createInterface({ input: process.stdin })) {
+    const step = JSON.parse(line);
+    await (step.source ? compute(step) : draw(step));
+    console.log('done');
+}
 process.exit(0);

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tonewright/shader.h"
+#include "tonewright/verify.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+
+/// Compiles and runs shader functions of one language on this machine.
+class ShaderRun {
+  public:
+    ShaderRun() = default;
+    ShaderRun(const ShaderRun&) = delete;
+    ShaderRun& operator=(const ShaderRun&) = delete;
+    virtual ~ShaderRun() = default;
+
+    /// The compiler or driver.
+    [[nodiscard]] virtual std::string by() const = 0;
+
+    /// Interleaved RGB.
+    /// @param shader  its function has no arguments but the color
+    /// @throws Error  the text does not compile, or the driver fails
+    virtual void run_rgb(const Shader& shader, const float* in, float* out,
+                         std::size_t pixel_count) = 0;
+};
+
+// Each throws an Error with the reason where this machine lacks what it needs.
+[[nodiscard]] std::unique_ptr<ShaderRun> run_on_opengl();
+[[nodiscard]] std::unique_ptr<ShaderRun> run_on_opengl_es();
+[[nodiscard]] std::unique_ptr<ShaderRun> run_by_c_compiler();
+[[nodiscard]] std::unique_ptr<ShaderRun> run_on_opencl();
+[[nodiscard]] std::unique_ptr<ShaderRun> run_wgsl_on_dawn();
+[[nodiscard]] std::unique_ptr<ShaderRun> run_hlsl_on_dawn();
+
+/// Which of the languages run here, with runs that have been tried.
+struct ShaderRuns {
+    struct Of {
+        ShaderLanguageInfo language;
+        std::unique_ptr<ShaderRun> run;
+    };
+    std::vector<Of> runs;
+    std::vector<NotExecuted> not_executed;
+};
+/// @param names  as VerifyOptions::shaders
+/// @throws Error  unknown names
+[[nodiscard]] ShaderRuns make_shader_runs(const std::vector<std::string>& names);
+
+TONEWRIGHT_NAMESPACE_END

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <cstring>
 #include <filesystem>
 #include <memory>
 
 #include "base/atomic_file.h"
 #include "base/input_file.h"
 #include "cli/messages.h"
+#include "cli/npm_package.h"
 #include "cli/shared_options.h"
 #include "measure/error_metric.h"
 #include "tonewright/generated_files.h"
@@ -25,6 +25,7 @@ struct Options : ViewOptions {
     std::string all;
     bool is_inverse = false;
     bool list = false;
+    bool npm = false;
 };
 
 int list_languages() {
@@ -45,9 +46,7 @@ std::vector<GeneratedFile> texture_files(const Shader& shader, const std::string
     for (const ShaderTexture& texture : shader.textures) {
         const std::filesystem::path path =
             std::filesystem::path(text_file).parent_path() / (texture.name + ".rgba32f");
-        std::string bytes(texture.rgba.size() * sizeof(float), '\0');
-        std::memcpy(bytes.data(), texture.rgba.data(), bytes.size());
-        files.push_back({path.string(), std::move(bytes)});
+        files.push_back({path.string(), texture_bytes(texture)});
     }
     return files;
 }
@@ -104,7 +103,18 @@ void write_one(Options& options) {
         print_result(request.application->title + ": " + request.application->steps);
 }
 
-/// Every operator, preset and look in one language or all: FOLDER/LANGUAGE/tw_NAME.EXTENSION.
+/// Every operator, preset and look, with errors that all languages share.
+template <class Write>
+void for_all(const Options& options, const Write& write) {
+    for (const OperatorVariant& variant : all_variants()) {
+        ShaderRequest request;
+        request.view = make_view(resolve_operator(variant.name, {}, variant.look), options.input,
+                                 options.exposure, options.display);
+        write(request, measure_shader(request), reads_lattice(request.view));
+    }
+}
+
+/// In one language or all: FOLDER/LANGUAGE/tw_NAME.EXTENSION.
 void write_all(const Options& options) {
     std::vector<ShaderLanguageInfo> languages = shader_languages();
     if (!options.language.empty()) languages = {find_shader_language(options.language)};
@@ -113,12 +123,7 @@ void write_all(const Options& options) {
     std::map<std::string, std::size_t> left_out;
     std::string manifest = "path,operator,function,float_error,guaranteed,vulkan_estimate\n";
     std::size_t count = 0;
-    for (const OperatorVariant& variant : all_variants()) {
-        ShaderRequest request;
-        request.view = make_view(resolve_operator(variant.name, {}, variant.look), options.input,
-                                 options.exposure, options.display);
-        const bool is_lattice = reads_lattice(request.view);
-        const ShaderErrors errors = measure_shader(request);
+    for_all(options, [&](ShaderRequest request, const ShaderErrors& errors, bool is_lattice) {
         for (const ShaderLanguageInfo& language : languages) {
             if (is_lattice && !language.holds_lattices) {
                 ++left_out[language.id];
@@ -136,7 +141,7 @@ void write_all(const Options& options) {
             for (GeneratedFile& file : texture_files(shader, path))
                 files.push_back(std::move(file));
         }
-    }
+    });
     for (const auto& [language, lattices] : left_out) {
         print_result(
             fmt::format("{}: {} without a shader, because they read lattices, which it "
@@ -148,9 +153,50 @@ void write_all(const Options& options) {
     write_generated_files(options.all, files, "MANIFEST.csv");
 }
 
+/// The npm package, in a folder for `npm pack`.
+void write_npm(const Options& options) {
+    const char* const wrong = options.all.empty()         ? "without --all"
+                              : !options.language.empty() ? "with --language"
+                              : options.given.contains("--display")
+                                  ? "with --display"  // three.js encodes its pictures itself
+                                  : nullptr;
+    if (wrong)
+        throw Error(fmt::format("shader: --npm is given {}; expected --all FOLDER --npm", wrong));
+    require_writable_folder(options.all);
+    std::vector<NpmOperator> operators;
+    for_all(options, [&](ShaderRequest request, const ShaderErrors& errors, bool is_lattice) {
+        const ResolvedOperator& op = request.view.op;
+        NpmOperator& entry = operators.emplace_back();
+        entry.title = op.op->title;
+        if (op.preset) entry.title += ", " + op.preset->title;
+        if (!op.params.look().empty()) entry.title += ", look " + op.params.look();
+        request.language = ShaderLanguage::glsl_es;
+        entry.glsl = write_shader(request, &errors);
+        request.language = ShaderLanguage::wgsl;
+        entry.wgsl = write_shader(request, &errors);
+        if (is_lattice) return;
+        request.application = &find_shader_application("threejs");
+        entry.threejs = write_shader(request, &errors);
+        request.application = &find_shader_application("threejs-tsl");
+        entry.tsl = write_shader(request, &errors);
+    });
+    std::vector<GeneratedFile> files = npm_package(operators);
+    // The next run removes files that it no longer writes.
+    std::string manifest = "path\n";
+    for (const GeneratedFile& file : files)
+        manifest += file.path + "\n";
+    files.push_back({"MANIFEST.csv", manifest});
+    print_result(fmt::format("{}: npm package tonewright-shaders " TONEWRIGHT_VERSION
+                             ", {} operators, presets and looks",
+                             options.all, operators.size()));
+    write_generated_files(options.all, files, "MANIFEST.csv");
+}
+
 int run_shader(Options& options) {
     if (options.list) return list_languages();
-    if (options.all.empty()) {
+    if (options.npm) {
+        write_npm(options);
+    } else if (options.all.empty()) {
         write_one(options);
     } else {
         write_all(options);
@@ -184,6 +230,10 @@ void add_shader(CommandLine& program) {
         .value("FOLDER")
         .group(output);
     command
+        .add_flag("--npm", options->npm,
+                  "with --all: write the npm package tonewright-shaders, for `npm pack`")
+        .group(output);
+    command
         .add("--uniforms", options->uniforms,
              "arguments behind the color: exposure, and live parameters (see `tonewright list "
              "OPERATOR`)")
@@ -205,7 +255,8 @@ void add_shader(CommandLine& program) {
         "  tonewright shader agx_threejs --language glsl -o agx.glsl\n"
         "  tonewright shader hable --language hlsl --uniforms white -o hable.hlsl\n"
         "  tonewright shader agx_threejs --for threejs -o agx.js\n"
-        "  tonewright shader khronos_neutral --language c --display srgb -o neutral.h");
+        "  tonewright shader khronos_neutral --language c --display srgb -o neutral.h\n"
+        "  tonewright shader --all build/npm --npm");
     command.action([options, command] {
         options->given = command.given();
         return run_shader(*options);

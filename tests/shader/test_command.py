@@ -41,6 +41,10 @@ def check_refusals(report, command, scratch):
         (["agx_blender", "--language", "dctl"], USAGE, "expected a language with textures"),
         (["agx_blender", "--language", "glsl"], USAGE, "has a texture; expected -o FILE"),
         (["agx_blender", "--for", "shadertoy"], USAGE, "reads a texture"),
+        (["--npm"], USAGE, "shader: --npm is given without --all; expected --all FOLDER --npm"),
+        (["--all", scratch / "npm", "--npm", "--display", "srgb"], USAGE, "--npm is given with --display"),
+        (["--all", scratch / "npm", "--npm", "--language", "wgsl"], USAGE, "--npm is given with --language"),
+        (["--all", "/dev/null", "--npm"], FILE, "/dev/null"),
         (["hable", "--language", "c", "-o", scratch / "no" / "x.h"], FILE, "write: "),
         (["hable", "--language", "c", "-o", "/dev/null"], FILE, "/dev/null"),
     ]:

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/npm_package.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <set>
+
+#include "base/strings.h"
+#include "cli/json.h"
+#include "measure/error_metric.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace {
+
+constexpr const char* kTypes =
+    R"(/** A grid of colors that the text reads: edge^3 texels of four 32-bit floats. */
+export interface Lattice {
+    /** Its name in the text. WGSL binds the textures of an operator at group 0, in their order. */
+    name: string;
+    edge: number;
+    /** A file of little-endian floats, RGBA, x running fastest: `rgba32float`, without a filter. */
+    url: URL;
+}
+
+interface Common {
+    id: string;
+    title: string;
+    /** The function in the text: scene-linear Rec.709 to display-linear Rec.709. */
+    functionName: string;
+    lattices: readonly Lattice[];
+    /** Largest errors of sRGB code values (0 to 1); null: no useful bound. */
+    errors: { readonly float: number; readonly guaranteed: number | null };
+}
+/** GLSL ES 3.00. */
+export interface Glsl extends Common { glsl: string }
+export interface Wgsl extends Common { wgsl: string }
+export interface Operator extends Glsl, Wgsl {}
+)";
+
+constexpr const char* kThreejs = R"(import { Data3DTexture, FloatType } from 'three';
+
+export async function loadUniforms({ lattices }) {
+    const uniforms = {};
+    for (const { name, edge, url } of lattices) {
+        const response = await fetch(url);
+        if (!response.ok) throw new Error(`${url}: ${response.status} ${response.statusText}`);
+        const texture = new Data3DTexture(new Float32Array(await response.arrayBuffer()), edge, edge, edge);
+        texture.type = FloatType;
+        texture.needsUpdate = true;
+        uniforms[name] = { value: texture };
+    }
+    return uniforms;
+}
+)";
+
+constexpr const char* kReadme = R"(# tonewright-shaders
+
+Tone mapping operators as GLSL ES 3.00, WGSL and nodes of three.js. Tonewright @version wrote them, and measured the error of
+each against a double-precision reference.
+
+## three.js, WebGLRenderer
+
+```js
+import * as THREE from 'three';
+import { use_agx_blender_formula } from 'tonewright-shaders/threejs';
+
+const renderer = new THREE.WebGLRenderer();
+use_agx_blender_formula();                      // before the first material is compiled
+renderer.toneMapping = THREE.CustomToneMapping;
+```
+
+## three.js, WebGPURenderer
+
+```js
+import * as THREE from 'three/webgpu';
+import { agx_blender_formula } from 'tonewright-shaders/tsl';
+
+const renderer = new THREE.WebGPURenderer();
+renderer.library.addToneMapping(agx_blender_formula, THREE.CustomToneMapping);
+renderer.toneMapping = THREE.CustomToneMapping;
+```
+
+## A pass of your own
+
+Blender's AgX and its looks read 3D textures of 3 MB, which tone mapping of three.js cannot have. A pass can:
+
+```js
+import * as THREE from 'three';
+import { agx_blender } from 'tonewright-shaders';
+import { loadUniforms } from 'tonewright-shaders/threejs';
+
+const material = new THREE.ShaderMaterial({
+    uniforms: { light: { value: null }, ...await loadUniforms(agx_blender) },
+    fragmentShader: agx_blender.glsl + `
+        uniform sampler2D light;
+        void main() {
+            vec3 scene = texelFetch(light, ivec2(gl_FragCoord.xy), 0).rgb;
+            gl_FragColor = linearToOutputTexel(vec4(${agx_blender.functionName}(scene), 1.0));
+        }`,
+});
+```
+
+## Entries
+
+| import from | entry |
+|---|---|
+| `tonewright-shaders` | `{ id, title, functionName, glsl, wgsl, lattices, errors }` |
+| `tonewright-shaders/glsl`, `tonewright-shaders/wgsl` | the same in one language |
+| `tonewright-shaders/threejs` | `use_NAME()`, which installs `CustomToneMapping`; `loadUniforms(entry)` |
+| `tonewright-shaders/tsl` | a node function of color and exposure |
+
+Each function takes a scene-linear color in Rec.709 and returns a display-linear one; encode it for the display. Bundlers drop
+the operators that are not imported.
+
+| name | operator | largest error in float |
+|---|---|---|
+)";
+
+/// As a template literal takes it.
+std::string template_literal(const std::string& text) {
+    std::string quoted = "`\n";
+    for (const char c : text) {
+        if (c == '`' || c == '\\' || c == '$') quoted += '\\';
+        quoted += c;
+    }
+    return quoted + "`";
+}
+
+class Package {
+  public:
+    void add(const NpmOperator& op) {
+        const std::string id = op.glsl.function.substr(std::string_view("tw_").size());
+        const std::string common = facts(op, id);
+        add_language("glsl", id, "Glsl", common, op.glsl.text);
+        add_language("wgsl", id, "Wgsl", common, op.wgsl.text);
+        files_.push_back({"operators/" + id + ".js",
+                          fmt::format("import {{ {0} as glsl }} from '../glsl/{0}.js';\n"
+                                      "import {{ {0} as wgsl }} from '../wgsl/{0}.js';\n\n"
+                                      "export const {0} = {{ ...glsl, ...wgsl }};\n",
+                                      id)});
+        add_export("index", "operators", id, id, "Operator");
+        if (op.threejs) {
+            files_.push_back({"threejs/" + id + ".js", op.threejs->text});
+            add_export("threejs", "threejs", id, "use_" + op.threejs->function + " as use_" + id,
+                       "() => void", "use_");
+        }
+        if (op.tsl) {
+            files_.push_back({"tsl/" + id + ".js", op.tsl->text});
+            add_export("tsl", "tsl", id, op.tsl->function + " as " + id, "NodeFunction");
+        }
+        rows_ +=
+            fmt::format("| `{}` | {} | {} |\n", id, op.title, rounded_up(op.glsl.errors.in_float));
+    }
+
+    std::vector<GeneratedFile> finish() {
+        modules_["threejs"] += "export { loadUniforms } from './threejs/loadUniforms.js';\n";
+        types_["threejs"] =
+            "import type { Data3DTexture } from 'three';\nimport type { Glsl } from "
+            "'./types.js';\n\n"
+            "/** Loads the 3D textures that the text reads: uniforms of a material. */\n"
+            "export declare function loadUniforms(entry: Pick<Glsl, 'lattices'>): "
+            "Promise<Record<string, { value: Data3DTexture }>>;\n" +
+            types_["threejs"];
+        types_["tsl"] =
+            "import type { wgslFn } from 'three/tsl';\n\n"
+            "/** Of a color and an exposure, a factor. */\n"
+            "type NodeFunction = ReturnType<typeof wgslFn>;\n" +
+            types_["tsl"];
+        Json exports = Json::object();
+        for (const auto& [module, text] : modules_) {
+            files_.push_back({module + ".js", text});
+            const bool is_three = module == "threejs" || module == "tsl";
+            files_.push_back(
+                {module + ".d.ts",
+                 (is_three ? ""
+                           : "import type { Glsl, Operator, Wgsl } from './types.js';\n\n"
+                             "export type * from './types.js';\n") +
+                     types_[module]});
+            exports.add(module == "index" ? "." : "./" + module,
+                        {{"types", "./" + module + ".d.ts"}, {"default", "./" + module + ".js"}});
+        }
+        files_.push_back({"types.d.ts", kTypes});
+        files_.push_back({"threejs/loadUniforms.js", kThreejs});
+        std::string readme = kReadme;
+        const std::string_view version = "@version";
+        readme.replace(readme.find(version), version.size(), TONEWRIGHT_VERSION);
+        files_.push_back({"README.md", readme + rows_});
+        const Json package = {
+            {"name", "tonewright-shaders"},
+            {"version", TONEWRIGHT_VERSION},
+            {"description", "Tone mapping operators as GLSL, WGSL and three.js, with known errors"},
+            {"license", "Apache-2.0"},
+            {"type", "module"},
+            {"sideEffects", false},
+            {"exports", exports},
+            {"types", "./index.d.ts"},
+            {"peerDependencies", {{"three", ">=0.170"}}},
+            {"peerDependenciesMeta", {{"three", {{"optional", true}}}}},
+            {"keywords", std::vector<std::string>{"tone mapping", "aces", "agx", "hdr", "glsl",
+                                                  "wgsl", "three", "shader"}},
+        };
+        files_.push_back({"package.json", package.dump(2) + "\n"});
+        return std::move(files_);
+    }
+
+  private:
+    /// What GLSL and WGSL have in common, as properties. Looks share lattices: each is one file.
+    std::string facts(const NpmOperator& op, const std::string& id) {
+        std::string lattices;
+        for (const ShaderTexture& texture : op.glsl.textures) {
+            std::string bytes = texture_bytes(texture);
+            const std::string path = "lattices/" + content_hash(bytes) + ".rgba32f";
+            lattices += fmt::format(
+                "\n        {{ name: '{}', edge: {}, url: new URL('../{}', import.meta.url) }},",
+                texture.name, texture.edge, path);
+            if (written_.insert(path).second) files_.push_back({path, std::move(bytes)});
+        }
+        if (!lattices.empty()) lattices += "\n    ";
+        const ShaderErrors& errors = op.glsl.errors;
+        return fmt::format(
+            "    id: '{}',\n    title: {},\n    functionName: '{}',\n    lattices: [{}],\n"
+            "    errors: {{ float: {}, guaranteed: {} }},\n",
+            id, Json(op.title).dump(), op.glsl.function, lattices, rounded_up(errors.in_float),
+            std::isfinite(errors.guaranteed) ? rounded_up(errors.guaranteed) : "null");
+    }
+    void add_language(const std::string& language, const std::string& id, const std::string& type,
+                      const std::string& common, const std::string& text) {
+        files_.push_back({language + "/" + id + ".js",
+                          fmt::format("export const {0} = {{\n{1}    {2}: /* {2} */{3},\n}};\n", id,
+                                      common, language, template_literal(text))});
+        add_export(language, language, id, id, type);
+    }
+    void add_export(const std::string& module, const std::string& folder, const std::string& id,
+                    const std::string& what, const std::string& type,
+                    const std::string& prefix = "") {
+        modules_[module] += fmt::format("export {{ {} }} from './{}/{}.js';\n", what, folder, id);
+        types_[module] += fmt::format("export declare const {}{}: {};\n", prefix, id, type);
+    }
+
+    std::vector<GeneratedFile> files_;
+    std::map<std::string, std::string> modules_;  // by name: its exports
+    std::map<std::string, std::string> types_;
+    std::set<std::string> written_;  // lattices
+    std::string rows_;               // of the README's table
+};
+
+}  // namespace
+
+std::string texture_bytes(const ShaderTexture& texture) {
+    std::string bytes(texture.rgba.size() * sizeof(float), '\0');
+    std::memcpy(bytes.data(), texture.rgba.data(), bytes.size());
+    return bytes;
+}
+
+std::vector<GeneratedFile> npm_package(const std::vector<NpmOperator>& operators) {
+    Package package;
+    for (const NpmOperator& op : operators)
+        package.add(op);
+    return package.finish();
+}
+
+TONEWRIGHT_NAMESPACE_END

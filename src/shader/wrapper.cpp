@@ -29,14 +29,16 @@ constexpr Wrapper kWrappers[] = {
      "// Call it before materials are compiled, then: renderer.toneMapping = "
      "CustomToneMapping.\n"
      "export function use_@function() {\n"
+     "    // three.js ends with its own CustomToneMapping, or with that of an earlier call.\n"
      "    ShaderChunk.tonemapping_pars_fragment = "
      "ShaderChunk.tonemapping_pars_fragment.replace(\n"
-     "        'vec3 CustomToneMapping( vec3 color ) { return color; }', code);\n"
+     "        /(vec3 CustomToneMapping|\\/\\/ Tonewright)[^]*/, code);\n"
      "}\n\n"
-     "const code = /* glsl */`\n",
+     "const code = /* glsl */`// Tonewright\n",
      "@arguments\n"
      "vec3 CustomToneMapping(vec3 color) {\n"
-     "    return @function(toneMappingExposure * color@call);\n"
+     "    vec3 shown = @function(toneMappingExposure * color@call);\n"
+     "    return max(shown, vec3(0.0)); // three.js encodes it with a power\n"
      "}\n"
      "`;\n",
      "const float @name_value = @value; // @help"
@@ -50,7 +52,8 @@ constexpr Wrapper kWrappers[] = {
      "export const @function = wgslFn(`\n"
      "fn @function_exposed(color: vec3<f32>, exposure: f32) -> vec3<f32> {\n"
      "@arguments"
-     "    return @function(color * exposure@call);\n"
+     "    let shown = @function(color * exposure@call);\n"
+     "    return max(shown, vec3<f32>(0.0)); // three.js encodes it with a power\n"
      "}\n"
      "`, [functions]);\n",
      "    let @name_value = @value; // @help\n", "@name_value"},

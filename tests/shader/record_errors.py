@@ -19,6 +19,7 @@ TABLE = HERE.parent.parent / "src/shader/measured_errors.inc"
 # Tests that execute shaders, and what their implementations are called.
 TESTS = {
     "test_wgsl_and_hlsl.py": {"wgsl": "WGSL (SwiftShader)", "hlsl": "HLSL (SwiftShader)"},
+    "test_in_chromium.py": {"glsl-es": "GLSL ES (Chromium)", "wgsl (Chromium)": "WGSL (Chromium)"},
     "test_c_and_dctl.py": {"dctl": "DCTL (pocl)", "c": "C (GCC, Clang)"},
 }
 

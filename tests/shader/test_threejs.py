@@ -2,7 +2,8 @@
 """What `tonewright shader` writes for three.js, in a page in Chromium, against `tonewright eval`.
 
 Modules of `--for threejs` and `--for threejs-tsl`; with TONEWRIGHT_TEST_ALL=1 the npm package, too: packed, installed, and
-imported. The pixels are those of a picture with the colors of executed.colors(), and of a room that three.js renders.
+imported by the examples of its README. The pixels are those of a picture with the colors of executed.colors(), and of a
+room that three.js renders.
 
 Usage: test_threejs.py TONEWRIGHT [--picture FILE.png]
 --picture keeps what the page shows of the room.
@@ -71,7 +72,7 @@ def main(tonewright: str, picture: str) -> int:
     with tempfile.TemporaryDirectory() as folder_name:
         folder = pathlib.Path(folder_name)
         files = {"/three/": modules / "three", "/light": rgba.tobytes(), "/modules/": folder}
-        job = {"width": WIDTH, "height": HEIGHT, "webgl": [], "webgpu": [], "hasPass": IS_FULL}
+        job = {"width": WIDTH, "height": HEIGHT, "webgl": [], "webgpu": [], "hasExamples": IS_FULL}
         for operator in OPERATORS:
             name = operator.replace(":", "_")
             run(tonewright, "shader", operator, "--for", "threejs", "-o", name + ".js", "-q", folder=folder)
@@ -83,12 +84,13 @@ def main(tonewright: str, picture: str) -> int:
                    "three/tsl": "/three/build/three.tsl.js", "three/addons/": "/three/examples/jsm/"}
         if IS_FULL:
             package = install_package(tonewright, folder)
-            # The third example of the README makes a material.
-            example = re.findall(r"```js\n(.*?)```", (package / "README.md").read_text(), re.S)[2]
-            files |= {"/package/": package, "/example.js": (example + "export { material };\n").encode()}
+            examples = re.findall(r"```js\n(.*?)```", (package / "README.md").read_text(), re.S)
+            for number, (example, made) in enumerate(zip(examples, ("renderer", "renderer", "material"), strict=True)):
+                files[f"/example/{number}.js"] = f"{example}export {{ {made} }};\n".encode()
+            files["/package/"] = package
             exports = json.loads((package / "package.json").read_text())["exports"]
             imports |= {"tonewright-shaders" + name[1:]: "/package" + entry["default"][1:] for name, entry in exports.items()}
-            job["webgl"].append({"module": "tonewright-shaders/threejs", "name": "use_agx_blender_formula"})
+            job["webgl"].append({"example": "/example/0.js", "name": "npm"})
             job["webgpu"].append({"module": "tonewright-shaders/tsl", "name": "agx_blender_formula"})
         files["/job.json"] = json.dumps(job).encode()
         page = (HERE / "threejs.html").read_text().replace("IMPORTMAP", json.dumps({"imports": imports}))
@@ -97,18 +99,23 @@ def main(tonewright: str, picture: str) -> int:
     def pixels(what: str, kind=np.float32) -> np.ndarray:
         return np.frombuffer(posted[what], kind).reshape(-1, 4)[:, :3] / (255 if kind == np.uint8 else 1)
 
+    def upside_down(what: str) -> np.ndarray:
+        return np.clip(pixels(what).reshape(HEIGHT, WIDTH, 3)[::-1].reshape(-1, 3), 0, 1)
+
     print(posted["finished"].decode())
     for operator, gl, gpu in zip([*OPERATORS, "agx_blender:formula"], job["webgl"], job["webgpu"]):
-        what = f"{operator}, {'npm' if 'tonewright' in gl['module'] else '--for'}"
+        what = f"{operator}, {'--for' if 'module' in gl else 'npm'}"
         right = reference(tonewright, operator, rgb)
         checks.compare(f"{what}, WebGLRenderer, canvas", pixels(f"webgl/{gl['name']}/canvas", np.uint8), right, HALF_A_CODE)
         if not gl.get("hasTables"):
             checks.compare(f"{what}, OutputPass, floats", np.clip(pixels(f"webgl/{gl['name']}/target"), 0, 1), right, FLOATS)
         # Materials of WebGPURenderer show no negative light.
         right = reference(tonewright, operator, np.maximum(rgb, 0))
-        got = pixels(f"webgpu/{gpu['name']}/target").reshape(HEIGHT, WIDTH, 3)[::-1].reshape(-1, 3)
-        checks.compare(f"{what}, WebGPURenderer, floats", np.clip(got, 0, 1), right, FLOATS)
+        checks.compare(f"{what}, WebGPURenderer, floats", upside_down(f"webgpu/{gpu['name']}/target"), right, FLOATS)
     if IS_FULL:
+        # By default the intermediate picture has half floats, which are 2^-11 of the light off. A code value of AgX rises by
+        # less than 0.5 where light grows by a factor of e.
+        checks.compare(f"{what}, WebGPURenderer, half floats", upside_down("webgpu/example"), right, 0.5 * 2**-11 + FLOATS)
         # 2e-6: what operators without PQ have to be within.
         checks.compare("agx_blender, npm, a pass, light", pixels("pass"), reference(tonewright, "agx_blender", rgb, "--display", "linear"), 2e-6)
     room = pixels("room/canvas", np.uint8)

@@ -220,6 +220,7 @@ MAPPINGS = {
         "log_tonemap", "limit=16;contrast=0.5", limit=lambda figure: np.where(figure < 0, 1, figure),
         reason="far above 1 the contrast's cubic is negative; the operator limits to [0, 1] before it: 1"),
     "nebula_fixed": Mapping("nebula"),
+    "nebula_as_printed": Mapping("nebula_as_printed"),
     "hejl_burgess_dawson": Mapping("hejl_burgess_dawson"),
     "hejl_2015": Mapping("hejl_2015", "white=11.2"),
     "aldridge": Mapping("aldridge"),
@@ -259,7 +260,6 @@ REASONS = {
     "agx_sigmoid_SB2383": "the inner curve of agx_blender; test_operators.py holds agx_sigmoid to it",
     "agx_sobotka_curve": "the inner curve of agx_sobotka: behind the inset these values need negative colours, which "
                          "the operator limits; sobotka_table is held to it in test_operators.py",
-    "nebula_as_printed": "a bug of the post kept as a reference: it multiplies by the luminance where it should divide",
     "reinhard_local": "a local operator, which reads its neighbours; the _64_repo_ figures also have a kernel bug",
     "exposure_fusion": "a local operator, which reads a pyramid of the picture",
     "auto_exposure": "a statistic of a picture, not of a colour",

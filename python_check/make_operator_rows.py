@@ -121,6 +121,7 @@ OTHERS = {
                         "file=synthetic_dorf.txt;curve=Synthetic-1Blue;iso=2",
                         "file=synthetic_dorf.txt;curve=SyntheticMono;iso=2"],
     "false_color": [],
+    **{defect: [] for defect in operators.DEFECTS},
 }
 LOOKS = {"agx_sobotka": ("golden", "punchy"), "agx_filament": ("golden", "punchy"),
          "agx_blender": ("punchy", "greyscale", *operators.agx_blender.CONTRASTS)}

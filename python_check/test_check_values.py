@@ -22,9 +22,10 @@ import operators
 from operators import agx, camera_response, eetf, false_color, gt7, pq, spaces, unreal
 
 # Operators without a published figure: inventions of this project, variants without a program to run, diagnostics.
-NO_FIGURES = {"reinhard_constant_luminance", "hable_gdc", "toe", "khronos_neutral_filament", "false_color"}
+NO_FIGURES = {"reinhard_constant_luminance", "hable_gdc", "toe", "khronos_neutral_filament", "false_color",
+              *operators.DEFECTS}
 MODULES = ("aces aces_13 aces_20 unreal agx agx_blender khronos_neutral gt7 frostbite somewhat_boring eetf "
-           "camera_response false_color").split()
+           "camera_response false_color defects").split()
 FOLDER = check_values.CSV_FOLDER
 counts = {True: 0, False: 0}
 

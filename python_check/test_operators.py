@@ -284,7 +284,6 @@ def check_shared(shared):
     parts = {
         "hable_uncharted2_partial": (1e-9, hable.hable_curve),
         "reinhard_extended_xyY_lindbloom": (1e-9, lambda x: by_xyy(x, 3.0, 1 / (9.6 * 0.1 + 0.0001))),
-        "nebula_as_printed": (1e-9, lambda x: operators.OPERATORS["nebula"](x) * operators.luminance(x)),
         "aces_hill_unclamped": (1e-9, lambda x: operators.hill_curve(x @ operators.HILL_IN.T) @ operators.HILL_OUT.T),
         "agx_sobotka_curve": (1e-9, sobotka_table),
         "aces13_reference_gamut_compression": (1e-9, aces_13.compress_gamut),

@@ -20,7 +20,7 @@ Each family is a module with the dict OPERATORS (name -> function), and where th
 
 import numpy as np
 
-from . import (aces, aces_13, aces_20, agx, agx_blender, camera_response, eetf, exposure, false_color, filmic,
+from . import (aces, aces_13, aces_20, agx, agx_blender, camera_response, defects, eetf, exposure, false_color, filmic,
                frostbite, gt7, hable, khronos_neutral, reinhard, somewhat_boring, statistics, uchimura, unreal)
 from .aces import HILL_IN, HILL_OUT, hill_curve
 from .agx import AGX_INSET, AGX_LOG2, AGX_LOOKS, agx_shape, agx_sigmoid, cdl
@@ -30,11 +30,13 @@ from .spaces import (DISPLAYS, INPUTS, PRIMARIES, UNIT, power_encode, rgb_to_rgb
                      xyz)
 
 FAMILIES = (exposure, reinhard, hable, filmic, uchimura, statistics, aces, aces_13, aces_20, unreal, agx, agx_blender,
-            khronos_neutral, gt7, frostbite, somewhat_boring, eetf, camera_response, false_color)
+            khronos_neutral, gt7, frostbite, somewhat_boring, eetf, camera_response, false_color, defects)
 
 OPERATORS, CODE_POWER, WORKING, OUTPUT_PRIMARIES, PEAK, FROM_DISPLAY = ({
     name: value for family in FAMILIES for name, value in getattr(family, kind, {}).items()
 } for kind in ("OPERATORS", "CODE_POWER", "WORKING", "OUTPUT_PRIMARIES", "PEAK", "FROM_DISPLAY"))
+# No name of the command line finds them.
+DEFECTS = tuple(defects.OPERATORS)
 WORKING = {name: WORKING.get(name, "rec709") for name in OPERATORS}
 
 

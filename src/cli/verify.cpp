@@ -55,6 +55,8 @@ void print_matches(const std::string& path, const std::vector<LutMatch>& matches
         Json all = Json::array();
         for (const LutMatch& m : matches) {
             all.push_back({{"operator", m.op},
+                           {"defect", m.definition->defect},
+                           {"meant", m.definition->meant},
                            {"input_encoding", m.encoding},
                            {"input", m.input},
                            {"display", m.display},
@@ -66,8 +68,17 @@ void print_matches(const std::string& path, const std::vector<LutMatch>& matches
         return;
     }
     constexpr double kSame = 1e-2;
+    // To say that a table is wrong takes more: a code of 8 bits.
+    constexpr double kSameDefect = 1.0 / 255;
     const LutMatch& best = matches.front();
-    if (best.mean <= kSame) {
+    const Operator& op = *best.definition;
+    if (op.is_defect() && best.mean <= kSameDefect) {
+        fmt::print(
+            "{} is {} as {} has it, a defect: {}. It has {} input ({}) and {} output, max error "
+            "{:.2g}\n\n",
+            one_line(path), op.meant, op.source, op.defect, best.encoding, best.input, best.display,
+            best.max);
+    } else if (!op.is_defect() && best.mean <= kSame) {
         fmt::print("{} is {} with {} input ({}) and {} output, max error {:.2g}\n\n",
                    one_line(path), best.op, best.encoding, best.input, best.display, best.max);
     } else {

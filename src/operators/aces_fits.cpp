@@ -121,6 +121,52 @@ Operator hill() {
     return op;
 }
 
+/// The factor of the first term of the denominator stands outside of its bracket.
+Operator hill_misplaced_bracket() {
+    Operator op = defect_of(
+        "aces_hill:threejs", "aces_hill_misplaced_bracket",
+        "three.js for WebGPU (mrdoob/three.js 0a0cd973, ToneMappingFunctions.js)",
+        "a bracket of the curve's denominator is misplaced: v (v + 0.432951) 0.983729 where Hill "
+        "has v (0.983729 v + 0.432951)");
+    op.deviations = {{DocumentedDifference::Kind::crushes_black, 0.0019, ""}};
+    op.build = [](const Params&) -> Pipeline {
+        const Expr v = Expr::input();
+        const Expr a = v * (v + 0.0245786) - 0.000090537;
+        const Expr b = v * ((v + 0.4329510) * 0.983729) + 0.238081;
+        return {limit_to_positive(),
+                scale_stage(1 / 0.6),
+                MatrixStage{kHillInput, "input"},
+                named("rrt_and_odt_fit", curve_stage(a / b)),
+                MatrixStage{kHillOutput, "output"},
+                ClampStage{0, 1}};
+    };
+    return op;
+}
+
+/// The page's mul() reads green where it should read red, in the second and the third row.
+Matrix3 green_for_red(const Matrix3& m) {
+    return {{{m[0][0], m[0][1], m[0][2]},
+             {0, m[1][0] + m[1][1], m[1][2]},
+             {0, m[2][0] + m[2][1], m[2][2]}}};
+}
+
+Operator hill_misprinted_product() {
+    Operator op = defect_of(
+        "aces_hill", "aces_hill_misprinted_product",
+        "the page 64.github.io/tonemapping (before its commit 936048c)",
+        "its product of matrix and vector takes green for red in two rows, so grays are right and "
+        "colors are wrong");
+    op.deviations = {{DocumentedDifference::Kind::crushes_black, 0.0032, ""},
+                     {DocumentedDifference::Kind::black, -0.00038, ""},
+                     {DocumentedDifference::Kind::exceeds_white, 1.02, ""}};
+    op.build = [](const Params&) -> Pipeline {
+        return {limit_to_positive(), MatrixStage{green_for_red(kHillInput), "input"},
+                named("rrt_and_odt_fit", curve_stage(hill_curve(Expr::input()))),
+                MatrixStage{green_for_red(kHillOutput), "output"}};
+    };
+    return op;
+}
+
 /// From Rec.2020 by way of XYZ without adaptation: D65 stays D65 and is no neutral of AP1.
 Matrix3 rec2020_to_ap1_unadapted() {
     return multiply(inverse(rgb_to_xyz(kAP1)), rgb_to_xyz(kRec2020));
@@ -168,6 +214,8 @@ Operator filament() {
 
 }  // namespace
 
-std::vector<Operator> define_aces_fits() { return {narkowicz(), hill(), filament()}; }
+std::vector<Operator> define_aces_fits() {
+    return {narkowicz(), hill(), filament(), hill_misplaced_bracket(), hill_misprinted_product()};
+}
 
 TONEWRIGHT_NAMESPACE_END

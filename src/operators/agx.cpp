@@ -30,6 +30,9 @@
 //           there where the shaper's lower end, 1.76e-4, is one already; Godot's of 2e-10 on the
 //           input is. agx_filament's looks have the luma weights of Rec.709 although its primaries
 //           are Rec.2020: that is in the source.
+//           The defects: agx_minimal_clamped has no floor in the source; below the shaper, whose
+//           end is the floor here, the polynomial leaves its range and shows light of 1e-6 as
+//           white.
 // Check     mid grey 0.18 -> (0.500023782, 0.499993460, 0.499991575) (agx_sobotka), red 0.214548629
 //           (agx_threejs), 0.214848193 (agx_filament, Rec.2020), red 0.179190952 (agx_godot44),
 //           0.18 (agx_godot) (check_values.json).
@@ -151,6 +154,46 @@ Operator minimal() {
         const Expr f = p.choice("order") == "6" ? polynomial6(n) : polynomial7(n);
         return {limit_to_positive(), MatrixStage{kInset, "inset"}, limit_to_shaper(),
                 named("contrast", curve_stage(f)), MatrixStage{kOutset, "outset"}};
+    };
+    return op;
+}
+
+/// log2 never gets more than 0, so 4 of the 16.5 stops of the curve are never used.
+Operator minimal_clamped() {
+    Operator op =
+        defect_of("agx_minimal", "agx_minimal_clamped",
+                  "ByroRedux (matiaszanolli/ByroRedux c5663fe39, presentation.frag; issue 4578)",
+                  "it limits scene-linear light to 1 before the logarithm, so everything above 1 "
+                  "is shown at 0.59 of white");
+    op.output = OutputKind::code_value;
+    op.code_power = 2.2;
+    op.deviations = {{DocumentedDifference::Kind::black, -0.0023, ""},
+                     {DocumentedDifference::Kind::never_reaches_white, 0.59, ""}};
+    op.build = [](const Params&) -> Pipeline {
+        return {limit_to_positive(), MatrixStage{kInset, "inset"},
+                ClampStage{std::exp2(kLowest), 1},
+                named("contrast", curve_stage(polynomial6(normalised_log(Expr::input())))),
+                MatrixStage{kOutset, "outset"}};
+    };
+    return op;
+}
+
+/// Its rows do not sum to 1, but to 0.4, 1 and 1.
+Operator matrix_and_power() {
+    Operator op = defect_of(
+        "agx_blender", "agx_matrix_and_power",
+        "QtMeshEditor (fernandotonon/QtMeshEditor 251f723f, HdrTonemap.cpp; pull request 782)",
+        "it has no logarithm and no sigmoid, but limits light to 1, applies a matrix that turns "
+        "grays green, and raises the result to the power 1.35");
+    op.deviations = {{DocumentedDifference::Kind::never_reaches_white, 0.29, ""}};
+    op.build = [](const Params&) -> Pipeline {
+        // clang-format off
+        constexpr Matrix3 agx = {{{0.224282, 0.130789, 0.044929},
+                                  {0.050223, 0.873461, 0.076316},
+                                  {0.020833, 0.080745, 0.898422}}};
+        // clang-format on
+        return {ClampStage{0, 1}, MatrixStage{agx, "agx"},
+                named("contrast", curve_stage(pow(Expr::input(), 1.35))), ClampStage{0, 1}};
     };
     return op;
 }
@@ -347,7 +390,8 @@ Operator godot() {
 }  // namespace
 
 std::vector<Operator> define_agx() {
-    return {sobotka(), minimal(), threejs(), filament(), godot44(), godot()};
+    return {sobotka(), minimal(), threejs(),         filament(),
+            godot44(), godot(),   minimal_clamped(), matrix_and_power()};
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -41,6 +41,19 @@ inline Stage clamp_stage(const Expr& hi) {
     return named("limit", curve_stage(clamp(Expr::input(), 0, hi)));
 }
 
+/// A known defect: what `meant` is in `source`, the commit or page that the operator reproduces.
+inline Operator defect_of(std::string meant, std::string id, std::string source,
+                          std::string defect) {
+    Operator op;
+    op.id = std::move(id);
+    op.source = std::move(source);
+    op.licence = "formula and constants; no code of it is used";
+    op.negatives = kNegativesClampAtZero;
+    op.defect = std::move(defect);
+    op.meant = std::move(meant);
+    return op;
+}
+
 /// ln(1 + x) for x >= 0. What 1 + x rounds away is missing in both parts of the quotient.
 inline Expr log_of_1_plus(const Expr& x) {
     if (x.is_constant()) return std::log1p(x.value());

@@ -109,6 +109,20 @@ Operator uncharted() {
     return op;
 }
 
+Operator bias_on_result() {
+    Operator op = defect_of(
+        "hable", "hable_bias_on_result",
+        "Tonemapper (tizian/tonemapper 5215acc3, HableFilmicOperator.cpp)",
+        "the exposure bias of 2 is a factor on the result, not on the scene value, so light above "
+        "2.05 is clipped");
+    op.build = [](const Params&) -> Pipeline {
+        const Hable curve{.A = 0.15, .B = 0.50, .C = 0.10, .D = 0.20, .E = 0.02, .F = 0.30};
+        return {limit_to_positive(), curve_stage(2.0 * curve(Expr::input()) / curve(11.2)),
+                ClampStage{0, 1}};
+    };
+    return op;
+}
+
 Operator gdc() {
     Operator op;
     op.id = "hable_gdc";
@@ -254,6 +268,6 @@ Operator piecewise() {
 
 }  // namespace
 
-std::vector<Operator> define_hable() { return {uncharted(), gdc(), piecewise()}; }
+std::vector<Operator> define_hable() { return {uncharted(), gdc(), piecewise(), bias_on_result()}; }
 
 TONEWRIGHT_NAMESPACE_END

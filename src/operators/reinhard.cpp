@@ -135,6 +135,23 @@ Operator nebula() {
     return op;
 }
 
+/// The light of equation 4 times the color, which is not divided by its luminance.
+Operator nebula_as_printed() {
+    Operator op = defect_of(
+        "nebula", "nebula_as_printed", "the post on HDR of the Nebula engine",
+        "it does not divide by the luminance, so the picture is quadratic near black and has no "
+        "end");
+    op.deviations = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
+    op.build = [](const Params&) -> Pipeline {
+        const Expr luminance = Expr::input();
+        const Expr scaled = luminance * (0.6 / 0.5);
+        const Expr compressed = scaled * (1 + scaled / (16.0 * 16.0)) / (1 + scaled);
+        return {limit_to_positive(), ToneScaleStage{ToneScaleStage::Norm::luminance, kRec709Weights,
+                                                    compressed * luminance}};
+    };
+    return op;
+}
+
 Operator jodie() {
     Operator op;
     op.id = "reinhard_jodie";
@@ -275,7 +292,8 @@ Operator devlin() {
 }  // namespace
 
 std::vector<Operator> define_reinhard() {
-    return {simple(), extended(), nebula(), jodie(), constant_luminance(), devlin()};
+    return {simple(), extended(),           nebula(), nebula_as_printed(),
+            jodie(),  constant_luminance(), devlin()};
 }
 
 TONEWRIGHT_NAMESPACE_END

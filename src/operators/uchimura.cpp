@@ -15,8 +15,26 @@
 #include "operators/family.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
+namespace {
 
-std::vector<Operator> define_uchimura() {
+/// @param l0  length of the straight part
+Expr curve(const Expr& P, const Expr& a, const Expr& m, const Expr& l0, const Expr& c,
+           const Expr& b) {
+    const Expr S0 = m + l0;
+    const Expr S1 = m + a * l0;
+    const Expr C2 = a * P / (P - S1);
+
+    const Expr x = Expr::input();
+    const Expr w0 = 1 - smoothstep(0, m, x);
+    const Expr w2 = less_equal(S0, x);  // step(S0, x)
+    const Expr w1 = 1 - w0 - w2;
+    const Expr toe = m * pow(x / m, c) + b;
+    const Expr line = m + a * (x - m);
+    const Expr shoulder = P - (P - S1) * exp(-(C2 * (max(x, S0) - S0) / P));
+    return toe * w0 + line * w1 + shoulder * w2;
+}
+
+Operator gran_turismo() {
     Operator op;
     op.id = "uchimura";
     op.title = "Gran Turismo (Uchimura 2017)";
@@ -54,21 +72,29 @@ std::vector<Operator> define_uchimura() {
         const Expr c = params.expr("black_tightness");
         const Expr b = params.expr("pedestal");
 
-        const Expr l0 = (P - m) * l / a;
-        const Expr S0 = m + l0;
-        const Expr S1 = m + a * l0;
-        const Expr C2 = a * P / (P - S1);
-
-        const Expr x = Expr::input();
-        const Expr w0 = 1 - smoothstep(0, m, x);
-        const Expr w2 = less_equal(S0, x);  // step(S0, x)
-        const Expr w1 = 1 - w0 - w2;
-        const Expr toe = m * pow(x / m, c) + b;
-        const Expr line = m + a * (x - m);
-        const Expr shoulder = P - (P - S1) * exp(-(C2 * (max(x, S0) - S0) / P));
-        return tone_curve_pipeline({.f = toe * w0 + line * w1 + shoulder * w2}, params);
+        return tone_curve_pipeline({.f = curve(P, a, m, (P - m) * l / a, c, b)}, params);
     };
-    return {op};
+    return op;
 }
+
+/// The straight part ends at 2.17, so that the shoulder begins above the display's peak.
+Operator misprinted() {
+    Operator op = defect_of(
+        "uchimura", "uchimura_misprinted",
+        "gran_turismo.h of tizian/tonemapper pull request 3 (and shadertoy.com/view/Xstyzn)",
+        "it divides by the length of the straight part where Uchimura multiplies by it, so there "
+        "is no shoulder and light above 1 is clipped");
+    op.build = [](const Params&) -> Pipeline {
+        const double P = 1, a = 1, m = 0.22, l = 0.4, c = 1.33, b = 0;
+        // The shoulder rises without end. Light of 4 is far above its start and below its overflow.
+        return {ClampStage{0, 4}, curve_stage(curve(P, a, m, (P - m) / l / a, c, b)),
+                ClampStage{0, 1}};
+    };
+    return op;
+}
+
+}  // namespace
+
+std::vector<Operator> define_uchimura() { return {gran_turismo(), misprinted()}; }
 
 TONEWRIGHT_NAMESPACE_END

@@ -39,7 +39,7 @@ constexpr const char* kDisplays[] = {"srgb", "rec1886", "g22", "display_p3", "re
 
 struct Candidate {
     LutMatch match;
-    ResolvedOperator op;
+    const ResolvedOperator* op;
 };
 
 /// Three planes.
@@ -124,7 +124,8 @@ std::vector<Candidate> candidates_of(const ResolvedOperator& op, const std::vect
                 const std::array<double*, 3> at = {truth[0].data(), truth[1].data(),
                                                    truth[2].data()};
                 view->second.run({at[0], at[1], at[2]}, at, truth[0].size());
-                all.push_back({{op.label, input.encoding, space, display}, op});
+                all.push_back({{op.label, input.encoding, space, display}, &op});
+                all.back().match.definition = op.op;
                 set_errors(all.back().match, truth, input.shown->out);
             }
         }
@@ -132,11 +133,35 @@ std::vector<Candidate> candidates_of(const ResolvedOperator& op, const std::vect
     return all;
 }
 
+/// All operators, the known defects, and what those meant.
+std::vector<ResolvedOperator> all_and_defects() {
+    std::vector<ResolvedOperator> all;
+    std::set<std::string> labels;
+    const auto add = [&](ResolvedOperator op) {
+        if (labels.insert(op.label).second) all.push_back(std::move(op));
+    };
+    for (const Operator& op : all_operators()) {
+        if (!op.is_diagnostic) add(resolve_operator(op.id));
+    }
+    for (const Operator& defect : known_defects()) {
+        add(resolve_operator(defect.meant));
+        add(resolve(defect, nullptr, {}, ""));
+    }
+    return all;
+}
+
+/// What candidates are sorted by. A table that does not reach the colors where a defect and the
+/// operator that was meant differ is the operator's; rounding must not decide against it.
+double rank(const LutMatch& match) {
+    constexpr double kMargin = 1.5;
+    return match.definition->is_defect() ? kMargin * match.mean : match.mean;
+}
+
 /// With all colors.
 void measure(Candidate& candidate, const Shown& shown) {
     LutMatch& match = candidate.match;
     Pipeline stages = decode_of(match.encoding);
-    const Pipeline view = build_view(make_view(candidate.op, match.input, 0, match.display));
+    const Pipeline view = build_view(make_view(*candidate.op, match.input, 0, match.display));
     stages.insert(stages.end(), view.begin(), view.end());
     set_errors(match, planes_of(stages, shown.in), shown.out);
 }
@@ -149,14 +174,10 @@ std::vector<LutMatch> match_lut(const LutFile& table, const std::vector<std::str
     chosen.reserve(operators.size());
     for (const std::string& text : operators)
         chosen.push_back(resolve_operator(text));
-    if (operators.empty()) {
-        for (const Operator& op : all_operators()) {
-            if (!op.is_diagnostic) chosen.push_back(resolve_operator(op.id));
-        }
-    }
+    if (operators.empty()) chosen = all_and_defects();
     // Few colors tell which ones are worth more.
     const auto by_mean = [](const Candidate& a, const Candidate& b) {
-        return a.match.mean < b.match.mean;
+        return rank(a.match) < rank(b.match);
     };
     constexpr std::size_t kFew = 64;
     constexpr std::size_t kMany = 20000;

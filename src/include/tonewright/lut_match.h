@@ -6,6 +6,7 @@
 
 #include "tonewright/lut.h"
 #include "tonewright/lut_file.h"
+#include "tonewright/pipeline.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
@@ -19,12 +20,14 @@ struct LutMatch {
     double max = 0;
     double p999 = 0;
     double mean = 0;
+    /// The definition, which lives as long as the program. A known defect says what is wrong.
+    const Operator* definition = nullptr;
 };
 
 /// Which operator a lookup table is, by what it does: against operators with every input encoding,
 /// in its own primaries and in Rec.709, and on SDR displays.
-/// @param operators  `id`, `id:preset`; empty: all, with their defaults
-/// @param count      how many, the nearest first
+/// @param operators  `id`, `id:preset`; empty: all, with their defaults, and the known defects
+/// @param count      how many, the nearest first; a defect only where it is nearer by a margin
 /// @throws Error  for an unknown operator
 [[nodiscard]] TONEWRIGHT_API std::vector<LutMatch> match_lut(
     const LutFile& lut, const std::vector<std::string>& operators, std::size_t count = 5);

@@ -318,6 +318,11 @@ struct Operator {
     std::string dialects;
     /// Shows what is in a picture, not a picture: false colours.
     bool is_diagnostic = false;
+    /// A known defect reproduces a mistake that programs make. This says what is wrong, in words
+    /// that follow "a defect: ". Empty for every other operator.
+    std::string defect;
+    /// The operator that the program meant, as resolve_operator() reads it. Only of a defect.
+    std::string meant;
     /// Working-space scene-linear, finite -> the operator's own output.
     Pipeline (*build)(const Params& params) = nullptr;
     /// Back: the operator's own output -> working-space scene-linear. Null: it has no inverse.
@@ -331,6 +336,7 @@ struct Operator {
     void (*run_local)(ScenePlanes& picture, const Params& params) = nullptr;
 
     [[nodiscard]] bool is_local() const { return run_local != nullptr; }
+    [[nodiscard]] bool is_defect() const { return !defect.empty(); }
 };
 
 /// An operator with its parameters fixed.

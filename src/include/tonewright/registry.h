@@ -13,6 +13,9 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// All operators that map each pixel by itself, sorted by id. The table is generated from the files
 /// of src/operators/.
 [[nodiscard]] TONEWRIGHT_API const std::vector<Operator>& all_operators();
+/// The operators that reproduce mistakes of public programs, sorted by id. They are in no list, and
+/// no name finds them: a user would apply a mistake by accident. match_lut() recognizes them.
+[[nodiscard]] TONEWRIGHT_API const std::vector<Operator>& known_defects();
 /// All operators that look at a pixel's surroundings, sorted by id. They work on pictures only.
 [[nodiscard]] TONEWRIGHT_API const std::vector<Operator>& local_operators();
 

@@ -894,6 +894,29 @@ TEST(Registry, OperatorsSayWhatTheyAre) {
     }
 }
 
+TEST(Registry, KnownDefectsAreInNoListAndNoNameFindsThem) {
+    ASSERT_GE(known_defects().size(), 5U);
+    for (const Operator& defect : known_defects()) {
+        SCOPED_TRACE(defect.id);
+        EXPECT_TRUE(is_lower_snake(defect.id));
+        EXPECT_TRUE(is_line(defect.defect) && defect.defect.back() != '.');
+        EXPECT_TRUE(is_line(defect.source) && is_line(defect.licence));
+        EXPECT_FALSE(resolve_operator(defect.meant).op->is_defect());
+        for (const std::vector<Operator>* listed : {&all_operators(), &local_operators()}) {
+            for (const Operator& op : *listed)
+                EXPECT_NE(op.id, defect.id);
+        }
+        for (const OperatorVariant& v : all_variants())
+            EXPECT_NE(v.name, defect.id);
+        const std::string error = resolve_error(defect.id, {});
+        EXPECT_NE(error.find("expected an id"), std::string::npos) << error;
+        for (const Operator& other : known_defects())
+            EXPECT_EQ(error.find(other.id, error.find("expected")), std::string::npos) << error;
+    }
+    for (const Operator& op : all_operators())
+        EXPECT_TRUE(!op.is_defect() && op.meant.empty()) << op.id;
+}
+
 TEST(Registry, ParametersAreWellFormed) {
     for (const Operator& op : all_operators()) {
         std::set<std::string> names;

@@ -185,7 +185,10 @@ FunctionBody::Text FunctionBody::compose(const Expr& e) {
         case ExprOp::square_root:
             return call(language_.square_root);
         case ExprOp::exp2:
-            return call(language_.exp2);
+            if (*language_.exp2) return call(language_.exp2);
+            return {fmt::format("{}({}, {})", language_.power, float_literal(2, language_),
+                                operand(part(0), kAny)),
+                    kAtom};
         case ExprOp::log2:
             return call(language_.log2);
         case ExprOp::sine:

@@ -182,6 +182,28 @@ constexpr LanguageFacts dctl() {
     return f;
 }
 
+/// Members of a kernel.
+constexpr LanguageFacts blink() {
+    LanguageFacts f = dctl();
+    f.language = ShaderLanguage::blink;
+    f.make_color = "float3";
+    f.before_function = "";
+    f.array = "float {name}[{count}] = {{\n{values}}};";
+    f.has_local_arrays = true;
+    f.minimum = "min";
+    f.maximum = "max";
+    f.absolute = "fabs";
+    f.square_root = "sqrt";
+    f.exp2 = "";
+    f.log2 = "log2";
+    f.power = "pow";
+    f.sine = "sin";
+    f.cosine = "cos";
+    f.atan2 = "atan2";
+    f.floor = "floor";
+    return f;
+}
+
 constexpr LanguageFacts osl() {
     LanguageFacts f = kGlsl;
     f.language = ShaderLanguage::osl;
@@ -201,7 +223,8 @@ constexpr LanguageFacts osl() {
     return f;
 }
 
-constexpr std::array kFacts = {kGlsl, glsl_es(), hlsl(), wgsl(), msl(), dctl(), c(), osl()};
+constexpr std::array kFacts = {kGlsl,  glsl_es(), hlsl(), wgsl(), msl(),
+                               dctl(), blink(),   c(),    osl()};
 
 }  // namespace
 
@@ -213,6 +236,7 @@ const std::vector<ShaderLanguageInfo>& shader_languages() {
         {ShaderLanguage::wgsl, "wgsl", "WGSL (WebGPU)", ".wgsl", true},
         {ShaderLanguage::msl, "msl", "Metal Shading Language", ".metal"},
         {ShaderLanguage::dctl, "dctl", "DCTL (DaVinci Resolve)", ".h"},
+        {ShaderLanguage::blink, "blinkscript", "BlinkScript (Nuke), members of a kernel", ".h"},
         {ShaderLanguage::c, "c", "C99 and C++", ".h", true},
         {ShaderLanguage::osl, "osl", "Open Shading Language", ".osl"},
     };

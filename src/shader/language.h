@@ -43,7 +43,7 @@ struct LanguageFacts {
     const char* maximum;
     const char* absolute;
     const char* square_root;
-    const char* exp2;
+    const char* exp2;  // empty: there is none, and 2 is raised
     const char* log2;
     const char* power;
     const char* sine;

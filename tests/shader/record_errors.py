@@ -17,7 +17,7 @@ import tempfile
 HERE = pathlib.Path(__file__).parent
 TABLE = HERE.parent.parent / "src/shader/measured_errors.inc"
 # Tests that execute shaders, and what their implementations are called.
-TESTS = {"test_c_and_dctl.py": {"C": "C (GCC, Clang)", "DCTL": "DCTL (as C++, fast math)"}}
+TESTS = {"test_c_and_dctl.py": {"c": "C (GCC, Clang)", "dctl": "DCTL (as C++, fast math)"}}
 
 
 def main(tonewright: str) -> int:

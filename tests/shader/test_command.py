@@ -91,6 +91,7 @@ def check_applications(report, command, scratch):
                      not {"@function", "@call", "@arguments", "@declarations"} & set(texts[application].split()), err)
     report.check("sliders of mpv", "//!PARAM white" in texts["mpv"])
     report.check("sliders of Resolve", "DEFINE_UI_PARAMS(white, white, DCTLUI_SLIDER_FLOAT, 11.2f, 0.1f, 65504.0f, 0.01)" in texts["resolve"])
+    report.check("knobs of Nuke", 'defineParam(white, "white", 11.2f);' in texts["nuke"] and texts["nuke"].startswith("// Hable"))
     report.check("the first line of Godot", texts["godot"].startswith("#[compute]\n#version 450\n"))
     if not shutil.which("glslangValidator"):
         print("files for Godot, mpv, Shadertoy and GStreamer were not validated: glslangValidator is not installed")

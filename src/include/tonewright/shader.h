@@ -9,7 +9,7 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-enum class ShaderLanguage : unsigned char { glsl, glsl_es, hlsl, wgsl, msl, dctl, c, osl };
+enum class ShaderLanguage : unsigned char { glsl, glsl_es, hlsl, wgsl, msl, dctl, blink, c, osl };
 
 struct ShaderLanguageInfo {
     ShaderLanguage language;

@@ -23,6 +23,7 @@ struct Options : ViewOptions {
     std::string file;
     std::vector<std::string> uniforms;
     std::string all;
+    std::string tables;
     bool is_inverse = false;
     bool list = false;
 };
@@ -52,6 +53,12 @@ std::vector<GeneratedFile> texture_files(const Shader& shader, const std::string
     return files;
 }
 
+ShaderTables tables_of(const Options& options) {
+    return options.tables == "texture" ? ShaderTables::texture
+           : options.tables == "array" ? ShaderTables::array
+                                       : ShaderTables::by_size;
+}
+
 void write_one(Options& options) {
     if (options.op.empty())
         throw Error("shader: OPERATOR is missing; expected an id from `tonewright list`");
@@ -70,6 +77,7 @@ void write_one(Options& options) {
     request.view = options.view();
     request.uniforms = options.uniforms;
     request.is_inverse = options.is_inverse;
+    request.tables = tables_of(options);
     if (!options.file.empty()) {
         if (const std::string why = why_no_file(options.file); !why.empty())
             throw FileError(fmt::format("write: {}: {}", options.file, why));
@@ -115,6 +123,7 @@ void write_all(const Options& options) {
     std::size_t count = 0;
     for (const OperatorVariant& variant : all_variants()) {
         ShaderRequest request;
+        request.tables = tables_of(options);
         request.view = make_view(resolve_operator(variant.name, {}, variant.look), options.input,
                                  options.exposure, options.display);
         const bool is_lattice = reads_lattice(request.view);
@@ -190,6 +199,12 @@ void add_shader(CommandLine& program) {
         .value("NAME,...")
         .separated_by(',')
         .one_value_each()
+        .group(output);
+    command
+        .add("--tables", options->tables,
+             "where numbers of tables and lattices stand (default: by their size)")
+        .choices(std::vector<std::string>{"texture", "array"})
+        .value("KIND")
         .group(output);
     command.add_flag("--inverse", options->is_inverse, "write the inverse").group(output);
     command.add_flag("--list", options->list, "list languages and applications").group(output);

@@ -128,7 +128,7 @@ Expr FloatForm::power(const Expr& base, const Expr& exponent) {
     const Interval y = range(exponent);
     // Ends of the base: no denormal, and no power beyond kLargest.
     double lo = kSmallest;
-    double hi = std::numeric_limits<float>::max();
+    double hi = 3e38;
     if (y.lo < 0) lo = std::max(lo, std::pow(kLargest, 1 / y.lo));
     if (y.hi > 0) hi = std::min(hi, std::pow(kLargest, 1 / y.hi));
     Expr limited = base;

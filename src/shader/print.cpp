@@ -7,9 +7,9 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <span>
 
+#include "base/format_number.h"
 #include "expr/nodes.h"
 #include "shader/body.h"
 #include "tonewright/error.h"
@@ -32,11 +32,12 @@ void add_once(std::vector<Item>& items, Item item) {
 class ProgramPrinter {
   public:
     ProgramPrinter(const ShaderProgram& program, const LanguageFacts& language, std::string name,
-                   std::vector<std::string> uniforms)
+                   std::vector<std::string> uniforms, ShaderTables tables)
         : program_(program),
           language_(language),
           name_(std::move(name)),
-          uniforms_(std::move(uniforms)) {}
+          uniforms_(std::move(uniforms)),
+          tables_(tables) {}
 
     PrintedProgram print() {
         print_tables();
@@ -184,23 +185,99 @@ class ProgramPrinter {
         return fmt::format("{}({}({}, {}), {})", language_.minimum, language_.maximum, x, lo, hi);
     }
 
+    /// @throws Error  neither an array nor a texture can hold that many
+    [[nodiscard]] bool is_texture(const std::string& what, std::size_t numbers) const {
+        const bool has_texture = *language_.texture != 0;
+        const bool is_small = numbers <= language_.largest_array;
+        const bool result =
+            tables_ == ShaderTables::by_size ? !is_small : tables_ == ShaderTables::texture;
+        if (result ? has_texture : is_small) return result;
+        const std::string& id = std::find_if(shader_languages().begin(), shader_languages().end(),
+                                             [&](const ShaderLanguageInfo& info) {
+                                                 return info.language == language_.language;
+                                             })
+                                    ->id;
+        throw Error(fmt::format(
+            "shader: {} reads {}; {}", name_, what,
+            !has_texture && !is_small
+                ? "expected a language with textures: glsl, glsl-es, hlsl, wgsl; or c"
+            : result
+                ? "tables is texture; expected array: " + id + " has none that a function can read"
+                : fmt::format("tables is array; expected texture: an array in {} should hold at "
+                              "most {} numbers, not {}",
+                              id, language_.largest_array, numbers)));
+    }
+
+    /// Declares a texture; its texels are still to be filled in.
+    ShaderTexture& declare_texture(const std::string& name, const std::array<int, 3>& size) {
+        const auto filled = [&](const char* pattern) {
+            return fmt::format(fmt::runtime(pattern), fmt::arg("name", name),
+                               fmt::arg("binding", textures_.size()), fmt::arg("width", size[0]),
+                               fmt::arg("height", size[1]), fmt::arg("depth", size[2]),
+                               fmt::arg("pitch", 16 * size[0]));
+        };
+        text_ +=
+            fmt::format("\n// {}: {} texels, RGBA, 32-bit float, no filter. To load its file:\n",
+                        name, fmt::join(size, " x ")) +
+            filled(language_.loader) + filled(language_.texture) + "\n";
+        return textures_.emplace_back(ShaderTexture{name, size, {}});
+    }
+
+    static constexpr int kTableWidth = 256;  // 3D textures of GLSL ES may have no more
+
+    /// A function that gives channel `channel` of texel i of a table's texture.
+    void print_texel(const std::string& name, const std::string& texture, std::size_t channel) {
+        begin(language_.number, name, {declared(language_.integer, "i")});
+        line("return " +
+             fmt::format(fmt::runtime(language_.fetch), fmt::arg("name", texture),
+                         fmt::arg("x", fmt::format("i % {}", kTableWidth)),
+                         fmt::arg("y", fmt::format("i / {}", kTableWidth)), fmt::arg("z", "0")) +
+             language_.channel[channel] + ";");
+        end();
+    }
+
     void print_table(const std::string& name, const Table& table) {
         const std::string values = name + "_values";
         const std::string positions = name + "_positions";
-        const std::string arrays =
-            array(values, table.samples) +
-            (table.positions.empty() ? "" : array(positions, table.positions));
-        if (!language_.has_local_arrays) text_ += "\n" + arrays;
+        std::string arrays;
+        const bool is_in_texture =
+            is_texture(fmt::format("a table of {} numbers", table.samples.size()),
+                       std::max(table.samples.size(), table.positions.size()));
+        if (is_in_texture) {
+            const std::size_t count = table.samples.size();
+            const int rows = (static_cast<int>(count) + kTableWidth - 1) / kTableWidth;
+            ShaderTexture& texture = declare_texture(values, {kTableWidth, rows, 1});
+            texture.rgba.resize(4 * static_cast<std::size_t>(kTableWidth * rows));
+            for (std::size_t i = 0; i < count; ++i) {
+                texture.rgba[4 * i] = static_cast<float>(table.samples[i]);
+                if (!table.positions.empty())
+                    texture.rgba[4 * i + 1] = static_cast<float>(table.positions[i]);
+            }
+        } else {
+            arrays = array(values, table.samples) +
+                     (table.positions.empty() ? "" : array(positions, table.positions));
+        }
+        const auto value_at = [&](const std::string& i) {
+            return is_in_texture ? fmt::format("{}_value({})", name, i)
+                                 : fmt::format("{}[{}]", values, i);
+        };
+        const auto position_at = [&](const std::string& i) {
+            return is_in_texture ? fmt::format("{}_position({})", name, i)
+                                 : fmt::format("{}[{}]", positions, i);
+        };
+        if (is_in_texture) {
+            print_texel(name + "_value", values, 0);
+            if (!table.positions.empty()) print_texel(name + "_position", values, 1);
+        }
+        if (!language_.has_local_arrays && !arrays.empty()) text_ += "\n" + arrays;
         begin(language_.number, name, {declared(language_.number, "x")});
         if (language_.has_local_arrays) text_ += arrays;
         const auto n = static_cast<int>(table.samples.size());
         const bool is_step = table.interpolation == Table::Interpolation::step;
         const int last = is_step ? n - 1 : n - 2;  // of the first samples of cells
-        const std::string from = fmt::format("{}[cell]", values);
-        const std::string to = fmt::format("{}[cell + 1]", values);
         const char* const number = language_.number;
         if (n == 1) {
-            line(fmt::format("return {}[0];", values));
+            line(fmt::format("return {};", value_at("0")));
             return end();
         }
         if (table.positions.empty()) {
@@ -217,19 +294,21 @@ class ProgramPrinter {
             line(variable("next", std::to_string(last + 1)));
             line(fmt::format(fmt::runtime(language_.loop), fmt::arg("count", steps)) + " {");
             line("    " + let(language_.integer, "middle", "(cell + next) / 2"));
-            line(fmt::format(
-                "    if (x < {}[middle]) {{ next = middle; }} else {{ cell = middle; }}",
-                positions));
+            line(fmt::format("    if (x < {}) {{ next = middle; }} else {{ cell = middle; }}",
+                             position_at("middle")));
             line("}");
             if (!is_step) {
-                line(let(number, "width", fmt::format("{0}[cell + 1] - {0}[cell]", positions)));
-                line(let(number, "t",
-                         limited(fmt::format("(x - {}[cell]) / width", positions), literal(0),
-                                 literal(1))));
+                line(let(number, "begin", position_at("cell")));
+                line(let(number, "width", position_at("cell + 1") + " - begin"));
+                line(let(number, "t", limited("(x - begin) / width", literal(0), literal(1))));
             }
         }
-        line(is_step ? fmt::format("return {};", from)
-                     : fmt::format("return {0} + t * ({1} - {0});", from, to));
+        if (is_step) {
+            line(fmt::format("return {};", value_at("cell")));
+        } else {
+            line(let(number, "value", value_at("cell")));
+            line(fmt::format("return value + t * ({} - value);", value_at("cell + 1")));
+        }
         end();
     }
 
@@ -237,40 +316,30 @@ class ProgramPrinter {
     std::string print_nodes(const std::string& name, const Lattice& lattice) {
         const std::vector<double>& numbers = lattice.nodes();
         const std::string nodes = name + "_nodes";
-        if (numbers.size() <= language_.largest_array) {
-            text_ += "\n" + array(nodes, numbers);
+        if (!is_texture(fmt::format("a lattice of {}^3 colors", lattice.edge()), numbers.size())) {
+            const std::string values = array(nodes, numbers);
+            if (!language_.has_local_arrays) text_ += "\n" + values;
             const std::string node = name + "_node";
             begin(language_.color, node,
                   {declared(language_.integer, "r"), declared(language_.integer, "g"),
                    declared(language_.integer, "b")});
+            if (language_.has_local_arrays) text_ += values;
             line(let(language_.integer, "i",
                      fmt::format("3 * ((r * {0} + g) * {0} + b)", lattice.edge())));
             line("return " + made({nodes + "[i]", nodes + "[i + 1]", nodes + "[i + 2]"}) + ";");
             end();
             return node + "({r}, {g}, {b})";
         }
-        if (!*language_.texture) {
-            throw Error(fmt::format(
-                "shader: {} reads a lattice of {}^3 colors; expected a language with textures: "
-                "glsl, glsl-es, hlsl, wgsl; or c",
-                name_, lattice.edge()));
-        }
-        ShaderTexture texture{nodes, lattice.edge(), {}};
+        ShaderTexture& texture =
+            declare_texture(nodes, {lattice.edge(), lattice.edge(), lattice.edge()});
         for (std::size_t i = 0; i < numbers.size(); ++i) {
             texture.rgba.push_back(static_cast<float>(numbers[i]));
             if (i % 3 == 2) texture.rgba.push_back(1);
         }
-        text_ +=
-            "\n// " + nodes + ": " +
-            fmt::format("{0} x {0} x {0} texels, RGBA, 32-bit float, no filter", lattice.edge()) +
-            "\n" +
-            fmt::format(fmt::runtime(language_.texture), fmt::arg("name", nodes),
-                        fmt::arg("binding", textures_.size())) +
-            "\n";
-        textures_.push_back(std::move(texture));
         // The third coordinate runs fastest.
         return fmt::format(fmt::runtime(language_.fetch), fmt::arg("name", nodes),
-                           fmt::arg("x", "{b}"), fmt::arg("y", "{g}"), fmt::arg("z", "{r}"));
+                           fmt::arg("x", "{b}"), fmt::arg("y", "{g}"), fmt::arg("z", "{r}")) +
+               ".rgb";
     }
 
     void print_lattice(const std::string& name, const Lattice& lattice) {
@@ -486,6 +555,7 @@ class ProgramPrinter {
     const LanguageFacts& language_;
     std::string name_;
     std::vector<std::string> uniforms_;
+    ShaderTables tables_;
     std::map<const void*, std::string> table_functions_;
     std::vector<ShaderTexture> textures_;
     std::string text_;
@@ -494,12 +564,14 @@ class ProgramPrinter {
 }  // namespace
 
 PrintedProgram print_program(const ShaderProgram& program, const LanguageFacts& language,
-                             const std::string& name, const std::vector<std::string>& uniforms) {
-    return ProgramPrinter(program, language, name, uniforms).print();
+                             const std::string& name, const std::vector<std::string>& uniforms,
+                             ShaderTables tables) {
+    return ProgramPrinter(program, language, name, uniforms, tables).print();
 }
 
 std::string float_literal(double value, const LanguageFacts& language) {
-    constexpr double kMost = std::numeric_limits<float>::max();
+    // Not the largest float: its shortest digits lie above it, and WGSL takes no such literal.
+    constexpr double kMost = 3e38;
     auto number = static_cast<float>(std::clamp(value, -kMost, kMost));
     if (std::fpclassify(number) == FP_SUBNORMAL) number = 0;
     std::array<char, 32> buffer{};

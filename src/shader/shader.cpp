@@ -415,7 +415,8 @@ Shader write_shader(const ShaderRequest& request, const ShaderErrors* errors) {
     shader.errors = errors ? *errors : measure_shader(request);
     const std::string prologue =
         *language.prologue ? std::string("\n") + language.prologue : std::string();
-    PrintedProgram printed = print_program(program, language, shader.function, request.uniforms);
+    PrintedProgram printed =
+        print_program(program, language, shader.function, request.uniforms, request.tables);
     shader.text = header(request, shader, pipeline) + prologue + printed.text;
     shader.textures = std::move(printed.textures);
     if (request.application) {

@@ -435,7 +435,7 @@ double shader_bound(const Shader& shader, bool is_hdr) {
 std::vector<GlslTexture> textures_of(const Shader& shader) {
     std::vector<GlslTexture> textures;
     for (const ShaderTexture& texture : shader.textures)
-        textures.push_back({texture.name, texture.edge, texture.rgba.data()});
+        textures.push_back({texture.name, texture.size, texture.rgba.data()});
     return textures;
 }
 

@@ -4,8 +4,8 @@
 //
 //   VK_ICD_FILENAMES=.../vk_swiftshader_icd.json node run_on_dawn.mjs NODE_MODULES JOB.json
 //
-// The job: input (a file of float32 RGB) and for each function source (WGSL text, or a SPIR-V file), textures (files of
-// float32 RGBA with their edge, at group 0) and out (a file of float32 RGB to write). The entry point is `main`, 64 colors
+// The job: input (a file of float32 RGB) and for each function source (WGSL text, or a SPIR-V file), textures (files NAME.rgba32f
+// of float32 RGBA in a folder, with their size and the loader of the text, or none; at group 0) and out (a file of float32 RGB to write). The entry point is `main`, 64 colors
 // to a group, input and output at group 1. Prints the adapter; messages of the compiler are an error.
 import { createRequire } from 'node:module';
 import { readFile, writeFile } from 'node:fs/promises';
@@ -30,7 +30,18 @@ const wgslOf = async (source) => {
     return translate({ from: 'spirv', to: 'wgsl', source: new Uint32Array(bytes.buffer, bytes.byteOffset, bytes.length / 4) });
 };
 
-const adapter = await create(['backend=vulkan']).requestAdapter();
+const loaderOf = (lines) => new (async () => {}).constructor('device', 'fetch', `${lines}\nreturn texture;`);
+const made = async (name, size, file) => {
+    const texture = device.createTexture({
+        dimension: '3d', size, format: 'rgba32float', usage: GPUTextureUsage.TEXTURE_BINDING | GPUTextureUsage.COPY_DST,
+    });
+    device.queue.writeTexture({ texture }, await file(`${name}.rgba32f`), { bytesPerRow: 16 * size[0], rowsPerImage: size[1] }, size);
+    return texture;
+};
+
+// Dawn crashes when this object is collected, so a global holds it.
+globalThis.gpu = create(['backend=vulkan']);
+const adapter = await gpu.requestAdapter();
 const device = await adapter.requestDevice();
 device.addEventListener('uncapturederror', (event) => {
     console.error(event.error.message);
@@ -62,14 +73,10 @@ for (const { source, textures, out } of job.functions) {
         entries: resources.map((resource, binding) => ({ binding, resource })),
     }));
     const views = [];
-    for (const { file, edge } of textures) {
-        const texture = device.createTexture({
-            dimension: '3d', size: [edge, edge, edge], format: 'rgba32float',
-            usage: GPUTextureUsage.TEXTURE_BINDING | GPUTextureUsage.COPY_DST,
-        });
-        device.queue.writeTexture({ texture }, await floatsOf(file), { bytesPerRow: 16 * edge, rowsPerImage: edge },
-            [edge, edge, edge]);
-        views.push(texture.createView());
+    for (const { folder, name, size, loader } of textures) {
+        const file = (url) => readFile(path.join(folder, url));
+        const fetched = async (url) => ({ arrayBuffer: async () => new Uint8Array(await file(url)).buffer });
+        views.push((await (loader ? loaderOf(loader)(device, fetched) : made(name, size, file))).createView());
     }
     if (views.length > 0) bind(0, views);
     bind(1, [{ buffer: input }, { buffer: output }]);

@@ -41,6 +41,9 @@ def check_refusals(report, command, scratch):
         (["agx_blender", "--language", "dctl"], USAGE, "expected a language with textures"),
         (["agx_blender", "--language", "glsl"], USAGE, "has a texture; expected -o FILE"),
         (["agx_blender", "--for", "shadertoy"], USAGE, "reads a texture"),
+        (["camera_response", "--language", "c", "--tables", "texture"], USAGE, "tables is texture; expected array"),
+        (["agx_blender", "--language", "wgsl", "--tables", "array"], USAGE, "tables is array; expected texture"),
+        (["hable", "--language", "c", "--tables", "textures"], USAGE, "did you mean texture?"),
         (["hable", "--language", "c", "-o", scratch / "no" / "x.h"], FILE, "write: "),
         (["hable", "--language", "c", "-o", "/dev/null"], FILE, "/dev/null"),
     ]:
@@ -64,6 +67,14 @@ def check_files(report, command, scratch):
         edge = round(len(texels) ** (1 / 3))
         report.check(f"{texture.name} is a cube of RGBA", edge**3 == len(texels) and (texels[:, 3] == 1).all())
         report.check(f"{texture.name} is what the text reads", texture.stem in (scratch / "agx.glsl").read_text())
+    tables = {}
+    for kind in "array", "texture":
+        code, _, err = call(command, "camera_response", "--language", "glsl-es", "--tables", kind, "-o", scratch / f"{kind}.glsl")
+        tables[kind] = (scratch / f"{kind}.glsl").read_text()
+    texels = np.fromfile(scratch / "tw_camera_response_table_values.rgba32f", "<f4").reshape(-1, 4)
+    numbers = [float(x) for x in tables["array"].split("float[1024](")[1].split(")")[0].split(",")]
+    report.check("--tables texture holds what --tables array does", code == OK and np.array_equal(texels[:, 0], np.float32(numbers)), err)
+    report.check("and says how it is loaded", "gl.texImage3D(gl.TEXTURE_3D, 0, gl.RGBA32F, 256, 4, 1, 0," in tables["texture"])
     for operator, words in [("gt7", "warning: tw_gt7 is up to"), ("drago", "measures each picture, which a shader cannot do")]:
         code, text, err = call(command, operator, "--language", "c")
         report.check(f"{operator} warns", code == OK and words in err and f"tw_{operator}(" in text, err)

@@ -10,6 +10,7 @@ Usage: test_wgsl_and_hlsl.py TONEWRIGHT [--record FILE]
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import tempfile
@@ -47,11 +48,24 @@ MAIN = {
 
 
 def textures_of(text_file: pathlib.Path) -> list:
-    """Of the function whose text this is; edge^3 texels of four floats."""
-    files = sorted(text_file.parent.glob(f"{text_file.stem.removesuffix('_encoded')}*lattice*.rgba32f"))
-    named = [file for file in files if file.stem in text_file.read_text()]
-    named.sort(key=lambda file: text_file.read_text().index(file.stem))
-    return [{"file": str(file), "edge": round((file.stat().st_size / 16) ** (1 / 3))} for file in named]
+    """Those of the text's comments, and for WGSL how they say that the file is loaded."""
+    found = re.findall(r"^// (\w+): (\d+) x (\d+) x (\d+) texels.*\n((?://.*\n)*)", text_file.read_text(), re.MULTILINE)
+    return [{"folder": str(text_file.parent), "name": name, "size": [int(n) for n in size],
+             "loader": lines.replace("// ", "") if text_file.suffix == ".wgsl" else ""} for name, *size, lines in found]
+
+
+def with_textures(tonewright: str, language: str, rows: list, folder: pathlib.Path) -> list:
+    """The functions whose tables are arrays, with their tables as textures."""
+    result = []
+    for row in rows:
+        if "_table_values[" not in (folder / row["path"]).read_text():
+            continue
+        path = pathlib.Path("textures") / row["path"]
+        (folder / path).parent.mkdir(parents=True, exist_ok=True)
+        subprocess.run([tonewright, "shader", row["operator"], "--language", language, "--display", "srgb", "--tables", "texture",
+                        "-o", str(folder / path), "-q"], check=True)
+        result.append(row | {"path": str(path)})
+    return result
 
 
 def programs(language: str, rows: list, folder: pathlib.Path) -> list:
@@ -59,7 +73,7 @@ def programs(language: str, rows: list, folder: pathlib.Path) -> list:
     functions = []
     for row in rows:
         text_file = folder / row["path"]
-        program = folder / f"{row['function']}.main.{language}"
+        program = folder / f"{row['path'].replace('/', '_')}.main.{language}"
         program.write_text(text_file.read_text() + MAIN[language].replace("FUNCTION", row["function"]))
         if language == "hlsl":
             spirv = program.with_suffix(".spv")
@@ -67,7 +81,7 @@ def programs(language: str, rows: list, folder: pathlib.Path) -> list:
                             str(program), "-o", str(spirv)], check=True)
             program = spirv
         functions.append({"source": str(program), "textures": textures_of(text_file),
-                          "out": str(folder / f"{row['function']}.{language}.out")})
+                          "out": str(program) + ".out"})
     return functions
 
 
@@ -98,6 +112,7 @@ def main(tonewright: str, record_file: str) -> int:
         folder = pathlib.Path(folder_name)
         rows = write_shaders(tonewright, folder)
         for language in ("wgsl", "hlsl"):
+            rows[language] += with_textures(tonewright, language, rows[language], folder)
             functions = programs(language, rows[language], folder)
             adapter = run(functions, comparison.rgb, modules, folder)
             for row, function in zip(rows[language], functions):

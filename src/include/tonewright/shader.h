@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -41,6 +42,13 @@ struct ShaderApplication {
 [[nodiscard]] TONEWRIGHT_API const ShaderApplication& find_shader_application(
     std::string_view name);
 
+/// Where numbers of tables and lattices stand.
+enum class ShaderTables : unsigned char {
+    by_size,  // in arrays, and in textures where a text should not hold that many
+    texture,
+    array,
+};
+
 /// What a shader function computes, and how it is written.
 struct ShaderRequest {
     /// Display `linear` for a renderer that encodes its picture itself, a display for finished
@@ -52,17 +60,18 @@ struct ShaderRequest {
     std::vector<std::string> uniforms = {};
     /// What the view shows -> scene-linear.
     bool is_inverse = false;
+    ShaderTables tables = ShaderTables::by_size;
     /// Not null: the whole file that it takes, in its language, whatever `language` says. Uniforms
     /// become its own sliders or inputs.
     const ShaderApplication* application = nullptr;
 };
 
-/// What a shader reads and its text cannot hold: edge^3 texels of four 32-bit floats, RGB and 1, x
-/// running fastest. The text fetches texels and interpolates itself, in tetrahedra: the texture
-/// needs no filter.
+/// What a shader reads and its text does not hold: a 3D texture of four 32-bit floats, x running
+/// fastest. Of a lattice, RGB and 1; of a table, a sample and its position, 256 to a row. The text
+/// fetches texels and interpolates itself: the texture needs no filter.
 struct ShaderTexture {
-    std::string name;  // in the text
-    int edge = 0;
+    std::string name;         // in the text
+    std::array<int, 3> size;  // x, y, z
     std::vector<float> rgba;
 };
 
@@ -108,7 +117,8 @@ struct Shader {
 ///
 /// @throws Error  a local operator; a uniform that the operator does not have, that is not live, or
 ///                that is named twice; an inverse with uniforms other than the exposure, or of an
-///                operator that has none; a lattice in a language that cannot hold one.
+///                operator that has none; tables or a lattice where the language has no texture, or
+///                no array that is large enough.
 /// @param errors  what measure_shader() gave for the same request in whatever language; null: it is
 ///                called
 [[nodiscard]] TONEWRIGHT_API Shader write_shader(const ShaderRequest& request,

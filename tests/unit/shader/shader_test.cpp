@@ -105,8 +105,9 @@ TEST(Shader, EveryVariantInEveryLanguageIsAsciiAndHasItsOwnName) {
                 << variant.name << " " << language.id;
             for (const ShaderTexture& texture : shader.textures) {
                 EXPECT_NE(shader.text.find(" " + texture.name), std::string::npos);
+                const auto [width, height, depth] = texture.size;
                 EXPECT_EQ(texture.rgba.size(),
-                          4U * static_cast<std::size_t>(std::pow(texture.edge, 3)));
+                          4 * static_cast<std::size_t>(width * height * depth));
             }
         }
     }
@@ -189,7 +190,7 @@ TEST(Shader, LiteralsReadBackAsTheSameFloat) {
     EXPECT_EQ(float_literal(-2.5, facts_of(ShaderLanguage::glsl)), "-2.5");
     EXPECT_EQ(float_literal(1e30, c), "1.0e+30f");
     EXPECT_EQ(float_literal(1e-42, c), "0.0f");  // a denormal, which GPUs take for 0
-    EXPECT_EQ(float_literal(kInfinity, c), "3.4028235e+38f");
+    EXPECT_EQ(float_literal(kInfinity, c), "3.0e+38f");
     for (const double x : {1.0 / 3, 12.47393, 65504.0, 1e-30})
         EXPECT_EQ(std::stof(float_literal(x, c)), static_cast<float>(x));
 }

@@ -24,6 +24,7 @@ struct Options : ViewOptions {
     std::vector<std::string> uniforms;
     std::string all;
     std::string tables;
+    std::string curves = "formula";
     bool is_inverse = false;
     bool list = false;
 };
@@ -53,6 +54,10 @@ std::vector<GeneratedFile> texture_files(const Shader& shader, const std::string
     return files;
 }
 
+ShaderCurves curves_of(const Options& options) {
+    return options.curves == "fitted" ? ShaderCurves::fitted : ShaderCurves::formula;
+}
+
 ShaderTables tables_of(const Options& options) {
     return options.tables == "texture" ? ShaderTables::texture
            : options.tables == "array" ? ShaderTables::array
@@ -78,6 +83,7 @@ void write_one(Options& options) {
     request.uniforms = options.uniforms;
     request.is_inverse = options.is_inverse;
     request.tables = tables_of(options);
+    request.curves = curves_of(options);
     if (!options.file.empty()) {
         if (const std::string why = why_no_file(options.file); !why.empty())
             throw FileError(fmt::format("write: {}: {}", options.file, why));
@@ -124,6 +130,7 @@ void write_all(const Options& options) {
     for (const OperatorVariant& variant : all_variants()) {
         ShaderRequest request;
         request.tables = tables_of(options);
+        request.curves = curves_of(options);
         request.view = make_view(resolve_operator(variant.name, {}, variant.look), options.input,
                                  options.exposure, options.display);
         const bool is_lattice = reads_lattice(request.view);
@@ -205,6 +212,13 @@ void add_shader(CommandLine& program) {
              "where numbers of tables and lattices stand (default: by their size)")
         .choices(std::vector<std::string>{"texture", "array"})
         .value("KIND")
+        .group(output);
+    command
+        .add("--curves", options->curves,
+             "curves of one number as formulas, or as fitted polynomials where these are faster")
+        .choices(std::vector<std::string>{"formula", "fitted"})
+        .value("KIND")
+        .show_default()
         .group(output);
     command.add_flag("--inverse", options->is_inverse, "write the inverse").group(output);
     command.add_flag("--list", options->list, "list languages and applications").group(output);

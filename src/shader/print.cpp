@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <charconv>
 #include <cmath>
 #include <span>
@@ -23,11 +24,6 @@ struct Overloaded : F... {
 };
 template <class... F>
 Overloaded(F...) -> Overloaded<F...>;
-
-template <class Item>
-void add_once(std::vector<Item>& items, Item item) {
-    if (std::find(items.begin(), items.end(), item) == items.end()) items.push_back(item);
-}
 
 class ProgramPrinter {
   public:
@@ -121,30 +117,36 @@ class ProgramPrinter {
     }
 
     void print_tables() {
-        std::vector<Expr> all;
         for (const ScalarFunction& function : program_.scalars)
-            all.push_back(function.f);
+            print_tables_of(function.name, {function.f});
         for (const ColorFunction& function : program_.colors) {
+            std::vector<Expr> all(function.f.begin(), function.f.end());
             for (const ColorFunction::Call& c : function.calls)
                 all.push_back(c.argument);
-            all.insert(all.end(), function.f.begin(), function.f.end());
+            print_tables_of(function.name, all);
         }
-        std::vector<const Table*> tables;
-        std::vector<const Lattice*> lattices;
-        for (const Expr& e : nodes_of(all)) {
-            if (e.op() == ExprOp::lookup) add_once(tables, e.table().get());
-            if (e.op() == ExprOp::lattice) add_once(lattices, e.lattice().get());
-        }
-        const auto name_of = [&](const char* what, std::size_t i) {
-            return helper(what + (i ? std::to_string(i + 1) : ""));
+    }
+
+    /// Those that no earlier function reads.
+    void print_tables_of(const std::string& function, const std::vector<Expr>& exprs) {
+        int tables = 0;
+        int lattices = 0;
+        const auto numbered = [&](const std::string& name, int number) {
+            return helper(name + (number > 1 ? std::to_string(number) : ""));
         };
-        for (std::size_t i = 0; i < tables.size(); ++i) {
-            table_functions_[tables[i]] = name_of("table", i);
-            print_table(name_of("table", i), *tables[i]);
-        }
-        for (std::size_t i = 0; i < lattices.size(); ++i) {
-            table_functions_[lattices[i]] = name_of("lattice_at", i);
-            print_lattice(name_of("lattice_at", i), *lattices[i]);
+        for (const Expr& e : nodes_of(exprs)) {
+            const void* const what = e.op() == ExprOp::lookup
+                                         ? static_cast<const void*>(e.table().get())
+                                     : e.op() == ExprOp::lattice ? e.lattice().get()
+                                                                 : nullptr;
+            if (!what || table_texts_.contains(what)) continue;
+            if (e.op() == ExprOp::lookup) {
+                print_table(numbered(function + "_table", ++tables), *e.table());
+            } else {
+                const std::string name = numbered(function + "_at", ++lattices);
+                table_texts_[what] = {name};
+                print_lattice(name, *e.lattice());
+            }
         }
     }
 
@@ -236,75 +238,119 @@ class ProgramPrinter {
         end();
     }
 
-    void print_table(const std::string& name, const Table& table) {
+    /// How a function reads the numbers of a table: patterns with {i}, and arrays that have to
+    /// stand in the function.
+    struct StoredTable {
+        std::string value;
+        std::string position;
+        std::string local_values;
+        std::string local_positions;
+    };
+
+    StoredTable store(const std::string& name, const Table& table) {
         const std::string values = name + "_values";
         const std::string positions = name + "_positions";
-        std::string arrays;
-        const bool is_in_texture =
-            is_texture(fmt::format("a table of {} numbers", table.samples.size()),
-                       std::max(table.samples.size(), table.positions.size()));
-        if (is_in_texture) {
-            const std::size_t count = table.samples.size();
-            const int rows = (static_cast<int>(count) + kTableWidth - 1) / kTableWidth;
-            ShaderTexture& texture = declare_texture(values, {kTableWidth, rows, 1});
-            texture.rgba.resize(4 * static_cast<std::size_t>(kTableWidth * rows));
-            for (std::size_t i = 0; i < count; ++i) {
-                texture.rgba[4 * i] = static_cast<float>(table.samples[i]);
-                if (!table.positions.empty())
-                    texture.rgba[4 * i + 1] = static_cast<float>(table.positions[i]);
+        const std::size_t count = table.samples.size();
+        if (!is_texture(fmt::format("a table of {} numbers", count), count)) {
+            StoredTable stored{values + "[{i}]", positions + "[{i}]", array(values, table.samples),
+                               ""};
+            const bool is_new =
+                !table.positions.empty() && !cell_functions_.contains(table.positions);
+            if (is_new) stored.local_positions = array(positions, table.positions);
+            if (language_.has_local_arrays) return stored;
+            text_ += "\n" + stored.local_values + stored.local_positions;
+            stored.local_values.clear();
+            stored.local_positions.clear();
+            return stored;
+        }
+        const int rows = (static_cast<int>(count) + kTableWidth - 1) / kTableWidth;
+        ShaderTexture& texture = declare_texture(values, {kTableWidth, rows, 1});
+        texture.rgba.resize(4 * static_cast<std::size_t>(kTableWidth * rows));
+        for (std::size_t i = 0; i < count; ++i) {
+            texture.rgba[4 * i] = static_cast<float>(table.samples[i]);
+            if (!table.positions.empty())
+                texture.rgba[4 * i + 1] = static_cast<float>(table.positions[i]);
+        }
+        print_texel(name + "_value", values, 0);
+        if (!table.positions.empty()) print_texel(name + "_position", values, 1);
+        return {name + "_value({i})", name + "_position({i})", "", ""};
+    }
+
+    static std::string at(const std::string& pattern, const std::string& i) {
+        return fmt::format(fmt::runtime(pattern), fmt::arg("i", i));
+    }
+
+    /// Lines that find the cell of x among `count` positions.
+    void print_search(const std::string& position, std::size_t count) {
+        constexpr std::size_t kMostInLines = 64;
+        line(variable("cell", "0"));
+        if (std::has_single_bit(count) && count <= kMostInLines) {
+            for (std::size_t step = count / 2; step > 0; step /= 2) {
+                line(fmt::format("if (x >= {}) {{ cell += {}; }}",
+                                 at(position, fmt::format("cell + {}", step)), step));
             }
-        } else {
-            arrays = array(values, table.samples) +
-                     (table.positions.empty() ? "" : array(positions, table.positions));
+            return;
         }
-        const auto value_at = [&](const std::string& i) {
-            return is_in_texture ? fmt::format("{}_value({})", name, i)
-                                 : fmt::format("{}[{}]", values, i);
-        };
-        const auto position_at = [&](const std::string& i) {
-            return is_in_texture ? fmt::format("{}_position({})", name, i)
-                                 : fmt::format("{}[{}]", positions, i);
-        };
-        if (is_in_texture) {
-            print_texel(name + "_value", values, 0);
-            if (!table.positions.empty()) print_texel(name + "_position", values, 1);
-        }
-        if (!language_.has_local_arrays && !arrays.empty()) text_ += "\n" + arrays;
-        begin(language_.number, name, {declared(language_.number, "x")});
-        if (language_.has_local_arrays) text_ += arrays;
-        const auto n = static_cast<int>(table.samples.size());
+        line(variable("next", std::to_string(count)));
+        line(fmt::format(fmt::runtime(language_.loop),
+                         fmt::arg("count", std::bit_width(count - 1))) +
+             " {");
+        line("    " + let(language_.integer, "middle", "(cell + next) / 2"));
+        line(fmt::format("    if (x < {}) {{ next = middle; }} else {{ cell = middle; }}",
+                         at(position, "middle")));
+        line("}");
+    }
+
+    void print_table(const std::string& name, const Table& table) {
+        const StoredTable stored = store(name, table);
+        const std::size_t n = table.samples.size();
         const bool is_step = table.interpolation == Table::Interpolation::step;
-        const int last = is_step ? n - 1 : n - 2;  // of the first samples of cells
         const char* const number = language_.number;
+        const auto value_at = [&](const char* i) { return at(stored.value, i); };
+        if (is_step && !table.positions.empty()) {
+            std::string& cell_function = cell_functions_[table.positions];
+            if (cell_function.empty()) {
+                cell_function = name + "_cell";
+                begin(language_.integer, cell_function, {declared(number, "x")});
+                text_ += stored.local_positions;
+                print_search(stored.position, n);
+                line("return cell;");
+                end();
+            }
+            if (!stored.local_values.empty()) {
+                begin(number, name + "_value", {declared(language_.integer, "i")});
+                text_ += stored.local_values;
+                line("return " + value_at("i") + ";");
+                end();
+            }
+            table_texts_[&table] = {
+                stored.local_values.empty() ? value_at("{cell}") : name + "_value({cell})",
+                cell_function};
+            return;
+        }
+        table_texts_[&table] = {name};
+        begin(number, name, {declared(number, "x")});
+        text_ += stored.local_values + stored.local_positions;
         if (n == 1) {
-            line(fmt::format("return {};", value_at("0")));
+            line("return " + value_at("0") + ";");
             return end();
         }
         if (table.positions.empty()) {
+            const auto cells = static_cast<double>(is_step ? n : n - 1);
             line(let(number, "place",
-                     fmt::format("{} * {}", limited("x", literal(0), literal(1)),
-                                 literal(is_step ? n : n - 1))));
-            line(let(
-                language_.integer, "cell",
-                to_integer(fmt::format("{}({}, {})", language_.minimum, "place", literal(last)))));
+                     fmt::format("{} * {}", limited("x", literal(0), literal(1)), literal(cells))));
+            line(let(language_.integer, "cell",
+                     to_integer(fmt::format("{}({}, {})", language_.minimum, "place",
+                                            literal(cells - 1)))));
             if (!is_step) line(let(number, "t", fmt::format("place - {}", to_number("cell"))));
         } else {
-            const int steps = static_cast<int>(std::ceil(std::log2(last + 1)));
-            line(variable("cell", "0"));
-            line(variable("next", std::to_string(last + 1)));
-            line(fmt::format(fmt::runtime(language_.loop), fmt::arg("count", steps)) + " {");
-            line("    " + let(language_.integer, "middle", "(cell + next) / 2"));
-            line(fmt::format("    if (x < {}) {{ next = middle; }} else {{ cell = middle; }}",
-                             position_at("middle")));
-            line("}");
-            if (!is_step) {
-                line(let(number, "begin", position_at("cell")));
-                line(let(number, "width", position_at("cell + 1") + " - begin"));
-                line(let(number, "t", limited("(x - begin) / width", literal(0), literal(1))));
-            }
+            print_search(stored.position, n - 1);
+            line(let(number, "begin", at(stored.position, "cell")));
+            line(let(number, "width", at(stored.position, "cell + 1") + " - begin"));
+            line(let(number, "t", limited("(x - begin) / width", literal(0), literal(1))));
         }
         if (is_step) {
-            line(fmt::format("return {};", value_at("cell")));
+            line("return " + value_at("cell") + ";");
         } else {
             line(let(number, "value", value_at("cell")));
             line(fmt::format("return value + t * ({} - value);", value_at("cell + 1")));
@@ -423,7 +469,7 @@ class ProgramPrinter {
         const std::vector<std::string> uniforms = read_uniforms(std::span(&function.f, 1));
         std::set<std::string> taken(uniforms_.begin(), uniforms_.end());
         taken.insert("x");
-        FunctionBody body(language_, {"x"}, taken, table_functions_);
+        FunctionBody body(language_, {"x"}, taken, table_texts_);
         body.count(function.f);
         const std::string value = body.value(function.f);
         begin(language_.number, helper(function.name), parameters(language_.number, "x", uniforms));
@@ -436,7 +482,7 @@ class ProgramPrinter {
         const std::array<std::string, 3> c = channels_of("c");
         std::set<std::string> taken(uniforms_.begin(), uniforms_.end());
         taken.insert("c");
-        FunctionBody body(language_, {c.begin(), c.end()}, taken, table_functions_);
+        FunctionBody body(language_, {c.begin(), c.end()}, taken, table_texts_);
         for (const ColorFunction::Call& call : function.calls)
             body.count(call.argument);
         for (const Expr& e : function.f)
@@ -556,7 +602,8 @@ class ProgramPrinter {
     std::string name_;
     std::vector<std::string> uniforms_;
     ShaderTables tables_;
-    std::map<const void*, std::string> table_functions_;
+    std::map<const void*, TableText> table_texts_;
+    std::map<std::vector<double>, std::string> cell_functions_;  // by positions
     std::vector<ShaderTexture> textures_;
     std::string text_;
 };

@@ -153,7 +153,7 @@ class ProgramMaker {
     }
 
     std::size_t add_scalar(const std::string& name, const Expr& f, const Interval& input) {
-        program_.scalars.push_back({unique_name(name), FloatForm({input}, uniforms_)(f)});
+        program_.scalars.push_back({unique_name(name), FloatForm({input}, uniforms_)(f), input});
         scalar_range_.push_back(range_over(f, input, uniforms_));
         return program_.scalars.size() - 1;
     }

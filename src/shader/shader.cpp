@@ -14,6 +14,7 @@
 #include "measure/error_metric.h"
 #include "measure/sample_set.h"
 #include "shader/first_order.h"
+#include "shader/fitted_curves.h"
 #include "shader/float_run.h"
 #include "shader/guaranteed_bound.h"
 #include "shader/measured_errors.h"
@@ -126,6 +127,12 @@ ShaderProgram bound(ShaderProgram program, const UniformValues& values) {
         for (Expr& e : function.f)
             bind(e);
     }
+    return program;
+}
+
+ShaderProgram program_of(const ShaderRequest& request) {
+    ShaderProgram program = make_program(pipeline_of(request), ranges_of(request));
+    if (request.curves == ShaderCurves::fitted) program = with_fitted_curves(program);
     return program;
 }
 
@@ -342,6 +349,9 @@ std::string header(const ShaderRequest& request, const Shader& shader, const Pip
             " Guaranteed: within {} of these formulas wherever each operation is as exact as "
             "Vulkan and WGSL demand, for channels from 0 to 65504.",
             rounded_up(shader.errors.guaranteed));
+    } else if (request.curves == ShaderCurves::fitted) {
+        precision +=
+            " Curves are polynomials of segments, fitted and measured; no guaranteed bound.";
     } else if (!request.is_inverse) {
         precision += fmt::format(" No useful guaranteed bound: too much may arise in {}_{}.",
                                  shader.function, shader.errors.arises_in);
@@ -356,7 +366,9 @@ std::string header(const ShaderRequest& request, const Shader& shader, const Pip
     if (!request.is_inverse) {
         View on_srgb = view;
         on_srgb.display = "srgb";
-        const std::string measured = measured_errors(definition_hash(build_view(on_srgb)));
+        const std::string measured = request.curves == ShaderCurves::formula
+                                         ? measured_errors(definition_hash(build_view(on_srgb)))
+                                         : std::string();
         add("Measured",
             measured.empty()
                 ? "not with these settings; `tonewright verify` measures GLSL on a machine's GPU"
@@ -383,7 +395,7 @@ std::string shader_function_name(const ShaderRequest& request) {
 
 ShaderErrors measure_shader(const ShaderRequest& request) {
     check(request);
-    const ShaderProgram program = make_program(pipeline_of(request), ranges_of(request));
+    const ShaderProgram program = program_of(request);
     ShaderErrors errors;
     errors.in_float = measure_in_float(request, program);
     if (request.is_inverse) return errors;
@@ -391,10 +403,12 @@ ShaderErrors measure_shader(const ShaderRequest& request) {
     const Expr metric = is_light(request) ? code_value(Expr::input()) : Expr::input();
     // Of a function that measures as exact: half a unit in the last place of white.
     constexpr double kUseful = 300;
-    const GuaranteedBound guaranteed =
-        guaranteed_bound(constant, metric, kUseful * std::max(errors.in_float, 0x1p-24));
-    errors.guaranteed = guaranteed.error;
-    if (std::isinf(guaranteed.error)) errors.arises_in = guaranteed.arises_in;
+    if (request.curves == ShaderCurves::formula) {
+        const GuaranteedBound guaranteed =
+            guaranteed_bound(constant, metric, kUseful * std::max(errors.in_float, 0x1p-24));
+        errors.guaranteed = guaranteed.error;
+        if (std::isinf(guaranteed.error)) errors.arises_in = guaranteed.arises_in;
+    }
     std::array<Expr, 3> outputs = compose(constant);
     for (Expr& e : outputs)
         e = substitute(metric, Span<const Expr>(&e, 1));
@@ -407,7 +421,7 @@ ShaderErrors measure_shader(const ShaderRequest& request) {
 Shader write_shader(const ShaderRequest& request, const ShaderErrors* errors) {
     check(request);
     const Pipeline pipeline = pipeline_of(request);
-    const ShaderProgram program = make_program(pipeline, ranges_of(request));
+    const ShaderProgram program = program_of(request);
     const LanguageFacts& language =
         facts_of(request.application ? request.application->language : request.language);
     Shader shader;

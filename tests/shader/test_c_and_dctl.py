@@ -2,8 +2,8 @@
 """C, DCTL and BlinkScript that `tonewright shader` writes, compiled and run against `tonewright eval`.
 
 C by every compiler there is, with -O2 and -ffast-math; DCTL as C++, with the words of DCTL defined, and with
--ffast-math, as Resolve compiles it; whole kernels for Nuke as C++, with the words of Blink defined, and with a slider
-at its default. All operators, presets and looks with TONEWRIGHT_TEST_ALL=1, else a dozen.
+-ffast-math, as Resolve compiles it; whole kernels for Nuke as C++, with the words of Blink defined, with a slider
+at its default, and every second one with fitted curves. All operators, presets and looks with TONEWRIGHT_TEST_ALL=1, else a dozen.
 
 Usage: test_c_and_dctl.py TONEWRIGHT [--record FILE]
 --record merges the largest errors into a JSON file: implementation -> function -> error.
@@ -84,9 +84,9 @@ def main(tonewright: str, record_file: str) -> int:
     with tempfile.TemporaryDirectory() as folder_name:
         folder = pathlib.Path(folder_name)
         rows = write_shaders(tonewright, folder)
-        for row in rows["blinkscript"]:
+        for number, row in enumerate(rows["blinkscript"]):
             subprocess.run([tonewright, "shader", row["operator"], "--for", "nuke", "--display", "srgb", "--uniforms", "exposure",
-                            "-o", str(folder / row["path"]), "-q"], check=True, capture_output=True)
+                            "--curves", ("formula", "fitted")[number % 2], "-o", str(folder / row["path"]), "-q"], check=True, capture_output=True)
         for number, (language, command) in enumerate(runs):
             source = {"dctl": DCTL, "blinkscript": BLINK}.get(language, "")
             for row in rows[language]:
@@ -102,7 +102,7 @@ def main(tonewright: str, record_file: str) -> int:
                             str(library), "-lm"], check=True)
             for row in rows[language]:
                 comparison.add(language, " ".join(command), row, run(library, row["function"], comparison.rgb),
-                               is_as_written="-ffast-math" not in command)
+                               is_as_written=language == "c" and "-ffast-math" not in command)
     return comparison.report(f"{len(runs)} compilers and settings", record_file)
 
 

@@ -71,7 +71,7 @@ def check_files(report, command, scratch):
     for kind in "array", "texture":
         code, _, err = call(command, "camera_response", "--language", "glsl-es", "--tables", kind, "-o", scratch / f"{kind}.glsl")
         tables[kind] = (scratch / f"{kind}.glsl").read_text()
-    texels = np.fromfile(scratch / "tw_camera_response_table_values.rgba32f", "<f4").reshape(-1, 4)
+    texels = np.fromfile(scratch / "tw_camera_response_curve_table_values.rgba32f", "<f4").reshape(-1, 4)
     numbers = [float(x) for x in tables["array"].split("float[1024](")[1].split(")")[0].split(",")]
     report.check("--tables texture holds what --tables array does", code == OK and np.array_equal(texels[:, 0], np.float32(numbers)), err)
     report.check("and says how it is loaded", "gl.texImage3D(gl.TEXTURE_3D, 0, gl.RGBA32F, 256, 4, 1, 0," in tables["texture"])

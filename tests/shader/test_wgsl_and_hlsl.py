@@ -58,7 +58,7 @@ def with_textures(tonewright: str, language: str, rows: list, folder: pathlib.Pa
     """The functions whose tables are arrays, with their tables as textures."""
     result = []
     for row in rows:
-        if "_table_values[" not in (folder / row["path"]).read_text():
+        if "_values[" not in (folder / row["path"]).read_text():
             continue
         path = pathlib.Path("textures") / row["path"]
         (folder / path).parent.mkdir(parents=True, exist_ok=True)

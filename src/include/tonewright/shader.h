@@ -49,6 +49,13 @@ enum class ShaderTables : unsigned char {
     array,
 };
 
+/// How curves of one number are written.
+enum class ShaderCurves : unsigned char {
+    formula,
+    /// As polynomials of segments, where they take fewer instructions.
+    fitted,
+};
+
 /// What a shader function computes, and how it is written.
 struct ShaderRequest {
     /// Display `linear` for a renderer that encodes its picture itself, a display for finished
@@ -61,6 +68,7 @@ struct ShaderRequest {
     /// What the view shows -> scene-linear.
     bool is_inverse = false;
     ShaderTables tables = ShaderTables::by_size;
+    ShaderCurves curves = ShaderCurves::formula;
     /// Not null: the whole file that it takes, in its language, whatever `language` says. Uniforms
     /// become its own sliders or inputs.
     const ShaderApplication* application = nullptr;
@@ -86,7 +94,7 @@ struct ShaderErrors {
     /// operation as exactly as the Vulkan and WGSL specifications demand, for every color whose
     /// channels lie from 0 to 65504, with the uniforms' values of the view. Sums of matrices may be
     /// taken in any order. Infinite where no bound was found that is at most 300 times `in_float`,
-    /// and of an inverse.
+    /// of an inverse and with fitted curves.
     double guaranteed = kInfinity;
     /// Where `guaranteed` is infinite: the function of the text in which most of the error may
     /// arise.

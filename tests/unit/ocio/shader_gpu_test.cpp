@@ -86,6 +86,47 @@ TEST(ShaderGpu, GlslShowsTheReference) {
     }
 }
 
+/// Largest error over the colors whose channels are numbers.
+double worst_error(const Shader& shader, const View& view, const std::vector<float>& rgb) {
+    std::vector<float> got(rgb.size());
+    std::vector<double> truth(rgb.size());
+    gpu_of(shader).run_rgb(rgb.data(), got.data(), rgb.size() / 3);
+    ReferenceEngine(build_view(view)).run_rgb(rgb.data(), truth.data(), rgb.size() / 3);
+    double worst = 0;
+    for (std::size_t i = 0; i < rgb.size(); ++i) {
+        const double error = std::fabs(static_cast<double>(got[i]) - truth[i]);
+        worst = std::isnan(error) ? kInfinity : std::max(worst, error);
+    }
+    return worst;
+}
+
+// Operators whose curves are fitted, in arrays and in textures. The polynomials are within 3 units
+// of 2^-24; 2e-6 is what float is enough for. ACES works through matrices with negative
+// coefficients.
+TEST(ShaderGpu, FittedCurvesShowTheReference) {
+    if (const std::string reason = OcioGpu::unavailable_reason(); !reason.empty())
+        GTEST_SKIP() << reason;
+    SampleSet samples =
+        make_sample_set(find_input_space("lin_rec709"), {.lattice_edge = 9, .random_count = 5000});
+    std::replace_if(
+        samples.rgb.begin(), samples.rgb.end(), [](float x) { return std::isnan(x); }, 0.18F);
+    for (const char* op : {"agx_sobotka", "uchimura", "lottes", "hable_piecewise", "aces_13"}) {
+        ShaderRequest request;
+        request.view = make_view(resolve_operator(op), "lin_rec709", 0, "srgb");
+        request.curves = ShaderCurves::fitted;
+        const ShaderErrors errors = measure_shader(request);
+        EXPECT_TRUE(std::isinf(errors.guaranteed)) << op;
+        for (const ShaderTables tables : {ShaderTables::array, ShaderTables::texture}) {
+            request.tables = tables;
+            const Shader shader = write_shader(request, &errors);
+            EXPECT_NE(shader.text.find("_table_cell("), std::string::npos) << op;
+            EXPECT_LE(worst_error(shader, request.view, samples.rgb),
+                      std::max(2e-6, op == std::string("aces_13") ? 2 * errors.vulkan_estimate : 0))
+                << op;
+        }
+    }
+}
+
 /// Colors through a table and a lattice of `edge` nodes a side, in front of an operator that limits
 /// them to [0, 1].
 View through_tables(int edge, Table table) {

@@ -99,7 +99,7 @@ class Fitter {
                 continue;
             }
             finish_run();
-            new_.steps.push_back(step);
+            push(step);
         }
         finish_run();
         return std::move(new_);
@@ -132,13 +132,19 @@ class Fitter {
             }
         }
         const std::optional<Expr> curve = name.empty() ? std::nullopt : fit(f, f);
-        if (curve) run_ = {ScalarStep{added({name, *curve})}};
-        for (ProgramStep& step : run_) {
-            auto* const scalar = std::get_if<ScalarStep>(&step);
-            if (scalar && !curve) scalar->function = added(old_.scalars[scalar->function]);
-            new_.steps.push_back(step);
+        if (curve) {
+            new_.steps.emplace_back(ScalarStep{added({name, *curve})});
+        } else {
+            for (const ProgramStep& step : run_)
+                push(step);
         }
         run_.clear();
+    }
+
+    void push(ProgramStep step) {
+        if (auto* const scalar = std::get_if<ScalarStep>(&step))
+            scalar->function = added(old_.scalars[scalar->function]);
+        new_.steps.push_back(step);
     }
 
     std::size_t added(ScalarFunction function) {

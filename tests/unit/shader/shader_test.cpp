@@ -307,6 +307,36 @@ TEST(Shader, ExposureIsAnArgumentInStops) {
         EXPECT_NEAR(evaluate(a[c], color), evaluate(b[c], color), 1e-15);  // two roundings
 }
 
+// Curves in front of an argument and behind it, and one that reads it.
+TEST(Shader, FittedCurvesLeaveArgumentsAlone) {
+    ShaderRequest request = request_of("uchimura", "", "srgb");
+    request.curves = ShaderCurves::fitted;
+    for (const std::vector<std::string>& uniforms :
+         {std::vector<std::string>{"exposure"}, {"max_brightness"}, {"exposure", "contrast"}}) {
+        request.uniforms = uniforms;
+        // An error of the polynomials is at most 3 units of 2^-24.
+        EXPECT_LE(measure_shader(request).in_float, 4e-7) << uniforms.back();
+    }
+    const ShaderErrors unmeasured;
+    const std::string text = write_shader(request, &unmeasured).text;
+    EXPECT_NE(text.find("exp2(exposure)"), std::string::npos);
+}
+
+// What three channels have in common is a function; its formula stands there once.
+TEST(Shader, ACurveOfEachChannelIsWrittenOnce) {
+    const ShaderErrors unmeasured;
+    const std::string text = write_shader(request_of("agx_blender:formula"), &unmeasured).text;
+    const auto count_of = [&](const std::string& words) {
+        int count = 0;
+        for (std::size_t at = text.find(words); at != std::string::npos;
+             at = text.find(words, at + 1))
+            ++count;
+        return count;
+    };
+    EXPECT_EQ(count_of("log2("), 1);
+    EXPECT_EQ(count_of("_mix_curve("), 4);  // and three calls
+}
+
 TEST(Shader, BadRequestsAreToldInOneLine) {
     ShaderRequest request = request_of("hable");
     request.uniforms = {"whit"};

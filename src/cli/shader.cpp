@@ -120,6 +120,12 @@ void write_one(Options& options) {
 
 /// Every operator, preset and look in one language or all: FOLDER/LANGUAGE/tw_NAME.EXTENSION.
 void write_all(const Options& options) {
+    if (!options.op.empty() || !options.application.empty() || !options.file.empty() ||
+        !options.uniforms.empty() || options.is_inverse) {
+        throw Error(
+            "shader: --all is given; expected no OPERATOR, --for, -o, --uniforms or --inverse "
+            "beside it");
+    }
     std::vector<ShaderLanguageInfo> languages = shader_languages();
     if (!options.language.empty()) languages = {find_shader_language(options.language)};
     require_writable_folder(options.all);

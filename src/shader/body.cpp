@@ -155,6 +155,14 @@ FunctionBody::Text FunctionBody::compose(const Expr& e) {
                 return {operand(part(0), kSum) + " - " + float_literal(-part(1).value(), language_),
                         kSum};
             }
+            if (const Expr& b = part(1); b.op() == ExprOp::multiply && uses_[b.node()] < 2 &&
+                                         b.operand(0).is_constant() && b.operand(0).value() < 0) {
+                const std::string a = operand(part(0), kSum);
+                return {
+                    fmt::format("{} - {} * {}", a, float_literal(-b.operand(0).value(), language_),
+                                operand(b.operand(1), kProduct + 1)),
+                    kSum};
+            }
             return binary(" + ", kSum);
         case ExprOp::subtract:
             if (part(1).is_constant() && part(1).value() < 0) {

@@ -20,8 +20,8 @@ layout(location = 0) out vec4 shown;
 void main() { shown = vec4(FUNCTION(scene), 1.0); }
 """
 SPECIAL = {"Log2": 4, "Exp2": 4, "Pow": 9, "Sqrt": 4, "Sin": 4, "Cos": 4, "Atan2": 20}
-FREE = {"Constant", "CompositeConstruct", "CompositeExtract", "AccessChain", "Variable", "Label", "Return", "Function", "FunctionEnd",
-        "Phi", "SelectionMerge", "LoopMerge", "Store"}
+FREE = {"Constant", "CompositeConstruct", "CompositeExtract", "AccessChain", "Variable", "Label", "Return", "Function",
+        "FunctionEnd", "Phi", "SelectionMerge", "LoopMerge", "Store"}
 
 
 def count(tonewright, operator, curves, folder):
@@ -35,7 +35,8 @@ def count(tonewright, operator, curves, folder):
     subprocess.run(["spirv-opt", "-O", module, "-o", module], check=True)
     lines = subprocess.run(["spirv-dis", "--no-color", "--no-header", module], check=True, capture_output=True, text=True).stdout
     body = lines[lines.index("OpFunction "):].splitlines()
-    computing = special = reads = cycles = 0
+    computing = special = cycles = 0
+    reads = -1  # of the color
     for line in body:
         words = line.split("= ")[-1].split()
         operation = words[0].removeprefix("Op") if words else ""
@@ -55,7 +56,8 @@ def main(tonewright, operators):
     with tempfile.TemporaryDirectory() as name:
         for operator in operators or OPERATORS:
             formula, fitted = (count(tonewright, operator, curves, Path(name)) for curves in ("formula", "fitted"))
-            print(f"| `{operator}` | {formula[0]} | {formula[1]} | {formula[3]} | {fitted[0]} | {fitted[1]} | {fitted[2]} | {fitted[3]} |")
+            numbers = (formula[0], formula[1], formula[3], *fitted)
+            print(f"| `{operator}` | " + " | ".join(map(str, numbers)) + " |")
 
 
 if __name__ == "__main__":

@@ -4,9 +4,10 @@
 //
 //   VK_ICD_FILENAMES=.../vk_swiftshader_icd.json node run_on_dawn.mjs NODE_MODULES JOB.json
 //
-// The job: input (a file of float32 RGB) and for each function source (WGSL text, or a SPIR-V file), textures (files NAME.rgba32f
-// of float32 RGBA in a folder, with their size and the loader of the text, or none; at group 0) and out (a file of float32 RGB to write). The entry point is `main`, 64 colors
-// to a group, input and output at group 1. Prints the adapter; messages of the compiler are an error.
+// The job: input (a file of float32 RGB) and for each function source (WGSL text, or a SPIR-V file), textures (files
+// NAME.rgba32f of float32 RGBA in a folder, with their size and the loader of the text, or none; at group 0) and out (a
+// file of float32 RGB to write). The entry point is `main`, 64 colors to a group, input and output at group 1. Prints the
+// adapter; messages of the compiler are an error.
 import { createRequire } from 'node:module';
 import { readFile, writeFile } from 'node:fs/promises';
 import path from 'node:path';
@@ -35,7 +36,8 @@ const made = async (name, size, file) => {
     const texture = device.createTexture({
         dimension: '3d', size, format: 'rgba32float', usage: GPUTextureUsage.TEXTURE_BINDING | GPUTextureUsage.COPY_DST,
     });
-    device.queue.writeTexture({ texture }, await file(`${name}.rgba32f`), { bytesPerRow: 16 * size[0], rowsPerImage: size[1] }, size);
+    device.queue.writeTexture({ texture }, await file(`${name}.rgba32f`),
+        { bytesPerRow: 16 * size[0], rowsPerImage: size[1] }, size);
     return texture;
 };
 

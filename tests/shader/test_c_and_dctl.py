@@ -57,7 +57,8 @@ static inline float min(float a, float b) { return b < a ? b : a; }
 static inline float max(float a, float b) { return a < b ? b : a; }
 #define kernel struct
 #define param public
-using std::fabs; using std::sqrt; using std::log2; using std::pow; using std::sin; using std::cos; using std::atan2; using std::floor;
+using std::fabs; using std::sqrt; using std::log2; using std::pow;
+using std::sin; using std::cos; using std::atan2; using std::floor;
 """
 # How a color in a[] becomes one in b[].
 BODIES = {"c": "{function}(a, b);",
@@ -85,8 +86,9 @@ def main(tonewright: str, record_file: str) -> int:
         folder = pathlib.Path(folder_name)
         rows = write_shaders(tonewright, folder)
         for number, row in enumerate(rows["blinkscript"]):
-            subprocess.run([tonewright, "shader", row["operator"], "--for", "nuke", "--display", "srgb", "--uniforms", "exposure",
-                            "--curves", ("formula", "fitted")[number % 2], "-o", str(folder / row["path"]), "-q"], check=True, capture_output=True)
+            subprocess.run([tonewright, "shader", row["operator"], "--for", "nuke", "--display", "srgb", "--uniforms",
+                            "exposure", "--curves", ("formula", "fitted")[number % 2], "-o", str(folder / row["path"]), "-q"],
+                           check=True, capture_output=True)
         for number, (language, command) in enumerate(runs):
             source = {"dctl": DCTL, "blinkscript": BLINK}.get(language, "")
             for row in rows[language]:

@@ -215,7 +215,7 @@ class Package {
             const std::string path = "lattices/" + content_hash(bytes) + ".rgba32f";
             lattices += fmt::format(
                 "\n        {{ name: '{}', edge: {}, url: new URL('../{}', import.meta.url) }},",
-                texture.name, texture.edge, path);
+                texture.name, texture.size[0], path);
             if (written_.insert(path).second) files_.push_back({path, std::move(bytes)});
         }
         if (!lattices.empty()) lattices += "\n    ";

@@ -23,6 +23,8 @@ struct Options : ViewOptions {
     std::string file;
     std::vector<std::string> uniforms;
     std::string all;
+    std::string tables;
+    std::string curves = "formula";
     bool is_inverse = false;
     bool list = false;
     bool npm = false;
@@ -51,6 +53,16 @@ std::vector<GeneratedFile> texture_files(const Shader& shader, const std::string
     return files;
 }
 
+ShaderCurves curves_of(const Options& options) {
+    return options.curves == "fitted" ? ShaderCurves::fitted : ShaderCurves::formula;
+}
+
+ShaderTables tables_of(const Options& options) {
+    return options.tables == "texture" ? ShaderTables::texture
+           : options.tables == "array" ? ShaderTables::array
+                                       : ShaderTables::by_size;
+}
+
 void write_one(Options& options) {
     if (options.op.empty())
         throw Error("shader: OPERATOR is missing; expected an id from `tonewright list`");
@@ -69,6 +81,8 @@ void write_one(Options& options) {
     request.view = options.view();
     request.uniforms = options.uniforms;
     request.is_inverse = options.is_inverse;
+    request.tables = tables_of(options);
+    request.curves = curves_of(options);
     if (!options.file.empty()) {
         if (const std::string why = why_no_file(options.file); !why.empty())
             throw FileError(fmt::format("write: {}: {}", options.file, why));
@@ -108,6 +122,8 @@ template <class Write>
 void for_all(const Options& options, const Write& write) {
     for (const OperatorVariant& variant : all_variants()) {
         ShaderRequest request;
+        request.tables = tables_of(options);
+        request.curves = curves_of(options);
         request.view = make_view(resolve_operator(variant.name, {}, variant.look), options.input,
                                  options.exposure, options.display);
         write(request, measure_shader(request), reads_lattice(request.view));
@@ -116,6 +132,12 @@ void for_all(const Options& options, const Write& write) {
 
 /// In one language or all: FOLDER/LANGUAGE/tw_NAME.EXTENSION.
 void write_all(const Options& options) {
+    if (!options.op.empty() || !options.application.empty() || !options.file.empty() ||
+        !options.uniforms.empty() || options.is_inverse) {
+        throw Error(
+            "shader: --all is given; expected no OPERATOR, --for, -o, --uniforms or --inverse "
+            "beside it");
+    }
     std::vector<ShaderLanguageInfo> languages = shader_languages();
     if (!options.language.empty()) languages = {find_shader_language(options.language)};
     require_writable_folder(options.all);
@@ -240,6 +262,19 @@ void add_shader(CommandLine& program) {
         .value("NAME,...")
         .separated_by(',')
         .one_value_each()
+        .group(output);
+    command
+        .add("--tables", options->tables,
+             "where numbers of tables and lattices stand (default: by their size)")
+        .choices(std::vector<std::string>{"texture", "array"})
+        .value("KIND")
+        .group(output);
+    command
+        .add("--curves", options->curves,
+             "curves of one number as formulas, or as fitted polynomials where these are faster")
+        .choices(std::vector<std::string>{"formula", "fitted"})
+        .value("KIND")
+        .show_default()
         .group(output);
     command.add_flag("--inverse", options->is_inverse, "write the inverse").group(output);
     command.add_flag("--list", options->list, "list languages and applications").group(output);

@@ -614,6 +614,22 @@ std::size_t CompiledCurve::segment_of(float x) const noexcept {
     return static_cast<std::size_t>(segment[cell]) + (x >= threshold[cell] ? 1 : 0);
 }
 
+std::vector<float> CompiledCurve::segment_begins() const {
+    // The bits of floats that are not negative rise with them.
+    std::vector<float> begins = {lo};
+    const std::size_t last = segment_of(hi);
+    for (std::size_t s = segment_of(lo) + 1; s <= last; ++s) {
+        auto below = std::bit_cast<std::uint32_t>(begins.back());
+        auto at = std::bit_cast<std::uint32_t>(hi);
+        while (at - below > 1) {
+            const std::uint32_t middle = below + (at - below) / 2;
+            (segment_of(std::bit_cast<float>(middle)) < s ? below : at) = middle;
+        }
+        begins.push_back(std::bit_cast<float>(at));
+    }
+    return begins;
+}
+
 std::uint32_t CurveRows::base_of(std::uint32_t bits) const noexcept {
     std::uint32_t last = base;
     for (const Restart& restart : restarts) {

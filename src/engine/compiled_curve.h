@@ -112,6 +112,10 @@ struct CompiledCurve {
     [[nodiscard]] double operator()(double x) const noexcept;
     [[nodiscard]] double slope(double x) const noexcept;
 
+    /// Where each segment begins, rising.
+    /// @pre the form is segments
+    [[nodiscard]] std::vector<float> segment_begins() const;
+
     /// In instructions a vector, roughly.
     [[nodiscard]] int cost() const noexcept;
 

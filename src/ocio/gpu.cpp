@@ -430,10 +430,9 @@ struct GpuProgram {
         const Gl& gl = session.gl;
         link(gl, text, "vec4(" + function + "(color.rgb), 1)");
         for (const GlslTexture& texture : textures) {
-            const auto n = static_cast<GLsizei>(texture.edge);
             add_texture(gl, GL_TEXTURE_3D, texture.sampler.c_str(), OCIO::INTERP_NEAREST);
-            gl.tex_image_3d(GL_TEXTURE_3D, 0, GL_RGBA32F, n, n, n, 0, GL_RGBA, GL_FLOAT,
-                            texture.rgba);
+            gl.tex_image_3d(GL_TEXTURE_3D, 0, GL_RGBA32F, texture.size[0], texture.size[1],
+                            texture.size[2], 0, GL_RGBA, GL_FLOAT, texture.rgba);
         }
         gl.check("uploading the textures");
     }

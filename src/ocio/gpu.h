@@ -3,6 +3,7 @@
 
 #include <OpenColorIO/OpenColorIO.h>
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <string>
@@ -55,10 +56,10 @@ class TONEWRIGHT_API OcioGpu {
     std::unique_ptr<GpuProgram> program_;
 };
 
-/// A 3D texture of edge^3 texels, RGBA float, that a GLSL text reads without a filter.
+/// A 3D texture, RGBA float, x running fastest, that a GLSL text reads without a filter.
 struct GlslTexture {
     std::string sampler;
-    int edge;
+    std::array<int, 3> size;
     const float* rgba;
 };
 

@@ -84,12 +84,11 @@ const char* word_for(const Expr& e) {
 }  // namespace
 
 FunctionBody::FunctionBody(const LanguageFacts& language, std::vector<std::string> inputs,
-                           std::set<std::string> taken,
-                           std::map<const void*, std::string> table_functions)
+                           std::set<std::string> taken, std::map<const void*, TableText> tables)
     : language_(language),
       inputs_(std::move(inputs)),
       taken_(std::move(taken)),
-      table_functions_(std::move(table_functions)) {}
+      tables_(std::move(tables)) {}
 
 void FunctionBody::count(const Expr& e) {
     if (++uses_[e.node()] > 1) return;
@@ -156,6 +155,14 @@ FunctionBody::Text FunctionBody::compose(const Expr& e) {
                 return {operand(part(0), kSum) + " - " + float_literal(-part(1).value(), language_),
                         kSum};
             }
+            if (const Expr& b = part(1); b.op() == ExprOp::multiply && uses_[b.node()] < 2 &&
+                                         b.operand(0).is_constant() && b.operand(0).value() < 0) {
+                const std::string a = operand(part(0), kSum);
+                return {
+                    fmt::format("{} - {} * {}", a, float_literal(-b.operand(0).value(), language_),
+                                operand(b.operand(1), kProduct + 1)),
+                    kSum};
+            }
             return binary(" + ", kSum);
         case ExprOp::subtract:
             if (part(1).is_constant() && part(1).value() < 0) {
@@ -185,7 +192,10 @@ FunctionBody::Text FunctionBody::compose(const Expr& e) {
         case ExprOp::square_root:
             return call(language_.square_root);
         case ExprOp::exp2:
-            return call(language_.exp2);
+            if (*language_.exp2) return call(language_.exp2);
+            return {fmt::format("{}({}, {})", language_.power, float_literal(2, language_),
+                                operand(part(0), kAny)),
+                    kAtom};
         case ExprOp::log2:
             return call(language_.log2);
         case ExprOp::sine:
@@ -203,18 +213,30 @@ FunctionBody::Text FunctionBody::compose(const Expr& e) {
         case ExprOp::select:
             return {choose(e), *language_.choose == '{' ? kAny : kAtom};
         case ExprOp::lookup:
-            return call(table_functions_.at(e.table().get()).c_str());
+            return {table_value(e), kAtom};
         case ExprOp::lattice:
             return {lattice_channel(e), kAtom};
     }
     return {};
 }
 
+std::string FunctionBody::table_value(const Expr& e) {
+    const TableText& table = tables_.at(e.table().get());
+    const std::string argument = "(" + operand(e.operand(0), kAny) + ")";
+    if (table.cell_function.empty()) return table.function + argument;
+    std::string& cell = cells_[table.cell_function + argument];
+    if (cell.empty()) {
+        cell = unique("cell");
+        add_line(language_.integer, cell, table.cell_function + argument);
+    }
+    return fmt::format(fmt::runtime(table.function), fmt::arg("cell", cell));
+}
+
 std::string FunctionBody::lattice_channel(const Expr& e) {
     std::string color;
     for (int i = 0; i < 3; ++i)
         color += (i ? ", " : "") + operand(e.operand(i), kAny);
-    const std::string call = fmt::format("{}({}({}))", table_functions_.at(e.lattice().get()),
+    const std::string call = fmt::format("{}({}({}))", tables_.at(e.lattice().get()).function,
                                          language_.make_color, color);
     std::string& name = lattice_colors_[call];
     if (name.empty()) {

@@ -12,15 +12,23 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
+/// How the text reads a table or a lattice.
+struct TableText {
+    std::string function;  // of the number, or of the color
+    /// Of a table in steps: the function of the number that gives its cell, which tables with the
+    /// same positions share; `function` is then a pattern with {cell}.
+    std::string cell_function = {};
+};
+
 /// Prints expressions as the body of a function: what is read twice, or is too long for a line,
 /// becomes a local variable.
 class FunctionBody {
   public:
     /// @param inputs  the text of input 0, 1, ...
     /// @param taken   names that no variable may have
-    /// @param table_functions  names of the functions that read tables and lattices
+    /// @param tables  how tables and lattices are read
     FunctionBody(const LanguageFacts& language, std::vector<std::string> inputs,
-                 std::set<std::string> taken, std::map<const void*, std::string> table_functions);
+                 std::set<std::string> taken, std::map<const void*, TableText> tables);
 
     /// What is going to be printed, all of it, before the first value().
     void count(const Expr& e);
@@ -44,19 +52,22 @@ class FunctionBody {
     [[nodiscard]] std::string choose(const Expr& e);
     [[nodiscard]] std::string name_for(const Expr& e);
     [[nodiscard]] std::string unique(const std::string& name);
+    [[nodiscard]] std::string table_value(const Expr& e);
     [[nodiscard]] std::string lattice_channel(const Expr& e);
     void add_line(const char* type, const std::string& name, const std::string& value);
 
     const LanguageFacts& language_;
     std::vector<std::string> inputs_;
     std::set<std::string> taken_;
-    std::map<const void*, std::string> table_functions_;
+    std::map<const void*, TableText> tables_;
     std::unordered_map<const ExprNode*, int> uses_;
     std::unordered_map<const ExprNode*, Text> known_;
     /// Of a power of a variable by multiplication: the variable, and the exponent.
     std::unordered_map<const ExprNode*, std::pair<std::string, int>> powers_;
     /// Colors that lattices gave, by the call.
     std::map<std::string, std::string> lattice_colors_;
+    /// Cells of tables, by the call.
+    std::map<std::string, std::string> cells_;
     std::string lines_;
 };
 

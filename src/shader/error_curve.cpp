@@ -41,6 +41,7 @@ std::vector<Expr> links_of(const Expr& f) {
             rebuilt.emplace(e.node(), e);
         } else {
             std::vector<Expr> operands;
+            operands.reserve(static_cast<std::size_t>(e.operand_count()));
             for (int k = 0; k < e.operand_count(); ++k)
                 operands.push_back(rebuilt.at(e.operand(k).node()));
             rebuilt.insert_or_assign(

@@ -71,7 +71,7 @@ Expr FloatForm::operator()(const Expr& e) {
     if (e.operand_count() == 0) return e;
     if (const auto known = rewritten_.find(e.node()); known != rewritten_.end())
         return known->second;
-    const Expr result = rewrite(e);
+    Expr result = rewrite(e);
     keep_.push_back(e);
     rewritten_.emplace(e.node(), result);
     return result;
@@ -111,6 +111,7 @@ Expr FloatForm::rewrite(const Expr& e) {
             return interpolate(e.lattice(), e.channel(), part(0), part(1), part(2));
         default: {
             std::vector<Expr> parts;
+            parts.reserve(static_cast<std::size_t>(e.operand_count()));
             for (int i = 0; i < e.operand_count(); ++i)
                 parts.push_back(part(i));
             return make_expr(e.op(), parts, e.op() == ExprOp::lookup ? e.table() : nullptr);
@@ -128,13 +129,13 @@ Expr FloatForm::power(const Expr& base, const Expr& exponent) {
     const Interval y = range(exponent);
     // Ends of the base: no denormal, and no power beyond kLargest.
     double lo = kSmallest;
-    double hi = std::numeric_limits<float>::max();
+    double hi = 3e38;
     if (y.lo < 0) lo = std::max(lo, std::pow(kLargest, 1 / y.lo));
     if (y.hi > 0) hi = std::min(hi, std::pow(kLargest, 1 / y.hi));
     Expr limited = base;
     if (x.lo < lo) limited = max(limited, lo);
     if (x.hi > hi) limited = min(limited, hi);
-    const Expr result = pow(limited, exponent);
+    Expr result = pow(limited, exponent);
     const bool vanishes = y.lo > 0 && std::pow(lo, y.lo) <= kNothing;
     if (x.lo >= lo || vanishes || y.hi < 0) return result;
     // At 0: 0, but x^0 is 1.

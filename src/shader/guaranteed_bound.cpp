@@ -241,8 +241,9 @@ GuaranteedBound guaranteed_bound(const ShaderProgram& program, const Expr& metri
     }
     std::size_t step = 0;
     (void)bounded.over(queue.top().box, &step);
-    const double error = queue.top().error;
-    return {error <= useful ? error : kInfinity, bounded.name_of(step)};
+    double error = queue.top().error;
+    if (!(error <= useful)) error = kInfinity;
+    return {error, bounded.name_of(step)};
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -30,7 +30,11 @@ constexpr LanguageFacts kGlsl = {
     .to_number = "float({value})",
     .array = "const float {name}[{count}] = float[{count}](\n{values});",
     .texture = "uniform highp sampler3D {name};",
-    .fetch = "texelFetch({name}, ivec3({x}, {y}, {z}), 0).rgb",
+    .fetch = "texelFetch({name}, ivec3({x}, {y}, {z}), 0)",
+    .loader =
+        "// glTexImage3D(GL_TEXTURE_3D, 0, GL_RGBA32F, {width}, {height}, {depth}, 0, GL_RGBA, "
+        "GL_FLOAT, data);\n"
+        "// GL_TEXTURE_MIN_FILTER and GL_TEXTURE_MAG_FILTER are GL_NEAREST.\n",
     .largest_array = 4096,
     .has_local_arrays = false,
     .has_color_math = true,
@@ -54,6 +58,13 @@ constexpr LanguageFacts kGlsl = {
 constexpr LanguageFacts glsl_es() {
     LanguageFacts f = kGlsl;
     f.language = ShaderLanguage::glsl_es;
+    f.loader =
+        "// const data = new Float32Array(await (await fetch('{name}.rgba32f')).arrayBuffer());\n"
+        "// gl.bindTexture(gl.TEXTURE_3D, gl.createTexture());\n"
+        "// gl.texParameteri(gl.TEXTURE_3D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);\n"
+        "// gl.texParameteri(gl.TEXTURE_3D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);\n"
+        "// gl.texImage3D(gl.TEXTURE_3D, 0, gl.RGBA32F, {width}, {height}, {depth}, 0, gl.RGBA, "
+        "gl.FLOAT, data);\n";
     f.prologue = "precision highp float;\nprecision highp int;\n";
     return f;
 }
@@ -67,7 +78,12 @@ constexpr LanguageFacts hlsl() {
     f.to_number = "(float)({value})";
     f.array = "static const float {name}[{count}] = {{\n{values}}};";
     f.texture = "Texture3D<float4> {name};";
-    f.fetch = "{name}.Load(int4({x}, {y}, {z}, 0)).rgb";
+    f.fetch = "{name}.Load(int4({x}, {y}, {z}, 0))";
+    f.loader =
+        "// Direct3D: DXGI_FORMAT_R32G32B32A32_FLOAT, {pitch} bytes a row.\n"
+        "// Unity: var t = new Texture3D({width}, {height}, {depth}, TextureFormat.RGBAFloat, "
+        "false);\n"
+        "//        t.SetPixelData(File.ReadAllBytes(\"{name}.rgba32f\"), 0); t.Apply(false);\n";
     f.splat = "float3({value}, {value}, {value})";
     f.atan2 = "atan2";
     return f;
@@ -91,7 +107,14 @@ constexpr LanguageFacts wgsl() {
     // Not `const`: older compilers refuse an index into one that is no constant.
     f.array = "var<private> {name}: array<f32, {count}> = array<f32, {count}>(\n{values});";
     f.texture = "@group(0) @binding({binding}) var {name}: texture_3d<f32>;";
-    f.fetch = "textureLoad({name}, vec3<i32>({x}, {y}, {z}), 0).rgb";
+    f.fetch = "textureLoad({name}, vec3<i32>({x}, {y}, {z}), 0)";
+    f.loader =
+        "// const data = new Float32Array(await (await fetch('{name}.rgba32f')).arrayBuffer());\n"
+        "// const size = [{width}, {height}, {depth}];\n"
+        "// const texture = device.createTexture({{ size, dimension: '3d', format: 'rgba32float',\n"
+        "//     usage: GPUTextureUsage.TEXTURE_BINDING | GPUTextureUsage.COPY_DST }});\n"
+        "// device.queue.writeTexture({{ texture }}, data, {{ bytesPerRow: {pitch}, rowsPerImage: "
+        "{height} }}, size);\n";
     f.splat = "vec3<f32>({value})";
     f.atan2 = "atan2";
     return f;
@@ -182,6 +205,28 @@ constexpr LanguageFacts dctl() {
     return f;
 }
 
+/// Members of a kernel.
+constexpr LanguageFacts blink() {
+    LanguageFacts f = dctl();
+    f.language = ShaderLanguage::blink;
+    f.make_color = "float3";
+    f.before_function = "";
+    f.array = "float {name}[{count}] = {{\n{values}}};";
+    f.has_local_arrays = true;
+    f.minimum = "min";
+    f.maximum = "max";
+    f.absolute = "fabs";
+    f.square_root = "sqrt";
+    f.exp2 = "";
+    f.log2 = "log2";
+    f.power = "pow";
+    f.sine = "sin";
+    f.cosine = "cos";
+    f.atan2 = "atan2";
+    f.floor = "floor";
+    return f;
+}
+
 constexpr LanguageFacts osl() {
     LanguageFacts f = kGlsl;
     f.language = ShaderLanguage::osl;
@@ -201,7 +246,8 @@ constexpr LanguageFacts osl() {
     return f;
 }
 
-constexpr std::array kFacts = {kGlsl, glsl_es(), hlsl(), wgsl(), msl(), dctl(), c(), osl()};
+constexpr std::array kFacts = {kGlsl,  glsl_es(), hlsl(), wgsl(), msl(),
+                               dctl(), blink(),   c(),    osl()};
 
 }  // namespace
 
@@ -213,6 +259,7 @@ const std::vector<ShaderLanguageInfo>& shader_languages() {
         {ShaderLanguage::wgsl, "wgsl", "WGSL (WebGPU)", ".wgsl", true},
         {ShaderLanguage::msl, "msl", "Metal Shading Language", ".metal"},
         {ShaderLanguage::dctl, "dctl", "DCTL (DaVinci Resolve)", ".h"},
+        {ShaderLanguage::blink, "blinkscript", "BlinkScript (Nuke), members of a kernel", ".h"},
         {ShaderLanguage::c, "c", "C99 and C++", ".h", true},
         {ShaderLanguage::osl, "osl", "Open Shading Language", ".osl"},
     };

@@ -30,7 +30,9 @@ struct LanguageFacts {
     const char* array;       // {name}, {count}, {values}
     /// Of 3D, its {name} and {binding}; empty: none can be read without being an argument.
     const char* texture;
-    const char* fetch;  // of a texture's {name} at {x}, {y}, {z}
+    const char* fetch;  // of a texture's {name} at {x}, {y}, {z}: a color, or more than that
+    /// Comments: how the texture is made of its file. {name}, {width}, {height}, {depth}, {pitch}.
+    const char* loader;
     /// The largest array that a text of the language should hold.
     std::size_t largest_array;
     /// Arrays stand in the function that reads them.
@@ -43,7 +45,7 @@ struct LanguageFacts {
     const char* maximum;
     const char* absolute;
     const char* square_root;
-    const char* exp2;
+    const char* exp2;  // empty: there is none, and 2 is raised
     const char* log2;
     const char* power;
     const char* sine;

@@ -5,11 +5,12 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <charconv>
 #include <cmath>
-#include <limits>
 #include <span>
 
+#include "base/format_number.h"
 #include "expr/nodes.h"
 #include "shader/body.h"
 #include "tonewright/error.h"
@@ -24,19 +25,15 @@ struct Overloaded : F... {
 template <class... F>
 Overloaded(F...) -> Overloaded<F...>;
 
-template <class Item>
-void add_once(std::vector<Item>& items, Item item) {
-    if (std::find(items.begin(), items.end(), item) == items.end()) items.push_back(item);
-}
-
 class ProgramPrinter {
   public:
     ProgramPrinter(const ShaderProgram& program, const LanguageFacts& language, std::string name,
-                   std::vector<std::string> uniforms)
+                   std::vector<std::string> uniforms, ShaderTables tables)
         : program_(program),
           language_(language),
           name_(std::move(name)),
-          uniforms_(std::move(uniforms)) {}
+          uniforms_(std::move(uniforms)),
+          tables_(tables) {}
 
     PrintedProgram print() {
         print_tables();
@@ -120,30 +117,36 @@ class ProgramPrinter {
     }
 
     void print_tables() {
-        std::vector<Expr> all;
         for (const ScalarFunction& function : program_.scalars)
-            all.push_back(function.f);
+            print_tables_of(function.name, {function.f});
         for (const ColorFunction& function : program_.colors) {
+            std::vector<Expr> all(function.f.begin(), function.f.end());
             for (const ColorFunction::Call& c : function.calls)
                 all.push_back(c.argument);
-            all.insert(all.end(), function.f.begin(), function.f.end());
+            print_tables_of(function.name, all);
         }
-        std::vector<const Table*> tables;
-        std::vector<const Lattice*> lattices;
-        for (const Expr& e : nodes_of(all)) {
-            if (e.op() == ExprOp::lookup) add_once(tables, e.table().get());
-            if (e.op() == ExprOp::lattice) add_once(lattices, e.lattice().get());
-        }
-        const auto name_of = [&](const char* what, std::size_t i) {
-            return helper(what + (i ? std::to_string(i + 1) : ""));
+    }
+
+    /// Those that no earlier function reads.
+    void print_tables_of(const std::string& function, const std::vector<Expr>& exprs) {
+        int tables = 0;
+        int lattices = 0;
+        const auto numbered = [&](const std::string& name, int number) {
+            return helper(name + (number > 1 ? std::to_string(number) : ""));
         };
-        for (std::size_t i = 0; i < tables.size(); ++i) {
-            table_functions_[tables[i]] = name_of("table", i);
-            print_table(name_of("table", i), *tables[i]);
-        }
-        for (std::size_t i = 0; i < lattices.size(); ++i) {
-            table_functions_[lattices[i]] = name_of("lattice_at", i);
-            print_lattice(name_of("lattice_at", i), *lattices[i]);
+        for (const Expr& e : nodes_of(exprs)) {
+            const void* const what = e.op() == ExprOp::lookup
+                                         ? static_cast<const void*>(e.table().get())
+                                     : e.op() == ExprOp::lattice ? e.lattice().get()
+                                                                 : nullptr;
+            if (!what || table_texts_.contains(what)) continue;
+            if (e.op() == ExprOp::lookup) {
+                print_table(numbered(function + "_table", ++tables), *e.table());
+            } else {
+                const std::string name = numbered(function + "_at", ++lattices);
+                table_texts_[what] = {name};
+                print_lattice(name, *e.lattice());
+            }
         }
     }
 
@@ -184,52 +187,174 @@ class ProgramPrinter {
         return fmt::format("{}({}({}, {}), {})", language_.minimum, language_.maximum, x, lo, hi);
     }
 
-    void print_table(const std::string& name, const Table& table) {
+    /// @throws Error  neither an array nor a texture can hold that many
+    [[nodiscard]] bool is_texture(const std::string& what, std::size_t numbers) const {
+        const bool has_texture = *language_.texture != 0;
+        const bool is_small = numbers <= language_.largest_array;
+        const bool result =
+            tables_ == ShaderTables::by_size ? !is_small : tables_ == ShaderTables::texture;
+        if (result ? has_texture : is_small) return result;
+        const std::string& id = std::find_if(shader_languages().begin(), shader_languages().end(),
+                                             [&](const ShaderLanguageInfo& info) {
+                                                 return info.language == language_.language;
+                                             })
+                                    ->id;
+        throw Error(fmt::format(
+            "shader: {} reads {}; {}", name_, what,
+            !has_texture && !is_small
+                ? "expected a language with textures: glsl, glsl-es, hlsl, wgsl; or c"
+            : result
+                ? "tables is texture; expected array: " + id + " has none that a function can read"
+                : fmt::format("tables is array; expected texture: an array in {} should hold at "
+                              "most {} numbers, not {}",
+                              id, language_.largest_array, numbers)));
+    }
+
+    /// Declares a texture; its texels are still to be filled in.
+    ShaderTexture& declare_texture(const std::string& name, const std::array<int, 3>& size) {
+        const auto filled = [&](const char* pattern) {
+            return fmt::format(fmt::runtime(pattern), fmt::arg("name", name),
+                               fmt::arg("binding", textures_.size()), fmt::arg("width", size[0]),
+                               fmt::arg("height", size[1]), fmt::arg("depth", size[2]),
+                               fmt::arg("pitch", 16 * size[0]));
+        };
+        text_ +=
+            fmt::format("\n// {}: {} texels, RGBA, 32-bit float, no filter. To load its file:\n",
+                        name, fmt::join(size, " x ")) +
+            filled(language_.loader) + filled(language_.texture) + "\n";
+        return textures_.emplace_back(ShaderTexture{name, size, {}});
+    }
+
+    static constexpr int kTableWidth = 256;  // 3D textures of GLSL ES may have no more
+
+    /// A function that gives channel `channel` of texel i of a table's texture.
+    void print_texel(const std::string& name, const std::string& texture, std::size_t channel) {
+        begin(language_.number, name, {declared(language_.integer, "i")});
+        line("return " +
+             fmt::format(fmt::runtime(language_.fetch), fmt::arg("name", texture),
+                         fmt::arg("x", fmt::format("i % {}", kTableWidth)),
+                         fmt::arg("y", fmt::format("i / {}", kTableWidth)), fmt::arg("z", "0")) +
+             language_.channel[channel] + ";");
+        end();
+    }
+
+    /// How a function reads the numbers of a table: patterns with {i}, and arrays that have to
+    /// stand in the function.
+    struct StoredTable {
+        std::string value;
+        std::string position;
+        std::string local_values;
+        std::string local_positions;
+    };
+
+    StoredTable store(const std::string& name, const Table& table) {
         const std::string values = name + "_values";
         const std::string positions = name + "_positions";
-        const std::string arrays =
-            array(values, table.samples) +
-            (table.positions.empty() ? "" : array(positions, table.positions));
-        if (!language_.has_local_arrays) text_ += "\n" + arrays;
-        begin(language_.number, name, {declared(language_.number, "x")});
-        if (language_.has_local_arrays) text_ += arrays;
-        const auto n = static_cast<int>(table.samples.size());
+        const std::size_t count = table.samples.size();
+        if (!is_texture(fmt::format("a table of {} numbers", count), count)) {
+            StoredTable stored{values + "[{i}]", positions + "[{i}]", array(values, table.samples),
+                               ""};
+            const bool is_new =
+                !table.positions.empty() && !cell_functions_.contains(table.positions);
+            if (is_new) stored.local_positions = array(positions, table.positions);
+            if (language_.has_local_arrays) return stored;
+            text_ += "\n" + stored.local_values + stored.local_positions;
+            stored.local_values.clear();
+            stored.local_positions.clear();
+            return stored;
+        }
+        const int rows = (static_cast<int>(count) + kTableWidth - 1) / kTableWidth;
+        ShaderTexture& texture = declare_texture(values, {kTableWidth, rows, 1});
+        texture.rgba.resize(4 * static_cast<std::size_t>(kTableWidth * rows));
+        for (std::size_t i = 0; i < count; ++i) {
+            texture.rgba[4 * i] = static_cast<float>(table.samples[i]);
+            if (!table.positions.empty())
+                texture.rgba[4 * i + 1] = static_cast<float>(table.positions[i]);
+        }
+        print_texel(name + "_value", values, 0);
+        if (!table.positions.empty()) print_texel(name + "_position", values, 1);
+        return {name + "_value({i})", name + "_position({i})", "", ""};
+    }
+
+    static std::string at(const std::string& pattern, const std::string& i) {
+        return fmt::format(fmt::runtime(pattern), fmt::arg("i", i));
+    }
+
+    /// Lines that find the cell of x among `count` positions.
+    void print_search(const std::string& position, std::size_t count) {
+        constexpr std::size_t kMostInLines = 64;
+        line(variable("cell", "0"));
+        if (std::has_single_bit(count) && count <= kMostInLines) {
+            for (std::size_t step = count / 2; step > 0; step /= 2) {
+                line(fmt::format("if (x >= {}) {{ cell += {}; }}",
+                                 at(position, fmt::format("cell + {}", step)), step));
+            }
+            return;
+        }
+        line(variable("next", std::to_string(count)));
+        line(fmt::format(fmt::runtime(language_.loop),
+                         fmt::arg("count", std::bit_width(count - 1))) +
+             " {");
+        line("    " + let(language_.integer, "middle", "(cell + next) / 2"));
+        line(fmt::format("    if (x < {}) {{ next = middle; }} else {{ cell = middle; }}",
+                         at(position, "middle")));
+        line("}");
+    }
+
+    void print_table(const std::string& name, const Table& table) {
+        const StoredTable stored = store(name, table);
+        const std::size_t n = table.samples.size();
         const bool is_step = table.interpolation == Table::Interpolation::step;
-        const int last = is_step ? n - 1 : n - 2;  // of the first samples of cells
-        const std::string from = fmt::format("{}[cell]", values);
-        const std::string to = fmt::format("{}[cell + 1]", values);
         const char* const number = language_.number;
+        const auto value_at = [&](const char* i) { return at(stored.value, i); };
+        if (is_step && !table.positions.empty()) {
+            std::string& cell_function = cell_functions_[table.positions];
+            if (cell_function.empty()) {
+                cell_function = name + "_cell";
+                begin(language_.integer, cell_function, {declared(number, "x")});
+                text_ += stored.local_positions;
+                print_search(stored.position, n);
+                line("return cell;");
+                end();
+            }
+            if (!stored.local_values.empty()) {
+                begin(number, name + "_value", {declared(language_.integer, "i")});
+                text_ += stored.local_values;
+                line("return " + value_at("i") + ";");
+                end();
+            }
+            table_texts_[&table] = {
+                stored.local_values.empty() ? value_at("{cell}") : name + "_value({cell})",
+                cell_function};
+            return;
+        }
+        table_texts_[&table] = {name};
+        begin(number, name, {declared(number, "x")});
+        text_ += stored.local_values + stored.local_positions;
         if (n == 1) {
-            line(fmt::format("return {}[0];", values));
+            line("return " + value_at("0") + ";");
             return end();
         }
         if (table.positions.empty()) {
+            const auto cells = static_cast<double>(is_step ? n : n - 1);
             line(let(number, "place",
-                     fmt::format("{} * {}", limited("x", literal(0), literal(1)),
-                                 literal(is_step ? n : n - 1))));
-            line(let(
-                language_.integer, "cell",
-                to_integer(fmt::format("{}({}, {})", language_.minimum, "place", literal(last)))));
+                     fmt::format("{} * {}", limited("x", literal(0), literal(1)), literal(cells))));
+            line(let(language_.integer, "cell",
+                     to_integer(fmt::format("{}({}, {})", language_.minimum, "place",
+                                            literal(cells - 1)))));
             if (!is_step) line(let(number, "t", fmt::format("place - {}", to_number("cell"))));
         } else {
-            const int steps = static_cast<int>(std::ceil(std::log2(last + 1)));
-            line(variable("cell", "0"));
-            line(variable("next", std::to_string(last + 1)));
-            line(fmt::format(fmt::runtime(language_.loop), fmt::arg("count", steps)) + " {");
-            line("    " + let(language_.integer, "middle", "(cell + next) / 2"));
-            line(fmt::format(
-                "    if (x < {}[middle]) {{ next = middle; }} else {{ cell = middle; }}",
-                positions));
-            line("}");
-            if (!is_step) {
-                line(let(number, "width", fmt::format("{0}[cell + 1] - {0}[cell]", positions)));
-                line(let(number, "t",
-                         limited(fmt::format("(x - {}[cell]) / width", positions), literal(0),
-                                 literal(1))));
-            }
+            print_search(stored.position, n - 1);
+            line(let(number, "begin", at(stored.position, "cell")));
+            line(let(number, "width", at(stored.position, "cell + 1") + " - begin"));
+            line(let(number, "t", limited("(x - begin) / width", literal(0), literal(1))));
         }
-        line(is_step ? fmt::format("return {};", from)
-                     : fmt::format("return {0} + t * ({1} - {0});", from, to));
+        if (is_step) {
+            line("return " + value_at("cell") + ";");
+        } else {
+            line(let(number, "value", value_at("cell")));
+            line(fmt::format("return value + t * ({} - value);", value_at("cell + 1")));
+        }
         end();
     }
 
@@ -237,40 +362,30 @@ class ProgramPrinter {
     std::string print_nodes(const std::string& name, const Lattice& lattice) {
         const std::vector<double>& numbers = lattice.nodes();
         const std::string nodes = name + "_nodes";
-        if (numbers.size() <= language_.largest_array) {
-            text_ += "\n" + array(nodes, numbers);
+        if (!is_texture(fmt::format("a lattice of {}^3 colors", lattice.edge()), numbers.size())) {
+            const std::string values = array(nodes, numbers);
+            if (!language_.has_local_arrays) text_ += "\n" + values;
             const std::string node = name + "_node";
             begin(language_.color, node,
                   {declared(language_.integer, "r"), declared(language_.integer, "g"),
                    declared(language_.integer, "b")});
+            if (language_.has_local_arrays) text_ += values;
             line(let(language_.integer, "i",
                      fmt::format("3 * ((r * {0} + g) * {0} + b)", lattice.edge())));
             line("return " + made({nodes + "[i]", nodes + "[i + 1]", nodes + "[i + 2]"}) + ";");
             end();
             return node + "({r}, {g}, {b})";
         }
-        if (!*language_.texture) {
-            throw Error(fmt::format(
-                "shader: {} reads a lattice of {}^3 colors; expected a language with textures: "
-                "glsl, glsl-es, hlsl, wgsl; or c",
-                name_, lattice.edge()));
-        }
-        ShaderTexture texture{nodes, lattice.edge(), {}};
+        ShaderTexture& texture =
+            declare_texture(nodes, {lattice.edge(), lattice.edge(), lattice.edge()});
         for (std::size_t i = 0; i < numbers.size(); ++i) {
             texture.rgba.push_back(static_cast<float>(numbers[i]));
             if (i % 3 == 2) texture.rgba.push_back(1);
         }
-        text_ +=
-            "\n// " + nodes + ": " +
-            fmt::format("{0} x {0} x {0} texels, RGBA, 32-bit float, no filter", lattice.edge()) +
-            "\n" +
-            fmt::format(fmt::runtime(language_.texture), fmt::arg("name", nodes),
-                        fmt::arg("binding", textures_.size())) +
-            "\n";
-        textures_.push_back(std::move(texture));
         // The third coordinate runs fastest.
         return fmt::format(fmt::runtime(language_.fetch), fmt::arg("name", nodes),
-                           fmt::arg("x", "{b}"), fmt::arg("y", "{g}"), fmt::arg("z", "{r}"));
+                           fmt::arg("x", "{b}"), fmt::arg("y", "{g}"), fmt::arg("z", "{r}")) +
+               ".rgb";
     }
 
     void print_lattice(const std::string& name, const Lattice& lattice) {
@@ -354,7 +469,7 @@ class ProgramPrinter {
         const std::vector<std::string> uniforms = read_uniforms(std::span(&function.f, 1));
         std::set<std::string> taken(uniforms_.begin(), uniforms_.end());
         taken.insert("x");
-        FunctionBody body(language_, {"x"}, taken, table_functions_);
+        FunctionBody body(language_, {"x"}, taken, table_texts_);
         body.count(function.f);
         const std::string value = body.value(function.f);
         begin(language_.number, helper(function.name), parameters(language_.number, "x", uniforms));
@@ -367,7 +482,7 @@ class ProgramPrinter {
         const std::array<std::string, 3> c = channels_of("c");
         std::set<std::string> taken(uniforms_.begin(), uniforms_.end());
         taken.insert("c");
-        FunctionBody body(language_, {c.begin(), c.end()}, taken, table_functions_);
+        FunctionBody body(language_, {c.begin(), c.end()}, taken, table_texts_);
         for (const ColorFunction::Call& call : function.calls)
             body.count(call.argument);
         for (const Expr& e : function.f)
@@ -486,7 +601,9 @@ class ProgramPrinter {
     const LanguageFacts& language_;
     std::string name_;
     std::vector<std::string> uniforms_;
-    std::map<const void*, std::string> table_functions_;
+    ShaderTables tables_;
+    std::map<const void*, TableText> table_texts_;
+    std::map<std::vector<double>, std::string> cell_functions_;  // by positions
     std::vector<ShaderTexture> textures_;
     std::string text_;
 };
@@ -494,14 +611,15 @@ class ProgramPrinter {
 }  // namespace
 
 PrintedProgram print_program(const ShaderProgram& program, const LanguageFacts& language,
-                             const std::string& name, const std::vector<std::string>& uniforms) {
-    return ProgramPrinter(program, language, name, uniforms).print();
+                             const std::string& name, const std::vector<std::string>& uniforms,
+                             ShaderTables tables) {
+    return ProgramPrinter(program, language, name, uniforms, tables).print();
 }
 
 std::string float_literal(double value, const LanguageFacts& language) {
-    // The largest float has no short literal that is not above it, and WGSL refuses those.
-    const double most = std::nextafter(std::numeric_limits<float>::max(), 0.0F);
-    auto number = static_cast<float>(std::clamp(value, -most, most));
+    // Not the largest float: its shortest digits lie above it, and WGSL takes no such literal.
+    constexpr double kMost = 3e38;
+    auto number = static_cast<float>(std::clamp(value, -kMost, kMost));
     if (std::fpclassify(number) == FP_SUBNORMAL) number = 0;
     std::array<char, 32> buffer{};
     const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), number);

@@ -16,10 +16,11 @@ struct PrintedProgram {
 /// The functions of a program, each before the ones that call it.
 /// @param name      of the last function, with which the names of all others begin
 /// @param uniforms  its arguments behind the color
-/// @throws Error    a lattice that the language cannot hold
+/// @throws Error    tables or a lattice that the language cannot hold so
 [[nodiscard]] PrintedProgram print_program(const ShaderProgram& program,
                                            const LanguageFacts& language, const std::string& name,
-                                           const std::vector<std::string>& uniforms);
+                                           const std::vector<std::string>& uniforms,
+                                           ShaderTables tables = ShaderTables::by_size);
 
 /// The shortest decimal that reads back as the same float, with a point.
 [[nodiscard]] std::string float_literal(double value, const LanguageFacts& language);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <span>
 
+#include "shader/shared_functions.h"
+
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
@@ -120,7 +122,28 @@ class ProgramMaker {
     }
 
     void add(const CrossTalkStage& s, const std::string& name) {
-        add_color_function(name.empty() ? "mix" : name, {}, s.f);
+        const std::string own = name.empty() ? "mix" : name;
+        const SharedFunctions shared = share_functions(s.f);
+        std::vector<Interval> inputs = ranges();
+        inputs.resize(3 + shared.calls.size(), {-kInfinity, kInfinity});
+        std::vector<ColorFunction::Call> calls;
+        for (const SharedFunctions::Call& call : shared.calls)
+            calls.push_back({0, call.argument, "curved"});
+        for (std::size_t k = 0; k < shared.functions.size(); ++k) {
+            Interval input{kInfinity, -kInfinity};
+            for (const SharedFunctions::Call& call : shared.calls) {
+                if (call.function != k) continue;
+                const Interval range = FloatForm(inputs, uniforms_).range(call.argument);
+                input = {std::min(input.lo, range.lo), std::max(input.hi, range.hi)};
+            }
+            const std::size_t scalar = add_scalar(own + "_curve", shared.functions[k], input);
+            for (std::size_t i = 0; i < calls.size(); ++i) {
+                if (shared.calls[i].function != k) continue;
+                calls[i].function = scalar;
+                inputs[3 + i] = scalar_range_[scalar];
+            }
+        }
+        add_color_function(own, std::move(calls), shared.f);
     }
 
     void add(const LatticeStage& s, const std::string&) {
@@ -153,7 +176,7 @@ class ProgramMaker {
     }
 
     std::size_t add_scalar(const std::string& name, const Expr& f, const Interval& input) {
-        program_.scalars.push_back({unique_name(name), FloatForm({input}, uniforms_)(f)});
+        program_.scalars.push_back({unique_name(name), FloatForm({input}, uniforms_)(f), input});
         scalar_range_.push_back(range_over(f, input, uniforms_));
         return program_.scalars.size() - 1;
     }

@@ -15,6 +15,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 struct ScalarFunction {
     std::string name;
     Expr f;  // of input 0
+    Interval input = {};
 };
 
 /// A function of a color. Inputs 0, 1, 2 are its channels; input 3 + i is what calls[i] returns.

@@ -9,11 +9,13 @@
 #include <unordered_map>
 
 #include "base/format_number.h"
+#include "base/number_cache.h"
 #include "base/strings.h"
 #include "expr/nodes.h"
 #include "measure/error_metric.h"
 #include "measure/sample_set.h"
 #include "shader/first_order.h"
+#include "shader/fitted_curves.h"
 #include "shader/float_run.h"
 #include "shader/guaranteed_bound.h"
 #include "shader/measured_errors.h"
@@ -129,6 +131,12 @@ ShaderProgram bound(ShaderProgram program, const UniformValues& values) {
     return program;
 }
 
+ShaderProgram program_of(const ShaderRequest& request) {
+    ShaderProgram program = make_program(pipeline_of(request), ranges_of(request));
+    if (request.curves == ShaderCurves::fitted) program = with_fitted_curves(program);
+    return program;
+}
+
 /// True when the result is light, whose errors are those of its sRGB code values.
 bool is_light(const ShaderRequest& request) {
     const View& view = request.view;
@@ -217,8 +225,8 @@ std::string definition_hash(const Pipeline& pipeline) {
     };
     const auto add_numbers = [&](const void* what, const std::vector<double>& numbers) {
         if (!seen.insert(what).second) return;
-        for (const double x : numbers)
-            text += digits(x) + " ";
+        const std::vector<float> floats(numbers.begin(), numbers.end());
+        text.append(reinterpret_cast<const char*>(floats.data()), floats.size() * sizeof(float));
     };
     for (const Expr& e : nodes_of(rgb)) {
         text += std::to_string(static_cast<int>(e.op()));
@@ -265,6 +273,35 @@ std::string output_text(const ShaderRequest& request) {
     return "code values for " + display.title + " (" + display.source + ")";
 }
 
+/// What measure_shader() gives, from the cache folder if it is there.
+ShaderErrors known_errors(const ShaderRequest& request, const ShaderProgram& program,
+                          const std::string& definition) {
+    // Another one where errors are measured otherwise, or formulas become others in float.
+    constexpr int kVersion = 1;
+    std::vector<std::string> functions;
+    const auto add = [&](const auto& some) {
+        for (const auto& function : some)
+            functions.push_back(function.name);
+    };
+    add(program.matrices);
+    add(program.scalars);
+    add(program.colors);
+    std::string key = fmt::format(
+        "shader errors {} " TONEWRIGHT_VERSION ": {} {}, {} {} {} {}, {}", kVersion,
+        shader_function_name(request), definition, request.view.input, request.view.display,
+        request.view.exposure_stops, static_cast<int>(request.curves), fmt::join(functions, " "));
+    for (const auto& [name, value] : values_of(request))
+        key += fmt::format(", {} {}", name, value);
+    const std::vector<double> numbers = cached_numbers("shader_errors", key, [&] {
+        const ShaderErrors errors = measure_shader(request);
+        const auto place = std::find(functions.begin(), functions.end(), errors.arises_in);
+        return std::vector<double>{errors.in_float, errors.guaranteed, errors.vulkan_estimate,
+                                   static_cast<double>(place - functions.begin())};
+    });
+    const auto place = static_cast<std::size_t>(numbers[3]);
+    return {numbers[0], numbers[1], place < functions.size() ? functions[place] : "", numbers[2]};
+}
+
 /// Words that fit on lines of comments behind a label.
 std::string comment(const std::string& label, const std::string& words) {
     constexpr std::size_t kWidth = 100;
@@ -295,14 +332,15 @@ std::string ascii(std::string text) {
     return text;
 }
 
-std::string header(const ShaderRequest& request, const Shader& shader, const Pipeline& pipeline) {
+std::string header(const ShaderRequest& request, const Shader& shader,
+                   const std::string& definition) {
     const View& view = request.view;
     const Operator& op = *view.op.op;
     std::string text = "// " + op.title;
     if (view.op.preset) text += ", " + view.op.preset->title;
     if (request.is_inverse) text += ", inverse";
-    text += "\n// Written by Tonewright " TONEWRIGHT_VERSION ", definition " +
-            definition_hash(pipeline) + "\n//\n";
+    text +=
+        "\n// Written by Tonewright " TONEWRIGHT_VERSION ", definition " + definition + "\n//\n";
     std::string space = view.input;
     for (const InputSpace& candidate : all_input_spaces()) {
         if (candidate.id == view.input) space = candidate.title;
@@ -312,6 +350,7 @@ std::string header(const ShaderRequest& request, const Shader& shader, const Pip
     const auto add = [&](const char* label, const std::string& words) {
         if (!words.empty()) text += comment(label, ascii(words));
     };
+    add("Operator", operator_text(view.op));
     add("Source", op.source);
     add("License", op.licence + "; this text: Apache-2.0");
     add("Settings", settings_text(view.op, request.uniforms));
@@ -342,6 +381,9 @@ std::string header(const ShaderRequest& request, const Shader& shader, const Pip
             " Guaranteed: within {} of these formulas wherever each operation is as exact as "
             "Vulkan and WGSL demand, for channels from 0 to 65504.",
             rounded_up(shader.errors.guaranteed));
+    } else if (request.curves == ShaderCurves::fitted) {
+        precision +=
+            " Curves are polynomials of segments, fitted and measured; no guaranteed bound.";
     } else if (!request.is_inverse) {
         precision += fmt::format(" No useful guaranteed bound: too much may arise in {}_{}.",
                                  shader.function, shader.errors.arises_in);
@@ -356,7 +398,12 @@ std::string header(const ShaderRequest& request, const Shader& shader, const Pip
     if (!request.is_inverse) {
         View on_srgb = view;
         on_srgb.display = "srgb";
-        const std::string measured = measured_errors(definition_hash(build_view(on_srgb)));
+        const std::string measured =
+            request.curves == ShaderCurves::formula
+                ? measured_errors(view.display == "srgb" && request.uniforms.empty()
+                                      ? definition
+                                      : definition_hash(build_view(on_srgb)))
+                : std::string();
         add("Measured",
             measured.empty()
                 ? "not with these settings; `tonewright verify` measures GLSL on a machine's GPU"
@@ -383,7 +430,7 @@ std::string shader_function_name(const ShaderRequest& request) {
 
 ShaderErrors measure_shader(const ShaderRequest& request) {
     check(request);
-    const ShaderProgram program = make_program(pipeline_of(request), ranges_of(request));
+    const ShaderProgram program = program_of(request);
     ShaderErrors errors;
     errors.in_float = measure_in_float(request, program);
     if (request.is_inverse) return errors;
@@ -391,10 +438,12 @@ ShaderErrors measure_shader(const ShaderRequest& request) {
     const Expr metric = is_light(request) ? code_value(Expr::input()) : Expr::input();
     // Of a function that measures as exact: half a unit in the last place of white.
     constexpr double kUseful = 300;
-    const GuaranteedBound guaranteed =
-        guaranteed_bound(constant, metric, kUseful * std::max(errors.in_float, 0x1p-24));
-    errors.guaranteed = guaranteed.error;
-    if (std::isinf(guaranteed.error)) errors.arises_in = guaranteed.arises_in;
+    if (request.curves == ShaderCurves::formula) {
+        const GuaranteedBound guaranteed =
+            guaranteed_bound(constant, metric, kUseful * std::max(errors.in_float, 0x1p-24));
+        errors.guaranteed = guaranteed.error;
+        if (std::isinf(guaranteed.error)) errors.arises_in = guaranteed.arises_in;
+    }
     std::array<Expr, 3> outputs = compose(constant);
     for (Expr& e : outputs)
         e = substitute(metric, Span<const Expr>(&e, 1));
@@ -407,16 +456,18 @@ ShaderErrors measure_shader(const ShaderRequest& request) {
 Shader write_shader(const ShaderRequest& request, const ShaderErrors* errors) {
     check(request);
     const Pipeline pipeline = pipeline_of(request);
-    const ShaderProgram program = make_program(pipeline, ranges_of(request));
+    const ShaderProgram program = program_of(request);
     const LanguageFacts& language =
         facts_of(request.application ? request.application->language : request.language);
     Shader shader;
     shader.function = shader_function_name(request);
-    shader.errors = errors ? *errors : measure_shader(request);
+    const std::string definition = definition_hash(pipeline);
+    shader.errors = errors ? *errors : known_errors(request, program, definition);
     const std::string prologue =
         *language.prologue ? std::string("\n") + language.prologue : std::string();
-    PrintedProgram printed = print_program(program, language, shader.function, request.uniforms);
-    shader.text = header(request, shader, pipeline) + prologue + printed.text;
+    PrintedProgram printed =
+        print_program(program, language, shader.function, request.uniforms, request.tables);
+    shader.text = header(request, shader, definition) + prologue + printed.text;
     shader.textures = std::move(printed.textures);
     if (request.application) {
         if (!shader.textures.empty()) {

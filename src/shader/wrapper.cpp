@@ -12,7 +12,9 @@ TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 /// What stands around the functions. In the patterns `@function` is the last one, `@call` are the
-/// arguments behind its color, each with a comma before it, `@arguments` the lines of `argument`.
+/// arguments behind its color, each with a comma before it, `@arguments` the lines of `argument`
+/// and `@declarations` those of `declaration`. What stands between `@[` and `@]` is left out when
+/// there are no arguments. Where there is a `@header`, the comments of the text stand there.
 struct Wrapper {
     const char* id;
     const char* before;
@@ -21,6 +23,9 @@ struct Wrapper {
     const char* argument;
     /// What an argument is called where the function is called.
     const char* argument_in_call = "@name";
+    const char* declaration = "";
+    /// Before each line of the functions.
+    const char* indent = "";
 };
 
 constexpr Wrapper kWrappers[] = {
@@ -110,7 +115,7 @@ constexpr Wrapper kWrappers[] = {
      "}\n"
      "}\n"
      "}\n",
-     "    _@name(\"@name\", Range(@min, @max)) = @value\n", "_@name"},
+     "    _@name(\"@name\", Range(@min, @max)) = @value\n", "_@name", "float _@name;\n"},
     {"unreal", "#pragma once\n\n",
      "\n// A Custom node with the input color:\n"
      "//   Include File Paths: /Project/Tonewright/@function.ush\n"
@@ -154,6 +159,25 @@ constexpr Wrapper kWrappers[] = {
      "    return @function(make_float3(p_R, p_G, p_B)@call);\n"
      "}\n",
      "DEFINE_UI_PARAMS(@name, @name, DCTLUI_SLIDER_FLOAT, @value, @min, @max, 0.01)\n"},
+    {"nuke",
+     "@header\n"
+     "kernel @function_kernel : ImageComputationKernel<ePixelWise> {\n"
+     "    Image<eRead, eAccessPoint, eEdgeClamped> src;\n"
+     "    Image<eWrite> dst;\n"
+     "@[\n"
+     "param:\n"
+     "@declarations\n"
+     "    void define() {\n"
+     "@arguments"
+     "    }\n@]",
+     "\n    void process() {\n"
+     "        float4 color = src();\n"
+     "        float3 shown = @function(float3(color.x, color.y, color.z)@call);\n"
+     "        dst() = float4(shown.x, shown.y, shown.z, color.w);\n"
+     "    }\n"
+     "};\n",
+     "        defineParam(@name, \"@name\", @value);\n", "@name", "    float @name;  // @help\n",
+     "    "},
     {"shadertoy", "",
      "\nvoid mainImage(out vec4 result, in vec2 place) {\n"
      "@arguments"
@@ -225,6 +249,10 @@ const std::vector<ShaderApplication>& shader_applications() {
          "mapped already."},
         {"resolve", "DaVinci Resolve (DCTL)", ".dctl", ShaderLanguage::dctl, "rec1886",
          "Copy it into the LUT folder; a DCTL effect on a node whose input is scene-linear."},
+        {"nuke", "Nuke (BlinkScript)", ".rpp", ShaderLanguage::blink, "linear",
+         "The Kernel File of a BlinkScript node on scene-linear RGBA; the Viewer and the Write "
+         "node "
+         "encode what it returns, with sRGB."},
         {"shadertoy", "Shadertoy", ".glsl", ShaderLanguage::glsl_es, "srgb",
          "Paste it into Image; iChannel0 holds scene-linear light."},
         {"gstreamer", "GStreamer glshader", ".frag", ShaderLanguage::glsl_es, "srgb",
@@ -250,20 +278,36 @@ std::string wrap(const ShaderApplication& application, const Shader& shader,
     std::string call;
     for (const ShaderArgument& argument : arguments) {
         lines += of_argument(wrapper.argument, argument, language);
-        declarations += "float _" + argument.name + ";\n";
+        declarations += of_argument(wrapper.declaration, argument, language);
         call += ", " + of_argument(wrapper.argument_in_call, argument, language);
     }
-    const auto filled = [&](const char* pattern) {
-        std::string text = replaced(pattern, "@function", shader.function);
+    std::string functions = shader.text;
+    std::string header;
+    if (std::string_view(wrapper.before).starts_with("@header")) {
+        const std::size_t end = functions.find("\n\n") + 1;
+        header = functions.substr(0, end);
+        functions.erase(0, end);
+    }
+    const auto filled = [&](std::string text) {
+        const std::size_t begin = text.find("@[");
+        if (begin != std::string::npos && arguments.empty())
+            text.erase(begin, text.find("@]") - begin);
+        text = replaced(replaced(text, "@[", ""), "@]", "");
+        text = replaced(text, "@header", header);
+        text = replaced(text, "@function", shader.function);
         text = replaced(text, "@call", call);
         text = replaced(text, "@declarations", declarations);
         return replaced(text, "@arguments", lines);
     };
     // Applications have a word for the start of the file: what the text says of itself comes
     // after. Their shaders begin with a language's own lines already.
-    std::string functions = shader.text;
     if (*language.prologue && application.id != "threejs")
         functions = replaced(functions, std::string("\n") + language.prologue, "");
+    if (*wrapper.indent) {
+        functions = replaced(functions, "\n", std::string("\n") + wrapper.indent);
+        functions = replaced(functions, std::string("\n") + wrapper.indent + "\n", "\n\n");
+        functions.erase(functions.rfind('\n') + 1);
+    }
     return filled(wrapper.before) + functions + filled(wrapper.after);
 }
 

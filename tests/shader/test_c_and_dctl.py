@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
-"""C and DCTL that `tonewright shader` writes, compiled and run against `tonewright eval`.
+"""C, DCTL and BlinkScript that `tonewright shader` writes, compiled and run against `tonewright eval`.
 
-C by every compiler there is, with -O2 and -ffast-math; DCTL by pocl, as OpenCL with Resolve's flags and without. All
-operators, presets and looks with TONEWRIGHT_TEST_ALL=1, and a million hostile colors through ten of them; else a dozen.
+C by every compiler there is, with -O2 and -ffast-math; DCTL by pocl, as OpenCL with Resolve's flags and without; whole
+kernels for Nuke as C++, with the words of Blink defined, with a slider at its default, and every second one with fitted
+curves. All operators, presets and looks with TONEWRIGHT_TEST_ALL=1, and a million hostile colors through ten of them; else
+a dozen.
 
 Usage: test_c_and_dctl.py TONEWRIGHT SHADERS [--record FILE]
 SHADERS is the folder that `tonewright shader --all SHADERS --display srgb` wrote.
@@ -19,6 +21,29 @@ import numpy as np
 from executed import Comparison, skip, start
 from opencl import RESOLVE, OpenCl, device
 
+# Words of Blink, for a C++ compiler; the functions are those of Foundry's page "Maths Functions", Blink 16.1.
+BLINK = """
+#include <cmath>
+struct float3 { float x, y, z; float3(float a, float b, float c) : x(a), y(b), z(c) {} };
+struct float4 { float x, y, z, w; float4(float a, float b, float c, float d) : x(a), y(b), z(c), w(d) {} };
+enum Granularity { ePixelWise };
+enum Access { eRead, eWrite, eAccessPoint, eEdgeClamped };
+template <Granularity> struct ImageComputationKernel {
+    template <class T> void defineParam(T& param, const char*, T value) { param = value; }
+    void define() {}
+};
+template <Access, Access = eAccessPoint, Access = eEdgeClamped> struct Image {
+    float4 pixel{0, 0, 0, 0};
+    float4& operator()() { return pixel; }
+};
+static inline float min(float a, float b) { return b < a ? b : a; }
+static inline float max(float a, float b) { return a < b ? b : a; }
+#define kernel struct
+#define param public
+using std::fabs; using std::sqrt; using std::log2; using std::pow;
+using std::sin; using std::cos; using std::atan2; using std::floor;
+"""
+
 
 def compiled(command: list, rows: list, shaders: pathlib.Path, folder: pathlib.Path) -> ctypes.CDLL:
     """A library with run_FUNCTION of each row."""
@@ -29,6 +54,26 @@ def compiled(command: list, rows: list, shaders: pathlib.Path, folder: pathlib.P
     library = folder / ("_".join(command).replace("/", "") + ".so")
     subprocess.run([*command, "-std=c99", "-Wall", "-Wextra", "-Werror", "-shared", "-fPIC", str(source), "-o", str(library),
                     "-lm"], check=True)
+    return ctypes.CDLL(str(library))
+
+
+def compiled_kernels(tonewright: str, rows: list, folder: pathlib.Path) -> ctypes.CDLL:
+    """A library with run_FUNCTION of the kernel that Nuke takes, for each row. Alpha stays as it is."""
+    text = BLINK
+    for number, row in enumerate(rows):
+        function = row["function"]
+        path = folder / f"{function}.blink"
+        subprocess.run([tonewright, "shader", row["operator"], "--for", "nuke", "--display", "srgb", "--uniforms", "exposure",
+                        "--curves", ("formula", "fitted")[number % 2], "-o", str(path), "-q"], check=True, capture_output=True)
+        text += (f'#include "{path}"\n'
+                 f'extern "C" void run_{function}(const float* a, float* b, long n) {{\n'
+                 f"    for (; n > 0; --n, a += 3, b += 3) {{ {function}_kernel k; k.define();\n"
+                 "        k.src() = float4(a[0], a[1], a[2], 0.5f); k.process();\n"
+                 "        b[0] = k.dst().x; b[1] = k.dst().y; b[2] = k.dst().w == 0.5f ? k.dst().z : -1; }\n}\n")
+    (folder / "all.cpp").write_text(text)
+    library = folder / "kernels.so"
+    subprocess.run(["g++", "-O2", "-Wall", "-Wextra", "-Werror", "-shared", "-fPIC", str(folder / "all.cpp"), "-o", str(library)],
+                   check=True)
     return ctypes.CDLL(str(library))
 
 
@@ -47,11 +92,13 @@ def main(tonewright: str, shaders: pathlib.Path, record_file: str) -> int:
         skip("no C compiler")
     commands = [[c, *flags] for c in compilers for flags in (["-O2"], ["-O2", "-ffast-math"])]
     with tempfile.TemporaryDirectory() as folder_name:
-        for command in commands:
-            library = compiled(command, comparison.rows["c"], shaders, pathlib.Path(folder_name))
-            for row in comparison.rows["c"]:
-                comparison.add("c", " ".join(command), row, run(library, row["function"], comparison.colors_of(row)),
-                               is_as_written="-ffast-math" not in command)
+        folder = pathlib.Path(folder_name)
+        runs = [("c", command, compiled(command, comparison.rows["c"], shaders, folder)) for command in commands]
+        runs.append(("blinkscript", ["g++", "-O2"], compiled_kernels(tonewright, comparison.rows["blinkscript"], folder)))
+        for language, command, library in runs:
+            for row in comparison.rows[language]:
+                comparison.add(language, " ".join(command), row, run(library, row["function"], comparison.colors_of(row)),
+                               is_as_written=language == "c" and "-ffast-math" not in command)
     rows = comparison.rows["dctl"]
     texts = {row["function"]: (shaders / row["path"]).read_text() for row in rows}
     calls = {function: f"{function}(vload3(0, a + i))" for function in texts}

@@ -45,6 +45,13 @@ def check_refusals(report, command, scratch):
         (["--all", scratch / "npm", "--npm", "--display", "srgb"], USAGE, "--npm is given with --display"),
         (["--all", scratch / "npm", "--npm", "--language", "wgsl"], USAGE, "--npm is given with --language"),
         (["--all", "/dev/null", "--npm"], FILE, "/dev/null"),
+        (["camera_response", "--language", "c", "--tables", "texture"], USAGE, "tables is texture; expected array"),
+        (["agx_blender", "--language", "wgsl", "--tables", "array"], USAGE, "tables is array; expected texture"),
+        (["hable", "--for", "nuk"], USAGE, "did you mean nuke?"),
+        (["hable", "--language", "c", "--curves", "fit"], USAGE, "did you mean fitted?"),
+        (["drago", "--language", "c", "--uniforms", "log_avrage"], USAGE, "did you mean log_average?"),
+        (["--all", scratch / "all", "--uniforms", "exposure"], USAGE, "shader: --all is given"),
+        (["hable", "--language", "c", "--tables", "textures"], USAGE, "did you mean texture?"),
         (["hable", "--language", "c", "-o", scratch / "no" / "x.h"], FILE, "write: "),
         (["hable", "--language", "c", "-o", "/dev/null"], FILE, "/dev/null"),
     ]:
@@ -68,6 +75,14 @@ def check_files(report, command, scratch):
         edge = round(len(texels) ** (1 / 3))
         report.check(f"{texture.name} is a cube of RGBA", edge**3 == len(texels) and (texels[:, 3] == 1).all())
         report.check(f"{texture.name} is what the text reads", texture.stem in (scratch / "agx.glsl").read_text())
+    tables = {}
+    for kind in "array", "texture":
+        code, _, err = call(command, "camera_response", "--language", "glsl-es", "--tables", kind, "-o", scratch / f"{kind}.glsl")
+        tables[kind] = (scratch / f"{kind}.glsl").read_text()
+    texels = np.fromfile(scratch / "tw_camera_response_curve_table_values.rgba32f", "<f4").reshape(-1, 4)
+    numbers = [float(x) for x in tables["array"].split("float[1024](")[1].split(")")[0].split(",")]
+    report.check("--tables texture holds what --tables array does", code == OK and np.array_equal(texels[:, 0], np.float32(numbers)), err)
+    report.check("and says how it is loaded", "gl.texImage3D(gl.TEXTURE_3D, 0, gl.RGBA32F, 256, 4, 1, 0," in tables["texture"])
     for operator, words in [("gt7", "warning: tw_gt7 is up to"), ("drago", "measures each picture, which a shader cannot do")]:
         code, text, err = call(command, operator, "--language", "c")
         report.check(f"{operator} warns", code == OK and words in err and f"tw_{operator}(" in text, err)
@@ -95,6 +110,7 @@ def check_applications(report, command, scratch):
                      not {"@function", "@call", "@arguments", "@declarations"} & set(texts[application].split()), err)
     report.check("sliders of mpv", "//!PARAM white" in texts["mpv"])
     report.check("sliders of Resolve", "DEFINE_UI_PARAMS(white, white, DCTLUI_SLIDER_FLOAT, 11.2f, 0.1f, 65504.0f, 0.01)" in texts["resolve"])
+    report.check("knobs of Nuke", 'defineParam(white, "white", 11.2f);' in texts["nuke"] and texts["nuke"].startswith("// Hable"))
     report.check("the first line of Godot", texts["godot"].startswith("#[compute]\n#version 450\n"))
     if not shutil.which("glslangValidator"):
         print("files for Godot, mpv, Shadertoy and GStreamer were not validated: glslangValidator is not installed")

@@ -56,7 +56,7 @@ def main(tonewright: str, shaders: pathlib.Path, record_file: str) -> int:
             rgb = comparison.colors_of(row)
             files[f"/colors/{len(rgb)}"] = rows_of(rgb)
             files["/source/" + name] = program.replace("TEXT", text_file.read_text()).replace("FUNCTION", name).encode()
-            textures = [{"name": pathlib.Path(t["file"]).stem, "edge": t["edge"],
+            textures = [{"name": pathlib.Path(t["file"]).stem, "size": t["size"],
                          "url": "/shaders/" + pathlib.Path(t["file"]).name} for t in textures_of(text_file)]
             functions.append({"source": "/source/" + name, "textures": textures, "colors": f"/colors/{len(rgb)}", "out": name})
         files["/job.json"] = json.dumps({"language": language, "functions": functions}).encode()

@@ -9,6 +9,8 @@ SHADERS is the folder that `tonewright shader --all SHADERS --display srgb` wrot
 --record merges the largest errors into a JSON file: language -> function -> error.
 """
 import pathlib
+import re
+import subprocess
 import tempfile
 
 import numpy as np
@@ -43,17 +45,30 @@ MAIN = {
 
 
 def textures_of(text_file: pathlib.Path) -> list:
-    """Of the function whose text this is; edge^3 texels of four floats."""
-    files = sorted(text_file.parent.glob(f"{text_file.stem.removesuffix('_encoded')}*lattice*.rgba32f"))
-    named = [file for file in files if file.stem in text_file.read_text()]
-    named.sort(key=lambda file: text_file.read_text().index(file.stem))
-    return [{"file": str(file), "edge": round((file.stat().st_size / 16) ** (1 / 3))} for file in named]
+    """Those of the text's comments, and for WGSL how they say that the file is loaded."""
+    found = re.findall(r"^// (\w+): (\d+) x (\d+) x (\d+) texels.*\n((?://.*\n)*)", text_file.read_text(), re.MULTILINE)
+    return [{"file": str(text_file.parent / f"{name}.rgba32f"), "size": [int(n) for n in size],
+             "loader": lines.replace("// ", "") if text_file.suffix == ".wgsl" else ""} for name, *size, lines in found]
+
+
+def with_textures(tonewright: str, language: str, rows: list, shaders: pathlib.Path, folder: pathlib.Path) -> list:
+    """Those of the functions whose tables are arrays, written into the folder with their tables as textures."""
+    result = []
+    for row in rows:
+        if "_values[" not in (shaders / row["path"]).read_text():
+            continue
+        path = pathlib.Path("textures") / row["path"]
+        (folder / path).parent.mkdir(parents=True, exist_ok=True)
+        subprocess.run([tonewright, "shader", row["operator"], "--language", language, "--display", "srgb", "--tables", "texture",
+                        "-o", str(folder / path), "-q"], check=True)
+        result.append(row | {"path": str(path)})
+    return result
 
 
 def step_of(language: str, row: dict, shaders: pathlib.Path, rgb: np.ndarray, folder: pathlib.Path) -> dict:
     """What run_on_dawn.mjs takes of this function."""
     text_file = shaders / row["path"]
-    program = folder / f"{row['function']}.{language}"
+    program = folder / f"{row['path'].replace('/', '_')}.main.{language}"
     program.write_text(text_file.read_text() + MAIN[language].replace("FUNCTION", row["function"]))
     colors = folder / f"{len(rgb)}.colors"
     rgb.tofile(colors)
@@ -68,9 +83,11 @@ def main(tonewright: str, shaders: pathlib.Path, record_file: str) -> int:
         folder = pathlib.Path(folder_name)
         for language in MAIN:
             rows = comparison.rows[language]
-            steps = [step_of(language, row, shaders, comparison.colors_of(row), folder) for row in rows]
+            textured = with_textures(tonewright, language, rows, shaders, folder)
+            steps = [step_of(language, row, at, comparison.colors_of(row), folder)
+                     for at, some in ((shaders, rows), (folder, textured)) for row in some]
             adapter = dawn.run(steps)
-            for row, step in zip(rows, steps):
+            for row, step in zip(rows + textured, steps):
                 shown = np.fromfile(step["out"], np.float32).reshape(-1, 3)
                 comparison.add(language, f"{adapter} from {language}", row, shown, is_as_written=True)
     return comparison.report(adapter, record_file)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,7 +10,7 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-enum class ShaderLanguage : unsigned char { glsl, glsl_es, hlsl, wgsl, msl, dctl, c, osl };
+enum class ShaderLanguage : unsigned char { glsl, glsl_es, hlsl, wgsl, msl, dctl, blink, c, osl };
 
 struct ShaderLanguageInfo {
     ShaderLanguage language;
@@ -41,6 +42,20 @@ struct ShaderApplication {
 [[nodiscard]] TONEWRIGHT_API const ShaderApplication& find_shader_application(
     std::string_view name);
 
+/// Where numbers of tables and lattices stand.
+enum class ShaderTables : unsigned char {
+    by_size,  // in arrays, and in textures where a text should not hold that many
+    texture,
+    array,
+};
+
+/// How curves of one number are written.
+enum class ShaderCurves : unsigned char {
+    formula,
+    /// As polynomials of segments, where they take fewer instructions.
+    fitted,
+};
+
 /// What a shader function computes, and how it is written.
 struct ShaderRequest {
     /// Display `linear` for a renderer that encodes its picture itself, a display for finished
@@ -52,17 +67,19 @@ struct ShaderRequest {
     std::vector<std::string> uniforms = {};
     /// What the view shows -> scene-linear.
     bool is_inverse = false;
+    ShaderTables tables = ShaderTables::by_size;
+    ShaderCurves curves = ShaderCurves::formula;
     /// Not null: the whole file that it takes, in its language, whatever `language` says. Uniforms
     /// become its own sliders or inputs.
     const ShaderApplication* application = nullptr;
 };
 
-/// What a shader reads and its text cannot hold: edge^3 texels of four 32-bit floats, RGB and 1, x
-/// running fastest. The text fetches texels and interpolates itself, in tetrahedra: the texture
-/// needs no filter.
+/// What a shader reads and its text does not hold: a 3D texture of four 32-bit floats, x running
+/// fastest. Of a lattice, RGB and 1; of a table, a sample and its position, 256 to a row. The text
+/// fetches texels and interpolates itself: the texture needs no filter.
 struct ShaderTexture {
-    std::string name;  // in the text
-    int edge = 0;
+    std::string name;         // in the text
+    std::array<int, 3> size;  // x, y, z
     std::vector<float> rgba;
 };
 
@@ -77,7 +94,7 @@ struct ShaderErrors {
     /// operation as exactly as the Vulkan and WGSL specifications demand, for every color whose
     /// channels lie from 0 to 65504, with the uniforms' values of the view. Sums of matrices may be
     /// taken in any order. Infinite where no bound was found that is at most 300 times `in_float`,
-    /// and of an inverse.
+    /// of an inverse and with fitted curves.
     double guaranteed = kInfinity;
     /// Where `guaranteed` is infinite: the function of the text in which most of the error may
     /// arise.
@@ -108,7 +125,8 @@ struct Shader {
 ///
 /// @throws Error  a local operator; a uniform that the operator does not have, that is not live, or
 ///                that is named twice; an inverse with uniforms other than the exposure, or of an
-///                operator that has none; a lattice in a language that cannot hold one.
+///                operator that has none; tables or a lattice where the language has no texture, or
+///                no array that is large enough.
 /// @param errors  what measure_shader() gave for the same request in whatever language; null: it is
 ///                called
 [[nodiscard]] TONEWRIGHT_API Shader write_shader(const ShaderRequest& request,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/socket.h>
 #include <sys/time.h>
 
@@ -131,8 +132,9 @@ class DawnRun : public ShaderRun {
         for (const ShaderTexture& texture : shader.textures) {
             const std::string file = texture.name + ".rgba32f";
             write_floats(folder_.file(file), texture.rgba.data(), texture.rgba.size());
-            textures += fmt::format(R"({}{{"file": {}, "edge": {}}})", textures.empty() ? "" : ", ",
-                                    quoted(file), texture.edge);
+            textures +=
+                fmt::format(R"({}{{"file": {}, "size": [{}]}})", textures.empty() ? "" : ", ",
+                            quoted(file), fmt::join(texture.size, ", "));
         }
         write_floats(folder_.file("colors"), in, 3 * pixel_count);
         try {

@@ -5,8 +5,9 @@
 //   node run_on_dawn.mjs NODE_MODULES <STEPS
 //
 // A step is a line of JSON. A source is a file of WGSL or SPIR-V (.spv).
-//   {source, input, out, textures: [{file, edge}]}   calls the entry point `main`, 64 colors to a group. Input and output
-//       are float32 RGB at group 1; the textures are cubes of float32 RGBA at group 0.
+//   {source, input, out, textures: [{file, size, loader}]}   calls the entry point `main`, 64 colors to a group. Input and
+//       output are float32 RGB at group 1; the textures are float32 RGBA at group 0. A loader is the text that a shader has
+//       of it, for its `device` and `fetch`; it may be missing.
 //   {vertex, fragment, picture, size, out, bindings}   draws one triangle: vertex and fragment are {source, entryPoint,
 //       constants}, the picture is RGBA in half floats, the output in floats. Bindings are the entries of group 0:
 //       "picture", "sampler", or a list of floats in a uniform buffer.
@@ -61,6 +62,14 @@ function textureOf(bytes, size, format, bytesPerTexel) {
     return texture.createView();
 }
 
+function loaded(file, loader) {
+    const load = new (async () => {}).constructor('device', 'fetch', `${loader}\nreturn texture;`);
+    return load(device, async (url) => {
+        const bytes = await readFile(path.join(path.dirname(file), url));
+        return { arrayBuffer: async () => bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.length) };
+    });
+}
+
 function bind(pass, pipeline, group, resources) {
     const entries = resources.map((resource, binding) => ({ binding, resource }));
     pass.setBindGroup(group, device.createBindGroup({ layout: pipeline.getBindGroupLayout(group), entries }));
@@ -83,7 +92,9 @@ async function compute({ source, input, out, textures }) {
     const result = bufferOf(size, GPUBufferUsage.MAP_READ);
     const pipeline = device.createComputePipeline({ layout: 'auto', compute: { module: await moduleOf(source) } });
     const views = [];
-    for (const { file, edge } of textures) views.push(textureOf(await readFile(file), [edge, edge, edge], 'rgba32float', 16));
+    for (const { file, size: texels, loader } of textures) {
+        views.push(loader ? (await loaded(file, loader)).createView() : textureOf(await readFile(file), texels, 'rgba32float', 16));
+    }
     const encoder = device.createCommandEncoder();
     const pass = encoder.beginComputePass();
     pass.setPipeline(pipeline);

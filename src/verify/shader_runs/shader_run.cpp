@@ -21,7 +21,7 @@ class OpenGlRun : public ShaderRun {
                  std::size_t pixel_count) override {
         std::vector<GlslTexture> textures;
         for (const ShaderTexture& texture : shader.textures)
-            textures.push_back({texture.name, texture.edge, texture.rgba.data()});
+            textures.push_back({texture.name, texture.size, texture.rgba.data()});
         GlslGpu(shader.text, shader.function, textures, dialect_).run_rgb(in, out, pixel_count);
     }
 

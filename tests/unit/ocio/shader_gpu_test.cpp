@@ -37,11 +37,10 @@ ShaderRequest request_of(const OperatorVariant& variant, const std::string& disp
     return request;
 }
 
-GlslGpu gpu_of(const OperatorVariant& variant, const std::string& display) {
-    const Shader shader = write_shader(request_of(variant, display));
+GlslGpu gpu_of(const Shader& shader) {
     std::vector<GlslTexture> textures;
     for (const ShaderTexture& texture : shader.textures)
-        textures.push_back({texture.name, texture.edge, texture.rgba.data()});
+        textures.push_back({texture.name, texture.size, texture.rgba.data()});
     return {shader.text, shader.function, textures};
 }
 
@@ -56,10 +55,7 @@ TEST(ShaderGpu, GlslShowsTheReference) {
         request.view =
             make_view(resolve_operator(variant.name, {}, variant.look), "lin_rec709", 0, "srgb");
         const Shader shader = write_shader(request);
-        std::vector<GlslTexture> textures;
-        for (const ShaderTexture& texture : shader.textures)
-            textures.push_back({texture.name, texture.edge, texture.rgba.data()});
-        const GlslGpu gpu(shader.text, shader.function, textures);
+        const GlslGpu gpu = gpu_of(shader);
         std::vector<float> got(samples.rgb.size());
         std::vector<double> truth(samples.rgb.size());
         gpu.run_rgb(samples.rgb.data(), got.data(), samples.size());
@@ -90,6 +86,112 @@ TEST(ShaderGpu, GlslShowsTheReference) {
     }
 }
 
+/// Largest error over the colors whose channels are numbers.
+double worst_error(const Shader& shader, const View& view, const std::vector<float>& rgb) {
+    std::vector<float> got(rgb.size());
+    std::vector<double> truth(rgb.size());
+    gpu_of(shader).run_rgb(rgb.data(), got.data(), rgb.size() / 3);
+    ReferenceEngine(build_view(view)).run_rgb(rgb.data(), truth.data(), rgb.size() / 3);
+    double worst = 0;
+    for (std::size_t i = 0; i < rgb.size(); ++i) {
+        const double error = std::fabs(static_cast<double>(got[i]) - truth[i]);
+        worst = std::isnan(error) ? kInfinity : std::max(worst, error);
+    }
+    return worst;
+}
+
+// Operators whose curves are fitted, in arrays and in textures. The polynomials are within 3 units
+// of 2^-24; 2e-6 is what float is enough for. ACES works through matrices with negative
+// coefficients.
+TEST(ShaderGpu, FittedCurvesShowTheReference) {
+    if (const std::string reason = OcioGpu::unavailable_reason(); !reason.empty())
+        GTEST_SKIP() << reason;
+    SampleSet samples =
+        make_sample_set(find_input_space("lin_rec709"), {.lattice_edge = 9, .random_count = 5000});
+    std::replace_if(
+        samples.rgb.begin(), samples.rgb.end(), [](float x) { return std::isnan(x); }, 0.18F);
+    for (const char* op : {"agx_sobotka", "uchimura", "lottes", "hable_piecewise", "aces_13"}) {
+        ShaderRequest request;
+        request.view = make_view(resolve_operator(op), "lin_rec709", 0, "srgb");
+        request.curves = ShaderCurves::fitted;
+        const ShaderErrors errors = measure_shader(request);
+        EXPECT_TRUE(std::isinf(errors.guaranteed)) << op;
+        for (const ShaderTables tables : {ShaderTables::array, ShaderTables::texture}) {
+            request.tables = tables;
+            const Shader shader = write_shader(request, &errors);
+            EXPECT_NE(shader.text.find("_table_cell("), std::string::npos) << op;
+            EXPECT_LE(worst_error(shader, request.view, samples.rgb),
+                      std::max(2e-6, op == std::string("aces_13") ? 2 * errors.vulkan_estimate : 0))
+                << op;
+        }
+    }
+}
+
+/// Colors through a table and a lattice of `edge` nodes a side, in front of an operator that limits
+/// them to [0, 1].
+View through_tables(int edge, Table table) {
+    View view = make_view(resolve_operator("clamp"), "lin_rec709", 0, "native");
+    view.input = "through tables";
+    view.input_decode = {
+        curve_stage(lookup(std::make_shared<const Table>(std::move(table)), Expr::input())),
+        LatticeStage{Expr::input(), std::make_shared<const Lattice>(edge, [edge] {
+                         std::vector<double> nodes;
+                         SampleRandom random(7);
+                         for (int i = 0; i < 3 * edge * edge * edge; ++i)
+                             nodes.push_back(random.uniform(0, 1));
+                         return nodes;
+                     })}};
+    return view;
+}
+
+// The same numbers from arrays and from textures: tables with one row of texels and with more, at
+// equal and at other distances, in lines and in steps, and a lattice.
+TEST(ShaderGpu, ArraysAndTexturesHoldTheSameNumbers) {
+    if (const std::string reason = OcioGpu::unavailable_reason(); !reason.empty())
+        GTEST_SKIP() << reason;
+    std::vector<float> rgb;
+    SampleRandom random(11);
+    for (int i = 0; i < 30000; ++i)
+        rgb.push_back(static_cast<float>(random.uniform(-0.1, 1.1)));
+    for (const std::size_t count : {1U, 5U, 256U, 700U}) {
+        for (const bool has_positions : {false, true}) {
+            for (const auto how : {Table::Interpolation::linear, Table::Interpolation::step}) {
+                Table table{{}, how};
+                for (std::size_t i = 0; i < count; ++i) {
+                    table.samples.push_back(random.uniform(0, 1));
+                    if (!has_positions) continue;
+                    const double end = static_cast<double>(i) / static_cast<double>(count);
+                    table.positions.push_back(end * end);
+                }
+                ShaderRequest request;
+                request.view = through_tables(5, table);
+                const ShaderErrors unmeasured;
+                std::vector<double> truth(rgb.size());
+                ReferenceEngine(build_view(request.view))
+                    .run_rgb(rgb.data(), truth.data(), rgb.size() / 3);
+                std::array<std::vector<float>, 2> got;
+                for (std::size_t k = 0; k < 2; ++k) {
+                    request.tables = k == 0 ? ShaderTables::array : ShaderTables::texture;
+                    const Shader shader = write_shader(request, &unmeasured);
+                    EXPECT_EQ(shader.textures.size(), 2 * k);
+                    got[k].resize(rgb.size());
+                    gpu_of(shader).run_rgb(rgb.data(), got[k].data(), rgb.size() / 3);
+                }
+                EXPECT_EQ(got[0], got[1]) << count << " " << has_positions;
+                std::size_t far = 0;
+                // 700 cells of noise and 4 of the lattice in three channels: a rounding of 2^-24
+                // grows 8400 times.
+                for (std::size_t i = 0; i < rgb.size(); ++i)
+                    far += std::fabs(static_cast<double>(got[0][i]) - truth[i]) > 5e-4 ? 1 : 0;
+                // Where a float rounds to the next step: 700 steps take 1e-7 each of what 30,000
+                // numbers are drawn from, and a color has three results.
+                EXPECT_LE(far, how == Table::Interpolation::step ? 30U : 0U)
+                    << count << " " << has_positions;
+            }
+        }
+    }
+}
+
 // The hostile colors of tests/unit/shader/, through a compiler of shaders.
 TEST(ShaderGpu, HostileColorsGiveFiniteNumbers) {
     if (const std::string reason = OcioGpu::unavailable_reason(); !reason.empty())
@@ -114,7 +216,7 @@ TEST(ShaderGpu, HostileColorsGiveFiniteNumbers) {
     std::vector<float> out(rgb.size());
     for (const OperatorVariant& variant : tested_variants()) {
         for (const char* display : {"linear", "srgb"}) {
-            const GlslGpu gpu = gpu_of(variant, display);
+            const GlslGpu gpu = gpu_of(write_shader(request_of(variant, display)));
             gpu.run_rgb(rgb.data(), out.data(), rgb.size() / 3);
             const auto bad =
                 std::find_if(out.begin(), out.end(), [](float x) { return !std::isfinite(x); });

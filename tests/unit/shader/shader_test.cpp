@@ -105,8 +105,9 @@ TEST(Shader, EveryVariantInEveryLanguageIsAsciiAndHasItsOwnName) {
                 << variant.name << " " << language.id;
             for (const ShaderTexture& texture : shader.textures) {
                 EXPECT_NE(shader.text.find(" " + texture.name), std::string::npos);
+                const auto [width, height, depth] = texture.size;
                 EXPECT_EQ(texture.rgba.size(),
-                          4U * static_cast<std::size_t>(std::pow(texture.edge, 3)));
+                          4 * static_cast<std::size_t>(width * height * depth));
             }
         }
     }
@@ -189,8 +190,7 @@ TEST(Shader, LiteralsReadBackAsTheSameFloat) {
     EXPECT_EQ(float_literal(-2.5, facts_of(ShaderLanguage::glsl)), "-2.5");
     EXPECT_EQ(float_literal(1e30, c), "1.0e+30f");
     EXPECT_EQ(float_literal(1e-42, c), "0.0f");  // a denormal, which GPUs take for 0
-    // WGSL refuses decimals above the largest float, as its own shortest one is.
-    EXPECT_EQ(float_literal(kInfinity, c), "3.4028233e+38f");
+    EXPECT_EQ(float_literal(kInfinity, c), "3.0e+38f");
     for (const double x : {1.0 / 3, 12.47393, 65504.0, 1e-30})
         EXPECT_EQ(std::stof(float_literal(x, c)), static_cast<float>(x));
 }
@@ -305,6 +305,36 @@ TEST(Shader, ExposureIsAnArgumentInStops) {
     const std::array<double, 3> color = {0.3, 1.7, 0.02};
     for (std::size_t c = 0; c < 3; ++c)
         EXPECT_NEAR(evaluate(a[c], color), evaluate(b[c], color), 1e-15);  // two roundings
+}
+
+// Curves in front of an argument and behind it, and one that reads it.
+TEST(Shader, FittedCurvesLeaveArgumentsAlone) {
+    ShaderRequest request = request_of("uchimura", "", "srgb");
+    request.curves = ShaderCurves::fitted;
+    for (const std::vector<std::string>& uniforms :
+         {std::vector<std::string>{"exposure"}, {"max_brightness"}, {"exposure", "contrast"}}) {
+        request.uniforms = uniforms;
+        // An error of the polynomials is at most 3 units of 2^-24.
+        EXPECT_LE(measure_shader(request).in_float, 4e-7) << uniforms.back();
+    }
+    const ShaderErrors unmeasured;
+    const std::string text = write_shader(request, &unmeasured).text;
+    EXPECT_NE(text.find("exp2(exposure)"), std::string::npos);
+}
+
+// What three channels have in common is a function; its formula stands there once.
+TEST(Shader, ACurveOfEachChannelIsWrittenOnce) {
+    const ShaderErrors unmeasured;
+    const std::string text = write_shader(request_of("agx_blender:formula"), &unmeasured).text;
+    const auto count_of = [&](const std::string& words) {
+        int count = 0;
+        for (std::size_t at = text.find(words); at != std::string::npos;
+             at = text.find(words, at + 1))
+            ++count;
+        return count;
+    };
+    EXPECT_EQ(count_of("log2("), 1);
+    EXPECT_EQ(count_of("_mix_curve("), 4);  // and three calls
 }
 
 TEST(Shader, BadRequestsAreToldInOneLine) {

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "tonewright/expr.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+
+/// Three expressions of a color in which what is done alike to several values has become functions:
+/// a curve of each channel is written once.
+struct SharedFunctions {
+    struct Call {
+        std::size_t function;
+        Expr argument;  // of inputs 0, 1, 2, and of 3 + i for what call i gave
+    };
+    std::vector<Expr> functions;  // of input 0
+    std::vector<Call> calls;
+    std::array<Expr, 3> f = {0, 0, 0};
+};
+[[nodiscard]] SharedFunctions share_functions(const std::array<Expr, 3>& f);
+
+TONEWRIGHT_NAMESPACE_END

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ocio/model.h"
-#include "base/format_number.h"
 #include "base/strings.h"
+#include "pipeline/stand_ins.h"
 #include "tonewright/registry.h"
 
 #include <fmt/format.h>
@@ -655,19 +655,6 @@ std::string config_view_name(const std::string& name, const ResolvedOperator& op
     const double peak = std::min(op.peak() * kReferenceWhite, display.peak);
     if (!display.is_hdr || peak <= kReferenceWhite) return name;
     return name + fmt::format(" - HDR {:g} nits", peak);
-}
-
-std::string stand_ins(const ResolvedOperator& op) {
-    std::vector<std::string> constants;
-    for (const ParameterSpec& parameter : op.op->parameters) {
-        const bool is_set = op.settings.contains(parameter.name) ||
-                            (op.preset != nullptr && op.preset->settings.contains(parameter.name));
-        if (!parameter.from_picture || is_set) continue;
-        constants.push_back(fmt::format("{} {} for the {}", parameter.name,
-                                        shortest(op.params.number(parameter.name)),
-                                        parameter.statistic));
-    }
-    return fmt::format("{}", fmt::join(constants, ", "));
 }
 
 std::string output_space_name(const std::string& view, const std::string& display) {

@@ -217,7 +217,7 @@ int apply_lut(const ApplyOptions& options, ApplyFiles& files) {
         return open_lut(options.lut.file, options.lut.interpolation, load_lut_picture);
     });
     (void)write_options_of(options, files.files.front().out);
-    check_overwriting(files.files, options.is_in_place);
+    check_overwriting("apply", files.files, options.is_in_place);
     if (files.is_single) {
         apply_lut(options, lut, files.files.front());
         return kOk;
@@ -317,7 +317,7 @@ int run_apply(const ApplyOptions& given) {
         return apply_to_frames(tonemapper, options, write, prepare);
     }
     if (is_of_sequence) throw Error("apply: --statistics is sequence; expected --frames with it");
-    check_overwriting(files.files, options.is_in_place);
+    check_overwriting("apply", files.files, options.is_in_place);
     if (!files.is_single) {
         require_writable_folder(options.output);
         meter_each(files.files, options);

@@ -13,6 +13,7 @@
 #include "ocio/config_builder.h"
 #include "ocio/model.h"
 #include "ocio/operator_facts.h"
+#include "pipeline/stand_ins.h"
 #include "tonewright/registry.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,8 +28,12 @@ struct LutOptions {
 /// Whether the file itself says what goes in.
 [[nodiscard]] bool states_input(const LutOptions& options);
 
+/// The display whose code values come out, or `linear`, where the file itself says so.
+[[nodiscard]] std::optional<std::string> stated_display(const LutOptions& options);
+
 /// Without --input-encoding: what the file itself says that goes in, in one line on stderr; where
-/// it says nothing, a warning that colors go in as they are.
+/// it says nothing, a warning that colors go in as they are. With it: a warning where the file says
+/// otherwise.
 [[nodiscard]] LutOptions with_stated_input(const LutOptions& options, const std::string& input);
 
 /// What stands before the LUT: light of `input`, with --exposure, as --input-encoding in the

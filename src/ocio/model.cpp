@@ -175,6 +175,18 @@ ConfigModel::LogCurve arri_logc4() {
     return curve;
 }
 
+/// Blackmagic Design, "DaVinci Resolve 17 Wide Gamut Intermediate", 2021.
+ConfigModel::LogCurve davinci_intermediate() {
+    constexpr double kB = 7;
+    constexpr double kC = 0.07329248;
+    ConfigModel::LogCurve curve;
+    curve.log_slope = kC;
+    curve.log_offset = kB * kC;
+    curve.linear_offset = 0.0075;
+    curve.linear_break = 0.00262409;
+    return curve;
+}
+
 /// Kodak, "Conversion of 10-bit Log Film Data To 8-bit Linear or Video Data for The Cineon Digital
 /// Film System", 1995: 0.002 density a code, film gamma 0.6, black at 95, white at 685.
 ConfigModel::LogCurve cineon() {
@@ -201,6 +213,12 @@ const std::vector<LogSpace>& log_spaces() {
          &kArriWideGamut4,
          arri_logc4(),
          "ocio:arrilogc4_awg4_scene"},
+        {"DaVinci Intermediate WideGamut",
+         {"davinci_intermediate_widegamut"},
+         "Input/Blackmagic",
+         "DaVinci Intermediate, DaVinci Wide Gamut.",
+         &kDaVinciWideGamut,
+         davinci_intermediate()},
         // OpenImageIO says KodakLog of a DPX that calls itself logarithmic, and of every Cineon.
         {kFilmSpace,
          {"cineon_film", "KodakLog", "Cineon Log"},
@@ -395,6 +413,9 @@ std::vector<NamedSpace> named_spaces() {
         {"ARRI LogC3 (EI800)",
          {"LogC", "LogC3", "LogC V3", "Alexa V3 LogC", "LogC EI800", "LogC3 EI800"}},
         {"ARRI LogC4", {"LogC4", "LogC V4", "LogC AWG4", "AWG4 LogC"}},
+        {"DaVinci Intermediate WideGamut",
+         {"DaVinci Intermediate", "DWG DI", "DI DWG", "DaVinci Intermediate Wide Gamut",
+          "DaVinci Wide Gamut Intermediate", "DWG Intermediate"}},
         {"CanonLog2 CinemaGamut D55", {"C Log2", "Canon Log2"}},
         {"CanonLog3 CinemaGamut D55", {"C Log3", "Canon Log3"}},
         {"V-Log V-Gamut", {"V Log", "V Log V Gamut"}},

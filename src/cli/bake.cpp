@@ -11,8 +11,10 @@
 #include "cli/messages.h"
 #include "cli/picture_commands.h"
 #include "cli/shared_options.h"
+#include "lut/lut_warnings.h"
 #include "lut/shipped_set.h"
 #include "measure/error_metric.h"
+#include "pipeline/stand_ins.h"
 #include "tonewright/lut.h"
 #include "tonewright/lut_applications.h"
 #include "tonewright/registry.h"
@@ -69,29 +71,6 @@ void take_from_host(Options& options, const LutApplication& host) {
     if (!options.one) options.three = true;
 }
 
-/// A 3D LUT that does not follow its operator in saturated lights.
-void warn_of_ringing(const std::string& file, const LutRequest& request, const BakedLut& baked) {
-    if (baked.lut.dimension != 3 || follows_operator(baked.ringing)) return;
-    const LutRinging& ringing = baked.ringing;
-    const std::string what =
-        rings(ringing)
-            ? fmt::format("rings: along rising exposure, {}, where {} does not", to_string(ringing),
-                          request.view.op.label)
-            : fmt::format("does not follow {} in saturated lights", request.view.op.label);
-    std::string remedy;
-    const Operator& op = *request.view.op.op;
-    for (const InputSpace& space : all_input_spaces()) {
-        if (space.primaries == op.working && space.id != request.view.input)
-            remedy = fmt::format("; use the operator's own primaries: --input {}", space.id);
-    }
-    if (remedy.empty() && baked.lut.size < 65 && !is_picture_format(request.format))
-        remedy = "; use more nodes: --size 65";
-    warn(
-        fmt::format("{} {}; errors there up to {} (99.9 %), because clips and kinks of the "
-                    "operator run between its nodes{}",
-                    file, what, rounded_up(ringing.p999), remedy));
-}
-
 void bake_one(Options& options) {
     if (options.op.empty())
         throw Error(
@@ -126,12 +105,14 @@ void bake_one(Options& options) {
     if (options.nodes == "fitted") nodes = LutNodes::fitted;
     const bool is_picture = is_picture_format(request.format);
     if (is_picture) require_lut_picture(options.file, request.bits.value_or(16));
-    warn_of_constants(request.view.op, "LUT", {});
+    if (const std::string text = stand_in_warning(request.view.op, "LUT"); !text.empty())
+        warn(text);
     const BakedLut baked = bake_lut(request, nodes, trilinear, options.max_error);
     const Lut& lut = baked.lut;
     const LutError& error = baked.error;
     request.size = lut.size;
-    warn_of_ringing(options.file, request, baked);
+    if (const std::string text = ringing_warning(options.file, request, baked); !text.empty())
+        warn(text);
     if (is_picture) {
         picture_commands().write_lut(lut, request.format, options.file, request.bits.value_or(16));
     } else {

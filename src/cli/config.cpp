@@ -46,6 +46,11 @@ void write_backup(const std::string& path) {
     fmt::print("backup: {}\n", backup);
 }
 
+/// "1 view", "2 views".
+std::string counted(std::size_t count, std::string_view noun) {
+    return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
 /// Empty: there is none.
 std::string text_of(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
@@ -97,10 +102,10 @@ void replace_config(const std::string& path, const ExtendedConfig& changed, bool
     }
     for (const auto& [kind, names] : changed.added) {
         if (!names.empty())
-            fmt::print("added {} {}: {}\n", names.size(), kind, fmt::join(names, ", "));
+            fmt::print("added {}: {}\n", counted(names.size(), kind), fmt::join(names, ", "));
     }
     if (!changed.unused_files.empty())
-        fmt::print("removed {} tables from {}/\n", changed.unused_files.size(),
+        fmt::print("removed {} from {}/\n", counted(changed.unused_files.size(), "table"),
                    (folder / changed.record.path).parent_path().filename().string());
     if (views.empty()) return;
     fmt::print("\n{:<28} {:<40} {:>9} {:>9}\n", "display", "view", "max error", "99.9 %");

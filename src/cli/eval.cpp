@@ -68,8 +68,8 @@ std::optional<Vector3> parse_line(std::string_view whole, std::size_t number) {
         }
     }
     if (is_bad || (count != 0 && count != 3)) {
-        throw Error(fmt::format("eval: line {} is \"{}\"; expected three numbers", number,
-                                trimmed(whole.substr(0, 60))));
+        throw Error(fmt::format("eval: standard input: line {} is \"{}\"; expected three numbers",
+                                number, trimmed(whole.substr(0, 60))));
     }
     if (count == 0) return std::nullopt;
     return values;
@@ -120,10 +120,10 @@ class LineEvaluator {
         ++number_;
         try {
             if (line.size() > kLongestLine) {
-                throw Error(
-                    fmt::format("eval: line {} has more than {} bytes; expected three "
-                                "numbers",
-                                number_, kLongestLine));
+                throw Error(fmt::format(
+                    "eval: standard input: line {} has more than {} bytes; expected three "
+                    "numbers",
+                    number_, kLongestLine));
             }
             if (const std::optional<Vector3> color = parse_line(line, number_))
                 colors_.insert(colors_.end(), color->begin(), color->end());

@@ -29,24 +29,49 @@ LutFile open_lut(const std::string& path, const std::string& interpolation,
 
 namespace {
 
-std::optional<StatedInput> stated_input(const LutOptions& options) {
+/// Where a file of ours has its text.
+/// @throws FileError  what is no file, and may have no end
+std::string text_of_lut(const LutOptions& options) {
+    require_regular_file(options.file);
     // Our text stands at the beginning, but behind the table in a device link.
     constexpr std::size_t kBeginning = 1U << 16U;
-    if (!why_no_file(options.file).empty()) return {};  // opening a pipe would wait
     const std::string extension = extension_of(options.file);
     const bool is_link = extension == ".icc" || extension == ".icm";
     std::string contents(is_link ? std::size_t{1} << 26U : kBeginning, '\0');
     std::ifstream file(options.file, std::ios::binary);
     file.read(contents.data(), static_cast<std::streamsize>(contents.size()));
     contents.resize(static_cast<std::size_t>(std::max<std::streamsize>(file.gcount(), 0)));
-    return read_stated_input(contents);
+    return contents;
+}
+
+/// What stands before the LUT, with --input-encoding.
+const InputSpace& space_before(const LutOptions& options, const InputEncoding& encoding) {
+    return find_input_space(options.space.empty() ? encoding.default_input : options.space);
+}
+
+/// `none` is for pictures that are encoded already.
+void warn_of_contradiction(const LutOptions& options, const StatedInput& stated) {
+    if (options.encoding == "none") return;
+    const InputEncoding encoding = parse_input_encoding(options.encoding);
+    const std::string id = encoding.is_linear ? "linear" : encoding.id;
+    const InputSpace& space = space_before(options, encoding);
+    if (id == stated.encoding && space.id == stated.space) return;
+    warn(fmt::format("{}: --input-encoding makes {} of {}, but the LUT expects {}, by its header",
+                     options.file, id, space.title, stated.text));
 }
 
 }  // namespace
 
+std::optional<std::string> stated_display(const LutOptions& options) {
+    return read_stated_display(text_of_lut(options));
+}
+
 LutOptions with_stated_input(const LutOptions& options, const std::string& input) {
-    if (!options.encoding.empty()) return options;
-    const std::optional<StatedInput> stated = stated_input(options);
+    const std::optional<StatedInput> stated = read_stated_input(text_of_lut(options));
+    if (!options.encoding.empty()) {
+        if (stated) warn_of_contradiction(options, *stated);
+        return options;
+    }
     if (!stated) {
         warn(fmt::format(
             "{}: the encoding that the LUT expects is unknown; colors are passed unchanged "
@@ -81,8 +106,7 @@ Pipeline before_lut(const char* command, const LutOptions& options, const ViewOp
     const InputEncoding encoding = parse_input_encoding(options.encoding);
     if (!(std::fabs(view.exposure) <= 64))
         throw Error("exposure is " + shortest(view.exposure) + "; expected [-64, 64] stops");
-    const InputSpace& to =
-        find_input_space(options.space.empty() ? encoding.default_input : options.space);
+    const InputSpace& to = space_before(options, encoding);
     Pipeline stages = input.decode;
     const Matrix3 matrix = rgb_to_rgb(input.primaries, to.primaries);
     stages.push_back(MatrixStage{scale(matrix, std::exp2(view.exposure))});
@@ -92,7 +116,7 @@ Pipeline before_lut(const char* command, const LutOptions& options, const ViewOp
 
 void check_lut_options(const char* command, const LutOptions& options, const ViewOptions& view,
                        const SourceColor& input) {
-    if (options.encoding.empty() && stated_input(options)) return;
+    if (options.encoding.empty() && read_stated_input(text_of_lut(options))) return;
     (void)before_lut(command, options, view, input);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,8 +25,12 @@ struct LutOptions {
 [[nodiscard]] LutFile open_lut(const std::string& path, const std::string& interpolation,
                                const std::function<Lut(const std::string&)>& read_picture);
 
+/// The display whose code values come out, or `linear`, where the file itself says so.
+[[nodiscard]] std::optional<std::string> stated_display(const LutOptions& options);
+
 /// Without --input-encoding: what the file itself says that goes in, in one line on stderr; where
-/// it says nothing, a warning that colors go in as they are.
+/// it says nothing, a warning that colors go in as they are. With it: a warning where the file says
+/// otherwise.
 [[nodiscard]] LutOptions with_stated_input(const LutOptions& options, const std::string& input);
 
 /// What stands before the LUT: light of `input`, with --exposure, as --input-encoding in the

@@ -10,6 +10,7 @@
 #include "cli/npm_package.h"
 #include "cli/shared_options.h"
 #include "measure/error_metric.h"
+#include "pipeline/stand_ins.h"
 #include "tonewright/generated_files.h"
 #include "tonewright/registry.h"
 #include "tonewright/shader.h"
@@ -88,7 +89,9 @@ void write_one(Options& options) {
             throw FileError(fmt::format("write: {}: {}", options.file, why));
     }
     const Shader shader = write_shader(request);
-    warn_of_constants(request.view.op, "shader", options.uniforms);
+    if (const std::string text = stand_in_warning(request.view.op, "shader", options.uniforms);
+        !text.empty())
+        warn(text);
     constexpr double kTenBits = 1.0 / 1023;
     if (shader.errors.in_float > kTenBits) {
         warn(

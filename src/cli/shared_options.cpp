@@ -1,14 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/shared_options.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
-#include <algorithm>
-
-#include "base/format_number.h"
-#include "cli/messages.h"
-
 TONEWRIGHT_NAMESPACE_BEGIN
 
 void add_view_options(const Command& command, ViewOptions& options) {
@@ -39,28 +31,6 @@ void add_view_options(const Command& command, ViewOptions& options) {
         .value("CD/M2")
         .show_default()
         .group(color);
-}
-
-void warn_of_constants(const ResolvedOperator& op, const std::string& form,
-                       const std::vector<std::string>& arguments) {
-    std::vector<std::string> constants;
-    std::string first;
-    for (const ParameterSpec& parameter : op.op->parameters) {
-        const bool is_set =
-            op.settings.contains(parameter.name) ||
-            (op.preset && op.preset->settings.contains(parameter.name)) ||
-            std::find(arguments.begin(), arguments.end(), parameter.name) != arguments.end();
-        if (!parameter.from_picture || is_set) continue;
-        if (first.empty()) first = parameter.name;
-        constants.push_back(fmt::format("{} {} for the {}", parameter.name,
-                                        shortest(op.params.number(parameter.name)),
-                                        parameter.statistic));
-    }
-    if (constants.empty()) return;
-    warn(
-        fmt::format("{} measures each picture, which a {} cannot do; the {} uses {} (--set {}=... "
-                    "changes it)",
-                    op.label, form, form, fmt::join(constants, ", "), first));
 }
 
 void add_lut_options(const Command& command, LutOptions& options, const Option& op,

@@ -15,11 +15,6 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// --set, --look, --exposure, --input, --display, --reference-white.
 void add_view_options(const Command& command, ViewOptions& options);
 
-/// One line where an operator measures its picture, and a `form` ("LUT") of it cannot.
-/// @param arguments  parameters that the form does not hold
-void warn_of_constants(const ResolvedOperator& op, const std::string& form,
-                       const std::vector<std::string>& arguments);
-
 /// --lut, --interpolation, --input-encoding, --lut-space, for a command that has an operator and
 /// add_view_options().
 /// @param op      the option of the operator

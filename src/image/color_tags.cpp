@@ -97,22 +97,36 @@ constexpr std::array kFormats = {
     FormatColor{"openexr", "OpenEXR", false, false, true},
 };
 
-Claim claim_of(const View& view) {
-    if (view.display == kLinearOutput) return {"Linear", kRec709};
-    if (view.display == kNativeOutput) {
-        const Operator& op = *view.op.op;
-        const Primaries primaries = view.op.output_primaries();
-        // OIIO's names imply Rec.709: for other primaries there is none.
-        if (!(primaries == kRec709)) return {"", primaries};
-        if (op.output == OutputKind::display_linear) return {"Linear", kRec709};
-        return power_claim(op.code_power, kRec709);
-    }
-    const Display& display = find_display(view.display);
+Claim claim_of_operator(const ResolvedOperator& op) {
+    const Primaries primaries = op.output_primaries();
+    // OIIO's names imply Rec.709: for other primaries there is none.
+    if (!(primaries == kRec709)) return {"", primaries};
+    if (op.op->output == OutputKind::display_linear) return {"Linear", kRec709};
+    return power_claim(op.op->code_power, kRec709);
+}
+
+Claim claim_of_display(std::string_view name) {
+    if (name == kLinearOutput) return {"Linear", kRec709};
+    const Display& display = find_display(name);
     if (display.id == "srgb") return {"sRGB", display.primaries};
     if (display.id == "g22") return power_claim(2.2, display.primaries);
     // OIIO's "Rec709" is the camera curve of BT.709. Rec.1886 is the 2.4 power of a display.
     if (display.id == "rec1886") return power_claim(2.4, display.primaries);
     return {display.title, display.primaries};
+}
+
+void tag(const Claim& claim, OIIO::ImageSpec& spec) {
+    tag_as_unknown(spec);
+    if (!claim.color_space.empty()) spec.attribute("oiio:ColorSpace", claim.color_space);
+    if (claim.primaries == kRec709) return;  // what OpenEXR files without the attribute have
+    const Primaries& p = claim.primaries;
+    std::array<float, 8> xy{};
+    std::size_t i = 0;
+    for (const Chromaticity& c : {p.red, p.green, p.blue, p.whitepoint}) {
+        xy[i++] = static_cast<float>(c.x);
+        xy[i++] = static_cast<float>(c.y);
+    }
+    spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), xy.data());
 }
 
 }  // namespace
@@ -151,18 +165,12 @@ void tag_as_unknown(OIIO::ImageSpec& spec) {
 }
 
 void tag_as_result_of(const View& view, OIIO::ImageSpec& spec) {
-    tag_as_unknown(spec);
-    const Claim claim = claim_of(view);
-    if (!claim.color_space.empty()) spec.attribute("oiio:ColorSpace", claim.color_space);
-    if (claim.primaries == kRec709) return;  // what OpenEXR files without the attribute have
-    const Primaries& p = claim.primaries;
-    std::array<float, 8> xy{};
-    std::size_t i = 0;
-    for (const Chromaticity& c : {p.red, p.green, p.blue, p.whitepoint}) {
-        xy[i++] = static_cast<float>(c.x);
-        xy[i++] = static_cast<float>(c.y);
-    }
-    spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), xy.data());
+    tag(view.display == kNativeOutput ? claim_of_operator(view.op) : claim_of_display(view.display),
+        spec);
+}
+
+void tag_as_shown_on(std::string_view display, OIIO::ImageSpec& spec) {
+    tag(claim_of_display(display), spec);
 }
 
 std::optional<TaggedColor> tagged_color(const OIIO::ImageSpec& spec) {

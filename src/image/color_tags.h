@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "image/png_chunks.h"
 #include "lut/icc.h"
@@ -16,6 +17,8 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// `chromaticities` where they are not those of Rec.709, and removes whatever described the
 /// source's colors.
 TONEWRIGHT_API void tag_as_result_of(const View& view, OIIO::ImageSpec& spec);
+/// @param display  id of a display, or `linear`
+TONEWRIGHT_API void tag_as_shown_on(std::string_view display, OIIO::ImageSpec& spec);
 /// Removes it, and says nothing: nobody knows what the colors are now.
 TONEWRIGHT_API void tag_as_unknown(OIIO::ImageSpec& spec);
 

@@ -5,15 +5,18 @@
 // at a time, so that the memory does not grow with the picture.
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
 #include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
 #include <ctime>
 #include <exception>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "base/format_number.h"
@@ -250,6 +253,30 @@ void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, con
                 .statistics());
     }
     FilePass(own ? *own : tonemapper, reader, writer, write, nthreads, batch_bytes, in).run_all();
+}
+
+void check_overwriting(const std::string& command, const std::vector<FrameFiles>& files,
+                       bool is_in_place) {
+    using Identity = std::pair<dev_t, ino_t>;
+    const auto identity_of = [](const std::string& path) -> std::optional<Identity> {
+        struct stat file {};
+        if (::stat(path.c_str(), &file) != 0) return {};
+        return Identity(file.st_dev, file.st_ino);
+    };
+    std::map<Identity, const FrameFiles*> ins;
+    for (const FrameFiles& file : files) {
+        if (const auto identity = identity_of(file.in)) ins.emplace(*identity, &file);
+    }
+    for (const FrameFiles& file : files) {
+        const auto identity = identity_of(file.out);
+        const auto found = identity ? ins.find(*identity) : ins.end();
+        if (found == ins.end()) continue;
+        const bool is_own = found->second->out == file.out;
+        if (is_own && is_in_place) continue;
+        throw Error(
+            fmt::format("{}: output is {}, the same file as the input {}; expected another file{}",
+                        command, file.out, found->second->in, is_own ? ", or --in-place" : ""));
+    }
 }
 
 void tonemap_file(const Tonemapper& tonemapper, const std::string& in, const std::string& out,

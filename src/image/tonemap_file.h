@@ -3,8 +3,10 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include "image/picture_file.h"
+#include "tonewright/sequence.h"
 #include "tonewright/tonemap.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -22,5 +24,12 @@ TONEWRIGHT_NAMESPACE_BEGIN
 TONEWRIGHT_API void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in,
                                        const std::string& out, const WriteOptions& write,
                                        int nthreads, std::size_t batch_bytes, int subimage = 0);
+
+/// That no output replaces what is read, through links either: each its own picture with
+/// --in-place, another's never.
+/// @param command  its name, for the message
+/// @throws Error
+TONEWRIGHT_API void check_overwriting(const std::string& command,
+                                      const std::vector<FrameFiles>& files, bool is_in_place);
 
 TONEWRIGHT_NAMESPACE_END

@@ -63,7 +63,7 @@ std::optional<std::string> space_of(std::string_view text) {
     return longest ? std::optional(longest->id) : std::nullopt;
 }
 
-std::optional<StatedInput> parse(std::string_view line) {
+std::optional<StatedInput> parse_input(std::string_view line) {
     StatedInput stated;
     stated.text = line;
     constexpr std::string_view kLight = "scene-linear ";
@@ -84,23 +84,41 @@ std::optional<StatedInput> parse(std::string_view line) {
     return stated;
 }
 
-}  // namespace
+/// As write_lut() has it.
+std::optional<std::string> parse_display(std::string_view line) {
+    if (line.starts_with("display-linear Rec.709")) return std::string(kLinearOutput);
+    for (const Display& display : all_displays()) {
+        if (line.starts_with(display.title + " code values")) return display.id;
+    }
+    return std::nullopt;
+}
 
-std::optional<StatedInput> read_stated_input(std::string_view contents) {
-    constexpr std::string_view kMark = "Input: ";
+/// The first line of ours behind `mark` that `parse` understands.
+template <class Stated>
+std::optional<Stated> find_stated(std::string_view contents, std::string_view mark,
+                                  std::optional<Stated> (*parse)(std::string_view)) {
     // A device link of version 4 has its text in 16 bits.
     std::string text;
     std::copy_if(contents.begin(), contents.end(), std::back_inserter(text),
                  [](char c) { return c != '\0'; });
     if (text.find("Tonewright: ") == std::string::npos) return std::nullopt;
-    for (std::size_t at = text.find(kMark); at != std::string::npos;
-         at = text.find(kMark, at + 1)) {
-        const std::size_t begin = at + kMark.size();
+    for (std::size_t at = text.find(mark); at != std::string::npos; at = text.find(mark, at + 1)) {
+        const std::size_t begin = at + mark.size();
         const std::string_view line =
             std::string_view(text).substr(begin, text.find_first_of("\r\n<", begin) - begin);
         if (auto stated = parse(trimmed(line))) return stated;
     }
     return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<StatedInput> read_stated_input(std::string_view contents) {
+    return find_stated(contents, "Input: ", parse_input);
+}
+
+std::optional<std::string> read_stated_display(std::string_view contents) {
+    return find_stated(contents, "Output: ", parse_display);
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -26,4 +26,9 @@ struct StatedInput {
 [[nodiscard]] TONEWRIGHT_API std::optional<StatedInput> read_stated_input(
     std::string_view contents);
 
+/// What comes out, as read_stated_input() reads what goes in: the id of the display whose code
+/// values they are, or `linear`. Nothing for the values of an operator itself.
+[[nodiscard]] TONEWRIGHT_API std::optional<std::string> read_stated_display(
+    std::string_view contents);
+
 TONEWRIGHT_NAMESPACE_END

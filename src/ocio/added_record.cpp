@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Enough of what stands before a short piece to find it again.
+/// Enough of what stands before a piece to tell it from the same text elsewhere.
 constexpr std::size_t kContext = 80;
 
 std::string file_of(const std::string& config) {
@@ -31,14 +31,33 @@ std::vector<std::string> texts(const YAML::Node& list) {
     return found;
 }
 
-/// Where the piece begins, if it is there exactly once.
-std::size_t find_once(const std::string& text, const std::string& before,
-                      const std::string& piece) {
-    const std::string wanted = before + piece;
-    const std::size_t at = text.find(wanted);
-    if (at == std::string::npos || text.find(wanted, at + 1) != std::string::npos)
-        return std::string::npos;
-    return at + before.size();
+/// How many characters before `at` are the last ones of `before`.
+std::size_t common_before(const std::string& text, std::size_t at, const std::string& before) {
+    std::size_t count = 0;
+    while (count < std::min(at, before.size()) &&
+           text[at - count - 1] == before[before.size() - count - 1])
+        ++count;
+    return count;
+}
+
+/// Where the piece begins: the place with most of what stood before it, if that is one place only.
+/// A piece that continues a line needs that line as it was. Lines before it may have changed.
+std::size_t find_piece(const std::string& text, const AddedRecord::Piece& piece) {
+    const std::string& before = piece.before;
+    const bool continues_line = !piece.text.starts_with('\n') && !piece.text.starts_with("\r\n");
+    const std::size_t needed = continues_line ? before.size() - (before.rfind('\n') + 1) : 0;
+    std::size_t found = std::string::npos;
+    std::size_t most = 0;
+    bool is_only = true;
+    for (std::size_t at = text.find(piece.text); at != std::string::npos;
+         at = text.find(piece.text, at + 1)) {
+        const std::size_t count = common_before(text, at, before);
+        if (count < needed || count < most) continue;
+        is_only = found == std::string::npos || count > most;
+        found = at;
+        most = count;
+    }
+    return is_only ? found : std::string::npos;
 }
 
 }  // namespace
@@ -127,9 +146,7 @@ void AddedRecord::add(const std::vector<YamlText::Insertion>& insertions,
 std::string AddedRecord::without(std::string text, const std::string& config) const {
     // What was put in last is what the context of the others may have before it.
     for (auto piece = pieces.rbegin(); piece != pieces.rend(); ++piece) {
-        std::size_t at = find_once(text, piece->before, piece->text);
-        if (at == std::string::npos && piece->text.size() >= kContext)
-            at = find_once(text, "", piece->text);
+        const std::size_t at = find_piece(text, *piece);
         if (at == std::string::npos) {
             throw FileError(
                 fmt::format("config: {}: what --into added was changed since: {}; expected it as "

@@ -12,6 +12,7 @@
 #include "base/random.h"
 #include "base/strings.h"
 #include "ocio/config_builder.h"
+#include "pipeline/stand_ins.h"
 #include "tonewright/engine.h"
 #include "tonewright/generated_files.h"
 #include "tonewright/ocio.h"

@@ -172,7 +172,8 @@ void append_or_add(YamlText& yaml, const std::string& key, const std::vector<YAM
     if (is_there) {
         yaml.append(list, items);
     } else if (list) {
-        throw Error("config: " + key + " is empty; expected at least one, or no " + key);
+        throw YAML::RepresentationException(YAML::Mark::null_mark(),
+                                            key + " is empty; expected at least one, or no " + key);
     } else {
         yaml.add(key, items);
     }
@@ -265,14 +266,15 @@ ExtendedConfig extend_config(const std::string& path, const ConfigOptions& given
     const std::string original_active_views = config->getActiveViews();
     for (const char* role : {"aces_interchange", "cie_xyz_d65_interchange"}) {
         if (!config->hasRole(role)) {
-            throw Error("config: " + path + " has no role " + role +
-                        "; expected both interchange roles, which say what its color spaces are");
+            throw FileError(
+                "config: " + path + " has no role " + role +
+                "; expected both interchange roles, which say what its color spaces are");
         }
     }
     const std::map<std::string, std::vector<float>> before = pictures_of(config);
     const std::vector<HostDisplay> hosts = match_displays(config, options.displays);
     if (hosts.empty()) {
-        throw Error(
+        throw FileError(
             "config: " + path +
             " has no display that Tonewright knows with a view transform; expected sRGB, Display "
             "P3, Rec.1886, Rec.2020, 2.2, PQ or HLG");
@@ -359,10 +361,10 @@ ExtendedConfig extend_config(const std::string& path, const ConfigOptions& given
         }
         result.text = yaml.result();
         record.add(yaml.insertions(), result.text);
-        result.added = {{"views", all_views},
-                        {"view transforms", transforms},
-                        {"looks", looks},
-                        {"color spaces", spaces}};
+        result.added = {{"view", all_views},
+                        {"view transform", transforms},
+                        {"look", looks},
+                        {"color space", spaces}};
     } catch (const YAML::Exception& e) {
         throw FileError("read: " + path + ": " + one_line(e.what()));
     }

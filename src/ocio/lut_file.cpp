@@ -227,6 +227,7 @@ LutFile::LutFile(const std::string& path, LutInterpolation interpolation) {
     auto form = std::make_unique<Form>();
     form->is_trilinear = interpolation == LutInterpolation::trilinear;
     const std::string extension = extension_of(path);
+    require_regular_file(path);
     check_extension(path);
     const std::string bytes = read_file(path, kLargestFile, [&](const std::string& reason) {
         throw FileError("read: " + path + ": " + reason);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "ocio/model.h"
-#include "base/format_number.h"
 #include "base/strings.h"
+#include "pipeline/stand_ins.h"
 #include "tonewright/registry.h"
 
 #include <fmt/format.h>
@@ -175,6 +175,18 @@ ConfigModel::LogCurve arri_logc4() {
     return curve;
 }
 
+/// Blackmagic Design, "DaVinci Resolve 17 Wide Gamut Intermediate", 2021.
+ConfigModel::LogCurve davinci_intermediate() {
+    constexpr double kB = 7;
+    constexpr double kC = 0.07329248;
+    ConfigModel::LogCurve curve;
+    curve.log_slope = kC;
+    curve.log_offset = kB * kC;
+    curve.linear_offset = 0.0075;
+    curve.linear_break = 0.00262409;
+    return curve;
+}
+
 /// Kodak, "Conversion of 10-bit Log Film Data To 8-bit Linear or Video Data for The Cineon Digital
 /// Film System", 1995: 0.002 density a code, film gamma 0.6, black at 95, white at 685.
 ConfigModel::LogCurve cineon() {
@@ -201,6 +213,12 @@ const std::vector<LogSpace>& log_spaces() {
          &kArriWideGamut4,
          arri_logc4(),
          "ocio:arrilogc4_awg4_scene"},
+        {"DaVinci Intermediate WideGamut",
+         {"davinci_intermediate_widegamut"},
+         "Input/Blackmagic",
+         "DaVinci Intermediate, DaVinci Wide Gamut.",
+         &kDaVinciWideGamut,
+         davinci_intermediate()},
         // OpenImageIO says KodakLog of a DPX that calls itself logarithmic, and of every Cineon.
         {kFilmSpace,
          {"cineon_film", "KodakLog", "Cineon Log"},
@@ -395,6 +413,9 @@ std::vector<NamedSpace> named_spaces() {
         {"ARRI LogC3 (EI800)",
          {"LogC", "LogC3", "LogC V3", "Alexa V3 LogC", "LogC EI800", "LogC3 EI800"}},
         {"ARRI LogC4", {"LogC4", "LogC V4", "LogC AWG4", "AWG4 LogC"}},
+        {"DaVinci Intermediate WideGamut",
+         {"DaVinci Intermediate", "DWG DI", "DI DWG", "DaVinci Intermediate Wide Gamut",
+          "DaVinci Wide Gamut Intermediate", "DWG Intermediate"}},
         {"CanonLog2 CinemaGamut D55", {"C Log2", "Canon Log2"}},
         {"CanonLog3 CinemaGamut D55", {"C Log3", "Canon Log3"}},
         {"V-Log V-Gamut", {"V Log", "V Log V Gamut"}},
@@ -655,19 +676,6 @@ std::string config_view_name(const std::string& name, const ResolvedOperator& op
     const double peak = std::min(op.peak() * kReferenceWhite, display.peak);
     if (!display.is_hdr || peak <= kReferenceWhite) return name;
     return name + fmt::format(" - HDR {:g} nits", peak);
-}
-
-std::string stand_ins(const ResolvedOperator& op) {
-    std::vector<std::string> constants;
-    for (const ParameterSpec& parameter : op.op->parameters) {
-        const bool is_set = op.settings.contains(parameter.name) ||
-                            (op.preset != nullptr && op.preset->settings.contains(parameter.name));
-        if (!parameter.from_picture || is_set) continue;
-        constants.push_back(fmt::format("{} {} for the {}", parameter.name,
-                                        shortest(op.params.number(parameter.name)),
-                                        parameter.statistic));
-    }
-    return fmt::format("{}", fmt::join(constants, ", "));
 }
 
 std::string output_space_name(const std::string& view, const std::string& display) {

@@ -97,10 +97,6 @@ struct ConfigModel {
 ///                63 bytes, twice the same, an alias that is a role.
 [[nodiscard]] TONEWRIGHT_API ConfigModel make_config_model(const ConfigOptions& options = {});
 
-/// The constants that stand in a view for numbers that `apply` takes from the picture: "maximum 100
-/// for the maximum luminance of the picture". Empty: the operator measures nothing.
-[[nodiscard]] std::string stand_ins(const ResolvedOperator& op);
-
 inline constexpr const char* kDataSpace = "Non-Color";
 inline constexpr const char* kUntonemappedView = "Un-tone-mapped";
 inline constexpr const char* kRawView = "Raw";

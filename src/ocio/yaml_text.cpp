@@ -6,17 +6,17 @@
 #include <algorithm>
 #include <sstream>
 
-#include "tonewright/error.h"
-
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r\n";
 
+/// The caller adds the file's name, as to what yaml-cpp throws.
 [[noreturn]] void fail() {
-    throw Error(
-        "config: cannot insert into YAML that is written this way; expected lists, and texts "
-        "without escapes");
+    throw YAML::RepresentationException(
+        YAML::Mark::null_mark(),
+        "cannot insert into YAML that is written this way; expected lists, and texts without "
+        "escapes");
 }
 
 std::size_t position(const YAML::Node& node) {

@@ -29,12 +29,13 @@ class TONEWRIGHT_API YamlText {
 
     [[nodiscard]] const YAML::Node& root() const { return root_; }
 
-    /// Behind the last item of a sequence of the text. @throws Error  for one that cannot be found
+    /// Behind the last item of a sequence of the text.
+    /// @throws YAML::Exception  for one that cannot be found
     void append(const YAML::Node& sequence, const std::vector<YAML::Node>& items);
     /// A new key of the whole, behind the others.
     void add(const std::string& key, const std::vector<YAML::Node>& items);
     void add_text(const std::string& key, const std::string& value);
-    /// Behind the last character of a text. @throws Error  as append()
+    /// Behind the last character of a text. @throws YAML::Exception  as append()
     void append_text(const YAML::Node& scalar, std::string_view more);
 
     /// In the order of the text.

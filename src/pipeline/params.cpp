@@ -10,6 +10,11 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
+/// What is expected where a name is none of these.
+std::string one_of(const Operator& op, const char* what, const std::vector<std::string>& names) {
+    return names.empty() ? "none: " + op.id + " has no " + what : join_choices(names);
+}
+
 template <class Items, class Name>
 std::vector<std::string> names_of(const Items& items, Name name) {
     std::vector<std::string> names;
@@ -38,8 +43,7 @@ const ParameterSpec& find_parameter(const Operator& op, std::string_view name) {
     }
     const auto ids = names_of(op.parameters, [](const ParameterSpec& p) { return p.name; });
     throw Error(op.id + ": parameter is " + std::string(name) + "; expected " +
-                (ids.empty() ? "none, it has no parameters" : join_choices(ids)) +
-                did_you_mean(name, ids));
+                one_of(op, "parameters", ids) + did_you_mean(name, ids));
 }
 
 /// The settings under the names of the parameters, choices as the parameter has them.
@@ -168,12 +172,10 @@ const Preset& find_preset(const Operator& op, std::string_view id) {
     for (const Look& look : op.looks) {
         if (!is_same_name(look.id, id)) continue;
         throw Error(op.id + ": preset is " + std::string(id) + "; expected " +
-                    (ids.empty() ? "none, it has no presets" : join_choices(ids)) +
-                    "; did you mean look=" + look.id + "?");
+                    one_of(op, "presets", ids) + "; did you mean look=" + look.id + "?");
     }
     throw Error(op.id + ": preset is " + std::string(id) + "; expected " +
-                (ids.empty() ? "none, it has no presets" : join_choices(ids)) +
-                did_you_mean(id, ids));
+                one_of(op, "presets", ids) + did_you_mean(id, ids));
 }
 
 Settings settings_for_picture(const ResolvedOperator& resolved, const SceneStatistics& statistics) {
@@ -256,8 +258,7 @@ ResolvedOperator resolve(const Operator& op, const Preset* preset, const Setting
         if (found == op.looks.end()) {
             const auto ids = names_of(op.looks, [](const Look& l) { return l.id; });
             throw Error(op.id + ": look is " + std::string(look) + "; expected " +
-                        (ids.empty() ? "none, it has no looks" : join_choices(ids)) +
-                        did_you_mean(look, ids));
+                        one_of(op, "looks", ids) + did_you_mean(look, ids));
         }
         resolved.params.look_ = found->id;
         resolved.label += " look=" + found->id;

@@ -16,7 +16,9 @@
 #include <cerrno>
 #include <cstddef>
 #include <exception>
+#include <new>
 #include <optional>
+#include <regex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,6 +28,9 @@
 #include "base/strings.h"
 #include "image/lut_picture.h"
 #include "image/tonemap_arguments.h"
+#include "image/tonemap_file.h"
+#include "lut/lut_warnings.h"
+#include "pipeline/stand_ins.h"
 #include "tonewright/engine.h"
 #include "tonewright/generated_files.h"
 #include "tonewright/image_io.h"
@@ -60,13 +65,21 @@ std::string in_python(std::string message) {
     for (const auto& [command, python] :
          {std::pair<std::string, const char*>("`tonewright list --hosts`", "applications()"),
           std::pair<std::string, const char*>("`tonewright list`", "operators()"),
-          std::pair<std::string, const char*>("--alpha ignore", "alpha=\"ignore\""),
-          std::pair<std::string, const char*>("--alpha opaque", "alpha=\"opaque\""),
-          std::pair<std::string, const char*>("--display linear", "display=\"linear\"")}) {
+          std::pair<std::string, const char*>(
+              "--format hald, strip or strip_up with a picture, or --for",
+              "format=\"hald\", \"strip\" or \"strip_up\" with a picture, or host="),
+          std::pair<std::string, const char*>("--operator ID:PARAMETER=VALUE",
+                                              "custom={VIEW: \"ID:PARAMETER=VALUE\"}"),
+          std::pair<std::string, const char*>("--in-place", "in_place=True")}) {
         for (std::size_t at = 0; (at = message.find(command)) != std::string::npos;)
             message.replace(at, command.size(), python);
     }
-    return message;
+    static const std::regex setting("--set ([a-z_]+)=\\.\\.\\.");
+    static const std::regex number("--([a-z]+) ([0-9.]+)");
+    static const std::regex name("--([a-z]+) ([a-z][a-z0-9_]*)");
+    message = std::regex_replace(message, setting, "settings={\"$1\": ...}");
+    message = std::regex_replace(message, number, "$1=$2");
+    return std::regex_replace(message, name, "$1=\"$2\"");
 }
 
 /// A UserWarning at the line that called the package's function.
@@ -79,6 +92,13 @@ void warn(const std::string& text) {
         throw py::error_already_set();
 }
 
+/// OpenImageIO and OpenEXR have words of their own for it.
+bool is_out_of_memory(const std::string& message) {
+    const auto has = [&](const char* words) { return message.find(words) != std::string::npos; };
+    return has("not enough memory") || has("no memory for") || has("bad_alloc") ||
+           has("allocate memory");
+}
+
 /// OSError, or the one of its classes that a reason has.
 PyObject* file_error_of(const std::string& message) {
     for (const auto& [number, type] :
@@ -87,6 +107,16 @@ PyObject* file_error_of(const std::string& message) {
         if (message.ends_with(reason_of(number))) return type;
     }
     return PyExc_OSError;
+}
+
+/// @param type  where there was memory enough
+void set_error(PyObject* type, std::string message) {
+    if (is_out_of_memory(message)) {
+        type = PyExc_MemoryError;
+        // What stands first is the name of the file, or of the function.
+        message = message.substr(0, message.find(": ")) + ": not enough memory";
+    }
+    PyErr_SetString(type, in_python(one_line(message)).c_str());
 }
 
 /// `settings` is a dictionary of the operator's parameters.
@@ -163,9 +193,11 @@ ImageBuf tonemap_picture(const ImageBuf& source, const TonemapOptions& options, 
         is_done = tonemap(result, source, options, roi, nthreads, told.callback(), &told);
     }
     told.check();
-    if (!is_done && !source.initialized()) throw FileError(result.geterror());
-    if (!is_done) throw Error(result.geterror());
-    return result;
+    if (is_done) return result;
+    const std::string why = result.geterror();
+    if (is_out_of_memory(why)) throw FileError("tonemap: not enough memory");
+    if (!source.initialized()) throw FileError(why);
+    throw Error(why);
 }
 
 /// An array as a picture, which looks at the array's memory.
@@ -391,11 +423,15 @@ py::dict bake_file(const std::string& op, const std::string& file, const std::st
     }
     if (size) request.size = size;
     if (depth) request.bits = depth;
+    if (const std::string text = stand_in_warning(request.view.op, "LUT"); !text.empty())
+        warn(text);
     BakedLut baked;
-    {
+    with_memory_for(file, [&] {
         const py::gil_scoped_release release;
         baked = bake_lut(request, LutNodes::automatic, reader && is_trilinear(*reader));
         request.size = baked.lut.size;
+        if (const std::string text = ringing_warning(file, request, baked); !text.empty())
+            warn(text);
         if (is_picture_format(request.format)) {
             const int bits = request.bits.value_or(16);
             OIIO::TypeDesc type = OIIO::TypeFloat;
@@ -405,7 +441,7 @@ py::dict bake_file(const std::string& op, const std::string& file, const std::st
         } else {
             write_text_atomically(file, write_lut(baked, request));
         }
-    }
+    });
     py::dict result;
     result["dimension"] = baked.lut.dimension;
     result["size"] = baked.lut.size;
@@ -423,7 +459,8 @@ WriteOptions::Alpha parse_alpha(const std::string& text) {
 
 void tonemap_into_file(const std::string& in, const std::string& out, const std::string& op,
                        const std::string& type, const std::string& alpha, int nthreads,
-                       int subimage, const py::kwargs& arguments) {
+                       int subimage, bool is_in_place, const py::kwargs& arguments) {
+    check_overwriting("tonemap_file", {{in, out}}, is_in_place);
     TonemapOptions options = parse_options(op, arguments);
     WriteOptions write;
     write.alpha = parse_alpha(alpha);
@@ -489,11 +526,12 @@ py::dict meter_any(const py::object& image, const std::string& method, std::opti
     if (py::isinstance<ImageBuf>(image)) {
         const auto& picture = image.cast<const ImageBuf&>();
         const py::gil_scoped_release release;
-        metering = meter(picture, options, nthreads);
+        metering = with_memory_for("meter", [&] { return meter(picture, options, nthreads); });
     } else if (py::isinstance<py::array>(image)) {
         const ArrayPicture pixels = picture_of("meter", image.cast<py::array>());
         const py::gil_scoped_release release;
-        metering = meter(pixels.picture, options, nthreads);
+        metering =
+            with_memory_for("meter", [&] { return meter(pixels.picture, options, nthreads); });
     } else if (!py::isinstance<py::str>(image)) {
         throw py::type_error("meter: image is a " +
                              std::string(py::str(py::type::of(image).attr("__name__"))) +
@@ -520,10 +558,13 @@ void write_config(const std::string& folder, const std::vector<std::string>& pro
     options.exposure_stops = exposure_stops;
     for (const auto& [name, op] : custom)
         options.custom.push_back({name, op});
-    const py::gil_scoped_release release;
     check_config_options(options);
+    for (const std::string& text : config_warnings(options))
+        warn(text);
+    const py::gil_scoped_release release;
     require_writable_folder(folder);
-    write_generated_files(folder, make_config(options), "config.ocio");
+    with_memory_for(folder,
+                    [&] { write_generated_files(folder, make_config(options), "config.ocio"); });
 }
 
 py::list verify_operators(const std::vector<std::string>& operators,
@@ -545,7 +586,8 @@ py::list verify_operators(const std::vector<std::string>& operators,
     std::vector<ParityRow> rows;
     {
         const py::gil_scoped_release release;
-        rows = verify(options).rows;
+        rows = with_memory_for(config.empty() ? "verify" : config,
+                               [&] { return verify(options).rows; });
     }
     return describe_all(rows);
 }
@@ -560,10 +602,11 @@ PYBIND11_MODULE(_tonewright, m) {
         try {
             if (error) std::rethrow_exception(error);
         } catch (const tw::FileError& e) {
-            PyErr_SetString(tw::file_error_of(e.what()),
-                            tw::in_python(tw::one_line(e.what())).c_str());
+            tw::set_error(tw::file_error_of(e.what()), e.what());
         } catch (const tw::Error& e) {
-            PyErr_SetString(PyExc_ValueError, tw::in_python(tw::one_line(e.what())).c_str());
+            tw::set_error(PyExc_ValueError, e.what());
+        } catch (const std::bad_alloc&) {
+            PyErr_SetString(PyExc_MemoryError, "not enough memory");
         }
     });
     m.attr("__version__") = TONEWRIGHT_VERSION;
@@ -571,7 +614,7 @@ PYBIND11_MODULE(_tonewright, m) {
           py::arg("roi"), py::arg("nthreads"), py::arg("progress"));
     m.def("tonemap_file", &tw::tonemap_into_file, py::arg("source"), py::arg("target"),
           py::arg("op"), py::kw_only(), py::arg("type"), py::arg("alpha"), py::arg("nthreads"),
-          py::arg("subimage"));
+          py::arg("subimage"), py::arg("in_place"));
     m.def("evaluate", &tw::evaluate_colors, py::arg("op"), py::arg("colors"));
     m.def("meter", &tw::meter_any);
     m.def("operators", [] { return tw::describe_all(tw::all_operators()); });

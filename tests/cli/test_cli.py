@@ -767,6 +767,7 @@ def command_line_errors(picture):
         ([*apply, "--adapt-up", "2"], "apply: --adapt-up is 2; expected --adapt with it"),
         ([*apply, "--input-encoding", "none"], "apply: --input-encoding is none; expected --lut FILE with it"),
         ([*apply, "--operator", "hable", "--lut", "x.cube"], "apply: --operator and --lut are given; expected one of them"),
+        (["apply", picture, picture, "-o", "o.png"], "apply: -o is o.png; expected a folder; --format"),
         (["eval", "hable", "--lut", "x.cube"], "eval: OPERATOR and --lut are given; expected one of them"),
         # An option that does not exist is told before what is missing.
         (["chart", "--widht", "640"], "chart: option is --widht; `tonewright chart --help-all`; did you mean --width?"),
@@ -913,7 +914,7 @@ def usage_errors(bad, picture):
         (["verify", "hable", "--input", "lin_rec79"], "did you mean lin_rec709?"),
     ]
     for line in ("1 2", "1 2 3 4", "1,2,", ",1,2,3", "1;2;3", "1 2 3x", "+-5 1 1", "0x10 1 1", "1 2 \xff"):
-        cases.append((["eval", "hable"], "line 4; three numbers", f"# a comment\n\n1 1 1\n{line}\n2 2 2\n"))
+        cases.append((["eval", "hable"], "standard input: line 4; three numbers", f"# a comment\n\n1 1 1\n{line}\n2 2 2\n"))
     for value in ("0", "65505", "4x", "", "nan", "1e999"):
         cases.append((["eval", "hable", "--set", f"white={value}"], f"hable: white is {value}"))
     cases.append((["eval", "reinhard_extended", "--set", "white=0"], "reinhard_extended: white is 0"))
@@ -938,6 +939,10 @@ def file_errors(bad, picture, scratch):
         (["meter", pipe], no_file), (["compare", pipe, "hable", "-o", "out.png"], no_file),
         (["apply", picture, "out.png", "--lut", pipe.with_suffix(".cube")], no_file),
         (["eval", "--lut", pipe.with_suffix(".cube")], no_file), (["eval", "--lut", pipe], no_file),
+        (["apply", picture, "out.png", "--lut", "there"], "there: is a folder"),
+        (["eval", "--lut", "there"], "there: is a folder"),
+        (["verify", "--lut", "there"], "there: is a folder"),
+        (["apply", picture, "out.png", "--lut", pipe.with_suffix(".cube"), "--exposure", "1"], no_file),
         (["eval", "camera_response", "--set", f"file={pipe}"], no_file),
         (["verify", "hable", "--picture", pipe], no_file),
         (["apply", f"@{pipe}", "-o", "new"], no_file), (["apply", "@none", "-o", "new"], "none: cannot read"),

@@ -686,7 +686,9 @@ def check_stated(report, command, folder):
                                "-d", "float", *map(str, arguments)], capture_output=True, text=True, check=False)
         return done, stack(read_exr(folder / "out.exr")) if done.returncode == 0 else None
 
-    bake = ("bake", "agx_sobotka", "--3d", "--size", 17, "--nodes", "sampled", "--input-encoding", "davinci")
+    # Linear light is what an EXR should hold.
+    bake = ("bake", "agx_sobotka", "--3d", "--size", 17, "--nodes", "sampled", "--input-encoding", "davinci", "--display",
+            "linear")
     for name, arguments, explicit in (
             ("stated.cube", (), ("--input-encoding", "davinci")),
             ("own.cube", ("--input", "lin_rec709"), ("--input-encoding", "davinci", "--lut-space", "lin_rec709")),
@@ -715,6 +717,16 @@ def check_stated(report, command, folder):
     _, plain = applied(folder / "stated.cube", "--input-encoding", "none")
     report.compare("apply --lut --input-encoding none: colors go in as they are", plain.reshape(-1, 3),
                    evaluate_lut(command, folder / "stated.cube", light.reshape(-1, 3).astype(float)), FLOAT32)
+    report.check("apply --lut: what the header says is no contradiction, nor is none", not any(
+        applied(folder / "stated.cube", "--input-encoding", name)[0].stderr for name in ("davinci", "none")))
+    for arguments, words in ((("--input-encoding", "logc3"), "makes logc3 of Linear ARRI Wide Gamut 3"),
+                             (("--input-encoding", "davinci", "--lut-space", "acescg"), "makes davinci of ACEScg")):
+        done, _ = applied(folder / "stated.cube", *arguments)
+        report.check(f"apply --lut {arguments}: one warning, the header says otherwise", done.returncode == 0
+                     and len(done.stderr.splitlines()) == 1 and "warning: " in done.stderr and words in done.stderr
+                     and "expects DaVinci Intermediate" in done.stderr, done.stderr)
+    done, _ = applied(folder / "stated.cube", "--input-encoding", "logc3", "--strict")
+    report.check("apply --lut, the header says otherwise, --strict: exit 1", done.returncode == 1, done.stderr)
     (folder / "adobe.cube").write_text(GOOD["adobe.cube"])
     done, _ = applied(folder / "adobe.cube")
     report.check("apply --lut of a file that says nothing: one warning", done.returncode == 0
@@ -722,6 +734,63 @@ def check_stated(report, command, folder):
                  done.stderr)
     done, _ = applied(folder / "adobe.cube", "--strict")
     report.check("apply --lut of a file that says nothing, --strict: exit 1", done.returncode == 1, done.stderr)
+
+
+def chunk_of(png, name):
+    """A chunk of a PNG file, or nothing (W3C, PNG, 5.3)."""
+    at = 8
+    while at < len(png):
+        size, kind = struct.unpack(">I4s", png[at:at + 8])
+        if kind == name:
+            return png[at + 8:at + 8 + size]
+        at += size + 12
+    return b""
+
+
+def red_of_icc(chunk):
+    """The tag rXYZ of the profile in a chunk iCCP (ICC.1:2010, 7.3 and 10.31)."""
+    profile = zlib.decompress(chunk[chunk.index(b"\0") + 2:])
+    for i in range(struct.unpack(">I", profile[128:132])[0]):
+        tag, offset, _ = struct.unpack(">4sII", profile[132 + 12 * i:144 + 12 * i])
+        if tag == b"rXYZ":
+            return np.array(struct.unpack(">3i", profile[offset + 8:offset + 20])) / 65536
+    return np.zeros(3)
+
+
+def check_output(report, command, folder):
+    """apply --lut: the picture says what its colors are, where the LUT's header does."""
+    light = np.random.default_rng(9).uniform(0, 2, (8, 8, 3)).astype(np.float32)
+    write_exr(folder / "light.exr", unstack(light))
+
+    def applied(lut, out):
+        done = subprocess.run([str(command), "apply", str(folder / "light.exr"), str(folder / out), "--lut",
+                               str(folder / lut), "--input-encoding", "acescct"], capture_output=True, text=True, check=True)
+        return (folder / out).read_bytes(), done.stderr
+
+    # ITU-T H.273: primaries and transfer of the display, RGB, full range.
+    for display, points in (("display_p3", None), ("rec2100_pq", (9, 16, 0, 1)), ("rec2100_hlg", (9, 18, 0, 1)),
+                            ("p3d65_pq", (12, 16, 0, 1))):
+        for extension in ("cube", "clf", "icc") if points is None else ("cube",):
+            lut = f"{display}.{extension}"
+            run(command, "bake", "clamp", "--3d", "--size", 17, "--nodes", "sampled", "--display", display,
+                "-o", folder / lut)
+            png, said = applied(lut, "out.png")
+            report.check(f"apply --lut {lut}: says nothing", not said, said)
+            if points:
+                report.check(f"apply --lut {lut}: cICP", chunk_of(png, b"cICP") == bytes(points), chunk_of(png, b"cICP"))
+                continue
+            # Apple's Display P3, by Bradford in D50: four decimals are published.
+            red = red_of_icc(chunk_of(png, b"iCCP")) if chunk_of(png, b"iCCP") else np.zeros(3)
+            report.bound(f"apply --lut {lut}: iCCP, red", np.abs(red - (0.5151, 0.2412, -0.0011)).max(), 1e-4)
+    _, said = applied("rec2100_pq.cube", "out.jpg")
+    report.check("apply --lut: PQ in a JPEG: one warning", said.count("\n") == 1 and "JPEG does not say" in said, said)
+    _, said = applied("display_p3.cube", "out.exr")
+    report.check("apply --lut: code values in an EXR: one warning", said.count("\n") == 1
+                 and "bake the LUT with --display linear" in said, said)
+    (folder / "adobe.cube").write_text(GOOD["adobe.cube"])
+    png, _ = applied("adobe.cube", "out.png")
+    report.check("apply --lut of a file that says nothing: no tag", not any(
+        chunk_of(png, name) for name in (b"iCCP", b"sRGB", b"cICP", b"gAMA")))
 
 
 def check_wild(report, command, folder):
@@ -845,7 +914,7 @@ def main():
         folder = Path(name)
         check_eval(report, command, folder)
         check_apply(report, command, folder)
-        for check in share_of([check_encoding, check_stated, check_wild, check_xml, check_early_end], 2):
+        for check in share_of([check_encoding, check_stated, check_output, check_wild, check_xml, check_early_end], 2):
             check(report, command, folder)
         check_usage(report, command, folder)
         check_paths(report, command, folder)

@@ -7,6 +7,7 @@ The last line is `N passed, M failed`.
 """
 
 import argparse
+import ast
 import json
 import os
 import subprocess
@@ -148,6 +149,58 @@ def check_errors(report, tw):
     raises(report, "a number alone", ValueError, "expected (..., 3)", lambda: tw.evaluate("hable", 1.0))
 
 
+# Room for what a call needs besides its data: stacks and arenas of threads.
+ROOM = 16 << 20
+WITHOUT_MEMORY = """
+import resource, sys
+import numpy as np, tonewright as tw
+array = np.zeros((4000, 4000, 3), np.float32)
+tw.evaluate("hable", [1, 1, 1])
+used = int(open("/proc/self/statm").read().split()[0]) * resource.getpagesize()
+resource.setrlimit(resource.RLIMIT_AS, (used + int(sys.argv[1]),) * 2)
+try:
+    exec(sys.argv[2])
+except BaseException as e:
+    print(type(e).__name__, "|", e)
+"""
+
+
+def check_memory(report, module, scratch):
+    """Too little memory is a MemoryError that says for what; NumPy that is missing is said, too."""
+    environment = {**os.environ, "PYTHONPATH": str(module)}
+    big = scratch / "big.tif"
+    run("oiiotool", "--pattern", "constant:color=.2,.2,.2", "4000x4000", "3", "-d", "float", "-o", big)
+    for what, call, name in (
+            ("tonemap", 'tw.tonemap(array, "reinhard_local")', "tonemap"), ("meter", f'tw.meter("{big}")', str(big)),
+            ("tonemap_file", f'tw.tonemap_file("{big}", "{scratch}/big.png", "reinhard_local")', str(big)),
+            ("bake", f'tw.bake("agx_sobotka", "{scratch}/big.cube", size=129)', f"{scratch}/big.cube"),
+            ("make_config", f'tw.make_config("{scratch}/big", views=["aces_20"])', f"{scratch}/big"),
+            ("verify", 'tw.verify(["hable"], gpu=False)', "verify")):
+        done = subprocess.run([sys.executable, "-c", WITHOUT_MEMORY, str(ROOM), call], env=environment, capture_output=True,
+                              text=True, check=False)
+        report.check(f"{what}() without memory: MemoryError", done.stdout == f"MemoryError | {name}: not enough memory\n",
+                     (done.returncode, done.stdout, done.stderr[-300:]))
+    done = subprocess.run([sys.executable, "-c", "import sys; sys.modules['numpy'] = None; import tonewright"],
+                          env=environment, capture_output=True, text=True, check=False)
+    report.check("no NumPy: the package of Debian is named", done.returncode == 1
+                 and done.stderr.endswith("ImportError: tonewright needs NumPy (Debian: python3-numpy)\n"), done.stderr)
+
+
+def warned(report, what, words, function, count=1):
+    """UserWarnings of the caller's line in Python's own words; as an error, it stops the function."""
+    with warnings.catch_warnings(record=True) as heard:
+        warnings.simplefilter("always")
+        function()
+    text = "; ".join(str(w.message) for w in heard)
+    report.check(f"{what}: {count} warnings", len(heard) == count
+                 and all(word in text for word in words) and "--" not in text
+                 and all(w.category is UserWarning and w.filename == __file__ for w in heard), text)
+    if words:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            raises(report, f"{what}: as an error", UserWarning, words[0], function)
+
+
 def check_lists(report, tw, command):
     expected = {op["id"]: op for op in json.loads(run(command, "list", "--json"))["operators"]}
     ours = {op["id"]: op for op in tw.operators()}
@@ -170,8 +223,12 @@ def check_types(report, tw):
     """Every public function is documented and has types; a type checker finds them."""
     import inspect
     folder = Path(tw.__file__).parent
-    report.check("py.typed, and a stub of the compiled part",
-                 (folder / "py.typed").exists() and (folder / "_tonewright.pyi").exists())
+    stub = ast.parse((folder / "_tonewright.pyi").read_text())
+    compiled = {name for name in dir(tw._tonewright) if not name.startswith("__")} | {"__version__"}
+    stubs = {node.name for node in stub.body if isinstance(node, ast.FunctionDef)} \
+        | {node.target.id for node in stub.body if isinstance(node, ast.AnnAssign)}
+    report.check("py.typed, and a stub of all that is compiled", (folder / "py.typed").exists() and stubs == compiled,
+                 stubs ^ compiled)
     functions = [getattr(tw, name) for name in tw.__all__ if callable(getattr(tw, name))]
     bare = [f.__name__ for f in functions if not f.__doc__ or set(inspect.signature(f).parameters) - set(f.__annotations__)
             or "return" not in f.__annotations__]
@@ -186,6 +243,9 @@ def check_config(report, tw, command, scratch):
     same = [(scratch / "ours" / p.relative_to(scratch / "theirs")).read_bytes() == p.read_bytes()
             for p in (scratch / "theirs").rglob("*") if p.is_file()]
     report.check(f"make_config(): the {len(same)} files of `config`", len(same) > 3 and all(same))
+    warned(report, "make_config of an operator that measures",
+           ["Drago takes log_average 1", 'custom={VIEW: "ID:PARAMETER=VALUE"}'],
+           lambda: tw.make_config(scratch / "drago", views=["drago"], displays=["srgb"], profiles=["2.1"]))
     raises(report, "make_config of no view", ValueError, "hablex", lambda: tw.make_config(scratch / "x", views=["hablex"]))
 
 
@@ -202,6 +262,18 @@ def check_luts(report, tw, command, scratch):
            lambda: tw.bake("hable", str(scratch / "a.clf"), host="resolve"))
     raises(report, "bake under no format's name", ValueError, "expected .cube: the format is cube",
            lambda: tw.bake("hable", str(scratch / "a.txt"), format="cube"))
+    raises(report, "bake under a picture's name", ValueError,
+           'expected format="hald", "strip" or "strip_up" with a picture, or host=',
+           lambda: tw.bake("hable", str(scratch / "a.png")))
+    ringing = scratch / "ringing.cube"
+    warned(report, "bake that rings", [f"{ringing} rings: along rising exposure", 'input="lin_rec709"'],
+           lambda: tw.bake("hable", ringing, size=33))
+    ringing.unlink()
+    warned(report, "bake of an operator that measures", ["drago measures each picture, which a LUT cannot do",
+                                                         "settings={\"log_average\": ...} changes it",
+                                                         "does not follow drago in saturated lights", "size=65"],
+           lambda: tw.bake("drago", scratch / "drago.cube", size=17, input="lin_rec709"), 2)
+    warned(report, "bake of one that does not", [], lambda: tw.bake("clamp", ringing, size=17, input="lin_rec709"), 0)
     raises(report, "bake into no folder", FileNotFoundError, "/nonexistent/a.cube",
            lambda: tw.bake("hable", "/nonexistent/a.cube"))
     for path in (scratch / "path.cube", bytes(scratch / "bytes.cube")):
@@ -276,6 +348,18 @@ def check_pictures(report, tw, command, scratch):
     report.check("roi", np.array_equal(part.get_pixels("float"), applied[5:8, 3:9]))
     tw.tonemap_file(path, scratch / "c.exr", "hable", exposure=1, dtype="float")
     report.check("tonemap_file(): the bytes of `apply`", (scratch / "c.exr").read_bytes() == (scratch / "b.exr").read_bytes())
+    original = path.read_bytes()
+    (scratch / "symbolic.exr").symlink_to(path)
+    (scratch / "hard.exr").hardlink_to(path)
+    for target in (path, scratch / "symbolic.exr", scratch / "hard.exr"):
+        raises(report, f"tonemap_file onto {target.name}", ValueError, "the same file as the input",
+               lambda t=target: tw.tonemap_file(path, t, "hable"))
+    raises(report, "tonemap_file onto its source", ValueError, "expected another file, or in_place=True",
+           lambda: tw.tonemap_file(path, path, "hable"))
+    report.check("tonemap_file onto its source: nothing has changed", path.read_bytes() == original)
+    (scratch / "own.exr").write_bytes(original)
+    tw.tonemap_file(scratch / "own.exr", scratch / "own.exr", "hable", display="linear", in_place=True)
+    report.check("tonemap_file with in_place=True", (scratch / "own.exr").read_bytes() != original)
     raises(report, "tonemap_file: a missing file", FileNotFoundError, "gone.exr",
            lambda: tw.tonemap_file(scratch / "gone.exr", scratch / "d.exr", "hable"))
     raises(report, "tonemap_file: a pixel type", ValueError, "expected uint8, uint16, half or float",
@@ -305,6 +389,7 @@ def main():
     command = arguments.command.resolve()
     sys.path.insert(0, str(arguments.module.resolve()))
     import tonewright as tw
+    warnings.simplefilter("ignore")  # Checks of warnings collect them.
     report = Report()
     check_colors(report, tw, command)
     check_arrays(report, tw)
@@ -313,6 +398,7 @@ def main():
     with tempfile.TemporaryDirectory(prefix="tonewright-") as folder:
         check_luts(report, tw, command, Path(folder))
         check_types(report, tw)
+        check_memory(report, arguments.module.resolve(), Path(folder))
         check_config(report, tw, command, Path(folder))
         check_pictures(report, tw, command, Path(folder))
     return report.finish()

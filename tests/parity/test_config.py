@@ -57,7 +57,7 @@ FILES = {"shot.exr": "Linear Rec.709", "light.hdr": "Linear Rec.709", "logo.png"
          "rawhide.png": "sRGB - Texture", "shot_srgb.exr": "sRGB - Texture",
          "clip_S-Log3_S-Gamut3.Cine.mov": "S-Log3 S-Gamut3.Cine", "slog3_sgamut3cine": "S-Log3 S-Gamut3.Cine",
          "clip_S-Log3_S-Gamut3.mov": "S-Log3 S-Gamut3", "A003_LogC4.mxf": "ARRI LogC4",
-         "M001_Log3G10.mov": "Log3G10 REDWideGamutRGB", "scan.0001.dpx": "Cineon", "scan.cin": "Cineon",
+         "M001_Log3G10.mov": "Log3G10 REDWideGamutRGB", "x_DWG_DI.mov": "DaVinci Intermediate WideGamut", "scan.0001.dpx": "Cineon", "scan.cin": "Cineon",
          "plate_rec709.0001.dpx": "Gamma 2.4 Rec.709 - Texture", "photo.jxl": "sRGB - Texture",
          "photo.heic": "sRGB - Texture", "photo.avif": "sRGB - Texture", "photo.jp2": "sRGB - Texture",
          "wood.tx": "sRGB - Texture", "sky.exr.tx": "Linear Rec.709", "wood_sRGB - Texture_ACEScg.png.tx": "ACEScg"}
@@ -178,7 +178,7 @@ def slog3_decode(code):
                     (code * 1023 - 95) * 0.01125 / (171.2102946929 - 95))
 
 
-def check_cameras(report, config, command, operators):
+def check_cameras(report, config, command, operators, lut_encodings):
     """What the makers print, and one gamut of a camera in `--input` and in the config."""
     codes = np.concatenate([np.repeat(np.arange(33)[:, None] / 32, 3, axis=1),
                             np.random.default_rng(8).uniform(0.2, 0.8, (2000, 3))])
@@ -189,6 +189,12 @@ def check_cameras(report, config, command, operators):
     shown = apply(config, "ARRI LogC4", "ACES2065-1", codes)
     scale = np.abs(light).max(axis=1, keepdims=True) + 0.01
     report.compare("ARRI LogC4 is ARRI's", shown / scale, light / scale, 1e-5)
+    # Blackmagic Design, "DaVinci Resolve 17 Wide Gamut Intermediate", 2021.
+    davinci = lut_encodings.ENCODINGS["davinci"]
+    light = davinci.decode(codes) @ operators.spaces.rgb_to_rgb(davinci.primaries, "ap0").T
+    shown = apply(config, "DaVinci Intermediate WideGamut", "ACES2065-1", codes)
+    scale = np.abs(light).max(axis=1, keepdims=True) + 0.01
+    report.compare("DaVinci Intermediate is Blackmagic Design's", shown / scale, light / scale, 1e-5)
     # Kodak's published aims: black at code 95, white at 685, 0.002 density a code, gamma 0.6.
     black = 10 ** ((95 - 685) * 0.002 / 0.6)
     film = (10 ** ((codes * 1023 - 685) * 0.002 / 0.6) - black) / (1 - black)
@@ -323,6 +329,7 @@ def main():
     arguments = parser.parse_args()
     sys.path.insert(0, str(arguments.source_dir / "python_check"))
     import check_config
+    import lut_encodings
     import operators
 
     report = Report()
@@ -344,7 +351,7 @@ def main():
         check_inverses(report, config)
         check_files(report, folder)
         check_spaces(report, config, operators)
-        check_cameras(report, config, arguments.command.resolve(), operators)
+        check_cameras(report, config, arguments.command.resolve(), operators, lut_encodings)
         report.check("check_config.py", check_config.main([str(path)]) == 0)
         report.check("check_config.py without a config", check_config.main([str(folder / "none.ocio")]) == 2)
     return report.finish()

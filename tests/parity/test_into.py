@@ -295,6 +295,41 @@ def check_text(report, command, root):
         report.check("--remove without --into", done.returncode == 2 and "--into" in done.stderr, done.stderr)
 
 
+def check_edits(report, command, root):
+    """Short texts of ours are found again: a word at the end of a line, the same view on two displays."""
+    folder = root / "edits"
+    folder.mkdir()
+    path = folder / "s.ocio"
+    raw = "    - !<View> {name: Raw, colorspace: Raw}\n"
+    text = "# ours\n" + ACES.replace("active_displays: [sRGB - Display, P3-DCI - Display, PQ]\n", "").replace(
+        "  P3-DCI - Display:\n" + raw, "  Second:\n    - !<View> {name: SDR Video, view_transform: SDR Video, "
+        "display_colorspace: sRGB - Display}\n" + raw + "  P3-DCI - Display:\n" + raw)
+    path.write_text(text)
+    done = call(command, "--into", path, "--views", "clamp")
+    after = path.read_text()
+    report.check("--into: one of each", done.returncode == 0 and "added 1 view transform: " in done.stdout
+                 and "luts:tonewright\n" in after, done.stdout + done.stderr)
+    # Before ours in its neighborhood, and a text like ours elsewhere.
+    edits = (("# ours\n", "# theirs, see luts:tonewright\n"), ("environment: {}\n", "environment: {A: b}\n"),
+             ("  Second:\n", "  # the second\n  Second:\n"))
+    edited, wanted = after, text
+    for old, new in edits:
+        edited, wanted = edited.replace(old, new), wanted.replace(old, new)
+    path.write_text(edited)
+    done = call(command, "--into", path, "--update")
+    report.check("--update after an edit of another line", done.returncode == 0 and not done.stderr, done.stderr)
+    done = call(command, "--into", path, "--remove")
+    report.check("--remove after an edit of another line", done.returncode == 0 and path.read_text() == wanted, done.stderr)
+    # Where the line itself was changed, nobody knows what is ours.
+    path.write_text(text)
+    call(command, "--into", path, "--views", "clamp")
+    edited = path.read_text().replace("search_path: luts:", "search_path: more:")
+    path.write_text(edited)
+    done = call(command, "--into", path, "--remove")
+    report.check("--remove after an edit of the line itself", done.returncode == 3 and "changed since: :tonewright" in done.stderr
+                 and path.read_text() == edited, done.stderr)
+
+
 def check_theirs(report, command, folder, path, views):
     """A config that people have: into it, and nothing of theirs is changed."""
     before = numbers_of(path)
@@ -389,11 +424,23 @@ def main():
             report.check(f"{kind}: the folder can be moved", ("AgX" in {k[1] for k in numbers_of(moved / "mine.ocio")
                                                                         if isinstance(k, tuple)}))
         check_text(report, command, Path(name))
+        check_edits(report, command, Path(name))
         check_published(report, command, Path(name))
         bare = Path(name) / "bare.ocio"
         bare.write_text(ACES.replace("cie_xyz_d65_interchange: CIE-XYZ-D65, ", ""))
         done = call(command, "--into", bare, "--views", "hable")
-        report.check("no interchange role", done.returncode == 2 and "cie_xyz_d65_interchange" in done.stderr, done.stderr)
+        report.check("no interchange role", done.returncode == 3 and "bare.ocio has no role cie_xyz_d65_interchange"
+                     in done.stderr, done.stderr)
+        bare.write_text(ACES.replace("view_transform: SDR Video, display_colorspace: <USE_DISPLAY_NAME>", "colorspace: Raw")
+                        .replace("view_transform: SDR Video, display_colorspace: Rec.2100-PQ", "colorspace: Raw"))
+        done = call(command, "--into", bare, "--views", "hable")
+        report.check("no display of ours", done.returncode == 3 and "bare.ocio has no display that" in done.stderr, done.stderr)
+        for words, old, new in (("cannot insert into YAML", "search_path: luts", 'search_path: "l\\x75ts"'),
+                                ("looks is empty; expected at least one", "view_transforms:", "looks:\nview_transforms:")):
+            bare.write_text(ACES.replace(old, new, 1))
+            done = call(command, "--into", bare, "--views", "AgX" if "looks" in new else "clamp")
+            report.check(f"{words}: the config's fault", done.returncode == 3 and f"bare.ocio: {words}" in done.stderr,
+                         done.stderr)
         done = call(command, "--into", Path(name) / "none.ocio")
         report.check("no file", done.returncode == 3 and "none.ocio" in done.stderr, done.stderr)
         done = call(command, "--into", bare, "-o", name)

@@ -23,6 +23,7 @@
 #include "cli/pictures/metering.h"
 #include "cli/pictures/picture_input.h"
 #include "cli/pictures/progress_bar.h"
+#include "image/color_tags.h"
 #include "image/picture_file.h"
 #include "image/source_picture.h"
 #include "image/tonemap_file.h"
@@ -171,7 +172,13 @@ void meter_each(std::vector<FrameFiles>& files, const ApplyOptions& options) {
 void apply_lut(const ApplyOptions& options, const LutFile& lut, const FrameFiles& file) {
     WriteOptions write = write_options_of(options, file.out);
     Warnings warnings(file.out);
-    write.warn = warnings.hearer();
+    write.warn = [hear = warnings.hearer()](std::string text) {
+        // The display is a matter of the LUT.
+        constexpr std::string_view kRemedy = "use --display linear";
+        if (const std::size_t at = text.find(kRemedy); at != std::string::npos)
+            text.replace(at, kRemedy.size(), "bake the LUT with --display linear");
+        hear(text);
+    };
     auto quiet = std::make_optional<QuietStderr>();
     const OIIO::ImageBuf source = read_image(file.in);
     quiet.reset();
@@ -195,6 +202,8 @@ void apply_lut(const ApplyOptions& options, const LutFile& lut, const FrameFiles
     };
     if (!map_colors(result, source, map, alpha_of(options), {}, options.picture.threads))
         throw FileError(file.in + ": " + first_line(result.geterror()));
+    if (const std::optional<std::string> display = stated_display(options.lut))
+        tag_as_shown_on(*display, result.specmod());
     if (write.says_how) {
         const std::string lut_name = std::filesystem::path(options.lut.file).filename().string();
         result.specmod().attribute(
@@ -212,7 +221,7 @@ int apply_lut(const ApplyOptions& options, ApplyFiles& files) {
         return open_lut(options.lut.file, options.lut.interpolation, load_lut_picture);
     });
     (void)write_options_of(options, files.files.front().out);
-    check_overwriting(files.files, options.is_in_place);
+    check_overwriting("apply", files.files, options.is_in_place);
     if (files.is_single) {
         apply_lut(options, lut, files.files.front());
         return kOk;
@@ -311,7 +320,7 @@ int run_apply(const ApplyOptions& given) {
         return apply_to_frames(tonemapper, options, write, prepare);
     }
     if (is_of_sequence) throw Error("apply: --statistics is sequence; expected --frames with it");
-    check_overwriting(files.files, options.is_in_place);
+    check_overwriting("apply", files.files, options.is_in_place);
     if (!files.is_single) {
         require_writable_folder(options.output);
         meter_each(files.files, options);

@@ -2,7 +2,6 @@
 #include "cli/pictures/apply_frames.h"
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -250,35 +249,11 @@ void tonemap_contained(const Tonemapper& tonemapper, const FrameFiles& file,
                   });
 }
 
-void check_overwriting(const std::vector<FrameFiles>& files, bool is_in_place) {
-    using Identity = std::pair<dev_t, ino_t>;
-    const auto identity_of = [](const std::string& path) -> std::optional<Identity> {
-        struct stat file {};
-        if (::stat(path.c_str(), &file) != 0) return {};
-        return Identity(file.st_dev, file.st_ino);
-    };
-    std::map<Identity, const FrameFiles*> ins;
-    for (const FrameFiles& file : files) {
-        if (const auto identity = identity_of(file.in)) ins.emplace(*identity, &file);
-    }
-    for (const FrameFiles& file : files) {
-        const auto identity = identity_of(file.out);
-        const auto found = identity ? ins.find(*identity) : ins.end();
-        if (found == ins.end()) continue;
-        const bool is_own = found->second->out == file.out;
-        if (is_own && is_in_place) continue;
-        throw Error(
-            fmt::format("apply: output is {}, the same file as the input {}; expected "
-                        "another file{}",
-                        file.out, found->second->in, is_own ? ", or --in-place" : ""));
-    }
-}
-
 int apply_to_frames(
     const Tonemapper& tonemapper, const ApplyOptions& options, WriteOptions write,
     const std::function<void(std::vector<FrameFiles>&, const std::vector<int>&)>& prepare) {
     Plan plan = plan_frames(options.in, options.out, options.frames);
-    check_overwriting(plan.frames, options.is_in_place);
+    check_overwriting("apply", plan.frames, options.is_in_place);
     Warnings warnings(options.out);
     write.warn = warnings.hearer();
     prepare(plan.frames, plan.numbers);

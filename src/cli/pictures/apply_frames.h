@@ -36,9 +36,4 @@ void tonemap_contained(const Tonemapper& tonemapper, std::vector<FrameFiles>& fi
 void tonemap_contained(const Tonemapper& tonemapper, const FrameFiles& file,
                        const WriteOptions& write, const PictureInput& picture);
 
-/// That no output replaces what is read, through links either: each its own picture with
-/// --in-place, another's never.
-/// @throws Error
-void check_overwriting(const std::vector<FrameFiles>& files, bool is_in_place);
-
 TONEWRIGHT_NAMESPACE_END

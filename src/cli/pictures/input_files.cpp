@@ -85,6 +85,14 @@ std::vector<FrameFiles> into_folder(const std::vector<std::string>& inputs,
                         "png or exr",
                         options.format));
     }
+    const bool is_named_as_picture = format.empty() && !is_folder(options.output) &&
+                                     picture_extensions().contains(extension_of(options.output));
+    if (is_named_as_picture) {
+        throw Error(
+            fmt::format("apply: -o is {}; expected a folder for several inputs, or --format with "
+                        "it",
+                        options.output));
+    }
     std::map<std::string, std::string> input_of;
     std::vector<FrameFiles> files;
     for (const std::string& input : inputs) {

@@ -78,7 +78,7 @@ struct ExtendedConfig {
     std::vector<std::string> unused_files;
     /// The config: the text that it was, byte for byte, with more in it or less.
     std::string text;
-    /// Names of what was added, by its kind: "view transforms", "looks", "views", "color spaces".
+    /// Names of what was added, by its kind: "view transform", "look", "view", "color space".
     struct Added {
         std::string kind;
         std::vector<std::string> names;

@@ -13,9 +13,9 @@ Functions that take an operator share these options:
     look             look of the operator
     reference_white  luminance of scene-linear 1.0 on HDR displays, in cd/m2
 
-A wrong type raises TypeError, a wrong value ValueError, a file OSError or one of its subclasses. A file that is not what a
-user may expect is a UserWarning; where `python -W error` makes it an error, the file is not written. Other threads run while
-a function works.
+A wrong type raises TypeError, a wrong value ValueError, a file OSError or one of its subclasses. Too little memory raises
+MemoryError. A file that is not what a user may expect is a UserWarning; where `python -W error` makes it an error, the file
+is not written. Other threads run while a function works.
 """
 
 from __future__ import annotations
@@ -25,7 +25,10 @@ import os as _os
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Union
 
-import numpy as _np
+try:
+    import numpy as _np
+except ImportError as error:
+    raise ImportError("tonewright needs NumPy (Debian: python3-numpy)", name="numpy") from error
 
 from . import _tonewright
 from ._tonewright import __version__
@@ -112,13 +115,14 @@ def tonemap(image: Picture, op: str, *, settings: Mapping[str, Any] | None = Non
 def tonemap_file(source: Path, target: Path, op: str, *, settings: Mapping[str, Any] | None = None, exposure: float = 0,
                  input: str = "auto", display: str = "srgb", look: str = "", reference_white: float = 100,
                  unpremult: str | bool = "auto", statistics: str = "picture", dtype: str | None = None,
-                 alpha: str = "keep", subimage: int = 0, nthreads: int = 0) -> None:
+                 alpha: str = "keep", subimage: int = 0, nthreads: int = 0, in_place: bool = False) -> None:
     """Tone map a picture file into another file, as `tonewright apply` does. Its warnings are UserWarnings.
 
     target: replaced only when the new file is complete; its extension sets the format.
     dtype: "uint8", "uint16", "half" or "float" (default: what suits the format).
     alpha: "keep", "ignore" (leave it out) or "opaque" (make it 1).
     subimage: subimage of a multi-part file, counted from 0.
+    in_place: allow the target to be the source, which is lost then.
     Other options: as tonemap().
 
     Example: tonewright.tonemap_file("shot.exr", "shot.png", "hable", settings={"white": 8})
@@ -127,7 +131,8 @@ def tonemap_file(source: Path, target: Path, op: str, *, settings: Mapping[str, 
     options.update(unpremult=_choice("unpremult", unpremult), statistics=_text("statistics", statistics))
     _tonewright.tonemap_file(_path("source", source), _path("target", target), _text("op", op),
                              type="" if dtype is None else _text("dtype", dtype), alpha=_text("alpha", alpha),
-                             nthreads=_operator.index(nthreads), subimage=_operator.index(subimage), **options)
+                             nthreads=_operator.index(nthreads), subimage=_operator.index(subimage),
+                             in_place=bool(in_place), **options)
 
 
 def evaluate(op: str, colors: npt.ArrayLike, *, settings: Mapping[str, Any] | None = None, exposure: float = 0,

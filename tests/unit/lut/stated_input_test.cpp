@@ -43,6 +43,27 @@ TEST(StatedInput, IsInAllFormatsWithText) {
     }
 }
 
+TEST(StatedDisplay, IsWhatTheFileWasMadeFor) {
+    LutRequest request;
+    request.encoding = parse_input_encoding("acescct");
+    request.size = 17;
+    request.dimension = LutDimension::three;
+    std::vector<std::string> ids = {"linear"};
+    for (const Display& display : all_displays())
+        ids.push_back(display.id);
+    for (const std::string& id : ids) {
+        request.view = make_view(resolve_operator("hable"), "lin_ap1", 0, id);
+        const Lut lut = sample_lut(request);
+        for (const LutFormat format : {LutFormat::cube, LutFormat::clf, LutFormat::csp}) {
+            request.format = format;
+            EXPECT_EQ(read_stated_display(write_lut(lut, request, {})), id) << name_of(format);
+        }
+    }
+    request.view = make_view(resolve_operator("hable"), "lin_ap1", 0, "native");
+    EXPECT_FALSE(read_stated_display(write_lut(sample_lut(request), request, {})));
+    EXPECT_FALSE(read_stated_display("# Output: sRGB code values\n"));
+}
+
 TEST(StatedInput, IsInTheDescriptorsOfAClf) {
     const std::string clf = file_of("acescct", "lin_ap1", LutFormat::clf);
     EXPECT_NE(clf.find("<InputDescriptor>ACEScct (Academy S-2016-001: AP1 primaries, log with a "

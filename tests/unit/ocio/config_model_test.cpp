@@ -13,6 +13,7 @@
 #include "ocio/config_builder.h"
 #include "ocio/model.h"
 #include "ocio/operator_facts.h"
+#include "pipeline/stand_ins.h"
 #include "tonewright/registry.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -57,6 +58,10 @@ TEST(FileRules, CamerasAndProgramsNamesOfFiles) {
         {"gh6_V-Log_V-Gamut.mov", "V-Log V-Gamut"},
         {"c300_CLog2_CGamut.mxf", "CanonLog2 CinemaGamut D55"},
         {"r5_Canon-Log3.mp4", "CanonLog3 CinemaGamut D55"},
+        {"x_davinci_intermediate.mov", "DaVinci Intermediate WideGamut"},
+        {"x_DWG_DI.mov", "DaVinci Intermediate WideGamut"},
+        {"clip_DaVinci Intermediate WideGamut.0001.dpx", "DaVinci Intermediate WideGamut"},
+        {"clip_DaVinci.mov", "Gamma 2.4 Rec.709 - Texture"},
         {"scan.0001.dpx", "Cineon"},
         {"scan.cin", "Cineon"},
         {"scan_adx10.dpx", "ADX10"},

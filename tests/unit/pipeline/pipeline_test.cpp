@@ -456,16 +456,16 @@ TEST(Resolve, UnknownNamesGetTheNearest) {
               "reinhard_extended: parameter is whit; expected white, apply, "
               "color_correction, saturation or saturation_from; did you mean white?");
     EXPECT_EQ(resolve_error("clamp", {{"white", "2"}}),
-              "clamp: parameter is white; expected none, it has no parameters");
+              "clamp: parameter is white; expected none: clamp has no parameters");
     EXPECT_EQ(resolve_error("reinhard:lumnance"),
               "reinhard: preset is lumnance; expected luminance or max; did you mean luminance?");
     EXPECT_EQ(resolve_error("reinhard:"), "reinhard: preset is ; expected luminance or max");
     EXPECT_EQ(resolve_error("clamp:filmic"),
-              "clamp: preset is filmic; expected none, it has no presets");
+              "clamp: preset is filmic; expected none: clamp has no presets");
     EXPECT_EQ(resolve_error("agx_sobotka", {}, "goldn"),
               "agx_sobotka: look is goldn; expected golden or punchy; did you mean golden?");
     EXPECT_EQ(resolve_error("hable", {}, "golden"),
-              "hable: look is golden; expected none, it has no looks");
+              "hable: look is golden; expected none: hable has no looks");
     EXPECT_EQ(resolve_error("reinhard", {{"apply", "chanels"}}),
               "reinhard: apply is chanels; expected channels, luminance, max or "
               "hue_preserving; did you mean channels?");

@@ -84,14 +84,22 @@ const char* word_for(const Expr& e) {
 }  // namespace
 
 FunctionBody::FunctionBody(const LanguageFacts& language, std::vector<std::string> inputs,
-                           std::set<std::string> taken, std::map<const void*, TableText> tables)
+                           std::set<std::string> taken, std::map<double, std::string> names,
+                           std::map<const void*, TableText> tables)
     : language_(language),
       inputs_(std::move(inputs)),
       taken_(std::move(taken)),
+      names_(std::move(names)),
       tables_(std::move(tables)) {}
 
 void FunctionBody::count(const Expr& e) {
     if (++uses_[e.node()] > 1) return;
+    if (const auto name = e.is_constant() ? names_.find(e.value()) : names_.end();
+        name != names_.end()) {
+        const std::string variable = unique(name->second);
+        add_line(language_.number, variable, float_literal(e.value(), language_));
+        variables_.emplace(e.value(), variable);
+    }
     for (int i = 0; i < e.operand_count(); ++i)
         count(e.operand(i));
 }
@@ -142,7 +150,7 @@ FunctionBody::Text FunctionBody::compose(const Expr& e) {
     };
     switch (e.op()) {
         case ExprOp::constant: {
-            std::string text = float_literal(e.value(), language_);
+            std::string text = literal(e.value());
             const int precedence = text.front() == '-' ? kUnary : kAtom;
             return {std::move(text), precedence};
         }
@@ -152,22 +160,19 @@ FunctionBody::Text FunctionBody::compose(const Expr& e) {
             return {e.uniform_name(), kAtom};
         case ExprOp::add:
             if (part(1).is_constant() && part(1).value() < 0) {
-                return {operand(part(0), kSum) + " - " + float_literal(-part(1).value(), language_),
-                        kSum};
+                return {operand(part(0), kSum) + " - " + literal(-part(1).value()), kSum};
             }
             if (const Expr& b = part(1); b.op() == ExprOp::multiply && uses_[b.node()] < 2 &&
                                          b.operand(0).is_constant() && b.operand(0).value() < 0) {
                 const std::string a = operand(part(0), kSum);
-                return {
-                    fmt::format("{} - {} * {}", a, float_literal(-b.operand(0).value(), language_),
-                                operand(b.operand(1), kProduct + 1)),
-                    kSum};
+                return {fmt::format("{} - {} * {}", a, literal(-b.operand(0).value()),
+                                    operand(b.operand(1), kProduct + 1)),
+                        kSum};
             }
             return binary(" + ", kSum);
         case ExprOp::subtract:
             if (part(1).is_constant() && part(1).value() < 0) {
-                return {operand(part(0), kSum) + " + " + float_literal(-part(1).value(), language_),
-                        kSum};
+                return {operand(part(0), kSum) + " + " + literal(-part(1).value()), kSum};
             }
             return binary(" - ", kSum);
         case ExprOp::multiply:
@@ -305,6 +310,11 @@ std::string FunctionBody::unique(const std::string& name) {
     for (int number = 2; !taken_.insert(result).second; ++number)
         result = name + "_" + std::to_string(number);
     return result;
+}
+
+std::string FunctionBody::literal(double value) const {
+    const auto variable = variables_.find(value);
+    return variable != variables_.end() ? variable->second : float_literal(value, language_);
 }
 
 void FunctionBody::add_line(const char* type, const std::string& name, const std::string& value) {

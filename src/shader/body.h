@@ -26,11 +26,14 @@ class FunctionBody {
   public:
     /// @param inputs  the text of input 0, 1, ...
     /// @param taken   names that no variable may have
+    /// @param names   numbers that become variables of these names
     /// @param tables  how tables and lattices are read
     FunctionBody(const LanguageFacts& language, std::vector<std::string> inputs,
-                 std::set<std::string> taken, std::map<const void*, TableText> tables);
+                 std::set<std::string> taken, std::map<double, std::string> names,
+                 std::map<const void*, TableText> tables);
 
-    /// What is going to be printed, all of it, before the first value().
+    /// What is going to be printed, all of it, before the first value(). Numbers that have a name
+    /// become variables here.
     void count(const Expr& e);
     /// The text of the expression; what it needs has been added to lines().
     [[nodiscard]] std::string value(const Expr& e);
@@ -54,11 +57,15 @@ class FunctionBody {
     [[nodiscard]] std::string unique(const std::string& name);
     [[nodiscard]] std::string table_value(const Expr& e);
     [[nodiscard]] std::string lattice_channel(const Expr& e);
+    /// A literal, or the variable that holds it.
+    [[nodiscard]] std::string literal(double value) const;
     void add_line(const char* type, const std::string& name, const std::string& value);
 
     const LanguageFacts& language_;
     std::vector<std::string> inputs_;
     std::set<std::string> taken_;
+    std::map<double, std::string> names_;      // of numbers
+    std::map<double, std::string> variables_;  // of those that are read
     std::map<const void*, TableText> tables_;
     std::unordered_map<const ExprNode*, int> uses_;
     std::unordered_map<const ExprNode*, Text> known_;

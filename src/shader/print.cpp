@@ -469,7 +469,7 @@ class ProgramPrinter {
         const std::vector<std::string> uniforms = read_uniforms(std::span(&function.f, 1));
         std::set<std::string> taken(uniforms_.begin(), uniforms_.end());
         taken.insert("x");
-        FunctionBody body(language_, {"x"}, taken, table_texts_);
+        FunctionBody body(language_, {"x"}, taken, program_.names, table_texts_);
         body.count(function.f);
         const std::string value = body.value(function.f);
         begin(language_.number, helper(function.name), parameters(language_.number, "x", uniforms));
@@ -482,7 +482,7 @@ class ProgramPrinter {
         const std::array<std::string, 3> c = channels_of("c");
         std::set<std::string> taken(uniforms_.begin(), uniforms_.end());
         taken.insert("c");
-        FunctionBody body(language_, {c.begin(), c.end()}, taken, table_texts_);
+        FunctionBody body(language_, {c.begin(), c.end()}, taken, program_.names, table_texts_);
         for (const ColorFunction::Call& call : function.calls)
             body.count(call.argument);
         for (const Expr& e : function.f)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <string>
 #include <variant>
 #include <vector>
@@ -56,6 +57,8 @@ struct ShaderProgram {
     std::vector<ColorFunction> colors;
     std::vector<MatrixFunction> matrices;
     std::vector<ProgramStep> steps;
+    /// Numbers that texts call by a name. What the functions compute does not depend on it.
+    std::map<double, std::string> names = {};
 };
 
 /// The first step limits the color to +-kHalfMax, as every engine does.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <unordered_map>
 
@@ -131,9 +132,28 @@ ShaderProgram bound(ShaderProgram program, const UniformValues& values) {
     return program;
 }
 
+/// Settings that stand in the text as numbers, by their parameters. Whole numbers and numbers that
+/// two parameters have may mean something else in a formula.
+std::map<double, std::string> names_of_settings(const ShaderRequest& request) {
+    std::map<double, std::string> names;
+    std::set<double> ambiguous;
+    const ResolvedOperator& op = request.view.op;
+    for (const ParameterSpec& parameter : op.op->parameters) {
+        if (parameter.kind != ParameterSpec::Kind::number) continue;
+        const double value = op.params.number(parameter.name);
+        if (!(value > 0) || value == std::floor(value) || 2 * value == std::floor(2 * value))
+            continue;
+        if (!names.emplace(value, parameter.name).second) ambiguous.insert(value);
+    }
+    for (const double value : ambiguous)
+        names.erase(value);
+    return names;
+}
+
 ShaderProgram program_of(const ShaderRequest& request) {
     ShaderProgram program = make_program(pipeline_of(request), ranges_of(request));
     if (request.curves == ShaderCurves::fitted) program = with_fitted_curves(program);
+    program.names = names_of_settings(request);
     return program;
 }
 

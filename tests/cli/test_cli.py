@@ -321,7 +321,7 @@ def check_limits(report, command, scratch, picture):
         report.check("memory that does not do", code == FILE and err == f"tonewright: {picture}: not enough memory\n", err)
         # From some 60 MB to where pictures can be read. In between, libraries that get no memory or thread while they are
         # loaded abort, crash or wait forever; where that is depends on the libraries.
-        call(command, ["bake", "agx_sobotka", "-o", "small.cube", "--size", "9", "-q"], folder=scratch)
+        call(command, ["bake", "agx_sobotka", "--3d", "--size", "17", "-o", "small.cube", "-q"], folder=scratch)
         for limit in (50000, 90000, 130000):
             code, _, err = call(command, ["verify", "--lut", "small.cube"], folder=scratch,
                                 prefix=["sh", "-c", f'ulimit -v {limit}; exec "$0" "$@"'])

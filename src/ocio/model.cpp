@@ -563,7 +563,12 @@ std::vector<ConfigModel::View> choose_views(const ConfigOptions& options) {
     std::vector<ConfigModel::View> views;
     const auto add = [&](ConfigModel::View view) {
         for (const auto& other : views) {
-            if (other.name == view.name) return;
+            if (other.name != view.name) continue;
+            if (other.op.op->name() == view.op.op->name()) return;
+            throw Error(
+                fmt::format("config: view is {}, of {} and of {}; expected names of views "
+                            "that differ (`view =` in a .tone file)",
+                            view.name, other.op.op->name(), view.op.op->name()));
         }
         views.push_back(std::move(view));
     };

@@ -188,7 +188,9 @@ ResolvedOperator resolve_text(std::string_view text, const Settings& settings,
                               std::string_view look, bool takes_local, const OperatorSet& others) {
     // Behind a path stands what stands behind a name.
     const std::size_t length = file_length(text);
-    const std::vector<std::string> parts = parts_of(text.substr(length));
+    std::string rest(text.substr(length));
+    if (length > 0 && !rest.empty() && rest.front() != ':') rest.insert(0, ":");
+    const std::vector<std::string> parts = parts_of(rest);
     NamedOperator named;
     if (length > 0) {
         named.owner = load_operator(std::string(text.substr(0, length)));

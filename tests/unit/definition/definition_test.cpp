@@ -223,8 +223,7 @@ TEST(Definition, MessagesHaveThePlace) {
          "weights"},
         {bad_stage + "curve = 3\n", "4:9: curve is 3; expected a formula in quotes"},
         {bad_stage + "curve = \"x + foo\"\n", "4:14: name is foo; expected x"},
-        {bad_stage + "curve = \"\"\"\na = x\na + foo\"\"\"\n",
-         "6:5: name is foo; expected x or a"},
+        {bad_stage + "curve = \"\"\"\na = x\na + foo\"\"\"\n", "6:5: name is foo; expected x or a"},
         {bad_stage + "curve = '''a = x\n  a ^ 2'''\n", "5:5: found ^; write pow(a, b)"},
         {bad_stage + "curve = \"\"\"\r\na = x\r\na + foo\"\"\"\r\n",
          "6:5: name is foo; expected x or a"},
@@ -346,6 +345,19 @@ TEST(Definition, OperatorSetGivesTextsMoreNames) {
     EXPECT_THROW(set.add(parse_operator(
                      "tonewright = 1\nid = \"agx\"\ntitle = \"Hable\"\n" + kStage, "a.tone")),
                  Error);
+}
+
+TEST(Definition, TextsHaveSettingsBehindTheFile) {
+    const std::string path = TONEWRIGHT_TEST_DATA "/../../docs/examples/reinhard_055.tone";
+    EXPECT_EQ(resolve_operator(path).params.number("k"), 0.55);
+    for (const char* rest : {":firm", ":k=0.3", " k=0.3", ": k=0.3", ":firm:k=0.3", ":K=0.3"}) {
+        const ResolvedOperator op = resolve_operator(path + rest);
+        EXPECT_EQ(op.params.number("k"), 0.3) << rest;
+        // The text that names it reads back.
+        EXPECT_EQ(resolve_operator(operator_text(op)).params.number("k"), 0.3) << rest;
+    }
+    EXPECT_THROW((void)resolve_operator(path + ":none"), Error);
+    EXPECT_THROW((void)resolve_operator(path + ".tone"), FileError);
 }
 
 TEST(Definition, TextsNameFiles) {

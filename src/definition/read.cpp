@@ -54,16 +54,16 @@ class Table {
         : value_(value), what_(std::move(what)) {
         if (value.kind != Value::Kind::table)
             fail(value.at, what_ + " is " + described(value) + "; expected a table");
-        for (const Value::Member& member : value.members) {
+        for (const Value& member : value.members) {
             if (std::find(known.begin(), known.end(), member.key) != known.end()) continue;
-            fail(member.at, in_table("key is " + printable(member.key)) + "; expected " +
-                                join_choices(known) + did_you_mean(member.key, known));
+            fail(member.key_at, in_table("key is " + printable(member.key)) + "; expected " +
+                                    join_choices(known) + did_you_mean(member.key, known));
         }
     }
 
     [[nodiscard]] const Value* find(std::string_view key) const {
-        for (const Value::Member& member : value_.members) {
-            if (member.key == key) return &member.value;
+        for (const Value& member : value_.members) {
+            if (member.key == key) return &member;
         }
         return nullptr;
     }
@@ -91,7 +91,7 @@ class Table {
         }
         return static_cast<std::size_t>(found - choices.begin());
     }
-    [[nodiscard]] const std::vector<Value::Member>& members() const { return value_.members; }
+    [[nodiscard]] const std::vector<Value>& members() const { return value_.members; }
 
     /// One line of text; `negatives` and others stand in tables of docs.
     static std::string text_of(const Value& value, const std::string& key) {
@@ -252,16 +252,16 @@ class Reader {
                               "; expected [parameter.NAME], at most " +
                               std::to_string(kMostParameters));
         }
-        for (const Value::Member& member : all->members) {
+        for (const Value& member : all->members) {
             if (!is_id(lowercase(member.key)) || is_formula_function(member.key) ||
                 is_taken(member.key)) {
-                fail(member.at,
+                fail(member.key_at,
                      "parameter is " + printable(member.key) +
                          "; expected a name of letters, digits and _ that is no function, "
                          "input or other parameter");
             }
             const std::string what = "[parameter." + member.key + "]";
-            const Table table(member.value, what,
+            const Table table(member, what,
                               {"default", "min", "max", "unit", "doc", "choices", "from_picture",
                                "from_display"});
             ParameterSpec spec;
@@ -381,12 +381,12 @@ class Reader {
         scope_.names.emplace(std::string(kLookName) + ".none", FormulaValue{0});
         if (all->kind != Value::Kind::table)
             fail(all->at, "look is " + described(*all) + "; expected [look.NAME]");
-        for (const Value::Member& member : all->members) {
+        for (const Value& member : all->members) {
             if (!is_id(member.key) || member.key == "none") {
-                fail(member.at, "look is " + printable(member.key) +
-                                    "; expected small letters, digits and _, a letter first");
+                fail(member.key_at, "look is " + printable(member.key) +
+                                        "; expected small letters, digits and _, a letter first");
             }
-            const Table table(member.value, "[look." + member.key + "]", {"title", "doc"});
+            const Table table(member, "[look." + member.key + "]", {"title", "doc"});
             op_.looks.push_back(
                 {member.key, line(table, "title", member.key), line(table, "doc", "")});
             recipe_->looks.push_back(member.key);
@@ -675,21 +675,20 @@ class Reader {
         if (!all) return;
         if (all->kind != Value::Kind::table)
             fail(all->at, "preset is " + described(*all) + "; expected [preset.NAME]");
-        for (const Value::Member& member : all->members) {
+        for (const Value& member : all->members) {
             if (!is_id(member.key)) {
-                fail(member.at, "preset is " + printable(member.key) +
-                                    "; expected small letters, digits and _, a letter first");
+                fail(member.key_at, "preset is " + printable(member.key) +
+                                        "; expected small letters, digits and _, a letter first");
             }
-            const Table table(member.value, "[preset." + member.key + "]", {"title", "set"});
+            const Table table(member, "[preset." + member.key + "]", {"title", "set"});
             Preset preset{member.key, line(table, "title", member.key), {}};
             const Value& settings = table.require("set");
             if (settings.kind != Value::Kind::table)
                 fail(settings.at, "set is " + described(settings) + "; expected { NAME = value }");
-            for (const Value::Member& setting : settings.members) {
-                const Value& value = setting.value;
-                preset.settings[setting.key] = value.kind == Value::Kind::text
-                                                   ? value.text
-                                                   : shortest(Table::number_of(value, setting.key));
+            for (const Value& value : settings.members) {
+                preset.settings[value.key] = value.kind == Value::Kind::text
+                                                 ? value.text
+                                                 : shortest(Table::number_of(value, value.key));
             }
             op_.presets.push_back(std::move(preset));
         }
@@ -719,10 +718,10 @@ class Reader {
     /// of the file.
     void build_all(const Operator& op, const Value& root) const {
         const auto member = [&](const char* table, const std::string& key) {
-            for (const Value::Member& outer : root.members) {
+            for (const Value& outer : root.members) {
                 if (outer.key != table) continue;
-                for (const Value::Member& inner : outer.value.members) {
-                    if (inner.key == key) return inner.at;
+                for (const Value& inner : outer.members) {
+                    if (inner.key == key) return inner.key_at;
                 }
             }
             return TextPosition{};

@@ -57,11 +57,13 @@ TomlValue value_of(const toml::node& node) {
     if (const auto* table = node.as_table()) {
         value.kind = Kind::table;
         for (const auto& [key, member] : *table) {
-            const TextPosition at = position_of(key.source());
-            value.members.push_back({std::string(key.str()), at, value_of(member)});
+            value.members.push_back(value_of(member));
+            value.members.back().key = key.str();
+            value.members.back().key_at = position_of(key.source());
         }
-        const auto order = [](const TomlValue::Member& a, const TomlValue::Member& b) {
-            return std::pair(a.at.line, a.at.column) < std::pair(b.at.line, b.at.column);
+        const auto order = [](const TomlValue& a, const TomlValue& b) {
+            return std::pair(a.key_at.line, a.key_at.column) <
+                   std::pair(b.key_at.line, b.key_at.column);
         };
         std::stable_sort(value.members.begin(), value.members.end(), order);
     } else if (const auto* array = node.as_array()) {

@@ -14,20 +14,16 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// A value of a TOML file, with its place.
 struct TomlValue {
     enum class Kind : unsigned char { boolean, number, text, date, array, table };
-    struct Member;
-
     Kind kind = Kind::table;
     TextPosition at;
     bool boolean = false;
     double number = 0;
     std::string text = {};
     std::vector<TomlValue> items = {};
-    std::vector<Member> members = {};  // in the order of the file
-};
-struct TomlValue::Member {
-    std::string key;
-    TextPosition at;
-    TomlValue value;
+    std::vector<TomlValue> members = {};  // of a table, in the order of the file
+    // Of a member:
+    std::string key = {};
+    TextPosition key_at = {};
 };
 
 /// What is wrong with a file, and where.

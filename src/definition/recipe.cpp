@@ -15,6 +15,9 @@ namespace {
 
 using Kind = StageRecipe::Kind;
 
+/// What follows expressions by recursion has room for many times as many, on every thread's stack.
+constexpr int kDeepestOperator = 2000;
+
 /// Values of all parameters that are not live, of choices and of the look.
 UniformValues values_of(const OperatorRecipe& recipe, const Params& params) {
     UniformValues values;
@@ -127,9 +130,17 @@ std::array<std::vector<double>, 3> sample_colors() {
     return rgb;
 }
 
-bool is_bound(const Stage& stage) {
-    const std::array<Expr, 3> rgb = {Expr::input(0), Expr::input(1), Expr::input(2)};
-    return uniforms_of(apply_stage(stage, rgb)).empty();
+/// Of operations that depend on each other.
+int depth_of(const std::array<Expr, 3>& f) {
+    std::map<const ExprNode*, int> depths;
+    int deepest = 0;
+    for (const Expr& e : nodes_of(f)) {
+        int& depth = depths[e.node()];
+        for (int i = 0; i < e.operand_count(); ++i)
+            depth = std::max(depth, depths.at(e.operand(i).node()) + 1);
+        deepest = std::max(deepest, depth);
+    }
+    return deepest;
 }
 
 }  // namespace
@@ -139,15 +150,24 @@ Pipeline build_stages(const OperatorRecipe& recipe, const std::vector<StageRecip
     const UniformValues values = values_of(recipe, params);
     Pipeline pipeline;
     std::array<std::vector<double>, 3> rgb = sample_colors();
-    bool is_all_bound = true;
+    bool is_bound = true;
+    int depth = 0;
     for (const StageRecipe& stage : stages) {
         if (bind_uniforms(stage.when, values).is_constant(0)) continue;
         pipeline.push_back(stage_of(stage, values));
-        is_all_bound = is_all_bound && is_bound(pipeline.back());
-        if (!is_all_bound) continue;
+        const std::array<Expr, 3> f =
+            apply_stage(pipeline.back(), {Expr::input(0), Expr::input(1), Expr::input(2)});
+        depth += depth_of(f);
+        if (depth > kDeepestOperator) {
+            throw StageError(stage.at,
+                             "stages up to here have " + std::to_string(depth) +
+                                 " operations that depend on each other; expected at most " +
+                                 std::to_string(kDeepestOperator));
+        }
+        is_bound = is_bound && uniforms_of(f).empty();
+        if (!is_bound) continue;
         const std::array<std::vector<double>, 3> in = rgb;
-        rgb = values_at(
-            apply_stage(pipeline.back(), {Expr::input(0), Expr::input(1), Expr::input(2)}), in);
+        rgb = values_at(f, in);
         for (std::size_t i = 0; i < rgb[0].size(); ++i) {
             for (const std::vector<double>& channel : rgb) {
                 if (std::isfinite(channel[i])) continue;

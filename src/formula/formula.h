@@ -50,7 +50,7 @@ struct FormulaScope {
 /// ACES 2.0, needs about a fifth of each.
 inline constexpr std::size_t kLongestFormula = std::size_t{1} << 18U;  // bytes
 inline constexpr int kMostOperations = 20000;
-inline constexpr int kDeepestFormula = 2000;  // operations that depend on each other
+inline constexpr int kDeepestFormula = 1000;  // operations that depend on each other
 inline constexpr int kDeepestBrackets = 200;  // brackets, signs and `?:` inside each other
 
 /// A formula as an expression: lines `name = expression` that set temporaries, then one expression,

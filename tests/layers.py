@@ -11,13 +11,15 @@ import sys
 BELOW = {"base": []}
 for folder, direct in {
     "expr": ["base"],
+    "formula": ["expr"],  # text -> expressions
     "color": ["expr"],
     "pipeline": ["color"],
     "operators": ["pipeline"],
+    "definition": ["pipeline", "formula"],  # .tone files
     "engine": ["operators"],
     "measure": ["engine"],
     "local": ["measure"],
-    "registry": ["local"],
+    "registry": ["local", "definition"],
     "lut": ["registry"],
     "shader": ["registry"],
     "ocio": ["lut"],
@@ -32,7 +34,7 @@ for folder, direct in {
 # Public header -> the folder that it belongs to.
 PUBLIC = {
     "version": "base", "error": "base", "span": "base", "generated_files": "base", "expr": "expr", "color": "color",
-    "pipeline": "pipeline", "view": "pipeline", "engine": "engine", "local": "local", "registry": "registry",
+    "pipeline": "pipeline", "view": "pipeline", "engine": "engine", "local": "local", "registry": "registry", "definition": "definition",
     "lut": "lut", "lut_applications": "lut", "ocio": "ocio", "lut_file": "ocio", "tonemap": "image",
     "image_io": "image", "chart": "image", "contact_sheet": "image", "sequence": "image", "meter": "image",
     "shader": "shader", "verify": "verify", "lint": "verify", "lut_match": "verify",
@@ -48,6 +50,7 @@ THIRD_PARTY = {
     "xbyak": ["engine"],
     "CLI": ["cli/options.cpp"],  # one file each: they take seconds to compile
     "nlohmann": ["cli/json.cpp"],
+    "toml++": ["definition/toml_text.cpp"],
     "pybind11": ["python"],
     "fmt": ["base", "measure", "lut", "shader", "ocio", "image", "verify", "cli", "cli/pictures", "plugin", "python"],
 }

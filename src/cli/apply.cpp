@@ -93,7 +93,7 @@ void add_apply(CommandLine& program) {
         .value("EXT")
         .group("Output");
     const Option op = command.add("--operator", options->op,
-                                  "operator[:preset][:name=value] or view (default: AgX)");
+                                  "operator[:preset][:name=value], my.tone (default AgX)");
     op.value("NAME").group("Operator");
     options->input = "auto";
     add_view_options(command, *options);

@@ -152,7 +152,7 @@ void add_bake(CommandLine& program) {
     command.group("LUTs, shaders and configs");
     const char* const output = "Output";
     const char* const table = "Table";
-    command.add("operator", options->op, "operator, or operator:preset");
+    command.add("operator", options->op, "operator, operator:preset or .tone file");
     command.add("-o", options->file, "file to write").value("FILE").group(output);
     command
         .add("--for", options->host,

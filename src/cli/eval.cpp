@@ -238,7 +238,8 @@ void add_eval(CommandLine& program) {
     const Command command =
         program.add("eval", "Tone map RGB triplets from standard input, one a line.");
     command.group("Operators");
-    const Option op = command.add("operator", options->op, "operator, or operator:preset");
+    const Option op =
+        command.add("operator", options->op, "operator, operator:preset or .tone file");
     add_view_options(command, *options);
     command
         .add("--engine", options->engine,

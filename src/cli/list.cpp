@@ -12,6 +12,7 @@
 #include "cli/command.h"
 #include "cli/json.h"
 #include "cli/options.h"
+#include "tonewright/definition.h"
 #include "tonewright/lut.h"
 #include "tonewright/lut_applications.h"
 #include "tonewright/registry.h"
@@ -320,6 +321,7 @@ struct Options {
     bool markdown = false;
     bool views = false;
     bool hosts = false;
+    bool definition = false;
     std::string catalogue;
 };
 
@@ -336,8 +338,13 @@ int run_list(const Options& options) {
         } else {
             print_hosts();
         }
+    } else if (options.definition) {
+        if (options.op.empty())
+            throw Error("list: operator is missing; expected one before --definition");
+        fmt::print("{}", definition_of(resolve_picture_operator(options.op)));
     } else if (!options.op.empty()) {
-        const Operator& op = find_picture_operator(options.op);
+        const ResolvedOperator resolved = resolve_picture_operator(options.op);
+        const Operator& op = *resolved.op;
         if (options.json) {
             fmt::print("{}\n", to_json(op).dump(2));
         } else if (options.markdown) {
@@ -370,7 +377,7 @@ void add_list(CommandLine& program) {
     command.group("Operators");
     const char* const contents = "What to list";
     const char* const format = "Format";
-    command.add("operator", options->op, "operator to describe in full");
+    command.add("operator", options->op, "operator to describe in full, or a .tone file");
     const Option json = command.add_flag("--json", options->json, "print JSON");
     json.group(format);
     const Option markdown =
@@ -384,12 +391,21 @@ void add_list(CommandLine& program) {
             .excludes(json)
             .excludes(markdown);
     views.group(contents);
+    const Option definition =
+        command
+            .add_flag("--definition", options->definition,
+                      "print the operator as a .tone file, with these settings: agx:punchy")
+            .excludes(json)
+            .excludes(markdown)
+            .excludes(views);
+    definition.group(contents);
     const Option hosts =
         command
             .add_flag("--hosts", options->hosts,
                       "applications that read LUTs, what each expects, and how to load a LUT there")
             .excludes(markdown)
-            .excludes(views);
+            .excludes(views)
+            .excludes(definition);
     hosts.group(contents);
     command
         .add("--catalogue", options->catalogue,
@@ -399,8 +415,11 @@ void add_list(CommandLine& program) {
         .excludes(json)
         .excludes(markdown)
         .excludes(views)
-        .excludes(hosts);
-    command.footer("Examples:\n  tonewright list\n  tonewright list hable --json");
+        .excludes(hosts)
+        .excludes(definition);
+    command.footer(
+        "Examples:\n  tonewright list\n  tonewright list hable --json\n"
+        "  tonewright list hable --definition > my.tone");
     command.action([options] { return run_list(*options); });
 }
 

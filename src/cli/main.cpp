@@ -10,6 +10,7 @@
 #include "cli/command.h"
 #include "cli/messages.h"
 #include "cli/options.h"
+#include "tonewright/definition.h"
 #include "tonewright/error.h"
 #include "tonewright/version.h"
 
@@ -49,6 +50,10 @@ int run(int argc, char** argv) {
         return report("write: standard output: " + e.code().message(), kFile);
     } catch (const std::bad_alloc&) {
         return report(command + "not enough memory", kFile);
+    } catch (const DefinitionError& e) {
+        report(e.what(), kFile);
+        print_excerpt(e.excerpt());
+        return kFile;
     } catch (const FileError& e) {
         return report(e.what(), kFile);
     } catch (const Error& e) {

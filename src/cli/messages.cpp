@@ -20,6 +20,10 @@ void print_message(const std::string& text) {
     fmt::print(stderr, "tonewright: {}\n", one_line(text));
 }
 
+void print_excerpt(const std::string& lines) {
+    if (!lines.empty()) fmt::print(stderr, "{}\n", lines);
+}
+
 void print_result(const std::string& text) {
     if (!message_options().is_quiet) fmt::print(stderr, "{}\n", one_line(text));
 }

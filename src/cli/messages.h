@@ -24,6 +24,9 @@ struct MessageOptions {
 /// `tonewright: TEXT` on stderr, on one line whatever the text holds.
 void print_message(const std::string& text);
 
+/// Lines of a file that a message is about, on stderr.
+void print_excerpt(const std::string& lines);
+
 /// What a command did, on stderr, on one line; not with --quiet.
 void print_result(const std::string& text);
 

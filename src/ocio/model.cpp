@@ -544,8 +544,8 @@ bool same_stage(const Stage& a, const Stage& b) {
 
 /// The stages that a look puts before the operator's own; empty where it changes the operator.
 Pipeline scene_look(const Operator& op, const Look& look) {
-    const Pipeline with = resolve_operator(op.id, {}, look.id).build();
-    const Pipeline without = resolve_operator(op.id).build();
+    const Pipeline with = resolve(op, nullptr, {}, look.id).build();
+    const Pipeline without = resolve(op, nullptr, {}, "").build();
     if (with.size() <= without.size()) return {};
     const auto begin = with.begin() + static_cast<std::ptrdiff_t>(with.size() - without.size());
     if (!std::equal(begin, with.end(), without.begin(), same_stage)) return {};
@@ -555,16 +555,18 @@ Pipeline scene_look(const Operator& op, const Look& look) {
 std::string look_name(const Operator& op, const Look& look) { return op.view + " - " + look.title; }
 
 std::string description_of(const Operator& op, const std::string& extra = "") {
-    return op.title + extra + ": " + op.character + ". Source: " + op.source + ".";
+    std::string text = op.title + extra;
+    if (!op.character.empty()) text += ": " + op.character;
+    return text + (op.source.empty() ? "." : ". Source: " + op.source + ".");
 }
 
 ConfigModel::View view_of(const Operator& op, const std::string& look_id = "") {
     for (const Look& look : op.looks) {
         if (look.id != look_id) continue;
-        return {op.view + " " + look.title, resolve_operator(op.id, {}, look.id),
+        return {op.view + " " + look.title, resolve(op, nullptr, {}, look.id),
                 description_of(op, ", look " + look.title)};
     }
-    return {op.view, resolve_operator(op.id), description_of(op)};
+    return {op.view, resolve(op, nullptr, {}, ""), description_of(op)};
 }
 
 /// Every operator, and every operator with each of its looks.
@@ -582,7 +584,12 @@ std::vector<ConfigModel::View> choose_views(const ConfigOptions& options) {
     std::vector<ConfigModel::View> views;
     const auto add = [&](ConfigModel::View view) {
         for (const auto& other : views) {
-            if (other.name == view.name) return;
+            if (other.name != view.name) continue;
+            if (other.op.op->name() == view.op.op->name()) return;
+            throw Error(
+                fmt::format("config: view is {}, of {} and of {}; expected names of views "
+                            "that differ (`view =` in a .tone file)",
+                            view.name, other.op.op->name(), view.op.op->name()));
         }
         views.push_back(std::move(view));
     };
@@ -613,6 +620,8 @@ std::vector<ConfigModel::View> choose_views(const ConfigOptions& options) {
             }
             view.op = op;
             add(view);
+        } catch (const FileError&) {
+            throw;
         } catch (const Error& e) {
             throw Error(
                 fmt::format("config: view is {}; expected standard, all, or the name of a "
@@ -641,10 +650,20 @@ std::vector<ConfigModel::View> choose_views(const ConfigOptions& options) {
 std::vector<ConfigModel::Look> choose_looks(const ConfigOptions& options,
                                             const std::vector<ConfigModel::View>& views) {
     std::vector<ConfigModel::Look> all;
+    std::vector<const Operator*> shown;
     for (const Operator& op : all_operators()) {
         const bool is_shown = std::any_of(views.begin(), views.end(),
                                           [&](const auto& view) { return view.op.op == &op; });
-        if (!is_shown) continue;
+        if (is_shown) shown.push_back(&op);
+    }
+    for (const ConfigModel::View& view : views) {  // files
+        const bool is_known = std::any_of(shown.begin(), shown.end(), [&](const Operator* op) {
+            return op->name() == view.op.op->name();
+        });
+        if (!is_known) shown.push_back(view.op.op);
+    }
+    for (const Operator* const shown_op : shown) {
+        const Operator& op = *shown_op;
         for (const Look& look : op.looks) {
             const Pipeline stages = scene_look(op, look);
             if (!stages.empty()) all.push_back({look_name(op, look), stages, &op, look.help});

@@ -50,6 +50,7 @@ const std::vector<BuiltinRow>& builtin_rows() {
 }
 
 std::string builtin_style(const ResolvedOperator& op) {
+    if (!op.op->file.empty()) return "";  // whatever its id
     for (const BuiltinRow& row : builtin_rows()) {
         if (row.op == op.op->id && resolve_operator(row.op, row.settings).params == op.params)
             return kBuiltinPrefix + std::string(row.style);
@@ -58,7 +59,7 @@ std::string builtin_style(const ResolvedOperator& op) {
 }
 
 std::string blender_difference(const ResolvedOperator& op) {
-    if (op.op->id != "aces_13") return "";
+    if (op.op->id != "aces_13" || !op.op->file.empty()) return "";
     // Blender 5.2, config.ocio: its view takes the P3-limited output transforms there.
     const std::string& limit = op.params.choice("limit");
     if (limit != "rec2020" && limit != "none") return "";

@@ -201,13 +201,14 @@ ResolvedOperator resolve_for_display(const ResolvedOperator& resolved,
     ResolvedOperator shown = resolve(*resolved.op, preset, all, resolved.params.look());
     shown.label = resolved.label;
     shown.settings = resolved.settings;
+    shown.owner = resolved.owner;
     return shown;
 }
 
 ResolvedOperator resolve(const Operator& op, const Preset* preset, const Settings& settings,
                          std::string_view look) {
     using Kind = ParameterSpec::Kind;
-    ResolvedOperator resolved{&op, {}, op.id, preset, settings};
+    ResolvedOperator resolved{&op, {}, op.id, preset, settings, {}};
 
     resolved.settings = in_own_words(op, settings);
     Settings merged;

@@ -2,9 +2,12 @@
 #include "tonewright/registry.h"
 
 #include <map>
+#include <memory>
+#include <utility>
 
 #include "base/strings.h"
 #include "local/operators.h"
+#include "tonewright/definition.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -14,36 +17,40 @@ struct NamedOperator {
     const Operator* op = nullptr;
     const Preset* preset = nullptr;
     std::string look;
+    std::shared_ptr<const Operator> owner;  // of an operator that is not built in
 };
+using NamedOperators = std::map<std::string, NamedOperator>;
 
 /// By folded name. Ids come first, so that no title can hide one.
-const std::map<std::string, NamedOperator>& operators_by_name() {
-    static const std::map<std::string, NamedOperator> all = [] {
-        std::map<std::string, NamedOperator> names;
-        const auto for_each = [&](const auto& add) {
-            for (const std::vector<Operator>* operators : {&all_operators(), &local_operators()}) {
-                for (const Operator& op : *operators)
-                    add(op);
+NamedOperators by_name(const std::vector<const Operator*>& operators) {
+    NamedOperators names;
+    for (const Operator* op : operators)
+        names.emplace(folded_name(op->id), NamedOperator{op, nullptr, {}, {}});
+    for (const Operator* op : operators) {
+        for (const std::string& name : {op->view, op->title}) {
+            if (name.empty()) continue;
+            names.emplace(folded_name(name), NamedOperator{op, nullptr, {}, {}});
+            for (const Look& look : op->looks) {
+                names.emplace(folded_name(name + " " + look.title),
+                              NamedOperator{op, nullptr, look.id, {}});
             }
-        };
-        for_each([&](const Operator& op) {
-            names.emplace(folded_name(op.id), NamedOperator{&op, nullptr, {}});
-        });
-        for_each([&](const Operator& op) {
-            for (const std::string& name : {op.view, op.title}) {
-                if (name.empty()) continue;
-                names.emplace(folded_name(name), NamedOperator{&op, nullptr, {}});
-                for (const Look& look : op.looks) {
-                    names.emplace(folded_name(name + " " + look.title),
-                                  NamedOperator{&op, nullptr, look.id});
-                }
-                for (const Preset& preset : op.presets) {
-                    names.emplace(folded_name(name + " " + preset.title),
-                                  NamedOperator{&op, &preset, {}});
-                }
+            for (const Preset& preset : op->presets) {
+                names.emplace(folded_name(name + " " + preset.title),
+                              NamedOperator{op, &preset, {}, {}});
             }
-        });
-        return names;
+        }
+    }
+    return names;
+}
+
+const NamedOperators& operators_by_name() {
+    static const NamedOperators all = [] {
+        std::vector<const Operator*> operators;
+        for (const std::vector<Operator>* some : {&all_operators(), &local_operators()}) {
+            for (const Operator& op : *some)
+                operators.push_back(&op);
+        }
+        return by_name(operators);
     }();
     return all;
 }
@@ -61,10 +68,20 @@ constexpr AbsentOperator kAbsentOperators[] = {
     {"opendrt", "OpenDRT cannot be derived from its description (docs/choosing.md)"},
 };
 
-const NamedOperator& find_named(std::string_view name) {
-    const auto found = operators_by_name().find(folded_name(name));
+NamedOperator find_named(std::string_view name, const OperatorSet& others = {}) {
+    const std::string folded = folded_name(name);
+    const auto found = operators_by_name().find(folded);
     if (found != operators_by_name().end()) return found->second;
     std::vector<NamedChoice> choices;
+    for (const std::shared_ptr<const Operator>& op : others.operators()) {
+        const NamedOperators names = by_name({op.get()});
+        if (const auto own = names.find(folded); own != names.end()) {
+            NamedOperator named = own->second;
+            named.owner = op;
+            return named;
+        }
+        choices.push_back({op->id, {op->view, op->title}});
+    }
     for (const std::vector<Operator>* operators : {&all_operators(), &local_operators()}) {
         for (const Operator& op : *operators)
             choices.push_back({op.id, {op.view, op.title}});
@@ -115,6 +132,22 @@ std::vector<std::string> parts_of(std::string_view text) {
     return parts;
 }
 
+/// The length of the path of a .tone file that the text begins with; 0 if it names no file.
+std::size_t file_length(std::string_view text) {
+    constexpr std::string_view kExtension = ".tone";
+    const std::string small = lowercase(text);
+    for (std::size_t dot = small.find(kExtension); dot != std::string::npos;
+         dot = small.find(kExtension, dot + 1)) {
+        const std::size_t end = dot + kExtension.size();
+        const bool is_end = end == text.size() || text[end] == ':' ||
+                            (is_blank(text[end]) && begins_with_setting(text.substr(end)));
+        if (!is_end) continue;
+        const bool is_operator = operators_by_name().contains(folded_name(parts_of(text).front()));
+        return is_operator ? 0 : end;
+    }
+    return 0;
+}
+
 /// A value as parts_of() reads it back.
 std::string marked(std::string_view value) {
     std::string text;
@@ -152,9 +185,19 @@ void set_look(std::string& look, const Operator& op, std::string_view wanted) {
 }
 
 ResolvedOperator resolve_text(std::string_view text, const Settings& settings,
-                              std::string_view look, bool takes_local) {
-    const std::vector<std::string> parts = parts_of(text);
-    NamedOperator named = find_named(parts.front());
+                              std::string_view look, bool takes_local, const OperatorSet& others) {
+    // Behind a path stands what stands behind a name.
+    const std::size_t length = file_length(text);
+    std::string rest(text.substr(length));
+    if (length > 0 && !rest.empty() && rest.front() != ':') rest.insert(0, ":");
+    const std::vector<std::string> parts = parts_of(rest);
+    NamedOperator named;
+    if (length > 0) {
+        named.owner = load_operator(std::string(text.substr(0, length)));
+        named.op = named.owner.get();
+    } else {
+        named = find_named(parts.front(), others);
+    }
     const Operator& op = takes_local ? *named.op : require_no_surroundings(*named.op);
     Settings all;
     for (std::size_t i = 1; i < parts.size(); ++i) {
@@ -174,7 +217,9 @@ ResolvedOperator resolve_text(std::string_view text, const Settings& settings,
     for (const auto& [name, value] : settings)
         add_setting(all, op, name, value);
     set_look(named.look, op, look);
-    return resolve(op, named.preset, all, named.look);
+    ResolvedOperator resolved = resolve(op, named.preset, all, named.look);
+    resolved.owner = named.owner;
+    return resolved;
 }
 
 }  // namespace
@@ -192,13 +237,27 @@ const Operator& find_operator(std::string_view name) {
 }
 
 ResolvedOperator resolve_operator(std::string_view text, const Settings& settings,
-                                  std::string_view look) {
-    return resolve_text(text, settings, look, false);
+                                  std::string_view look, const OperatorSet& others) {
+    return resolve_text(text, settings, look, false, others);
 }
 
 ResolvedOperator resolve_picture_operator(std::string_view text, const Settings& settings,
-                                          std::string_view look) {
-    return resolve_text(text, settings, look, true);
+                                          std::string_view look, const OperatorSet& others) {
+    return resolve_text(text, settings, look, true, others);
+}
+
+bool names_a_file(std::string_view text) { return file_length(text) > 0; }
+
+void OperatorSet::add(std::shared_ptr<const Operator> op) {
+    for (const auto& [name, named] : by_name({op.get()})) {
+        bool is_taken = operators_by_name().contains(name);
+        for (const std::shared_ptr<const Operator>& other : operators_)
+            is_taken = is_taken || by_name({other.get()}).contains(name);
+        if (!is_taken) continue;
+        throw Error("operator is " + op->id + "; expected names that no other operator has, but " +
+                    name + " is one");
+    }
+    operators_.push_back(std::move(op));
 }
 
 std::string operator_text(const ResolvedOperator& op) {

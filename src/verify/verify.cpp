@@ -492,9 +492,9 @@ VerifyResult verify(const VerifyOptions& options,
     if (!config) {
         std::vector<std::string> wanted;
         for (const View& view : views) {
-            if (const std::string name = view_name(view.op); !name.empty()) wanted.push_back(name);
+            if (!view_name(view.op).empty()) wanted.push_back(operator_text(view.op));
         }
-        if (wanted.empty()) wanted.push_back(views.front().op.op->id);
+        if (wanted.empty()) wanted.push_back(views.front().op.op->name());
         fresh.emplace(wanted);
         config = read_config(path_of_config(fresh->folder()));
     }

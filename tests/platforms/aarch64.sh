@@ -15,8 +15,8 @@ command -v apt-get >/dev/null || skip "apt-get is missing; it downloads Debian's
 # The arm64 libraries go into a folder: the system gets no second architecture, and no package of its own changes.
 mkdir -p "$build/sysroot"/apt/{lists/partial,archives/partial}
 sysroot=$(realpath "$build/sysroot")
-if [ ! -f "$sysroot/complete" ]; then
-    packages=(libhwy1 libhwy-dev libfmt9 libfmt-dev libgtest-dev)
+if [ ! -f "$sysroot/complete-2" ]; then
+    packages=(libhwy1 libhwy-dev libfmt9 libfmt-dev libgtest-dev libtomlplusplus-dev)
     : >"$sysroot/apt/status"
     apt=(apt-get -qq -o APT::Architecture=arm64 -o APT::Architectures=arm64 -o APT::Sandbox::User=root
         -o Acquire::Retries=3 -o Acquire::Languages=none -o Dir::State="$sysroot/apt"
@@ -24,7 +24,7 @@ if [ ! -f "$sysroot/complete" ]; then
     { "${apt[@]}" update && (cd "$sysroot/apt" && "${apt[@]}" download "${packages[@]}"); } ||
         skip "apt-get cannot download for arm64: ${packages[*]}"
     for package in "$sysroot"/apt/*.deb; do dpkg -x "$package" "$sysroot"; done
-    touch "$sysroot/complete"
+    touch "$sysroot/complete-2"
 fi
 
 cmake -S "$source" -B "$build/core" -G Ninja -DCMAKE_BUILD_TYPE=Release \

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
@@ -30,7 +31,8 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Linear mixing of channels: y = M x.
 struct MatrixStage {
     Matrix3 m;
-    /// What its source calls it, lower_snake: the name of a shader's function. Empty: none.
+    /// What its source calls it, lower_snake: the name of a shader's function. Empty: none. It is
+    /// a literal, or lives as long as one.
     const char* name = "";
 };
 
@@ -169,12 +171,12 @@ struct ParameterSpec {
     std::string default_choice;
     /// Not null: a number that a picture has. Where a whole picture is at hand and the user has not
     /// set it, this is its value (limited to the interval), else the default.
-    double (*from_picture)(const SceneStatistics&) = nullptr;
+    std::function<double(const SceneStatistics&)> from_picture = {};
     /// What from_picture takes: "maximum luminance of the picture".
     std::string statistic;
     /// Not null: a value that the display decides. In a view of a display, where the user has not
     /// set it, this is its value; else, and where this is empty, the default.
-    std::string (*from_display)(const DisplayFacts&) = nullptr;
+    std::function<std::string(const DisplayFacts&)> from_display = {};
 };
 
 [[nodiscard]] TONEWRIGHT_API ParameterSpec number_parameter(std::string name, std::string unit,
@@ -324,19 +326,24 @@ struct Operator {
     /// The operator that the program meant, as resolve_operator() reads it. Only of a defect.
     std::string meant;
     /// Working-space scene-linear, finite -> the operator's own output.
-    Pipeline (*build)(const Params& params) = nullptr;
+    std::function<Pipeline(const Params& params)> build = {};
     /// Back: the operator's own output -> working-space scene-linear. Null: it has no inverse.
-    Pipeline (*build_inverse)(const Params& params) = nullptr;
+    std::function<Pipeline(const Params& params)> build_inverse = {};
     /// Of the output. Null: `working`.
-    Primaries (*output_primaries)(const Params& params) = nullptr;
+    std::function<Primaries(const Params& params)> output_primaries = {};
     /// Largest light of the output on a display that can show more than white. Null: 1.
-    double (*peak)(const Params& params) = nullptr;
+    std::function<double(const Params& params)> peak = {};
     /// Not null: what a pixel becomes depends on its surroundings, and this is the operator, for
     /// whole pictures (local.h). build() is what is left for a pixel by itself: nothing.
     void (*run_local)(ScenePlanes& picture, const Params& params) = nullptr;
 
+    /// The .tone file that it was read from, as its path was given. Empty: it is built in.
+    std::string file = {};
+
     [[nodiscard]] bool is_local() const { return run_local != nullptr; }
     [[nodiscard]] bool is_defect() const { return !defect.empty(); }
+    /// What resolve_operator() finds it by.
+    [[nodiscard]] const std::string& name() const { return file.empty() ? id : file; }
 };
 
 /// An operator with its parameters fixed.
@@ -349,8 +356,13 @@ struct ResolvedOperator {
     const Preset* preset = nullptr;
     Settings settings;
 
-    /// `id` or `id:preset`.
-    [[nodiscard]] std::string name() const { return preset ? op->id + ":" + preset->id : op->id; }
+    /// Keeps an operator that is not built in alive.
+    std::shared_ptr<const Operator> owner = {};
+
+    /// `id` or `id:preset`; of a file, its path.
+    [[nodiscard]] std::string name() const {
+        return preset ? op->name() + ":" + preset->id : op->name();
+    }
 
     [[nodiscard]] Pipeline build() const { return op->build(params); }
     /// Primaries of the output.

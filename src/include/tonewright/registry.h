@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,6 +26,20 @@ inline constexpr std::string_view kDefaultOperator = "agx_blender";
 // Names are the same in any case, and with `-`, `_` or blanks. An operator has three: its id
 // ("agx_blender"), its view in the config ("AgX") and its title ("AgX (Blender)").
 
+/// Operators that texts can name beside the built-in ones. Nothing is registered in the process.
+class TONEWRIGHT_API OperatorSet {
+  public:
+    /// @throws Error  one of its names, id, view or title, names another operator of the set or a
+    ///                built-in one
+    void add(std::shared_ptr<const Operator> op);
+    [[nodiscard]] const std::vector<std::shared_ptr<const Operator>>& operators() const {
+        return operators_;
+    }
+
+  private:
+    std::vector<std::shared_ptr<const Operator>> operators_;
+};
+
 /// @throws Error  with the nearest name when there is no such operator, or for a local operator.
 [[nodiscard]] TONEWRIGHT_API const Operator& find_operator(std::string_view name);
 /// The same, but accepts local operators.
@@ -34,16 +49,24 @@ inline constexpr std::string_view kDefaultOperator = "agx_blender";
 /// names of views with a look or a preset ("AgX Punchy"). Blanks may stand where a `:` stands
 /// before `parameter=`. `\` takes its meaning from a `:`, a blank or a `\` of a value.
 ///
+/// Instead of a name, the path of a .tone file: what ends in `.tone` at the end of the text or
+/// before a `:` or a blank, with all `:` and blanks before that. It is read on every call. A text
+/// that begins with an operator's name and a `:` names that operator; `./` before it names a file.
+///
 /// @param settings  parameter name -> text, beside those of the text.
 /// @param look      look id or title, or empty.
-/// @throws Error    as find_operator(), find_preset() and resolve(), and where the text and the
-///                  other arguments contradict each other.
+/// @throws Error    as find_operator(), find_preset(), resolve() and load_operator(), and where the
+///                  text and the other arguments contradict each other.
 [[nodiscard]] TONEWRIGHT_API ResolvedOperator resolve_operator(std::string_view text,
                                                                const Settings& settings = {},
-                                                               std::string_view look = {});
+                                                               std::string_view look = {},
+                                                               const OperatorSet& others = {});
 /// The same, but accepts local operators.
-[[nodiscard]] TONEWRIGHT_API ResolvedOperator resolve_picture_operator(
-    std::string_view text, const Settings& settings = {}, std::string_view look = {});
+[[nodiscard]] TONEWRIGHT_API ResolvedOperator
+resolve_picture_operator(std::string_view text, const Settings& settings = {},
+                         std::string_view look = {}, const OperatorSet& others = {});
+/// True where the text names a .tone file.
+[[nodiscard]] TONEWRIGHT_API bool names_a_file(std::string_view text);
 
 /// The inverse of resolve_operator(): a text that names the operator with its preset, its look and
 /// the settings that make a difference.

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "definition/recipe.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <set>
+
+#include "base/format_number.h"
+#include "expr/nodes.h"
+#include "expr/scalar_ops.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace {
+
+using Kind = StageRecipe::Kind;
+
+/// What follows expressions by recursion has room for many times as many, on every thread's stack.
+constexpr int kDeepestOperator = 2000;
+
+/// Values of all parameters that are not live, of choices and of the look.
+UniformValues values_of(const OperatorRecipe& recipe, const Params& params) {
+    UniformValues values;
+    const auto index_of = [](const std::vector<std::string>& names, const std::string& name) {
+        const auto found = std::find(names.begin(), names.end(), name);
+        return static_cast<double>(found - names.begin());
+    };
+    for (const ParameterSpec& spec : recipe.parameters) {
+        if (spec.kind == ParameterSpec::Kind::choice) {
+            values.emplace(spec.name, index_of(spec.choices, params.choice(spec.name)));
+        } else if (const Expr e = params.expr(spec.name); e.is_constant()) {
+            values.emplace(spec.name, e.value());
+        }
+    }
+    values.emplace(kLookName,
+                   params.look().empty() ? 0 : 1 + index_of(recipe.looks, params.look()));
+    return values;
+}
+
+Stage matrix_of(const std::vector<Expr>& m, const char* name) {
+    if (std::all_of(m.begin(), m.end(), [](const Expr& e) { return e.is_constant(); })) {
+        MatrixStage stage{{}, name};
+        for (std::size_t i = 0; i < 9; ++i)
+            stage.m.at(i / 3).at(i % 3) = m[i].value();
+        return stage;
+    }
+    CrossTalkStage stage{{0, 0, 0}, name};
+    for (std::size_t i = 0; i < 3; ++i) {
+        stage.f.at(i) = m[3 * i] * Expr::input(0) + m[3 * i + 1] * Expr::input(1) +
+                        m[3 * i + 2] * Expr::input(2);
+    }
+    return stage;
+}
+
+Stage stage_of(const StageRecipe& recipe, const UniformValues& values) {
+    const auto bound = [&](const std::vector<Expr>& exprs) {
+        std::vector<Expr> result;
+        for (const Expr& e : exprs)
+            result.push_back(bind_uniforms(e, values));
+        return result;
+    };
+    const std::vector<Expr> f = bound(recipe.f);
+    const auto three = [](const std::vector<Expr>& of) {
+        return of.size() == 1 ? std::array{of[0], of[0], of[0]} : std::array{of[0], of[1], of[2]};
+    };
+    switch (recipe.kind) {
+        case Kind::matrix:
+            return matrix_of(f, recipe.name);
+        case Kind::curve: {
+            CurveStage stage{three(f), std::nullopt, recipe.name};
+            if (!recipe.inverse.empty()) stage.inverse = three(bound(recipe.inverse));
+            return stage;
+        }
+        case Kind::tone_scale:
+            return ToneScaleStage{recipe.norm, recipe.weights, f[0]};
+        case Kind::hue_preserving:
+            return HuePreservingStage{f[0]};
+        case Kind::hexcone:
+            return HexconeStage{f[0], f[1], f[2]};
+        case Kind::cross_talk:
+            return CrossTalkStage{three(f), recipe.name};
+        case Kind::clamp:
+            break;
+    }
+    return ClampStage{recipe.lo, recipe.hi};
+}
+
+/// The expressions' values for many inputs, each node once.
+std::array<std::vector<double>, 3> values_at(const std::array<Expr, 3>& f,
+                                             const std::array<std::vector<double>, 3>& inputs) {
+    const std::vector<Expr> nodes = nodes_of(f);
+    const std::size_t count = inputs[0].size();
+    std::map<const ExprNode*, std::vector<double>> values;
+    for (const Expr& e : nodes) {
+        std::vector<double>& out = values[e.node()];
+        if (e.op() == ExprOp::input) {
+            out = inputs.at(static_cast<std::size_t>(e.input_index()));
+            continue;
+        }
+        out.assign(count, e.is_constant() ? e.value() : 0);
+        if (e.operand_count() == 0) continue;
+        std::array<const std::vector<double>*, 3> in{};
+        for (int i = 0; i < 3; ++i)
+            in.at(static_cast<std::size_t>(i)) =
+                &values.at(e.operand(std::min(i, e.operand_count() - 1)).node());
+        for (std::size_t i = 0; i < count; ++i)
+            out[i] = scalar_op(e.op(), (*in[0])[i], (*in[1])[i], (*in[2])[i], e.table().get());
+    }
+    return {values.at(f[0].node()), values.at(f[1].node()), values.at(f[2].node())};
+}
+
+/// Black, grays and saturated colors of both signs, up to the ends of the range.
+std::array<std::vector<double>, 3> sample_colors() {
+    std::array<std::vector<double>, 3> rgb;
+    const auto add = [&](double r, double g, double b) {
+        rgb[0].push_back(r);
+        rgb[1].push_back(g);
+        rgb[2].push_back(b);
+    };
+    add(0, 0, 0);
+    for (const double size : {1e-9, 1e-4, 0.01, 0.18, 0.5, 1.0, 4.0, 100.0, kHalfMax}) {
+        for (const double v : {size, -size}) {
+            add(v, v, v);
+            add(v, 0, 0);
+            add(0, v, 0);
+            add(0, 0, v);
+            add(v, v / 2, -v / 4);
+        }
+    }
+    return rgb;
+}
+
+/// Of operations that depend on each other.
+int depth_of(const std::array<Expr, 3>& f) {
+    std::map<const ExprNode*, int> depths;
+    int deepest = 0;
+    for (const Expr& e : nodes_of(f)) {
+        int& depth = depths[e.node()];
+        for (int i = 0; i < e.operand_count(); ++i)
+            depth = std::max(depth, depths.at(e.operand(i).node()) + 1);
+        deepest = std::max(deepest, depth);
+    }
+    return deepest;
+}
+
+}  // namespace
+
+Pipeline build_stages(const OperatorRecipe& recipe, const std::vector<StageRecipe>& stages,
+                      const Params& params) {
+    const UniformValues values = values_of(recipe, params);
+    Pipeline pipeline;
+    std::array<std::vector<double>, 3> rgb = sample_colors();
+    bool is_bound = true;
+    int depth = 0;
+    for (const StageRecipe& stage : stages) {
+        if (bind_uniforms(stage.when, values).is_constant(0)) continue;
+        pipeline.push_back(stage_of(stage, values));
+        const std::array<Expr, 3> f =
+            apply_stage(pipeline.back(), {Expr::input(0), Expr::input(1), Expr::input(2)});
+        depth += depth_of(f);
+        if (depth > kDeepestOperator) {
+            throw StageError(stage.at,
+                             "stages up to here have " + std::to_string(depth) +
+                                 " operations that depend on each other; expected at most " +
+                                 std::to_string(kDeepestOperator));
+        }
+        is_bound = is_bound && uniforms_of(f).empty();
+        if (!is_bound) continue;
+        const std::array<std::vector<double>, 3> in = rgb;
+        rgb = values_at(f, in);
+        for (std::size_t i = 0; i < rgb[0].size(); ++i) {
+            for (const std::vector<double>& channel : rgb) {
+                if (std::isfinite(channel[i])) continue;
+                throw StageError(stage.at, std::string("stage gives ") +
+                                               (std::isnan(channel[i]) ? "no number" : "infinity") +
+                                               " for the color " + shortest(in[0][i]) + " " +
+                                               shortest(in[1][i]) + " " + shortest(in[2][i]) +
+                                               "; expected a finite number, as with max(x, 1e-10)");
+            }
+        }
+    }
+    return pipeline;
+}
+
+double number_of(const OperatorRecipe& recipe, const Expr& e, const Params& params) {
+    const Expr value = bind_uniforms(e, values_of(recipe, params));
+    return value.is_constant() ? value.value() : 1;
+}
+
+const char* kept_name(const std::string& name) {
+    static std::mutex mutex;
+    static auto* names = new std::set<std::string>;  // never destroyed: stages may outlive statics
+    const std::lock_guard lock(mutex);
+    return names->insert(name).first->c_str();
+}
+
+TONEWRIGHT_NAMESPACE_END

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "formula/formula.h"
+#include "tonewright/pipeline.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+
+/// A stage of a definition: its formulas have the parameters, choices and the look as uniforms.
+struct StageRecipe {
+    enum class Kind : unsigned char {
+        matrix,          // f: nine entries, row by row
+        curve,           // f: one or three; inverse: none, or as many
+        tone_scale,      // f: one
+        hue_preserving,  // f: one
+        hexcone,         // f: offset, value, chroma
+        cross_talk,      // f: three
+        clamp,           // lo, hi
+    };
+    Kind kind = Kind::matrix;
+    std::vector<Expr> f;
+    std::vector<Expr> inverse;
+    ToneScaleStage::Norm norm = ToneScaleStage::Norm::luminance;
+    Vector3 weights{};
+    double lo = 0;
+    double hi = kInfinity;
+    const char* name = "";
+    /// The stage is there where this is not 0.
+    Expr when = 1;
+    TextPosition at;
+};
+
+/// What a .tone file says beside the data of the Operator.
+struct OperatorRecipe {
+    std::vector<StageRecipe> stages;
+    std::vector<StageRecipe> inverse;
+    std::optional<Expr> peak;
+    Primaries output_primaries{};
+    std::vector<ParameterSpec> parameters;
+    std::vector<std::string> looks;
+};
+
+/// The name of the uniform of an operator's look.
+inline constexpr const char* kLookName = "look";
+
+/// What gives no finite number: the message, and the place of the stage.
+class StageError : public Error {
+  public:
+    StageError(TextPosition where, const std::string& message) : Error(message), at(where) {}
+    TextPosition at;
+};
+
+/// The stages with these parameters; those that are live stay uniforms.
+/// @throws StageError  a stage gives no finite number for a color of the sample set. It is not
+///                     looked for where a parameter is live.
+[[nodiscard]] Pipeline build_stages(const OperatorRecipe& recipe,
+                                    const std::vector<StageRecipe>& stages, const Params& params);
+/// The number, which no live parameter decides.
+[[nodiscard]] double number_of(const OperatorRecipe& recipe, const Expr& e, const Params& params);
+
+/// A name that lives as long as the process, as stages want it.
+[[nodiscard]] const char* kept_name(const std::string& name);
+
+TONEWRIGHT_NAMESPACE_END

@@ -251,7 +251,7 @@ TEST(Definition, MessagesHaveThePlace) {
         {kHead + "[parameter.k]\ndefault = 3\nmin = 0\n" + kStage,
          "3:1: [parameter.k]: key max is missing; expected it"},
         {kHead + "[preset.a]\nset = { kk = 3 }\n" + kStage,
-         "3:9: my: parameter is kk; expected none, it has no parameters"},
+         "3:9: my: parameter is kk; expected none: my has no parameters"},
         {kHead + kHead,
          "3:14: Error while parsing key-value pair: cannot redefine existing integer "
          "'tonewright'"},

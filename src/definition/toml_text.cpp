@@ -2,12 +2,21 @@
 #include "definition/toml_text.h"
 
 #include <algorithm>
+#include <vector>
 
 #include "base/strings.h"
 
 // A definition nests four deep. The library's own limit of 256 would do, but for the tables that it
 // makes of dotted keys, which have no limit: see check_nesting().
 #define TOML_MAX_NESTED_VALUES 16
+// Its assertions are on the file in places (`[ = 1`), and with NDEBUG the compiler may take them
+// for true. Here they are errors of the file.
+#undef NDEBUG
+namespace {
+struct FailedAssertion {};
+[[noreturn]] void fail_toml_assertion() { throw FailedAssertion(); }
+}  // namespace
+#define TOML_ASSERT(condition) ((condition) ? void() : fail_toml_assertion())
 #include <toml++/toml.h>
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -85,6 +94,29 @@ TomlValue value_of(const toml::node& node) {
     return value;
 }
 
+/// The line at which the library's assertion fails: the last one of the shortest text that has it.
+std::size_t failing_line(std::string_view text) {
+    std::size_t passes = 0;  // so many lines
+    std::vector<std::size_t> ends;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (text[i] == '\n') ends.push_back(i + 1);
+    }
+    ends.push_back(text.size());
+    std::size_t fails = ends.size();
+    while (fails - passes > 1) {
+        const std::size_t middle = passes + (fails - passes) / 2;
+        try {
+            (void)toml::parse(text.substr(0, ends[middle - 1]));
+            passes = middle;
+        } catch (const toml::parse_error&) {
+            passes = middle;
+        } catch (const FailedAssertion&) {
+            fails = middle;
+        }
+    }
+    return fails;
+}
+
 }  // namespace
 
 TomlValue parse_toml(std::string_view text) {
@@ -94,6 +126,8 @@ TomlValue parse_toml(std::string_view text) {
         return value_of(toml::parse(text));
     } catch (const toml::parse_error& e) {
         throw TomlError(position_of(e.source()), one_line(e.description(), 300));
+    } catch (const FailedAssertion&) {
+        throw TomlError({failing_line(text), 1}, "line is no TOML; expected a key or a value");
     }
 }
 

@@ -255,6 +255,11 @@ TEST(Definition, MessagesHaveThePlace) {
         {kHead + kHead,
          "3:14: Error while parsing key-value pair: cannot redefine existing integer "
          "'tonewright'"},
+        // An assertion of the library's parser, which Debug and Release builds have the same way.
+        {kHead + "[ = 1\n" + kStage, "3:1: line is no TOML; expected a key or a value"},
+        {kHead + "[parameter.=]\n" + kStage,
+         "3:12: Error while parsing key: expected bare key starting character or string delimiter, "
+         "saw '='"},
         {"\xFF\xFEt\0o\0", "1:1: file is UTF-16; expected UTF-8"},
         {kHead + "title = \"\xC3\x28\"\n", ""},
         {std::string("tonewright = 1\0", 15), "1:15: file has a zero byte; expected text in UTF-8"},

@@ -190,7 +190,7 @@ class Reader {
         const Value* value = table.find(key);
         if (!value) return otherwise;
         const std::string text = Table::text_of(*value, key);
-        const std::string clean(trimmed(one_line(text)));
+        std::string clean(trimmed(one_line(text)));
         if (clean.empty() && !otherwise.empty()) fail(value->at, key + " is empty; expected text");
         return clean;
     }
@@ -513,8 +513,9 @@ class Reader {
             const Value* found = all.find(kinds[i]);
             if (!found) continue;
             if (kind != kinds.size()) {
-                fail(found->at, what + " has " + kinds[kind] + " and " + kinds[i] +
-                                    "; expected one of them, and another " + what);
+                const std::string both = join_choices({kinds[kind], kinds[i]});
+                fail(found->at,
+                     what + " has two kinds; expected " + both + ", and another " + what);
             }
             kind = i;
         }

@@ -55,6 +55,7 @@ Stage matrix_of(const std::vector<Expr>& m, const char* name) {
 Stage stage_of(const StageRecipe& recipe, const UniformValues& values) {
     const auto bound = [&](const std::vector<Expr>& exprs) {
         std::vector<Expr> result;
+        result.reserve(exprs.size());
         for (const Expr& e : exprs)
             result.push_back(bind_uniforms(e, values));
         return result;

@@ -217,7 +217,7 @@ TEST(Definition, MessagesHaveThePlace) {
          "3:1: [[stage]] has no kind; expected matrix, curve, tone_scale, "
          "hue_preserving, hexcone, cross_talk, clamp or lut"},
         {bad_stage + "curve = \"x\"\nclamp = [0, 1]\n",
-         "5:9: [[stage]] has curve and clamp; expected one of them, and another [[stage]]"},
+         "5:9: [[stage]] has two kinds; expected curve or clamp, and another [[stage]]"},
         {bad_stage + "curve = \"x\"\nnorm = \"max\"\n",
          "5:1: [[stage]]: key is norm; expected curve, temporaries, when, name, apply, inverse or "
          "weights"},

@@ -16,7 +16,7 @@ namespace {
 using Kind = StageRecipe::Kind;
 
 /// What follows expressions by recursion has room for many times as many, on every thread's stack.
-constexpr int kDeepestOperator = 2000;
+constexpr std::size_t kDeepestOperator = 2000;
 
 /// Values of all parameters that are not live, of choices and of the look.
 UniformValues values_of(const OperatorRecipe& recipe, const Params& params) {
@@ -55,6 +55,7 @@ Stage matrix_of(const std::vector<Expr>& m, const char* name) {
 Stage stage_of(const StageRecipe& recipe, const UniformValues& values) {
     const auto bound = [&](const std::vector<Expr>& exprs) {
         std::vector<Expr> result;
+        result.reserve(exprs.size());
         for (const Expr& e : exprs)
             result.push_back(bind_uniforms(e, values));
         return result;
@@ -130,17 +131,22 @@ std::array<std::vector<double>, 3> sample_colors() {
     return rgb;
 }
 
-/// Of operations that depend on each other.
-int depth_of(const std::array<Expr, 3>& f) {
+struct Size {
+    std::size_t operations = 0;
+    int depth = 0;  // operations that depend on each other
+};
+
+Size size_of(const std::array<Expr, 3>& f) {
     std::map<const ExprNode*, int> depths;
-    int deepest = 0;
+    Size size;
     for (const Expr& e : nodes_of(f)) {
         int& depth = depths[e.node()];
         for (int i = 0; i < e.operand_count(); ++i)
             depth = std::max(depth, depths.at(e.operand(i).node()) + 1);
-        deepest = std::max(deepest, depth);
+        size.depth = std::max(size.depth, depth);
     }
-    return deepest;
+    size.operations = depths.size();
+    return size;
 }
 
 }  // namespace
@@ -151,19 +157,22 @@ Pipeline build_stages(const OperatorRecipe& recipe, const std::vector<StageRecip
     Pipeline pipeline;
     std::array<std::vector<double>, 3> rgb = sample_colors();
     bool is_bound = true;
-    int depth = 0;
+    Size size;
     for (const StageRecipe& stage : stages) {
         if (bind_uniforms(stage.when, values).is_constant(0)) continue;
         pipeline.push_back(stage_of(stage, values));
         const std::array<Expr, 3> f =
             apply_stage(pipeline.back(), {Expr::input(0), Expr::input(1), Expr::input(2)});
-        depth += depth_of(f);
-        if (depth > kDeepestOperator) {
-            throw StageError(stage.at,
-                             "stages up to here have " + std::to_string(depth) +
-                                 " operations that depend on each other; expected at most " +
-                                 std::to_string(kDeepestOperator));
-        }
+        const Size own = size_of(f);
+        size = {size.operations + own.operations, size.depth + own.depth};
+        const auto limit = [&](std::size_t count, std::size_t most, const char* what) {
+            if (count <= most) return;
+            throw StageError(stage.at, "stages up to here have " + std::to_string(count) + " " +
+                                           what + "; expected at most " + std::to_string(most));
+        };
+        limit(size.operations, kMostOperations, "operations");
+        limit(static_cast<std::size_t>(size.depth), kDeepestOperator,
+              "operations that depend on each other");
         is_bound = is_bound && uniforms_of(f).empty();
         if (!is_bound) continue;
         const std::array<std::vector<double>, 3> in = rgb;

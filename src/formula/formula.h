@@ -46,10 +46,9 @@ struct FormulaScope {
     std::map<std::string, FormulaValue, std::less<>> names;
 };
 
-/// Limits of a formula. The largest formula of the built-in operators, the hue-dependent part of
-/// ACES 2.0, needs about a fifth of each.
+/// Limits of a formula. The largest one of the built-in operators has a few hundred operations.
 inline constexpr std::size_t kLongestFormula = std::size_t{1} << 18U;  // bytes
-inline constexpr int kMostOperations = 20000;
+inline constexpr int kMostOperations = 10000;
 inline constexpr int kDeepestFormula = 1000;  // operations that depend on each other
 inline constexpr int kDeepestBrackets = 200;  // brackets, signs and `?:` inside each other
 

@@ -143,7 +143,7 @@ class Parser {
                 continue;
             }
             const std::size_t begin = token_.begin;
-            const FormulaValue value = expression(kChoice);
+            FormulaValue value = expression(kChoice);
             end_line();
             while (token_.kind == Kind::line_end)
                 next();
@@ -395,8 +395,7 @@ class Parser {
         next();
         const FormulaValue b = expression(static_cast<Precedence>(strength + 1));
         const int operations = strength <= kAnd ? 3 : at.text == "!=" ? 2 : 1;
-        const FormulaValue result =
-            made(at, std::max(a.depth, b.depth), joined(at, a, b), operations);
+        FormulaValue result = made(at, std::max(a.depth, b.depth), joined(at, a, b), operations);
         const Precedence after = precedence_of(token_);
         if (after == strength && (strength == kOrder || strength == kEquality)) {
             fail(token_.begin, "comparisons follow each other; write a < b && b < c, or brackets");
@@ -459,13 +458,13 @@ class Parser {
         }
         if (is_sign("(")) {
             open();
-            const FormulaValue inner = expression(kChoice);
+            FormulaValue inner = expression(kChoice);
             close();
             return inner;
         }
         if (is_sign("-") || is_sign("+") || is_sign("!")) {
             next();
-            const FormulaValue a = expression(kSign);
+            FormulaValue a = expression(kSign);
             if (at.text == "+") return a;
             return made(at, a.depth, at.text == "-" ? -a.value : select(a.value, 0, 1));
         }

@@ -612,14 +612,9 @@ std::vector<ConfigModel::View> choose_views(const ConfigOptions& options) {
                 add(view);
             continue;
         }
+        ResolvedOperator op{};
         try {
-            const ResolvedOperator op = resolve_operator(wanted);
-            ConfigModel::View view = view_of(*op.op, op.params.look());
-            for (const Preset& preset : op.op->presets) {
-                if (&preset == op.preset) view.name += " " + preset.title;
-            }
-            view.op = op;
-            add(view);
+            op = resolve_operator(wanted);
         } catch (const FileError&) {
             throw;
         } catch (const Error& e) {
@@ -628,6 +623,12 @@ std::vector<ConfigModel::View> choose_views(const ConfigOptions& options) {
                             "view or an operator ({})",
                             wanted, e.what()));
         }
+        ConfigModel::View view = view_of(*op.op, op.params.look());
+        for (const Preset& preset : op.op->presets) {
+            if (&preset == op.preset) view.name += " " + preset.title;
+        }
+        view.op = op;
+        add(view);
     }
     for (const auto& custom : options.custom) {
         const ResolvedOperator op = resolve_operator(custom.op);

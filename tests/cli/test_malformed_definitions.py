@@ -44,7 +44,12 @@ def malformed():
     add("dots after a first =", HEAD + "a = {b" + ".b" * 300_000 + " = 1}\n")
     add("deep arrays", HEAD + "a = " + "[" * 500_000)
     add("deep tables", HEAD + "a = " + "{a = " * 100_000)
-    add("100,000 stages", HEAD + STAGE * 80_000)
+    add("10,000 presets", HEAD + "".join(f"[preset.a{i}]\nset = {{}}\n" for i in range(10_000)) + STAGE + 'curve = "x"\n')
+    add("10,000 choices", HEAD + '[parameter.m]\ndefault = "a0"\nchoices = [' +
+        ", ".join(f'"a{i}"' for i in range(10_000)) + "]\n" + STAGE + 'curve = "x"\n')
+    sums = "max(x, 0)" + "".join(f" + max(x, {i})*0.001" for i in range(300))
+    add("many operations in all", HEAD + (STAGE + f'curve = "{sums}"\n') * 60)
+    add("80,000 stages", HEAD + STAGE * 80_000)
     add("no newline in a string", HEAD + 'title = "a\nb"\n')
     add("a BOM in the middle", good[:15] + b"\xEF\xBB\xBF@" + good[15:])
     add("CR alone", good.replace(b"\n", b"\r"))

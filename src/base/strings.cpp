@@ -214,9 +214,7 @@ std::string_view trimmed(std::string_view text) {
 namespace {
 
 /// Libraries that run out of memory name the exception or the function that failed.
-bool is_about_memory(std::string_view message) {
-    return message.find("bad_alloc") != message.npos;
-}
+bool is_about_memory(std::string_view message) { return message.find("bad_alloc") != message.npos; }
 constexpr const char* kNotEnoughMemory = "not enough memory";
 
 }  // namespace

@@ -19,7 +19,8 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// The first line of a library's message; "unknown error" for an empty one. A message about
 /// memory becomes "not enough memory".
 [[nodiscard]] TONEWRIGHT_API std::string first_line(std::string_view text);
-/// A library's message as one line, "not enough memory" as first_line() has it. Runs of blanks and line ends become one space, other control characters
+/// A library's message as one line, "not enough memory" as first_line() has it. Runs of blanks and
+/// line ends become one space, other control characters
 /// `?`, bytes of no UTF-8 `?`; what is beyond `longest` bytes becomes `...`.
 [[nodiscard]] TONEWRIGHT_API std::string one_line(std::string_view text,
                                                   std::size_t longest = 2000);

@@ -173,7 +173,8 @@ ImageBuf PictureReader::read_all() {
     // Cleared: some readers deliver less than they say.
     ImageBuf image(spec_, OIIO::InitializePixels::Yes);
     if (!image.localpixels()) {
-        cannot_read(path_, fmt::format("not enough memory for {} x {} pixels", spec_.width, spec_.height));
+        cannot_read(path_,
+                    fmt::format("not enough memory for {} x {} pixels", spec_.width, spec_.height));
     }
     forget_errors(*in_);
     check(in_->read_image(subimage_, 0, 0, spec_.nchannels, image.spec().format,

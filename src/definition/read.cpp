@@ -513,9 +513,8 @@ class Reader {
             const Value* found = all.find(kinds[i]);
             if (!found) continue;
             if (kind != kinds.size()) {
-                const std::string both = join_choices({kinds[kind], kinds[i]});
-                fail(found->at,
-                     what + " has two kinds; expected " + both + ", and another " + what);
+                fail(found->at, fmt::format("{0} has two kinds; expected {1}, and another {0}",
+                                            what, join_choices({kinds[kind], kinds[i]})));
             }
             kind = i;
         }

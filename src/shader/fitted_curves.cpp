@@ -62,6 +62,7 @@ Expr fitted(const Expr& f) {
     std::vector<Expr> values;
     for (const TapeInstruction& step : code) {
         std::vector<Expr> operands;
+        operands.reserve(static_cast<std::size_t>(operand_count(step.op)));
         for (int i = 0; i < operand_count(step.op); ++i)
             operands.push_back(values[i == 0 ? step.a : i == 1 ? step.b : step.c]);
         if (step.curve) {

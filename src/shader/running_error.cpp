@@ -25,7 +25,7 @@ TableReading read(const Table& table, const Interval& a, const TableReading& who
     const bool is_step = table.interpolation == Table::Interpolation::step;
     TableReading reading;
     std::size_t begin = 0;
-    std::size_t end = n - 1;
+    std::size_t end;
     // One sample more on both sides: a place that is rounded may lie beyond it.
     if (table.positions.empty()) {
         const auto place = [&](double x) {
@@ -159,7 +159,8 @@ double propagated(const Expr& e, const Bounded& a, const Bounded& b, const Bound
         }
         case ExprOp::sine:
         case ExprOp::cosine:  // Vulkan says nothing beyond
-            return magnitude(a.computed) <= std::numbers::pi ? a.error : kInfinity;
+            if (!(magnitude(a.computed) <= std::numbers::pi)) return kInfinity;
+            return a.error;
         case ExprOp::negate:
         case ExprOp::absolute:
             return a.error;

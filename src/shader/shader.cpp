@@ -227,7 +227,8 @@ double measure_in_float(const ShaderRequest& request, const ShaderProgram& progr
             const double right = code(truth[c]);
             const double error = std::fabs(code(static_cast<double>(got[c])) - right) /
                                  std::max(1.0, std::fabs(right));
-            worst = std::isnan(error) ? kInfinity : std::max(worst, error);
+            if (std::isnan(error)) return kInfinity;
+            worst = std::max(worst, error);
         }
     }
     return worst;

@@ -148,6 +148,7 @@ class Sharer {
         const Expr& e = nodes_[i];
         if (e.operand_count() == 0) return e;
         std::vector<Expr> operands;
+        operands.reserve(static_cast<std::size_t>(e.operand_count()));
         for (int k = 0; k < e.operand_count(); ++k)
             operands.push_back(rebuilt(number_.at(e.operand(k).node()), known));
         Expr result =

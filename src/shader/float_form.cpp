@@ -10,7 +10,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 /// The smallest float that no processor takes for 0.
-constexpr double kSmallest = std::numeric_limits<float>::min();
+constexpr double kSmallest = static_cast<double>(std::numeric_limits<float>::min());
 /// What a denominator is at least: what is divided by it stays finite, up to 65504 and far beyond.
 constexpr double kSmallestDivisor = 1e-30;
 /// Beyond it a power is limited, so that what is multiplied with it stays finite.

@@ -82,7 +82,9 @@ float operation(const TapeInstruction& step, float a, float b, float c) {
         case ExprOp::lookup:
             return look_up(*step.table, a);
         case ExprOp::lattice:
-            return static_cast<float>((*step.lattice)(step.input, a, b, c));
+            return static_cast<float>((*step.lattice)(step.input, static_cast<double>(a),
+                                                      static_cast<double>(b),
+                                                      static_cast<double>(c)));
         case ExprOp::input:
         case ExprOp::uniform:
             break;

@@ -184,7 +184,8 @@ double measure_inverse(const ShaderRequest& request, const ShaderProgram& progra
     for (int i = 0; i < kEdge * kEdge * kEdge; ++i) {
         const auto at = [&](int k) { return static_cast<float>(k % kEdge) / (kEdge - 1); };
         const std::array<float, 3> color = {at(i / kEdge / kEdge), at(i / kEdge), at(i)};
-        const Vector3 exact = {double{color[0]}, double{color[1]}, double{color[2]}};
+        const Vector3 exact = {static_cast<double>(color[0]), static_cast<double>(color[1]),
+                               static_cast<double>(color[2])};
         const auto distance = [&](const Vector3& scene) {
             const Vector3 shown = view(scene);
             double largest = 0;
@@ -195,7 +196,9 @@ double measure_inverse(const ShaderRequest& request, const ShaderProgram& progra
         if (!(distance(inverse(exact)) <= kShown)) continue;
         std::array<float, 3> scene{};
         in_float.run_rgb(color.data(), scene.data(), 1);
-        worst = std::max(worst, distance({double{scene[0]}, double{scene[1]}, double{scene[2]}}));
+        worst =
+            std::max(worst, distance({static_cast<double>(scene[0]), static_cast<double>(scene[1]),
+                                      static_cast<double>(scene[2])}));
     }
     return worst;
 }

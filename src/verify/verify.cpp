@@ -423,8 +423,10 @@ constexpr double kGpuRounding = 0x1p-21;
 
 double shader_bound(const Shader& shader, bool is_hdr) {
     // An estimate over probe colors; between them derivatives may be larger, and twice is what that
-    // is taken to be.
-    if (std::isfinite(shader.errors.vulkan_estimate)) return 2 * shader.errors.vulkan_estimate;
+    // is taken to be. Where float is not enough, errors are so large that terms of second order
+    // count as much: twice that.
+    const double beyond = shader.errors.in_float > kTenBits ? 4 : 2;
+    if (std::isfinite(shader.errors.vulkan_estimate)) return beyond * shader.errors.vulkan_estimate;
     // Bounded by nothing but the display: a cancelled channel below PQ's steepest part.
     if (shader.errors.in_float > kTenBits) return 1;
     // Where first order has a pole: a logarithm near 1 may be 2^-21 off, which the exponent 78.84

@@ -322,11 +322,12 @@ def check_limits(report, command, scratch, picture):
         # From some 60 MB to where pictures can be read. In between, libraries that get no memory or thread while they are
         # loaded abort, crash or wait forever; where that is depends on the libraries.
         call(command, ["bake", "agx_sobotka", "--3d", "--size", "17", "-o", "small.cube", "-q"], folder=scratch)
+        # How many threads fit into what is left depends on when each one starts: 130 MB do, or do not.
         for limit in (50000, 90000, 130000):
             code, _, err = call(command, ["verify", "--lut", "small.cube"], folder=scratch,
                                 prefix=["sh", "-c", f'ulimit -v {limit}; exec "$0" "$@"'])
-            report.check(f"verify --lut: addresses limited to {limit} kB", code == FILE and err.count("\n") == 1
-                         and "not enough memory" in err, f"exit {code}: {err}")
+            report.check(f"verify --lut: addresses limited to {limit} kB", (limit > 90000 and code == OK) or (
+                code == FILE and err.count("\n") == 1 and "not enough memory" in err), f"exit {code}: {err}")
         (scratch / "small.cube").unlink()
         for limit in (60000, *range(395000, 500000, 15000)):
             code, out, err = call(command, ["apply", picture, "x.png", "--operator", "hable"], folder=scratch,

@@ -6,6 +6,7 @@
 
 #include "base/atomic_file.h"
 #include "base/input_file.h"
+#include "base/strings.h"
 #include "cli/messages.h"
 #include "cli/npm_package.h"
 #include "cli/shared_options.h"
@@ -64,20 +65,56 @@ ShaderTables tables_of(const Options& options) {
                                        : ShaderTables::by_size;
 }
 
+/// The languages whose files have this extension.
+std::vector<std::string> languages_of(const std::string& extension) {
+    std::vector<std::string> ids;
+    for (const ShaderLanguageInfo& language : shader_languages()) {
+        // `.glsl` is first of all GLSL, and GLSL ES where one asks for it.
+        if ("." + language.id == extension) return {language.id};
+        if (language.extension == extension) ids.push_back(language.id);
+    }
+    return ids;
+}
+
+/// What --language says, else the extension of the file.
+const ShaderLanguageInfo& language_of(const Options& options) {
+    const std::string extension = extension_of(options.file);
+    const std::vector<std::string> ids = languages_of(extension);
+    if (options.language.empty()) {
+        if (ids.size() == 1) return find_shader_language(ids.front());
+        throw Error(fmt::format(
+            "shader: --language and --for are missing; expected {} (`tonewright shader --list`)",
+            ids.empty() ? "one of them" : "--language " + join_choices(ids)));
+    }
+    const ShaderLanguageInfo& language = find_shader_language(options.language);
+    const bool is_own = extension == language.extension || extension == "." + language.id;
+    if (!ids.empty() && !is_own) {
+        throw Error(fmt::format("shader: file is {}; expected {}: the language is {}",
+                                printable(options.file), language.extension, language.id));
+    }
+    return language;
+}
+
 void write_one(Options& options) {
     if (options.op.empty())
         throw Error("shader: OPERATOR is missing; expected an id from `tonewright list`");
-    if (options.language.empty() == options.application.empty()) {
-        throw Error(fmt::format("shader: {}; expected one of them (`tonewright shader --list`)",
-                                options.language.empty() ? "--language and --for are missing"
-                                                         : "--language and --for are given"));
-    }
+    if (!options.language.empty() && !options.application.empty())
+        throw Error(
+            "shader: --language and --for are given; expected one of them (`tonewright shader "
+            "--list`)");
     ShaderRequest request;
     if (options.application.empty()) {
-        request.language = find_shader_language(options.language).language;
+        request.language = language_of(options).language;
     } else {
-        request.application = &find_shader_application(options.application);
-        if (!options.given.contains("--display")) options.display = request.application->display;
+        const ShaderApplication& application = find_shader_application(options.application);
+        const std::string extension = extension_of(options.file);
+        if (extension != application.extension && !languages_of(extension).empty()) {
+            throw Error(fmt::format("shader: file is {}; expected {}: {} reads it",
+                                    printable(options.file), application.extension,
+                                    application.title));
+        }
+        request.application = &application;
+        if (!options.given.contains("--display")) options.display = application.display;
     }
     request.view = options.view();
     request.uniforms = options.uniforms;
@@ -238,7 +275,9 @@ void add_shader(CommandLine& program) {
     command.group("LUTs, shaders and configs");
     const char* const output = "Output";
     command.add("operator", options->op, "operator, operator:preset or .tone file");
-    command.add("--language", options->language, "language of the text; see --list")
+    command
+        .add("--language", options->language,
+             "language of the text; see --list (default: by the extension)")
         .value("NAME")
         .group(output);
     command

@@ -29,6 +29,10 @@ def call(command, *arguments):
 def check_refusals(report, command, scratch):
     for arguments, code, words in [
         (["hable"], USAGE, "shader: --language and --for are missing; expected one of them"),
+        (["hable", "-o", "x.h"], USAGE, "missing; expected --language dctl, blinkscript or c"),
+        (["hable", "-o", "x.txt"], USAGE, "missing; expected one of them"),
+        (["hable", "--language", "hlsl", "-o", "x.glsl"], USAGE, "file is x.glsl; expected .hlsl: the language is hlsl"),
+        (["hable", "--for", "threejs", "-o", "x.glsl"], USAGE, "file is x.glsl; expected .js: three.js (WebGL) reads it"),
         (["hable", "--language", "c", "--for", "mpv"], USAGE, "shader: --language and --for are given"),
         (["--language", "c"], USAGE, "shader: OPERATOR is missing"),
         (["hable", "--language", "glls"], USAGE, "did you mean glsl?"),
@@ -66,6 +70,12 @@ def check_files(report, command, scratch):
     report.check("-o says what it wrote", (code, out) == (OK, "") and "tw_hable(), in float within" in err, err)
     code, text, err = call(command, "hable", "--language", "c")
     report.check("without -o: standard output", (code, text, err) == (OK, path.read_text(), ""), err)
+    # The extension decides, and contradicts nothing.
+    for name, language, begin in [("a.glsl", "", "vec3 tw_"), ("a.wgsl", "", "fn tw_"), ("a.metal", "", "inline float3 tw_"),
+                                  ("b.glsl", "glsl-es", "vec3 tw_"), ("a.dctl", "dctl", "__DEVICE__"), ("a.c", "c", "static"),
+                                  ("a.txt", "hlsl", "float3 tw_")]:
+        code, _, err = call(command, "hable", "-o", scratch / name, *(["--language", language] if language else []))
+        report.check(f"-o {name} {language}", code == OK and f"\n{begin}" in (scratch / name).read_text(), err)
     # Blender's AgX: 57^3 nodes, the last of them the whitest.
     code, _, err = call(command, "agx_blender", "--language", "glsl", "-o", scratch / "agx.glsl")
     textures = sorted(scratch.glob("*.rgba32f"))

@@ -80,9 +80,8 @@ int run_check(const Options& options) {
 
 void add_check(CommandLine& program) {
     auto options = std::make_shared<Options>();
-    const Command command = program.add(
-        "check",
-        "Check what every tone curve should do, and say where an operator departs from it.");
+    const Command command =
+        program.add("check", "Check an operator against the laws of tone curves.");
     command.group("Checks");
     command.add("operator", options->op, "operator, operator:preset or .tone file").required();
     add_operator_options(command, *options);

@@ -14,7 +14,7 @@ enum class TerminalText : unsigned char { ascii, utf8 };
 /// Whether the locale of the environment has UTF-8.
 [[nodiscard]] TerminalText terminal_text();
 
-/// A tone curve in text, at most 79 columns and 19 lines, each with its end.
+/// A tone curve in text, at most 80 columns and 20 lines, each with its end.
 /// @param curve   scene-linear grays -> display code values in [0, 1]
 /// @param places  scene-linear values that are marked below the curve
 [[nodiscard]] std::string terminal_plot(

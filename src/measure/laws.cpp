@@ -65,7 +65,8 @@ std::vector<Sweep> hue_sweeps() {
     std::vector<Sweep> sweeps;
     for (std::size_t i = 0; i < kCorners; ++i) {
         const Sweep& next = colors[(i + 1) % kCorners];
-        sweeps.push_back(between(colors[i].name + " and " + next.name, colors[i].color, next.color));
+        sweeps.push_back(
+            between(colors[i].name + " and " + next.name, colors[i].color, next.color));
         sweeps.push_back(between("gray and " + colors[i].name, {1, 1, 1}, colors[i].color));
     }
     return sweeps;
@@ -354,25 +355,27 @@ class Checker {
     }
 
     static std::string falls(const std::string& what, const Fall& fall) {
-        return what + (what == "grays" ? " fall " : " falls ") + to_string(fall) +
-               fmt::format(" ({:+.3g} to {:+.3g} stops from mid gray)",
-                           std::log2(fall.x_from / kMidGray), std::log2(fall.x_to / kMidGray));
+        const auto stops = [](double x) { return fmt::format("{:+.3g}", std::log2(x / kMidGray)); };
+        const std::string from = stops(fall.x_from);
+        const std::string to = stops(fall.x_to);
+        return what + (what == "grays" ? " fall " : " falls ") + to_string(fall) + " (" + from +
+               (from == to ? "" : " to " + to) + " stops from mid gray)";
     }
 
-    /// Between -6 and +3 stops every operator has to rise, from where it says that its black ends.
+    /// Between -6 and +3 stops every operator has to rise, from where its black ends.
     std::optional<std::pair<double, double>> flat_part() const {
-        const auto crushed = declared_.find(Kind::crushes_black);
+        const auto crushed = measured_.find(Kind::crushes_black);
         std::vector<double> x;
         for (int stops = -6; stops <= 3; ++stops) {
             const double gray = kMidGray * std::exp2(stops);
-            if (crushed == declared_.end() || gray > 1.05 * crushed->second) x.push_back(gray);
+            if (crushed == measured_.end() || gray > 1.05 * crushed->second) x.push_back(gray);
         }
         const Planes out = run(subject_.srgb(), kGray, x);
         for (std::size_t i = 0; i + 1 < x.size(); ++i) {
             // A look may take one channel of a gray down while the gray as a whole gets brighter.
             const auto code = [&](std::size_t k) { return out[0][k] + out[1][k] + out[2][k]; };
             // A clamped operator has arrived at white.
-            if (code(i) != 3 && code(i) >= code(i + 1)) return std::pair{x[i], x[i + 1]};
+            if (code(i) < 3 - kNoise && code(i) >= code(i + 1)) return std::pair{x[i], x[i + 1]};
         }
         return std::nullopt;
     }
@@ -491,7 +494,11 @@ class Checker {
         try {
             back.emplace(build_inverse_view(subject_.view(kNativeOutput)));
         } catch (const Error& e) {
-            return {name, Verdict::does_not_apply, e.what(), {}};
+            const std::string message = e.what();
+            const std::string before = subject_.op().op->name() + " has no inverse: ";
+            const bool has_name = message.compare(0, before.size(), before) == 0;
+            return {
+                name, Verdict::does_not_apply, message.substr(has_name ? before.size() : 0), {}};
         }
         std::vector<Sweep> sweeps = color_sweeps(ramp_to_brightest());
         sweeps.insert(sweeps.begin(), {"grays", kGray, ramp_to_brightest()});

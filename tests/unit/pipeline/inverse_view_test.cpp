@@ -108,7 +108,9 @@ TEST(InverseView, OfAnOperatorWithoutOneIsAnErrorThatNamesTheStage) {
         (void)build_inverse_view(view);
         FAIL() << "no error";
     } catch (const Error& e) {
-        EXPECT_STREQ(e.what(), "reinhard_jodie has no inverse: stage 2 is a cross-talk, which mixes channels");
+        EXPECT_STREQ(
+            e.what(),
+            "reinhard_jodie has no inverse: stage 2 is a cross-talk, which mixes channels");
     }
 }
 

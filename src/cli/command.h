@@ -41,6 +41,7 @@ void add_bake(CommandLine& program);
 void add_shader(CommandLine& program);
 void add_config(CommandLine& program);
 void add_verify(CommandLine& program);
+void add_check(CommandLine& program);
 void add_chart(CommandLine& program);
 void add_sheet(CommandLine& program);
 void add_compare(CommandLine& program);

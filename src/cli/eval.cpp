@@ -195,10 +195,6 @@ ColorMap map_of_operator(const Options& options) {
     const std::size_t kind =
         find_choice("eval: engine", options.engine, {"reference", "simd", "ocio", "ocio-gpu"});
     const View view = options.view();
-    if (options.inverse && !view.op.op->build_inverse) {
-        throw Error("eval: " + view.op.op->id + " has no inverse; expected " +
-                    join_choices(invertible_operators()));
-    }
     const Pipeline pipeline = options.inverse ? build_inverse_view(view) : build_view(view);
     if (kind == kReference) {
         const auto engine = std::make_shared<const ReferenceEngine>(pipeline);
@@ -254,7 +250,7 @@ void add_eval(CommandLine& program) {
         .group("Computation");
     command
         .add_flag("--inverse", options->inverse,
-                  "map display colors to scene-linear; for operators that have an inverse")
+                  "map display colors to scene-linear, where the operator can be inverted")
         .group("Computation");
     add_lut_options(command, options->lut, op,
                     {"--set", "--look", "--display", "--reference-white", "--engine", "--inverse"});

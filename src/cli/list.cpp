@@ -39,22 +39,6 @@ std::string_view kind_name(Kind kind) {
     return "text";
 }
 
-std::string_view kind_name(DocumentedDifference::Kind kind) {
-    switch (kind) {
-        case DocumentedDifference::Kind::black:
-            return "black";
-        case DocumentedDifference::Kind::crushes_black:
-            return "crushes_black";
-        case DocumentedDifference::Kind::never_reaches_white:
-            return "never_reaches_white";
-        case DocumentedDifference::Kind::exceeds_white:
-            return "exceeds_white";
-        case DocumentedDifference::Kind::not_monotone:
-            break;
-    }
-    return "not_monotone";
-}
-
 /// The operator's own warnings and what follows from its deviations.
 std::vector<std::string> all_warnings(const Operator& op) {
     std::vector<std::string> all = op.warnings;
@@ -90,7 +74,7 @@ Json to_json(const Operator& op) {
         parameters.push_back(to_json(p, std::find(live.begin(), live.end(), p.name) != live.end()));
     Json deviations = Json::array();
     for (const DocumentedDifference& d : op.deviations) {
-        deviations.push_back({{"kind", kind_name(d.kind)},
+        deviations.push_back({{"kind", difference_names().at(static_cast<std::size_t>(d.kind))},
                               {"value", number_or_null(d.value)},
                               {"when", d.when},
                               {"text", to_string(d)}});

@@ -3,18 +3,22 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-void add_view_options(const Command& command, ViewOptions& options) {
+void add_operator_options(const Command& command, ViewOptions& options) {
     const char* const op = "Operator";
-    const char* const color = "Color";
     command.add("--set", options.set, "operator parameter; repeat for more")
         .value("NAME=VALUE")
         .one_value_each()
         .group(op);
     command.add("--look", options.look, "look of the operator").value("NAME").group(op);
+}
+
+void add_view_options(const Command& command, ViewOptions& options) {
+    const char* const color = "Color";
+    add_operator_options(command, options);
     command.add("--exposure", options.exposure, "exposure before the operator, in stops")
         .value("STOPS")
         .show_default()
-        .group(op);
+        .group("Operator");
     command.add("--input", options.input, "scene-linear color space of the input")
         .value("SPACE")
         .show_default()

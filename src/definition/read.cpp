@@ -652,8 +652,7 @@ class Reader {
                 (void)table.require("kind");
                 DocumentedDifference d{};
                 d.kind = static_cast<DocumentedDifference::Kind>(
-                    table.choice("kind", {"black", "crushes_black", "never_reaches_white",
-                                          "exceeds_white", "not_monotone"}));
+                    table.choice("kind", difference_names()));
                 d.value = Table::number_of(table.require("value"), "value", true);
                 d.when = table.text("when");
                 op_.deviations.push_back(d);

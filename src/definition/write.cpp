@@ -164,10 +164,8 @@ class Writer {
             const bool is_meant = d.when.empty() || d.when == look ||
                                   (resolved_.preset && resolved_.preset->id == d.when);
             if (!is_meant) continue;
-            constexpr std::array kKinds = {"black", "crushes_black", "never_reaches_white",
-                                           "exceeds_white", "not_monotone"};
             text_ += "\n[[deviation]]\n";
-            line("kind", quoted(kKinds.at(static_cast<std::size_t>(d.kind))));
+            line("kind", quoted(difference_names().at(static_cast<std::size_t>(d.kind))));
             line("value", number(d.value));
         }
         const DeclaredBounds& b = op_.bounds;

@@ -2,6 +2,7 @@
 #include "tonewright/view.h"
 #include "base/format_number.h"
 #include "base/strings.h"
+#include "pipeline/invert.h"
 
 #include <algorithm>
 #include <cmath>
@@ -121,7 +122,14 @@ Pipeline build_live_view(const View& view, const std::vector<std::string>& unifo
 
 Pipeline build_inverse_view(const View& view) {
     const Operator& op = *view.op.op;
-    if (!op.build_inverse) throw Error(op.id + " has no inverse");
+    const auto inverse = [&] {
+        try {
+            return op.build_inverse ? op.build_inverse(view.op.params)
+                                    : invert_stages(view.op.build());
+        } catch (const Error& e) {
+            throw Error(op.name() + " has no inverse: " + e.what());
+        }
+    };
     Pipeline stages;
     const Primaries own = view.op.output_primaries();
     if (view.display == kLinearOutput) {
@@ -134,7 +142,7 @@ Pipeline build_inverse_view(const View& view) {
     }
     if (view.display != kNativeOutput && op.output == OutputKind::code_value)
         stages.push_back(curve_stage(power_encode(Expr::input(), op.code_power)));
-    append(stages, op.build_inverse(view.op.params));
+    append(stages, inverse());
     const Matrix3 to_input = rgb_to_rgb(op.working, view.input_primaries);
     stages.push_back(MatrixStage{scale(to_input, std::exp2(-view.exposure_stops))});
     return stages;

@@ -281,14 +281,6 @@ std::string operator_text(const ResolvedOperator& op) {
     return look.empty() ? text : text + ":look=" + look;
 }
 
-std::vector<std::string> invertible_operators() {
-    std::vector<std::string> ids;
-    for (const Operator& op : all_operators()) {
-        if (op.build_inverse) ids.push_back(op.id);
-    }
-    return ids;
-}
-
 std::vector<OperatorVariant> all_variants() {
     std::vector<OperatorVariant> all;
     for (const Operator& op : all_operators()) {

@@ -33,7 +33,7 @@ try:
 except ImportError:
     ocio = None
 
-SUBCOMMANDS = ["list", "eval", "apply", "meter", "bake", "shader", "config", "verify", "chart", "sheet", "compare", "plot"]
+SUBCOMMANDS = ["list", "eval", "apply", "meter", "bake", "shader", "config", "verify", "chart", "sheet", "compare", "plot", "check"]
 OK, CHECK_FAILED, USAGE, FILE = 0, 1, 2, 3  # exit codes
 
 # Half of what OpenColorIO's chain for a tone scale may differ on the CPU; on the GPU it may differ by 5e-5.
@@ -821,7 +821,7 @@ def usage_errors(bad, picture):
         (["eval", "hable", "--reference-white", "20"], "reference white is 20; [50, 1000]"),
         (["eval", "hable", "--reference-white", "203"], "reference white is 203; srgb, which is not an HDR display"),
         (["eval", "hable", "--reference-white", "203", "--display", "native"], "is 203; native, which"),
-        (["eval", "hable", "--inverse"], "hable has no inverse; aces_20"),
+        (["eval", "agx_blender", "--inverse"], "agx_blender has no inverse; stage"),
         (["apply", picture, "out.png", "--operator", "hable", "--reference-white", "1001"], "is 1001; [50, 1000]"),
         (["bake", "hable", "-o", "out.cube", "--reference-white", "big"], "--reference-white; big"),
         (["eval", "hable", "--display", "rec2100"], "display is rec2100; did you mean rec2100_pq or rec2100_hlg?"),

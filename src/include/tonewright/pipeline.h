@@ -262,6 +262,8 @@ struct DocumentedDifference {
         never_reaches_white,  // the largest grey is shown at value < 1, display-linear
         exceeds_white,        // native light goes up to value > 1 (kInfinity: without end)
         not_monotone,         // brighter greys may be shown darker, up to scene-linear value
+        tints_gray,           // the sRGB code values of a gray differ by up to value
+        jumps,                // neighboring grays differ by up to value, native
     };
     Kind kind;
     double value;
@@ -269,6 +271,8 @@ struct DocumentedDifference {
     std::string when;
 };
 
+/// What the kinds are called in .tone files and JSON, in their order: "black", ...
+[[nodiscard]] TONEWRIGHT_API const std::vector<std::string>& difference_names();
 /// "lifts black to 0.0029".
 [[nodiscard]] TONEWRIGHT_API std::string to_string(const DocumentedDifference& deviation);
 
@@ -327,7 +331,8 @@ struct Operator {
     std::string meant;
     /// Working-space scene-linear, finite -> the operator's own output.
     std::function<Pipeline(const Params& params)> build = {};
-    /// Back: the operator's own output -> working-space scene-linear. Null: it has no inverse.
+    /// The inverse where the source has one: the operator's own output -> working-space scene-linear.
+    /// Null: build_inverse_view() inverts the stages.
     std::function<Pipeline(const Params& params)> build_inverse = {};
     /// Of the output. Null: `working`.
     std::function<Primaries(const Params& params)> output_primaries = {};

@@ -72,9 +72,6 @@ resolve_picture_operator(std::string_view text, const Settings& settings = {},
 /// the settings that make a difference.
 [[nodiscard]] TONEWRIGHT_API std::string operator_text(const ResolvedOperator& op);
 
-/// Ids of the operators that have an inverse.
-[[nodiscard]] TONEWRIGHT_API std::vector<std::string> invertible_operators();
-
 /// An operator, `operator:preset`, or an operator with a look.
 struct OperatorVariant {
     std::string name;

@@ -838,6 +838,8 @@ TEST(DocumentedDifferences, SayWhatTheUserSees) {
               "exceeds white without end: SDR displays clip it");
     EXPECT_EQ(text(Kind::not_monotone, 0.0044), "non-monotone below 0.0044");
     EXPECT_EQ(text(Kind::not_monotone, kInfinity), "non-monotone");
+    EXPECT_EQ(text(Kind::tints_gray, 0.0574), "tints gray: its channels differ by up to 0.057");
+    EXPECT_EQ(text(Kind::jumps, 0.00104), "jumps by 0.001 from one gray to the next");
     EXPECT_EQ(text(Kind::exceeds_white, 10, "hdr"),
               "hdr: exceeds white, up to 10: SDR displays clip it");
 }

@@ -7,6 +7,7 @@
 #include "base/format_number.h"
 #include "base/strings.h"
 #include "definition/primaries_names.h"
+#include "definition/write.h"
 #include "formula/formula.h"
 #include "tonewright/definition.h"
 
@@ -47,8 +48,8 @@ std::string primaries_text(const Primaries& primaries) {
 
 class Writer {
   public:
-    explicit Writer(const ResolvedOperator& resolved)
-        : resolved_(resolved), op_(*resolved.op), live_(live_parameters(op_)) {}
+    Writer(const ResolvedOperator& resolved, const FormulaNames& names)
+        : resolved_(resolved), op_(*resolved.op), names_(names), live_(live_parameters(op_)) {}
 
     std::string write() {
         if (op_.is_local()) throw Error("it looks at the surroundings of a pixel");
@@ -199,12 +200,12 @@ class Writer {
         return "\"\"\"\n" + text + "\n\"\"\"";
     }
 
-    static std::string whole(const Expr& e) { return formula(whole_formula(e, {"x"})); }
+    std::string whole(const Expr& e) { return formula(whole_formula(e, {"x"}, names_)); }
 
     /// Several formulas, their temporaries before them.
     std::vector<std::string> formulas(const std::vector<Expr>& exprs,
                                       const std::vector<std::string>& inputs) {
-        const FormulaText text = formula_text(exprs, inputs);
+        const FormulaText text = formula_text(exprs, inputs, names_);
         if (!text.temporaries.empty())
             line("temporaries", "\"\"\"\n" + text.temporaries + "\"\"\"");
         std::vector<std::string> result;
@@ -265,15 +266,18 @@ class Writer {
 
     const ResolvedOperator& resolved_;
     const Operator& op_;
+    const FormulaNames& names_;
     const std::vector<std::string> live_;
     std::string text_;
 };
 
 }  // namespace
 
-std::string definition_of(const ResolvedOperator& op) {
+std::string definition_of(const ResolvedOperator& op) { return definition_of(op, {}); }
+
+std::string definition_of(const ResolvedOperator& op, const FormulaNames& names) {
     try {
-        return Writer(op).write();
+        return Writer(op, names).write();
     } catch (const FileError&) {
         throw;
     } catch (const Error& e) {

@@ -110,8 +110,8 @@ void add_import(CommandLine& program) {
         .group(function);
     command
         .add("--parameter", options->parameters,
-             "default, and range, of a further argument or a uniform; repeat for more")
-        .value("NAME=VALUE[,MIN,MAX]")
+             "default of a further argument or a uniform; NUMBER,MIN,MAX sets its range, too")
+        .value("NAME=NUMBER")
         .one_value_each()
         .group(function);
     const char* const color = "Color";
@@ -135,7 +135,7 @@ void add_import(CommandLine& program) {
         "as 0. Functions that the one taken does not call may hold anything.\n"
         "Examples:\n"
         "  tonewright import tonemap.glsl -o my.tone\n"
-        "  tonewright import aces.hlsl --function ACESFitted --parameter exposure=1 -o aces.tone\n"
+        "  tonewright import aces.hlsl --function ACESFilm --parameter gain=1 -o my.tone\n"
         "  tonewright import film.glsl --encoded gamma22 -o film.tone");
     command.action([options] { return run_import(*options); });
 }

@@ -19,8 +19,6 @@ using Value = GlslValue;
 using Values = std::vector<Value>;
 using Operands = std::span<const Expr>;
 
-Expr make_zero() { return 0; }
-
 /// Sums of differences come to what was subtracted from: mix(a, b, 1) is b.
 Expr plus(const Expr& a, const Expr& b) {
     if (b.op() == ExprOp::subtract && same(b.operand(1), a)) return b.operand(0);
@@ -78,15 +76,6 @@ constexpr Function kFunctions[] = {
     {"tan", 1, 3, [](Operands in) { return sin(in[0]) / cos(in[0]); }},
     {"tanh", 1, 6, [](Operands in) { return 1 - 2 / (exp(2 * in[0]) + 1); }},
     {"trunc", 1, 6, [](Operands in) { return truncated(in[0]); }},
-};
-
-// Of whole vectors, and comparisons.
-constexpr std::string_view kOthers[] = {
-    "all",      "any",       "cross",       "distance",
-    "dot",      "equal",     "greaterThan", "greaterThanEqual",
-    "length",   "lerp",      "lessThan",    "lessThanEqual",
-    "mix",      "mul",       "normalize",   "not",
-    "notEqual", "transpose",
 };
 
 [[noreturn]] void misuse(const std::string& message) { throw GlslMisuse(message); }
@@ -147,42 +136,155 @@ Expr either(const Expr& a, const Expr& b) { return select(a, 1, truth(b)); }
 Value product_of_matrices(const Value& a, const Value& b) {
     const std::size_t n = a.type.size;
     return each(a.type, std::max(a.depth, b.depth) + static_cast<int>(n), [&](std::size_t i) {
-        Expr sum = make_zero();
+        Expr sum = 0;
         for (std::size_t k = 0; k < n; ++k)
             sum = sum + a.e[i / n * n + k] * b.e[k * n + i % n];
         return sum;
     });
 }
 
-void require_vectors(std::string_view name, const Values& in) {
+// -- Functions that are not computed component by component. `what` is their name for messages.
+
+void require_vectors(const std::string& what, const Values& in) {
     for (const Value& value : in) {
         const bool is_right = !value.type.is_matrix && value.type.base != Base::boolean &&
                               value.type.size == in[0].type.size;
-        if (!is_right) {
-            misuse("function " + std::string(name) + " has " + glsl_name(value.type) +
-                   "; expected vectors of one size");
-        }
+        if (!is_right)
+            misuse(what + " has " + glsl_name(value.type) + "; expected vectors of one size");
     }
 }
 
-Value dot(const Value& a, const Value& b) {
-    Expr sum = make_zero();
+Value dot(const std::string& what, const Values& in) {
+    require_vectors(what, in);
+    const Value &a = in[0], &b = in[1];
+    Expr sum = 0;
     for (std::size_t i = 0; i < a.e.size(); ++i)
         sum = sum + a.e[i] * b.e[i];
     return {{}, {sum}, std::max(a.depth, b.depth) + static_cast<int>(a.e.size())};
 }
 
-Value length(const Value& a) {
-    Value result = dot(a, a);
-    return {{}, {sqrt(result.e[0])}, result.depth + 1};
+Value length(const std::string& what, const Values& in) {
+    const Value square = dot(what, {in[0], in[0]});
+    return {{}, {sqrt(square.e[0])}, square.depth + 1};
 }
 
-Value mixed(std::string_view name, const Values& in) {
+Value distance(const std::string& what, const Values& in) {
+    require_vectors(what, in);
+    return length(what, {glsl_binary("-", in[0], in[1])});
+}
+
+Value normalize(const std::string& what, const Values& in) {
+    return glsl_binary("/", in[0], length(what, in));
+}
+
+Value cross(const std::string& what, const Values& in) {
+    require_vectors(what, in);
+    const Value &a = in[0], &b = in[1];
+    if (a.type.size != 3) misuse(what + " has " + glsl_name(a.type) + "; expected vec3");
+    return each(a.type, std::max(a.depth, b.depth) + 2, [&](std::size_t i) {
+        const std::size_t j = (i + 1) % 3;
+        const std::size_t k = (i + 2) % 3;
+        return a.e[j] * b.e[k] - a.e[k] * b.e[j];
+    });
+}
+
+Value mix_or_lerp(const std::string& what, const Values& in) {
     const Value &a = in[0], &b = in[1], &t = in[2];
     if (t.type.base == Base::boolean) return glsl_select(t, b, a);
-    const Type type = common(name, {common(name, a, b), {}, 1}, t);
+    const Type type = common(what, {common(what, a, b), {}, 1}, t);
     return each(type, std::max({a.depth, b.depth, t.depth}) + 3, [&](std::size_t i) {
         return plus(component(a, i), component(t, i) * (component(b, i) - component(a, i)));
+    });
+}
+
+Value joined(const std::string& what, const Values& in,
+             Expr (*join)(const Expr& a, const Expr& b)) {
+    if (in[0].type.base != Base::boolean)
+        misuse(what + " has " + glsl_name(in[0].type) + "; expected bvec2, bvec3 or bvec4");
+    Expr result = in[0].e[0];
+    for (std::size_t i = 1; i < in[0].e.size(); ++i)
+        result = join(result, in[0].e[i]);
+    return {{Base::boolean}, {result}, in[0].depth + 8};
+}
+
+Value transpose(const std::string& what, const Values& in) {
+    if (!in[0].type.is_matrix)
+        misuse(what + " has " + glsl_name(in[0].type) + "; expected a matrix");
+    const std::size_t n = in[0].type.size;
+    return each(in[0].type, in[0].depth, [&](std::size_t i) { return in[0].e[i % n * n + i / n]; });
+}
+
+/// Of HLSL; GLSL's * of matrices.
+Value mul(const std::string& what, const Values& in) {
+    const Value &a = in[0], &b = in[1];
+    if (a.type.is_scalar() || b.type.is_scalar()) return glsl_binary("*", a, b);
+    if (!a.type.is_matrix && !b.type.is_matrix) return dot(what, in);
+    if (a.type.size != b.type.size)
+        misuse(what + " has " + operand_names(a, b) + "; expected two of one size");
+    if (a.type.is_matrix && b.type.is_matrix) return product_of_matrices(a, b);
+    const bool is_row = b.type.is_matrix;  // a row of numbers times a matrix
+    const Value& vector = is_row ? a : b;
+    const Value& matrix = is_row ? b : a;
+    const std::size_t n = vector.type.size;
+    return each({Base::number, n}, std::max(a.depth, b.depth) + static_cast<int>(n),
+                [&](std::size_t i) {
+                    Expr sum = 0;
+                    for (std::size_t k = 0; k < n; ++k)
+                        sum = sum + matrix.e[is_row ? k * n + i : i * n + k] * vector.e[k];
+                    return sum;
+                });
+}
+
+template <Expr (*compare)(const Expr& a, const Expr& b)>
+Value compare_each(const std::string& what, const Values& in) {
+    return compared(what, in[0], in[1], compare);
+}
+
+struct VectorFunction {
+    std::string_view name;
+    std::size_t operands;
+    Value (*make)(const std::string& what, const Values& in);
+};
+
+constexpr VectorFunction kVectorFunctions[] = {
+    {"all", 1, [](const std::string& what, const Values& in) { return joined(what, in, both); }},
+    {"any", 1, [](const std::string& what, const Values& in) { return joined(what, in, either); }},
+    {"cross", 2, cross},
+    {"distance", 2, distance},
+    {"dot", 2, dot},
+    {"equal", 2, compare_each<equal>},
+    {"greaterThan", 2, compare_each<greater>},
+    {"greaterThanEqual", 2, compare_each<greater_equal>},
+    {"length", 1, length},
+    {"lerp", 3, mix_or_lerp},
+    {"lessThan", 2, compare_each<less>},
+    {"lessThanEqual", 2, compare_each<less_equal>},
+    {"mix", 3, mix_or_lerp},
+    {"mul", 2, mul},
+    {"normalize", 1, normalize},
+    {"not", 1, [](const std::string&, const Values& in) { return glsl_not(in[0]); }},
+    {"notEqual", 2, compare_each<not_equal>},
+    {"transpose", 1, transpose},
+};
+
+Value call_each(const Function& f, const std::string& what, const Values& in) {
+    Value so_far{in[0].type, {}, 1};
+    int depth = 0;
+    for (const Value& value : in) {
+        if (value.type.base == Base::boolean || value.type.is_matrix)
+            misuse(what + " has " + glsl_name(value.type) + "; expected numbers or vectors");
+        so_far.type = common(what, so_far, value);
+        depth = std::max(depth, value.depth);
+    }
+    constexpr std::string_view kOfIntegers[] = {"abs", "clamp", "max", "min", "sign"};
+    const bool keeps_integers =
+        std::find(std::begin(kOfIntegers), std::end(kOfIntegers), f.name) != std::end(kOfIntegers);
+    if (!keeps_integers) so_far.type.base = Base::number;
+    return each(so_far.type, depth + f.cost, [&](std::size_t i) {
+        std::vector<Expr> operands;
+        for (const Value& value : in)
+            operands.push_back(component(value, i));
+        return f.make(operands);
     });
 }
 
@@ -286,8 +388,7 @@ GlslValue glsl_binary(std::string_view sign, const GlslValue& a, const GlslValue
         misuse(what + " has " + operand_names(a, b) + "; expected mul(a, b), as HLSL has it");
     if (a.type.size != b.type.size)
         misuse(what + " has " + operand_names(a, b) + "; expected two of one size");
-    const std::vector<Value> operands = {a, b};
-    return glsl_call("mul", operands);
+    return mul(what, {a, b});
 }
 
 GlslValue glsl_negative(const GlslValue& a) {
@@ -329,7 +430,7 @@ GlslValue glsl_construct(const GlslType& type, const std::vector<GlslValue>& par
     if (parts.size() == 1 && first.type.is_scalar()) {
         for (std::size_t i = 0; i < n; ++i) {
             const bool is_set = !type.is_matrix || i % (type.size + 1) == 0;
-            result.e.push_back(is_set ? as_base(first, first.e[0]) : make_zero());
+            result.e.push_back(is_set ? as_base(first, first.e[0]) : Expr(0));
         }
         return result;
     }
@@ -379,17 +480,17 @@ GlslValue glsl_convert(const GlslValue& value, const GlslType& type) {
 }
 
 bool is_glsl_function(std::string_view name) {
-    const auto has_name = [&](const Function& f) { return f.name == name; };
+    const auto has_name = [&](const auto& f) { return f.name == name; };
     return std::any_of(std::begin(kFunctions), std::end(kFunctions), has_name) ||
-           std::find(std::begin(kOthers), std::end(kOthers), name) != std::end(kOthers);
+           std::any_of(std::begin(kVectorFunctions), std::end(kVectorFunctions), has_name);
 }
 
 std::vector<std::string> glsl_functions() {
-    std::vector<std::string> names(std::begin(kOthers), std::end(kOthers));
-    for (const Function& f : kFunctions) {
-        if (names.back() != f.name) names.emplace_back(f.name);
-    }
-    std::sort(names.begin(), names.end());
+    std::vector<std::string> names;
+    for (const Function& f : kFunctions)
+        names.emplace_back(f.name);
+    for (const VectorFunction& f : kVectorFunctions)
+        names.emplace_back(f.name);
     return names;
 }
 
@@ -409,109 +510,20 @@ std::string why_no_glsl_function(std::string_view name) {
 }
 
 GlslValue glsl_call(std::string_view name, const std::vector<GlslValue>& in) {
-    const auto wants = [&](std::size_t count) {
-        if (in.size() == count) return;
-        misuse("function " + std::string(name) + " has " + std::to_string(in.size()) +
-               (in.size() == 1 ? " operand" : " operands") + "; expected " + std::to_string(count));
-    };
-    const bool is_mix = name == "mix" || name == "lerp";
-    std::size_t wanted = is_mix ? 3 : 0;
+    const std::string what = "function " + std::string(name);
+    std::size_t wanted = 0;
     for (const Function& f : kFunctions) {
         if (f.name != name) continue;
+        if (f.operands == in.size()) return call_each(f, what, in);
         wanted = f.operands;
-        if (f.operands != in.size()) continue;
-        Type type = in[0].type;
-        int depth = 0;
-        Value so_far{type, {}, 1};
-        for (const Value& value : in) {
-            if (value.type.base == Base::boolean || value.type.is_matrix)
-                misuse("function " + std::string(name) + " has " + glsl_name(value.type) +
-                       "; expected numbers or vectors");
-            so_far.type = type = common("function " + std::string(name), so_far, value);
-            depth = std::max(depth, value.depth);
-        }
-        const bool keeps_integers =
-            name == "min" || name == "max" || name == "abs" || name == "clamp" || name == "sign";
-        if (!keeps_integers) type.base = Base::number;
-        return each(type, depth + f.cost, [&](std::size_t i) {
-            std::vector<Expr> operands;
-            for (const Value& value : in)
-                operands.push_back(component(value, i));
-            return f.make(operands);
-        });
     }
-    if (wanted) wants(wanted);
-    if (is_mix) return mixed("function " + std::string(name), in);
-    const std::string what = "function " + std::string(name);
-    if (name == "dot" || name == "distance") {
-        wants(2);
-        require_vectors(name, in);
-        return name == "dot" ? dot(in[0], in[1]) : length(glsl_binary("-", in[0], in[1]));
+    for (const VectorFunction& f : kVectorFunctions) {
+        if (f.name != name) continue;
+        if (f.operands == in.size()) return f.make(what, in);
+        wanted = f.operands;
     }
-    if (name == "length" || name == "normalize") {
-        wants(1);
-        require_vectors(name, in);
-        const Value size = length(in[0]);
-        return name == "length" ? size : glsl_binary("/", in[0], size);
-    }
-    if (name == "cross") {
-        wants(2);
-        require_vectors(name, in);
-        if (in[0].type.size != 3)
-            misuse(what + " has " + glsl_name(in[0].type) + "; expected vec3");
-        const auto& [a, b] = std::pair(in[0].e, in[1].e);
-        return each(in[0].type, std::max(in[0].depth, in[1].depth) + 2, [&](std::size_t i) {
-            const std::size_t j = (i + 1) % 3;
-            const std::size_t k = (i + 2) % 3;
-            return a[j] * b[k] - a[k] * b[j];
-        });
-    }
-    if (name == "all" || name == "any" || name == "not") {
-        wants(1);
-        if (in[0].type.base != Base::boolean)
-            misuse(what + " has " + glsl_name(in[0].type) + "; expected bvec2, bvec3 or bvec4");
-        if (name == "not") return glsl_not(in[0]);
-        Expr result = in[0].e[0];
-        for (std::size_t i = 1; i < in[0].e.size(); ++i)
-            result = name == "all" ? both(result, in[0].e[i]) : either(result, in[0].e[i]);
-        return {{Base::boolean}, {result}, in[0].depth + 8};
-    }
-    if (name == "transpose") {
-        wants(1);
-        if (!in[0].type.is_matrix)
-            misuse(what + " has " + glsl_name(in[0].type) + "; expected a matrix");
-        const std::size_t n = in[0].type.size;
-        return each(in[0].type, in[0].depth,
-                    [&](std::size_t i) { return in[0].e[i % n * n + i / n]; });
-    }
-    wants(2);
-    if (name == "mul") {
-        const Value &a = in[0], &b = in[1];
-        if (!a.type.is_matrix && !b.type.is_matrix) {
-            if (a.type.is_vector() && b.type.is_vector()) return glsl_call("dot", in);
-            return glsl_binary("*", a, b);
-        }
-        if (a.type.size != b.type.size && !a.type.is_scalar() && !b.type.is_scalar())
-            misuse(what + " has " + operand_names(a, b) + "; expected two of one size");
-        if (a.type.is_matrix && b.type.is_matrix) return product_of_matrices(a, b);
-        if (a.type.is_scalar() || b.type.is_scalar()) return glsl_binary("*", a, b);
-        const bool is_row = !a.type.is_matrix;  // a row of numbers times a matrix
-        const Value& vector = is_row ? a : b;
-        const Value& matrix = is_row ? b : a;
-        const std::size_t n = vector.type.size;
-        return each({Base::number, n}, std::max(a.depth, b.depth) + static_cast<int>(n),
-                    [&](std::size_t i) {
-                        Expr sum = make_zero();
-                        for (std::size_t k = 0; k < n; ++k)
-                            sum = sum + matrix.e[is_row ? k * n + i : i * n + k] * vector.e[k];
-                        return sum;
-                    });
-    }
-    if (name == "lessThan") return compared(what, in[0], in[1], less);
-    if (name == "lessThanEqual") return compared(what, in[0], in[1], less_equal);
-    if (name == "greaterThan") return compared(what, in[0], in[1], greater);
-    if (name == "greaterThanEqual") return compared(what, in[0], in[1], greater_equal);
-    return compared(what, in[0], in[1], name == "equal" ? equal : not_equal);
+    misuse(what + " has " + std::to_string(in.size()) +
+           (in.size() == 1 ? " operand" : " operands") + "; expected " + std::to_string(wanted));
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -60,7 +59,7 @@ class GlslMisuse : public Error {
 
 /// True for a function of GLSL or HLSL that is read.
 [[nodiscard]] bool is_glsl_function(std::string_view name);
-/// @pre is_glsl_function(name), and it is not `mul`
+/// @pre is_glsl_function(name)
 [[nodiscard]] GlslValue glsl_call(std::string_view name, const std::vector<GlslValue>& in);
 /// Why a function is not read, or an empty text.
 [[nodiscard]] std::string why_no_glsl_function(std::string_view name);

@@ -8,6 +8,7 @@ With --npm, the shaders are those of the npm package glsl-tone-map. The last lin
 
 import argparse
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -131,6 +132,15 @@ def check_command(report, command, folder):
     report.check("powers of negatives are a warning", "warning: import: function f has powers or square roots" in text, text)
     got = light_of(command, folder / "punchy.tone", np.array([[0, 0.1, 1.1]]))
     report.compare("powers of negatives are 0", got, np.array([[0, 0, 1.0]]), ROUNDING)
+
+    page = (TESTS.parent / "docs" / "own_operators.md").read_text()
+    example = re.search(r"```sh\n(cat >tonemap\.glsl .*?)```", page, re.S).group(1)
+    environment = {**os.environ, "PATH": f"{Path(command).parent}:{os.environ['PATH']}"}
+    done = subprocess.run(["sh", "-ec", example], cwd=folder, env=environment, capture_output=True, text=True, check=False)
+    printed = re.search(r"It prints `(film\.tone: .*?)`", page).group(1)
+    report.check("the example of the docs prints what they say", printed in done.stderr, done.stderr)
+    compare(report, command, "the example of the docs is reinhard_extended", f"{folder / 'film.tone'}:white=8",
+            "reinhard_extended:white=8")
 
     copy = folder / "shader.tone"  # a shader by another name
     shutil.copy(SHADERS / "reinhard.glsl", copy)

@@ -22,7 +22,7 @@ namespace {
 
 using Kind = StageRecipe::Kind;
 using Output = ShaderImport::Output;
-using Moved = std::unordered_map<const ExprNode*, Expr>;
+using Moved = std::unordered_map<const ExprNode*, Expr>;  // what nodes become
 
 std::set<int> inputs_of(const std::vector<Expr>& exprs) {
     std::set<int> inputs;
@@ -60,12 +60,13 @@ class Stages {
                 continue;
             }
             // The function reads the color before the product, too: no stage of its own.
-            std::map<int, Expr> sums;
+            Moved sums;
             for (int i = 0; i < 3; ++i) {
                 const auto& row = product.matrix.at(static_cast<std::size_t>(i));
-                sums.emplace(first + i, row[0] * color[0] + row[1] * color[1] + row[2] * color[2]);
+                sums.emplace(Expr::input(first + i).node(),
+                             row[0] * color[0] + row[1] * color[1] + row[2] * color[2]);
             }
-            now = moved(now, sums, false, false);
+            now = moved(now, sums);
         }
         add_values(now, 0);
     }
@@ -99,14 +100,66 @@ class Stages {
         if (is_identity) return;
         StageRecipe stage;
         stage.kind = is_curve ? Kind::curve : Kind::cross_talk;
-        std::map<int, Expr> to;
+        Moved inputs;
         for (int i = 0; i < 3; ++i)
-            to.emplace(first + i, Expr::input(is_curve ? 0 : i));
-        stage.f = moved(values, to, true, is_curve);
+            inputs.emplace(Expr::input(first + i).node(), Expr::input(is_curve ? 0 : i));
+        stage.f = moved(values, inputs);
         const bool is_one = std::all_of(stage.f.begin(), stage.f.end(),
                                         [&](const Expr& e) { return same(e, stage.f[0]); });
-        if (is_curve && is_one) stage.f.resize(1, 0);
+        std::optional<StageRecipe> before;
+        if (is_curve && is_one) {
+            stage.f.resize(1, 0);
+            before = take_clamp(stage.f);
+        }
+        for (const Expr& e : nodes_of(stage.f)) {
+            if (const auto named = names_.find(e.node()); named != names_.end()) {
+                kept_.push_back(e);  // its address stays its own
+                texts_.emplace(e.node(), text_of(*named->second, is_curve));
+            }
+        }
         add(std::move(stage));
+        // The first stage of all clamps to [0, 65504].
+        if (before && (first != 0 || before->lo > 0 || before->hi < kHalfMax))
+            add(*std::move(before));
+    }
+
+    /// The limits that a curve begins with, which leave it: of x, or of log2(x). A stage is exact
+    /// where a table of the curve would have a kink.
+    std::optional<StageRecipe> take_clamp(std::vector<Expr>& curve) {
+        std::unordered_map<const ExprNode*, std::vector<Expr>> users;
+        for (const Expr& e : nodes_of(curve)) {
+            for (int i = 0; i < e.operand_count(); ++i)
+                users[e.operand(i).node()].push_back(e);
+        }
+        StageRecipe clamp;
+        clamp.kind = Kind::clamp;
+        clamp.lo = -kInfinity;
+        std::optional<Expr> limited;
+        Expr unlimited = Expr::input(0);
+        Expr inner = unlimited;
+        Expr now = inner;
+        while (!same(now, curve[0]) && users[now.node()].size() == 1) {
+            now = users[now.node()][0];
+            const bool is_log = inner.op() == ExprOp::log2;
+            if (now.op() == ExprOp::log2 && !is_log) {
+                inner = log2(inner);
+                continue;
+            }
+            if (now.op() != ExprOp::minimum && now.op() != ExprOp::maximum) break;
+            const Expr number = now.operand(now.operand(0).is_constant() ? 0 : 1);
+            if (!number.is_constant()) break;
+            const double end = is_log ? std::exp2(number.value()) : number.value();
+            for (double* own : {&clamp.lo, &clamp.hi})
+                *own = now.op() == ExprOp::minimum ? std::min(*own, end) : std::max(*own, end);
+            limited = now;
+            unlimited = inner;
+        }
+        if (!limited || clamp.lo >= clamp.hi) return std::nullopt;
+        // So far below, floats would make 0 of the limit, and the logarithm infinite.
+        constexpr double kLowest = 1e-30;
+        if (unlimited.op() == ExprOp::log2 && clamp.lo < kLowest) return std::nullopt;
+        curve = moved(curve, {{limited->node(), unlimited}});
+        return clamp;
     }
 
     /// min(max(x, lo), hi) of all values, or a part of it, becomes a stage.
@@ -141,32 +194,24 @@ class Stages {
         return true;
     }
 
-    /// The values with other inputs. What has a name keeps it.
-    /// @param is_final  these are the formulas of a stage
-    std::vector<Expr> moved(const std::vector<Expr>& values, const std::map<int, Expr>& inputs,
-                            bool is_final, bool is_curve) {
-        Moved done;
+    /// The values with other nodes for some. What has a name keeps it.
+    std::vector<Expr> moved(const std::vector<Expr>& values, Moved done) {
         for (const Expr& e : nodes_of(values)) {
-            std::optional<Expr> result;
-            if (e.op() == ExprOp::input) {
-                const auto found = inputs.find(e.input_index());
-                result = found == inputs.end() ? e : found->second;
-            } else if (e.operand_count() == 0) {
-                result = e;
-            } else {
+            if (!done.contains(e.node())) {
                 std::vector<Expr> operands;
+                operands.reserve(static_cast<std::size_t>(e.operand_count()));
                 for (int i = 0; i < e.operand_count(); ++i)
                     operands.push_back(done.at(e.operand(i).node()));
-                result = make_expr(e.op(), operands);
+                done.emplace(e.node(), operands.empty() ? e : make_expr(e.op(), operands));
             }
-            done.emplace(e.node(), *result);
+            const Expr& result = done.at(e.node());
             const auto named = names_.find(e.node());
             if (named == names_.end()) continue;
-            kept_.push_back(*result);  // its address stays its own
-            if (is_final) texts_.emplace(result->node(), text_of(*named->second, is_curve));
-            names_.emplace(result->node(), named->second);
+            kept_.push_back(result);
+            names_.emplace(result.node(), named->second);
         }
         std::vector<Expr> result;
+        result.reserve(values.size());
         for (const Expr& e : values)
             result.push_back(done.at(e.node()));
         return result;
@@ -281,6 +326,7 @@ ImportedShader imported(std::string_view text, const std::string& name,
     const auto recipe = std::make_shared<OperatorRecipe>();
     const auto& all = named_primaries();
     std::vector<std::string> names;
+    names.reserve(all.size());
     for (const auto& primaries : all)
         names.emplace_back(primaries.first);
     Operator op;

@@ -380,7 +380,7 @@ class Parser {
             argument.default_value = at_;
             skip_to(",", ")");
         }
-        function.arguments.push_back(std::move(argument));
+        function.arguments.push_back(argument);
     }
 
     void declare_globals(const Token& type_at, bool is_const, bool is_uniform) {
@@ -958,7 +958,7 @@ class Parser {
         const Token at = token();
         if (at.is("-") || at.is("+") || at.is("!")) {
             next();
-            const Value a = expression(kSign);
+            Value a = expression(kSign);
             if (at.is("+")) return a;
             return made(at, a.depth, [&] { return at.is("-") ? glsl_negative(a) : glsl_not(a); });
         }

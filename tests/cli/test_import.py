@@ -40,7 +40,7 @@ BUILT_IN = [
     ("aces_hill.glsl", [], "aces_hill", "clamp, matrix, curve, matrix, clamp"),
     ("uchimura.frag", [], "uchimura", "clamp, curve"),
     ("lottes.glsl", LOTTES, "lottes", "clamp, curve"),
-    ("agx_minimal.glsl", ["--encoded", "gamma22"], "agx_minimal", "clamp, matrix, curve, matrix"),
+    ("agx_minimal.glsl", ["--encoded", "gamma22"], "agx_minimal", "clamp, matrix, clamp, curve, matrix"),
     ("khronos_neutral.glsl", [], "khronos_neutral", "clamp, cross-talk"),
     ("ue3.hlsl", ["--encoded", "gamma22"], "ue3", "clamp, curve, clamp"),
     ("hejl_burgess_dawson.glsl", ["--encoded", "gamma22"], "hejl_burgess_dawson", "clamp, curve"),
@@ -111,6 +111,13 @@ def check_parameters(report, command, folder):
     to = folder / "hejl.tone"
     imported(command, SHADERS / "hejl_2015.hlsl", [], to)
     compare(report, command, "a default argument is a parameter", f"{to}:whitePt=4", "hejl_2015:white=4")
+    # What limits a logarithm becomes a stage, unless floats make 0 of the limit.
+    for limit, stages in ((-12, "clamp, clamp, curve"), (-2000, "clamp, curve")):
+        (folder / "log.glsl").write_text(f"float f(float x) {{ return max(log2(x), {limit}.0)/20.0 + 100.0; }}\n")
+        _, text = imported(command, folder / "log.glsl", [], folder / "log.tone")
+        report.check(f"log2 not below {limit}: {stages}", text.endswith(f"as {stages}"), text)
+        got = light_of(command, folder / "log.tone", np.array([[0, 1, 4]]))
+        report.compare(f"log2 not below {limit}", got, np.array([[limit / 20 + 100, 100, 100.1]]), 100 * ROUNDING)
     shader = run(command, "shader", to, "--language", "glsl", "--uniforms", "whitePt")
     report.check("the imported operator is a shader again", "vec3 tw_hejl(" in shader and "float whitePt" in shader, shader)
     text = to.read_text()

@@ -14,9 +14,13 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// A number of TOML: the integer -0 would be 0.
+/// A number of TOML. The integer -0 would be 0, and integers end at 2^63.
 std::string number(double value) {
-    return value == 0 && std::signbit(value) ? "-0.0" : shortest(value);
+    constexpr double kLargestInteger = 0x1p53;
+    const bool is_no_integer = value == 0 ? std::signbit(value) : std::abs(value) > kLargestInteger;
+    const std::string text = shortest(value);
+    const bool has_digits_only = text.find_first_not_of("-0123456789") == std::string::npos;
+    return is_no_integer && has_digits_only ? text + ".0" : text;
 }
 
 std::string quoted(std::string_view text) {

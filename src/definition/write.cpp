@@ -7,15 +7,20 @@
 #include "base/format_number.h"
 #include "base/strings.h"
 #include "definition/primaries_names.h"
+#include "definition/write.h"
 #include "formula/formula.h"
 #include "tonewright/definition.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// A number of TOML: the integer -0 would be 0.
+/// A number of TOML. The integer -0 would be 0, and integers end at 2^63.
 std::string number(double value) {
-    return value == 0 && std::signbit(value) ? "-0.0" : shortest(value);
+    constexpr double kLargestInteger = 0x1p53;
+    const bool is_no_integer = value == 0 ? std::signbit(value) : std::abs(value) > kLargestInteger;
+    const std::string text = shortest(value);
+    const bool has_digits_only = text.find_first_not_of("-0123456789") == std::string::npos;
+    return is_no_integer && has_digits_only ? text + ".0" : text;
 }
 
 std::string quoted(std::string_view text) {
@@ -47,8 +52,8 @@ std::string primaries_text(const Primaries& primaries) {
 
 class Writer {
   public:
-    explicit Writer(const ResolvedOperator& resolved)
-        : resolved_(resolved), op_(*resolved.op), live_(live_parameters(op_)) {}
+    Writer(const ResolvedOperator& resolved, const FormulaNames& names)
+        : resolved_(resolved), op_(*resolved.op), names_(names), live_(live_parameters(op_)) {}
 
     std::string write() {
         if (op_.is_local()) throw Error("it looks at the surroundings of a pixel");
@@ -197,12 +202,12 @@ class Writer {
         return "\"\"\"\n" + text + "\n\"\"\"";
     }
 
-    static std::string whole(const Expr& e) { return formula(whole_formula(e, {"x"})); }
+    std::string whole(const Expr& e) { return formula(whole_formula(e, {"x"}, names_)); }
 
     /// Several formulas, their temporaries before them.
     std::vector<std::string> formulas(const std::vector<Expr>& exprs,
                                       const std::vector<std::string>& inputs) {
-        const FormulaText text = formula_text(exprs, inputs);
+        const FormulaText text = formula_text(exprs, inputs, names_);
         if (!text.temporaries.empty())
             line("temporaries", "\"\"\"\n" + text.temporaries + "\"\"\"");
         std::vector<std::string> result;
@@ -263,15 +268,18 @@ class Writer {
 
     const ResolvedOperator& resolved_;
     const Operator& op_;
+    const FormulaNames& names_;
     const std::vector<std::string> live_;
     std::string text_;
 };
 
 }  // namespace
 
-std::string definition_of(const ResolvedOperator& op) {
+std::string definition_of(const ResolvedOperator& op) { return definition_of(op, {}); }
+
+std::string definition_of(const ResolvedOperator& op, const FormulaNames& names) {
     try {
-        return Writer(op).write();
+        return Writer(op, names).write();
     } catch (const FileError&) {
         throw;
     } catch (const Error& e) {

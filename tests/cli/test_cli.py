@@ -33,7 +33,8 @@ try:
 except ImportError:
     ocio = None
 
-SUBCOMMANDS = ["list", "eval", "apply", "meter", "bake", "shader", "config", "verify", "chart", "sheet", "compare", "plot", "check"]
+SUBCOMMANDS = ["list", "eval", "apply", "meter", "bake", "shader", "config", "verify", "chart", "sheet", "compare", "plot",
+               "import", "check"]
 OK, CHECK_FAILED, USAGE, FILE = 0, 1, 2, 3  # exit codes
 
 # Half of what OpenColorIO's chain for a tone scale may differ on the CPU; on the GPU it may differ by 5e-5.

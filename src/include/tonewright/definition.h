@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "tonewright/pipeline.h"
 
@@ -37,5 +40,52 @@ class TONEWRIGHT_API DefinitionError : public FileError {
 /// are resolved. parse_operator() reads it back as an operator with the identical expressions.
 /// @throws Error  no formula says what the operator does: it is local, or has a table
 [[nodiscard]] TONEWRIGHT_API std::string definition_of(const ResolvedOperator& op);
+
+/// A number of a shader that stays a parameter. Without ends, its range is a guess.
+struct ImportedParameter {
+    double value = 0;
+    std::optional<double> min = {};
+    std::optional<double> max = {};
+};
+
+/// How to read a shader as an operator.
+struct ShaderImport {
+    /// `float f(float)` or `vec3 f(vec3)`; empty: the last one that no other calls.
+    std::string function;
+    /// Of the operator; empty: the name of the function.
+    std::string id;
+    /// The primaries that the function works in: a name that .tone files have.
+    std::string primaries = "rec709";
+    /// What the function returns. Empty: display-linear, with a warning where it looks encoded.
+    enum class Output : unsigned char { display_linear, srgb, gamma22, gamma24 };
+    std::optional<Output> output = {};
+    /// Further arguments of the function, and uniforms.
+    std::map<std::string, ImportedParameter> parameters;
+};
+
+/// A shader's function as an operator.
+struct ImportedShader {
+    /// The text of a .tone file.
+    std::string definition;
+    std::string function;
+    /// Names of other functions that could have been taken.
+    std::vector<std::string> others;
+    /// Of the operator: "clamp", "matrix", "curve", ...
+    std::vector<std::string> stages;
+    /// What the user may have meant otherwise.
+    std::vector<std::string> warnings;
+};
+
+/// Reads a function of straight-line GLSL or HLSL (docs/own_operators.md says what it may have).
+/// @param name  of the file, for messages and the definition's comments
+/// @throws DefinitionError  the shader has no such function, or one that no operator can say
+/// @throws Error            a setting of the import is wrong
+[[nodiscard]] TONEWRIGHT_API ImportedShader import_shader(std::string_view text,
+                                                          const std::string& name,
+                                                          const ShaderImport& settings);
+/// The same from a file.
+/// @throws FileError  it cannot be read
+[[nodiscard]] TONEWRIGHT_API ImportedShader load_shader(const std::string& path,
+                                                        const ShaderImport& settings);
 
 TONEWRIGHT_NAMESPACE_END

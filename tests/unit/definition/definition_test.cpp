@@ -60,6 +60,20 @@ TEST(Definition, ReadsTheExampleOfTheDocs) {
 }
 
 // What the engines get is what a built-in's file gives them, so that it runs at the same speed.
+// TOML's integers end at 2^63, and double precision holds all of them up to 2^53.
+TEST(Definition, LargeNumbersReadBack) {
+    const auto op = parsed(
+        "[[stage]]\nmatrix = [[11060664309660294, 1e300, -0.0], [0, 1, 0], [0, 0, 1]]\n"
+        "[[stage]]\nclamp = [-12345678901234567168.0, inf]\n");
+    const auto matrix = std::get<MatrixStage>(built(*op)[0]);
+    EXPECT_EQ(matrix.m[0][0], 11060664309660294.0);
+    const auto again = parse_operator(definition_of(resolve(*op, nullptr, {}, "")), "again.tone");
+    const Pipeline stages = built(*again);
+    EXPECT_EQ(std::get<MatrixStage>(stages[0]).m, matrix.m);
+    EXPECT_TRUE(std::signbit(std::get<MatrixStage>(stages[0]).m[0][2]));
+    EXPECT_EQ(std::get<ClampStage>(stages[1]).lo, -12345678901234567168.0);
+}
+
 TEST(Definition, OwnCurveIsTheExpressionOfABuiltIn) {
     const auto op = parsed(
         "[parameter.white]\ndefault = 4\nmin = 0.01\nmax = 65504\n"

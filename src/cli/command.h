@@ -45,5 +45,6 @@ void add_chart(CommandLine& program);
 void add_sheet(CommandLine& program);
 void add_compare(CommandLine& program);
 void add_plot(CommandLine& program);
+void add_report(CommandLine& program);
 
 TONEWRIGHT_NAMESPACE_END

@@ -177,11 +177,12 @@ class PageContents {
             values.add(name, op.params.number(name));
         request.uniforms.insert(request.uniforms.begin(), std::string(kExposureUniform));
         const Shader glsl = write_shader(request);
+        // Large arrays are slow in browsers: the page draws with textures, and gives away arrays.
+        request.tables = ShaderTables::texture;
+        const Shader drawn = write_shader(request, &glsl.errors);
+        request.tables = ShaderTables::by_size;
         request.language = ShaderLanguage::javascript;
         const Shader reference = write_shader(request, &glsl.errors);
-        Json textures = Json::array();
-        for (const ShaderTexture& texture : glsl.textures)
-            textures.push_back(texture_json(texture));
         Json measured = Json::array();
         for (std::size_t i = 0; i < grids_.size(); ++i)
             measured.push_back(measured_json(request.view, i, index));
@@ -190,7 +191,9 @@ class PageContents {
         entry.add("reference", reference.text);
         entry.add("uniforms", request.uniforms);
         entry.add("values", values);
-        entry.add("textures", textures);
+        entry.add("textures", textures_json(glsl));
+        if (drawn.textures.size() > glsl.textures.size())
+            entry.add("drawn", Json{{"glsl", drawn.text}, {"textures", textures_json(drawn)}});
         entry.add("error", glsl.errors.in_float);
         entry.add("measured", measured);
         entry.add("definition", definition_or_null(op));
@@ -213,6 +216,13 @@ class PageContents {
             if (look.id == op.params.look()) title += ", " + look.title;
         }
         return title;
+    }
+
+    Json textures_json(const Shader& shader) {
+        Json textures = Json::array();
+        for (const ShaderTexture& texture : shader.textures)
+            textures.push_back(texture_json(texture));
+        return textures;
     }
 
     /// Looks share lattices: each is one file.
@@ -325,7 +335,7 @@ void add_report(CommandLine& program) {
         "exported GLSL ES on the embedded pictures and on pictures that are dropped on it.\n"
         "Examples:\n"
         "  tonewright report -o page.html\n"
-        "  tonewright report -o page.html render.exr --operators agx_blender,aces_20,hable");
+        "  tonewright report -o page.html render.exr --operators agx_blender,hable");
     command.action([options] { return run_report(*options); });
 }
 

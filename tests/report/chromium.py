@@ -118,7 +118,7 @@ class Page:
         end = time.monotonic() + 60
         while self.loads == before and time.monotonic() < end:
             self.receive(1)
-        self.wait("document.documentElement.dataset.ready === 'true'")
+        self.wait("document.documentElement?.dataset.ready === 'true'")
 
     def run(self, expression: str, timeout: float = 120):
         """The value of a JavaScript expression; promises are awaited."""

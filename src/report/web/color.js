@@ -17,7 +17,8 @@ const xyz = ([x, y]) => [x / y, 1, (1 - x - y) / y];
 
 // Primaries as [[x, y] of red, green, blue, white].
 function toXyz(primaries) {
-    const columns = primaries.slice(0, 3).map(xyz);
+    // Not divided by y, which is 0 in two of the primaries of XYZ itself.
+    const columns = primaries.slice(0, 3).map(([x, y]) => [x, y, 1 - x - y]);
     const m = [0, 1, 2].map((i) => columns.map((column) => column[i]));
     const scale = apply(inverse(m), xyz(primaries[3]));
     return m.map((row) => row.map((x, i) => x * scale[i]));

@@ -21,8 +21,9 @@ void main() {
     }
 }`;
 
+const drawn = (op) => op.drawn ?? op;
 const fragment = (op) => `#version 300 es
-${op.glsl}
+${drawn(op).glsl}
 uniform highp sampler2D page_light;
 uniform vec3 page_view;    // picture's pixel at the panel's top left corner, and pixels of it for a pixel of the panel
 uniform vec2 page_corner;  // of the panel in the canvas
@@ -148,7 +149,7 @@ export class Renderer {
         gl.uniform2fv(places.page_corner, corner);
         gl.uniform1i(places.page_marks, marks ? 1 : 0);
         for (const name of op.uniforms) gl.uniform1f(places[`page_${name}`], name === 'exposure' ? exposure : values[name]);
-        op.textures.forEach((texture, i) => {
+        drawn(op).textures.forEach((texture, i) => {
             gl.activeTexture(gl.TEXTURE1 + i);
             if (!this.textures.has(texture.file)) {
                 this.textures.set(texture.file, this.makeTexture(gl.TEXTURE_3D));

@@ -24,6 +24,7 @@ function readExr(buffer) {
 }
 
 function convert(rgba, m) {
+    if (!m.flat().every(Number.isFinite)) throw new Error('its chromaticities are impossible');
     const isIdentity = m.every((row, i) => row.every((x, j) => Math.abs(x - (i === j ? 1 : 0)) < 1e-4));
     if (isIdentity) return;
     for (let i = 0; i < rgba.length; i += 4) {

@@ -105,6 +105,21 @@ def check_picture(report, command, page, scratch):
         report.check(f"{name} {exposure:+g}: 99 % of the numbers equal", np.mean(difference == 0) > 0.99, f"{np.mean(difference == 0)}")
 
 
+def check_small_view(report, command, page, scratch):
+    """A view of every fourth pixel, whose smaller pictures the first panel makes: all panels show the same."""
+    exr = scratch / "small_view.exr"
+    tonewright_run(command, "chart", "-o", exr, "-d", "half", "--width", 1536, "--height", 864)
+    page.run("for (const slot of tonewright.state.slots) slot.op = 'hable'; tonewright.change({ mode: 'grid', exposure: 0, zoom: 0 })")
+    page.give_file("#open", exr)
+    page.wait("tonewright.view.picture?.name === 'small_view.exr'")
+    page.run("tonewright.change({ zoom: 0.25, x: 768, y: 432 })")
+    w, h, data = json.loads(page.run(PIXELS))
+    rgba = np.frombuffer(base64.b64decode(data), np.uint8).reshape(h, w, 4)
+    half = w // 2
+    top = rgba[h - h // 2:]
+    report.check("zoom 25 %: both panels show the same picture", len(np.unique(top)) > 50 and np.array_equal(top[:, :half], top[:, half:2 * half]))
+
+
 def check_real_pictures(report, command, page, scratch):
     """Photographs and a picture in XYZ, half floats in PIZ, as others wrote them."""
     shared = os.environ.get("TONEWRIGHT_SHARED")
@@ -294,6 +309,7 @@ def main() -> int:
         page.open(file)
         check_reference(report, command, page)
         check_picture(report, command, page, scratch)
+        check_small_view(report, command, page, scratch)
         check_real_pictures(report, command, page, scratch)
         check_probe(report, command, page)
         check_keyboard(report, page)

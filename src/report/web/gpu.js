@@ -172,6 +172,7 @@ export class Renderer {
         const gl = this.gl;
         const level = zoom < 1 ? Math.max(0, Math.floor(Math.log2(1 / zoom) + 1e-6)) : 0;
         const scale = 2 ** level;
+        this.level(level);  // makes it with a program and a target of its own
         gl.viewport(0, 0, this.canvas.width, this.canvas.height);
         this.use(op, values, exposure, [origin[0] / scale, origin[1] / scale, 1 / zoom / scale],
             [rect[0], this.canvas.height - rect[1]], marks, level);

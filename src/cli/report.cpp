@@ -9,7 +9,6 @@
 #include <set>
 
 #include "base/atomic_file.h"
-#include "base/input_file.h"
 #include "base/strings.h"
 #include "cli/archive.h"
 #include "cli/elapsed_line.h"
@@ -288,15 +287,15 @@ class PageContents {
 };
 
 int run_report(const Options& options) {
-    if (const std::string why = why_no_file(options.file); !why.empty())
-        throw FileError(fmt::format("write: {}: {}", options.file, why));
     const ResultLine line;
     redirect_opencolorio_messages([](const std::string& text) {
         if (!message_options().is_quiet) print_message("OpenColorIO: " + text);
     });
     const std::string page = [&] {
         const ElapsedLine elapsed("report");
-        return PageContents(options).write();
+        PageContents contents(options);  // names are checked first
+        require_writable_file(options.file);
+        return contents.write();
     }();
     write_text_atomically(options.file, page);
     line.print(

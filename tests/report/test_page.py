@@ -163,6 +163,29 @@ def check_probe(report, command, page):
     report.check("probe: engine and OpenColorIO are exact", all(v <= 0.002 for k, v in worst.items() if "LUT" not in k), str(worst))
 
 
+def check_files(report, command, page, scratch):
+    """The .cube and the .tone file that the page saves, read by the command."""
+    slot = "{ op: 'hable', values: { white: 5.5, exposure_bias: 3 } }"
+    page.run("tonewright.change({ exposure: 0.5 })")
+    settings = ["--set=white=5.5", "--set=exposure_bias=3"]
+    cube, tone = scratch / "page.cube", scratch / "page.tone"
+    cube.write_text(page.run(f"tonewright.cubeOf({slot})"))
+    tone.write_text(page.run(f"tonewright.toneOf({slot})"))
+    page.run("tonewright.change({ exposure: 0 })")
+    # Nodes of the LUT: ACEScct (Academy S-2016-001) at multiples of 1/32.
+    code = np.array([[6, 20, 11], [15, 15, 15], [24, 2, 30]]) / 32
+    light = np.where(code <= 0.155251141552511, (code - 0.0729055341958355) / 10.5402377416545, 2 ** (code * 17.52 - 9.72)).astype(np.float32)
+    want = reference(command, "hable", light, "--exposure=0.5", *settings)
+    lines = subprocess.run([command, "eval", "--lut", cube, "--input-encoding", "none", "-q"], input="\n".join(" ".join(map(str, row)) for row in code),
+                           check=True, capture_output=True, text=True).stdout
+    error = np.max(np.abs(np.array(lines.split(), float).reshape(-1, 3) - want))
+    # 7 decimals in the file, and floats on the way.
+    report.check(f"Save .cube: nodes {error:.1e} (bound 5e-7)", error <= 5e-7)
+    rgb = np.array(pick(list(colors()), 40), np.float32)
+    error = np.max(np.abs(reference(command, str(tone), rgb) - reference(command, "hable", rgb, *settings)))
+    report.check(f"Save .tone: {error:.1e}", error <= 1e-12)
+
+
 def check_keyboard(report, page):
     """Without a pointer: an operator, the exposure, the probe, another tab."""
     page.run("document.getElementById('operators').focus()")
@@ -312,6 +335,7 @@ def main() -> int:
         check_small_view(report, command, page, scratch)
         check_real_pictures(report, command, page, scratch)
         check_probe(report, command, page)
+        check_files(report, command, page, scratch)
         check_keyboard(report, page)
         check_link(report, page, file)
         check_damaged(report, command, page, scratch)

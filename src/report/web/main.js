@@ -8,7 +8,7 @@ import { makeDialects, makeParity, onOpen } from './parity.js';
 import { measure, readPicture } from './picture.js';
 import { makeProbe, probeRows } from './probe.js';
 import { reference } from './reference.js';
-import { makeSave } from './save.js';
+import { cubeOf, makeSave, toneOf } from './save.js';
 import { change, MODES, onChange, setStatistics, state, TABS } from './state.js';
 import { makeView } from './view.js';
 
@@ -156,5 +156,5 @@ requestAnimationFrame(() => setTimeout(() => {
 }));
 
 // For tests and for the curious: the same functions that the page uses.
-globalThis.tonewright = { operators, state, change, view, reference,
+globalThis.tonewright = { operators, state, change, view, reference, cubeOf, toneOf,
     probe: (slot, x, y) => probeRows(state.slots[slot], view.picture, renderer, x, y) };

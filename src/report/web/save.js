@@ -32,8 +32,7 @@ async function copyShader() {
 // ACEScct (Academy S-2016-001) -> linear.
 const decodeAcescct = (v) => (v <= 0.155251141552511 ? (v - 0.0729055341958355) / 10.5402377416545 : 2 ** (v * 17.52 - 9.72));
 
-function saveCube() {
-    const slot = activeSlot();
+export function cubeOf(slot) {
     const op = findOperator(slot.op);
     const size = 33;
     const values = valuesOf(slot);
@@ -50,20 +49,21 @@ function saveCube() {
             for (const r of axis) lines.push(reference(op, [r, g, b], state.exposure, values).map((x) => x.toFixed(7)).join(' '));
         }
     }
-    download(`${fileName(slot)}.cube`, new Blob([lines.join('\n') + '\n']));
+    return lines.join('\n') + '\n';
 }
 
 // The operator's definition, with the parameters of the page as defaults.
-function saveTone() {
-    const slot = activeSlot();
+export function toneOf(slot) {
     const op = findOperator(slot.op);
     let text = op.definition;
     for (const [name, value] of Object.entries(slot.values)) {
         const number = Number.isInteger(value) ? `${value}.0` : String(value);
         text = text.replace(new RegExp(`(\\[parameter\\.${name}\\][^[]*?\\ndefault = )[^\\n]*`), (_, before) => before + number);
     }
-    download(`${fileName(slot)}.tone`, new Blob([text]));
+    return text;
 }
+
+const save = (extension, textOf) => download(`${fileName(activeSlot())}.${extension}`, new Blob([textOf(activeSlot())]));
 
 function savePng(view) {
     view.draw();
@@ -85,8 +85,8 @@ function savePng(view) {
 export function makeSave(view) {
     const buttons = {
         shader: button('Copy shader', copyShader),
-        cube: button('Save .cube', saveCube),
-        tone: button('Save .tone', saveTone),
+        cube: button('Save .cube', () => save('cube', cubeOf)),
+        tone: button('Save .tone', () => save('tone', toneOf)),
         png: button('Save PNG', () => savePng(view)),
         link: button('Copy link', () => copy(link(), 'The link')),
     };

@@ -140,6 +140,12 @@ class Page:
         node = self.call("DOM.querySelector", nodeId=root, selector=selector)["nodeId"]
         self.call("DOM.setFileInputFiles", nodeId=node, files=[str(path.resolve())])
 
+    def drop(self, path: pathlib.Path, x: int = 500, y: int = 400) -> None:
+        """A file from the desktop onto the page."""
+        data = {"items": [], "files": [str(path.resolve())], "dragOperationsMask": 1}
+        for kind in ("dragEnter", "dragOver", "drop"):
+            self.call("Input.dispatchDragEvent", type=kind, x=x, y=y, data=data)
+
     def press(self, key: str, shift: bool = False) -> None:
         code = KEYS.get(key)
         text = {} if code and key != "Enter" else {"text": "\r" if key == "Enter" else key}

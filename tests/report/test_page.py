@@ -27,6 +27,7 @@ from pictures import Report  # noqa: E402
 # A lattice, tables, a table in steps, branches, a hue structure, a measuring operator, a local one.
 OPERATORS = ["agx_blender", "aces_20", "camera_response", "hable", "khronos_neutral", "gt7", "reinhard:luminance", "uchimura", "drago",
              "exposure_fusion"]
+KEEP = Path(sys.argv[3]) if sys.argv[2:3] == ["--screenshots"] else None
 MOST_BYTES = 3_000_000  # issue 21, without pictures; the embedded chart is part of it here
 
 
@@ -110,7 +111,7 @@ def check_small_view(report, command, page, scratch):
     exr = scratch / "small_view.exr"
     tonewright_run(command, "chart", "-o", exr, "-d", "half", "--width", 1536, "--height", 864)
     page.run("for (const slot of tonewright.state.slots) slot.op = 'hable'; tonewright.change({ mode: 'grid', exposure: 0, zoom: 0 })")
-    page.give_file("#open", exr)
+    page.drop(exr)
     page.wait("tonewright.view.picture?.name === 'small_view.exr'")
     page.run("tonewright.change({ zoom: 0.25, x: 768, y: 432 })")
     w, h, data = json.loads(page.run(PIXELS))
@@ -184,6 +185,19 @@ def check_files(report, command, page, scratch):
     rgb = np.array(pick(list(colors()), 40), np.float32)
     error = np.max(np.abs(reference(command, str(tone), rgb) - reference(command, "hable", rgb, *settings)))
     report.check(f"Save .tone: {error:.1e}", error <= 1e-12)
+    page.call("Page.setDownloadBehavior", behavior="allow", downloadPath=str(scratch))
+    page.run("[...document.querySelectorAll('button')].find((b) => b.textContent === 'Save PNG').click()")
+    png = scratch / f"{page.run('tonewright.state.slots[0].op')}.png"
+    end = time.monotonic() + 20
+    while not png.is_file() and time.monotonic() < end:
+        page.receive(0.1)
+    data = png.read_bytes() if png.is_file() else bytes(24)
+    width, height = struct.unpack(">II", data[16:24])
+    size = page.run("[tonewright.view.canvas.width, tonewright.view.canvas.height]")
+    report.check("Save PNG: the view with a caption below it", data[1:4] == b"PNG" and width == size[0] and size[1] < height < 1.3 * size[1],
+                 f"{width} x {height}, {size}")
+    if KEEP:
+        png.replace(KEEP / "saved.png")
 
 
 def check_keyboard(report, page):
@@ -309,7 +323,6 @@ def check_silence(report, page):
 
 
 def take_screenshots(page, file, folder):
-    folder.mkdir(parents=True, exist_ok=True)
     for width, height, scale in ((1440, 900, 1), (1920, 1080, 1), (390, 844, 2), (720, 450, 2)):
         page.resize(width, height, scale, width < 500)
         for tab in ("picture", "curves", "parity", "dialects"):
@@ -321,6 +334,8 @@ def take_screenshots(page, file, folder):
 def main() -> int:
     command = str(Path(sys.argv[1]).resolve())
     report = Report()
+    if KEEP:
+        KEEP.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix="tonewright-") as name, Page() as page:
         scratch = Path(name)
         file = scratch / "page.html"
@@ -341,8 +356,8 @@ def main() -> int:
         check_damaged(report, command, page, scratch)
         check_not_finite(report, command, page, scratch)
         check_silence(report, page)
-        if sys.argv[2:3] == ["--screenshots"]:
-            take_screenshots(page, file, Path(sys.argv[3]))
+        if KEEP:
+            take_screenshots(page, file, KEEP)
     return report.finish()
 
 

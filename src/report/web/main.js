@@ -74,6 +74,8 @@ const wipe = h('input', { type: 'range', id: 'wipe', min: 0, max: 1, step: 0.01,
 const wipeLabel = h('label', { for: 'wipe' }, 'Wipe', wipe);
 const toggles = { falseColor: button('False color', () => change({ falseColor: !state.falseColor })),
     clipping: button('Clipping', () => change({ clipping: !state.clipping }), { title: 'Stripes where a channel reaches white (orange) or all are black (blue)' }) };
+// WebGL has no canvas for more than white.
+const hdrNote = h('span', { class: 'note' }, matchMedia('(dynamic-range: high)').matches ? 'The display is HDR; the page shows sRGB.' : '');
 const zoomText = h('span', { class: 'note' });
 const tools = h('div', { class: 'tools' },
     h('label', { for: 'choose' }, 'Picture', choose),
@@ -83,7 +85,7 @@ const tools = h('div', { class: 'tools' },
     h('div', { class: 'group', role: 'group', 'aria-label': 'Marks' }, ...Object.values(toggles)),
     h('div', { class: 'group', role: 'group', 'aria-label': 'Zoom' }, button('Fit', () => change({ zoom: 0, x: 0, y: 0 })),
         button('1:1', () => view.zoomTo(1)), button('-', () => view.zoomTo(view.zoom() / 2), { 'aria-label': 'Zoom out' }),
-        button('+', () => view.zoomTo(view.zoom() * 2), { 'aria-label': 'Zoom in' }), zoomText));
+        button('+', () => view.zoomTo(view.zoom() * 2), { 'aria-label': 'Zoom in' }), zoomText), hdrNote);
 
 const sections = {
     picture: h('section', { id: 'picture', 'aria-label': 'Picture' }, tools, view.stage,

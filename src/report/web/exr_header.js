@@ -58,25 +58,33 @@ export function checkExr(buffer) {
         const end = reader.at;
         reader.at = start;
         if (name === 'dataWindow') found.window = box(reader);
+        if (name === 'displayWindow') found.shown = box(reader);
         if (name === 'channels') found.channels = channelNames(reader, end);
         if (name === 'compression') found.compression = reader.u8();
         if (name === 'tiles') found.tile = [reader.i32(), reader.i32(), reader.u8()];
         if (name === 'chromaticities') found.primaries = [0, 1, 2, 3].map(() => [reader.f32(), reader.f32()]);
         reader.at = end;
     }
-    if (!found.window || !found.channels) throw new Error('the header is damaged');
-    const [left, top, right, bottom] = found.window;
-    const width = right - left + 1;
-    const height = bottom - top + 1;
-    if (!(width > 0 && height > 0)) throw new Error('the header is damaged');
-    if (width * height > MOST_PIXELS)
-        throw new Error(`${width} x ${height} pixels are too many for a page; expected at most ${MOST_PIXELS}`);
+    if (!found.window || !found.shown || !found.channels) throw new Error('the header is damaged');
+    const [width, height] = sizeOf(found.window);
+    const [shownWidth, shownHeight] = sizeOf(found.shown);
     if (!(found.compression in LINES)) throw new Error('its compression is unknown');
     const has = (name) => found.channels.includes(name);
     if (!(has('R') && has('G') && has('B')) && !has('Y'))
         throw new Error(`it has no channels R, G and B; it has ${found.channels.slice(0, 8).join(', ')}`);
     checkChunks(reader, found, width, height);
-    return { width, height, primaries: found.primaries };
+    // Where the data lies in what viewers show.
+    const offset = [found.window[0] - found.shown[0], found.window[1] - found.shown[1]];
+    return { width: shownWidth, height: shownHeight, offset, primaries: found.primaries };
+}
+
+function sizeOf([left, top, right, bottom]) {
+    const width = right - left + 1;
+    const height = bottom - top + 1;
+    if (!(width > 0 && height > 0)) throw new Error('the header is damaged');
+    if (width * height > MOST_PIXELS)
+        throw new Error(`${width} x ${height} pixels are too many for a page; expected at most ${MOST_PIXELS}`);
+    return [width, height];
 }
 
 function checkChunks(reader, found, width, height) {

@@ -9,15 +9,18 @@ const FLOAT = 1015;
 const RGBA = 1023;
 
 function readExr(buffer) {
-    const { primaries } = checkExr(buffer);
-    const { width, height, data, format } = parseExr(buffer, FLOAT);
+    const { width, height, offset, primaries } = checkExr(buffer);
+    const { width: dataWidth, height: dataHeight, data, format } = parseExr(buffer, FLOAT);
     const rgba = new Float32Array(4 * width * height);
     const channels = format === RGBA ? 4 : 1;
-    for (let y = 0; y < height; y++) {
+    const [left, right] = [Math.max(offset[0], 0), Math.min(offset[0] + dataWidth, width)];
+    for (let y = Math.max(offset[1], 0); y < Math.min(offset[1] + dataHeight, height) && left < right; y++) {
         // parse-exr gives the bottom row first.
-        const row = data.subarray(channels * width * (height - 1 - y), channels * width * (height - y));
-        if (channels === 4) rgba.set(row, 4 * width * y);
-        else row.forEach((value, x) => rgba.set([value, value, value, 1], 4 * (width * y + x)));
+        const start = dataWidth * (dataHeight - 1 - (y - offset[1]));
+        const row = data.subarray(channels * (start + left - offset[0]), channels * (start + right - offset[0]));
+        const to = 4 * (width * y + left);
+        if (channels === 4) rgba.set(row, to);
+        else row.forEach((value, x) => rgba.set([value, value, value, 1], to + 4 * x));
     }
     if (primaries) convert(rgba, toRec709(primaries));
     return { width, height, rgba };

@@ -165,14 +165,16 @@ export function makeView(renderer, showProbe) {
         const box = stage.getBoundingClientRect();
         isWiping = state.mode === 'wipe' && Math.abs((event.clientX - box.left) / box.width - state.wipe) * box.width < 14;
         const found = find(event);
-        if (found && !isWiping && state.mode !== 'single') change({ active: found.slot });
+        if (!found || isWiping) return;
+        if (state.mode !== 'single') change({ active: found.slot });
+        probeAt(found.slot, ...found.place.map(Math.floor));  // a finger does not hover
     });
     stage.addEventListener('pointermove', (event) => {
         if (!picture) return;
         const before = pointers.get(event.pointerId);
         if (!before) {
             const found = find(event);
-            if (found) probeAt(found.slot, Math.floor(found.place[0]), Math.floor(found.place[1]));
+            if (found) probeAt(found.slot, ...found.place.map(Math.floor));
             return;
         }
         const box = stage.getBoundingClientRect();

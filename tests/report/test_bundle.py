@@ -65,6 +65,7 @@ def check_speed(report, command, page, file, scratch):
     """Bounds are three times what two busy cores take with software rendering, so that only a real regression fails."""
     page.resize(1920, 1080)
     page.open(file)
+    page.wait("performance.getEntriesByName('first-contentful-paint').length > 0")
     paint = page.run("performance.getEntriesByName('first-contentful-paint')[0].startTime")
     report.check(f"first paint after {paint:.0f} ms (bound 3000)", paint < 3000)
     large = scratch / "4k.exr"

@@ -25,7 +25,8 @@ for folder, direct in {
     "ocio": ["lut"],
     "image": ["lut"],
     "verify": ["ocio", "shader"],
-    "cli": ["verify"],
+    "report": ["verify"],
+    "cli": ["report"],
     "cli/pictures": ["cli", "image"],  # the module that the program loads
     "plugin": ["image"],
     "python": ["verify", "image"],

@@ -47,5 +47,6 @@ void add_sheet(CommandLine& program);
 void add_compare(CommandLine& program);
 void add_plot(CommandLine& program);
 void add_import(CommandLine& program);
+void add_report(CommandLine& program);
 
 TONEWRIGHT_NAMESPACE_END

@@ -11,6 +11,7 @@
 #include "cli/catalogue.h"
 #include "cli/command.h"
 #include "cli/json.h"
+#include "cli/json_forms.h"
 #include "cli/options.h"
 #include "tonewright/definition.h"
 #include "tonewright/lut.h"
@@ -67,6 +68,8 @@ Json to_json(const ParameterSpec& p, bool is_live) {
     return j;
 }
 
+}  // namespace
+
 Json to_json(const Operator& op) {
     Json parameters = Json::array();
     const std::vector<std::string> live = live_parameters(op);
@@ -103,6 +106,8 @@ Json to_json(const Operator& op) {
             {"is_diagnostic", op.is_diagnostic},
             {"is_local", op.is_local()}};
 }
+
+namespace {
 
 Json to_json(const std::vector<Operator>& operators) {
     Json all = Json::array();

@@ -18,7 +18,6 @@
 #include "image/source_picture.h"
 #include "ocio/model.h"
 #include "tonewright/contact_sheet.h"
-#include "tonewright/engine.h"
 #include "tonewright/image_io.h"
 #include "tonewright/lut.h"
 #include "tonewright/ocio.h"
@@ -121,21 +120,6 @@ std::string title_of(const SourceColor& source) {
     return source.name;
 }
 
-/// Scene-linear Rec.709.
-OIIO::ImageBuf decoded(const OIIO::ImageBuf& picture, const SourceColor& source,
-                       const std::string& path) {
-    Pipeline stages = source.decode;
-    stages.emplace_back(MatrixStage{rgb_to_rgb(source.primaries, kRec709)});
-    const SimdEngine engine(stages);
-    OIIO::ImageBuf scene;
-    const auto run = [&](const float* in, float* out, std::size_t n) {
-        engine.run_rgb(in, out, n);
-    };
-    if (!map_colors(scene, picture, run))
-        throw FileError(path + ": " + first_line(scene.geterror()));
-    return scene;
-}
-
 void write_sheet(const CompareOptions& options, const std::vector<Rendering>& renderings,
                  const OIIO::ImageBuf& picture, const std::string& remark) {
     const OIIO::ROI window = shown_window(picture);
@@ -214,7 +198,7 @@ void compare_pictures(CompareOptions options) {
         fmt::format("{}, {}, shown on sRGB", exposure_text(options.exposure), title_of(source));
     if (!options.split && !source.decode.empty()) {
         // Code values are no light to scale.
-        picture = decoded(picture, source, options.in);
+        picture = to_rec709_light(picture, source, options.in);
         options.input = "lin_rec709";
         renderings = renderings_of(options);
     }

@@ -400,14 +400,15 @@ std::string view_in_config(const OCIO::ConstConfigRcPtr& config, const View& vie
     return transform && *transform ? shown : "";
 }
 
-std::vector<ResolvedOperator> operators_of(const std::vector<std::string>& names) {
+std::vector<ResolvedOperator> operators_of(const std::vector<std::string>& names,
+                                           const OperatorSet& others) {
     std::vector<ResolvedOperator> operators;
     bool has_all = names.empty();
     for (const std::string& name : names) {
         if (is_same_name(name, "all")) {
             has_all = true;
         } else {
-            operators.push_back(resolve_operator(name));
+            operators.push_back(resolve_operator(name, {}, {}, others));
         }
     }
     if (!has_all) return operators;
@@ -451,7 +452,7 @@ VerifyResult verify(const VerifyOptions& options,
     const bool is_of_config = options.operators.empty() && !options.config.empty();
     OCIO::ConstConfigRcPtr config;
     if (!options.config.empty()) config = read_config(path_of_config(options.config));
-    const std::vector<ResolvedOperator> operators = operators_of(options.operators);
+    const std::vector<ResolvedOperator> operators = operators_of(options.operators, options.others);
     std::vector<std::string> displays = options.displays;
     if (displays.empty() && is_of_config) {
         for (const Display& display : all_displays())

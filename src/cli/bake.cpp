@@ -54,7 +54,8 @@ void require_lut_picture(const std::string& path, int bits) {
 void take_from_host(Options& options, const LutApplication& host) {
     const auto is_given = [&](const char* option) { return options.given.contains(option); };
     if (!is_given("--input") && !is_given("--input-encoding"))
-        options.input = lut_input_of(host, *resolve_operator(options.op).op);
+        options.input =
+            lut_input_of(host, *resolve_operator(options.op, {}, {}, operator_files()).op);
     if (!is_given("--input-encoding")) options.encoding = host.encoding;
     if (!is_given("--display")) options.display = host.display;
     if (is_given("--format")) return;  // another file than the application's own

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tonewright/registry.h"
 #include "tonewright/view.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -31,6 +32,13 @@ struct ViewOptions {
     /// @throws Error
     [[nodiscard]] View view() const;
 };
+
+/// What reads the .tone files and LUTs that texts name as operators, for all commands.
+[[nodiscard]] const OperatorSet& operator_files();
+/// resolve_picture_operator() with these, and a warning where the operator has one: once a text.
+[[nodiscard]] ResolvedOperator resolve_for_command(const std::string& text,
+                                                   const Settings& settings = {},
+                                                   const std::string& look = {});
 
 /// Each subcommand lives in its own file and puts itself on the command line.
 void add_list(CommandLine& program);

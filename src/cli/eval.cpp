@@ -186,7 +186,8 @@ ColorMap map_of_lut(const Options& options) {
     });
 }
 
-ColorMap map_of_operator(const Options& options) {
+ColorMap map_of_operator(const Options& given) {
+    Options options = given;
     if (options.op.empty()) {
         throw Error(
             "eval: OPERATOR is missing; expected an id from `tonewright list`, or --lut FILE");
@@ -194,6 +195,7 @@ ColorMap map_of_operator(const Options& options) {
     enum Engine : std::size_t { kReference, kSimd, kOcio, kOcioGpu };
     const std::size_t kind =
         find_choice("eval: engine", options.engine, {"reference", "simd", "ocio", "ocio-gpu"});
+    take_lut_options("eval", options.lut, options);
     const View view = options.view();
     const Pipeline pipeline = options.inverse ? build_inverse_view(view) : build_view(view);
     if (kind == kReference) {

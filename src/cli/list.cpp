@@ -17,11 +17,16 @@
 #include "tonewright/lut.h"
 #include "tonewright/lut_applications.h"
 #include "tonewright/registry.h"
+#include "tonewright/view.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 std::string output_of(const Operator& op) {
+    if (op.display) {
+        const std::string display = resolve(op, nullptr, {}, "").output_display();
+        return display.empty() ? "display-linear" : "code values of " + find_display(display).title;
+    }
     if (op.output == OutputKind::display_linear) return "display-linear";
     return fmt::format("code values, power {}", op.code_power);
 }
@@ -330,9 +335,9 @@ int run_list(const Options& options) {
     } else if (options.definition) {
         if (options.op.empty())
             throw Error("list: operator is missing; expected one before --definition");
-        fmt::print("{}", definition_of(resolve_picture_operator(options.op)));
+        fmt::print("{}", definition_of(resolve_for_command(options.op)));
     } else if (!options.op.empty()) {
-        const ResolvedOperator resolved = resolve_picture_operator(options.op);
+        const ResolvedOperator resolved = resolve_for_command(options.op);
         const Operator& op = *resolved.op;
         if (options.json) {
             fmt::print("{}\n", to_json(op).dump(2));

@@ -142,11 +142,11 @@ PlotScale Readings::scale(double brightest) const {
 
 /// `--set` and `--look` are for all; what an operator's own text says comes first.
 View view_of(const PlotOptions& options, const std::string& text) {
-    const ResolvedOperator own = resolve_operator(text);
+    const ResolvedOperator own = resolve_operator(text, {}, {}, operator_files());
     Settings settings = own.settings;
     settings.merge(options.settings());
     const std::string& look = own.params.look();
-    return make_view(resolve_operator(own.name(), settings, look.empty() ? options.look : look),
+    return make_view(resolve_for_command(own.name(), settings, look.empty() ? options.look : look),
                      options.input, options.exposure, options.display, options.reference_white);
 }
 

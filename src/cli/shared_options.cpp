@@ -49,14 +49,12 @@ void add_lut_options(const Command& command, LutOptions& options, const Option& 
         .add("--input-encoding", options.encoding,
              "encoding that the LUT expects (see `bake --help`) or `none` (default: its header's)")
         .value("NAME")
-        .group(group)
-        .needs(lut);
+        .group(group);
     command
         .add("--lut-space", options.space,
              "scene-linear space of the LUT's input (default: that of its encoding)")
         .value("SPACE")
-        .group(group)
-        .needs(lut);
+        .group(group);
     command
         .add("--interpolation", options.interpolation,
              "between grid points: tetrahedral, trilinear, or auto (what the file says)")

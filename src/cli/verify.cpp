@@ -149,6 +149,10 @@ int run_verify(Options& options) {
                       options.json);
         return kOk;
     }
+    verify_options.others = operator_files();
+    for (const std::string& name : verify_options.operators) {
+        if (names_a_file(name)) (void)resolve_for_command(name);
+    }
     verify_options.with_gpu = !options.no_gpu;
     if (options.quick) {
         verify_options.lattice_edge = 9;

@@ -7,6 +7,7 @@
 #include "base/format_number.h"
 #include "base/strings.h"
 #include "definition/primaries_names.h"
+#include "definition/table_stages.h"
 #include "definition/write.h"
 #include "formula/formula.h"
 #include "tonewright/definition.h"
@@ -63,6 +64,10 @@ class Writer {
                 write_parameter(spec);
         }
         write_declarations();
+        if (is_table_) {
+            write_lut();
+            return std::move(text_);
+        }
         write_stages("stage", build_live(resolved_, live_));
         if (op_.build_inverse) {
             Operator back = op_;
@@ -75,6 +80,16 @@ class Writer {
     }
 
   private:
+    /// A LUT is one stage, which names its file.
+    void write_lut() {
+        text_ += "\n[[stage]]\n";
+        text_line("lut", op_.file);
+        const std::string& input = resolved_.params.text("input");
+        text_line("input", input.empty() ? std::string(kNoEncoding) : input);
+        const std::string space = space_of_table(resolved_);
+        text_line("space", space);
+    }
+
     void line(const std::string& key, const std::string& value) {
         text_ += key + " = " + value + "\n";
     }
@@ -99,14 +114,20 @@ class Writer {
         const Primaries output = resolved_.output_primaries();
         text_ += "\n[primaries]\n";
         line("working", primaries_text(op_.working));
-        if (!(output == op_.working)) line("output", primaries_text(output));
-        if (op_.output == OutputKind::display_linear && !op_.peak) return;
+        const std::string display = resolved_.output_display();
+        if (!(output == op_.working) && display.empty()) line("output", primaries_text(output));
+        const bool has_peak = op_.peak && !is_table_;
+        if (resolved_.output() == OutputKind::display_linear && !has_peak) return;
         text_ += "\n[output]\n";
-        if (op_.output == OutputKind::code_value) {
+        if (resolved_.output() == OutputKind::code_value) {
             line("kind", quoted("code_value"));
-            line("power", number(op_.code_power));
+            if (display.empty()) {
+                line("power", number(op_.code_power));
+            } else {
+                line("display", quoted(display));
+            }
         }
-        if (op_.peak) line("peak", peak_text());
+        if (op_.peak && display.empty()) line("peak", peak_text());
     }
 
     /// The operator with one parameter changed; where that contradicts others, as it is.
@@ -270,6 +291,7 @@ class Writer {
     const Operator& op_;
     const FormulaNames& names_;
     const std::vector<std::string> live_;
+    const bool is_table_ = is_table_operator(op_);
     std::string text_;
 };
 

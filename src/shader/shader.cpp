@@ -161,7 +161,7 @@ ShaderProgram program_of(const ShaderRequest& request) {
 bool is_light(const ShaderRequest& request) {
     const View& view = request.view;
     if (is_of_a_display(view)) return false;
-    return view.display == kLinearOutput || view.op.op->output == OutputKind::display_linear;
+    return view.display == kLinearOutput || view.op.output() == OutputKind::display_linear;
 }
 
 /// Light as sRGB code values, without an upper end: what is above 1 counts relatively.

@@ -52,6 +52,7 @@ Rendering rendering_of(const ResolvedOperator& op, const CompareOptions& options
     tonemap.look = op.params.look();
     tonemap.exposure_stops = options.exposure;
     tonemap.input = options.input;
+    tonemap.others = operator_files();
     return {op, Tonemapper(tonemap)};
 }
 
@@ -59,7 +60,7 @@ Rendering rendering_of(const ResolvedOperator& op, const CompareOptions& options
 std::vector<Rendering> renderings_of(const CompareOptions& options) {
     std::vector<Rendering> all;
     for (const std::string& text : options.operators)
-        all.push_back(rendering_of(resolve_picture_operator(text), options));
+        all.push_back(rendering_of(resolve_for_command(text), options));
     if (options.operators.empty()) {
         for (const ConfigModel::View& view : make_config_model().views) {
             if (!view.op.op->is_diagnostic) all.push_back(rendering_of(view.op, options));

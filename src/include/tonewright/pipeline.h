@@ -338,11 +338,15 @@ struct Operator {
     std::function<Primaries(const Params& params)> output_primaries = {};
     /// Largest light of the output on a display that can show more than white. Null: 1.
     std::function<double(const Params& params)> peak = {};
+    /// The display whose code values come out, or `linear`. Null: `output` says what comes out.
+    std::function<std::string(const Params& params)> display = {};
+    /// What a user should know about these parameters; an empty text: nothing. May be null.
+    std::function<std::string(const Params& params)> caution = {};
     /// Not null: what a pixel becomes depends on its surroundings, and this is the operator, for
     /// whole pictures (local.h). build() is what is left for a pixel by itself: nothing.
     void (*run_local)(ScenePlanes& picture, const Params& params) = nullptr;
 
-    /// The .tone file that it was read from, as its path was given. Empty: it is built in.
+    /// The .tone or LUT file that it was read from, as its path was given. Empty: it is built in.
     std::string file = {};
 
     [[nodiscard]] bool is_local() const { return run_local != nullptr; }
@@ -370,6 +374,19 @@ struct ResolvedOperator {
     }
 
     [[nodiscard]] Pipeline build() const { return op->build(params); }
+    /// What the numbers of the output are, with these parameters.
+    [[nodiscard]] OutputKind output() const {
+        if (!op->display) return op->output;
+        return op->display(params) == "linear" ? OutputKind::display_linear
+                                               : OutputKind::code_value;
+    }
+    /// What a user should know about these parameters; empty: nothing.
+    [[nodiscard]] std::string caution() const { return op->caution ? op->caution(params) : ""; }
+    /// Id of the display whose code values come out. Empty: they are light, or code values of
+    /// Operator::code_power.
+    [[nodiscard]] std::string output_display() const {
+        return op->display && output() == OutputKind::code_value ? op->display(params) : "";
+    }
     /// Primaries of the output.
     [[nodiscard]] Primaries output_primaries() const {
         return op->output_primaries ? op->output_primaries(params) : op->working;

@@ -224,19 +224,18 @@ TEST(InputEncoding, RefusesWhatItDoesNotKnow) {
         return error_of([&] { (void)parse_input_encoding(text); });
     };
     EXPECT_EQ(error("acescc"),
-              "bake: input encoding is acescc; expected acescct, logc3, logc4, slog3, davinci, "
+              "input encoding is acescc; expected acescct, logc3, logc4, slog3, davinci, "
               "unity_logc, unreal_log, srgb, pq, log2 or linear; did you mean acescct?");
     for (const char* text : {"pq:0", "pq:-1", "pq:nan", "pq:1e6", "pq:", "pq:100:2", "srgb:1"})
         EXPECT_NE(error(text).find(std::string("input encoding is ") + text), std::string::npos)
             << text;
     for (const char* text : {"log2:", "log2:-10", "log2:1:1", "log2:2:1", "log2:a:b", "log2:0:nan",
                              "log2:0:inf", "log2:0:1:2", "log2:0:1 ", "log2::"}) {
-        EXPECT_EQ(error(text), std::string("bake: input encoding is ") + text +
+        EXPECT_EQ(error(text), std::string("input encoding is ") + text +
                                    "; expected log2:LO:HI with numbers LO < HI");
     }
-    EXPECT_EQ(error("log2:-65:0"), "bake: input encoding is log2:-65:0; expected [-64, 64] stops");
-    EXPECT_EQ(error("log2:0:64.5"),
-              "bake: input encoding is log2:0:64.5; expected [-64, 64] stops");
+    EXPECT_EQ(error("log2:-65:0"), "input encoding is log2:-65:0; expected [-64, 64] stops");
+    EXPECT_EQ(error("log2:0:64.5"), "input encoding is log2:0:64.5; expected [-64, 64] stops");
     EXPECT_NE(error("linear:1:0"), "no error");
     EXPECT_NE(error("acescct:0:1"), "no error") << "it has no ends to choose";
 }
@@ -568,7 +567,7 @@ TEST(SampleLut, TakesSizesOf17To129) {
 TEST(SampleLut, RefusesWhatAHostWouldShowWrong) {
     const auto error = [](const LutRequest& r) { return error_of([&] { (void)sample_lut(r); }); };
     LutRequest r = request_for("agx_sobotka", "linear");
-    EXPECT_EQ(error(r).rfind("bake: input encoding is linear:0:1; expected another for a 3D "
+    EXPECT_EQ(error(r).rfind("input encoding is linear:0:1; expected another for a 3D "
                              "table",
                              0),
               0U)

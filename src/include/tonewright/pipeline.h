@@ -331,8 +331,8 @@ struct Operator {
     std::string meant;
     /// Working-space scene-linear, finite -> the operator's own output.
     std::function<Pipeline(const Params& params)> build = {};
-    /// The inverse where the source has one: the operator's own output -> working-space scene-linear.
-    /// Null: build_inverse_view() inverts the stages.
+    /// The inverse where the source has one: the operator's own output -> working-space
+    /// scene-linear. Null: build_inverse_view() inverts the stages.
     std::function<Pipeline(const Params& params)> build_inverse = {};
     /// Of the output. Null: `working`.
     std::function<Primaries(const Params& params)> output_primaries = {};

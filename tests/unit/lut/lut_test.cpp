@@ -204,8 +204,8 @@ TEST(InputEncoding, LinearIsAStraightLine) {
 
 TEST(InputEncoding, DecodeInvertsEncode) {
     for (const char* text :
-         {"acescct", "logc3", "logc4", "slog3", "davinci", "unity_logc", "unreal_log", "srgb", "pq",
-          "pq:203", "log2", "log2:-3:64", "linear:0.5:8"}) {
+         {"acescct", "logc3", "logc4", "slog3", "davinci", "unity_logc", "unreal_log", "srgb",
+          "reinhard", "pq", "pq:203", "log2", "log2:-3:64", "linear:0.5:8"}) {
         const InputEncoding e = parse_input_encoding(text);
         for (int i = 0; i <= 64; ++i) {
             const double code = i / 64.0;
@@ -225,7 +225,7 @@ TEST(InputEncoding, RefusesWhatItDoesNotKnow) {
     };
     EXPECT_EQ(error("acescc"),
               "input encoding is acescc; expected acescct, logc3, logc4, slog3, davinci, "
-              "unity_logc, unreal_log, srgb, pq, log2 or linear; did you mean acescct?");
+              "unity_logc, unreal_log, srgb, reinhard, pq, log2 or linear; did you mean acescct?");
     for (const char* text : {"pq:0", "pq:-1", "pq:nan", "pq:1e6", "pq:", "pq:100:2", "srgb:1"})
         EXPECT_NE(error(text).find(std::string("input encoding is ") + text), std::string::npos)
             << text;

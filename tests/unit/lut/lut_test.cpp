@@ -210,8 +210,10 @@ TEST(InputEncoding, DecodeInvertsEncode) {
         for (int i = 0; i <= 64; ++i) {
             const double code = i / 64.0;
             const double scene = evaluate(e.decode, code);
-            // SMPTE ST 2084 has black at code 7.3e-7.
-            const double tolerance = e.id.starts_with("pq") && i == 0 ? 1e-6 : 1e-13;
+            // SMPTE ST 2084 has black at code 7.3e-7, and x/(x + 1) ends at 65504 instead of 1.
+            const bool is_pq_black = e.id.starts_with("pq") && i == 0;
+            const bool is_end = e.id == "reinhard" && i == 64;
+            const double tolerance = is_pq_black ? 1e-6 : is_end ? 1.6e-5 : 1e-13;
             EXPECT_NEAR(evaluate(e.encode, scene), code, tolerance) << text;
             EXPECT_GE(scene, e.scene_lo - 1e-15 * std::fabs(e.scene_lo));
             EXPECT_LE(scene, e.scene_hi * (1 + 1e-14));

@@ -252,7 +252,8 @@ void add_config(CommandLine& program) {
         .group(contents);
     command
         .add("--operator", options->operators,
-             "add a view: NAME[:PRESET][:PARAMETER=VALUE...]; repeat for more")
+             "add a view: NAME[:PRESET][:PARAMETER=VALUE...], a .tone file or a LUT; repeat for "
+             "more")
         .value("OPERATOR")
         .one_value_each()
         .group(own);

@@ -237,7 +237,7 @@ void add_eval(CommandLine& program) {
         program.add("eval", "Tone map RGB triplets from standard input, one a line.");
     command.group("Operators");
     const Option op =
-        command.add("operator", options->op, "operator, operator:preset or .tone file");
+        command.add("operator", options->op, "operator, operator:preset, .tone file or LUT");
     add_view_options(command, *options);
     command
         .add("--engine", options->engine,

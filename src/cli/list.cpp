@@ -371,7 +371,7 @@ void add_list(CommandLine& program) {
     command.group("Operators");
     const char* const contents = "What to list";
     const char* const format = "Format";
-    command.add("operator", options->op, "operator to describe in full, or a .tone file");
+    command.add("operator", options->op, "operator to describe in full, a .tone file or a LUT");
     const Option json = command.add_flag("--json", options->json, "print JSON");
     json.group(format);
     const Option markdown =

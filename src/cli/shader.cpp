@@ -278,7 +278,7 @@ void add_shader(CommandLine& program) {
     const Command command = program.add("shader", "Write an operator as shader source.");
     command.group("LUTs, shaders and configs");
     const char* const output = "Output";
-    command.add("operator", options->op, "operator, operator:preset or .tone file");
+    command.add("operator", options->op, "operator, operator:preset, .tone file or LUT");
     command
         .add("--language", options->language,
              "language of the text; see --list (default: by the extension)")

@@ -39,7 +39,7 @@ void add_view_options(const Command& command, ViewOptions& options) {
 
 void add_lut_options(const Command& command, LutOptions& options, const Option& op,
                      const std::vector<std::string>& others) {
-    const char* const group = "LUT instead of an operator";
+    const char* const group = "LUT, or LUT as the operator";
     const Option lut =
         command.add("--lut", options.file, "LUT file (.cube, .clf, .csp, .icc, Hald CLUT, ...)");
     lut.value("FILE").group(group).excludes(op);

@@ -116,6 +116,17 @@ std::shared_ptr<const Operator> operator_of_table(const TableFile& file, const s
                           "scene-linear space of the LUT's input (default: that of its encoding)"),
         text_with_default("output", table->display,
                           "display whose code values the LUT gives, or `linear`")};
+    const bool has_curve =
+        std::any_of(table->stages.begin(), table->stages.end(), [](const Stage& stage) {
+            const auto* const curve = std::get_if<CurveStage>(&stage);
+            return curve && curve->f[0].op() == ExprOp::lookup;
+        });
+    if (has_curve) {
+        // At a corner between two half floats, a quarter of their distance of at most 1/2048 times
+        // the change of the slope.
+        op.bounds.ocio_cpu = op.bounds.ocio_gpu = 5e-5;
+        op.bounds.reason = "OpenColorIO joins a 1D table with its encoding at half floats";
+    }
     op.display = [table](const Params& params) { return display_of(*table, params); };
     op.output_primaries = [table](const Params& params) {
         const Display* const display = shown_on(*table, params);

@@ -63,13 +63,17 @@ struct AbsentOperator {
 };
 constexpr AbsentOperator kAbsentOperators[] = {
     {"filmic",
-     "Filmic Blender is a table without a formula; name its file (docs/own_operators.md)"},
+     "Filmic Blender is a table without a formula (docs/choosing.md); expected its file as the "
+     "operator"},
     {"filmic_blender",
-     "Filmic Blender is a table without a formula; name its file (docs/own_operators.md)"},
+     "Filmic Blender is a table without a formula (docs/choosing.md); expected its file as the "
+     "operator"},
     {"tony_mcmapface",
-     "Tony McMapface is a table without a formula; name its file (docs/own_operators.md)"},
+     "Tony McMapface is a table without a formula (docs/choosing.md); expected its file as the "
+     "operator"},
     {"tonymcmapface",
-     "Tony McMapface is a table without a formula; name its file (docs/own_operators.md)"},
+     "Tony McMapface is a table without a formula (docs/choosing.md); expected its file as the "
+     "operator"},
     {"opendrt", "OpenDRT cannot be derived from its description (docs/choosing.md)"},
 };
 

@@ -767,7 +767,7 @@ def command_line_errors(picture):
         ([*apply, "--legend"], "apply: --legend is given; expected --false-color with it"),
         ([*apply, "--adapt"], "apply: --adapt is given; expected --auto-exposure METHOD and --frames RANGE with it"),
         ([*apply, "--adapt-up", "2"], "apply: --adapt-up is 2; expected --adapt with it"),
-        ([*apply, "--input-encoding", "none"], "apply: --input-encoding is none; expected --lut FILE with it"),
+        ([*apply, "--input-encoding", "none"], "apply: --input-encoding is none; expected a LUT as the operator, or --lut"),
         ([*apply, "--operator", "hable", "--lut", "x.cube"], "apply: --operator and --lut are given; expected one of them"),
         (["apply", picture, picture, "-o", "o.png"], "apply: -o is o.png; expected a folder; --format"),
         (["eval", "hable", "--lut", "x.cube"], "eval: OPERATOR and --lut are given; expected one of them"),

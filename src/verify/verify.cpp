@@ -34,7 +34,8 @@ namespace fs = std::filesystem;
 class TemporaryConfig {
   public:
     TemporaryConfig(const std::vector<std::string>& views, const OperatorSet& others) {
-        write_generated_files(folder_.path(), make_config({.views = views, .others = others}), "config.ocio");
+        write_generated_files(folder_.path(), make_config({.views = views, .others = others}),
+                              "config.ocio");
     }
     [[nodiscard]] const std::string& folder() const { return folder_.path(); }
 

@@ -189,7 +189,7 @@ CurveStage half_tables_of(const std::vector<float>& rows) {
     const auto add = [&](unsigned bits) {
         for (std::size_t c = 0; c < 3; ++c) {
             tables.at(c).positions.push_back(half_value(bits));
-            tables.at(c).samples.push_back(static_cast<double>(rows[3 * bits + c]));
+            tables.at(c).samples.push_back(static_cast<double>(rows[3 * std::size_t{bits} + c]));
         }
     };
     constexpr unsigned kLargest = 0x7BFF;

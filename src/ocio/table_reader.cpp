@@ -189,7 +189,7 @@ class Converter {
         const bool is_inverse = log.getDirection() == OCIO::TRANSFORM_DIR_INVERSE;
         const Expr x = Expr::input();
         // What OpenColorIO takes the logarithm of at least.
-        constexpr double kLeast = std::numeric_limits<float>::min();
+        constexpr auto kLeast = static_cast<double>(std::numeric_limits<float>::min());
         std::array<Expr, 3> f = {x, x, x};
         for (std::size_t c = 0; c < 3; ++c) {
             if (is_inverse) {

@@ -24,7 +24,7 @@ void append(std::string& bytes, std::uint32_t value, std::size_t size = 4) {
 /// A volume of 2 texels a side with the header of Direct3D 10.
 std::string dds_of(std::uint32_t dxgi, const std::string& texels) {
     std::string bytes = "DDS ";
-    for (const std::uint32_t value : {124, 0x801007, 2, 2, 0, 2, 1})
+    for (const std::uint32_t value : {124U, 0x801007U, 2U, 2U, 0U, 2U, 1U})
         append(bytes, value);
     bytes.resize(4 + 72, '\0');
     append(bytes, 32);

@@ -447,7 +447,8 @@ TEST(Resolve, UnknownNamesGetTheNearest) {
     EXPECT_EQ(
         resolve_error("filmic"),
         "operator is filmic; expected an id from `tonewright list`; Filmic Blender is a table "
-        "without a formula (docs/choosing.md); did you mean unreal?");
+        "without a formula (docs/choosing.md); expected its file as the operator; did you mean "
+        "unreal?");
     EXPECT_EQ(resolve_error("agx_blender:punchy"),
               "agx_blender: preset is punchy; expected formula or hdr; did you mean look=punchy?");
     EXPECT_EQ(resolve_error("photoshop"),

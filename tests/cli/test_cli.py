@@ -791,7 +791,7 @@ def usage_errors(bad, picture):
         (["list", "--json", "--markdown"], "list: --json and --markdown are given; expected one of them"),
         (["list", "habel"], "operator is habel; did you mean hable?"), (["eval"], "eval: OPERATOR is missing; expected an id from `tonewright list`, or --lut FILE"),
         (["eval", "habel"], "did you mean hable?"), (["eval", "aces"], "did you mean aces_13, aces_20 or aces_filament?"),
-        (["eval", "foo"], "operator is foo"), (["eval", "filmic"], "Filmic Blender is a table without a formula; name its file (docs/own_operators.md)"),
+        (["eval", "foo"], "operator is foo"), (["eval", "filmic"], "Filmic Blender is a table without a formula (docs/choosing.md); expected its file as the operator; did you mean unreal?"),
         (["eval", "hable:white=4", "--set", "white=5"], "white is 4 and 5; expected it once"),
         (["eval", "hable", "--engin", "simd"], "option is --engin; did you mean --engine?"),
         (["bake", "hable", "-o", "out", "--nodes", "fited"], "--nodes; fited; did you mean fitted?"),

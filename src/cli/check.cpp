@@ -83,7 +83,7 @@ void add_check(CommandLine& program) {
     const Command command =
         program.add("check", "Check an operator against the laws of tone curves.");
     command.group("Checks");
-    command.add("operator", options->op, "operator, operator:preset or .tone file").required();
+    command.add("operator", options->op, "operator, operator:preset, .tone file or LUT").required();
     add_operator_options(command, *options);
     const char* const output = "Output";
     command

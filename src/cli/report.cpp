@@ -57,7 +57,7 @@ std::vector<ResolvedOperator> operators_of(const Options& options) {
             add(resolve_operator(op.id));
     } else {
         for (const std::string& text : options.operators)
-            add(resolve_picture_operator(text));
+            add(resolve_for_command(text));
         add(resolve_operator(kFalseColor));
     }
     if (is_all || options.operators.empty()) {
@@ -264,6 +264,7 @@ class PageContents {
         Json rows = Json::array();
         if (options_.no_parity) return rows;
         VerifyOptions verify_options;
+        verify_options.others = operator_files();
         for (const ResolvedOperator& op : operators_) {
             if (!op.op->is_local()) verify_options.operators.push_back(operator_text(op));
         }
@@ -287,6 +288,11 @@ class PageContents {
 };
 
 int run_report(const Options& options) {
+    if (const std::string extension = extension_of(options.file);
+        extension != ".html" && extension != ".htm") {
+        throw Error("report: -o is " + printable(options.file) +
+                    "; expected a name that ends in .html");
+    }
     const ResultLine line;
     redirect_opencolorio_messages([](const std::string& text) {
         if (!message_options().is_quiet) print_message("OpenColorIO: " + text);

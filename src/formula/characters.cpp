@@ -77,6 +77,17 @@ NumberText number_of(std::string_view text) {
     return {value};
 }
 
+Precedence precedence_of(std::string_view sign) {
+    if (sign == "?") return kChoice;
+    if (sign == "||") return kOr;
+    if (sign == "&&") return kAnd;
+    if (sign == "==" || sign == "!=") return kEquality;
+    if (sign == "<" || sign == "<=" || sign == ">" || sign == ">=") return kOrder;
+    if (sign == "+" || sign == "-") return kSum;
+    if (sign == "*" || sign == "/") return kProduct;
+    return kNone;
+}
+
 Expr log10(const Expr& a) { return log2(a) * (std::numbers::ln2 / std::numbers::ln10); }
 
 Expr truth(const Expr& e) { return is_truth(e) ? e : select(e, 1, 0); }

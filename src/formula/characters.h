@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What the readers of formulas and of shaders have in common: characters, numbers, truth.
+// What the readers of formulas and of shaders have in common: characters, numbers, operators,
+// truth.
 #pragma once
 
 #include <cstddef>
@@ -27,6 +28,21 @@ struct NumberText {
     const char* expected = nullptr;  // what a text that is no number should be
 };
 [[nodiscard]] NumberText number_of(std::string_view text);
+
+/// Binding strength of operators, weakest first.
+enum Precedence : unsigned char {
+    kNone,
+    kChoice,
+    kOr,
+    kAnd,
+    kEquality,
+    kOrder,
+    kSum,
+    kProduct,
+    kSign
+};
+/// Of an operator between two operands, as in C: `&&`. kNone: it is no such operator.
+[[nodiscard]] Precedence precedence_of(std::string_view sign);
 
 Expr log10(const Expr& a);
 /// 1 where it is not 0, else 0; itself where it is one of them.

@@ -28,30 +28,8 @@ constexpr std::size_t kMostCalls = 64;  // inside each other
 /// Of numbers and colors alike: what folds into a number takes time, too.
 constexpr int kMostSteps = 20 * kMostOperations;
 
-/// Binding strength, weakest first.
-enum Precedence : unsigned char {
-    kNone,
-    kChoice,
-    kOr,
-    kAnd,
-    kEquality,
-    kOrder,
-    kSum,
-    kProduct,
-    kSign
-};
-
 Precedence precedence_of(const Token& token) {
-    if (token.kind != Kind::sign) return kNone;
-    const std::string_view t = token.text;
-    if (t == "?") return kChoice;
-    if (t == "||") return kOr;
-    if (t == "&&") return kAnd;
-    if (t == "==" || t == "!=") return kEquality;
-    if (t == "<" || t == "<=" || t == ">" || t == ">=") return kOrder;
-    if (t == "+" || t == "-") return kSum;
-    if (t == "*" || t == "/") return kProduct;
-    return kNone;
+    return token.kind == Kind::sign ? tonewright::precedence_of(token.text) : kNone;
 }
 
 template <std::size_t n>

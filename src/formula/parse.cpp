@@ -79,30 +79,8 @@ struct Token {
     std::string_view text;
 };
 
-/// Binding strength, weakest first.
-enum Precedence : unsigned char {
-    kNone,
-    kChoice,
-    kOr,
-    kAnd,
-    kEquality,
-    kOrder,
-    kSum,
-    kProduct,
-    kSign
-};
-
 Precedence precedence_of(const Token& token) {
-    if (token.kind != Kind::sign) return kNone;
-    const std::string_view t = token.text;
-    if (t == "?") return kChoice;
-    if (t == "||") return kOr;
-    if (t == "&&") return kAnd;
-    if (t == "==" || t == "!=") return kEquality;
-    if (t == "<" || t == "<=" || t == ">" || t == ">=") return kOrder;
-    if (t == "+" || t == "-") return kSum;
-    if (t == "*" || t == "/") return kProduct;
-    return kNone;
+    return token.kind == Kind::sign ? tonewright::precedence_of(token.text) : kNone;
 }
 
 class Parser {

@@ -3,16 +3,13 @@
 
     python3 tests/cli/test_malformed_shaders.py build/release/bin/tonewright
 
-The last line is `N passed, M failed`. It imports no NumPy: what a process holds before exec counts as the memory
-of the program that it becomes.
+The last line is `N passed, M failed`.
 """
 
-import os
-import re
-import subprocess
 import sys
-import tempfile
 from pathlib import Path
+
+from malformed import judge
 
 SHADERS = Path(__file__).resolve().parents[1] / "data" / "glsl"
 GOOD = "vec3 f(vec3 c) {\n    return c/(c + 1.0);\n}\n"
@@ -176,35 +173,8 @@ def malformed():
 
 
 def main() -> int:
-    command, cases = str(Path(sys.argv[1]).resolve()), malformed()
-    folder = tempfile.TemporaryDirectory()
-    wrong, slowest, largest = [], 0.0, 0
-    path, target = Path(folder.name) / "bad.glsl", Path(folder.name) / "my.tone"
-    for what, text, message in cases:
-        path.write_bytes(text)
-        process = subprocess.Popen([command, "import", path, "-o", target], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                                   stderr=subprocess.PIPE)
-        out, err = process.stdout.read(), process.stderr.read()
-        _, status, usage = os.wait4(process.pid, 0)
-        process.returncode = os.waitstatus_to_exitcode(status)
-        slowest = max(slowest, usage.ru_utime + usage.ru_stime)  # of the processor: others may use it
-        largest = max(largest, usage.ru_maxrss)
-        lines = err.decode("ascii", "replace").splitlines()
-        is_large = f"read: {path}: it has " in (lines or [""])[0]
-        has_place = bool(lines) and re.match(rf"tonewright: {re.escape(str(path))}:\d+:\d+: \S", lines[0])
-        has_caret = len(lines) == 3 and set(lines[2]) <= {" ", "^"} and "^" in lines[2]
-        is_named = bool(lines) and message in lines[0]
-        ok = process.returncode == 3 and not out and is_named and (is_large or (has_place and has_caret)) and not target.exists()
-        if not ok:
-            wrong.append(f"{what}: exit {process.returncode}: expected {message}: {err[:300]}")
-        process.stdout.close()
-        process.stderr.close()
-    folder.cleanup()
-    print(f"{len(cases)} files; at most {slowest:.3f} s of the processor, {largest / 1024:.0f} MB")
-    print("\n".join(wrong))
-    failures = len(wrong) + (slowest > 1) + (largest > 200 * 1024) + (len(cases) < 60)
-    print(f"{len(cases) - len(wrong)} passed, {failures} failed")
-    return 1 if failures else 0
+    command = str(Path(sys.argv[1]).resolve())
+    return judge(lambda path, target: [command, "import", path, "-o", target], malformed(), "bad.glsl", 60)
 
 
 if __name__ == "__main__":

@@ -282,6 +282,8 @@ def check_command(report, command, scratch):
             ([], 2, "-o is missing"),
             (["-o", file, "--operators", "habel"], 2, "did you mean hable?"),
             (["-o", file, "--width", "10"], 2, "expected"),
+            (["-o", scratch / "no.txt"], 2, "expected a name that ends in .html"),
+            (["-o", file, "--operators", scratch / "missing.cube"], 3, "missing.cube"),
             (["-o", file, scratch / "missing.exr"], 3, "missing.exr"),
             (["-o", scratch / "no" / "page.html"], 3, "write: ")):
         done = subprocess.run([command, "report", *map(str, arguments)], capture_output=True, text=True, check=False)
@@ -289,6 +291,18 @@ def check_command(report, command, scratch):
         report.check(f"report {' '.join(map(str, arguments))}: exit code {code}",
                      done.returncode == code and words in done.stderr and is_one_line, f"{done.returncode} {done.stderr}")
     report.check("report: no file after an error", not file.exists())
+
+
+def check_own(report, command, page, scratch):
+    """A .tone file and a LUT as operators of the page: its reference against `eval`."""
+    (scratch / "own.tone").write_text('tonewright = 1\nid = "own"\n[[stage]]\ncurve = "max(x, 0)/(max(x, 0) + 1)"\n')
+    tonewright_run(command, "bake", "hable", "--input", "lin_rec709", "--3d", "-o", scratch / "film.cube", "-q")
+    file = scratch / "own.html"
+    tonewright_run(command, "report", "-o", file, "--operators", f"{scratch}/own.tone,{scratch}/film.cube")
+    page.open(file)
+    check_reference(report, command, page)
+    named = page.run("tonewright.operators.map((op) => op.name).join(' ')")
+    report.check("report: operators from files", "own.tone" in named and "film.cube" in named, named)
 
 
 def check_not_finite(report, command, page, scratch):
@@ -355,6 +369,7 @@ def main() -> int:
         check_link(report, page, file)
         check_damaged(report, command, page, scratch)
         check_not_finite(report, command, page, scratch)
+        check_own(report, command, page, scratch)
         check_silence(report, page)
         if KEEP:
             take_screenshots(page, file, KEEP)

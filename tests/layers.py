@@ -25,7 +25,8 @@ for folder, direct in {
     "ocio": ["lut"],
     "image": ["lut"],
     "verify": ["ocio", "shader"],
-    "cli": ["verify"],
+    "report": ["verify"],
+    "cli": ["report"],
     "cli/pictures": ["cli", "image"],  # the module that the program loads
     "plugin": ["image"],
     "python": ["verify", "image"],
@@ -34,7 +35,7 @@ for folder, direct in {
 # Public header -> the folder that it belongs to.
 PUBLIC = {
     "version": "base", "error": "base", "span": "base", "generated_files": "base", "expr": "expr", "color": "color",
-    "pipeline": "pipeline", "view": "pipeline", "engine": "engine", "local": "local", "registry": "registry", "definition": "definition",
+    "pipeline": "pipeline", "view": "pipeline", "input_encoding": "pipeline", "engine": "engine", "local": "local", "registry": "registry", "definition": "definition",
     "lut": "lut", "lut_applications": "lut", "ocio": "ocio", "lut_file": "ocio", "tonemap": "image",
     "image_io": "image", "chart": "image", "contact_sheet": "image", "sequence": "image", "meter": "image",
     "shader": "shader", "verify": "verify", "lint": "verify", "lut_match": "verify",

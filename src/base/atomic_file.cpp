@@ -256,6 +256,18 @@ void make_folder(const fs::path& folder) {
 }
 }  // namespace
 
+void require_writable_file(const std::string& path) {
+    const auto refuse = [&](const std::string& reason) {
+        throw FileError("write: " + path + ": " + reason);
+    };
+    AtomicFile probe(path);  // which is never kept
+    if (!probe.refusal().empty()) refuse(probe.refusal());
+    if (const int error = probe.check_target()) refuse(reason_of(error));
+    const int file = probe.create();
+    if (file < 0) refuse(reason_of(errno));
+    ::close(file);
+}
+
 void require_writable_folder(const std::string& folder) {
     const fs::path root(folder);
     make_folder(root);

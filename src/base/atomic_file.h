@@ -57,6 +57,9 @@ class TONEWRIGHT_API AtomicFile {
 /// Writes a whole file. @throws FileError  "write: <path>: <reason>"
 TONEWRIGHT_API void write_text_atomically(const std::string& path, std::string_view contents);
 
+/// Throws what write_text_atomically() will throw, before a long computation.
+TONEWRIGHT_API void require_writable_file(const std::string& path);
+
 /// Creates the folder if it is missing, and a file in it for a moment, so that a long computation
 /// does not find out at its end that it cannot write. A signal that ends the program removes the
 /// folder if nothing was written into it.

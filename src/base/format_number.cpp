@@ -107,6 +107,13 @@ void drop_zero_before_point(std::string& text, std::size_t begin) {
     if (text.compare(begin, 2, "0.") == 0) text.erase(begin, 1);
 }
 
+std::string rounded(double value, int digits) {
+    std::array<char, 32> text{};
+    const auto end = std::to_chars(text.data(), text.data() + text.size(), value,
+                                   std::chars_format::general, digits);
+    return {text.data(), end.ptr};
+}
+
 std::string three_digits_up(double value) {
     if (!(value > 0) || !std::isfinite(value)) return fmt::format("{}", value);
     const double unit = std::pow(10.0, std::floor(std::log10(value)) - 2);

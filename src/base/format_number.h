@@ -26,6 +26,9 @@ TONEWRIGHT_API void append_one_digit(std::string& text, double value, bool is_up
 /// Turns the 0.25 that begins at `begin` and ends the text into .25.
 TONEWRIGHT_API void drop_zero_before_point(std::string& text, std::size_t begin);
 
+/// So many significant digits, or fewer: "0.0029", "1.3e+04".
+[[nodiscard]] TONEWRIGHT_API std::string rounded(double value, int digits);
+
 /// Three significant digits, rounded up: the text is never less than the value, and at most 1 %
 /// more.
 [[nodiscard]] TONEWRIGHT_API std::string three_digits_up(double value);

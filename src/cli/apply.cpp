@@ -93,7 +93,7 @@ void add_apply(CommandLine& program) {
         .value("EXT")
         .group("Output");
     const Option op = command.add("--operator", options->op,
-                                  "operator[:preset][:name=value], my.tone (default AgX)");
+                                  "operator[:preset], .tone file or LUT (default AgX)");
     op.value("NAME").group("Operator");
     options->input = "auto";
     add_view_options(command, *options);

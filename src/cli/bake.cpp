@@ -54,7 +54,8 @@ void require_lut_picture(const std::string& path, int bits) {
 void take_from_host(Options& options, const LutApplication& host) {
     const auto is_given = [&](const char* option) { return options.given.contains(option); };
     if (!is_given("--input") && !is_given("--input-encoding"))
-        options.input = lut_input_of(host, *resolve_operator(options.op).op);
+        options.input =
+            lut_input_of(host, *resolve_operator(options.op, {}, {}, operator_files()).op);
     if (!is_given("--input-encoding")) options.encoding = host.encoding;
     if (!is_given("--display")) options.display = host.display;
     if (is_given("--format")) return;  // another file than the application's own
@@ -152,7 +153,7 @@ void add_bake(CommandLine& program) {
     command.group("LUTs, shaders and configs");
     const char* const output = "Output";
     const char* const table = "Table";
-    command.add("operator", options->op, "operator, operator:preset or .tone file");
+    command.add("operator", options->op, "operator, operator:preset, .tone file or LUT");
     command.add("-o", options->file, "file to write").value("FILE").group(output);
     command
         .add("--for", options->host,
@@ -216,8 +217,9 @@ void add_bake(CommandLine& program) {
     command.footer(
         "Formats: cube, clf, ctf, spi1d, spi3d, csp, resolve_cube (1D and 3D), 3dl, lut "
         "(Houdini), icc (device link); hald, strip, strip_up (pictures); raw.\n"
-        "Input encodings: acescct, logc3, logc4, slog3, davinci, unity_logc, unreal_log, srgb; "
-        "pq[:WHITE] (cd/m2 of scene-linear 1.0); log2[:LOW:HIGH] (stops from 0.18, default "
+        "Input encodings: acescct, logc3, logc4, slog3, davinci, unity_logc, unreal_log, srgb, "
+        "reinhard (x/(x + 1)); pq[:WHITE] (cd/m2 of scene-linear 1.0); log2[:LOW:HIGH] (stops from "
+        "0.18, default "
         "-10:6.5); linear[:LOW:HIGH] (1D only). The named ones have their own primaries unless "
         "--input is given.\n"
         "Sizes: 17..129; 3dl 17, 33 or 65; hald a square of 16..144 (default 64); strip 2..64 "

@@ -1,8 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/command.h"
+#include "cli/messages.h"
+#include "cli/picture_commands.h"
+#include "tonewright/lut.h"
+#include "tonewright/lut_file.h"
 #include "tonewright/registry.h"
 
+#include <utility>
+
 TONEWRIGHT_NAMESPACE_BEGIN
+namespace {
+
+void warn_of(const ResolvedOperator& op) {
+    static std::set<std::string> said;
+    const std::string text = op.caution();
+    if (!text.empty() && said.insert(text).second) warn(text);
+}
+
+}  // namespace
 
 Settings ViewOptions::settings() const {
     Settings result;
@@ -22,8 +37,26 @@ Settings ViewOptions::settings() const {
 }
 
 View ViewOptions::view() const {
-    return make_view(resolve_operator(op, settings(), look), input, exposure, display,
-                     reference_white);
+    ResolvedOperator resolved = resolve_operator(op, settings(), look, operator_files());
+    warn_of(resolved);
+    return make_view(std::move(resolved), input, exposure, display, reference_white);
+}
+
+const OperatorSet& operator_files() {
+    static const OperatorSet files(table_reader([](const std::string& path) {
+        if (is_lut_picture(path)) return table_file_of(picture_commands().read_lut(path), path);
+        static const TableReader others = ocio_table_reader();
+        silence_opencolorio();
+        return others(path);
+    }));
+    return files;
+}
+
+ResolvedOperator resolve_for_command(const std::string& text, const Settings& settings,
+                                     const std::string& look) {
+    ResolvedOperator resolved = resolve_picture_operator(text, settings, look, operator_files());
+    warn_of(resolved);
+    return resolved;
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tonewright/registry.h"
 #include "tonewright/view.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -32,6 +33,13 @@ struct ViewOptions {
     [[nodiscard]] View view() const;
 };
 
+/// What reads the .tone files and LUTs that texts name as operators, for all commands.
+[[nodiscard]] const OperatorSet& operator_files();
+/// resolve_picture_operator() with these, and a warning where the operator has one: once a text.
+[[nodiscard]] ResolvedOperator resolve_for_command(const std::string& text,
+                                                   const Settings& settings = {},
+                                                   const std::string& look = {});
+
 /// Each subcommand lives in its own file and puts itself on the command line.
 void add_list(CommandLine& program);
 void add_eval(CommandLine& program);
@@ -41,9 +49,12 @@ void add_bake(CommandLine& program);
 void add_shader(CommandLine& program);
 void add_config(CommandLine& program);
 void add_verify(CommandLine& program);
+void add_check(CommandLine& program);
 void add_chart(CommandLine& program);
 void add_sheet(CommandLine& program);
 void add_compare(CommandLine& program);
 void add_plot(CommandLine& program);
+void add_import(CommandLine& program);
+void add_report(CommandLine& program);
 
 TONEWRIGHT_NAMESPACE_END

@@ -129,6 +129,7 @@ int run_config(Options& options) {
     }
     for (std::size_t i = 0; i < options.operators.size(); ++i)
         wanted.custom.push_back({options.names[i], options.operators[i]});
+    wanted.others = operator_files();
     redirect_opencolorio_messages([](const std::string& text) {
         if (!message_options().is_quiet) print_message("OpenColorIO: " + text);
     });
@@ -251,7 +252,8 @@ void add_config(CommandLine& program) {
         .group(contents);
     command
         .add("--operator", options->operators,
-             "add a view: NAME[:PRESET][:PARAMETER=VALUE...]; repeat for more")
+             "add a view: NAME[:PRESET][:PARAMETER=VALUE...], a .tone file or a LUT; repeat for "
+             "more")
         .value("OPERATOR")
         .one_value_each()
         .group(own);

@@ -186,7 +186,8 @@ ColorMap map_of_lut(const Options& options) {
     });
 }
 
-ColorMap map_of_operator(const Options& options) {
+ColorMap map_of_operator(const Options& given) {
+    Options options = given;
     if (options.op.empty()) {
         throw Error(
             "eval: OPERATOR is missing; expected an id from `tonewright list`, or --lut FILE");
@@ -194,11 +195,8 @@ ColorMap map_of_operator(const Options& options) {
     enum Engine : std::size_t { kReference, kSimd, kOcio, kOcioGpu };
     const std::size_t kind =
         find_choice("eval: engine", options.engine, {"reference", "simd", "ocio", "ocio-gpu"});
+    take_lut_options("eval", options.lut, options);
     const View view = options.view();
-    if (options.inverse && !view.op.op->build_inverse) {
-        throw Error("eval: " + view.op.op->id + " has no inverse; expected " +
-                    join_choices(invertible_operators()));
-    }
     const Pipeline pipeline = options.inverse ? build_inverse_view(view) : build_view(view);
     if (kind == kReference) {
         const auto engine = std::make_shared<const ReferenceEngine>(pipeline);
@@ -239,7 +237,7 @@ void add_eval(CommandLine& program) {
         program.add("eval", "Tone map RGB triplets from standard input, one a line.");
     command.group("Operators");
     const Option op =
-        command.add("operator", options->op, "operator, operator:preset or .tone file");
+        command.add("operator", options->op, "operator, operator:preset, .tone file or LUT");
     add_view_options(command, *options);
     command
         .add("--engine", options->engine,
@@ -254,7 +252,7 @@ void add_eval(CommandLine& program) {
         .group("Computation");
     command
         .add_flag("--inverse", options->inverse,
-                  "map display colors to scene-linear; for operators that have an inverse")
+                  "map display colors to scene-linear, where the operator can be inverted")
         .group("Computation");
     add_lut_options(command, options->lut, op,
                     {"--set", "--look", "--display", "--reference-white", "--engine", "--inverse"});

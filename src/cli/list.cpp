@@ -11,16 +11,22 @@
 #include "cli/catalogue.h"
 #include "cli/command.h"
 #include "cli/json.h"
+#include "cli/json_forms.h"
 #include "cli/options.h"
 #include "tonewright/definition.h"
 #include "tonewright/lut.h"
 #include "tonewright/lut_applications.h"
 #include "tonewright/registry.h"
+#include "tonewright/view.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 std::string output_of(const Operator& op) {
+    if (op.display) {
+        const std::string display = resolve(op, nullptr, {}, "").output_display();
+        return display.empty() ? "display-linear" : "code values of " + find_display(display).title;
+    }
     if (op.output == OutputKind::display_linear) return "display-linear";
     return fmt::format("code values, power {}", op.code_power);
 }
@@ -37,22 +43,6 @@ std::string_view kind_name(Kind kind) {
             break;
     }
     return "text";
-}
-
-std::string_view kind_name(DocumentedDifference::Kind kind) {
-    switch (kind) {
-        case DocumentedDifference::Kind::black:
-            return "black";
-        case DocumentedDifference::Kind::crushes_black:
-            return "crushes_black";
-        case DocumentedDifference::Kind::never_reaches_white:
-            return "never_reaches_white";
-        case DocumentedDifference::Kind::exceeds_white:
-            return "exceeds_white";
-        case DocumentedDifference::Kind::not_monotone:
-            break;
-    }
-    return "not_monotone";
 }
 
 /// The operator's own warnings and what follows from its deviations.
@@ -83,6 +73,8 @@ Json to_json(const ParameterSpec& p, bool is_live) {
     return j;
 }
 
+}  // namespace
+
 Json to_json(const Operator& op) {
     Json parameters = Json::array();
     const std::vector<std::string> live = live_parameters(op);
@@ -90,7 +82,7 @@ Json to_json(const Operator& op) {
         parameters.push_back(to_json(p, std::find(live.begin(), live.end(), p.name) != live.end()));
     Json deviations = Json::array();
     for (const DocumentedDifference& d : op.deviations) {
-        deviations.push_back({{"kind", kind_name(d.kind)},
+        deviations.push_back({{"kind", difference_names().at(static_cast<std::size_t>(d.kind))},
                               {"value", number_or_null(d.value)},
                               {"when", d.when},
                               {"text", to_string(d)}});
@@ -119,6 +111,8 @@ Json to_json(const Operator& op) {
             {"is_diagnostic", op.is_diagnostic},
             {"is_local", op.is_local()}};
 }
+
+namespace {
 
 Json to_json(const std::vector<Operator>& operators) {
     Json all = Json::array();
@@ -341,9 +335,9 @@ int run_list(const Options& options) {
     } else if (options.definition) {
         if (options.op.empty())
             throw Error("list: operator is missing; expected one before --definition");
-        fmt::print("{}", definition_of(resolve_picture_operator(options.op)));
+        fmt::print("{}", definition_of(resolve_for_command(options.op)));
     } else if (!options.op.empty()) {
-        const ResolvedOperator resolved = resolve_picture_operator(options.op);
+        const ResolvedOperator resolved = resolve_for_command(options.op);
         const Operator& op = *resolved.op;
         if (options.json) {
             fmt::print("{}\n", to_json(op).dump(2));
@@ -377,7 +371,7 @@ void add_list(CommandLine& program) {
     command.group("Operators");
     const char* const contents = "What to list";
     const char* const format = "Format";
-    command.add("operator", options->op, "operator to describe in full, or a .tone file");
+    command.add("operator", options->op, "operator to describe in full, a .tone file or a LUT");
     const Option json = command.add_flag("--json", options->json, "print JSON");
     json.group(format);
     const Option markdown =

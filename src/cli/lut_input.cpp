@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <tuple>
 
 #include "base/format_number.h"
 #include "base/input_file.h"
@@ -13,6 +14,7 @@
 #include "cli/messages.h"
 #include "lut/stated_input.h"
 #include "tonewright/lut.h"
+#include "tonewright/registry.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
@@ -20,10 +22,7 @@ LutFile open_lut(const std::string& path, const std::string& interpolation,
                  const std::function<Lut(const std::string&)>& read_picture) {
     silence_opencolorio();
     const LutInterpolation between = parse_lut_interpolation(interpolation);
-    const std::string extension = extension_of(path);
-    constexpr const char* kPictures[] = {".png", ".tif", ".tiff", ".exr", ".tga", ".bmp", ".dpx"};
-    if (std::find(std::begin(kPictures), std::end(kPictures), extension) == std::end(kPictures))
-        return LutFile(path, between);
+    if (!is_lut_picture(path)) return LutFile(path, between);
     return LutFile(read_picture(path), between);
 }
 
@@ -112,6 +111,19 @@ Pipeline before_lut(const char* command, const LutOptions& options, const ViewOp
     stages.push_back(MatrixStage{scale(matrix, std::exp2(view.exposure))});
     stages.push_back(curve_stage(encoding.encode));
     return stages;
+}
+
+void take_lut_options(const char* command, const LutOptions& options, ViewOptions& view) {
+    for (const auto& [option, parameter, value] :
+         {std::tuple("--input-encoding", "input", options.encoding),
+          std::tuple("--lut-space", "space", options.space)}) {
+        if (value.empty()) continue;
+        if (!names_a_lut(view.op)) {
+            throw Error(fmt::format("{}: {} is {}; expected a LUT as the operator, or --lut",
+                                    command, option, value));
+        }
+        view.set.push_back(fmt::format("{}={}", parameter, value));
+    }
 }
 
 void check_lut_options(const char* command, const LutOptions& options, const ViewOptions& view,

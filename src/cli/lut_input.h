@@ -41,6 +41,10 @@ struct LutOptions {
 [[nodiscard]] Pipeline before_lut(const char* command, const LutOptions& options,
                                   const ViewOptions& view, const SourceColor& input);
 
+/// --input-encoding and --lut-space as settings of an operator that is a LUT.
+/// @throws Error  they are given for another operator
+void take_lut_options(const char* command, const LutOptions& options, ViewOptions& view);
+
 /// Throws what before_lut() will throw, before pictures are read.
 void check_lut_options(const char* command, const LutOptions& options, const ViewOptions& view,
                        const SourceColor& input);

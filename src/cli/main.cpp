@@ -39,7 +39,8 @@ int run(int argc, char** argv) {
             "frame "
             "failed, 2 wrong usage, 3 a file could not be read or written.");
         for (const auto add : {add_apply, add_compare, add_meter, add_sheet, add_chart, add_bake,
-                               add_shader, add_config, add_list, add_eval, add_plot, add_verify})
+                               add_shader, add_config, add_list, add_import, add_eval, add_plot,
+                               add_check, add_verify, add_report})
             add(program);
         const int exit_code = program.run(argc, argv);
         if (std::fflush(stdout) != 0) return report("write: standard output: cannot write", kFile);

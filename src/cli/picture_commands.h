@@ -46,6 +46,8 @@ class PictureCommands {
     /// @param application  only its LUTs; empty: all
     virtual void write_shipped_luts(const std::string& folder,
                                     const std::string& application) const = 0;
+    [[nodiscard]] virtual ReportPicture read_report_picture(
+        const ReportPictureOptions& options) const = 0;
 };
 
 /// Loads the module at the first call.
@@ -59,6 +61,6 @@ extern "C" const PictureCommands* tonewright_picture_commands(const char* build)
 inline constexpr const char* kPictureCommandsEntry = "tonewright_picture_commands";
 /// The release, and the number of this interface: increase it with every change of the interface
 /// or of the options.
-inline constexpr const char* kPictureCommandsBuild = TONEWRIGHT_VERSION " interface 6";
+inline constexpr const char* kPictureCommandsBuild = TONEWRIGHT_VERSION " interface 7";
 
 TONEWRIGHT_NAMESPACE_END

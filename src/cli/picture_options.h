@@ -128,4 +128,22 @@ struct SheetOptions {
     int cell_width = 480;
 };
 
+/// A picture of the page.
+struct ReportPictureOptions {
+    std::string path;  // empty: the chart
+    /// A larger picture is made smaller.
+    int width = 960;
+    /// Operators that look at a pixel's surroundings, which the page cannot run.
+    std::vector<std::string> local_operators;
+};
+struct ReportPicture {
+    std::string name;
+    int width = 0;
+    int height = 0;
+    std::string exr;         // scene-linear Rec.709 in half floats
+    std::vector<float> rgb;  // the same
+    /// What local operators show of it on sRGB, as PNG, in the order of the options.
+    std::vector<std::string> shown;
+};
+
 TONEWRIGHT_NAMESPACE_END

@@ -11,6 +11,7 @@
 #include "cli/curve_plot.h"
 #include "cli/grey_curve.h"
 #include "cli/picture_commands.h"
+#include "cli/plot.h"
 #include "cli/shared_options.h"
 #include "tonewright/lut.h"
 #include "tonewright/ocio.h"
@@ -139,22 +140,13 @@ PlotScale Readings::scale(double brightest) const {
     return scale;
 }
 
-struct Options : ViewOptions {
-    std::vector<std::string> operators;
-    std::string file;
-    std::string title;
-    std::string y = "code";
-    int width = 0;
-    bool is_dark = false;
-};
-
 /// `--set` and `--look` are for all; what an operator's own text says comes first.
-View view_of(const Options& options, const std::string& text) {
-    const ResolvedOperator own = resolve_operator(text);
+View view_of(const PlotOptions& options, const std::string& text) {
+    const ResolvedOperator own = resolve_operator(text, {}, {}, operator_files());
     Settings settings = own.settings;
     settings.merge(options.settings());
     const std::string& look = own.params.look();
-    return make_view(resolve_operator(own.name(), settings, look.empty() ? options.look : look),
+    return make_view(resolve_for_command(own.name(), settings, look.empty() ? options.look : look),
                      options.input, options.exposure, options.display, options.reference_white);
 }
 
@@ -177,7 +169,7 @@ std::string fit_title(const std::string& title, std::size_t words) {
 /// Colors and dashes that stay apart.
 constexpr std::size_t kMostLines = 24;
 
-CurvePlot plot_of(const Options& options) {
+CurvePlot plot_of(const PlotOptions& options) {
     if (is_same_name(options.display, kLinearOutput) ||
         is_same_name(options.display, kNativeOutput)) {
         throw Error("plot: --display is " + options.display +
@@ -249,8 +241,9 @@ CurvePlot plot_of(const Options& options) {
     return plot;
 }
 
-int run_plot(const Options& options) {
-    const ResultLine line;
+}  // namespace
+
+std::string write_plot(const PlotOptions& options) {
     const CurvePlot plot = plot_of(options);
     const std::string extension = extension_of(options.file);
     const int vector_width = options.width > 0 ? options.width : 640;
@@ -261,14 +254,11 @@ int run_plot(const Options& options) {
     } else {
         picture_commands().write_plot(plot, options.file, options.width > 0 ? options.width : 1280);
     }
-    line.print(fmt::format("plot: {}: {}", options.file, plot.title));
-    return kOk;
+    return plot.title;
 }
 
-}  // namespace
-
 void add_plot(CommandLine& program) {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<PlotOptions>();
     const Command command = program.add("plot", "Plot the tone curves of operators.");
     command.group("Operators");
     command.add("operators", options->operators, "NAME[:PRESET][:PARAMETER=VALUE...][:look=LOOK]")
@@ -300,7 +290,12 @@ void add_plot(CommandLine& program) {
         "  tonewright plot hable agx_sobotka aces_13 -o curves.svg\n"
         "  tonewright plot hable:white=4 hable --y log -o white.png\n"
         "  tonewright plot aces_20 gt7 --display rec2100_pq -o hdr.svg");
-    command.action([options] { return run_plot(*options); });
+    command.action([options] {
+        const ResultLine line;
+        const std::string title = write_plot(*options);
+        line.print(fmt::format("plot: {}: {}", options->file, title));
+        return kOk;
+    });
 }
 
 TONEWRIGHT_NAMESPACE_END

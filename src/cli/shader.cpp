@@ -130,7 +130,8 @@ void write_one(Options& options) {
         !text.empty())
         warn(text);
     constexpr double kTenBits = 1.0 / 1023;
-    if (shader.errors.in_float > kTenBits) {
+    const bool is_double = request.language == ShaderLanguage::javascript && !request.application;
+    if (!is_double && shader.errors.in_float > kTenBits) {
         warn(
             fmt::format("{} is up to {} off in float, more than a code value of 10 bits: its "
                         "formulas need more digits than a shader has",
@@ -151,8 +152,11 @@ void write_one(Options& options) {
         print_result(path + ": its texture");
     }
     write_text_atomically(options.file, shader.text);
-    print_result(fmt::format("{}: {}(), in float within {} of the reference", options.file,
-                             shader.function, rounded_up(shader.errors.in_float)));
+    print_result(
+        is_double
+            ? fmt::format("{}: {}(), the reference in 64-bit float", options.file, shader.function)
+            : fmt::format("{}: {}(), in float within {} of the reference", options.file,
+                          shader.function, rounded_up(shader.errors.in_float)));
     if (request.application)
         print_result(request.application->title + ": " + request.application->steps);
 }
@@ -274,7 +278,7 @@ void add_shader(CommandLine& program) {
     const Command command = program.add("shader", "Write an operator as shader source.");
     command.group("LUTs, shaders and configs");
     const char* const output = "Output";
-    command.add("operator", options->op, "operator, operator:preset or .tone file");
+    command.add("operator", options->op, "operator, operator:preset, .tone file or LUT");
     command
         .add("--language", options->language,
              "language of the text; see --list (default: by the extension)")

@@ -3,18 +3,22 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-void add_view_options(const Command& command, ViewOptions& options) {
+void add_operator_options(const Command& command, ViewOptions& options) {
     const char* const op = "Operator";
-    const char* const color = "Color";
     command.add("--set", options.set, "operator parameter; repeat for more")
         .value("NAME=VALUE")
         .one_value_each()
         .group(op);
     command.add("--look", options.look, "look of the operator").value("NAME").group(op);
+}
+
+void add_view_options(const Command& command, ViewOptions& options) {
+    const char* const color = "Color";
+    add_operator_options(command, options);
     command.add("--exposure", options.exposure, "exposure before the operator, in stops")
         .value("STOPS")
         .show_default()
-        .group(op);
+        .group("Operator");
     command.add("--input", options.input, "scene-linear color space of the input")
         .value("SPACE")
         .show_default()
@@ -35,7 +39,7 @@ void add_view_options(const Command& command, ViewOptions& options) {
 
 void add_lut_options(const Command& command, LutOptions& options, const Option& op,
                      const std::vector<std::string>& others) {
-    const char* const group = "LUT instead of an operator";
+    const char* const group = "LUT, or LUT as the operator";
     const Option lut =
         command.add("--lut", options.file, "LUT file (.cube, .clf, .csp, .icc, Hald CLUT, ...)");
     lut.value("FILE").group(group).excludes(op);
@@ -45,14 +49,12 @@ void add_lut_options(const Command& command, LutOptions& options, const Option& 
         .add("--input-encoding", options.encoding,
              "encoding that the LUT expects (see `bake --help`) or `none` (default: its header's)")
         .value("NAME")
-        .group(group)
-        .needs(lut);
+        .group(group);
     command
         .add("--lut-space", options.space,
              "scene-linear space of the LUT's input (default: that of its encoding)")
         .value("SPACE")
-        .group(group)
-        .needs(lut);
+        .group(group);
     command
         .add("--interpolation", options.interpolation,
              "between grid points: tetrahedral, trilinear, or auto (what the file says)")

@@ -12,7 +12,10 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// --set, --look, --exposure, --input, --display, --reference-white.
+/// --set, --look.
+void add_operator_options(const Command& command, ViewOptions& options);
+
+/// These and --exposure, --input, --display, --reference-white.
 void add_view_options(const Command& command, ViewOptions& options);
 
 /// --lut, --interpolation, --input-encoding, --lut-space, for a command that has an operator and

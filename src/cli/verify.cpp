@@ -12,6 +12,7 @@
 #include "base/strings.h"
 #include "cli/elapsed_line.h"
 #include "cli/json.h"
+#include "cli/json_forms.h"
 #include "cli/lut_input.h"
 #include "cli/messages.h"
 #include "cli/options.h"
@@ -148,6 +149,10 @@ int run_verify(Options& options) {
                       options.json);
         return kOk;
     }
+    verify_options.others = operator_files();
+    for (const std::string& name : verify_options.operators) {
+        if (names_a_file(name)) (void)resolve_for_command(name);
+    }
     verify_options.with_gpu = !options.no_gpu;
     if (options.quick) {
         verify_options.lattice_edge = 9;
@@ -192,21 +197,8 @@ int run_verify(Options& options) {
     if (options.summary) print_summary(rows);
     if (options.json) {
         Json all = Json::array();
-        for (const ParityRow& r : rows) {
-            all.push_back({{"operator", r.op},
-                           {"display", r.display},
-                           {"form", r.form},
-                           {"lowering", r.lowering},
-                           {"max", r.max},
-                           {"p999", r.p999},
-                           {"mean", r.mean},
-                           {"max_all", r.max_all},
-                           {"max_beyond_rounding", r.max_beyond_rounding},
-                           {"bound", r.bound},
-                           {"mixed_metric", r.is_mixed_metric},
-                           {"ok", r.is_ok},
-                           {"note", r.note}});
-        }
+        for (const ParityRow& row : rows)
+            all.push_back(to_json(row));
         Json not_executed = Json::array();
         for (const NotExecuted& n : result.not_executed)
             not_executed.push_back({{"name", n.name}, {"reason", n.reason}});
@@ -225,6 +217,22 @@ int run_verify(Options& options) {
 }
 
 }  // namespace
+
+Json to_json(const ParityRow& row) {
+    return {{"operator", row.op},
+            {"display", row.display},
+            {"form", row.form},
+            {"lowering", row.lowering},
+            {"max", row.max},
+            {"p999", row.p999},
+            {"mean", row.mean},
+            {"max_all", row.max_all},
+            {"max_beyond_rounding", row.max_beyond_rounding},
+            {"bound", row.bound},
+            {"mixed_metric", row.is_mixed_metric},
+            {"ok", row.is_ok},
+            {"note", row.note}};
+}
 
 void add_verify(CommandLine& program) {
     auto options = std::make_shared<Options>();

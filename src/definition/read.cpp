@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <optional>
 #include <span>
 
@@ -11,8 +12,10 @@
 #include "base/strings.h"
 #include "definition/primaries_names.h"
 #include "definition/recipe.h"
+#include "definition/table_stages.h"
 #include "definition/toml_text.h"
 #include "tonewright/definition.h"
+#include "tonewright/view.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -134,7 +137,10 @@ bool is_id(std::string_view text) {
 
 class Reader {
   public:
-    Reader(std::string_view text, const std::string& name) : text_(text) { op_.file = name; }
+    Reader(std::string_view text, const std::string& name, const TableReader& tables)
+        : text_(text), tables_(tables) {
+        op_.file = name;
+    }
 
     std::shared_ptr<const Operator> read() {
         const Value root = parse_toml(text_);
@@ -406,9 +412,11 @@ class Reader {
     void read_output(const Table& file) {
         const Value* value = file.find("output");
         if (!value) return;
-        const Table table(*value, "[output]", {"kind", "power", "peak"});
+        const Table table(*value, "[output]", {"kind", "power", "display", "peak"});
         if (table.choice("kind", {"display_linear", "code_value"}) == 1)
             op_.output = OutputKind::code_value;
+        if (const Value* display = table.find("display"))
+            read_output_display(file, table, *display);
         if (const Value* power = table.find("power")) {
             op_.code_power = Table::number_of(*power, "power");
             if (op_.output != OutputKind::code_value)
@@ -420,6 +428,31 @@ class Reader {
             FormulaScope scope = scope_;
             recipe_->peak = number_or_formula(*peak, "peak", scope);
         }
+    }
+
+    /// Code values of a display have its primaries and its largest light.
+    void read_output_display(const Table& file, const Table& output, const Value& value) {
+        const Display* display = nullptr;
+        try {
+            display = &find_display(Table::text_of(value, "display"));
+        } catch (const TomlError&) {
+            throw;
+        } catch (const Error& e) {
+            fail(value.at, e.what());
+        }
+        if (op_.output != OutputKind::code_value)
+            fail(value.at, "display stands without kind = \"code_value\"; expected both");
+        if (const Value* power = output.find("power"))
+            fail(power->at, "power stands beside display; expected one of them");
+        const Value* const primaries = file.find("primaries");
+        for (const Value& member : primaries ? primaries->members : std::vector<Value>{}) {
+            if (member.key == "output")
+                fail(member.at,
+                     "output stands beside the display of [output]; expected one of them");
+        }
+        op_.display = [id = display->id](const Params&) { return id; };
+        recipe_->output_primaries = display->primaries;
+        if (display->is_hdr) recipe_->peak = display->largest_light;
     }
 
     // -- Stages
@@ -503,11 +536,17 @@ class Reader {
         using Kind = StageRecipe::Kind;
         static const Names kinds = {"matrix",  "curve",      "tone_scale", "hue_preserving",
                                     "hexcone", "cross_talk", "clamp",      "lut"};
-        static const std::vector<Names> others = {
-            {}, {"apply", "inverse", "weights"}, {"norm", "weights"}, {}, {}, {}, {}, {"input"}};
+        static const std::vector<Names> others = {{},
+                                                  {"apply", "inverse", "weights"},
+                                                  {"norm", "weights"},
+                                                  {},
+                                                  {},
+                                                  {},
+                                                  {},
+                                                  {"input", "space"}};
         Names any = kinds;
-        for (const char* key :
-             {"apply", "inverse", "norm", "weights", "input", "temporaries", "when", "name"})
+        for (const char* key : {"apply", "inverse", "norm", "weights", "input", "space",
+                                "temporaries", "when", "name"})
             any.emplace_back(key);
         const Table all(value, what, any);
         std::size_t kind = kinds.size();
@@ -526,11 +565,6 @@ class Reader {
         known.insert(known.end(), others[kind].begin(), others[kind].end());
         const Table table(value, what, known);
         const Value& main = table.require(kinds[kind]);
-        if (kinds[kind] == "lut") {
-            fail(main.at, "lut is " + described(main) +
-                              "; this version reads no LUT as a stage; expected " +
-                              join_choices({kinds.begin(), kinds.end() - 1}));
-        }
         StageRecipe stage;
         stage.kind = static_cast<Kind>(kind);
         stage.at = main.at;
@@ -595,8 +629,43 @@ class Reader {
                                       "; expected at most its end, " + shortest(stage.hi));
                 break;
             }
+            case Kind::lut:
+                read_lut(stage, table);
+                break;
         }
         return stage;
+    }
+
+    void read_lut(StageRecipe& stage, const Table& table) const {
+        const Value& main = table.require("lut");
+        const std::string named = Table::text_of(main, "lut");
+        const std::string extension = extension_of(named);
+        const Names& known = table_extensions();
+        if (std::find(known.begin(), known.end(), extension) == known.end())
+            fail(main.at,
+                 "lut is " + described(main) + "; expected a file of " + join_choices(known));
+        if (!tables_)
+            fail(main.at, "lut is " + described(main) + "; this program reads no LUT as a stage");
+        const std::filesystem::path path = std::filesystem::path(op_.file).parent_path() / named;
+        TableFile lut;
+        try {
+            lut = tables_(path.string());
+        } catch (const Error& e) {
+            fail(main.at, e.what());
+        }
+        const Value* const input = table.find("input");
+        if (!input && lut.encoding.empty()) {
+            fail(main.at,
+                 "the LUT does not say which encoding it expects; expected input = \"acescct\" or "
+                 "another encoding of `tonewright bake`, or \"none\" for colors as they are");
+        }
+        const std::string encoding = table.text("input", lut.encoding);
+        const std::string space = table.text("space", input ? "" : lut.space);
+        try {
+            stage.stages = table_stages(lut, encoding, space, op_.working);
+        } catch (const Error& e) {
+            fail(input ? input->at : main.at, e.what());
+        }
     }
 
     void read_curve(StageRecipe& stage, const Table& table, const FormulaScope& scope) const {
@@ -652,8 +721,7 @@ class Reader {
                 (void)table.require("kind");
                 DocumentedDifference d{};
                 d.kind = static_cast<DocumentedDifference::Kind>(
-                    table.choice("kind", {"black", "crushes_black", "never_reaches_white",
-                                          "exceeds_white", "not_monotone"}));
+                    table.choice("kind", difference_names()));
                 d.value = Table::number_of(table.require("value"), "value", true);
                 d.when = table.text("when");
                 op_.deviations.push_back(d);
@@ -767,6 +835,7 @@ class Reader {
     }
 
     std::string_view text_;
+    const TableReader& tables_;
     Operator op_;
     std::shared_ptr<OperatorRecipe> recipe_ = std::make_shared<OperatorRecipe>();
     FormulaScope scope_;  // without inputs
@@ -774,12 +843,13 @@ class Reader {
 
 }  // namespace
 
-std::shared_ptr<const Operator> parse_operator(std::string_view text, const std::string& name) {
+std::shared_ptr<const Operator> parse_operator(std::string_view text, const std::string& name,
+                                               const TableReader& tables) {
     constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
     if (text.substr(0, kByteOrderMark.size()) == kByteOrderMark)
         text.remove_prefix(kByteOrderMark.size());
     try {
-        return Reader(text, name).read();
+        return Reader(text, name, tables).read();
     } catch (const TomlError& e) {
         throw DefinitionError(name + ":" + std::to_string(e.at.line) + ":" +
                                   std::to_string(e.at.column) + ": " + e.what(),
@@ -787,11 +857,16 @@ std::shared_ptr<const Operator> parse_operator(std::string_view text, const std:
     }
 }
 
-std::shared_ptr<const Operator> load_operator(const std::string& path) {
+std::shared_ptr<const Operator> load_operator(const std::string& path, const TableReader& tables) {
+    const std::vector<std::string>& known = table_extensions();
+    if (std::find(known.begin(), known.end(), extension_of(path)) != known.end()) {
+        if (!tables) throw FileError("read: " + path + ": is a LUT; expected a .tone file here");
+        return with_memory_for(path, [&] { return operator_of_table(tables(path), path); });
+    }
     const std::string text = read_file(path, kLongestFile, [&](const std::string& reason) {
         throw FileError("read: " + path + ": " + reason);
     });
-    return with_memory_for(path, [&] { return parse_operator(text, path); });
+    return with_memory_for(path, [&] { return parse_operator(text, path, tables); });
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -81,9 +81,14 @@ Stage stage_of(const StageRecipe& recipe, const UniformValues& values) {
         case Kind::cross_talk:
             return CrossTalkStage{three(f), recipe.name};
         case Kind::clamp:
+        case Kind::lut:
             break;
     }
     return ClampStage{recipe.lo, recipe.hi};
+}
+
+Pipeline stages_of(const StageRecipe& recipe, const UniformValues& values) {
+    return recipe.kind == Kind::lut ? recipe.stages : Pipeline{stage_of(recipe, values)};
 }
 
 /// The expressions' values for many inputs, each node once.
@@ -104,6 +109,11 @@ std::array<std::vector<double>, 3> values_at(const std::array<Expr, 3>& f,
         for (int i = 0; i < 3; ++i)
             in.at(static_cast<std::size_t>(i)) =
                 &values.at(e.operand(std::min(i, e.operand_count() - 1)).node());
+        if (e.op() == ExprOp::lattice) {
+            for (std::size_t i = 0; i < count; ++i)
+                out[i] = (*e.lattice())(e.channel(), (*in[0])[i], (*in[1])[i], (*in[2])[i]);
+            continue;
+        }
         for (std::size_t i = 0; i < count; ++i)
             out[i] = scalar_op(e.op(), (*in[0])[i], (*in[1])[i], (*in[2])[i], e.table().get());
     }
@@ -160,9 +170,9 @@ Pipeline build_stages(const OperatorRecipe& recipe, const std::vector<StageRecip
     Size size;
     for (const StageRecipe& stage : stages) {
         if (bind_uniforms(stage.when, values).is_constant(0)) continue;
-        pipeline.push_back(stage_of(stage, values));
-        const std::array<Expr, 3> f =
-            apply_stage(pipeline.back(), {Expr::input(0), Expr::input(1), Expr::input(2)});
+        const Pipeline stages_here = stages_of(stage, values);
+        pipeline.insert(pipeline.end(), stages_here.begin(), stages_here.end());
+        const std::array<Expr, 3> f = compose(stages_here);
         const Size own = size_of(f);
         size = {size.operations + own.operations, size.depth + own.depth};
         const auto limit = [&](std::size_t count, std::size_t most, const char* what) {

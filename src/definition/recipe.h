@@ -21,6 +21,7 @@ struct StageRecipe {
         hexcone,         // f: offset, value, chroma
         cross_talk,      // f: three
         clamp,           // lo, hi
+        lut,             // stages
     };
     Kind kind = Kind::matrix;
     std::vector<Expr> f;
@@ -29,6 +30,8 @@ struct StageRecipe {
     Vector3 weights{};
     double lo = 0;
     double hi = kInfinity;
+    /// Those of a LUT.
+    Pipeline stages;
     const char* name = "";
     /// The stage is there where this is not 0.
     Expr when = 1;

@@ -115,9 +115,13 @@ TomlValue value_of(const toml::node& node) {
     } else if (const auto* flag = node.as_boolean()) {
         value.kind = Kind::boolean;
         value.boolean = flag->get();
-    } else if (const auto number = node.value<double>()) {
+    } else if (const auto* integer = node.as_integer()) {
+        // Above 2^53, the nearest number.
         value.kind = Kind::number;
-        value.number = *number;
+        value.number = static_cast<double>(integer->get());
+    } else if (const auto* number = node.as_floating_point()) {
+        value.kind = Kind::number;
+        value.number = number->get();
     } else {
         value.kind = Kind::date;
     }

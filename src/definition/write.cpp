@@ -7,15 +7,21 @@
 #include "base/format_number.h"
 #include "base/strings.h"
 #include "definition/primaries_names.h"
+#include "definition/table_stages.h"
+#include "definition/write.h"
 #include "formula/formula.h"
 #include "tonewright/definition.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// A number of TOML: the integer -0 would be 0.
+/// A number of TOML. The integer -0 would be 0, and integers end at 2^63.
 std::string number(double value) {
-    return value == 0 && std::signbit(value) ? "-0.0" : shortest(value);
+    constexpr double kLargestInteger = 0x1p53;
+    const bool is_no_integer = value == 0 ? std::signbit(value) : std::abs(value) > kLargestInteger;
+    const std::string text = shortest(value);
+    const bool has_digits_only = text.find_first_not_of("-0123456789") == std::string::npos;
+    return is_no_integer && has_digits_only ? text + ".0" : text;
 }
 
 std::string quoted(std::string_view text) {
@@ -47,8 +53,8 @@ std::string primaries_text(const Primaries& primaries) {
 
 class Writer {
   public:
-    explicit Writer(const ResolvedOperator& resolved)
-        : resolved_(resolved), op_(*resolved.op), live_(live_parameters(op_)) {}
+    Writer(const ResolvedOperator& resolved, const FormulaNames& names)
+        : resolved_(resolved), op_(*resolved.op), names_(names), live_(live_parameters(op_)) {}
 
     std::string write() {
         if (op_.is_local()) throw Error("it looks at the surroundings of a pixel");
@@ -58,6 +64,10 @@ class Writer {
                 write_parameter(spec);
         }
         write_declarations();
+        if (is_table_) {
+            write_lut();
+            return std::move(text_);
+        }
         write_stages("stage", build_live(resolved_, live_));
         if (op_.build_inverse) {
             Operator back = op_;
@@ -70,6 +80,16 @@ class Writer {
     }
 
   private:
+    /// A LUT is one stage, which names its file.
+    void write_lut() {
+        text_ += "\n[[stage]]\n";
+        text_line("lut", op_.file);
+        const std::string& input = resolved_.params.text("input");
+        text_line("input", input.empty() ? std::string(kNoEncoding) : input);
+        const std::string space = space_of_table(resolved_);
+        text_line("space", space);
+    }
+
     void line(const std::string& key, const std::string& value) {
         text_ += key + " = " + value + "\n";
     }
@@ -94,14 +114,20 @@ class Writer {
         const Primaries output = resolved_.output_primaries();
         text_ += "\n[primaries]\n";
         line("working", primaries_text(op_.working));
-        if (!(output == op_.working)) line("output", primaries_text(output));
-        if (op_.output == OutputKind::display_linear && !op_.peak) return;
+        const std::string display = resolved_.output_display();
+        if (!(output == op_.working) && display.empty()) line("output", primaries_text(output));
+        const bool has_peak = op_.peak && !is_table_;
+        if (resolved_.output() == OutputKind::display_linear && !has_peak) return;
         text_ += "\n[output]\n";
-        if (op_.output == OutputKind::code_value) {
+        if (resolved_.output() == OutputKind::code_value) {
             line("kind", quoted("code_value"));
-            line("power", number(op_.code_power));
+            if (display.empty()) {
+                line("power", number(op_.code_power));
+            } else {
+                line("display", quoted(display));
+            }
         }
-        if (op_.peak) line("peak", peak_text());
+        if (op_.peak && display.empty()) line("peak", peak_text());
     }
 
     /// The operator with one parameter changed; where that contradicts others, as it is.
@@ -164,10 +190,8 @@ class Writer {
             const bool is_meant = d.when.empty() || d.when == look ||
                                   (resolved_.preset && resolved_.preset->id == d.when);
             if (!is_meant) continue;
-            constexpr std::array kKinds = {"black", "crushes_black", "never_reaches_white",
-                                           "exceeds_white", "not_monotone"};
             text_ += "\n[[deviation]]\n";
-            line("kind", quoted(kKinds.at(static_cast<std::size_t>(d.kind))));
+            line("kind", quoted(difference_names().at(static_cast<std::size_t>(d.kind))));
             line("value", number(d.value));
         }
         const DeclaredBounds& b = op_.bounds;
@@ -199,12 +223,12 @@ class Writer {
         return "\"\"\"\n" + text + "\n\"\"\"";
     }
 
-    static std::string whole(const Expr& e) { return formula(whole_formula(e, {"x"})); }
+    std::string whole(const Expr& e) { return formula(whole_formula(e, {"x"}, names_)); }
 
     /// Several formulas, their temporaries before them.
     std::vector<std::string> formulas(const std::vector<Expr>& exprs,
                                       const std::vector<std::string>& inputs) {
-        const FormulaText text = formula_text(exprs, inputs);
+        const FormulaText text = formula_text(exprs, inputs, names_);
         if (!text.temporaries.empty())
             line("temporaries", "\"\"\"\n" + text.temporaries + "\"\"\"");
         std::vector<std::string> result;
@@ -265,15 +289,19 @@ class Writer {
 
     const ResolvedOperator& resolved_;
     const Operator& op_;
+    const FormulaNames& names_;
     const std::vector<std::string> live_;
+    const bool is_table_ = is_table_operator(op_);
     std::string text_;
 };
 
 }  // namespace
 
-std::string definition_of(const ResolvedOperator& op) {
+std::string definition_of(const ResolvedOperator& op) { return definition_of(op, {}); }
+
+std::string definition_of(const ResolvedOperator& op, const FormulaNames& names) {
     try {
-        return Writer(op).write();
+        return Writer(op, names).write();
     } catch (const FileError&) {
         throw;
     } catch (const Error& e) {

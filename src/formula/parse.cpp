@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
-#include <cstdio>
-#include <numbers>
 #include <set>
 #include <span>
 
 #include "base/strings.h"
+#include "formula/characters.h"
 #include "formula/formula.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -21,8 +18,6 @@ struct Function {
     std::size_t operands;
     Expr (*make)(Operands in);
 };
-
-Expr log10(const Expr& a) { return log2(a) * (std::numbers::ln2 / std::numbers::ln10); }
 
 constexpr Function kFunctions[] = {
     {"abs", 1, [](Operands in) { return abs(in[0]); }},
@@ -65,9 +60,6 @@ const Function* find_function(std::string_view name) {
     return found == std::end(kFunctions) ? nullptr : found;
 }
 
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-
 /// Length of the name that the text begins with; 0 if none.
 std::size_t name_length(std::string_view text) {
     std::size_t n = 0;
@@ -78,8 +70,6 @@ std::size_t name_length(std::string_view text) {
     }
     return n;
 }
-
-bool is_continuation(char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; }
 
 enum class Kind : unsigned char { end, line_end, number, name, sign };
 
@@ -206,10 +196,7 @@ class Parser {
         }
         if (std::string_view("+-*/<>?:!(),=^%&|[]{}.~").find(c) != std::string_view::npos)
             return take(Kind::sign, 1);
-        std::size_t length = 1;
-        while (length < rest.size() && is_continuation(rest[length]))
-            ++length;
-        fail(begin, "found " + character_name(rest.substr(0, length)) +
+        fail(begin, "found " + first_character_name(rest) +
                         "; expected names, numbers and operators in ASCII");
     }
 
@@ -225,43 +212,6 @@ class Parser {
                 return;
             }
         }
-    }
-
-    static std::string character_name(std::string_view bytes) {
-        constexpr std::array<unsigned, 5> kMask = {0, 0x7F, 0x1F, 0x0F, 0x07};
-        if (bytes.size() > 4) bytes = bytes.substr(0, 4);
-        unsigned code = static_cast<unsigned char>(bytes.front()) & kMask.at(bytes.size());
-        for (const char c : bytes.substr(1))
-            code = code << 6U | (static_cast<unsigned char>(c) & 0x3FU);
-        const char first = bytes.front();
-        if (bytes.size() == 1 && first >= ' ' && first <= '~') return std::string(1, first);
-        std::array<char, 16> name{};
-        (void)std::snprintf(name.data(), name.size(), "U+%04X", code);
-        return name.data();
-    }
-
-    [[nodiscard]] static std::size_t number_length(std::string_view rest) {
-        std::size_t n = 0;
-        const auto digits = [&] {
-            while (n < rest.size() && is_digit(rest[n]))
-                ++n;
-        };
-        digits();
-        if (n < rest.size() && rest[n] == '.') ++n;
-        digits();
-        if (n < rest.size() && (rest[n] == 'e' || rest[n] == 'E')) {
-            std::size_t exponent = n + 1;
-            if (exponent < rest.size() && (rest[exponent] == '+' || rest[exponent] == '-'))
-                ++exponent;
-            if (exponent < rest.size() && is_digit(rest[exponent])) {
-                n = exponent;
-                digits();
-            }
-        }
-        // The `f` of 1.0f in C; what else is glued to a number is a mistake.
-        while (n < rest.size() && (is_letter(rest[n]) || is_digit(rest[n])))
-            ++n;
-        return n;
     }
 
     // -- Lines
@@ -403,24 +353,6 @@ class Parser {
         return result;
     }
 
-    static bool is_truth(const Expr& e) {
-        switch (e.op()) {
-            case ExprOp::less:
-            case ExprOp::less_equal:
-            case ExprOp::equal:
-                return true;
-            case ExprOp::constant:
-                return e.value() == 0 || e.value() == 1;
-            case ExprOp::select:
-                return e.operand(1).is_constant() && is_truth(e.operand(1)) &&
-                       e.operand(2).is_constant() && is_truth(e.operand(2));
-            default:
-                return false;
-        }
-    }
-    /// 1 where it is not 0.
-    static Expr truth(const Expr& e) { return is_truth(e) ? e : select(e, 1, 0); }
-
     static Expr joined(const Token& at, const FormulaValue& left, const FormulaValue& right) {
         const Expr& a = left.value;
         const Expr& b = right.value;
@@ -487,18 +419,10 @@ class Parser {
     }
 
     FormulaValue number(const Token& at) {
-        std::string_view text = at.text;
-        if (text.back() == 'f' || text.back() == 'F') text.remove_suffix(1);
-        double value = 0;
-        const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
-        if (result.ptr != text.data() + text.size() || result.ec == std::errc::invalid_argument)
-            fail(at.begin,
-                 "number is " + printable(at.text) + "; expected digits, as in 0.18 or 1e-3");
-        if (result.ec != std::errc() || !std::isfinite(value)) {
-            fail(at.begin, "number is " + printable(at.text) +
-                               "; expected one that double precision can hold");
-        }
-        return {value};
+        const NumberText number = number_of(at.text);
+        if (number.expected)
+            fail(at.begin, "number is " + printable(at.text) + "; expected " + number.expected);
+        return {number.value};
     }
 
     FormulaValue named(const Token& at) const {

@@ -25,7 +25,9 @@ std::string bracketed(const Text& t, Precedence needed) {
 
 class Printer {
   public:
-    Printer(Span<const Expr> exprs, const std::vector<std::string>& inputs) : inputs_(inputs) {
+    Printer(Span<const Expr> exprs, const std::vector<std::string>& inputs,
+            const FormulaNames& names)
+        : inputs_(inputs), names_(names) {
         const std::vector<Expr> nodes = nodes_of(exprs);
         std::unordered_map<const ExprNode*, int> uses;
         for (const Expr& e : nodes) {
@@ -45,7 +47,8 @@ class Printer {
             constexpr std::size_t kLongest = 76;
             const bool is_leaf = e.operand_count() == 0;
             const bool is_long = text.text.size() > kLongest && !is_value(e);
-            if (!is_leaf && (uses[e.node()] > 1 || is_long)) text = set(text);
+            const bool has_name = names_.count(e.node()) != 0 && !is_value(e);
+            if (!is_leaf && (uses[e.node()] > 1 || is_long || has_name)) text = set(e, text);
             texts_.emplace(e.node(), std::move(text));
         }
         for (const Expr& e : exprs)
@@ -62,11 +65,19 @@ class Printer {
         taken_.insert(name);
     }
 
-    Text set(const Text& value) {
+    Text set(const Expr& e, const Text& value) {
+        const auto wanted = names_.find(e.node());
         std::string name;
-        do {
-            name = "t" + std::to_string(++count_);
-        } while (taken_.contains(name));
+        if (wanted == names_.end()) {
+            do {
+                name = "t" + std::to_string(++count_);
+            } while (taken_.contains(name));
+        } else {
+            name = wanted->second;
+            for (int i = 2; taken_.contains(name); ++i)
+                name = wanted->second + "_" + std::to_string(i);
+        }
+        taken_.insert(name);
         result_.temporaries += name + " = " + value.text + "\n";
         return {name};
     }
@@ -151,6 +162,7 @@ class Printer {
     }
 
     const std::vector<std::string>& inputs_;
+    const FormulaNames& names_;
     std::set<std::string> taken_;
     std::unordered_map<const ExprNode*, Text> texts_;
     FormulaText result_;
@@ -159,12 +171,14 @@ class Printer {
 
 }  // namespace
 
-FormulaText formula_text(Span<const Expr> exprs, const std::vector<std::string>& inputs) {
-    return Printer(exprs, inputs).result();
+FormulaText formula_text(Span<const Expr> exprs, const std::vector<std::string>& inputs,
+                         const FormulaNames& names) {
+    return Printer(exprs, inputs, names).result();
 }
 
-std::string whole_formula(const Expr& e, const std::vector<std::string>& inputs) {
-    const FormulaText text = formula_text(Span<const Expr>(&e, 1), inputs);
+std::string whole_formula(const Expr& e, const std::vector<std::string>& inputs,
+                          const FormulaNames& names) {
+    const FormulaText text = formula_text(Span<const Expr>(&e, 1), inputs, names);
     const std::string& value = text.values.front();
     // No line begins with a sign that could go on with the line before.
     const bool is_sign = !text.temporaries.empty() && value.front() == '-';

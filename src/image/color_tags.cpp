@@ -97,14 +97,6 @@ constexpr std::array kFormats = {
     FormatColor{"openexr", "OpenEXR", false, false, true},
 };
 
-Claim claim_of_operator(const ResolvedOperator& op) {
-    const Primaries primaries = op.output_primaries();
-    // OIIO's names imply Rec.709: for other primaries there is none.
-    if (!(primaries == kRec709)) return {"", primaries};
-    if (op.op->output == OutputKind::display_linear) return {"Linear", kRec709};
-    return power_claim(op.op->code_power, kRec709);
-}
-
 Claim claim_of_display(std::string_view name) {
     if (name == kLinearOutput) return {"Linear", kRec709};
     const Display& display = find_display(name);
@@ -113,6 +105,16 @@ Claim claim_of_display(std::string_view name) {
     // OIIO's "Rec709" is the camera curve of BT.709. Rec.1886 is the 2.4 power of a display.
     if (display.id == "rec1886") return power_claim(2.4, display.primaries);
     return {display.title, display.primaries};
+}
+
+Claim claim_of_operator(const ResolvedOperator& op) {
+    if (const std::string display = op.output_display(); !display.empty())
+        return claim_of_display(display);
+    const Primaries primaries = op.output_primaries();
+    // OIIO's names imply Rec.709: for other primaries there is none.
+    if (!(primaries == kRec709)) return {"", primaries};
+    if (op.output() == OutputKind::display_linear) return {"Linear", kRec709};
+    return power_claim(op.op->code_power, kRec709);
 }
 
 void tag(const Claim& claim, OIIO::ImageSpec& spec) {

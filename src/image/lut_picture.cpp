@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -105,6 +106,13 @@ OIIO::ImageBuf make_lut_picture(const Lut& lut, LutFormat format) {
         }
     }
     return picture;
+}
+
+TableReader picture_table_reader(TableReader next) {
+    return [next = std::move(next)](const std::string& path) {
+        if (!is_lut_picture(path) && next) return next(path);
+        return table_file_of(read_lut_picture(path), path);
+    };
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -18,4 +18,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 ///                    below 1, NaN or infinities.
 [[nodiscard]] TONEWRIGHT_API Lut read_lut_picture(const std::string& path);
 
+/// Reads LUTs that are pictures for load_operator(). Other files go to `next`. @see table_reader()
+[[nodiscard]] TONEWRIGHT_API TableReader picture_table_reader(TableReader next = {});
+
 TONEWRIGHT_NAMESPACE_END

@@ -96,7 +96,7 @@ ImageSpec result_spec(const ImageSpec& source, bool grey_becomes_color) {
 }
 
 ResolvedOperator operator_of(const TonemapOptions& options) {
-    return resolve_picture_operator(options.op, options.settings, options.look);
+    return resolve_picture_operator(options.op, options.settings, options.look, options.others);
 }
 
 /// The same options, with what the operator's text says in their own places.
@@ -109,8 +109,8 @@ TonemapOptions in_places(TonemapOptions options) {
 }
 
 View view_of(const TonemapOptions& options, const Settings& settings, const SourceColor& source) {
-    return make_view(resolve_picture_operator(options.op, settings, options.look), source,
-                     options.exposure_stops, options.display, options.reference_white);
+    return make_view(resolve_picture_operator(options.op, settings, options.look, options.others),
+                     source, options.exposure_stops, options.display, options.reference_white);
 }
 
 /// True when a picture decides on some of the operator's parameters.

@@ -43,7 +43,7 @@ void run(const Tonemapper& tonemapper, ImageBuf& to, const ImageBuf& from, int n
 /// How the result was made. No date and no machine: the same run makes the same bytes.
 void say_how(ImageSpec& picture, const TonemapOptions& options) {
     const ResolvedOperator op =
-        resolve_picture_operator(options.op, options.settings, options.look);
+        resolve_picture_operator(options.op, options.settings, options.look, options.others);
     const std::string exposure = shortest(options.exposure_stops);
     std::string display = options.display;
     if (options.reference_white != kReferenceWhite)

@@ -173,7 +173,8 @@ struct DeviceLink::Profile {
 namespace {
 
 /// LittleCMS makes room for a table before it knows that the file has as much.
-void check_table(const std::string& path, std::string_view bytes) {
+/// @returns  nodes a side
+std::array<std::size_t, 3> check_table(const std::string& path, std::string_view bytes) {
     const auto refuse = [&](const std::string& reason) {
         throw FileError("read: " + path + ": " + reason);
     };
@@ -235,12 +236,14 @@ void check_table(const std::string& path, std::string_view bytes) {
             "A2B0 declares {} x {} x {} nodes in {} bytes; expected 2 or more a side, with room",
             grid[0], grid[1], grid[2], tag.size()));
     }
+    return grid;
 }
 
 }  // namespace
 
 DeviceLink::DeviceLink(const std::string& path, std::string_view bytes) {
-    check_table(path, bytes);
+    const std::array<std::size_t, 3> grid = check_table(path, bytes);
+    if (grid[0] == grid[1] && grid[1] == grid[2]) edge_ = static_cast<int>(grid[0]);
     auto profile = std::make_unique<Profile>();
     profile->handle.reset(cmsOpenProfileFromMemTHR(profile->context.get(), bytes.data(),
                                                    static_cast<std::uint32_t>(bytes.size())));

@@ -50,8 +50,11 @@ class TONEWRIGHT_API DeviceLink {
 
     /// Interleaved RGB; safe to use from several threads at once.
     void run_rgb(const float* in, float* out, std::size_t count) const;
+    /// Nodes a side of its table; 0: the sides differ.
+    [[nodiscard]] int edge() const noexcept { return edge_; }
 
   private:
+    int edge_ = 0;
     struct Profile;
     std::unique_ptr<const Profile> profile_;
 };

@@ -29,7 +29,7 @@ double stops_of(std::size_t place) { return kDarkest + static_cast<double>(place
 
 /// Whether what comes out is light, not a code value.
 bool is_light(const View& view) {
-    if (view.display == kNativeOutput) return view.op.op->output != OutputKind::code_value;
+    if (view.display == kNativeOutput) return view.op.output() != OutputKind::code_value;
     return view.display == kLinearOutput;
 }
 

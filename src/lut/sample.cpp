@@ -133,7 +133,7 @@ Lut sample_lut(const LutRequest& request) {
     // Readers have 65536 equal steps of light at most: up to ACEScct's 222.9 they are short enough.
     constexpr double kBrightestShaper = 223;
     if (has_shaper(request.format) && request.encoding.scene_hi > kBrightestShaper) {
-        throw Error("bake: input encoding is " + request.encoding.id + ", up to " +
+        throw Error("input encoding is " + request.encoding.id + ", up to " +
                     shortest(request.encoding.scene_hi) + "; expected up to 223 for " +
                     traits.name);
     }
@@ -141,7 +141,7 @@ Lut sample_lut(const LutRequest& request) {
         throw Error(at_most_one_dimension(request) + "; expected a 3D table");
     }
     if (!one && request.encoding.is_linear) {
-        throw Error("bake: input encoding is " + request.encoding.id +
+        throw Error("input encoding is " + request.encoding.id +
                     "; expected another for a 3D table, such as acescct or log2" +
                     " (a 3D LUT of linear input clips at its end and bands in the shadows)");
     }

@@ -75,16 +75,21 @@ std::vector<std::string> header_lines(const Lut& lut, const LutRequest& r, const
                             ? "Clips nothing that would show (within one code of 10 bits)"
                             : "Clips what would show " + clipped);
     }
-    if (r.view.display == kNativeOutput) {
+    // An operator's own code values may be a display's.
+    const std::string display =
+        r.view.display == kNativeOutput && !r.view.op.output_display().empty()
+            ? r.view.op.output_display()
+            : r.view.display;
+    if (display == kNativeOutput) {
         lines.push_back(
-            op.output == OutputKind::code_value
+            r.view.op.output() == OutputKind::code_value
                 ? fmt::format("Output: the operator's own code values, power {}", op.code_power)
                 : "Output: the operator's own display-linear values");
-    } else if (r.view.display == kLinearOutput) {
+    } else if (display == kLinearOutput) {
         lines.push_back("Output: display-linear Rec.709, unclamped");
     } else {
-        const Display& display = find_display(r.view.display);
-        lines.push_back("Output: " + display.title + " code values (" + display.source + ")");
+        const Display& shown = find_display(display);
+        lines.push_back("Output: " + shown.title + " code values (" + shown.source + ")");
     }
     add_error_lines(lines, e);
     if (other) add_error_lines(lines, *other);

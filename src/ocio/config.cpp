@@ -193,17 +193,22 @@ void check_config_options(const ConfigOptions& options) {
 }
 
 std::vector<std::string> config_warnings(const ConfigOptions& options) {
+    std::vector<std::string> texts;
     std::vector<std::string> views;
     std::set<const Operator*> said;
     for (const auto& view : make_config_model(options).views) {
+        const std::string caution = view.op.caution();
+        if (!caution.empty() && view.exposure_stops == 0) texts.push_back(caution);
         const std::string constants = stand_ins(view.op);
         if (constants.empty() || !said.insert(view.op.op).second) continue;
         views.push_back(fmt::format("{} takes {}", view.name, constants));
     }
-    if (views.empty()) return {};
-    return {
-        fmt::format("a config measures no picture: {} (--operator ID:PARAMETER=VALUE sets others)",
-                    fmt::join(views, "; "))};
+    if (!views.empty()) {
+        texts.push_back(fmt::format(
+            "a config measures no picture: {} (--operator ID:PARAMETER=VALUE sets others)",
+            fmt::join(views, "; ")));
+    }
+    return texts;
 }
 
 std::vector<GeneratedFile> make_config(const ConfigOptions& options) {

@@ -253,7 +253,10 @@ ExtendedConfig extend_config(const std::string& path, const ConfigOptions& given
         const AddedRecord earlier = AddedRecord::read(path);
         text = earlier.without(text, path);
         replaced = earlier.files;
-        if (is_empty(given)) options = earlier.options;
+        if (is_empty(given)) {
+            options = earlier.options;
+            options.others = given.others;
+        }
     } else if (std::filesystem::exists(std::filesystem::absolute(path).parent_path() /
                                        AddedRecord::path_of(path))) {
         record = AddedRecord::read(path);

@@ -64,7 +64,42 @@ class Lowering {
         domain_.hi = std::min(domain_.hi, stage.hi);
     }
 
+    /// Tables of equal distances over [0, 1] that a curve does nothing but look up: between half
+    /// floats their corners would be blunt.
+    static std::array<const Table*, 3> tables_of(const CurveStage& stage) {
+        std::array<const Table*, 3> tables{};
+        for (std::size_t c = 0; c < 3; ++c) {
+            const Expr& f = stage.f[c];
+            if (f.op() != ExprOp::lookup || !same(f.operand(0), Expr::input())) return {};
+            tables[c] = f.table().get();
+            const bool is_alike = tables[c]->positions.empty() &&
+                                  tables[c]->interpolation == Table::Interpolation::linear &&
+                                  tables[c]->samples.size() == tables[0]->samples.size();
+            if (!is_alike) return {};
+        }
+        return tables;
+    }
+
+    void emit_tables(const std::array<const Table*, 3>& tables) {
+        flush_curves();
+        std::array<std::vector<float>, 3> values;
+        domain_ = {kHalfMax, -kHalfMax};
+        for (std::size_t c = 0; c < 3; ++c) {
+            const std::vector<double>& samples = tables[c]->samples;
+            values[c].assign(samples.begin(), samples.end());
+            const auto [lo, hi] = std::minmax_element(samples.begin(), samples.end());
+            domain_ = {std::min(domain_.lo, *lo), std::max(domain_.hi, *hi)};
+        }
+        Lut1DOp lut = lut_1d(values);
+        lut.is_half_domain = false;
+        emit(std::move(lut), "1D table");
+    }
+
     void lower(const CurveStage& stage) {
+        if (const auto tables = tables_of(stage); tables[0]) {
+            emit_tables(tables);
+            return;
+        }
         if (!pending_) {
             pending_ = stage.f;
             return;

@@ -18,9 +18,12 @@
 #include "base/atomic_file.h"
 #include "base/input_file.h"
 #include "base/strings.h"
+#include "lut/dds.h"
 #include "lut/icc.h"
 #include "lut/lut_text.h"
 #include "lut/raw.h"
+#include "lut/table_file.h"
+#include "ocio/lut_transforms.h"
 #include "ocio/transforms.h"
 #include "tonewright/lut.h"
 #include "tonewright/lut_applications.h"
@@ -30,9 +33,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The text of a cube of 129 has some 80 million characters.
-constexpr std::size_t kLargestFile = 128U << 20U;
-
 bool is_device_link(const std::string& extension) {
     return extension == ".icc" || extension == ".icm";
 }
@@ -40,7 +40,7 @@ bool is_device_link(const std::string& extension) {
 void check_extension(const std::string& path) {
     const std::string extension = extension_of(path);
     std::vector<std::string> known = lut_text_extensions();
-    known.insert(known.end(), {".icc", ".icm", ".raw"});
+    known.insert(known.end(), {".icc", ".icm", ".raw", ".dds"});
     if (std::find(known.begin(), known.end(), extension) != known.end()) return;
     known.emplace_back("a picture's");
     throw FileError(fmt::format("read: {}: extension is {}; expected {}", path,
@@ -207,7 +207,26 @@ OcioCpu make_cpu(const std::string& path, const std::string& name, OCIO::GroupTr
     }
 }
 
+std::string checked_bytes(const std::string& path) {
+    require_regular_file(path);
+    check_extension(path);
+    return read_file(path, kLargestLutFile, [&](const std::string& reason) {
+        throw FileError("read: " + path + ": " + reason);
+    });
+}
+
 }  // namespace
+
+OCIO::ConstGroupTransformRcPtr lut_transforms(const std::string& path, std::string& contents) {
+    contents = checked_bytes(path);
+    check_lut_text(path, contents);
+    const PrivateCopy copy(path, contents);
+    try {
+        return make_processor(group_of(copy.path()))->createGroupTransform();
+    } catch (const OCIO::Exception& e) {
+        throw FileError("read: " + path + ": " + reason_of(e, copy.path()));
+    }
+}
 
 void silence_opencolorio() { OCIO::SetLoggingLevel(OCIO::LOGGING_LEVEL_NONE); }
 
@@ -227,11 +246,7 @@ LutFile::LutFile(const std::string& path, LutInterpolation interpolation) {
     auto form = std::make_unique<Form>();
     form->is_trilinear = interpolation == LutInterpolation::trilinear;
     const std::string extension = extension_of(path);
-    require_regular_file(path);
-    check_extension(path);
-    const std::string bytes = read_file(path, kLargestFile, [&](const std::string& reason) {
-        throw FileError("read: " + path + ": " + reason);
-    });
+    const std::string bytes = checked_bytes(path);
     if (is_device_link(extension)) {
         if (form->is_trilinear) {
             throw Error("interpolation is trilinear; expected tetrahedral for " + path +
@@ -240,6 +255,8 @@ LutFile::LutFile(const std::string& path, LutInterpolation interpolation) {
         form->link.emplace(path, bytes);
     } else if (extension == ".raw") {
         form->table = parse_raw_lut(path, bytes);
+    } else if (extension == ".dds") {
+        form->table = parse_dds(path, bytes);
     } else {
         if (extension == ".cube") {
             form->ocio.emplace(

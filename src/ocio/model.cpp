@@ -614,7 +614,7 @@ std::vector<ConfigModel::View> choose_views(const ConfigOptions& options) {
         }
         ResolvedOperator op{};
         try {
-            op = resolve_operator(wanted);
+            op = resolve_operator(wanted, {}, {}, options.others);
         } catch (const FileError&) {
             throw;
         } catch (const Error& e) {
@@ -631,7 +631,7 @@ std::vector<ConfigModel::View> choose_views(const ConfigOptions& options) {
         add(view);
     }
     for (const auto& custom : options.custom) {
-        const ResolvedOperator op = resolve_operator(custom.op);
+        const ResolvedOperator op = resolve_operator(custom.op, {}, {}, options.others);
         if (custom.name.empty())
             throw Error("config: the view of " + custom.op + " has no name; expected one");
         views.push_back({custom.name, op, description_of(*op.op) + " As " + op.label + "."});

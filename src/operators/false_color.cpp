@@ -47,7 +47,8 @@ std::vector<Operator> define_false_color() {
     op.negatives = kNegativesClampAtZero;
     op.is_diagnostic = true;
     op.deviations = {{DocumentedDifference::Kind::crushes_black, 0.0018, ""},
-                     {DocumentedDifference::Kind::not_monotone, 4.3, ""}};
+                     {DocumentedDifference::Kind::not_monotone, 4.3, ""},
+                     {DocumentedDifference::Kind::tints_gray, 0.75, ""}};
     op.bounds = {.ocio_cpu = 2e-5,
                  .ocio_gpu = 2e-5,
                  .reason = "a color goes over into the next within a quarter of a stop"};

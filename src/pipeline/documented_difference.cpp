@@ -1,32 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <charconv>
-
+#include "base/format_number.h"
 #include "tonewright/pipeline.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
-namespace {
 
-/// DocumentedDifferences are declared with two significant digits, what is near 1 with three.
-std::string rounded(double value, int digits = 2) {
-    std::array<char, 32> text{};
-    const auto end = std::to_chars(text.data(), text.data() + text.size(), value,
-                                   std::chars_format::general, digits);
-    return {text.data(), end.ptr};
+const std::vector<std::string>& difference_names() {
+    static const std::vector<std::string> names = {
+        "black",      "crushes_black", "never_reaches_white", "exceeds_white", "not_monotone",
+        "tints_gray", "jumps"};
+    return names;
 }
 
-}  // namespace
-
+/// Differences are declared with two significant digits, what is near 1 with three.
 std::string to_string(const DocumentedDifference& d) {
     using Kind = DocumentedDifference::Kind;
     const std::string prefix = d.when.empty() ? "" : d.when + ": ";
     switch (d.kind) {
         case Kind::black:
             if (d.value == 0) return prefix + "black is 0";
-            return prefix + (d.value > 0
-                                 ? "lifts black to " + rounded(d.value)
-                                 : "takes black to " + rounded(d.value) + ", which displays clip");
+            return prefix + (d.value > 0 ? "lifts black to " + rounded(d.value, 2)
+                                         : "takes black to " + rounded(d.value, 2) +
+                                               ", which displays clip");
         case Kind::crushes_black:
-            return prefix + "shows greys up to " + rounded(d.value) + " as black";
+            return prefix + "shows greys up to " + rounded(d.value, 2) + " as black";
         case Kind::never_reaches_white:
             return prefix + "never reaches white: at most " + rounded(d.value, 3) +
                    " of the display's light";
@@ -37,7 +33,11 @@ std::string to_string(const DocumentedDifference& d) {
                    ": SDR displays clip it";
         case Kind::not_monotone:
             return prefix + "non-monotone" +
-                   (d.value == kInfinity ? "" : " below " + rounded(d.value));
+                   (d.value == kInfinity ? "" : " below " + rounded(d.value, 2));
+        case Kind::tints_gray:
+            return prefix + "tints gray: its channels differ by up to " + rounded(d.value, 2);
+        case Kind::jumps:
+            return prefix + "jumps by " + rounded(d.value, 2) + " from one gray to the next";
     }
     return {};
 }

@@ -2,6 +2,7 @@
 #include "tonewright/view.h"
 #include "base/format_number.h"
 #include "base/strings.h"
+#include "pipeline/invert.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +11,15 @@ TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 /// Operator output -> display light, not limited above.
-Pipeline decode_stages(const Operator& op) {
-    if (op.output == OutputKind::display_linear) return {};
+Pipeline decode_stages(const ResolvedOperator& resolved) {
+    const Operator& op = *resolved.op;
+    if (resolved.output() == OutputKind::display_linear) return {};
+    if (const std::string name = resolved.output_display(); !name.empty()) {
+        const Display& display = find_display(name);
+        Pipeline stages = {ClampStage{0, display.is_hdr ? 1 : kInfinity}};
+        stages.insert(stages.end(), display.decode.begin(), display.decode.end());
+        return stages;
+    }
     const Expr x = Expr::input(0);
     // A curve may undershoot 0 (AgX's polynomials do); a power of a negative is no number.
     return {ClampStage{0, kInfinity},
@@ -75,7 +83,7 @@ DisplayLimit display_limit(const ResolvedOperator& op, const Display& display) {
 }
 
 Pipeline display_light_stages(const ResolvedOperator& op, const DisplayLimit& limit) {
-    Pipeline stages = decode_stages(*op.op);
+    Pipeline stages = decode_stages(op);
     if (!(limit.primaries == op.output_primaries()))
         stages.push_back(
             MatrixStage{rgb_to_rgb(op.output_primaries(), limit.primaries), "to_limit"});
@@ -100,18 +108,24 @@ Pipeline build_live_view(const View& view, const std::vector<std::string>& unifo
     append(stages, parameters.empty() ? view.op.build() : build_live(view.op, parameters));
     if (view.display == kNativeOutput) return stages;
     if (view.display == kLinearOutput) {
-        append(stages, decode_stages(op));
+        append(stages, decode_stages(view.op));
         stages.push_back(MatrixStage{rgb_to_rgb(view.op.output_primaries(), kRec709), "to_rec709"});
         return stages;
     }
     const Display& display = find_display(view.display);
+    const bool is_same_white = view.reference_white == kReferenceWhite;
+    if (view.op.output_display() == display.id && is_same_white) {
+        // Its own display: its code values are shown as they are.
+        stages.push_back(ClampStage{0, 1});
+        return stages;
+    }
     const DisplayLimit limit = display_limit(view.op, display);
     append(stages, display_light_stages(view.op, limit));
     if (!(limit.primaries == display.primaries)) {
         stages.push_back(MatrixStage{rgb_to_rgb(limit.primaries, display.primaries), "to_display"});
         stages.push_back(ClampStage{0, limit.peak});
     }
-    if (display.is_hdr && view.reference_white != kReferenceWhite) {
+    if (display.is_hdr && !is_same_white) {
         stages.push_back(MatrixStage{scale(kIdentity3, view.reference_white / kReferenceWhite)});
         stages.push_back(ClampStage{0, display.largest_light});
     }
@@ -121,7 +135,14 @@ Pipeline build_live_view(const View& view, const std::vector<std::string>& unifo
 
 Pipeline build_inverse_view(const View& view) {
     const Operator& op = *view.op.op;
-    if (!op.build_inverse) throw Error(op.id + " has no inverse");
+    const auto inverse = [&] {
+        try {
+            return op.build_inverse ? op.build_inverse(view.op.params)
+                                    : invert_stages(view.op.build());
+        } catch (const Error& e) {
+            throw Error(op.name() + " has no inverse: " + e.what());
+        }
+    };
     Pipeline stages;
     const Primaries own = view.op.output_primaries();
     if (view.display == kLinearOutput) {
@@ -132,9 +153,15 @@ Pipeline build_inverse_view(const View& view) {
         stages.push_back(MatrixStage{
             scale(rgb_to_rgb(display.primaries, own), kReferenceWhite / view.reference_white)});
     }
-    if (view.display != kNativeOutput && op.output == OutputKind::code_value)
-        stages.push_back(curve_stage(power_encode(Expr::input(), op.code_power)));
-    append(stages, op.build_inverse(view.op.params));
+    if (view.display != kNativeOutput && view.op.output() == OutputKind::code_value) {
+        const std::string own_display = view.op.output_display();
+        if (own_display.empty()) {
+            stages.push_back(curve_stage(power_encode(Expr::input(), op.code_power)));
+        } else {
+            append(stages, find_display(own_display).encode);
+        }
+    }
+    append(stages, inverse());
     const Matrix3 to_input = rgb_to_rgb(op.working, view.input_primaries);
     stages.push_back(MatrixStage{scale(to_input, std::exp2(-view.exposure_stops))});
     return stages;

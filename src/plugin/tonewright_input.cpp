@@ -24,11 +24,14 @@
 
 #include "base/input_file.h"
 #include "base/strings.h"
+#include "image/lut_picture.h"
 #include "image/picture_file.h"
 #include "image/scene_meter.h"
 #include "image/source_picture.h"
 #include "image/tonemap_arguments.h"
 #include "image/tonemap_file.h"
+#include "tonewright/lut.h"
+#include "tonewright/registry.h"
 #include "tonewright/tonemap.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -129,6 +132,8 @@ Request parse_request(const std::string& name) {
 
 TonemapOptions parse_options(const Arguments& arguments, const ImageSpec& config) {
     TonemapOptions options;
+    static const OperatorSet files(table_reader(picture_table_reader()));
+    options.others = files;
     // What an application sets for the format: `tonewright:op` and so on.
     constexpr std::string_view kPrefix = "tonewright:";
     for (const OIIO::ParamValue& hint : config.extra_attribs) {

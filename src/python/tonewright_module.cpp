@@ -36,6 +36,7 @@
 #include "tonewright/image_io.h"
 #include "tonewright/lut.h"
 #include "tonewright/lut_applications.h"
+#include "tonewright/lut_file.h"
 #include "tonewright/meter.h"
 #include "tonewright/ocio.h"
 #include "tonewright/registry.h"
@@ -119,6 +120,21 @@ void set_error(PyObject* type, std::string message) {
     PyErr_SetString(type, in_python(one_line(message)).c_str());
 }
 
+/// What reads .tone files and LUTs.
+const OperatorSet& operator_files() {
+    static const OperatorSet files(table_reader(picture_table_reader(ocio_table_reader())));
+    return files;
+}
+
+/// Tells what is wrong with the operator before anything is done, a file that cannot be read
+/// included.
+void check_operator(const TonemapOptions& options) {
+    const std::string caution =
+        resolve_picture_operator(options.op, options.settings, options.look, options.others)
+            .caution();
+    if (!caution.empty()) warn(caution);
+}
+
 /// `settings` is a dictionary of the operator's parameters.
 TonemapOptions parse_options(const std::string& op, const py::kwargs& arguments) {
     TonemapOptions options;
@@ -133,6 +149,8 @@ TonemapOptions parse_options(const std::string& op, const py::kwargs& arguments)
         for (const auto& [parameter, number] : value.cast<py::dict>())
             options.settings[text_of(parameter)] = text_of(number);
     }
+    options.others = operator_files();
+    check_operator(options);
     return options;
 }
 
@@ -275,8 +293,9 @@ py::array evaluate_colors(const std::string& op, const py::object& colors,
     const TonemapOptions options = parse_options(op, arguments);
     const SourceColor input =
         find_source_color(is_same_name(options.input, kAutoInput) ? "lin_rec709" : options.input);
-    const View view = make_view(resolve_operator(options.op, options.settings, options.look), input,
-                                options.exposure_stops, options.display, options.reference_white);
+    const View view =
+        make_view(resolve_operator(options.op, options.settings, options.look, options.others),
+                  input, options.exposure_stops, options.display, options.reference_white);
     const bool is_float = py::isinstance<py::array_t<float>>(colors);
     if (is_float) {
         const py::array_t<float> from = checked_colors<float>(colors);
@@ -406,13 +425,15 @@ py::dict bake_file(const std::string& op, const std::string& file, const std::st
         parse_input_encoding(input_encoding.value_or(reader ? reader->encoding : "acescct"));
     const bool is_own_encoding = reader && !input_encoding;
     if (is_same_name(options.input, kAutoInput)) {
-        options.input = is_own_encoding ? lut_input_of(*reader, *resolve_operator(options.op).op)
-                                        : request.encoding.default_input;
+        options.input =
+            is_own_encoding
+                ? lut_input_of(*reader, *resolve_operator(options.op, {}, {}, options.others).op)
+                : request.encoding.default_input;
     }
     if (reader && !arguments.contains("display")) options.display = reader->display;
     request.view =
-        make_view(resolve_operator(options.op, options.settings, options.look), options.input,
-                  options.exposure_stops, options.display, options.reference_white);
+        make_view(resolve_operator(options.op, options.settings, options.look, options.others),
+                  options.input, options.exposure_stops, options.display, options.reference_white);
     if (reader && !format) {
         request.bits = reader->bits;
         // As `bake` does: one curve for each channel is exact as a 1D table.
@@ -550,6 +571,7 @@ void write_config(const std::string& folder, const std::vector<std::string>& pro
                   const std::vector<std::pair<std::string, std::string>>& custom,
                   const std::vector<double>& exposure_stops) {
     ConfigOptions options;
+    options.others = operator_files();
     options.profiles = profiles;
     options.views = views;
     options.displays = displays;
@@ -572,6 +594,7 @@ py::list verify_operators(const std::vector<std::string>& operators,
                           const std::string& config, bool is_quick, bool with_gpu,
                           const std::vector<std::string>& shaders) {
     VerifyOptions options;
+    options.others = operator_files();
     options.operators = operators;
     options.displays = displays;
     options.input = input;

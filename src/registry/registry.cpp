@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tonewright/registry.h"
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <utility>
@@ -61,10 +62,18 @@ struct AbsentOperator {
     const char* note;
 };
 constexpr AbsentOperator kAbsentOperators[] = {
-    {"filmic", "Filmic Blender is a table without a formula (docs/choosing.md)"},
-    {"filmic_blender", "Filmic Blender is a table without a formula (docs/choosing.md)"},
-    {"tony_mcmapface", "Tony McMapface is a table without a formula (docs/choosing.md)"},
-    {"tonymcmapface", "Tony McMapface is a table without a formula (docs/choosing.md)"},
+    {"filmic",
+     "Filmic Blender is a table without a formula (docs/choosing.md); expected its file as the "
+     "operator"},
+    {"filmic_blender",
+     "Filmic Blender is a table without a formula (docs/choosing.md); expected its file as the "
+     "operator"},
+    {"tony_mcmapface",
+     "Tony McMapface is a table without a formula (docs/choosing.md); expected its file as the "
+     "operator"},
+    {"tonymcmapface",
+     "Tony McMapface is a table without a formula (docs/choosing.md); expected its file as the "
+     "operator"},
     {"opendrt", "OpenDRT cannot be derived from its description (docs/choosing.md)"},
 };
 
@@ -132,20 +141,32 @@ std::vector<std::string> parts_of(std::string_view text) {
     return parts;
 }
 
-/// The length of the path of a .tone file that the text begins with; 0 if it names no file.
-std::size_t file_length(std::string_view text) {
+/// True where the path of a file may end here, at the end of an extension.
+bool is_end_of_path(std::string_view text, std::size_t end) {
     constexpr std::string_view kExtension = ".tone";
-    const std::string small = lowercase(text);
-    for (std::size_t dot = small.find(kExtension); dot != std::string::npos;
-         dot = small.find(kExtension, dot + 1)) {
-        const std::size_t end = dot + kExtension.size();
-        const bool is_end = end == text.size() || text[end] == ':' ||
-                            (is_blank(text[end]) && begins_with_setting(text.substr(end)));
-        if (!is_end) continue;
-        const bool is_operator = operators_by_name().contains(folded_name(parts_of(text).front()));
-        return is_operator ? 0 : end;
+    if (end < text.size() && text[end] != ':' &&
+        !(is_blank(text[end]) && begins_with_setting(text.substr(end))))
+        return false;
+    const std::string path = lowercase(text.substr(0, end));
+    const std::vector<std::string>& tables = table_extensions();
+    return path.ends_with(kExtension) ||
+           std::any_of(tables.begin(), tables.end(),
+                       [&](const std::string& extension) { return path.ends_with(extension); });
+}
+
+/// The length of the path of a file that the text begins with; 0 if it names no file.
+std::size_t file_length(std::string_view text) {
+    if (text.find('.') == std::string_view::npos) return 0;
+    for (std::size_t end = text.find_first_of(": \t"); true;
+         end = text.find_first_of(": \t", end + 1)) {
+        const std::size_t stop = std::min(end, text.size());
+        if (is_end_of_path(text, stop)) {
+            const bool is_operator =
+                operators_by_name().contains(folded_name(parts_of(text).front()));
+            return is_operator ? 0 : stop;
+        }
+        if (stop == text.size()) return 0;
     }
-    return 0;
 }
 
 /// A value as parts_of() reads it back.
@@ -193,7 +214,7 @@ ResolvedOperator resolve_text(std::string_view text, const Settings& settings,
     const std::vector<std::string> parts = parts_of(rest);
     NamedOperator named;
     if (length > 0) {
-        named.owner = load_operator(std::string(text.substr(0, length)));
+        named.owner = load_operator(std::string(text.substr(0, length)), others.tables());
         named.op = named.owner.get();
     } else {
         named = find_named(parts.front(), others);
@@ -248,6 +269,12 @@ ResolvedOperator resolve_picture_operator(std::string_view text, const Settings&
 
 bool names_a_file(std::string_view text) { return file_length(text) > 0; }
 
+bool names_a_lut(std::string_view text) {
+    const std::vector<std::string>& tables = table_extensions();
+    const std::string extension = extension_of(std::string(text.substr(0, file_length(text))));
+    return std::find(tables.begin(), tables.end(), extension) != tables.end();
+}
+
 void OperatorSet::add(std::shared_ptr<const Operator> op) {
     for (const auto& [name, named] : by_name({op.get()})) {
         bool is_taken = operators_by_name().contains(name);
@@ -279,14 +306,6 @@ std::string operator_text(const ResolvedOperator& op) {
         if (matters) text += ":" + name + "=" + marked(value);
     }
     return look.empty() ? text : text + ":look=" + look;
-}
-
-std::vector<std::string> invertible_operators() {
-    std::vector<std::string> ids;
-    for (const Operator& op : all_operators()) {
-        if (op.build_inverse) ids.push_back(op.id);
-    }
-    return ids;
 }
 
 std::vector<OperatorVariant> all_variants() {

@@ -17,6 +17,7 @@ constexpr LanguageFacts kGlsl = {
     .boolean = "bool",
     .integer = "int",
     .suffix = "",
+    .is_double = false,
     .make_color = "vec3",
     .channel = {".r", ".g", ".b"},
     .before_function = "",
@@ -28,9 +29,11 @@ constexpr LanguageFacts kGlsl = {
     .choose = "{condition} ? {yes} : {no}",
     .to_integer = "int({value})",
     .to_number = "float({value})",
+    .half = "({value}) / 2",
     .array = "const float {name}[{count}] = float[{count}](\n{values});",
     .texture = "uniform highp sampler3D {name};",
     .fetch = "texelFetch({name}, ivec3({x}, {y}, {z}), 0)",
+    .color_of_fetch = ".rgb",
     .loader =
         "// glTexImage3D(GL_TEXTURE_3D, 0, GL_RGBA32F, {width}, {height}, {depth}, 0, GL_RGBA, "
         "GL_FLOAT, data);\n"
@@ -246,8 +249,52 @@ constexpr LanguageFacts osl() {
     return f;
 }
 
+/// The double reference for pages: numbers have 64 bits there. A color is an array.
+constexpr LanguageFacts javascript() {
+    LanguageFacts f = kGlsl;
+    f.language = ShaderLanguage::javascript;
+    f.is_double = true;
+    f.make_color = "tw_rgb";
+    f.channel = {"[0]", "[1]", "[2]"};
+    f.function = "function {name}({parameters})";
+    f.parameter = "{name}";
+    f.let = "const {name} = {value};";
+    f.variable = "let {name} = {value};";
+    f.loop = "for (let i = 0; i < {count}; i++)";
+    f.to_integer = "Math.trunc({value})";
+    f.to_number = "{value}";
+    f.half = "({value}) >> 1";
+    f.array = "const {name} = [\n{values}];";
+    f.texture =
+        "// Before the first call, make {name} a function of x, y, z that returns [r, g, b].";
+    f.fetch = "{name}({x}, {y}, {z})";
+    f.color_of_fetch = "";
+    f.loader =
+        "// const data = new Float32Array(await (await fetch('{name}.rgba32f')).arrayBuffer());\n"
+        "// const {name} = (x, y, z) => {{\n"
+        "//     const i = 4 * (x + {width} * (y + {height} * z));\n"
+        "//     return [data[i], data[i + 1], data[i + 2]];\n"
+        "// }};\n";
+    f.largest_array = 65536;
+    f.has_color_math = false;
+    f.product = "";
+    f.minimum = "Math.min";
+    f.maximum = "Math.max";
+    f.absolute = "Math.abs";
+    f.square_root = "Math.sqrt";
+    f.exp2 = "";
+    f.log2 = "Math.log2";
+    f.power = "Math.pow";
+    f.sine = "Math.sin";
+    f.cosine = "Math.cos";
+    f.atan2 = "Math.atan2";
+    f.floor = "Math.floor";
+    f.prologue = "const tw_rgb = (r, g, b) => [r, g, b];\n";
+    return f;
+}
+
 constexpr std::array kFacts = {kGlsl,  glsl_es(), hlsl(), wgsl(), msl(),
-                               dctl(), blink(),   c(),    osl()};
+                               dctl(), blink(),   c(),    osl(),  javascript()};
 
 }  // namespace
 
@@ -262,6 +309,7 @@ const std::vector<ShaderLanguageInfo>& shader_languages() {
         {ShaderLanguage::blink, "blinkscript", "BlinkScript (Nuke), members of a kernel", ".h"},
         {ShaderLanguage::c, "c", "C99 and C++", ".h", true},
         {ShaderLanguage::osl, "osl", "Open Shading Language", ".osl"},
+        {ShaderLanguage::javascript, "js", "JavaScript, in 64-bit float", ".js", true},
     };
     return languages;
 }

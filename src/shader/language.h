@@ -16,6 +16,7 @@ struct LanguageFacts {
     const char* boolean;
     const char* integer;
     const char* suffix;      // of a literal
+    bool is_double;          // numbers have 64 bits
     const char* make_color;  // of three numbers
     std::array<const char*, 3> channel;
     const char* before_function;
@@ -27,10 +28,12 @@ struct LanguageFacts {
     const char* choose;      // {condition}, {yes}, {no}
     const char* to_integer;  // {value}
     const char* to_number;   // {value}
+    const char* half;        // of a whole {value}, rounded down
     const char* array;       // {name}, {count}, {values}
     /// Of 3D, its {name} and {binding}; empty: none can be read without being an argument.
     const char* texture;
     const char* fetch;  // of a texture's {name} at {x}, {y}, {z}: a color, or more than that
+    const char* color_of_fetch;  // behind it
     /// Comments: how the texture is made of its file. {name}, {width}, {height}, {depth}, {pitch}.
     const char* loader;
     /// The largest array that a text of the language should hold.

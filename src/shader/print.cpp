@@ -295,7 +295,9 @@ class ProgramPrinter {
         line(fmt::format(fmt::runtime(language_.loop),
                          fmt::arg("count", std::bit_width(count - 1))) +
              " {");
-        line("    " + let(language_.integer, "middle", "(cell + next) / 2"));
+        line("    " +
+             let(language_.integer, "middle",
+                 fmt::format(fmt::runtime(language_.half), fmt::arg("value", "cell + next"))));
         line(fmt::format("    if (x < {}) {{ next = middle; }} else {{ cell = middle; }}",
                          at(position, "middle")));
         line("}");
@@ -385,7 +387,7 @@ class ProgramPrinter {
         // The third coordinate runs fastest.
         return fmt::format(fmt::runtime(language_.fetch), fmt::arg("name", nodes),
                            fmt::arg("x", "{b}"), fmt::arg("y", "{g}"), fmt::arg("z", "{r}")) +
-               ".rgb";
+               language_.color_of_fetch;
     }
 
     void print_lattice(const std::string& name, const Lattice& lattice) {
@@ -619,11 +621,15 @@ PrintedProgram print_program(const ShaderProgram& program, const LanguageFacts& 
 std::string float_literal(double value, const LanguageFacts& language) {
     // Not the largest float: its shortest digits lie above it, and WGSL takes no such literal.
     constexpr double kMost = 3e38;
-    auto number = static_cast<float>(std::clamp(value, -kMost, kMost));
-    if (std::fpclassify(number) == FP_SUBNORMAL) number = 0;
-    std::array<char, 32> buffer{};
-    const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), number);
-    std::string text(buffer.data(), end);
+    value = std::clamp(value, -kMost, kMost);
+    const auto digits_of = [](auto number) {
+        if (std::fpclassify(number) == FP_SUBNORMAL) number = 0;
+        std::array<char, 32> buffer{};
+        return std::string(buffer.data(),
+                           std::to_chars(buffer.data(), buffer.data() + buffer.size(), number).ptr);
+    };
+    const std::string text =
+        language.is_double ? digits_of(value) : digits_of(static_cast<float>(value));
     const std::size_t exponent = text.find('e');
     std::string digits = text.substr(0, exponent);
     if (digits.find('.') == std::string::npos) digits += ".0";

@@ -161,7 +161,7 @@ ShaderProgram program_of(const ShaderRequest& request) {
 bool is_light(const ShaderRequest& request) {
     const View& view = request.view;
     if (is_of_a_display(view)) return false;
-    return view.display == kLinearOutput || view.op.op->output == OutputKind::display_linear;
+    return view.display == kLinearOutput || view.op.output() == OutputKind::display_linear;
 }
 
 /// Light as sRGB code values, without an upper end: what is above 1 counts relatively.
@@ -393,6 +393,13 @@ std::string header(const ShaderRequest& request, const Shader& shader,
     add("Input", request.is_inverse ? shown : scene);
     add("Output", request.is_inverse ? scene : shown);
     add("Negatives", request.is_inverse ? "" : op.negatives);
+    if (facts_of(request.language).is_double && !request.application) {
+        add("Precision",
+            "64-bit float: the formulas of the double reference, with the mathematical functions "
+            "of the JavaScript engine.");
+        add("NaN", "make it 0 first, as every engine of Tonewright does");
+        return text;
+    }
     const char* const unit = request.is_inverse      ? "what the view shows of it"
                              : is_of_a_display(view) ? "code values from 0 to 1"
                                                      : "sRGB code values from 0 to 1";

@@ -33,8 +33,9 @@ namespace fs = std::filesystem;
 /// A config in a folder of its own, gone with the object.
 class TemporaryConfig {
   public:
-    explicit TemporaryConfig(const std::vector<std::string>& views) {
-        write_generated_files(folder_.path(), make_config({.views = views}), "config.ocio");
+    TemporaryConfig(const std::vector<std::string>& views, const OperatorSet& others) {
+        write_generated_files(folder_.path(), make_config({.views = views, .others = others}),
+                              "config.ocio");
     }
     [[nodiscard]] const std::string& folder() const { return folder_.path(); }
 
@@ -95,10 +96,14 @@ Bounds bounds_of(const Pipeline& pipeline, const Lowered& lowered, bool is_hdr,
         b.cpu = std::max(b.cpu, cpu);
         b.gpu = std::max(b.gpu, gpu);
     };
+    bool may_be_negative = true;
     for (const Stage& stage : simplify(pipeline)) {
-        if (const auto* m = std::get_if<MatrixStage>(&stage); m && has_negative_coefficient(m->m)) {
+        // Negative channels cancel in any matrix that mixes them.
+        const auto* m = std::get_if<MatrixStage>(&stage);
+        if (m && (has_negative_coefficient(m->m) || (may_be_negative && mixes_channels(stage))))
             b.is_mixed_metric = true;
-        }
+        if (const auto* c = std::get_if<ClampStage>(&stage); c && c->lo >= 0)
+            may_be_negative = false;
         // xyY and HSV subtract numbers as large as the brightest channel.
         if (const auto* t = std::get_if<ToneScaleStage>(&stage))
             allow(2e-5 * largest(t->f), 5e-5 * largest(t->f));
@@ -400,14 +405,15 @@ std::string view_in_config(const OCIO::ConstConfigRcPtr& config, const View& vie
     return transform && *transform ? shown : "";
 }
 
-std::vector<ResolvedOperator> operators_of(const std::vector<std::string>& names) {
+std::vector<ResolvedOperator> operators_of(const std::vector<std::string>& names,
+                                           const OperatorSet& others) {
     std::vector<ResolvedOperator> operators;
     bool has_all = names.empty();
     for (const std::string& name : names) {
         if (is_same_name(name, "all")) {
             has_all = true;
         } else {
-            operators.push_back(resolve_operator(name));
+            operators.push_back(resolve_operator(name, {}, {}, others));
         }
     }
     if (!has_all) return operators;
@@ -451,7 +457,7 @@ VerifyResult verify(const VerifyOptions& options,
     const bool is_of_config = options.operators.empty() && !options.config.empty();
     OCIO::ConstConfigRcPtr config;
     if (!options.config.empty()) config = read_config(path_of_config(options.config));
-    const std::vector<ResolvedOperator> operators = operators_of(options.operators);
+    const std::vector<ResolvedOperator> operators = operators_of(options.operators, options.others);
     std::vector<std::string> displays = options.displays;
     if (displays.empty() && is_of_config) {
         for (const Display& display : all_displays())
@@ -497,7 +503,7 @@ VerifyResult verify(const VerifyOptions& options,
             if (!view_name(view.op).empty()) wanted.push_back(operator_text(view.op));
         }
         if (wanted.empty()) wanted.push_back(views.front().op.op->name());
-        fresh.emplace(wanted);
+        fresh.emplace(wanted, options.others);
         config = read_config(path_of_config(fresh->folder()));
     }
 

@@ -33,7 +33,8 @@ try:
 except ImportError:
     ocio = None
 
-SUBCOMMANDS = ["list", "eval", "apply", "meter", "bake", "shader", "config", "verify", "chart", "sheet", "compare", "plot"]
+SUBCOMMANDS = ["list", "eval", "apply", "meter", "bake", "shader", "config", "verify", "chart", "sheet", "compare", "plot",
+               "import", "check"]
 OK, CHECK_FAILED, USAGE, FILE = 0, 1, 2, 3  # exit codes
 
 # Half of what OpenColorIO's chain for a tone scale may differ on the CPU; on the GPU it may differ by 5e-5.
@@ -766,7 +767,7 @@ def command_line_errors(picture):
         ([*apply, "--legend"], "apply: --legend is given; expected --false-color with it"),
         ([*apply, "--adapt"], "apply: --adapt is given; expected --auto-exposure METHOD and --frames RANGE with it"),
         ([*apply, "--adapt-up", "2"], "apply: --adapt-up is 2; expected --adapt with it"),
-        ([*apply, "--input-encoding", "none"], "apply: --input-encoding is none; expected --lut FILE with it"),
+        ([*apply, "--input-encoding", "none"], "apply: --input-encoding is none; expected a LUT as the operator, or --lut"),
         ([*apply, "--operator", "hable", "--lut", "x.cube"], "apply: --operator and --lut are given; expected one of them"),
         (["apply", picture, picture, "-o", "o.png"], "apply: -o is o.png; expected a folder; --format"),
         (["eval", "hable", "--lut", "x.cube"], "eval: OPERATOR and --lut are given; expected one of them"),
@@ -790,7 +791,7 @@ def usage_errors(bad, picture):
         (["list", "--json", "--markdown"], "list: --json and --markdown are given; expected one of them"),
         (["list", "habel"], "operator is habel; did you mean hable?"), (["eval"], "eval: OPERATOR is missing; expected an id from `tonewright list`, or --lut FILE"),
         (["eval", "habel"], "did you mean hable?"), (["eval", "aces"], "did you mean aces_13, aces_20 or aces_filament?"),
-        (["eval", "foo"], "operator is foo"), (["eval", "filmic"], "Filmic Blender; docs/choosing.md; did you mean unreal?"),
+        (["eval", "foo"], "operator is foo"), (["eval", "filmic"], "Filmic Blender is a table without a formula (docs/choosing.md); expected its file as the operator; did you mean unreal?"),
         (["eval", "hable:white=4", "--set", "white=5"], "white is 4 and 5; expected it once"),
         (["eval", "hable", "--engin", "simd"], "option is --engin; did you mean --engine?"),
         (["bake", "hable", "-o", "out", "--nodes", "fited"], "--nodes; fited; did you mean fitted?"),
@@ -821,7 +822,7 @@ def usage_errors(bad, picture):
         (["eval", "hable", "--reference-white", "20"], "reference white is 20; [50, 1000]"),
         (["eval", "hable", "--reference-white", "203"], "reference white is 203; srgb, which is not an HDR display"),
         (["eval", "hable", "--reference-white", "203", "--display", "native"], "is 203; native, which"),
-        (["eval", "hable", "--inverse"], "hable has no inverse; aces_20"),
+        (["eval", "agx_blender", "--inverse"], "agx_blender has no inverse; stage"),
         (["apply", picture, "out.png", "--operator", "hable", "--reference-white", "1001"], "is 1001; [50, 1000]"),
         (["bake", "hable", "-o", "out.cube", "--reference-white", "big"], "--reference-white; big"),
         (["eval", "hable", "--display", "rec2100"], "display is rec2100; did you mean rec2100_pq or rec2100_hlg?"),

@@ -174,7 +174,7 @@ def check_python(report, python):
     try:
         tw.tonemap(GRAYS[None].astype(np.float32), "none.tone")
         report.check("Python: a missing file raises", False)
-    except ValueError as e:  # what is wrong with an argument
+    except FileNotFoundError as e:
         report.check("Python: a missing file raises", "none.tone: No such file" in str(e), str(e))
 
 

@@ -12,8 +12,8 @@ import numpy as np
 
 IS_FULL = os.environ.get("TONEWRIGHT_TEST_ALL") == "1"
 SKIPPED = 77  # exit status that ctest counts as skipped
-# npm packages: Dawn for Node, a translator of SPIR-V, three.js, and what drives a browser.
-PACKAGES = ["webgpu@0.6.2", "naga-wasm@30.1.0", "three@0.187.0", "playwright-core@1.65.1"]
+# npm packages: Dawn for Node, a translator of SPIR-V, three.js, what drives a browser, and tone mappers in GLSL.
+PACKAGES = ["webgpu@0.6.2", "naga-wasm@30.1.0", "three@0.187.0", "playwright-core@1.65.1", "glsl-tone-map@2.2.0"]
 
 
 def skip(reason: str):

@@ -41,7 +41,7 @@ def check_refusals(report, command, scratch):
         (["hable", "--language", "c", "--uniforms", "white,white"], USAGE, "white twice"),
         (["hable_piecewise", "--language", "c", "--uniforms", "toe_length"], USAGE, "uniform is toe_length"),
         (["reinhard_local", "--language", "c"], USAGE, "reinhard_local"),
-        (["drago", "--language", "c", "--inverse"], USAGE, "drago has no inverse"),
+        (["reinhard_jodie", "--language", "c", "--inverse"], USAGE, "reinhard_jodie has no inverse: stage "),
         (["agx_blender", "--language", "dctl"], USAGE, "expected a language with textures"),
         (["agx_blender", "--language", "glsl"], USAGE, "has a texture; expected -o FILE"),
         (["agx_blender", "--for", "shadertoy"], USAGE, "reads a texture"),

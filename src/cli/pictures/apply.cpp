@@ -246,7 +246,7 @@ void print_result(const FrameFiles& file, const Tonemapper& tonemapper, const Re
     if (!says_what_was_done()) return;
     const TonemapOptions& options = tonemapper.options();
     const ResolvedOperator op =
-        resolve_picture_operator(options.op, options.settings, options.look);
+        resolve_picture_operator(options.op, options.settings, options.look, options.others);
     const PictureReader reader(file.in, 1, file.subimage);
     const OIIO::ImageSpec& spec = reader.spec();
     std::string text = fmt::format(
@@ -276,8 +276,11 @@ int run_apply(const ApplyOptions& given) {
     TonemapOptions tonemap;
     tonemap.op = options.is_false_color ? "false_color" : options.op;
     if (tonemap.op.empty()) tonemap.op = kDefaultOperator;
+    take_lut_options("apply", options.lut, options);
     tonemap.settings = options.settings();
     tonemap.look = options.look;
+    tonemap.others = operator_files();
+    (void)resolve_for_command(tonemap.op, tonemap.settings, tonemap.look);
     tonemap.exposure_stops = options.exposure;
     tonemap.input = options.input;
     tonemap.display = options.display;

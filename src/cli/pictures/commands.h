@@ -18,6 +18,7 @@ void run_sheet(const SheetOptions& options);
 void write_plot_picture(const CurvePlot& plot, const std::string& path, int width);
 [[nodiscard]] Lut load_lut_picture(const std::string& path);
 void write_lut_picture(const Lut& lut, LutFormat format, const std::string& path, int bits);
+[[nodiscard]] ReportPicture read_report_picture(const ReportPictureOptions& options);
 void write_shipped_luts(const std::string& folder, const std::string& application);
 
 TONEWRIGHT_NAMESPACE_END

@@ -18,7 +18,6 @@
 #include "image/source_picture.h"
 #include "ocio/model.h"
 #include "tonewright/contact_sheet.h"
-#include "tonewright/engine.h"
 #include "tonewright/image_io.h"
 #include "tonewright/lut.h"
 #include "tonewright/ocio.h"
@@ -53,6 +52,7 @@ Rendering rendering_of(const ResolvedOperator& op, const CompareOptions& options
     tonemap.look = op.params.look();
     tonemap.exposure_stops = options.exposure;
     tonemap.input = options.input;
+    tonemap.others = operator_files();
     return {op, Tonemapper(tonemap)};
 }
 
@@ -60,7 +60,7 @@ Rendering rendering_of(const ResolvedOperator& op, const CompareOptions& options
 std::vector<Rendering> renderings_of(const CompareOptions& options) {
     std::vector<Rendering> all;
     for (const std::string& text : options.operators)
-        all.push_back(rendering_of(resolve_picture_operator(text), options));
+        all.push_back(rendering_of(resolve_for_command(text), options));
     if (options.operators.empty()) {
         for (const ConfigModel::View& view : make_config_model().views) {
             if (!view.op.op->is_diagnostic) all.push_back(rendering_of(view.op, options));
@@ -119,21 +119,6 @@ std::string title_of(const SourceColor& source) {
         if (space.id == source.name) return space.title;
     }
     return source.name;
-}
-
-/// Scene-linear Rec.709.
-OIIO::ImageBuf decoded(const OIIO::ImageBuf& picture, const SourceColor& source,
-                       const std::string& path) {
-    Pipeline stages = source.decode;
-    stages.emplace_back(MatrixStage{rgb_to_rgb(source.primaries, kRec709)});
-    const SimdEngine engine(stages);
-    OIIO::ImageBuf scene;
-    const auto run = [&](const float* in, float* out, std::size_t n) {
-        engine.run_rgb(in, out, n);
-    };
-    if (!map_colors(scene, picture, run))
-        throw FileError(path + ": " + first_line(scene.geterror()));
-    return scene;
 }
 
 void write_sheet(const CompareOptions& options, const std::vector<Rendering>& renderings,
@@ -214,7 +199,7 @@ void compare_pictures(CompareOptions options) {
         fmt::format("{}, {}, shown on sRGB", exposure_text(options.exposure), title_of(source));
     if (!options.split && !source.decode.empty()) {
         // Code values are no light to scale.
-        picture = decoded(picture, source, options.in);
+        picture = to_rec709_light(picture, source, options.in);
         options.input = "lin_rec709";
         renderings = renderings_of(options);
     }

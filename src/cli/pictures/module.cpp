@@ -38,6 +38,10 @@ class Commands : public PictureCommands {
                             const std::string& application) const override {
         tonewright::write_shipped_luts(folder, application);
     }
+    [[nodiscard]] ReportPicture read_report_picture(
+        const ReportPictureOptions& options) const override {
+        return tonewright::read_report_picture(options);
+    }
 };
 
 }  // namespace

@@ -10,8 +10,10 @@
 #include <filesystem>
 #include <system_error>
 
+#include "base/strings.h"
 #include "cli/messages.h"
 #include "cli/pictures/commands.h"
+#include "tonewright/engine.h"
 #include "tonewright/image_io.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -63,6 +65,20 @@ void use_threads(const PictureInput& input) {
 OIIO::ImageBuf read_picture(const std::string& path) {
     const QuietStderr quiet;
     return read_image(path);
+}
+
+OIIO::ImageBuf to_rec709_light(const OIIO::ImageBuf& picture, const SourceColor& source,
+                               const std::string& path) {
+    Pipeline stages = source.decode;
+    stages.emplace_back(MatrixStage{rgb_to_rgb(source.primaries, kRec709)});
+    const SimdEngine engine(stages);
+    OIIO::ImageBuf scene;
+    const auto run = [&](const float* in, float* out, std::size_t n) {
+        engine.run_rgb(in, out, n);
+    };
+    if (!map_colors(scene, picture, run))
+        throw FileError(path + ": " + first_line(scene.geterror()));
+    return scene;
 }
 
 std::vector<float> read_picture_pixels(const std::string& path) {

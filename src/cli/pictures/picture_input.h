@@ -58,6 +58,11 @@ class Warnings {
 /// belong to the processes of the pictures. @see run_contained
 void use_threads(const PictureInput& input);
 
+/// Scene-linear Rec.709 light of a picture whose numbers mean `source`.
+/// @throws FileError  a picture that cannot be read
+[[nodiscard]] OIIO::ImageBuf to_rec709_light(const OIIO::ImageBuf& picture,
+                                             const SourceColor& source, const std::string& path);
+
 /// read_image() with the terminal kept clean.
 [[nodiscard]] OIIO::ImageBuf read_picture(const std::string& path);
 

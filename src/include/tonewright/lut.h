@@ -7,33 +7,11 @@
 #include <string_view>
 #include <vector>
 
+#include "tonewright/definition.h"
+#include "tonewright/input_encoding.h"
 #include "tonewright/view.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
-
-/// How scene-linear light is put into the [0, 1] that a lookup table is indexed with.
-struct InputEncoding {
-    std::string id;     // "acescct", "log2:-10:6.5", "linear:0:1"
-    std::string title;  // for headers: "ACEScct (Academy S-2016-001)"
-    /// Scene-linear -> table input, and back; of input 0.
-    Expr encode = Expr::input();
-    Expr decode = Expr::input();
-    /// The scene-linear light at table input 0 and 1.
-    double scene_lo = 0;
-    double scene_hi = 1;
-    bool is_linear = false;
-    /// Input space that the encoding belongs to, taken when the user names none.
-    std::string default_input = "lin_rec709";
-};
-
-/// `acescct`, `logc3` (ARRI, EI 800), `logc4`, `slog3` (Sony), `davinci` (DaVinci Intermediate),
-/// `unity_logc`, `unreal_log`, `srgb`; `pq[:WHITE]` = SMPTE ST 2084, scene-linear 1 at WHITE cd/m2
-/// (default 100); `log2[:LO:HI]` = log2 of scene-linear over 0.18, LO..HI stops (default -10:6.5);
-/// `linear[:LO:HI]` = scene-linear (default 0:1).
-/// @throws Error  unknown name; parameters that are no numbers or out of range.
-[[nodiscard]] TONEWRIGHT_API InputEncoding parse_input_encoding(std::string_view text);
-/// Without parameters.
-[[nodiscard]] TONEWRIGHT_API std::vector<std::string> input_encoding_names();
 
 /// `cube` (Adobe and Resolve), `clf` (Academy S-2014-006), `ctf` (Autodesk's form of it), `spi1d`,
 /// `spi3d` (Sony Imageworks), `csp` (cineSpace: scene-linear in, its prelut encodes),
@@ -228,5 +206,17 @@ TONEWRIGHT_API void quantize(Lut& lut, const LutRequest& request);
     const std::optional<LutRinging>& ringing = std::nullopt);
 [[nodiscard]] TONEWRIGHT_API std::string write_lut(const BakedLut& baked,
                                                    const LutRequest& request);
+
+/// True for a file that is a picture, by its extension.
+[[nodiscard]] TONEWRIGHT_API bool is_lut_picture(const std::string& path);
+
+/// The table as stages, as its readers interpolate it.
+/// @param path  of its file, for errors
+/// @throws FileError  a 3D LUT of more than 129 nodes a side
+[[nodiscard]] TONEWRIGHT_API TableFile table_file_of(const Lut& lut, const std::string& path);
+
+/// Reads LUTs for load_operator(): .cube, .raw, .dds and ICC device links, and whatever `next`
+/// reads. It keeps the last four files, and reads a file that has changed again.
+[[nodiscard]] TONEWRIGHT_API TableReader table_reader(TableReader next = {});
 
 TONEWRIGHT_NAMESPACE_END

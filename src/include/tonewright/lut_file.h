@@ -21,8 +21,8 @@ enum class LutInterpolation : unsigned char { automatic, tetrahedral, trilinear 
 ///
 /// OpenColorIO runs what it reads (.cube, .clf, .ctf, .spi1d, .spi3d, .csp, .3dl, .lut, .itx,
 /// .spimtx, .cc), LittleCMS an ICC device link (.icc, .icm), and our
-/// own interpolation raw floats (.raw: the cube's size follows from the file's) and tables from
-/// elsewhere, such as the pictures of read_lut_picture().
+/// own interpolation raw floats (.raw: the cube's size follows from the file's), volumes (.dds) and
+/// tables from elsewhere, such as the pictures of read_lut_picture().
 class TONEWRIGHT_API LutFile {
   public:
     /// Nothing is taken from the file before it has been looked through: sizes, numbers of rows,
@@ -48,6 +48,10 @@ class TONEWRIGHT_API LutFile {
     struct Form;
     std::unique_ptr<const Form> form_;
 };
+
+/// Reads the LUTs that OpenColorIO reads for load_operator(): tables, matrices, ranges, logarithms
+/// and CDLs. Other files go to `next`. @see table_reader()
+[[nodiscard]] TONEWRIGHT_API TableReader ocio_table_reader(TableReader next = {});
 
 /// Turns off OpenColorIO's log for the whole process. For a program to call: LutFile throws errors,
 /// and OpenColorIO's warnings about the file go to the log.

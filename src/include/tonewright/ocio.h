@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tonewright/generated_files.h"
+#include "tonewright/registry.h"
 #include "tonewright/view.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -34,6 +35,8 @@ struct ConfigOptions {
     std::vector<CustomView> custom = {};
     /// Every view once more, with this many stops more light: "AgX +1 stop".
     std::vector<double> exposure_stops = {};
+    /// Operators that the names above may stand for, and what reads LUTs.
+    OperatorSet others = {};
 };
 
 /// An OpenColorIO config: `config.ocio` and one file for every other profile, `luts/*.clf` named by

@@ -262,6 +262,8 @@ struct DocumentedDifference {
         never_reaches_white,  // the largest grey is shown at value < 1, display-linear
         exceeds_white,        // native light goes up to value > 1 (kInfinity: without end)
         not_monotone,         // brighter greys may be shown darker, up to scene-linear value
+        tints_gray,           // the sRGB code values of a gray differ by up to value
+        jumps,                // neighboring grays differ by up to value, native
     };
     Kind kind;
     double value;
@@ -269,6 +271,8 @@ struct DocumentedDifference {
     std::string when;
 };
 
+/// What the kinds are called in .tone files and JSON, in their order: "black", ...
+[[nodiscard]] TONEWRIGHT_API const std::vector<std::string>& difference_names();
 /// "lifts black to 0.0029".
 [[nodiscard]] TONEWRIGHT_API std::string to_string(const DocumentedDifference& deviation);
 
@@ -327,17 +331,22 @@ struct Operator {
     std::string meant;
     /// Working-space scene-linear, finite -> the operator's own output.
     std::function<Pipeline(const Params& params)> build = {};
-    /// Back: the operator's own output -> working-space scene-linear. Null: it has no inverse.
+    /// The inverse where the source has one: the operator's own output -> working-space
+    /// scene-linear. Null: build_inverse_view() inverts the stages.
     std::function<Pipeline(const Params& params)> build_inverse = {};
     /// Of the output. Null: `working`.
     std::function<Primaries(const Params& params)> output_primaries = {};
     /// Largest light of the output on a display that can show more than white. Null: 1.
     std::function<double(const Params& params)> peak = {};
+    /// The display whose code values come out, or `linear`. Null: `output` says what comes out.
+    std::function<std::string(const Params& params)> display = {};
+    /// What a user should know about these parameters; an empty text: nothing. May be null.
+    std::function<std::string(const Params& params)> caution = {};
     /// Not null: what a pixel becomes depends on its surroundings, and this is the operator, for
     /// whole pictures (local.h). build() is what is left for a pixel by itself: nothing.
     void (*run_local)(ScenePlanes& picture, const Params& params) = nullptr;
 
-    /// The .tone file that it was read from, as its path was given. Empty: it is built in.
+    /// The .tone or LUT file that it was read from, as its path was given. Empty: it is built in.
     std::string file = {};
 
     [[nodiscard]] bool is_local() const { return run_local != nullptr; }
@@ -365,6 +374,19 @@ struct ResolvedOperator {
     }
 
     [[nodiscard]] Pipeline build() const { return op->build(params); }
+    /// What the numbers of the output are, with these parameters.
+    [[nodiscard]] OutputKind output() const {
+        if (!op->display) return op->output;
+        return op->display(params) == "linear" ? OutputKind::display_linear
+                                               : OutputKind::code_value;
+    }
+    /// What a user should know about these parameters; empty: nothing.
+    [[nodiscard]] std::string caution() const { return op->caution ? op->caution(params) : ""; }
+    /// Id of the display whose code values come out. Empty: they are light, or code values of
+    /// Operator::code_power.
+    [[nodiscard]] std::string output_display() const {
+        return op->display && output() == OutputKind::code_value ? op->display(params) : "";
+    }
     /// Primaries of the output.
     [[nodiscard]] Primaries output_primaries() const {
         return op->output_primaries ? op->output_primaries(params) : op->working;

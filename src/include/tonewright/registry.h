@@ -4,8 +4,10 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "tonewright/definition.h"
 #include "tonewright/pipeline.h"
 
 /// The built-in operators, by name.
@@ -29,14 +31,20 @@ inline constexpr std::string_view kDefaultOperator = "agx_blender";
 /// Operators that texts can name beside the built-in ones. Nothing is registered in the process.
 class TONEWRIGHT_API OperatorSet {
   public:
+    OperatorSet() = default;
+    /// @param tables  reads LUTs that texts name as operators, and those of .tone files
+    explicit OperatorSet(TableReader tables) : tables_(std::move(tables)) {}
+
     /// @throws Error  one of its names, id, view or title, names another operator of the set or a
     ///                built-in one
     void add(std::shared_ptr<const Operator> op);
     [[nodiscard]] const std::vector<std::shared_ptr<const Operator>>& operators() const {
         return operators_;
     }
+    [[nodiscard]] const TableReader& tables() const { return tables_; }
 
   private:
+    TableReader tables_;
     std::vector<std::shared_ptr<const Operator>> operators_;
 };
 
@@ -49,8 +57,9 @@ class TONEWRIGHT_API OperatorSet {
 /// names of views with a look or a preset ("AgX Punchy"). Blanks may stand where a `:` stands
 /// before `parameter=`. `\` takes its meaning from a `:`, a blank or a `\` of a value.
 ///
-/// Instead of a name, the path of a .tone file: what ends in `.tone` at the end of the text or
-/// before a `:` or a blank, with all `:` and blanks before that. It is read on every call. A text
+/// Instead of a name, the path of a .tone file or a LUT: what ends in `.tone` or one of
+/// table_extensions() at the end of the text or before a `:` or a blank, with all `:` and blanks
+/// before that. It is read on every call, a LUT through the set's reader. A text
 /// that begins with an operator's name and a `:` names that operator; `./` before it names a file.
 ///
 /// @param settings  parameter name -> text, beside those of the text.
@@ -65,15 +74,14 @@ class TONEWRIGHT_API OperatorSet {
 [[nodiscard]] TONEWRIGHT_API ResolvedOperator
 resolve_picture_operator(std::string_view text, const Settings& settings = {},
                          std::string_view look = {}, const OperatorSet& others = {});
-/// True where the text names a .tone file.
+/// True where the text names a .tone file or a LUT.
 [[nodiscard]] TONEWRIGHT_API bool names_a_file(std::string_view text);
+/// True where the text names a LUT.
+[[nodiscard]] TONEWRIGHT_API bool names_a_lut(std::string_view text);
 
 /// The inverse of resolve_operator(): a text that names the operator with its preset, its look and
 /// the settings that make a difference.
 [[nodiscard]] TONEWRIGHT_API std::string operator_text(const ResolvedOperator& op);
-
-/// Ids of the operators that have an inverse.
-[[nodiscard]] TONEWRIGHT_API std::vector<std::string> invertible_operators();
 
 /// An operator, `operator:preset`, or an operator with a look.
 struct OperatorVariant {

@@ -10,7 +10,18 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-enum class ShaderLanguage : unsigned char { glsl, glsl_es, hlsl, wgsl, msl, dctl, blink, c, osl };
+enum class ShaderLanguage : unsigned char {
+    glsl,
+    glsl_es,
+    hlsl,
+    wgsl,
+    msl,
+    dctl,
+    blink,
+    c,
+    osl,
+    javascript,  // in 64-bit float: the reference for pages
+};
 
 struct ShaderLanguageInfo {
     ShaderLanguage language;

@@ -16,6 +16,7 @@
 
 #include "tonewright/error.h"
 #include "tonewright/image_io.h"
+#include "tonewright/registry.h"
 #include "tonewright/view.h"
 
 /// Tone mapping of OpenImageIO images.
@@ -71,6 +72,8 @@ struct TonemapOptions {
     /// writers follow.
     bool dither = false;
     Statistics statistics = Statistics::from_picture;
+    /// Operators that `op` may name beside the built-in ones, and what reads LUTs.
+    OperatorSet others = {};
 };
 
 /// Measures the light of a picture, for the operators whose parameters a picture has.

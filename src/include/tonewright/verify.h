@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "tonewright/registry.h"
 #include "tonewright/view.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -34,6 +35,8 @@ struct VerifyOptions {
     bool only_best_target = false;
     /// Scene-linear RGB pixels to add to the sample set, in the input space.
     std::vector<float> picture;
+    /// Operators that `operators` may name, and what reads LUTs.
+    OperatorSet others;
 };
 
 /// One form of one view against the double reference, in display code values.

@@ -91,7 +91,7 @@ def tonemap(image: Picture, op: str, *, settings: Mapping[str, Any] | None = Non
     image: an OpenImageIO.ImageBuf, or an array of shape (height, width) or (height, width, channels) of float16, float32,
     float64, uint8, uint16 or uint32; integers stand for [0, 1]. The first three channels are color (or the first of one or
     two channels); the fourth (or second) is alpha.
-    op: operator id, optionally with :preset.
+    op: operator id, optionally with :preset, or the path of a .tone file or a LUT.
     unpremult: "auto", "yes" or "no": divide color by alpha first.
     statistics: "picture" (measure it for operators that need it) or "defaults".
     axis: the axis of the channels of an array, such as 0 for (channels, height, width).

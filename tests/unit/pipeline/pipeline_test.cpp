@@ -447,7 +447,8 @@ TEST(Resolve, UnknownNamesGetTheNearest) {
     EXPECT_EQ(
         resolve_error("filmic"),
         "operator is filmic; expected an id from `tonewright list`; Filmic Blender is a table "
-        "without a formula (docs/choosing.md); did you mean unreal?");
+        "without a formula (docs/choosing.md); expected its file as the operator; did you mean "
+        "unreal?");
     EXPECT_EQ(resolve_error("agx_blender:punchy"),
               "agx_blender: preset is punchy; expected formula or hdr; did you mean look=punchy?");
     EXPECT_EQ(resolve_error("photoshop"),
@@ -838,6 +839,8 @@ TEST(DocumentedDifferences, SayWhatTheUserSees) {
               "exceeds white without end: SDR displays clip it");
     EXPECT_EQ(text(Kind::not_monotone, 0.0044), "non-monotone below 0.0044");
     EXPECT_EQ(text(Kind::not_monotone, kInfinity), "non-monotone");
+    EXPECT_EQ(text(Kind::tints_gray, 0.0574), "tints gray: its channels differ by up to 0.057");
+    EXPECT_EQ(text(Kind::jumps, 0.00104), "jumps by 0.001 from one gray to the next");
     EXPECT_EQ(text(Kind::exceeds_white, 10, "hdr"),
               "hdr: exceeds white, up to 10: SDR displays clip it");
 }

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+
+#include "cli/grey_curve.h"
+#include "cli/json.h"
+#include "cli/messages.h"
+#include "cli/plot.h"
+#include "cli/shared_options.h"
+#include "cli/terminal_plot.h"
+#include "measure/laws.h"
+#include "tonewright/registry.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace {
+
+struct Options : ViewOptions {
+    std::string file;
+    bool json = false;
+    bool is_ascii = false;
+};
+
+using Verdict = LawResult::Verdict;
+
+void print_json(const View& view, const std::vector<LawResult>& results) {
+    Json laws = Json::array();
+    for (const LawResult& r : results) {
+        laws.push_back(
+            {{"law", r.law}, {"verdict", to_string(r.verdict)}, {"text", r.text}, {"x", r.x}});
+    }
+    fmt::print("{}\n", Json({{"operator", operator_text(view.op)}, {"laws", laws}}).dump(2));
+}
+
+void print_text(const View& view, const Options& options, const std::vector<LawResult>& results) {
+    std::vector<double> places;
+    for (const LawResult& r : results) {
+        if (r.verdict == Verdict::breaks && r.x) places.push_back(*r.x);
+    }
+    if (!message_options().is_quiet) {
+        fmt::print("{}\n\n", operator_text(view.op));
+        const auto curve = [&](const std::vector<double>& x) { return grey_codes(view, x); };
+        fmt::print("{}\n", terminal_plot(curve, places,
+                                         options.is_ascii ? TerminalText::ascii : terminal_text()));
+    }
+    for (const LawResult& r : results) {
+        fmt::print("{:<11} {}{}\n", r.law, to_string(r.verdict),
+                   r.text.empty() ? "" : ": " + r.text);
+    }
+}
+
+int run_check(const Options& options) {
+    const View view = options.view();
+    const std::vector<LawResult> results = check_laws(view.op);
+    if (options.json) {
+        print_json(view, results);
+    } else {
+        print_text(view, options, results);
+    }
+    std::fflush(stdout);  // before the warnings, where both go to a terminal
+    if (!options.file.empty()) {
+        const ResultLine line;
+        PlotOptions plot;
+        static_cast<ViewOptions&>(plot) = options;
+        plot.operators = {options.op};
+        plot.file = options.file;
+        const std::string title = write_plot(plot);
+        line.print(fmt::format("check: {}: {}", options.file, title));
+    }
+    // --strict ends at the first; the report has all.
+    for (const LawResult& r : results) {
+        if (r.verdict == Verdict::breaks)
+            warn(fmt::format("check: {}: {}: {}", operator_text(view.op), r.law, r.text));
+    }
+    return kOk;
+}
+
+}  // namespace
+
+void add_check(CommandLine& program) {
+    auto options = std::make_shared<Options>();
+    const Command command =
+        program.add("check", "Check an operator against the laws of tone curves.");
+    command.group("Checks");
+    command.add("operator", options->op, "operator, operator:preset or .tone file").required();
+    add_operator_options(command, *options);
+    const char* const output = "Output";
+    command
+        .add("-o", options->file,
+             "write the tone curve, too: .svg, .pdf, or a picture such as .png")
+        .value("FILE")
+        .group(output);
+    command
+        .add_flag("--ascii", options->is_ascii,
+                  "draw with ASCII characters (default: where the locale is not UTF-8)")
+        .group(output);
+    command.add_flag("--json", options->json, "print JSON").group(output);
+    command.footer(
+        "The laws: numbers are finite; brighter scenes are shown brighter; grays stay below the "
+        "output peak, reach white, begin at black and stay gray; there are no jumps; the inverse "
+        "leads back. What the operator declares is no warning. A law that breaks is a warning, "
+        "and with --strict the exit code is 1.\n"
+        "Examples:\n"
+        "  tonewright check my.tone\n"
+        "  tonewright check hable:white=4 -o hable.svg");
+    command.action([options] { return run_check(*options); });
+}
+
+TONEWRIGHT_NAMESPACE_END

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+
+#include "base/atomic_file.h"
+#include "base/strings.h"
+#include "cli/command.h"
+#include "cli/messages.h"
+#include "cli/options.h"
+#include "tonewright/definition.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace {
+
+struct Options {
+    std::string file;
+    std::string output;
+    std::string function;
+    std::vector<std::string> parameters;
+    std::string encoded;
+    std::string primaries = "rec709";
+};
+
+/// `4` or `4,0.1,100`: the value, and the ends of its range.
+ImportedParameter parameter_of(const std::string& text, std::string_view numbers) {
+    std::vector<double> values;
+    const char* at = numbers.data();
+    const char* const end = at + numbers.size();
+    bool is_right = true;
+    while (is_right) {
+        double value = 0;
+        const auto result = std::from_chars(at, end, value);
+        is_right = result.ec == std::errc() && std::isfinite(value);
+        values.push_back(value);
+        at = result.ptr;
+        if (at == end || *at != ',') break;
+        ++at;
+    }
+    is_right = is_right && at == end && (values.size() == 1 || values.size() == 3);
+    if (!is_right)
+        throw Error("import: --parameter is " + one_line(text) +
+                    "; expected NAME=NUMBER or NAME=NUMBER,MIN,MAX");
+    if (values.size() == 1) return {values[0]};
+    return {values[0], values[1], values[2]};
+}
+
+ShaderImport import_of(const Options& options) {
+    ShaderImport settings;
+    settings.function = options.function;
+    settings.primaries = options.primaries;
+    if (!options.output.empty())
+        settings.id = std::filesystem::path(options.output).stem().string();
+    for (const std::string& text : options.parameters) {
+        const std::size_t equals = text.find('=');
+        if (equals == std::string::npos || equals == 0)
+            throw Error("import: --parameter is " + one_line(text) + "; expected NAME=NUMBER");
+        const auto numbers = std::string_view(text).substr(equals + 1);
+        settings.parameters[text.substr(0, equals)] = parameter_of(text, numbers);
+    }
+    if (!options.encoded.empty()) {
+        settings.output = static_cast<ShaderImport::Output>(find_choice(
+            "import: --encoded", options.encoded, {"linear", "srgb", "gamma22", "gamma24"}));
+    }
+    return settings;
+}
+
+int run_import(const Options& options) {
+    if (!options.output.empty()) {
+        if (extension_of(options.output) != ".tone")
+            throw Error("import: -o is " + options.output + "; expected a name that ends in .tone");
+        std::error_code none;
+        if (std::filesystem::equivalent(options.file, options.output, none))
+            throw Error("import: -o is " + options.output +
+                        ", the shader itself; expected another");
+    }
+    const ImportedShader shader = load_shader(options.file, import_of(options));
+    for (const std::string& warning : shader.warnings)
+        warn("import: " + warning);
+    if (options.output.empty()) {
+        fmt::print("{}", shader.definition);
+    } else {
+        write_text_atomically(options.output, shader.definition);
+    }
+    std::string others;
+    for (const std::string& name : shader.others)
+        others += (others.empty() ? "; others: " : ", ") + name;
+    print_result(fmt::format("{}: function {} as {}{}",
+                             options.output.empty() ? options.file : options.output,
+                             shader.function, fmt::join(shader.stages, ", "), others));
+    return kOk;
+}
+
+}  // namespace
+
+void add_import(CommandLine& program) {
+    auto options = std::make_shared<Options>();
+    const Command command =
+        program.add("import", "Turn a GLSL or HLSL function into an operator, a .tone file.");
+    command.group("Operators");
+    command.add("shader", options->file, "file with `float f(float)` or `vec3 f(vec3)`").required();
+    const char* const function = "Function";
+    command
+        .add("--function", options->function,
+             "function to take (default: the last one that no other calls)")
+        .value("NAME")
+        .group(function);
+    command
+        .add("--parameter", options->parameters,
+             "default of a further argument or a uniform; NUMBER,MIN,MAX sets its range, too")
+        .value("NAME=NUMBER")
+        .one_value_each()
+        .group(function);
+    const char* const color = "Color";
+    command
+        .add("--encoded", options->encoded,
+             "what the function returns: linear (default), srgb, gamma22 or gamma24")
+        .value("NAME")
+        .group(color);
+    command
+        .add("--primaries", options->primaries,
+             "primaries that the function works in, as .tone files name them")
+        .value("NAME")
+        .show_default()
+        .group(color);
+    command.add("-o", options->output, "file to write, NAME.tone (default: standard output)")
+        .value("FILE")
+        .group("Output");
+    command.footer(
+        "The shader is straight-line code: no loops, textures, arrays or recursion. Negatives "
+        "count "
+        "as 0. Functions that the one taken does not call may hold anything.\n"
+        "Examples:\n"
+        "  tonewright import tonemap.glsl -o my.tone\n"
+        "  tonewright import aces.hlsl --function ACESFilm --parameter gain=1 -o my.tone\n"
+        "  tonewright import film.glsl --encoded gamma22 -o film.tone");
+    command.action([options] { return run_import(*options); });
+}
+
+TONEWRIGHT_NAMESPACE_END

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "cli/json.h"
+#include "tonewright/pipeline.h"
+#include "tonewright/verify.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+
+/// As `list OPERATOR --json` and `verify --json` print them.
+[[nodiscard]] Json to_json(const Operator& op);
+[[nodiscard]] Json to_json(const ParityRow& row);
+
+TONEWRIGHT_NAMESPACE_END

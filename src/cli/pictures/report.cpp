@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <OpenImageIO/filesystem.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "base/strings.h"
+#include "cli/pictures/commands.h"
+#include "cli/pictures/picture_input.h"
+#include "image/comparison.h"
+#include "image/contact_sheet.h"
+#include "image/picture_file.h"
+#include "image/source_picture.h"
+#include "tonewright/chart.h"
+#include "tonewright/image_io.h"
+#include "tonewright/tonemap.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace {
+
+/// Of three channels, as the bytes of a file.
+std::string encoded(const std::vector<float>& rgb, int width, int height, const char* name,
+                    const OIIO::TypeDesc& type) {
+    OIIO::Filesystem::IOVecOutput memory;  // before what writes to it until it ends
+    const std::unique_ptr<OIIO::ImageOutput> out = OIIO::ImageOutput::create(name);
+    if (!out) throw FileError("report: " + first_line(OIIO::geterror()));
+    OIIO::ImageSpec spec(width, height, 3, type);
+    spec.attribute("compression", type == OIIO::TypeUInt8 ? "zip:9" : "zip");
+    out->set_ioproxy(&memory);
+    if (!out->open(name, spec) || !out->write_image(OIIO::TypeFloat, rgb.data()) || !out->close())
+        throw FileError("report: " + first_line(out->geterror()));
+    return {memory.buffer().begin(), memory.buffer().end()};
+}
+
+OIIO::ImageBuf light_of(const ReportPictureOptions& options) {
+    if (options.path.empty()) {
+        constexpr int kLargestChart = 1536;
+        const int width = std::min(options.width, kLargestChart);
+        return make_chart(width, width * 9 / 16);
+    }
+    OIIO::ImageBuf picture = read_picture(options.path);
+    const QuietStderr quiet;
+    const SourceColor source = about_picture(options.path, [&] {
+        (void)channel_layout(picture.spec());
+        check_shown_window(picture);
+        return source_color(picture.spec(), kAutoInput);
+    });
+    return with_memory_for(options.path, [&] {
+        const OIIO::ImageBuf light = to_rec709_light(picture, source, options.path);
+        return shown_window(light).width() > options.width ? resize_scene(light, options.width)
+                                                           : light;
+    });
+}
+
+}  // namespace
+
+ReportPicture read_report_picture(const ReportPictureOptions& options) {
+    ReportPicture result;
+    result.name =
+        options.path.empty() ? "chart" : std::filesystem::path(options.path).filename().string();
+    const OIIO::ImageBuf light = shown_rgb(light_of(options));
+    const OIIO::ROI window = light.roi();
+    result.width = window.width();
+    result.height = window.height();
+    std::vector<float> rgb(3 * window.npixels());
+    if (!light.get_pixels(window, OIIO::TypeFloat, rgb.data()))
+        throw FileError(options.path + ": " + first_line(light.geterror()));
+    // Everything below is computed from the half floats that the page has.
+    OIIO::ImageBuf halves(OIIO::ImageSpec(result.width, result.height, 3, OIIO::TypeHalf));
+    halves.set_pixels(halves.roi(), OIIO::TypeFloat, rgb.data());
+    halves.get_pixels(halves.roi(), OIIO::TypeFloat, rgb.data());
+    result.exr = encoded(rgb, result.width, result.height, "light.exr", OIIO::TypeHalf);
+    for (const std::string& op : options.local_operators) {
+        TonemapOptions tonemap_options;
+        tonemap_options.op = op;
+        tonemap_options.input = "lin_rec709";
+        const OIIO::ImageBuf shown = tonemap(halves, tonemap_options);
+        std::vector<float> codes(rgb.size());
+        if (shown.has_error() || !shown.get_pixels(shown.roi(), OIIO::TypeFloat, codes.data()))
+            throw FileError(fmt::format("report: {}: {}", op, first_line(shown.geterror())));
+        result.shown.push_back(
+            encoded(codes, result.width, result.height, "shown.png", OIIO::TypeUInt8));
+    }
+    result.rgb = std::move(rgb);
+    return result;
+}
+
+TONEWRIGHT_NAMESPACE_END

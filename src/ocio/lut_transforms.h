@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "ocio/transforms.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+
+/// The transforms of a LUT file that OpenColorIO reads, one after the other, with nothing taken
+/// from the file before it has been looked through.
+/// @param contents  gets the bytes of the file
+/// @throws FileError  as LutFile does
+[[nodiscard]] OCIO::ConstGroupTransformRcPtr lut_transforms(const std::string& path,
+                                                            std::string& contents);
+
+TONEWRIGHT_NAMESPACE_END

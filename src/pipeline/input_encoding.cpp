@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "base/format_number.h"
+#include "base/strings.h"
+#include "tonewright/input_encoding.h"
+#include "tonewright/view.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace {
+
+/// An encoding without parameters, and the primaries of the light that it is of.
+struct FixedEncoding {
+    const char* id;
+    const char* title;
+    Expr (*encode)(const Expr&);
+    Expr (*decode)(const Expr&);
+    const char* input;
+};
+
+Expr reinhard_encode(const Expr& x) { return max(x, 0) / (max(x, 0) + 1); }
+/// Its end, 1, is the largest light.
+Expr reinhard_decode(const Expr& code) { return code / max(1 - code, 1 / kHalfMax); }
+
+constexpr std::array<FixedEncoding, 9> kFixedEncodings = {{
+    {"acescct", "ACEScct (Academy S-2016-001: AP1 primaries, log with a linear toe)",
+     acescct_encode, acescct_decode, "lin_ap1"},
+    {"logc3", "ARRI LogC3 (EI 800)", arri_logc3_encode, arri_logc3_decode, "lin_awg3"},
+    {"logc4", "ARRI LogC4", arri_logc4_encode, arri_logc4_decode, "lin_awg4"},
+    {"slog3", "Sony S-Log3", sony_slog3_encode, sony_slog3_decode, "lin_sgamut3"},
+    {"davinci", "DaVinci Intermediate", davinci_intermediate_encode, davinci_intermediate_decode,
+     "lin_davinci_wg"},
+    {"unity_logc", "Unity LogC (ALEXA's of EI 1000)", unity_logc_encode, unity_logc_decode,
+     "lin_rec709"},
+    {"unreal_log", "Unreal Engine's log (14 stops, 0.18 at 444/1023)", unreal_log_encode,
+     unreal_log_decode, "lin_rec709"},
+    {"srgb", "sRGB (IEC 61966-2-1): a display's own range, nothing above white", srgb_encode,
+     srgb_decode, "lin_rec709"},
+    {"reinhard", "x/(x + 1) of scene-linear x (Tony McMapface)", reinhard_encode, reinhard_decode,
+     "lin_rec709"},
+}};
+
+bool parse_number(std::string_view s, double& value) {
+    const auto r = std::from_chars(s.data(), s.data() + s.size(), value);
+    return r.ec == std::errc() && r.ptr == s.data() + s.size() && std::isfinite(value);
+}
+
+struct Range {
+    double lo;
+    double hi;
+};
+
+/// "name", or "name:LO:HI".
+Range parse_range(std::string_view text, std::string_view name, Range fallback) {
+    const std::size_t begin = text.find(':');
+    if (begin == std::string_view::npos) return fallback;
+    const std::string_view rest = text.substr(begin + 1);
+    const std::size_t colon = rest.find(':');
+    Range range{};
+    if (colon == std::string_view::npos || !parse_number(rest.substr(0, colon), range.lo) ||
+        !parse_number(rest.substr(colon + 1), range.hi) || !(range.lo < range.hi)) {
+        throw Error("input encoding is " + std::string(text) + "; expected " + std::string(name) +
+                    ":LO:HI with numbers LO < HI");
+    }
+    return range;
+}
+
+}  // namespace
+
+std::vector<std::string> input_encoding_names() {
+    std::vector<std::string> names;
+    names.reserve(std::size(kFixedEncodings) + 3);
+    for (const FixedEncoding& fixed : kFixedEncodings)
+        names.emplace_back(fixed.id);
+    for (const char* name : {"pq", "log2", "linear"})
+        names.emplace_back(name);
+    return names;
+}
+
+InputEncoding parse_input_encoding(std::string_view text) {
+    const Expr x = Expr::input();
+    const std::string name = folded_name(text.substr(0, text.find(':')));
+    InputEncoding e;
+    for (const FixedEncoding& fixed : kFixedEncodings) {
+        if (!is_same_name(text, fixed.id)) continue;
+        e.id = fixed.id;
+        e.title = fixed.title;
+        e.encode = fixed.encode(x);
+        e.decode = fixed.decode(x);
+        e.default_input = fixed.input;
+        e.scene_lo = evaluate(e.decode, 0.0);
+        e.scene_hi = evaluate(e.decode, 1.0);
+        return e;
+    }
+    if (name == "pq") {
+        double white = kReferenceWhite;
+        const std::size_t colon = text.find(':');
+        if (colon != std::string_view::npos &&
+            (!parse_number(text.substr(colon + 1), white) || !(white > 0) || white > 10000)) {
+            throw Error("input encoding is " + std::string(text) +
+                        "; expected pq:WHITE, the cd/m2 of scene-linear 1.0 in (0, 10000]");
+        }
+        e.id = "pq:" + shortest(white);
+        e.title = "PQ (SMPTE ST 2084), scene-linear 1 at " + shortest(white) + " cd/m2";
+        e.encode = pq_encode_nits(x * white);
+        e.decode = pq_decode_nits(x) / white;
+        e.default_input = "lin_rec2020";
+        e.scene_lo = 0;
+        e.scene_hi = 10000 / white;
+        return e;
+    }
+    if (name == "log2") {
+        const Range stops = parse_range(text, name, {-10, 6.5});
+        if (stops.lo < -64 || stops.hi > 64) {
+            throw Error("input encoding is " + std::string(text) + "; expected [-64, 64] stops");
+        }
+        const double lowest = std::log2(0.18) + stops.lo;
+        const double span = stops.hi - stops.lo;
+        e.id = "log2:" + shortest(stops.lo) + ":" + shortest(stops.hi);
+        e.scene_lo = std::exp2(lowest);
+        e.scene_hi = std::exp2(lowest + span);
+        e.encode = (log2(max(x, e.scene_lo)) - lowest) / span;
+        e.decode = exp2(x * span + lowest);
+        e.title =
+            "log2(x / 0.18) from " + shortest(stops.lo) + " to " + shortest(stops.hi) + " stops";
+        return e;
+    }
+    if (name == "linear") {
+        const Range range = parse_range(text, name, {0, 1});
+        e.id = "linear:" + shortest(range.lo) + ":" + shortest(range.hi);
+        e.scene_lo = range.lo;
+        e.scene_hi = range.hi;
+        e.encode = (x - range.lo) / (range.hi - range.lo);
+        e.decode = x * (range.hi - range.lo) + range.lo;
+        e.title = "scene-linear from " + shortest(range.lo) + " to " + shortest(range.hi);
+        e.is_linear = true;
+        return e;
+    }
+    std::vector<NamedChoice> choices;
+    choices.reserve(std::size(kFixedEncodings) + 3);
+    for (const FixedEncoding& fixed : kFixedEncodings)
+        choices.push_back({fixed.id, {fixed.title}});
+    for (const char* other : {"pq", "log2", "linear"})
+        choices.push_back({other});
+    throw Error("input encoding is " + std::string(text) + "; expected " +
+                join_choices(input_encoding_names()) + did_you_mean(name, choices));
+}
+
+TONEWRIGHT_NAMESPACE_END

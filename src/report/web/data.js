@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The page's data: a ZIP archive in base64.
+import { unzipSync } from 'fflate';
+
+function bytesOf(base64) {
+    const text = atob(base64.trim());
+    const bytes = new Uint8Array(text.length);
+    for (let i = 0; i < text.length; i++) bytes[i] = text.charCodeAt(i);
+    return bytes;
+}
+
+const archive = bytesOf(document.getElementById('data').textContent);
+
+// Files are unpacked when they are asked for: pictures and measurements are many.
+export function file(name) {
+    const found = unzipSync(archive, { filter: (entry) => entry.name === name })[name];
+    if (!found) throw new Error(`the page has no ${name}`);
+    return found;
+}
+
+export const page = JSON.parse(new TextDecoder().decode(file('page.json')));
+export const operators = page.operators;
+export const findOperator = (name) => operators.find((op) => op.name === name);
+
+// Nodes of a lattice as RGBA, x fastest.
+const lattices = new Map();
+export function texels(texture) {
+    if (!lattices.has(texture.file)) {
+        const bytes = file(texture.file);
+        const rgb = new Float32Array(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength));
+        const rgba = new Float32Array(rgb.length / 3 * 4).fill(1);
+        for (let i = 0; i < rgb.length / 3; i++) rgba.set(rgb.subarray(3 * i, 3 * i + 3), 4 * i);
+        lattices.set(texture.file, rgba);
+    }
+    return lattices.get(texture.file);
+}

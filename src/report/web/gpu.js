@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Draws pictures through the exported GLSL ES, with WebGL 2.
+import { texels } from './data.js';
+
+const VERTEX = `#version 300 es
+void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0); }`;
+
+// Means of 2 x 2 pixels: smaller pictures for views that do not show every pixel.
+const HALVE = `#version 300 es
+precision highp float;
+uniform highp sampler2D light;
+out vec4 mean;
+void main() {
+    ivec2 last = textureSize(light, 0) - 1;
+    ivec2 at = 2 * ivec2(gl_FragCoord.xy);
+    mean = vec4(0.0);
+    for (int i = 0; i < 4; i++) {
+        vec3 c = texelFetch(light, min(at + ivec2(i & 1, i >> 1), last), 0).rgb;
+        mean.rgb += 0.25 * clamp(mix(c, vec3(0.0), isnan(c)), -65504.0, 65504.0);
+    }
+}`;
+
+const drawn = (op) => op.drawn ?? op;
+const fragment = (op) => `#version 300 es
+${drawn(op).glsl}
+uniform highp sampler2D page_light;
+uniform vec3 page_view;    // picture's pixel at the panel's top left corner, and pixels of it for a pixel of the panel
+uniform vec2 page_corner;  // of the panel in the canvas
+uniform bool page_marks;
+${op.uniforms.map((name) => `uniform float page_${name};`).join('\n')}
+out vec4 page_shown;
+void main() {
+    vec2 at = vec2(gl_FragCoord.x - page_corner.x, page_corner.y - gl_FragCoord.y);
+    ivec2 place = ivec2(floor(page_view.xy + page_view.z * at));
+    ivec2 size = textureSize(page_light, 0);
+    if (any(lessThan(place, ivec2(0))) || any(greaterThanEqual(place, size))) {
+        page_shown = vec4(vec3(0.1255), 1.0);
+        return;
+    }
+    vec3 scene = texelFetch(page_light, place, 0).rgb;
+    scene = mix(scene, vec3(0.0), isnan(scene));
+    vec3 shown = ${op.function}(${['scene', ...op.uniforms.map((name) => `page_${name}`)].join(', ')});
+    if (page_marks) {
+        bool is_stripe = mod(gl_FragCoord.x + gl_FragCoord.y, 8.0) < 4.0;
+        if (max(max(shown.r, shown.g), shown.b) >= 254.5 / 255.0) shown = is_stripe ? vec3(1.0, 0.55, 0.0) : vec3(0.0);
+        else if (max(max(shown.r, shown.g), shown.b) <= 0.5 / 255.0) shown = is_stripe ? vec3(0.35, 0.7, 0.9) : vec3(0.0);
+    }
+    page_shown = vec4(shown, 1.0);
+}`;
+
+export class Renderer {
+    constructor(canvas) {
+        this.canvas = canvas;
+        this.gl = canvas.getContext('webgl2', { alpha: false, antialias: false, depth: false, preserveDrawingBuffer: true });
+        if (!this.gl) throw new Error('this browser has no WebGL 2, which shows the pictures; curves and tables work');
+        if (!this.gl.getExtension('EXT_color_buffer_float')) throw new Error('this machine cannot draw into floats');
+        this.programs = new Map();
+        this.levels = [];
+        this.textures = new Map();
+        this.halve = this.link(HALVE);
+        this.point = this.makeTexture(this.gl.TEXTURE_2D);
+        this.gl.texImage2D(this.gl.TEXTURE_2D, 0, this.gl.RGBA32F, 1, 1, 0, this.gl.RGBA, this.gl.FLOAT, null);
+    }
+
+    link(text) {
+        const gl = this.gl;
+        const program = gl.createProgram();
+        for (const [kind, source] of [[gl.VERTEX_SHADER, VERTEX], [gl.FRAGMENT_SHADER, text]]) {
+            const shader = gl.createShader(kind);
+            gl.shaderSource(shader, source);
+            gl.compileShader(shader);
+            gl.attachShader(program, shader);
+        }
+        gl.linkProgram(program);
+        if (!gl.getProgramParameter(program, gl.LINK_STATUS))
+            throw new Error(`the shader does not compile: ${gl.getProgramInfoLog(program)}`);
+        const places = {};
+        const count = gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS);
+        for (let i = 0; i < count; i++) {
+            const { name } = gl.getActiveUniform(program, i);
+            places[name] = gl.getUniformLocation(program, name);
+        }
+        return { program, places };
+    }
+
+    makeTexture(target) {
+        const gl = this.gl;
+        const texture = gl.createTexture();
+        gl.bindTexture(target, texture);
+        gl.texParameteri(target, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
+        gl.texParameteri(target, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
+        return texture;
+    }
+
+    setPicture({ width, height, rgba }) {
+        const gl = this.gl;
+        const most = gl.getParameter(gl.MAX_TEXTURE_SIZE);
+        if (Math.max(width, height) > most)
+            throw new Error(`${width} x ${height} pixels are too many for this machine's graphics; expected at most ${most} a side`);
+        for (const level of this.levels) gl.deleteTexture(level.texture);
+        const texture = this.makeTexture(gl.TEXTURE_2D);
+        gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, width, height, 0, gl.RGBA, gl.FLOAT, rgba);
+        this.levels = [{ texture, width, height }];
+    }
+
+    // The picture at 1 / 2^level of its size.
+    level(level) {
+        const gl = this.gl;
+        while (this.levels.length <= level) {
+            const from = this.levels.at(-1);
+            const width = Math.max(1, Math.ceil(from.width / 2));
+            const height = Math.max(1, Math.ceil(from.height / 2));
+            const texture = this.makeTexture(gl.TEXTURE_2D);
+            gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, width, height, 0, gl.RGBA, gl.FLOAT, null);
+            this.into(texture, width, height, () => {
+                gl.useProgram(this.halve.program);
+                gl.activeTexture(gl.TEXTURE0);
+                gl.bindTexture(gl.TEXTURE_2D, from.texture);
+                gl.drawArrays(gl.TRIANGLES, 0, 3);
+            });
+            this.levels.push({ texture, width, height });
+        }
+        return this.levels[level];
+    }
+
+    into(texture, width, height, draw) {
+        const gl = this.gl;
+        const frame = gl.createFramebuffer();
+        gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
+        gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, texture, 0);
+        gl.viewport(0, 0, width, height);
+        gl.disable(gl.SCISSOR_TEST);
+        const result = draw();
+        gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+        gl.deleteFramebuffer(frame);
+        return result;
+    }
+
+    use(op, values, exposure, view, corner, marks, level) {
+        const gl = this.gl;
+        if (!this.programs.has(op.name)) this.programs.set(op.name, this.link(fragment(op)));
+        const { program, places } = this.programs.get(op.name);
+        gl.useProgram(program);
+        gl.activeTexture(gl.TEXTURE0);
+        gl.bindTexture(gl.TEXTURE_2D, this.level(level).texture);
+        gl.uniform1i(places.page_light, 0);
+        gl.uniform3fv(places.page_view, view);
+        gl.uniform2fv(places.page_corner, corner);
+        gl.uniform1i(places.page_marks, marks ? 1 : 0);
+        for (const name of op.uniforms) gl.uniform1f(places[`page_${name}`], name === 'exposure' ? exposure : values[name]);
+        drawn(op).textures.forEach((texture, i) => {
+            gl.activeTexture(gl.TEXTURE1 + i);
+            if (!this.textures.has(texture.file)) {
+                this.textures.set(texture.file, this.makeTexture(gl.TEXTURE_3D));
+                gl.texImage3D(gl.TEXTURE_3D, 0, gl.RGBA32F, ...texture.size, 0, gl.RGBA, gl.FLOAT, texels(texture));
+            }
+            gl.bindTexture(gl.TEXTURE_3D, this.textures.get(texture.file));
+            gl.uniform1i(places[texture.name], 1 + i);
+        });
+    }
+
+    clear(gray = 0.1255) {
+        const gl = this.gl;
+        gl.disable(gl.SCISSOR_TEST);
+        gl.clearColor(gray, gray, gray, 1);
+        gl.clear(gl.COLOR_BUFFER_BIT);
+    }
+
+    // rect: left, top, width, height in pixels of the canvas. view: the picture's place at the corner, and zoom.
+    draw(op, { values, exposure, rect, origin, zoom, clip = rect, marks = false }) {
+        const gl = this.gl;
+        const level = zoom < 1 ? Math.max(0, Math.floor(Math.log2(1 / zoom) + 1e-6)) : 0;
+        const scale = 2 ** level;
+        this.level(level);  // makes it with a program and a target of its own
+        gl.viewport(0, 0, this.canvas.width, this.canvas.height);
+        this.use(op, values, exposure, [origin[0] / scale, origin[1] / scale, 1 / zoom / scale],
+            [rect[0], this.canvas.height - rect[1]], marks, level);
+        gl.enable(gl.SCISSOR_TEST);
+        gl.scissor(clip[0], this.canvas.height - clip[1] - clip[3], clip[2], clip[3]);
+        gl.drawArrays(gl.TRIANGLES, 0, 3);
+    }
+
+    // What the shader gives for one pixel, in 32-bit floats.
+    probe(op, values, exposure, x, y) {
+        const gl = this.gl;
+        return this.into(this.point, 1, 1, () => {
+            this.use(op, values, exposure, [x, y, 0], [0, 1], false, 0);
+            gl.drawArrays(gl.TRIANGLES, 0, 3);
+            const rgba = new Float32Array(4);
+            gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.FLOAT, rgba);
+            return [...rgba.subarray(0, 3)];
+        });
+    }
+}

@@ -311,7 +311,7 @@ void add_shader(CommandLine& program) {
         .group(output);
     command
         .add("--tables", options->tables,
-             "where numbers of tables and lattices stand (default: by their size)")
+             "where to store tables and 3D LUTs (default: by their size)")
         .choices(std::vector<std::string>{"texture", "array"})
         .value("KIND")
         .group(output);

@@ -82,8 +82,8 @@ def print_engine(forms, sizes, operators):
     table(f"Mpix/s, {WIDTH}x{HEIGHT} RGBA float32, sRGB view, one thread unless said; memcpy of the same picture: "
           f"{copied:.0f}. Errors: the largest, in code values.",
           ["operator", "ours", "of memcpy", f"{os.cpu_count()} threads", "two threads, times one", "OCIO lossless",
-           "OCIO default", "65^3 cube in OCIO", "times lossless", "times default", "times cube", "error", "lossless",
-           "default", "cube"], rows)
+           "OCIO default", "65^3 LUT in OCIO", "times lossless", "times default", "times LUT", "error", "lossless",
+           "default", "LUT"], rows)
     table("`hable`, RGB, one thread: cost of a pixel in pictures of all sizes", ["pixels", "ns a pixel"],
           [[f"{n:.0e}", number(ns)] for n, ns in sorted(sizes.items())])
 

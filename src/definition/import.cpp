@@ -12,7 +12,6 @@
 #include "base/strings.h"
 #include "definition/primaries_names.h"
 #include "definition/recipe.h"
-#include "definition/write.h"
 #include "expr/nodes.h"
 #include "formula/glsl.h"
 #include "tonewright/definition.h"
@@ -75,7 +74,7 @@ class Stages {
     [[nodiscard]] std::vector<StageRecipe> stages() const {
         return {stages_.rbegin(), stages_.rend()};
     }
-    [[nodiscard]] const FormulaNames& names() const { return texts_; }
+    [[nodiscard]] const std::vector<PartNames::Entry>& names() const { return texts_; }
     [[nodiscard]] const GlslFunction& function() const { return function_; }
 
   private:
@@ -112,10 +111,8 @@ class Stages {
             before = take_clamp(stage.f);
         }
         for (const Expr& e : nodes_of(stage.f)) {
-            if (const auto named = names_.find(e.node()); named != names_.end()) {
-                kept_.push_back(e);  // its address stays its own
-                texts_.emplace(e.node(), text_of(*named->second, is_curve));
-            }
+            if (const auto named = names_.find(e.node()); named != names_.end())
+                texts_.push_back({e, text_of(*named->second, is_curve)});
         }
         add(std::move(stage));
         // The first stage of all clamps to [0, 65504].
@@ -233,7 +230,7 @@ class Stages {
     GlslFunction function_;
     std::unordered_map<const ExprNode*, const GlslName*> names_;
     std::vector<StageRecipe> stages_;
-    FormulaNames texts_;
+    std::vector<PartNames::Entry> texts_;
     std::vector<Expr> kept_;
 };
 
@@ -359,6 +356,7 @@ ImportedShader imported(std::string_view text, const std::string& name,
     limit.hi = kHalfMax;
     limit.at = function.at;
     recipe->stages = made.stages();
+    recipe->names = made.names();
     recipe->stages.insert(recipe->stages.begin(), limit);
     if (output == Output::srgb) {
         StageRecipe decode;
@@ -405,8 +403,7 @@ ImportedShader imported(std::string_view text, const std::string& name,
         const ResolvedOperator resolved = resolve(op, nullptr, {}, "");
         for (const Stage& stage : resolved.build())
             result.stages.emplace_back(stage_kind(stage));
-        result.definition =
-            "# From " + op.source + ".\n" + assumed + definition_of(resolved, made.names());
+        result.definition = "# From " + op.source + ".\n" + assumed + definition_of(resolved);
         (void)parse_operator(result.definition, "the definition");
     } catch (const Error& e) {
         if (!wrong->empty()) throw NotFinite(function.at, *wrong);

@@ -45,6 +45,8 @@ struct OperatorRecipe {
     std::optional<Expr> peak;
     Primaries output_primaries{};
     std::vector<ParameterSpec> parameters;
+    /// Of temporaries.
+    std::vector<PartNames::Entry> names;
     std::vector<std::string> looks;
 };
 

@@ -8,7 +8,6 @@
 #include "base/strings.h"
 #include "definition/primaries_names.h"
 #include "definition/table_stages.h"
-#include "definition/write.h"
 #include "formula/formula.h"
 #include "tonewright/definition.h"
 
@@ -53,8 +52,8 @@ std::string primaries_text(const Primaries& primaries) {
 
 class Writer {
   public:
-    Writer(const ResolvedOperator& resolved, const FormulaNames& names)
-        : resolved_(resolved), op_(*resolved.op), names_(names), live_(live_parameters(op_)) {}
+    explicit Writer(const ResolvedOperator& resolved)
+        : resolved_(resolved), op_(*resolved.op), live_(live_parameters(op_)) {}
 
     std::string write() {
         if (op_.is_local()) throw Error("it looks at the surroundings of a pixel");
@@ -223,12 +222,12 @@ class Writer {
         return "\"\"\"\n" + text + "\n\"\"\"";
     }
 
-    std::string whole(const Expr& e) { return formula(whole_formula(e, {"x"}, names_)); }
+    std::string whole(const Expr& e) { return formula(whole_formula(e, {"x"})); }
 
     /// Several formulas, their temporaries before them.
     std::vector<std::string> formulas(const std::vector<Expr>& exprs,
                                       const std::vector<std::string>& inputs) {
-        const FormulaText text = formula_text(exprs, inputs, names_);
+        const FormulaText text = formula_text(exprs, inputs);
         if (!text.temporaries.empty())
             line("temporaries", "\"\"\"\n" + text.temporaries + "\"\"\"");
         std::vector<std::string> result;
@@ -289,7 +288,6 @@ class Writer {
 
     const ResolvedOperator& resolved_;
     const Operator& op_;
-    const FormulaNames& names_;
     const std::vector<std::string> live_;
     const bool is_table_ = is_table_operator(op_);
     std::string text_;
@@ -297,11 +295,10 @@ class Writer {
 
 }  // namespace
 
-std::string definition_of(const ResolvedOperator& op) { return definition_of(op, {}); }
-
-std::string definition_of(const ResolvedOperator& op, const FormulaNames& names) {
+std::string definition_of(const ResolvedOperator& op) {
+    const PartNames names;
     try {
-        return Writer(op, names).write();
+        return Writer(op).write();
     } catch (const FileError&) {
         throw;
     } catch (const Error& e) {

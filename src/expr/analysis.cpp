@@ -33,6 +33,7 @@ Expr rebuild(const Expr& e, const Leaf& leaf, std::unordered_map<const ExprNode*
         result = e.op() == ExprOp::lattice
                      ? interpolate(e.lattice(), e.channel(), operands[0], operands[1], operands[2])
                      : make_expr(e.op(), operands, e.table());
+        PartNames::move(e, result);
     }
     done.emplace(e.node(), result);
     return result;

@@ -5,7 +5,6 @@
 #include <map>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <vector>
 
 #include "tonewright/error.h"
@@ -73,20 +72,15 @@ struct FormulaText {
     std::string temporaries;
     std::vector<std::string> values;
 };
-/// What temporaries should be called. No name is that of an input, a parameter or a function; the
-/// second one of a name gets a number.
-using FormulaNames = std::unordered_map<const ExprNode*, std::string>;
-/// parse_formula() reads them back as the same expressions.
+/// parse_formula() reads them back as the same expressions. Parts with a name (PartNames) become
+/// temporaries, however often they are used.
 /// @param inputs  their names
-/// @param names   of nodes that become temporaries, however often they are used
 /// @throws Error  an expression has a table, a lattice or a number that is not finite, or a uniform
 ///                has a name that no formula can use
 [[nodiscard]] TONEWRIGHT_API FormulaText formula_text(Span<const Expr> exprs,
-                                                      const std::vector<std::string>& inputs,
-                                                      const FormulaNames& names = {});
+                                                      const std::vector<std::string>& inputs);
 /// One expression as one formula, its temporaries before it.
 [[nodiscard]] TONEWRIGHT_API std::string whole_formula(const Expr& e,
-                                                       const std::vector<std::string>& inputs,
-                                                       const FormulaNames& names = {});
+                                                       const std::vector<std::string>& inputs);
 
 TONEWRIGHT_NAMESPACE_END

@@ -230,6 +230,7 @@ class Parser {
         const FormulaValue value = expression(kChoice);
         end_line();
         temporaries_.emplace(own, value);
+        (void)named(own, value.value);
     }
 
     void end_line() {
@@ -359,7 +360,7 @@ class Parser {
                 return number(at);
             case Kind::name:
                 next();
-                return is_sign("(") ? call(at) : FormulaValue(named(at));
+                return is_sign("(") ? call(at) : FormulaValue(value_named(at));
             case Kind::sign:
                 break;
             case Kind::end:
@@ -403,7 +404,7 @@ class Parser {
         return {number.value};
     }
 
-    FormulaValue named(const Token& at) const {
+    FormulaValue value_named(const Token& at) const {
         for (std::size_t i = 0; i < scope_.inputs.size(); ++i) {
             if (scope_.inputs[i] == at.text) return {Expr::input(static_cast<int>(i))};
         }

@@ -25,9 +25,8 @@ std::string bracketed(const Text& t, Precedence needed) {
 
 class Printer {
   public:
-    Printer(Span<const Expr> exprs, const std::vector<std::string>& inputs,
-            const FormulaNames& names)
-        : inputs_(inputs), names_(names) {
+    Printer(Span<const Expr> exprs, const std::vector<std::string>& inputs)
+        : inputs_(inputs), taken_(inputs.begin(), inputs.end()) {
         const std::vector<Expr> nodes = nodes_of(exprs);
         std::unordered_map<const ExprNode*, int> uses;
         for (const Expr& e : nodes) {
@@ -47,7 +46,7 @@ class Printer {
             constexpr std::size_t kLongest = 76;
             const bool is_leaf = e.operand_count() == 0;
             const bool is_long = text.text.size() > kLongest && !is_value(e);
-            const bool has_name = names_.count(e.node()) != 0 && !is_value(e);
+            const bool has_name = PartNames::of(e) && !is_value(e);
             if (!is_leaf && (uses[e.node()] > 1 || is_long || has_name)) text = set(e, text);
             texts_.emplace(e.node(), std::move(text));
         }
@@ -66,16 +65,15 @@ class Printer {
     }
 
     Text set(const Expr& e, const Text& value) {
-        const auto wanted = names_.find(e.node());
-        std::string name;
-        if (wanted == names_.end()) {
+        const std::string* const wanted = PartNames::of(e);
+        std::string name = wanted ? *wanted : "";
+        if (wanted) {
+            for (int i = 2; taken_.contains(name) || is_formula_function(name); ++i)
+                name = *wanted + "_" + std::to_string(i);
+        } else {
             do {
                 name = "t" + std::to_string(++count_);
             } while (taken_.contains(name));
-        } else {
-            name = wanted->second;
-            for (int i = 2; taken_.contains(name); ++i)
-                name = wanted->second + "_" + std::to_string(i);
         }
         taken_.insert(name);
         result_.temporaries += name + " = " + value.text + "\n";
@@ -162,7 +160,6 @@ class Printer {
     }
 
     const std::vector<std::string>& inputs_;
-    const FormulaNames& names_;
     std::set<std::string> taken_;
     std::unordered_map<const ExprNode*, Text> texts_;
     FormulaText result_;
@@ -171,14 +168,12 @@ class Printer {
 
 }  // namespace
 
-FormulaText formula_text(Span<const Expr> exprs, const std::vector<std::string>& inputs,
-                         const FormulaNames& names) {
-    return Printer(exprs, inputs, names).result();
+FormulaText formula_text(Span<const Expr> exprs, const std::vector<std::string>& inputs) {
+    return Printer(exprs, inputs).result();
 }
 
-std::string whole_formula(const Expr& e, const std::vector<std::string>& inputs,
-                          const FormulaNames& names) {
-    const FormulaText text = formula_text(Span<const Expr>(&e, 1), inputs, names);
+std::string whole_formula(const Expr& e, const std::vector<std::string>& inputs) {
+    const FormulaText text = formula_text(Span<const Expr>(&e, 1), inputs);
     const std::string& value = text.values.front();
     // No line begins with a sign that could go on with the line before.
     const bool is_sign = !text.temporaries.empty() && value.front() == '-';

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "formula/formula.h"
 #include "shader/print.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -81,6 +82,43 @@ const char* word_for(const Expr& e) {
     }
 }
 
+/// A name of a formula as one that every language takes.
+std::string as_variable(const std::string& name) {
+    // Words that a formula's author may choose, and that one of the languages keeps to itself.
+    static const std::set<std::string, std::less<>> reserved = {
+        "active",    "auto",     "bool",      "break",     "buffer",    "case",    "cast",
+        "centroid",  "char",     "class",     "closure",   "coherent",  "color",   "common",
+        "const",     "constant", "continue",  "default",   "delete",    "device",  "discard",
+        "do",        "double",   "else",      "emit",      "enum",      "export",  "extern",
+        "external",  "false",    "filter",    "final",     "fixed",     "flat",    "float",
+        "fn",        "for",      "from",      "function",  "get",       "global",  "goto",
+        "half",      "highp",    "if",        "image",     "import",    "in",      "inline",
+        "inout",     "input",    "int",       "interface", "kernel",    "let",     "line",
+        "local",     "long",     "loop",      "lowp",      "matrix",    "mediump", "metal",
+        "mod",       "module",   "move",      "mut",       "namespace", "new",     "noise",
+        "normal",    "null",     "of",        "operator",  "out",       "output",  "override",
+        "packed",    "param",    "partition", "pass",      "patch",     "point",   "precise",
+        "precision", "private",  "protected", "public",    "read",      "ref",     "register",
+        "resource",  "return",   "sample",    "sampler",   "self",      "set",     "shared",
+        "short",     "signed",   "sizeof",    "smooth",    "static",    "storage", "string",
+        "struct",    "super",    "switch",    "target",    "template",  "texture", "this",
+        "thread",    "throw",    "triangle",  "true",      "try",       "type",    "typedef",
+        "uniform",   "union",    "unsigned",  "use",       "using",     "var",     "varying",
+        "vector",    "virtual",  "void",      "volatile",  "where",     "while",   "with",
+        "write",     "yield",    "dot",       "cross",     "fract",     "frac",    "length",
+        "lerp",      "saturate", "select",    "sign",      "step",      "vec3"};
+    std::string result;
+    for (const char c : name) {
+        const bool is_sign = c == '_' || c == '.';
+        if (is_sign && (result.empty() || result.back() == '_')) continue;
+        result += is_sign ? '_' : c;
+    }
+    while (!result.empty() && result.back() == '_')
+        result.pop_back();
+    const bool is_taken = reserved.contains(result) || is_formula_function(result);
+    return result.empty() || is_taken ? result + "_value" : result;
+}
+
 }  // namespace
 
 FunctionBody::FunctionBody(const LanguageFacts& language, std::vector<std::string> inputs,
@@ -115,7 +153,8 @@ void FunctionBody::add_input(const std::string& name, const std::string& value) 
 FunctionBody::Text FunctionBody::print(const Expr& e) {
     if (const auto known = known_.find(e.node()); known != known_.end()) return known->second;
     Text text = compose(e);
-    if (is_leaf(e) || uses_[e.node()] < 2) return text;
+    // What the source names is a variable here, too.
+    if (is_leaf(e) || (uses_[e.node()] < 2 && !PartNames::of(e))) return text;
     const std::string name = name_for(e);
     add_line(text.is_condition ? language_.boolean : language_.number, name, text.text);
     text = {name, kAtom, text.is_condition};
@@ -284,6 +323,7 @@ std::string FunctionBody::choose(const Expr& e) {
 }
 
 std::string FunctionBody::name_for(const Expr& e) {
+    if (const std::string* name = PartNames::of(e)) return unique(as_variable(*name));
     // x2, x4, x6 of x: the powers of a polynomial.
     if (e.op() == ExprOp::multiply) {
         const auto power_of = [&](const Expr& factor) -> std::pair<std::string, int> {

@@ -72,6 +72,7 @@ Expr FloatForm::operator()(const Expr& e) {
     if (const auto known = rewritten_.find(e.node()); known != rewritten_.end())
         return known->second;
     Expr result = rewrite(e);
+    PartNames::move(e, result);
     keep_.push_back(e);
     rewritten_.emplace(e.node(), result);
     return result;

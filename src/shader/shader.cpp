@@ -486,6 +486,7 @@ ShaderErrors measure_shader(const ShaderRequest& request) {
 
 Shader write_shader(const ShaderRequest& request, const ShaderErrors* errors) {
     check(request);
+    const PartNames names;
     const Pipeline pipeline = pipeline_of(request);
     const ShaderProgram program = program_of(request);
     const LanguageFacts& language =

@@ -155,6 +155,7 @@ class Sharer {
             e.op() == ExprOp::lattice
                 ? interpolate(e.lattice(), e.channel(), operands[0], operands[1], operands[2])
                 : make_expr(e.op(), operands, e.op() == ExprOp::lookup ? e.table() : nullptr);
+        PartNames::move(e, result);
         known.insert_or_assign(i, result);
         return result;
     }

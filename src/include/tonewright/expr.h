@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "tonewright/span.h"
@@ -181,6 +182,43 @@ TONEWRIGHT_API Expr log(const Expr& a);                                    // lo
 TONEWRIGHT_API Expr clamp(const Expr& a, const Expr& lo, const Expr& hi);  // min(max(a, lo), hi)
 TONEWRIGHT_API Expr mix(const Expr& a, const Expr& b, const Expr& t);      // a + t*(b - a)
 TONEWRIGHT_API Expr smoothstep(const Expr& edge0, const Expr& edge1, const Expr& x);
+
+/// While it exists, on its thread: the names of what named() is called with, and of what rewriting
+/// makes of those parts. An object within another one starts without names and hides the outer one.
+class TONEWRIGHT_API PartNames {
+  public:
+    struct Entry {
+        Expr part;
+        std::string name;
+    };
+
+    PartNames();
+    ~PartNames();
+    PartNames(const PartNames&) = delete;
+    PartNames& operator=(const PartNames&) = delete;
+
+    /// In the order in which they were named.
+    [[nodiscard]] const std::vector<Entry>& all() const { return all_; }
+
+    /// Of the innermost object: nothing where there is none.
+    static void add(const std::string& name, const Expr& part);
+    /// The first name that this part was given; null: none. Numbers, inputs and uniforms have none.
+    [[nodiscard]] static const std::string* of(const Expr& part);
+    /// For whoever rewrites expressions: `after` takes the name of `before`.
+    static void move(const Expr& before, const Expr& after);
+
+  private:
+    std::vector<Entry> all_;  // which keeps the parts: no address is used twice
+    std::unordered_map<const ExprNode*, std::size_t> place_;
+    PartNames* outer_;
+};
+
+/// Gives a part of a formula the name that it has in its source, and returns the part. Whoever
+/// writes the formula as text, with a PartNames, uses the name; nothing else looks at it.
+inline Expr named(const std::string& name, const Expr& part) {
+    PartNames::add(name, part);
+    return part;
+}
 
 /// The expression with input i replaced by `inputs[i]`. Inputs beyond the span stay.
 [[nodiscard]] TONEWRIGHT_API Expr substitute(const Expr& expr, Span<const Expr> inputs);

@@ -96,6 +96,7 @@ const ShaderLanguageInfo& language_of(const Options& options) {
 }
 
 void write_one(Options& options) {
+    if (options.file == "-") options.file.clear();
     if (options.op.empty())
         throw Error("shader: OPERATOR is missing; expected an id from `tonewright list`");
     if (!options.language.empty() && !options.application.empty())
@@ -289,7 +290,7 @@ void add_shader(CommandLine& program) {
              "application that takes the whole file; see --list. Sets language and display")
         .value("NAME")
         .group(output);
-    command.add("-o", options->file, "file to write (default: standard output)")
+    command.add("-o", options->file, "file to write (default, or -: standard output)")
         .value("FILE")
         .group(output);
     command

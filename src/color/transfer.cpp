@@ -41,19 +41,20 @@ constexpr double kHlgB = 1 - 4 * kHlgA;                  // 0.28466892
 const double kHlgC = 0.5 - kHlgA * std::log(4 * kHlgA);  // 0.55991073
 
 Expr mirror(const Expr& x, const Expr& of_magnitude) {
-    return select(less(x, 0), -of_magnitude, of_magnitude);
+    return select(less(x, 0), -named("magnitude", of_magnitude), of_magnitude);
 }
 }  // namespace
 
 Expr pq_encode_nits(const Expr& nits) {
-    const Expr y = pow(abs(nits) / 10000, kPqM1);
-    return mirror(nits, pow((kPqC1 + kPqC2 * y) / (1 + kPqC3 * y), kPqM2));
+    const Expr y = named("y", pow(abs(nits) / 10000, kPqM1));
+    return named("pq", mirror(nits, pow((kPqC1 + kPqC2 * y) / (1 + kPqC3 * y), kPqM2)));
 }
 
 Expr pq_decode_nits(const Expr& code) {
     // The standard ends at 1; at 1.95 the formula divides by 0.
-    const Expr p = pow(min(abs(code), 1), 1 / kPqM2);
-    return mirror(code, 10000 * pow(max(p - kPqC1, 0) / (kPqC2 - kPqC3 * p), 1 / kPqM1));
+    const Expr p = named("p", pow(min(abs(code), 1), 1 / kPqM2));
+    return named("nits",
+                 mirror(code, 10000 * pow(max(p - kPqC1, 0) / (kPqC2 - kPqC3 * p), 1 / kPqM1)));
 }
 
 Expr hlg_oetf(const Expr& scene_linear) {

@@ -164,7 +164,7 @@ Size size_of(const std::array<Expr, 3>& f) {
 Pipeline build_stages(const OperatorRecipe& recipe, const std::vector<StageRecipe>& stages,
                       const Params& params) {
     for (const PartNames::Entry& entry : recipe.names)
-        (void)named(entry.name, entry.part);
+        PartNames::add(entry.name, entry.part);
     const UniformValues values = values_of(recipe, params);
     Pipeline pipeline;
     std::array<std::vector<double>, 3> rgb = sample_colors();

@@ -313,7 +313,7 @@ Expr log(const Expr& a) { return log2(a) * std::numbers::ln2; }
 Expr clamp(const Expr& a, const Expr& lo, const Expr& hi) { return min(max(a, lo), hi); }
 Expr mix(const Expr& a, const Expr& b, const Expr& t) { return a + t * (b - a); }
 Expr smoothstep(const Expr& edge0, const Expr& edge1, const Expr& x) {
-    const Expr t = clamp((x - edge0) / (edge1 - edge0), 0, 1);
+    const Expr t = named("t", clamp((x - edge0) / (edge1 - edge0), 0, 1));
     return t * t * (3 - 2 * t);
 }
 

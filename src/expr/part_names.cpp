@@ -20,13 +20,18 @@ const std::string* PartNames::of(const Expr& part) {
 
 void PartNames::move(const Expr& before, const Expr& after) {
     if (same(before, after)) return;
-    if (const std::string* name = of(before)) add(std::string(*name), after);
+    if (const std::string* name = of(before); name && !of(after)) add(std::string(*name), after);
 }
 
 void PartNames::add(const std::string& name, const Expr& part) {
-    if (innermost && part.operand_count() > 0 &&
-        innermost->place_.emplace(part.node(), innermost->all_.size()).second)
+    const bool is_computed = part.operand_count() > 0 || part.is_constant();
+    if (!innermost || !is_computed) return;
+    const auto [known, is_new] = innermost->place_.emplace(part.node(), innermost->all_.size());
+    if (is_new) {
         innermost->all_.push_back({part, name});
+    } else {
+        innermost->all_[known->second].name = name;
+    }
 }
 
 TONEWRIGHT_NAMESPACE_END

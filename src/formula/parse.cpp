@@ -230,7 +230,7 @@ class Parser {
         const FormulaValue value = expression(kChoice);
         end_line();
         temporaries_.emplace(own, value);
-        (void)named(own, value.value);
+        PartNames::add(own, value.value);
     }
 
     void end_line() {

@@ -119,14 +119,14 @@ Quadratics quadratics(const TwoSplines& splines) {
 
 /// Flat below the first piece; the last one has no end.
 Expr spline(const Quadratics& pieces, const Expr& x) {
-    const Expr at = max(x, pieces.front().x);
+    const Expr at = named("inside", max(x, pieces.front().x));
     const auto value = [&](const Quadratic& q) {
-        const Expr t = at - q.x;
+        const Expr t = named("t", at - q.x);
         return q.y + t * (q.slope + t * q.bend);
     };
     Expr y = value(pieces.back());
     for (std::size_t i = pieces.size() - 1; i-- > 0;)
-        y = select(less(at, pieces[i + 1].x), value(pieces[i]), y);
+        y = named("y", select(less(at, pieces[i + 1].x), value(pieces[i]), y));
     return y;
 }
 
@@ -236,7 +236,7 @@ Expr power_of_10(const Expr& y) { return exp2(y * std::log2(10.0)); }
 /// Light of a channel of AP1 -> light between the black and the peak of the form, [0, 1].
 Expr tone_curve(const Form& form, bool is_ocio) {
     constexpr double half_min = 0x1p-24;  // below it all curves are flat
-    const Expr x = log2(max(Expr::input(), half_min)) * std::log10(2.0);
+    const Expr x = named("log_scene", log2(max(Expr::input(), half_min)) * std::log10(2.0));
     const auto curve = [&](const TwoSplines& splines, bool has_other_top) {
         return is_ocio ? quadratics(ocio_knots(splines, has_other_top)) : quadratics(splines);
     };

@@ -216,12 +216,12 @@ struct ToneScale {
     }
 
     [[nodiscard]] Expr operator()(const Expr& y) const {
-        const Expr f = m2 * pow(y / (y + s2), kContrast);
+        const Expr f = named("f", m2 * pow(y / (y + s2), kContrast));
         return square(f) / (f + kFlare);
     }
 
     [[nodiscard]] Expr inverse_of(const Expr& y) const {
-        const Expr w = pow(without_flare<Expr>(min(y, limit)) / m2, 1 / kContrast);
+        const Expr w = named("w", pow(without_flare<Expr>(min(y, limit)) / m2, 1 / kContrast));
         return s2 * w / (1 - w);
     }
 };
@@ -561,10 +561,10 @@ struct Hue {
 /// Compresses [0, limit] towards 0 and leaves what is above: the positive root y of
 /// y^2 - (scale x - slope) y = scale knee x.
 Expr toe(const Expr& x, const Expr& limit, const Expr& slope, const Expr& knee) {
-    const Expr scale = (limit + slope) / (limit + knee);
-    const Expr p = scale * x - slope;
-    const Expr q = knee * scale * x;
-    const Expr twice = abs(p) + sqrt(max(square(p) + 4 * q, 0));
+    const Expr scale = named("scale", (limit + slope) / (limit + knee));
+    const Expr p = named("p", scale * x - slope);
+    const Expr q = named("q", knee * scale * x);
+    const Expr twice = named("twice_root", abs(p) + sqrt(max(square(p) + 4 * q, 0)));
     const Expr root = select(less(p, 0), 2 * q / max(twice, kTiny), 0.5 * twice);
     return select(less(limit, x), x, root);
 }
@@ -629,18 +629,22 @@ class OutputTransform {
         Opponent<Expr> shown = opponent_of(cones);
         shown.achromatic = max(shown.achromatic, 0);
         const Hue hue = hue_of(shown);
-        const Expr shown_j = pow(shown.achromatic / k_.achromatic, kLightnessPower);
+        const Expr shown_j =
+            named("shown_j", pow(shown.achromatic / k_.achromatic, kLightnessPower));
 
         // The lines were those of a J that is not known yet: the standard takes that which it
         // gets with the one that is.
-        const Expr threshold = hue.cusp.j + 0.3 * (1 - hue.cusp.j);
-        const Expr first_j = std::get<0>(move_along_line(shown_j, hue.m, shown_j, hue, true));
-        const Expr gain_j = select(less_equal(shown_j, threshold), shown_j, first_j);
+        const Expr threshold = named("threshold", hue.cusp.j + 0.3 * (1 - hue.cusp.j));
+        const Expr first_j =
+            named("first_j", std::get<0>(move_along_line(shown_j, hue.m, shown_j, hue, true)));
+        const Expr gain_j =
+            named("gain_j", select(less_equal(shown_j, threshold), shown_j, first_j));
         const auto [j, m] = move_along_line(shown_j, hue.m, gain_j, hue, true);
 
-        const Expr achromatic = achromatic_of(j);
-        const Expr luminance = tone_.inverse_of(cone_of_response(achromatic) / kLuminanceLevel);
-        const Expr scene = achromatic_of_luminance(luminance);
+        const Expr achromatic = named("achromatic", achromatic_of(j));
+        const Expr luminance =
+            named("luminance", tone_.inverse_of(cone_of_response(achromatic) / kLuminanceLevel));
+        const Expr scene = named("scene_achromatic", achromatic_of_luminance(luminance));
         const Expr scene_m =
             expand_chroma(m, j, achromatic, hue) * (scene / max(achromatic, 1e-30));
         return {rgb_of(ap1_, scene, scene_m, hue)};
@@ -652,12 +656,14 @@ class OutputTransform {
         const Opponent<Expr> scene = opponent_of(responses);
         const Hue hue = hue_of(scene);
 
-        const Expr luminance = cone_of_response(scene.achromatic) / kLuminanceLevel;
-        const Expr achromatic = achromatic_of_luminance(tone_(luminance));
-        const Expr j = pow(achromatic / k_.achromatic, kLightnessPower);
+        const Expr luminance =
+            named("luminance", cone_of_response(scene.achromatic) / kLuminanceLevel);
+        const Expr achromatic = named("achromatic", achromatic_of_luminance(tone_(luminance)));
+        const Expr j = named("lightness", pow(achromatic / k_.achromatic, kLightnessPower));
         // M goes with (J/J')^(1/kLightnessPower): the ratio of the achromatic responses.
-        const Expr m = compress_chroma(hue.m * (achromatic / max(scene.achromatic, 1e-30)), j,
-                                       achromatic, hue);
+        const Expr m =
+            named("chroma", compress_chroma(hue.m * (achromatic / max(scene.achromatic, 1e-30)), j,
+                                            achromatic, hue));
 
         const auto [moved_j, moved_m] = move_along_line(j, m, j, hue, false);
         return rgb_of(display_, achromatic_of(moved_j), moved_m, hue);
@@ -697,36 +703,38 @@ class OutputTransform {
     static std::array<Expr, 3> inputs() { return {Expr::input(0), Expr::input(1), Expr::input(2)}; }
 
     [[nodiscard]] Expr achromatic_of(const Expr& j) const {
-        return k_.achromatic * pow(max(j, 0), 1 / kLightnessPower);
+        return named("response", k_.achromatic * pow(max(j, 0), 1 / kLightnessPower));
     }
 
     [[nodiscard]] std::array<Expr, 3> rgb_of(const Cones& cones, const Expr& achromatic,
                                              const Expr& m, const Hue& hue) const {
-        const Expr length = k_.unit * m;
+        const Expr length = named("length_ab", k_.unit * m);
         return transform<Expr>(
             cones.to_rgb, cones_of<Expr>({achromatic, length * hue.cosine, length * hue.sine}));
     }
 
     [[nodiscard]] Hue hue_of(const Opponent<Expr>& color) const {
-        const Expr a = color.a / k_.unit;
-        const Expr b = color.b / k_.unit;
-        const Expr m = sqrt(square(a) + square(b));
+        const Expr a = named("a", color.a / k_.unit);
+        const Expr b = named("b", color.b / k_.unit);
+        const Expr m = named("chroma", sqrt(square(a) + square(b)));
         const Expr divisor = max(m, kTiny);
-        const Expr c = a / divisor;
-        const Expr s = b / divisor;
+        const Expr c = named("cos_hue", a / divisor);
+        const Expr s = named("sin_hue", b / divisor);
         // cos 2h = 2 c^2 - 1, cos 3h = 4 c^3 - 3 c, sin 2h = 2 s c, sin 3h = s (4 c^2 - 1)
         const Expr polynomial =
             77.12896 - 16.46899 +
             c * (11.34072 - 3 * 7.88380 + c * (2 * 16.46899 + c * (4 * 7.88380))) +
             s * (14.66441 - 9.19364 + c * (-2 * 6.37224 + c * (4 * 9.19364)));
-        const Expr angle = atan2(b, a) * (0.5 / std::numbers::pi);
-        const Expr turns = select(less(angle, 0), angle + 1, angle);
-        return {m,
-                c,
-                s,
-                k_.chroma_scale * polynomial,
-                lookup(reach_, turns),
-                {lookup(cusps_[0], turns), lookup(cusps_[1], turns), lookup(cusps_[2], turns)}};
+        const Expr angle = named("angle", atan2(b, a) * (0.5 / std::numbers::pi));
+        const Expr turns = named("turns", select(less(angle, 0), angle + 1, angle));
+        return {
+            m,
+            c,
+            s,
+            named("chroma_norm", k_.chroma_scale * polynomial),
+            named("reach", lookup(reach_, turns)),
+            {named("cusp_j", lookup(cusps_[0], turns)), named("cusp_m", lookup(cusps_[1], turns)),
+             named("inverse_gamma", lookup(cusps_[2], turns))}};
     }
 
     /// What chroma's compression depends on.
@@ -741,20 +749,20 @@ class OutputTransform {
         const auto length = [](const Expr& x, const Expr& y) {
             return sqrt(square(x) + square(y));
         };
-        const Expr rest = max(1 - j, 0);
-        const Expr expand_knee = max(sqrt(square(j) + k_.threshold), 0.001);
-        const Expr compress_knee = max(rest, 0.001);
-        return {achromatic / k_.achromatic * hue.reach / hue.norm,
-                length(k_.saturation * rest, expand_knee), expand_knee,
-                length(k_.compression * j, compress_knee), compress_knee};
+        const Expr rest = named("rest", max(1 - j, 0));
+        const Expr expand_knee = named("expand_knee", max(sqrt(square(j) + k_.threshold), 0.001));
+        const Expr compress_knee = named("compress_knee", max(rest, 0.001));
+        return {named("limit", achromatic / k_.achromatic * hue.reach / hue.norm),
+                named("expand_slope", length(k_.saturation * rest, expand_knee)), expand_knee,
+                named("compress_slope", length(k_.compression * j, compress_knee)), compress_knee};
     }
 
     [[nodiscard]] Expr compress_chroma(const Expr& m, const Expr& j, const Expr& achromatic,
                                        const Hue& hue) const {
         const ChromaToes t = chroma_toes(j, achromatic, hue);
         const Expr x = m / hue.norm;
-        const Expr expanded =
-            t.limit - toe(t.limit - x, t.limit - 0.001, t.expand_slope, t.expand_knee);
+        const Expr expanded = named(
+            "expanded", t.limit - toe(t.limit - x, t.limit - 0.001, t.expand_slope, t.expand_knee));
         return toe(expanded, t.limit, t.compress_slope, t.compress_knee) * hue.norm;
     }
 
@@ -774,12 +782,13 @@ class OutputTransform {
                                                          const Expr& gain_j, const Hue& hue,
                                                          bool is_inverse) const {
         const Line<Expr> line = line_through<Expr>(k_, j, m, gain_j, hue.cusp);
-        const Expr edge = boundary(k_, line, hue.cusp);
-        const Expr reach = hull<Expr>(line.axis, line.slope, 1 / kLightnessPower, 1, hue.reach, 1);
-        const Expr start = max(edge / max(reach, kTiny), 0.75) * edge;
-        const Expr over = max(m - start, 0);
+        const Expr edge = named("edge", boundary(k_, line, hue.cusp));
+        const Expr reach = named("reach_chroma", hull<Expr>(line.axis, line.slope,
+                                                            1 / kLightnessPower, 1, hue.reach, 1));
+        const Expr start = named("start", max(edge / max(reach, kTiny), 0.75) * edge);
+        const Expr over = named("over", max(m - start, 0));
         // beyond = room over/(room + over), room = n/(reach - edge)
-        const Expr n = (reach - start) * (edge - start);
+        const Expr n = named("n", (reach - start) * (edge - start));
         const Expr d = (reach - edge) * over;
         Expr beyond = 0;
         if (is_inverse) {
@@ -788,11 +797,11 @@ class OutputTransform {
                 select(less(d, n), n * over / max(n - d, 1e-30), n * over / max(d, 1e-30));
             beyond = min(before, 10);
         } else {
-            beyond = n * over / max(n + d, 1e-30);
+            beyond = named("beyond", n * over / max(n + d, 1e-30));
         }
         // A hull that is larger than AP1 moves nothing.
-        const Expr moved = select(less(edge, reach), min(m, start) + beyond, m);
-        const Expr is_chromatic = less(0, edge) * less_equal(j, 1);
+        const Expr moved = named("moved", select(less(edge, reach), min(m, start) + beyond, m));
+        const Expr is_chromatic = named("is_chromatic", less(0, edge) * less_equal(j, 1));
         return {select(is_chromatic, line.axis + line.slope * moved, j),
                 select(is_chromatic, moved, 0)};
     }

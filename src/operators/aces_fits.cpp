@@ -65,8 +65,8 @@ constexpr Matrix3 kHillOutput = {{{ 1.60475, -0.53108, -0.07367},
 // clang-format on
 
 Expr hill_curve(const Expr& v) {
-    const Expr a = v * (v + 0.0245786) - 0.000090537;
-    const Expr b = v * (0.983729 * v + 0.4329510) + 0.238081;
+    const Expr a = named("numerator", v * (v + 0.0245786) - 0.000090537);
+    const Expr b = named("denominator", v * (0.983729 * v + 0.4329510) + 0.238081);
     return a / b;
 }
 
@@ -104,7 +104,8 @@ Operator hill() {
     op.build = [](const Params& p) -> Pipeline {
         const Expr prescale = p.expr("prescale");
         const Expr white = p.expr("white");
-        const Expr at_white = select(less(0, white), hill_curve(prescale * white), 1);
+        const Expr at_white =
+            named("at_white", select(less(0, white), hill_curve(prescale * white), 1));
         if (fails(less(0, at_white))) {
             throw Error("white is " + shortest(white.value()) + "; expected 0 or above " +
                         shortest(0.0033 / prescale.value()) +
@@ -131,8 +132,8 @@ Operator hill_misplaced_bracket() {
     op.deviations = {{DocumentedDifference::Kind::crushes_black, 0.0019, ""}};
     op.build = [](const Params&) -> Pipeline {
         const Expr v = Expr::input();
-        const Expr a = v * (v + 0.0245786) - 0.000090537;
-        const Expr b = v * ((v + 0.4329510) * 0.983729) + 0.238081;
+        const Expr a = named("numerator", v * (v + 0.0245786) - 0.000090537);
+        const Expr b = named("denominator", v * ((v + 0.4329510) * 0.983729) + 0.238081);
         return {limit_to_positive(),
                 scale_stage(1 / 0.6),
                 MatrixStage{kHillInput, "input"},

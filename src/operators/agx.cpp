@@ -68,19 +68,21 @@ constexpr double kHighest = 4.026069;
 Stage limit_to_shaper() { return ClampStage{std::exp2(kLowest), std::exp2(kHighest)}; }
 
 /// Scene-linear in the shaper's range -> [0, 1]; mid grey -> 10/16.5.
-Expr normalised_log(const Expr& x) { return (log2(x) - kLowest) / (kHighest - kLowest); }
+Expr normalised_log(const Expr& x) {
+    return named("n", (log2(x) - kLowest) / (kHighest - kLowest));
+}
 
 /// Wrensch's fits of the sigmoid; order 7 is Filament's.
 Expr polynomial6(const Expr& n) {
-    const Expr n2 = n * n;
-    const Expr n4 = n2 * n2;
+    const Expr n2 = named("n2", n * n);
+    const Expr n4 = named("n4", n2 * n2);
     return 15.5 * n4 * n2 - 40.14 * n4 * n + 31.96 * n4 - 6.868 * n2 * n + 0.4298 * n2 +
            0.1191 * n - 0.00232;
 }
 Expr polynomial7(const Expr& n) {
-    const Expr n2 = n * n;
-    const Expr n4 = n2 * n2;
-    const Expr n6 = n4 * n2;
+    const Expr n2 = named("n2", n * n);
+    const Expr n4 = named("n4", n2 * n2);
+    const Expr n6 = named("n6", n4 * n2);
     return -17.86 * n6 * n + 78.01 * n6 - 126.7 * n4 * n + 92.06 * n4 - 28.72 * n2 * n +
            4.361 * n2 - 0.1718 * n + 0.002857;
 }
@@ -151,7 +153,7 @@ Operator minimal() {
                      {DocumentedDifference::Kind::never_reaches_white, 0.961, "order7"},
                      {DocumentedDifference::Kind::not_monotone, 0.00024, "order7"}};
     op.build = [](const Params& p) -> Pipeline {
-        const Expr n = normalised_log(Expr::input());
+        const Expr n = named("n", normalised_log(Expr::input()));
         const Expr f = p.choice("order") == "6" ? polynomial6(n) : polynomial7(n);
         return {limit_to_positive(), MatrixStage{kInset, "inset"}, limit_to_shaper(),
                 named("contrast", curve_stage(f)), MatrixStage{kOutset, "outset"}};
@@ -329,11 +331,11 @@ Operator godot44() {
         // The shaper's ends with all digits, not those that the other dialects print.
         const double lowest = std::log2(0.18) - 10;
         const double highest = std::log2(0.18) + 6.5;
-        const Expr n = (log2(Expr::input()) - lowest) / (highest - lowest);
-        const Expr n2 = n * n;
-        const Expr n4 = n2 * n2;
-        const Expr code = 0.021 * n + 4.0111 * n2 - 25.682 * n2 * n + 70.359 * n4 -
-                          74.778 * n4 * n + 27.069 * n4 * n2;
+        const Expr n = named("n", (log2(Expr::input()) - lowest) / (highest - lowest));
+        const Expr n2 = named("n2", n * n);
+        const Expr n4 = named("n4", n2 * n2);
+        const Expr code = named("code", 0.021 * n + 4.0111 * n2 - 25.682 * n2 * n + 70.359 * n4 -
+                                            74.778 * n4 * n + 27.069 * n4 * n2);
         // n, and the code with it, may be rounded to below 0 at the lower end.
         return {ClampStage{2e-10, kHalfMax}, MatrixStage{in, "inset"},
                 ClampStage{std::exp2(lowest), std::exp2(highest)},
@@ -372,17 +374,19 @@ Operator godot() {
         constexpr double cross = 0.18;  // where toe and shoulder meet: in and out
         const Expr contrast = p.expr("contrast");
         const Expr output_max = p.expr("output_max");
-        const Expr a = (1 / cross - 1) * pow(cross, contrast);
-        const Expr toe_end = pow(cross, contrast) + a;
-        const Expr slope = contrast * pow(cross, contrast - 1) * a / (toe_end * toe_end);
-        const Expr height = output_max - cross;
-        const Expr length = p.expr("white") - cross;
-        const Expr w = length * length / height * slope;
+        const Expr a = named("a", (1 / cross - 1) * pow(cross, contrast));
+        const Expr toe_end = named("toe_end", pow(cross, contrast) + a);
+        const Expr slope =
+            named("slope", contrast * pow(cross, contrast - 1) * a / (toe_end * toe_end));
+        const Expr height = named("height", output_max - cross);
+        const Expr length = named("length", p.expr("white") - cross);
+        const Expr w = named("w", length * length / height * slope);
 
         const Expr x = Expr::input();
-        const Expr t = pow(x, contrast);
-        const Expr s = max(x - cross, 0);  // below the crossing the shoulder has a pole
-        const Expr shoulder = slope * s * (1 + s / w) / (1 + slope * s / height) + cross;
+        const Expr t = named("t", pow(x, contrast));
+        const Expr s = named("s", max(x - cross, 0));  // below the crossing the shoulder has a pole
+        const Expr shoulder =
+            named("shoulder", slope * s * (1 + s / w) / (1 + slope * s / height) + cross);
         return {limit_to_positive(), MatrixStage{in, "inset"},
                 curve_stage(select(less(x, cross), t / (t + a), shoulder)), clamp_stage(output_max),
                 MatrixStage{out, "outset"}};

@@ -451,20 +451,23 @@ Expr lowered_shadows(const Expr& t, double m0) {
     constexpr double x1 = x0 + (x2 - x0) / 2;
     const double y1 = 0.5 / (x2 - x0) *
                       ((2 * x0 + m0 * (x1 - x0)) * (x2 - x1) + (2 * x2 - (x2 - x1)) * (x1 - x0));
-    const Expr a = (t - x0) / (x1 - x0);
-    const Expr b = (t - x1) / (x2 - x1);
-    const Expr lower = x0 * (1 - a * a) + y1 * (a * a) + m0 * (x1 - x0) * ((1 - a) * a);
-    const Expr upper = y1 * ((1 - b) * (1 - b)) + x2 * ((2 - b) * b) + (x2 - x1) * ((b - 1) * b);
+    const Expr a = named("a", (t - x0) / (x1 - x0));
+    const Expr b = named("b", (t - x1) / (x2 - x1));
+    const Expr lower =
+        named("lower", x0 * (1 - a * a) + y1 * (a * a) + m0 * (x1 - x0) * ((1 - a) * a));
+    const Expr upper =
+        named("upper", y1 * ((1 - b) * (1 - b)) + x2 * ((2 - b) * b) + (x2 - x1) * ((b - 1) * b));
     return select(less(t, x0), x0 + m0 * (t - x0),
                   select(less(t, x1), lower, select(less(t, x2), upper, t)));
 }
 
 /// The inset's light, to be limited to what has a logarithm -> the look's.
 Pipeline look_stages(const std::string& look) {
-    const Expr v = log_encode(Expr::input());
+    const Expr v = named("v", log_encode(Expr::input()));
     if (look == "punchy") {
-        const Expr lowered = lowered_shadows(lowered_shadows(v, 0.2), 0.35);
-        const Expr darkened = select(less(0, lowered), pow(max(lowered, 0), 1.0912), lowered);
+        const Expr lowered = named("lowered", lowered_shadows(lowered_shadows(v, 0.2), 0.35));
+        const Expr darkened =
+            named("darkened", select(less(0, lowered), pow(max(lowered, 0), 1.0912), lowered));
         return {curve_stage(log_decode(darkened))};
     }
     // Its log values are decoded for the sum and encoded again.

@@ -27,6 +27,7 @@ inline double max(double a, double b) { return a < b ? b : a; }
 inline double pow(double base, double exponent) { return std::pow(base, exponent); }
 inline double exp2(double a) { return std::exp2(a); }
 inline double log2(double a) { return std::log2(a); }
+inline double named(const char* /*name*/, double a) { return a; }
 
 /// a < b ? below() : above()
 template <class Below, class Above>
@@ -60,7 +61,7 @@ class AgxSigmoid {
     [[nodiscard]] T operator()(const T& n) const {
         const auto arm = [&](double s, double p) -> T {
             // The other side of the pivot is not this arm's.
-            const T u = max(slope_ * (n - px_) / s, 0);
+            const T u = named("u", max(slope_ * (n - px_) / s, 0));
             return s * (u / pow(1 + pow(u, p), 1 / p)) + py_;
         };
         return if_less(

@@ -27,36 +27,40 @@ inline Vector3 ap1_weights() { return rgb_to_xyz(kAP1)[1]; }
 /// Saturation of the ACES rendering transform (RRT.ctl, ACES 1.0.3), of AP0 light.
 /// @param floor  of the largest and the smallest channel in the numerator.
 inline Expr rrt_saturation(const std::array<Expr, 3>& ap0, double floor) {
-    const Expr hi = max(max(ap0[0], ap0[1]), ap0[2]);
-    const Expr lo = min(min(ap0[0], ap0[1]), ap0[2]);
-    return (max(hi, floor) - max(lo, floor)) / max(hi, 0.01);
+    const Expr hi = named("largest", max(max(ap0[0], ap0[1]), ap0[2]));
+    const Expr lo = named("smallest", min(min(ap0[0], ap0[1]), ap0[2]));
+    return named("saturation", (max(hi, floor) - max(lo, floor)) / max(hi, 0.01));
 }
 
 /// Its first step, the glow.
 inline std::array<Expr, 3> rrt_glow(const std::array<Expr, 3>& ap0, const Expr& saturation) {
     const auto& [r, g, b] = ap0;
     // b(b-g) + g(g-r) + r(r-b) as a sum of squares: never below 0, whatever is rounded.
-    const Expr chroma = sqrt(0.5 * ((r - g) * (r - g) + (g - b) * (g - b) + (b - r) * (b - r)));
-    const Expr yc = (b + g + r + 1.75 * chroma) / 3;
-    const Expr x = (saturation - 0.4) / 0.2;
-    const Expr t = max(1 - abs(x / 2), 0);
-    const Expr sigmoid = select(less(x, 0), 0.5 * (t * t), 1 - 0.5 * (t * t));
+    const Expr chroma =
+        named("chroma", sqrt(0.5 * ((r - g) * (r - g) + (g - b) * (g - b) + (b - r) * (b - r))));
+    const Expr yc = named("yc", (b + g + r + 1.75 * chroma) / 3);
+    const Expr x = named("steepness", (saturation - 0.4) / 0.2);
+    const Expr t = named("t", max(1 - abs(x / 2), 0));
+    const Expr sigmoid = named("sigmoid", select(less(x, 0), 0.5 * (t * t), 1 - 0.5 * (t * t)));
     // Full up to yc = 2/3 of 0.08, none from twice 0.08 on. The floor stands below the former.
-    const Expr gain = 0.05 * sigmoid * clamp(0.08 / max(yc, 0.05) - 0.5, 0, 1);
-    return {r * (1 + gain), g * (1 + gain), b * (1 + gain)};
+    const Expr gain = named("gain", 0.05 * sigmoid * clamp(0.08 / max(yc, 0.05) - 0.5, 0, 1));
+    return {named("glowing", r * (1 + gain)), named("glowing", g * (1 + gain)),
+            named("glowing", b * (1 + gain))};
 }
 
 /// Hue of its second step, the red modifier: radians from red. Of neutrals, whose saturation is 0,
 /// atan2(0, 0) = 0.
 inline Expr rrt_hue(const std::array<Expr, 3>& ap0) {
-    return atan2(std::numbers::sqrt3 * (ap0[1] - ap0[2]), 2 * ap0[0] - ap0[1] - ap0[2]);
+    return named("hue",
+                 atan2(std::numbers::sqrt3 * (ap0[1] - ap0[2]), 2 * ap0[0] - ap0[1] - ap0[2]));
 }
 
 /// The red modifier: red moves towards 0.03.
 /// @param weight  of the hue, 1 at red.
 inline std::array<Expr, 3> rrt_red_modifier(const std::array<Expr, 3>& ap0, const Expr& weight,
                                             const Expr& saturation) {
-    return {ap0[0] + weight * saturation * (0.03 - ap0[0]) * (1 - 0.82), ap0[1], ap0[2]};
+    return {named("red", ap0[0] + weight * saturation * (0.03 - ap0[0]) * (1 - 0.82)), ap0[1],
+            ap0[2]};
 }
 
 /// Which colors the red modifier takes the saturation of.
@@ -73,10 +77,10 @@ inline CrossTalkStage rrt_glow_and_red_modifier(RrtSaturation choice) {
     const std::array<Expr, 3> glowing = rrt_glow(rgb, saturation);
     // The cubic B-spline over 135 degrees about red, as a sum of two truncated powers: 1 at red.
     constexpr double interval = 135.0 / 4 * std::numbers::pi / 180;
-    const Expr distance = abs(rrt_hue(glowing) / interval);
-    const Expr outer = max(2 - distance, 0);
-    const Expr inner = max(1 - distance, 0);
-    const Expr weight = 0.25 * (outer * outer * outer) - inner * inner * inner;
+    const Expr distance = named("hue_distance", abs(rrt_hue(glowing) / interval));
+    const Expr outer = named("outer", max(2 - distance, 0));
+    const Expr inner = named("inner", max(1 - distance, 0));
+    const Expr weight = named("hue_weight", 0.25 * (outer * outer * outer) - inner * inner * inner);
     return {rrt_red_modifier(
         glowing, weight,
         choice == RrtSaturation::after_glow ? rrt_saturation(glowing, floor) : saturation)};
@@ -88,7 +92,7 @@ inline std::array<Expr, 3> glow_and_red_modifier(const std::array<Expr, 3>& ap0,
     const Expr saturation = rrt_saturation(ap0, floor);
     const std::array<Expr, 3> glowing = rrt_glow(ap0, saturation);
     const Expr degrees = rrt_hue(glowing) * (180 / std::numbers::pi);
-    const Expr window = smoothstep(0, 1, 1 - abs(2 * degrees / 135));
+    const Expr window = named("window", smoothstep(0, 1, 1 - abs(2 * degrees / 135)));
     return rrt_red_modifier(glowing, window * window, saturation);
 }
 
@@ -116,20 +120,21 @@ inline CrossTalkStage reference_gamut_compression() {
     constexpr auto& threshold = ReferenceGamutCompression::threshold;
     constexpr double power = ReferenceGamutCompression::power;
     const std::array<Expr, 3> c = {Expr::input(0), Expr::input(1), Expr::input(2)};
-    const Expr achromatic = max(max(c[0], c[1]), c[2]);
-    const Expr a = abs(achromatic);
+    const Expr achromatic = named("achromatic", max(max(c[0], c[1]), c[2]));
+    const Expr a = named("a", abs(achromatic));
     CrossTalkStage stage{c};
     for (std::size_t i = 0; i < 3; ++i) {
         const double range = limit[i] - threshold[i];
         const double scale =
             range / std::pow(std::pow((1 - threshold[i]) / range, -power) - 1, 1 / power);
-        const Expr u = achromatic - c[i] - threshold[i] * a;
-        const Expr s = scale * a;
+        const Expr u = named("u", achromatic - c[i] - threshold[i] * a);
+        const Expr s = named("s", scale * a);
         // The same in u and s: with the ratio of the smaller to the larger nothing overflows.
-        const Expr beyond = max(u, 0);
+        const Expr beyond = named("beyond", max(u, 0));
         constexpr double tiny = 1e-30;
-        const Expr ratio = min(beyond, s) / max(max(beyond, s), tiny);
-        const Expr compressed = min(beyond, s) * pow(1 + pow(ratio, power), -1 / power);
+        const Expr ratio = named("ratio", min(beyond, s) / max(max(beyond, s), tiny));
+        const Expr compressed =
+            named("compressed", min(beyond, s) * pow(1 + pow(ratio, power), -1 / power));
         stage.f[i] = select(less(u, 0), c[i], achromatic - threshold[i] * a - compressed);
     }
     return stage;

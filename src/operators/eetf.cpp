@@ -105,8 +105,9 @@ Pipeline eetf(const Expr& nits, const Limits& limits, const Params& params) {
                apply_tone_curve({.f = f, .weights = kRec2020Weights}, params) +
                Pipeline{ClampStage{target_lo, kInfinity}};
     }
-    const Expr limited = clamp(Expr::input(), limits.lowest(), limits.highest());
-    const Expr limited_f = max(substitute(f, std::span(&limited, 1)), target_lo);
+    const Expr limited = named("limited", clamp(Expr::input(), limits.lowest(), limits.highest()));
+    const Expr limited_f =
+        named("limited_f", max(substitute(f, std::span(&limited, 1)), target_lo));
     return tone_curve_pipeline({.f = limited_f, .weights = kRec2020Weights}, params);
 }
 
@@ -122,15 +123,15 @@ Expr bt2390_curve(const Limits& limits, double knee_offset, bool is_libplacebo) 
     const double mx = (pq(limits.target_peak) - lo) / range;
     const double knee = (1 + knee_offset) * mx - knee_offset;  // below mx, as mx < 1
 
-    const Expr e1 = (pq_encode_nits(source_nits(limits)) - lo) / range;
-    const Expr t = clamp((e1 - knee) / (1 - knee), 0, 1);
-    const Expr t2 = t * t;
-    const Expr t3 = t2 * t;
+    const Expr e1 = named("e1", (pq_encode_nits(source_nits(limits)) - lo) / range);
+    const Expr t = named("t", clamp((e1 - knee) / (1 - knee), 0, 1));
+    const Expr t2 = named("t2", t * t);
+    const Expr t3 = named("t3", t2 * t);
     const Expr hermite =
         (2 * t3 - 3 * t2 + 1) * knee + (t3 - 2 * t2 + t) * (1 - knee) + (3 * t2 - 2 * t3) * mx;
-    const Expr e2 = select(less(e1, knee), e1, hermite);
+    const Expr e2 = named("e2", select(less(e1, knee), e1, hermite));
 
-    const Expr below = max(1 - e2, 0);
+    const Expr below = named("below", max(1 - e2, 0));
     Expr e3 = e2;
     if (is_libplacebo) {
         const double power = mn > 0 ? std::min(1 / mn, 4.0) : 4.0;
@@ -168,10 +169,10 @@ Operator bt2390() {
                    {{"knee_offset", "1"}, {"black_lift", "libplacebo"}}}};
     op.build = [](const Params& p) -> Pipeline {
         const Limits limits(p);
-        const Expr nits = limits.is_compressed()
-                              ? bt2390_curve(limits, p.number("knee_offset"),
-                                             p.choice("black_lift") == "libplacebo")
-                              : source_nits(limits);
+        const Expr nits = named("nits", limits.is_compressed()
+                                            ? bt2390_curve(limits, p.number("knee_offset"),
+                                                           p.choice("black_lift") == "libplacebo")
+                                            : source_nits(limits));
         return eetf(nits, limits, p);
     };
     return op;
@@ -180,13 +181,14 @@ Operator bt2390() {
 Expr bt2446a_curve(const Limits& limits) {
     const double rho_source = 1 + 32 * std::pow(limits.source_peak / 10000, 1 / 2.4);
     const double rho_target = 1 + 32 * std::pow(limits.target_peak / 10000, 1 / 2.4);
-    const Expr above = max(Expr::input() - limits.lowest(), 0);
+    const Expr above = named("above", max(Expr::input() - limits.lowest(), 0));
     const Expr y = pow(above / (limits.highest() - limits.lowest()), 1 / 2.4);
-    const Expr yp = log(1 + (rho_source - 1) * y) / std::log(rho_source);
+    const Expr yp = named("yp", log(1 + (rho_source - 1) * y) / std::log(rho_source));
     const Expr yc =
         select(less_equal(yp, 0.7399), 1.0770 * yp,
                select(less(yp, 0.9909), -1.1510 * yp * yp + 2.7811 * yp - 0.6302, 0.5 * yp + 0.5));
-    const Expr y_sdr = max(exp(yc * std::log(rho_target)) - 1, 0) / (rho_target - 1);
+    const Expr y_sdr =
+        named("y_sdr", max(exp(yc * std::log(rho_target)) - 1, 0) / (rho_target - 1));
     const double black = std::pow(limits.target_black, 1 / 2.4);
     const double peak = std::pow(limits.target_peak, 1 / 2.4);
     return pow((peak - black) * y_sdr + black, 2.4);
@@ -243,8 +245,9 @@ Expr spline_curve(const Limits& limits, double contrast, double average) {
     const double qa = (slope * hi - (dmax - dst)) / (hi * t);
     const double qb = -3 * (slope * hi - (dmax - dst)) / t;
 
-    const Expr x = pq_encode_nits(source_nits(limits)) - src;
-    const Expr y = select(less_equal(x, 0), (pa * x + slope) * x, ((qa * x + qb) * x + slope) * x);
+    const Expr x = named("from_pivot", pq_encode_nits(source_nits(limits)) - src);
+    const Expr y = named(
+        "bent", select(less_equal(x, 0), (pa * x + slope) * x, ((qa * x + qb) * x + slope) * x));
     return pq_decode_nits(clamp(y + dst, dmin, dmax));
 }
 
@@ -264,9 +267,10 @@ Operator spline() {
     });
     op.build = [](const Params& p) -> Pipeline {
         const Limits limits(p);
-        const Expr nits = limits.is_compressed()
+        const Expr nits =
+            named("nits", limits.is_compressed()
                               ? spline_curve(limits, p.number("contrast"), p.number("average"))
-                              : source_nits(limits);
+                              : source_nits(limits));
         return eetf(nits, limits, p);
     };
     return op;

@@ -106,7 +106,7 @@ Operator logarithmic() {
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, 2.4, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const Expr scale = p.expr("p");
-        const Expr at_maximum = log_of_1_plus(scale * p.expr("maximum"));
+        const Expr at_maximum = named("at_maximum", log_of_1_plus(scale * p.expr("maximum")));
         return tone_curve_pipeline({.f = log_of_1_plus(scale * Expr::input()) / at_maximum}, p);
     };
     return op;
@@ -141,7 +141,7 @@ Operator log_tonemap() {
         const auto curved = [&](const Expr& v) { return mix(v, v * v * (3 - 2 * v), contrast); };
         if (contrast.is_constant())
             return tone + Pipeline{ClampStage{0, 1}, curve_stage(curved(x))};
-        const Expr limited = clamp(x, 0, 1);
+        const Expr limited = named("limited", clamp(x, 0, 1));
         return tone + Pipeline{curve_stage(select(equal(contrast, 0), x, curved(limited)))};
     };
     return op;
@@ -166,7 +166,7 @@ Operator exponentiation() {
     op.bounds.reason = "infinitely steep at black, where half floats end at 6e-8";
     op.build = [](const Params& p) -> Pipeline {
         const Expr x = Expr::input();
-        const Expr power = pow(x / p.expr("maximum"), p.expr("p"));
+        const Expr power = named("power", pow(x / p.expr("maximum"), p.expr("p")));
         return tone_curve_pipeline({.f = select(less(0x1p-100, x), power, 0)}, p);
     };
     return op;

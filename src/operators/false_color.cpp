@@ -53,14 +53,15 @@ std::vector<Operator> define_false_color() {
                  .ocio_gpu = 2e-5,
                  .reason = "a color goes over into the next within a quarter of a stop"};
     op.build = [](const Params&) -> Pipeline {
-        const Expr stops = log2(Expr::input() / 0.18);
+        const Expr stops = named("stops", log2(Expr::input() / 0.18));
         CurveStage colors = curve_stage(0);
         for (unsigned channel = 0; channel < 3; ++channel) {
             Expr& f = colors.f[channel];
             f = light(kColors[0], channel);
             for (std::size_t i = 0; i + 1 < kColors.size(); ++i) {
                 const double between = kLowestStop + static_cast<double>(i) + 0.5;
-                const Expr weight = smoothstep(between - kHalfWidth, between + kHalfWidth, stops);
+                const Expr weight =
+                    named("weight", smoothstep(between - kHalfWidth, between + kHalfWidth, stops));
                 f = f + (light(kColors[i + 1], channel) - light(kColors[i], channel)) * weight;
             }
         }

@@ -103,7 +103,7 @@ Operator hejl_2015() {
                      {DocumentedDifference::Kind::exceeds_white, 1.0, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const auto f = [](const Expr& v) {
-            const Expr a = 1.435 * v + 0.05;
+            const Expr a = named("a", 1.435 * v + 0.05);
             return (v * a + 0.004) / (v * (a + 0.55) + 0.0491) - 0.0821;
         };
         return tone_curve_pipeline({.f = f(Expr::input()) / f(p.expr("white"))}, p);
@@ -153,12 +153,13 @@ Expr lottes_curve(const Params& p) {
         throw Error("hdr_max is " + shortest(hdr_max.value()) + "; expected above mid_in, " +
                     shortest(mid_in.value()));
     }
-    const Expr max_a = pow(hdr_max, a);
-    const Expr max_ad = pow(hdr_max, a * d);
-    const Expr mid_a = pow(mid_in, a);
-    const Expr mid_ad = pow(mid_in, a * d);
-    const Expr b = (max_a * mid_out - mid_a) / ((max_ad - mid_ad) * mid_out);
-    const Expr c = (max_ad * mid_a - max_a * mid_ad * mid_out) / ((max_ad - mid_ad) * mid_out);
+    const Expr max_a = named("max_a", pow(hdr_max, a));
+    const Expr max_ad = named("max_ad", pow(hdr_max, a * d));
+    const Expr mid_a = named("mid_a", pow(mid_in, a));
+    const Expr mid_ad = named("mid_ad", pow(mid_in, a * d));
+    const Expr b = named("b", (max_a * mid_out - mid_a) / ((max_ad - mid_ad) * mid_out));
+    const Expr c =
+        named("c", (max_ad * mid_a - max_a * mid_ad * mid_out) / ((max_ad - mid_ad) * mid_out));
     if (fails(less(0, b))) {
         throw Error("mid_out is " + shortest(mid_out.value()) + "; expected above " +
                     shortest((mid_a / max_a).value()) + ", where the curve has no shoulder");
@@ -208,21 +209,21 @@ Operator lottes() {
 Expr filament_curve(const Params& p) {
     const Expr contrast = p.expr("contrast");
     const Expr mid_out = p.expr("mid_out");
-    const Expr a = pow(p.expr("mid_in"), contrast);
-    const Expr b = pow(p.expr("hdr_max"), contrast);
+    const Expr a = named("a", pow(p.expr("mid_in"), contrast));
+    const Expr b = named("b", pow(p.expr("hdr_max"), contrast));
     if (fails(less(a, b))) {
         throw Error("hdr_max is " + shortest(p.number("hdr_max")) + "; expected above mid_in, " +
                     shortest(p.number("mid_in")));
     }
-    const Expr c = a - mid_out * b;
+    const Expr c = named("c", a - mid_out * b);
     if (fails(less(c, 0) * less(mid_out, 1))) {
         throw Error("mid_out is " + shortest(mid_out.value()) + "; expected between " +
                     shortest((a / b).value()) +
                     ", where the curve has no shoulder, and 1, where it has no toe");
     }
-    const Expr input_scale = a * b * (mid_out - 1) / c;
-    const Expr output_scale = mid_out * (a - b) / c;
-    const Expr power = pow(Expr::input(), contrast);
+    const Expr input_scale = named("input_scale", a * b * (mid_out - 1) / c);
+    const Expr output_scale = named("output_scale", mid_out * (a - b) / c);
+    const Expr power = named("power", pow(Expr::input(), contrast));
     return output_scale * power / (power + input_scale);
 }
 
@@ -284,13 +285,15 @@ Expr day_curve(const Params& p) {
         throw Error("crossover is " + shortest(c.value()) + "; expected between black, " +
                     shortest(b.value()) + ", and white, " + shortest(w.value()));
     }
-    const Expr k = (1 - t) * (c - b) / ((1 - s) * (w - c) + (1 - t) * (c - b));
+    const Expr k = named("k", (1 - t) * (c - b) / ((1 - s) * (w - c) + (1 - t) * (c - b)));
     const Expr x = Expr::input() / p.expr("average");
-    const Expr below = min(x, c);
-    const Expr above = max(x, c);
+    const Expr below = named("below", min(x, c));
+    const Expr above = named("above", max(x, c));
     // c - (1-t) b - t x and s x + (1-s) w - c of the paper
-    const Expr toe = k * (1 - t) * (below - b) / (t * (c - below) + (1 - t) * (c - b));
-    const Expr shoulder = (1 - k) * (above - c) / (s * (above - c) + (1 - s) * (w - c)) + k;
+    const Expr toe =
+        named("toe", k * (1 - t) * (below - b) / (t * (c - below) + (1 - t) * (c - b)));
+    const Expr shoulder =
+        named("shoulder", (1 - k) * (above - c) / (s * (above - c) + (1 - s) * (w - c)) + k);
     return select(less(x, c), toe, shoulder);
 }
 
@@ -398,14 +401,14 @@ Operator toe() {
         const Expr contrast = p.expr("contrast");
         Expr y = x;
         if (p.choice("form") == "quadratic") {
-            const Expr u = min(x, width);
+            const Expr u = named("u", min(x, width));
             const Expr toe =
                 (1 - strength) * u + strength * (u * u * (2 * width - u) / (width * width));
             y = select(less(x, width), toe, x);
         } else {
             const Expr white = p.expr("white");
-            const Expr r = x * (1 + x / (white * white)) / (1 + x);
-            const Expr weight = clamp(1 - r / width, 0, 1);
+            const Expr r = named("r", x * (1 + x / (white * white)) / (1 + x));
+            const Expr weight = named("weight", clamp(1 - r / width, 0, 1));
             y = r - strength * weight * r;
         }
         // (y - 0.5) contrast + 0.5 + brightness

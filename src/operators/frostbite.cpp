@@ -58,30 +58,37 @@ std::array<Expr, 3> to_rgb(const std::array<Expr, 3>& ictcp) {
 }
 
 CrossTalkStage frostbite_mapping(const Expr& linear_end) {
-    const Expr rest = 1 - linear_end;
+    const Expr rest = named("rest", 1 - linear_end);
     const auto compress = [&](const Expr& v) {
-        const Expr above = max(v, linear_end) - linear_end;
-        return select(less(v, linear_end), v, linear_end + rest * (1 - exp(-(above / rest))));
+        const Expr above = named("above", max(v, linear_end) - linear_end);
+        return named("compressed", select(less(v, linear_end), v,
+                                          linear_end + rest * (1 - exp(-(above / rest)))));
     };
 
     // Chroma falls with intensity: lights fade to white before anything is compressed.
     const std::array<Expr, 3> in = to_ictcp(compose({}));
-    const Expr& intensity = in[0];
-    const Expr saturation = pow(smoothstep(1, 0.3, intensity), 1.3);
-    const std::array<Expr, 3> c = to_rgb({intensity, saturation * in[1], saturation * in[2]});
+    const Expr intensity = named("intensity", in[0]);
+    const Expr saturation = named("saturation", pow(smoothstep(1, 0.3, intensity), 1.3));
+    const std::array<Expr, 3> c =
+        to_rgb({intensity, named("faded_ct", saturation * named("ct", in[1])),
+                named("faded_cp", saturation * named("cp", in[2]))});
+    for (const Expr& v : c)
+        (void)named("faded", v);
 
-    const Expr largest = max(max(c[0], c[1]), c[2]);
-    const Expr ratio =
-        select(less(largest, linear_end), 1, compress(largest) / max(largest, linear_end));
+    const Expr largest = named("largest", max(max(c[0], c[1]), c[2]));
+    const Expr ratio = named("ratio", select(less(largest, linear_end), 1,
+                                             compress(largest) / max(largest, linear_end)));
     std::array<Expr, 3> compressed = c;
     for (Expr& v : compressed)
-        v = mix(compress(v), v * ratio, 0.6);
+        v = named("mixed", mix(compress(v), v * ratio, 0.6));
 
     // What compression took from the chroma is given back in part, where the input was not bright.
     const std::array<Expr, 3> m = to_ictcp(compressed);
-    const Expr boost = 0.3 * smoothstep(1, 0.5, intensity);
-    const Expr dimmed = m[0] / max(intensity, 1e-3);
-    return {to_rgb({m[0], mix(m[1], in[1] * dimmed, boost), mix(m[2], in[2] * dimmed, boost)})};
+    const Expr boost = named("boost", 0.3 * smoothstep(1, 0.5, intensity));
+    const Expr dimmed = named("dimmed", m[0] / max(intensity, 1e-3));
+    return {to_rgb({named("mixed_intensity", m[0]),
+                    named("boosted_ct", mix(m[1], in[1] * dimmed, boost)),
+                    named("boosted_cp", mix(m[2], in[2] * dimmed, boost))})};
 }
 
 }  // namespace

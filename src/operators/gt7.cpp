@@ -72,8 +72,9 @@ Expr gt7_curve(double peak) {
     const double b = -peak * k * std::exp(linear / k);
     const double c = -1 / (k * peak);
     const Expr x = Expr::input();
-    const Expr line_weight = smoothstep(0, mid, x);
-    const Expr below = (1 - line_weight) * (mid * pow(x / mid, toe)) + line_weight * x;
+    const Expr line_weight = named("line_weight", smoothstep(0, mid, x));
+    const Expr below =
+        named("below", (1 - line_weight) * (mid * pow(x / mid, toe)) + line_weight * x);
     return select(less(x, linear * peak), below, a + b * exp(c * x));
 }
 
@@ -83,13 +84,14 @@ CrossTalkStage gt7_mapping(double peak) {
     const std::array<Expr, 3> in = compose(to_ictcp());
     const Expr intensity = compose(Pipeline{curve_stage(f)} + to_ictcp())[0];
     const double white = pq_encode_nits(kReferenceLuminance * peak).value();
-    const Expr chroma = 1 - smoothstep(0.98, 1.16, in[0] / white);
-    std::array<Expr, 3> kept = {intensity, in[1] * chroma, in[2] * chroma};
+    const Expr chroma = named("chroma", 1 - smoothstep(0.98, 1.16, in[0] / white));
+    std::array<Expr, 3> kept = {named("intensity", intensity), named("ct", in[1] * chroma),
+                                named("cp", in[2] * chroma)};
     for (const Stage& stage : from_ictcp())
         kept = apply_stage(stage, kept);
     CrossTalkStage mapping{skewed};
     for (std::size_t i = 0; i < 3; ++i)
-        mapping.f[i] = mix(skewed[i], kept[i], 0.6);
+        mapping.f[i] = mix(named("skewed", skewed[i]), named("kept", kept[i]), 0.6);
     return mapping;
 }
 

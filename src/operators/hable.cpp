@@ -46,7 +46,7 @@ struct Hable {
 };
 
 Pipeline hable_pipeline(const Hable& h, const Params& p) {
-    const Expr at_white = h(p.expr("white"));
+    const Expr at_white = named("at_white", h(p.expr("white")));
     if (fails(less(0, at_white))) {
         throw Error("curve at white is " + shortest(at_white.value()) +
                     "; expected above 0 (toe_numerator below toe_denominator, larger white)");
@@ -150,8 +150,8 @@ Expr power(const Expr& base, double exponent) {
 /// (1 - t)^exponent for an exponent of 1 or more, 0 below e^-69 = 1e-30. What 1 - t rounds away,
 /// and a large exponent would show, is missing in both parts of the quotient.
 Expr power_of_1_minus(const Expr& t, double exponent) {
-    const Expr u = 1 - t;
-    const Expr log_u = select(equal(u, 1), -t, t * (log(u) / (1 - u)));
+    const Expr u = named("u", 1 - t);
+    const Expr log_u = named("log_u", select(equal(u, 1), -t, t * (log(u) / (1 - u))));
     return select(less(-69, exponent * log_u), exp(exponent * log_u), 0);
 }
 
@@ -185,9 +185,10 @@ Expr piecewise_curve(const Params& p) {
     const double Y = 1 + overshoot_y - shoulder_y;
     const double shoulder_exponent = slope(y1) * X / Y;
     const auto shoulder = [&](const Expr& x) {
-        const Expr falling = shoulder_exponent < 1
+        const Expr falling =
+            named("falling", shoulder_exponent < 1
                                  ? power((1 + overshoot_x - x / white) / X, shoulder_exponent)
-                                 : power_of_1_minus((x - x1) / (X * white), shoulder_exponent);
+                                 : power_of_1_minus((x - x1) / (X * white), shoulder_exponent));
         return 1 + overshoot_y - Y * falling;
     };
     const double at_white = shoulder(white).value();
@@ -200,10 +201,15 @@ Expr piecewise_curve(const Params& p) {
 
     const Expr x = Expr::input();
     Expr f = shoulder(max(x, x1));
-    if (straight > 0) f = select(less(x, x1), power(min(x, x1) - (x0 - y0), gamma), f);
+    f = named("shoulder", f);
+    if (straight > 0) {
+        f = named("straight_or_shoulder",
+                  select(less(x, x1), power(min(x, x1) - (x0 - y0), gamma), f));
+    }
     if (x0 > 0x1p-100) {
         const double toe_exponent = slope(y0) * (x0 / white) / toe_y;
-        f = select(less(x, x0), toe_y * power(min(x, x0) / x0, toe_exponent), f);
+        const Expr toe = named("toe", toe_y * power(min(x, x0) / x0, toe_exponent));
+        f = select(less(x, x0), toe, f);
     }
     return select(less(0x1p-100, x), f / at_white, 0);
 }

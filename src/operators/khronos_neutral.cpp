@@ -38,14 +38,15 @@ std::vector<ParameterSpec> neutral_parameters() {
 
 /// @param towards_white  mix towards 1 instead of the compressed peak.
 Pipeline neutral(const Params& params, bool towards_white) {
-    const Expr start = params.expr("start_compression") - 0.04;
-    const Expr d = 1 - start;
+    const Expr start = named("start", params.expr("start_compression") - 0.04);
+    const Expr d = named("d", 1 - start);
     const Expr x = Expr::input();
     // Below the start q is constant, so nothing is divided by 0 there.
-    const Expr q = max(x, start);
-    const Expr n = 1 - d * d / (q + d - start);
-    const Expr rest = 1 / (params.expr("desaturation") * (q - n) + 1);  // 1 - g
-    const Expr is_base = less(x, start);
+    const Expr q = named("peak", max(x, start));
+    const Expr n = named("n", 1 - d * d / (q + d - start));
+    const Expr rest =
+        named("one_minus_g", 1 / (params.expr("desaturation") * (q - n) + 1));  // 1 - g
+    const Expr is_base = named("is_base", less(x, start));
     return {limit_to_positive(),
             HexconeStage{.offset = select(less(x, 0.08), x - 6.25 * x * x, 0.04),
                          .value = select(is_base, x, towards_white ? rest * n + (1 - rest) : n),
@@ -55,14 +56,14 @@ Pipeline neutral(const Params& params, bool towards_white) {
 /// Back: light of the largest channel from value(p), the others by chroma(p), then the offset from
 /// the smallest: 6.25 x^2 = m below 0.04.
 Pipeline neutral_inverse(const Params& params) {
-    const Expr start = params.expr("start_compression") - 0.04;
-    const Expr d = 1 - start;
+    const Expr start = named("start", params.expr("start_compression") - 0.04);
+    const Expr d = named("d", 1 - start);
     const Expr x = Expr::input();
-    const Expr n = max(x, start);
+    const Expr n = named("n", max(x, start));
     // White is infinite light: the largest that half floats hold.
-    const Expr p = d * d / max(1 - n, d * d / 65504) - d + start;
-    const Expr is_base = less(x, start);
-    const Expr to_light = (params.expr("desaturation") * (p - n) + 1) * (p / n);
+    const Expr p = named("p", d * d / max(1 - n, d * d / 65504) - d + start);
+    const Expr is_base = named("is_base", less(x, start));
+    const Expr to_light = named("to_light", (params.expr("desaturation") * (p - n) + 1) * (p / n));
     return {limit_to_positive(),
             HexconeStage{.offset = Expr(0),
                          .value = select(is_base, x, p),

@@ -67,7 +67,7 @@ Operator simple() {
     op.build = [](const Params& p) -> Pipeline {
         const Expr x = Expr::input();
         const Expr f = x / (1 + x);
-        const Expr inverse = x / (1 - x);
+        const Expr inverse = named("inverse", x / (1 - x));
         return tone_curve_pipeline({.f = f, .inverse = inverse}, p);
     };
     return op;
@@ -128,7 +128,8 @@ Operator nebula() {
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const Expr white = p.expr("maximum");
-        const Expr scaled = Expr::input() * (p.expr("middle_grey") / p.expr("average"));
+        const Expr scaled =
+            named("scaled", Expr::input() * (p.expr("middle_grey") / p.expr("average")));
         const Expr f = scaled * (1 + scaled / (white * white)) / (1 + scaled);
         return tone_curve_pipeline({.f = f}, p);
     };
@@ -144,8 +145,9 @@ Operator nebula_as_printed() {
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
     op.build = [](const Params&) -> Pipeline {
         const Expr luminance = Expr::input();
-        const Expr scaled = luminance * (0.6 / 0.5);
-        const Expr compressed = scaled * (1 + scaled / (16.0 * 16.0)) / (1 + scaled);
+        const Expr scaled = named("scaled", luminance * (0.6 / 0.5));
+        const Expr compressed =
+            named("compressed", scaled * (1 + scaled / (16.0 * 16.0)) / (1 + scaled));
         return {limit_to_positive(), ToneScaleStage{ToneScaleStage::Norm::luminance, kRec709Weights,
                                                     compressed * luminance}};
     };
@@ -166,10 +168,10 @@ Operator jodie() {
     op.dialects = "Reinhard";
     op.build = [](const Params&) -> Pipeline {
         const Channels c = inputs();
-        const Expr luminance = luminance_of(c);
+        const Expr luminance = named("luminance", luminance_of(c));
         const auto channel = [&](const Expr& v) {
-            const Expr t = v / (1 + v);
-            return mix(v / (1 + luminance), t, t);
+            const Expr t = named("t", v / (1 + v));
+            return mix(named("by_luminance", v / (1 + luminance)), t, t);
         };
         return {limit_to_positive(), CrossTalkStage{{channel(c[0]), channel(c[1]), channel(c[2])}}};
     };
@@ -266,11 +268,11 @@ Operator devlin() {
         const Expr m = p.expr("contrast");
         // Of greys the formula makes x^(1-m)/(x^(1-m) + exp(-f m)), whose slope at black has no
         // end. That of this power has none either, and no cube has to hold it.
-        const Expr steepness = max(1 - m, 0.25);
+        const Expr steepness = named("steepness", max(1 - m, 0.25));
         Channels in = inputs();
         for (Expr& channel : in)
-            channel = pow(channel, 1 / steepness);
-        const Expr L = luminance_of(in);
+            channel = named("scene", pow(channel, 1 / steepness));
+        const Expr L = named("L", luminance_of(in));
         const Channels means = {p.expr("mean_red"), p.expr("mean_green"), p.expr("mean_blue")};
         const Expr mean_luminance = p.expr("mean_luminance");
         const Expr c = p.expr("chromatic_adaptation");
@@ -278,9 +280,9 @@ Operator devlin() {
         const Expr f = exp(-p.expr("intensity"));
         Channels out = in;
         for (std::size_t i = 0; i < 3; ++i) {
-            const Expr local = c * in[i] + (1 - c) * L;
-            const Expr global = c * means[i] + (1 - c) * mean_luminance;
-            const Expr adaptation = a * local + (1 - a) * global;
+            const Expr local = named("local_light", c * in[i] + (1 - c) * L);
+            const Expr global = named("global_light", c * means[i] + (1 - c) * mean_luminance);
+            const Expr adaptation = named("adaptation", a * local + (1 - a) * global);
             out[i] = in[i] / (in[i] + pow(max(f * adaptation, 0x1p-100), m));
         }
         return {limit_to_positive(), curve_stage(pow(Expr::input(), steepness)),

@@ -21,17 +21,17 @@ CrossTalkStage boring_mapping() {
     const std::array<Expr, 3> c = {Expr::input(0), Expr::input(1), Expr::input(2)};
     const auto t = [](const Expr& v) { return 1 - exp(-v); };
 
-    const Expr luma = 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
-    const Expr cb = -0.1146 * c[0] - 0.3854 * c[1] + 0.5 * c[2];
-    const Expr cr = 0.5 * c[0] - 0.4542 * c[1] - 0.0458 * c[2];
-    const Expr colorfulness = t(2.4 * sqrt(cb * cb + cr * cr));
-    const Expr excess = max(0.8 * (colorfulness - 0.7), 0);
-    const Expr desaturation = excess * excess;
-    const Expr ratio = t(luma) / max(luma, 1e-5);
+    const Expr luma = named("luma", 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]);
+    const Expr cb = named("cb", -0.1146 * c[0] - 0.3854 * c[1] + 0.5 * c[2]);
+    const Expr cr = named("cr", 0.5 * c[0] - 0.4542 * c[1] - 0.0458 * c[2]);
+    const Expr colorfulness = named("colorfulness", t(2.4 * sqrt(cb * cb + cr * cr)));
+    const Expr excess = named("excess", max(0.8 * (colorfulness - 0.7), 0));
+    const Expr desaturation = named("desaturation", excess * excess);
+    const Expr ratio = named("ratio", t(luma) / max(luma, 1e-5));
     CrossTalkStage mapping{c};
     for (std::size_t i = 0; i < 3; ++i) {
-        const Expr by_luma = c[i] * ratio;
-        const Expr by_channel = t(mix(c[i], luma, desaturation));
+        const Expr by_luma = named("by_luma", c[i] * ratio);
+        const Expr by_channel = named("by_channel", t(mix(c[i], luma, desaturation)));
         mapping.f[i] = 0.97 * mix(by_luma, by_channel, colorfulness * colorfulness);
     }
     return mapping;

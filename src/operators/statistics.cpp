@@ -86,11 +86,13 @@ Operator drago() {
     op.build = [](const Params& p) -> Pipeline {
         const Expr bias = p.expr("bias");
         const Expr maximum = p.expr("maximum");
-        const Expr adaptation = p.expr("log_average") / pow(1 + bias - 0.85, 5);
-        const Expr at_maximum = log_of_1_plus(maximum / adaptation) / std::log(10.0);
-        const Expr exponent = log(bias) / std::log(0.5);
+        const Expr adaptation =
+            named("adaptation", p.expr("log_average") / pow(1 + bias - 0.85, 5));
+        const Expr at_maximum =
+            named("at_maximum", log_of_1_plus(maximum / adaptation) / std::log(10.0));
+        const Expr exponent = named("exponent", log(bias) / std::log(0.5));
         const Expr L = Expr::input();
-        const Expr base = 2 + 8 * pow(max(L / maximum, 0x1p-100), exponent);
+        const Expr base = named("base", 2 + 8 * pow(max(L / maximum, 0x1p-100), exponent));
         const Expr f = (p.expr("display_max") / 100 / at_maximum) *
                        (log_of_1_plus(L / adaptation) / log(base));
         return tone_curve_pipeline({.f = f}, p);
@@ -118,7 +120,7 @@ Operator ward() {
         const Expr display = p.expr("display_max");
         const Expr threshold_ratio =
             (1.219 + pow(display / 2, 0.4)) / (1.219 + pow(p.expr("log_average"), 0.4));
-        const Expr m = pow(threshold_ratio, 2.5);
+        const Expr m = named("m", pow(threshold_ratio, 2.5));
         return tone_curve_pipeline({.f = (m / display) * Expr::input()}, p);
     };
     return op;
@@ -131,7 +133,7 @@ struct Brightness {
 };
 
 Brightness brightness_of(const Expr& La) {
-    const Expr log_adaptation = log2(La) * std::log10(2.0) + 0.84;
+    const Expr log_adaptation = named("log_adaptation", log2(La) * std::log10(2.0) + 0.84);
     return {0.4 * log_adaptation + 2.92,
             -0.4 * log_adaptation * log_adaptation - 2.584 * log_adaptation + 2.0208};
 }
@@ -162,7 +164,8 @@ Operator tumblin_rushmeier() {
         const Expr contrast = p.expr("contrast_max");
         const Brightness of_scene = brightness_of(p.expr("log_average"));
         const Brightness of_display = brightness_of(display / sqrt(contrast));
-        const Expr scale = pow(10, (of_scene.beta - of_display.beta) / of_display.alpha) / display;
+        const Expr scale =
+            named("scale", pow(10, (of_scene.beta - of_display.beta) / of_display.alpha) / display);
         const Expr f = scale * pow(Expr::input(), of_scene.alpha / of_display.alpha) - 1 / contrast;
         return tone_curve_pipeline({.f = f}, p);
     };
@@ -214,7 +217,8 @@ Pipeline cones_and_rods(double cones, double rods, const Vector3& tint) {
     }
     // The rods hardly see their own tint: no such coordinates.
     const std::array<Expr, 3> c = {Expr::input(0), Expr::input(1), Expr::input(2)};
-    const Expr signal = max(kRods[0] * c[0] + kRods[1] * c[1] + kRods[2] * c[2], 0);
+    const Expr signal =
+        named("signal", max(kRods[0] * c[0] + kRods[1] * c[1] + kRods[2] * c[2], 0));
     const auto channel = [&](std::size_t i) { return cones * c[i] + rods * tint[i] * signal; };
     return {limit_to_positive(), CrossTalkStage{{channel(0), channel(1), channel(2)}}};
 }

@@ -20,17 +20,17 @@ namespace {
 /// @param l0  length of the straight part
 Expr curve(const Expr& P, const Expr& a, const Expr& m, const Expr& l0, const Expr& c,
            const Expr& b) {
-    const Expr S0 = m + l0;
-    const Expr S1 = m + a * l0;
-    const Expr C2 = a * P / (P - S1);
+    const Expr S0 = named("S0", m + l0);
+    const Expr S1 = named("S1", m + a * l0);
+    const Expr C2 = named("C2", a * P / (P - S1));
 
     const Expr x = Expr::input();
-    const Expr w0 = 1 - smoothstep(0, m, x);
-    const Expr w2 = less_equal(S0, x);  // step(S0, x)
-    const Expr w1 = 1 - w0 - w2;
-    const Expr toe = m * pow(x / m, c) + b;
-    const Expr line = m + a * (x - m);
-    const Expr shoulder = P - (P - S1) * exp(-(C2 * (max(x, S0) - S0) / P));
+    const Expr w0 = named("w0", 1 - smoothstep(0, m, x));
+    const Expr w2 = named("w2", less_equal(S0, x));  // step(S0, x)
+    const Expr w1 = named("w1", 1 - w0 - w2);
+    const Expr toe = named("toe", m * pow(x / m, c) + b);
+    const Expr line = named("straight", m + a * (x - m));
+    const Expr shoulder = named("shoulder", P - (P - S1) * exp(-(C2 * (max(x, S0) - S0) / P)));
     return toe * w0 + line * w1 + shoulder * w2;
 }
 

@@ -63,22 +63,25 @@ Expr film_curve(double slope, double toe, double shoulder, double black_clip, do
     const double shoulder_power = 2 * slope / ss / std::log(10.0);
     // Both arms are written from a point that is a float: of the short toe mid grey (tm may be
     // 10^230), of the long one tm, which is below mid grey.
-    const Expr u = is_long_toe ? pow(min(x, std::pow(10, tm)) / std::pow(10, tm), toe_power)
-                               : grey_in_toe / (1 - grey_in_toe) * pow(x / kMidGrey, toe_power);
-    Expr toe_part = arm(ts, u) - black_clip;
+    const Expr u =
+        named("u", is_long_toe ? pow(min(x, std::pow(10, tm)) / std::pow(10, tm), toe_power)
+                               : grey_in_toe / (1 - grey_in_toe) * pow(x / kMidGrey, toe_power));
+    const Expr toe_part = named("toe_part", arm(ts, u) - black_clip);
     if (std::min(tm, sm) >= top) return toe_part;
 
     const double x_shoulder = std::pow(10, std::min(sm, top));
     const Expr shoulder_part =
-        1 + white_clip - arm(ss, pow(x_shoulder / max(x, x_shoulder), shoulder_power));
+        named("shoulder_part",
+              1 + white_clip - arm(ss, pow(x_shoulder / max(x, x_shoulder), shoulder_power)));
     if (sm < tm) {
         // No straight part: toe and shoulder go over into each other.
-        const Expr l = log2(max(x, x_shoulder)) * std::log10(2.0);
+        const Expr l = named("log_light", log2(max(x, x_shoulder)) * std::log10(2.0));
         return mix(toe_part, shoulder_part, smoothstep(sm, tm, l));
     }
     const double x_toe = std::pow(10, tm);
-    const Expr line = slope * (log2(max(x, x_toe)) * std::log10(2.0) + st);
-    const Expr above = sm < top ? select(less(x_shoulder, x), shoulder_part, line) : line;
+    const Expr line = named("straight", slope * (log2(max(x, x_toe)) * std::log10(2.0) + st));
+    const Expr above =
+        named("above", sm < top ? select(less(x_shoulder, x), shoulder_part, line) : line);
     return select(less(x, x_toe), toe_part, above);
 }
 

@@ -110,77 +110,77 @@ bool is_per_channel(const Pipeline& pipeline) {
 
 std::array<Expr, 3> apply_stage(const Stage& stage, const std::array<Expr, 3>& rgb) {
     return std::visit(
-        Overloaded{[&](const MatrixStage& s) {
-                       std::array<Expr, 3> out = rgb;
-                       for (std::size_t i = 0; i < 3; ++i) {
-                           out[i] = s.m[i][0] * rgb[0] + s.m[i][1] * rgb[1] + s.m[i][2] * rgb[2];
-                       }
-                       return out;
-                   },
-                   [&](const CurveStage& s) {
-                       std::array<Expr, 3> out = rgb;
-                       for (std::size_t i = 0; i < 3; ++i)
-                           out[i] = substitute(s.f[i], std::span(&rgb[i], 1));
-                       return out;
-                   },
-                   [&](const ToneScaleStage& s) {
-                       const Expr n = s.norm == ToneScaleStage::Norm::max_rgb
-                                          ? max(max(rgb[0], rgb[1]), rgb[2])
-                                          : s.weights[0] * rgb[0] + s.weights[1] * rgb[1] +
-                                                s.weights[2] * rgb[2];
-                       // At n = 0 the ratio has a limit, but every channel that it would scale is
-                       // 0.
-                       const Expr ratio =
-                           select(less(0, n), substitute(s.f, std::span(&n, 1)) / n, 0);
-                       return std::array<Expr, 3>{rgb[0] * ratio, rgb[1] * ratio, rgb[2] * ratio};
-                   },
-                   [&](const HuePreservingStage& s) {
-                       const Expr hi = max(max(rgb[0], rgb[1]), rgb[2]);
-                       const Expr lo = min(min(rgb[0], rgb[1]), rgb[2]);
-                       const Expr f_lo = substitute(s.f, std::span(&lo, 1));
-                       const Expr range = substitute(s.f, std::span(&hi, 1)) - f_lo;
-                       std::array<Expr, 3> out = rgb;
-                       // Greys: 0/0, but the range that it would scale is 0. The condition is on
-                       // what is divided by: in float a difference may be 0 where its terms differ.
-                       const Expr spread = hi - lo;
-                       for (Expr& c : out)
-                           c = f_lo + range * select(less(0, spread), (c - lo) / spread, 0);
-                       return out;
-                   },
-                   [&](const HexconeStage& s) {
-                       const Expr hi = max(max(rgb[0], rgb[1]), rgb[2]);
-                       const Expr lo = min(min(rgb[0], rgb[1]), rgb[2]);
-                       const Expr p = hi - substitute(s.offset, std::span(&lo, 1));
-                       const Expr value = substitute(s.value, std::span(&p, 1));
-                       const Expr chroma = substitute(s.chroma, std::span(&p, 1));
-                       std::array<Expr, 3> out = rgb;
-                       for (Expr& c : out)
-                           c = value - chroma * (hi - c);
-                       return out;
-                   },
-                   [&](const ClampStage& s) {
-                       std::array<Expr, 3> out = rgb;
-                       for (Expr& x : out) {
-                           if (s.lo != -kInfinity) x = max(x, s.lo);
-                           if (s.hi != kInfinity) x = min(x, s.hi);
-                       }
-                       return out;
-                   },
-                   [&](const LatticeStage& s) {
-                       std::array<Expr, 3> at = rgb;
-                       for (Expr& c : at)
-                           c = substitute(s.shaper, std::span(&c, 1));
-                       std::array<Expr, 3> out = rgb;
-                       for (int c = 0; c < 3; ++c) {
-                           out[static_cast<std::size_t>(c)] =
-                               interpolate(s.lattice, c, at[0], at[1], at[2]);
-                       }
-                       return out;
-                   },
-                   [&](const CrossTalkStage& s) {
-                       return std::array<Expr, 3>{substitute(s.f[0], rgb), substitute(s.f[1], rgb),
-                                                  substitute(s.f[2], rgb)};
-                   }},
+        Overloaded{
+            [&](const MatrixStage& s) {
+                std::array<Expr, 3> out = rgb;
+                for (std::size_t i = 0; i < 3; ++i) {
+                    out[i] = s.m[i][0] * rgb[0] + s.m[i][1] * rgb[1] + s.m[i][2] * rgb[2];
+                }
+                return out;
+            },
+            [&](const CurveStage& s) {
+                std::array<Expr, 3> out = rgb;
+                for (std::size_t i = 0; i < 3; ++i)
+                    out[i] = substitute(s.f[i], std::span(&rgb[i], 1));
+                return out;
+            },
+            [&](const ToneScaleStage& s) {
+                const Expr n =
+                    s.norm == ToneScaleStage::Norm::max_rgb
+                        ? max(max(rgb[0], rgb[1]), rgb[2])
+                        : s.weights[0] * rgb[0] + s.weights[1] * rgb[1] + s.weights[2] * rgb[2];
+                // At n = 0 the ratio has a limit, but every channel that it would scale is
+                // 0.
+                const Expr ratio = select(less(0, n), substitute(s.f, std::span(&n, 1)) / n, 0);
+                return std::array<Expr, 3>{rgb[0] * ratio, rgb[1] * ratio, rgb[2] * ratio};
+            },
+            [&](const HuePreservingStage& s) {
+                const Expr hi = max(max(rgb[0], rgb[1]), rgb[2]);
+                const Expr lo = min(min(rgb[0], rgb[1]), rgb[2]);
+                const Expr f_lo = substitute(s.f, std::span(&lo, 1));
+                const Expr range = substitute(s.f, std::span(&hi, 1)) - f_lo;
+                std::array<Expr, 3> out = rgb;
+                // Greys: 0/0, but the range that it would scale is 0. The condition is on
+                // what is divided by: in float a difference may be 0 where its terms differ.
+                const Expr spread = hi - lo;
+                for (Expr& c : out)
+                    c = f_lo + range * select(less(0, spread), (c - lo) / spread, 0);
+                return out;
+            },
+            [&](const HexconeStage& s) {
+                const Expr hi = max(max(rgb[0], rgb[1]), rgb[2]);
+                const Expr lo = min(min(rgb[0], rgb[1]), rgb[2]);
+                const Expr p = named("value_in", hi - substitute(s.offset, std::span(&lo, 1)));
+                const Expr value = named("value_out", substitute(s.value, std::span(&p, 1)));
+                const Expr chroma = named("chroma", substitute(s.chroma, std::span(&p, 1)));
+                std::array<Expr, 3> out = rgb;
+                for (Expr& c : out)
+                    c = value - chroma * (hi - c);
+                return out;
+            },
+            [&](const ClampStage& s) {
+                std::array<Expr, 3> out = rgb;
+                for (Expr& x : out) {
+                    if (s.lo != -kInfinity) x = max(x, s.lo);
+                    if (s.hi != kInfinity) x = min(x, s.hi);
+                }
+                return out;
+            },
+            [&](const LatticeStage& s) {
+                std::array<Expr, 3> at = rgb;
+                for (Expr& c : at)
+                    c = substitute(s.shaper, std::span(&c, 1));
+                std::array<Expr, 3> out = rgb;
+                for (int c = 0; c < 3; ++c) {
+                    out[static_cast<std::size_t>(c)] =
+                        interpolate(s.lattice, c, at[0], at[1], at[2]);
+                }
+                return out;
+            },
+            [&](const CrossTalkStage& s) {
+                return std::array<Expr, 3>{substitute(s.f[0], rgb), substitute(s.f[1], rgb),
+                                           substitute(s.f[2], rgb)};
+            }},
         stage);
 }
 

@@ -54,8 +54,8 @@ Expr norm_curve(const ToneCurve& curve, const std::string& apply) {
 /// The corrections that no norm and matrix express.
 CrossTalkStage corrected(const Expr& f, const Params& params, const Vector3& w) {
     const std::array<Expr, 3> c = {Expr::input(0), Expr::input(1), Expr::input(2)};
-    const Expr L = w[0] * c[0] + w[1] * c[1] + w[2] * c[2];
-    const Expr Lo = substitute(f, std::span(&L, 1));
+    const Expr L = named("L", w[0] * c[0] + w[1] * c[1] + w[2] * c[2]);
+    const Expr Lo = named("Lo", substitute(f, std::span(&L, 1)));
     const bool is_nonlinear = params.choice("color_correction") == "nonlinear";
     Expr s = params.expr("saturation");
     const bool is_live = !s.is_constant();
@@ -63,12 +63,13 @@ CrossTalkStage corrected(const Expr& f, const Params& params, const Vector3& w) 
         const auto [k1, k2] = is_nonlinear ? kNonlinearFit : kLuminancePreservingFit;
         const Expr slope = derivative(f);
         const Expr contrast =
-            select(less(0, Lo), max(L * substitute(slope, std::span(&L, 1)) / Lo, 0), 0);
-        const Expr fit = k1 * pow(contrast, k2);
-        s = s * ((1 + k1) * (fit / k1) / (1 + fit));
+            named("contrast_here",
+                  select(less(0, Lo), max(L * substitute(slope, std::span(&L, 1)) / Lo, 0), 0));
+        const Expr fit = named("fit", k1 * pow(contrast, k2));
+        s = named("s", s * ((1 + k1) * (fit / k1) / (1 + fit)));
     }
     const auto channel = [&](const Expr& v) {
-        const Expr ratio = v / L;
+        const Expr ratio = named("ratio", v / L);
         if (s.is_constant(0)) return select(less(0, L), Lo, 0);
         // 0^s is 0 for every s above 0, also where the curve is so flat that s is 0 but for that.
         const Expr at_0 = is_live ? equal(params.expr("saturation"), 0) : 0;

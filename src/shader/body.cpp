@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "formula/formula.h"
 #include "shader/print.h"
@@ -82,6 +83,8 @@ const char* word_for(const Expr& e) {
     }
 }
 
+constexpr std::array kChannels = {"_r", "_g", "_b"};
+
 /// A name of a formula as one that every language takes.
 std::string as_variable(const std::string& name) {
     // Words that a formula's author may choose, and that one of the languages keeps to itself.
@@ -116,6 +119,9 @@ std::string as_variable(const std::string& name) {
     while (!result.empty() && result.back() == '_')
         result.pop_back();
     const bool is_taken = reserved.contains(result) || is_formula_function(result);
+    for (const char* prefix : {"gl_", "tw_"}) {
+        if (result.compare(0, 3, prefix) == 0) result = "own_" + result;
+    }
     return result.empty() || is_taken ? result + "_value" : result;
 }
 
@@ -132,9 +138,11 @@ FunctionBody::FunctionBody(const LanguageFacts& language, std::vector<std::strin
 
 void FunctionBody::count(const Expr& e) {
     if (++uses_[e.node()] > 1) return;
+    if (const std::string* name = PartNames::of(e); name && !is_leaf(e))
+        named_[*name].push_back(e.node());
     if (const auto name = e.is_constant() ? names_.find(e.value()) : names_.end();
         name != names_.end()) {
-        const std::string variable = unique(name->second);
+        const std::string variable = unique(as_variable(name->second));
         add_line(language_.number, variable, float_literal(e.value(), language_));
         variables_.emplace(e.value(), variable);
     }
@@ -142,7 +150,10 @@ void FunctionBody::count(const Expr& e) {
         count(e.operand(i));
 }
 
-std::string FunctionBody::value(const Expr& e) { return number(print(e), kAny); }
+std::string FunctionBody::value(const Expr& e) {
+    const bool is_variable = uses_[e.node()] > 1 || known_.contains(e.node());
+    return number(is_variable ? print(e) : compose(e), kAny);
+}
 
 void FunctionBody::add_input(const std::string& name, const std::string& value) {
     const std::string own = unique(name);
@@ -323,7 +334,13 @@ std::string FunctionBody::choose(const Expr& e) {
 }
 
 std::string FunctionBody::name_for(const Expr& e) {
-    if (const std::string* name = PartNames::of(e)) return unique(as_variable(*name));
+    if (const std::string* name = PartNames::of(e)) {
+        // What a source does to each channel in turn has three parts of one name.
+        const std::vector<const ExprNode*>& alike = named_[*name];
+        const auto place = std::find(alike.begin(), alike.end(), e.node()) - alike.begin();
+        const bool is_channel = inputs_.size() >= 3 && alike.size() == 3;
+        return unique(as_variable(*name) + (is_channel ? kChannels.at(std::size_t(place)) : ""));
+    }
     // x2, x4, x6 of x: the powers of a polynomial.
     if (e.op() == ExprOp::multiply) {
         const auto power_of = [&](const Expr& factor) -> std::pair<std::string, int> {

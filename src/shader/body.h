@@ -69,6 +69,8 @@ class FunctionBody {
     std::map<const void*, TableText> tables_;
     std::unordered_map<const ExprNode*, int> uses_;
     std::unordered_map<const ExprNode*, Text> known_;
+    /// Parts by their name.
+    std::map<std::string, std::vector<const ExprNode*>> named_;
     /// Of a power of a variable by multiplication: the variable, and the exponent.
     std::unordered_map<const ExprNode*, std::pair<std::string, int>> powers_;
     /// Colors that lattices gave, by the call.

@@ -22,11 +22,11 @@ constexpr double kNothing = 1e-9;
 /// its seventh term is 1e-8 of the sum.
 Expr one_minus_exp2(const Expr& a) {
     constexpr double kNear = 0.25;
-    const Expr t = a * std::numbers::ln2;
+    const Expr t = named("t", a * std::numbers::ln2);
     Expr sum = 1;
     for (int n = 7; n >= 2; --n)
         sum = 1 + t * (1.0 / n) * sum;
-    return select(less(abs(t), kNear), -t * sum, 1 - exp2(a));
+    return select(less(abs(t), kNear), -t * named("series", sum), 1 - exp2(a));
 }
 
 /// x^n by multiplication.

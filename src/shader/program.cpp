@@ -92,25 +92,26 @@ class ProgramMaker {
     void add(const ToneScaleStage& s, const std::string&) {
         const Channels c = channels();
         const bool is_max = s.norm == ToneScaleStage::Norm::max_rgb;
-        const Expr n = is_max ? max(max(c[0], c[1]), c[2])
-                              : s.weights[0] * c[0] + s.weights[1] * c[1] + s.weights[2] * c[2];
+        const Expr n = is_max ? named("largest", max(max(c[0], c[1]), c[2]))
+                              : named("luminance", s.weights[0] * c[0] + s.weights[1] * c[1] +
+                                                       s.weights[2] * c[2]);
         const auto curve = add_scalar("curve", s.f, range_of(n));
-        const Expr ratio = select(less(0, n), Expr::input(3) / n, 0);
+        const Expr ratio = named("scale", select(less(0, n), Expr::input(3) / n, 0));
         add_color_function("tone_scale", {{curve, n, "tone"}},
                            {c[0] * ratio, c[1] * ratio, c[2] * ratio});
     }
 
     void add(const HuePreservingStage& s, const std::string&) {
         const Channels c = channels();
-        const Expr hi = max(max(c[0], c[1]), c[2]);
-        const Expr lo = min(min(c[0], c[1]), c[2]);
+        const Expr hi = named("largest", max(max(c[0], c[1]), c[2]));
+        const Expr lo = named("smallest", min(min(c[0], c[1]), c[2]));
         const Interval low = range_of(lo);
         const Interval high = range_of(hi);
         const auto curve =
             add_scalar("curve", s.f, {std::min(low.lo, high.lo), std::max(low.hi, high.hi)});
         const Expr f_hi = Expr::input(3);
         const Expr f_lo = Expr::input(4);
-        const Expr spread = hi - lo;
+        const Expr spread = named("spread", hi - lo);
         Channels out = c;
         for (Expr& x : out)
             x = f_lo + (f_hi - f_lo) * select(less(0, spread), (x - lo) / spread, 0);
@@ -128,7 +129,7 @@ class ProgramMaker {
         inputs.resize(3 + shared.calls.size(), {-kInfinity, kInfinity});
         std::vector<ColorFunction::Call> calls;
         for (const SharedFunctions::Call& call : shared.calls)
-            calls.push_back({0, call.argument, "curved"});
+            calls.push_back({0, call.argument, call.name.empty() ? "curved" : call.name});
         for (std::size_t k = 0; k < shared.functions.size(); ++k) {
             Interval input{kInfinity, -kInfinity};
             for (const SharedFunctions::Call& call : shared.calls) {
@@ -136,7 +137,9 @@ class ProgramMaker {
                 const Interval range = FloatForm(inputs, uniforms_).range(call.argument);
                 input = {std::min(input.lo, range.lo), std::max(input.hi, range.hi)};
             }
-            const std::size_t scalar = add_scalar(own + "_curve", shared.functions[k], input);
+            const std::string* const part = PartNames::of(shared.functions[k]);
+            const std::size_t scalar =
+                add_scalar(own + "_" + (part ? *part : "curve"), shared.functions[k], input);
             for (std::size_t i = 0; i < calls.size(); ++i) {
                 if (shared.calls[i].function != k) continue;
                 calls[i].function = scalar;

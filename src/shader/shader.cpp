@@ -132,8 +132,11 @@ ShaderProgram bound(ShaderProgram program, const UniformValues& values) {
     return program;
 }
 
-/// Settings that stand in the text as numbers, by their parameters. Whole numbers and numbers that
-/// two parameters have may mean something else in a formula.
+/// False for numbers that may mean something else where a formula has them again: quarters.
+bool is_telling(double value) { return value > 0 && 4 * value != std::floor(4 * value); }
+
+/// Settings that stand in the text as numbers, by their parameters. A number that two parameters
+/// have stays one.
 std::map<double, std::string> names_of_settings(const ShaderRequest& request) {
     std::map<double, std::string> names;
     std::set<double> ambiguous;
@@ -141,13 +144,26 @@ std::map<double, std::string> names_of_settings(const ShaderRequest& request) {
     for (const ParameterSpec& parameter : op.op->parameters) {
         if (parameter.kind != ParameterSpec::Kind::number) continue;
         const double value = op.params.number(parameter.name);
-        if (!(value > 0) || value == std::floor(value) || 2 * value == std::floor(2 * value))
-            continue;
+        if (!is_telling(value)) continue;
         if (!names.emplace(value, parameter.name).second) ambiguous.insert(value);
     }
     for (const double value : ambiguous)
         names.erase(value);
     return names;
+}
+
+/// Numbers that the source has a name for. A part that is a number only for some colors, as the
+/// curve at black, gives none.
+void add_names_of_numbers(const PartNames& names, std::map<double, std::string>& numbers) {
+    std::set<std::string> of_others;
+    for (const PartNames::Entry& entry : names.all()) {
+        if (!entry.part.is_constant()) of_others.insert(entry.name);
+    }
+    for (const PartNames::Entry& entry : names.all()) {
+        if (entry.part.is_constant() && is_telling(entry.part.value()) &&
+            !of_others.contains(entry.name))
+            numbers.emplace(entry.part.value(), entry.name);
+    }
 }
 
 ShaderProgram program_of(const ShaderRequest& request) {
@@ -488,7 +504,8 @@ Shader write_shader(const ShaderRequest& request, const ShaderErrors* errors) {
     check(request);
     const PartNames names;
     const Pipeline pipeline = pipeline_of(request);
-    const ShaderProgram program = program_of(request);
+    ShaderProgram program = program_of(request);
+    add_names_of_numbers(names, program.names);
     const LanguageFacts& language =
         facts_of(request.application ? request.application->language : request.language);
     Shader shader;

@@ -76,7 +76,8 @@ class Sharer {
         }
         std::map<std::size_t, Expr> known;
         for (const auto& [value, function] : function_of) {
-            result.calls.push_back({function, rebuilt(root_of(value), known)});
+            const std::string* const name = PartNames::of(nodes_[value]);
+            result.calls.push_back({function, rebuilt(root_of(value), known), name ? *name : ""});
             known.insert_or_assign(value, Expr::input(2 + static_cast<int>(result.calls.size())));
         }
         for (std::size_t c = 0; c < 3; ++c)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <vector>
 
 #include "tonewright/expr.h"
@@ -13,7 +14,8 @@ TONEWRIGHT_NAMESPACE_BEGIN
 struct SharedFunctions {
     struct Call {
         std::size_t function;
-        Expr argument;  // of inputs 0, 1, 2, and of 3 + i for what call i gave
+        Expr argument;     // of inputs 0, 1, 2, and of 3 + i for what call i gave
+        std::string name;  // of what it gives; empty: none
     };
     std::vector<Expr> functions;  // of input 0
     std::vector<Call> calls;

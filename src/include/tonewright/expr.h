@@ -202,7 +202,7 @@ class TONEWRIGHT_API PartNames {
 
     /// Of the innermost object: nothing where there is none.
     static void add(const std::string& name, const Expr& part);
-    /// The first name that this part was given; null: none. Numbers, inputs and uniforms have none.
+    /// The last name that this part was given; null: none. Inputs and uniforms have none.
     [[nodiscard]] static const std::string* of(const Expr& part);
     /// For whoever rewrites expressions: `after` takes the name of `before`.
     static void move(const Expr& before, const Expr& after);
@@ -215,7 +215,7 @@ class TONEWRIGHT_API PartNames {
 
 /// Gives a part of a formula the name that it has in its source, and returns the part. Whoever
 /// writes the formula as text, with a PartNames, uses the name; nothing else looks at it.
-inline Expr named(const std::string& name, const Expr& part) {
+inline Expr named(const char* name, const Expr& part) {
     PartNames::add(name, part);
     return part;
 }

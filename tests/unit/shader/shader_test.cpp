@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "base/format_number.h"
@@ -14,6 +15,7 @@
 #include "shader/float_form.h"
 #include "shader/float_run.h"
 #include "shader/print.h"
+#include "tonewright/definition.h"
 #include "tonewright/error.h"
 #include "tonewright/registry.h"
 
@@ -168,6 +170,54 @@ TEST(Shader, ReinhardReadsLikeItsFormula) {
               "tw_reinhard_curve(c.b));\n"
               "    return c;\n"
               "}\n");
+}
+
+std::string text_of(const ShaderRequest& request) {
+    const ShaderErrors not_needed;
+    return write_shader(request, &not_needed).text;
+}
+
+// Names as the sources have them: H. Uchimura, CEDEC 2017, slides 130-150; the Khronos PBR Neutral
+// specification; S. Wrensch, "Minimal AgX Implementation" and ACESlib.RRT_Common of ACES 1.3.
+TEST(Shader, PartsHaveTheNamesOfTheirSources) {
+    const std::map<std::string, std::vector<std::string>> sources = {
+        {"uchimura", {"S0 = 0.532", "C2 = ", "w0 = ", "bool w2 = ", "w1 = ", "toe = "}},
+        {"khronos_neutral", {"start = 0.76", "peak = ", "desaturation = 0.15"}},
+        {"agx_minimal", {"n = ", "n2 = n * n", "n4 = n2 * n2"}},
+        {"aces_13", {"saturation = ", "yc = ", "hue = "}},
+        {"somewhat_boring", {"luma = ", "cb = ", "cr = ", "by_channel_r = ", "by_channel_b = "}},
+        {"reinhard_jodie", {"luminance = ", "t_r = ", "t_g = ", "t_b = "}}};
+    for (const auto& [op, names] : sources) {
+        const std::string text = text_of(request_of(op));
+        for (const std::string& name : names)
+            EXPECT_NE(text.find(" " + name), std::string::npos) << name << " in\n" << text;
+    }
+}
+
+TEST(Shader, TextIsTheSameWhateverWasWrittenBefore) {
+    const std::string first = text_of(request_of("uchimura"));
+    for (const char* other : {"gt7", "unreal", "reinhard_jodie", "hable_piecewise"})
+        (void)text_of(request_of(other));
+    const PartNames outer;
+    (void)named("other", Expr::input() / 0.22);  // a part of it, under another name
+    EXPECT_EQ(text_of(request_of("uchimura")), first);
+}
+
+TEST(Shader, NoVariableHasANameThatALanguageKeeps) {
+    const std::string file =
+        "tonewright = 1\nid = \"own\"\n[[stage]]\ncurve = \"\"\"\nhalf = x*0.3\nline = half + 0.1\n"
+        "a__b = line*line\ngl_Color = a__b + half\na__b/gl_Color\n\"\"\"\n";
+    ShaderRequest request;
+    request.view = make_view(resolve(*parse_operator(file, "own.tone"), nullptr, {}, ""),
+                             "lin_rec709", 0, "linear");
+    for (const ShaderLanguageInfo& language : shader_languages()) {
+        request.language = language.language;
+        const std::string text = text_of(request);
+        for (const char* name : {" half_value = ", " line_value = ", " a_b = "})
+            EXPECT_NE(text.find(name), std::string::npos) << language.id << "\n" << text;
+        for (const char* word : {" half ", " line ", "__", " gl_"})
+            EXPECT_EQ(text.find(word, text.find("\n\n")), std::string::npos) << word;
+    }
 }
 
 TEST(Shader, MatricesAreRowsWhateverTheLanguageTakes) {

@@ -94,6 +94,8 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         has_blender, said = follow(report, arguments.command.resolve(), folder, page)
+        if report.failed:
+            return report.finish()
         if arguments.record:
             SHOWN.mkdir(parents=True, exist_ok=True)
             for path in ("curve.svg", "compare.jpg", *(["blender.png"] if has_blender else [])):

@@ -6,6 +6,7 @@
 
 #include "cli/grey_curve.h"
 #include "cli/json.h"
+#include "cli/lut_input.h"
 #include "cli/messages.h"
 #include "cli/plot.h"
 #include "cli/shared_options.h"
@@ -18,6 +19,7 @@ namespace {
 
 struct Options : ViewOptions {
     std::string file;
+    LutOptions lut;
     bool json = false;
     bool is_ascii = false;
 };
@@ -85,6 +87,7 @@ void add_check(CommandLine& program) {
     command.group("Checks");
     command.add("operator", options->op, "operator, operator:preset, .tone file or LUT").required();
     add_operator_options(command, *options);
+    add_lut_input_options(command, options->lut);
     const char* const output = "Output";
     command
         .add("-o", options->file,
@@ -104,7 +107,10 @@ void add_check(CommandLine& program) {
         "Examples:\n"
         "  tonewright check my.tone\n"
         "  tonewright check hable:white=4 -o hable.svg");
-    command.action([options] { return run_check(*options); });
+    command.action([options] {
+        take_lut_options("check", options->lut, *options, false);
+        return run_check(*options);
+    });
 }
 
 TONEWRIGHT_NAMESPACE_END

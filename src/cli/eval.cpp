@@ -195,7 +195,7 @@ ColorMap map_of_operator(const Options& given) {
     enum Engine : std::size_t { kReference, kSimd, kOcio, kOcioGpu };
     const std::size_t kind =
         find_choice("eval: engine", options.engine, {"reference", "simd", "ocio", "ocio-gpu"});
-    take_lut_options("eval", options.lut, options);
+    take_lut_options("eval", options.lut, options, true);
     const View view = options.view();
     const Pipeline pipeline = options.inverse ? build_inverse_view(view) : build_view(view);
     if (kind == kReference) {

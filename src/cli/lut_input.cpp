@@ -113,14 +113,15 @@ Pipeline before_lut(const char* command, const LutOptions& options, const ViewOp
     return stages;
 }
 
-void take_lut_options(const char* command, const LutOptions& options, ViewOptions& view) {
+void take_lut_options(const char* command, const LutOptions& options, ViewOptions& view,
+                      bool has_lut_option) {
     for (const auto& [option, parameter, value] :
          {std::tuple("--input-encoding", "input", options.encoding),
           std::tuple("--lut-space", "space", options.space)}) {
         if (value.empty()) continue;
         if (!names_a_lut(view.op)) {
-            throw Error(fmt::format("{}: {} is {}; expected a LUT as the operator, or --lut",
-                                    command, option, value));
+            throw Error(fmt::format("{}: {} is {}; expected a LUT as the operator{}", command,
+                                    option, value, has_lut_option ? ", or --lut" : ""));
         }
         view.set.push_back(fmt::format("{}={}", parameter, value));
     }

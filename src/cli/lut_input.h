@@ -42,8 +42,10 @@ struct LutOptions {
                                   const ViewOptions& view, const SourceColor& input);
 
 /// --input-encoding and --lut-space as settings of an operator that is a LUT.
+/// @param has_lut_option  whether the command takes --lut, for the message
 /// @throws Error  they are given for another operator
-void take_lut_options(const char* command, const LutOptions& options, ViewOptions& view);
+void take_lut_options(const char* command, const LutOptions& options, ViewOptions& view,
+                      bool has_lut_option);
 
 /// Throws what before_lut() will throw, before pictures are read.
 void check_lut_options(const char* command, const LutOptions& options, const ViewOptions& view,

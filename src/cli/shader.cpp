@@ -7,6 +7,7 @@
 #include "base/atomic_file.h"
 #include "base/input_file.h"
 #include "base/strings.h"
+#include "cli/lut_input.h"
 #include "cli/messages.h"
 #include "cli/npm_package.h"
 #include "cli/shared_options.h"
@@ -20,6 +21,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 struct Options : ViewOptions {
+    LutOptions lut;
     std::string language;
     std::string application;
     std::string file;
@@ -326,6 +328,7 @@ void add_shader(CommandLine& program) {
     command.add_flag("--inverse", options->is_inverse, "write the inverse").group(output);
     command.add_flag("--list", options->list, "list languages and applications").group(output);
     add_view_options(command, *options);
+    add_lut_input_options(command, options->lut);
     command.common({"--language", "--for", "-o", "--uniforms", "--list", "--set", "--look",
                     "--exposure", "--input", "--display"});
     command.footer(
@@ -341,6 +344,7 @@ void add_shader(CommandLine& program) {
         "  tonewright shader --all build/npm --npm");
     command.action([options, command] {
         options->given = command.given();
+        take_lut_options("shader", options->lut, *options, false);
         return run_shader(*options);
     });
 }

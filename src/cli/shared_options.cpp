@@ -37,14 +37,7 @@ void add_view_options(const Command& command, ViewOptions& options) {
         .group(color);
 }
 
-void add_lut_options(const Command& command, LutOptions& options, const Option& op,
-                     const std::vector<std::string>& others) {
-    const char* const group = "LUT, or LUT as the operator";
-    const Option lut =
-        command.add("--lut", options.file, "LUT file (.cube, .clf, .csp, .icc, Hald CLUT, ...)");
-    lut.value("FILE").group(group).excludes(op);
-    for (const std::string& other : others)
-        lut.excludes(command.option(other));
+void add_lut_input_options(const Command& command, LutOptions& options, const char* group) {
     command
         .add("--input-encoding", options.encoding,
              "encoding that the LUT expects (see `bake --help`) or `none` (default: its header's)")
@@ -55,6 +48,17 @@ void add_lut_options(const Command& command, LutOptions& options, const Option& 
              "scene-linear space of the LUT's input (default: that of its encoding)")
         .value("SPACE")
         .group(group);
+}
+
+void add_lut_options(const Command& command, LutOptions& options, const Option& op,
+                     const std::vector<std::string>& others) {
+    const char* const group = "LUT, or LUT as the operator";
+    const Option lut =
+        command.add("--lut", options.file, "LUT file (.cube, .clf, .csp, .icc, Hald CLUT, ...)");
+    lut.value("FILE").group(group).excludes(op);
+    for (const std::string& other : others)
+        lut.excludes(command.option(other));
+    add_lut_input_options(command, options, group);
     command
         .add("--interpolation", options.interpolation,
              "between grid points: tetrahedral, trilinear, or auto (what the file says)")

@@ -18,6 +18,11 @@ void add_operator_options(const Command& command, ViewOptions& options);
 /// These and --exposure, --input, --display, --reference-white.
 void add_view_options(const Command& command, ViewOptions& options);
 
+/// --input-encoding, --lut-space, for a command that has one operator.
+/// @param group  the title in the help
+void add_lut_input_options(const Command& command, LutOptions& options,
+                           const char* group = "LUT as the operator");
+
 /// --lut, --interpolation, --input-encoding, --lut-space, for a command that has an operator and
 /// add_view_options().
 /// @param op      the option of the operator

@@ -55,7 +55,7 @@ inline constexpr int kDeepestBrackets = 200;  // brackets, signs and `?:` inside
 /// A formula as an expression: lines `name = expression` that set temporaries, then one expression,
 /// the value. A line ends at a line break outside of brackets or at `;`. `//` and `#` begin a
 /// comment. Operators as in C, weakest first: `?:`, `||`, `&&`, `== !=`, `< <= > >=`, `+ -`, `* /`,
-/// signs and `!`. Functions: docs/own_operators.md.
+/// signs and `!`. Functions: docs/tone_files.md.
 /// @throws FormulaError
 [[nodiscard]] TONEWRIGHT_API Expr parse_formula(std::string_view text, const FormulaScope& scope);
 /// Lines that set temporaries, without a value. They are added to the scope.

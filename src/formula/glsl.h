@@ -62,7 +62,7 @@ struct GlslSettings {
 
 inline constexpr std::size_t kLongestShader = kLongestFormula;  // bytes
 
-/// A function of straight-line GLSL or HLSL. docs/own_operators.md says what it may have.
+/// A function of straight-line GLSL or HLSL. docs/tone_files.md says what it may have.
 /// @throws FormulaError
 [[nodiscard]] TONEWRIGHT_API GlslFunction parse_glsl(std::string_view text,
                                                      const GlslSettings& settings);

@@ -13,20 +13,6 @@ constexpr unsigned kSignBit = 0x8000;
 constexpr unsigned kLargestFinite = 0x7BFF;
 }  // namespace
 
-double half_value(unsigned bits) noexcept {
-    const unsigned exponent = bits >> 10 & 31;
-    const unsigned mantissa = bits & 1023;
-    double magnitude = 0;
-    if (exponent == 31) {
-        magnitude = mantissa ? std::numeric_limits<double>::quiet_NaN() : kInfinity;
-    } else if (exponent == 0) {
-        magnitude = mantissa * 0x1p-24;
-    } else {
-        magnitude = (mantissa + 1024) * (static_cast<double>(1U << exponent) * 0x1p-25);
-    }
-    return bits & kSignBit ? -magnitude : magnitude;
-}
-
 std::vector<signed char> unused_entries(const std::vector<float>& table, double lo, double hi) {
     std::vector<signed char> slack(kHalfCount);
     if (lo <= -kHalfMax && hi >= kHalfMax) return slack;

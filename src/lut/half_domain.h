@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "lut/half_value.h"
 #include "tonewright/expr.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -23,8 +24,5 @@ inline constexpr double kSmallestHalf = 0x1p-24;
 /// from the values inside, so that a table that rises still does.
 [[nodiscard]] TONEWRIGHT_API std::vector<signed char> unused_entries(
     const std::vector<float>& table, double lo, double hi);
-
-/// The half float of a bit pattern, as a double; NaN patterns give NaN.
-[[nodiscard]] TONEWRIGHT_API double half_value(unsigned bits) noexcept;
 
 TONEWRIGHT_NAMESPACE_END

@@ -67,12 +67,6 @@ def check_examples(report, command, scratch, python, plugin):
     # engine.h: the SIMD engine is within 1e-6 of the reference.
     report.compare("eval --engine simd", evaluate(command, GRAYS, SOFT, "--engine", "simd"), srgb(soft(GRAYS)), 1.1e-6)
 
-    # The first example of docs/own_operators.md.
-    page = (EXAMPLES.parent / "own_operators.md").read_text()
-    (scratch / "my.tone").write_text(re.search(r"<<'END'\n(.*?)END\n", page, re.S).group(1))
-    report.compare("eval: the example of the docs", evaluate(command, GRAYS, scratch / "my.tone", "--display", "linear"),
-                   GRAYS / (GRAYS + 1), 1e-9)
-
     # The name of a file, relative, with blanks and colons.
     odd = scratch / "my ops" / "a:b c.tone"
     odd.parent.mkdir()

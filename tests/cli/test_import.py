@@ -140,7 +140,7 @@ def check_command(report, command, folder):
     got = light_of(command, folder / "punchy.tone", np.array([[0, 0.1, 1.1]]))
     report.compare("powers of negatives are 0", got, np.array([[0, 0, 1.0]]), ROUNDING)
 
-    page = (TESTS.parent / "docs" / "own_operators.md").read_text()
+    page = (TESTS.parent / "docs" / "tone_files.md").read_text()
     example = re.search(r"```sh\n(cat >tonemap\.glsl .*?)```", page, re.S).group(1)
     environment = {**os.environ, "PATH": f"{Path(command).parent}:{os.environ['PATH']}"}
     done = subprocess.run(["sh", "-ec", example], cwd=folder, env=environment, capture_output=True, text=True, check=False)

@@ -201,6 +201,13 @@ def check_forms(report, command, scratch):
     done = run(command, "shader", text, "--language", "glsl", "-o", scratch / "film.glsl")
     report.check("shader: a texture beside it", any(scratch.glob("*.rgba32f")) and
                  "texelFetch" in (scratch / "film.glsl").read_text(), done)
+    options = (scratch / "film.cube", "--input-encoding", "acescct", "--set", "output=srgb")
+    for name, *arguments in (("shader", "--language", "c"), ("check", "--json")):
+        report.check(f"{name} --input-encoding", run(command, name, *options, *arguments) ==
+                     run(command, name, scratch / "film.cube", "--set", "input=acescct", "--set", "output=srgb", *arguments))
+        done = subprocess.run([command, name, "hable", "--lut-space", "lin_ap1", *arguments], capture_output=True, text=True, check=False)
+        report.check(f"{name} --lut-space: another operator", done.returncode == 2 and f"{name}: --lut-space is lin_ap1; expected a LUT "
+                     "as the operator" in done.stderr, done.stderr)
 
     config = scratch / "config"
     run(command, "config", "-o", config, "--operator", text, "--name", "Film", "--views", "hable", "--displays", "srgb",

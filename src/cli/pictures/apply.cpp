@@ -276,7 +276,7 @@ int run_apply(const ApplyOptions& given) {
     TonemapOptions tonemap;
     tonemap.op = options.is_false_color ? "false_color" : options.op;
     if (tonemap.op.empty()) tonemap.op = kDefaultOperator;
-    take_lut_options("apply", options.lut, options);
+    take_lut_options("apply", options.lut, options, true);
     tonemap.settings = options.settings();
     tonemap.look = options.look;
     tonemap.others = operator_files();

@@ -113,7 +113,7 @@ struct ImportedShader {
     std::vector<std::string> warnings;
 };
 
-/// Reads a function of straight-line GLSL or HLSL (docs/own_operators.md says what it may have).
+/// Reads a function of straight-line GLSL or HLSL (docs/tone_files.md says what it may have).
 /// @param name  of the file, for messages and the definition's comments
 /// @throws DefinitionError  the shader has no such function, or one that no operator can say
 /// @throws Error            a setting of the import is wrong

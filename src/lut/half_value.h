@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tonewright/version.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+
+/// The half float of a bit pattern, as a double; NaN patterns give NaN.
+[[nodiscard]] TONEWRIGHT_API double half_value(unsigned bits) noexcept;
+
+TONEWRIGHT_NAMESPACE_END

@@ -56,23 +56,31 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
 /// What stands outside of quotes and comments is ASCII, and has few dots in one key: a.b.c = 1
 /// makes a table in a table. The library's own functions are undefined for some other characters
 /// there, and it makes as many tables as there are dots, whether they fit on the stack or not.
+/// Quotes begin where a key or a value does: behind `444` they would hide characters that the
+/// library takes for a part of the number.
 void check_keys(std::string_view text) {
     std::size_t dots = 0;
+    char before = '\n';  // that is not blank
     for (std::size_t i = 0; i < text.size(); ++i) {
         const char c = text[i];
         if (c == '#') {
             i = std::min(text.find('\n', i), text.size()) - 1;
         } else if (c == '"' || c == '\'') {
+            if (std::string_view("\n=[,{.").find(before) == std::string_view::npos)
+                throw TomlError(position_at(text, i),
+                                "quote stands behind a value; expected the end of the line");
             i = end_of_string(text, i) - 1;
         } else if (!is_ascii(c)) {
             throw TomlError(position_at(text, i), "character is not ASCII; expected it in quotes");
         } else if (c == '.') {
-            if (++dots <= kMostDots) continue;
-            throw TomlError(position_at(text, i), "key has more than " + std::to_string(kMostDots) +
-                                                      " dots; expected at most as many");
+            if (++dots > kMostDots)
+                throw TomlError(position_at(text, i), "key has more than " +
+                                                          std::to_string(kMostDots) +
+                                                          " dots; expected at most as many");
         } else if (c == '\n' || c == '=' || c == ',') {
             dots = 0;
         }
+        if (c != ' ' && c != '\t' && c != '\r') before = c;
     }
 }
 

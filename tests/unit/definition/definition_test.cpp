@@ -273,6 +273,8 @@ TEST(Definition, MessagesHaveThePlace) {
          "3:14: Error while parsing key-value pair: cannot redefine existing integer "
          "'tonewright'"},
         // The library's parser is undefined for some of these.
+        {kHead + "title = 44\"\xEF\xB3\xBF\"\n",
+         "3:11: quote stands behind a value; expected the end of the line"},
         {kHead + "titl\xC3\xA9 = 1\n", "3:5: character is not ASCII; expected it in quotes"},
         {kHead + "title = \"\"\"a\\ \xC3\xA9\"\"\"\n",
          "3:13: escape is not ASCII; expected \\n, \\t, ..."},

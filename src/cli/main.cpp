@@ -3,11 +3,13 @@
 #include <exception>
 #include <new>
 #include <string>
+#include <string_view>
 #include <system_error>
 
 #include "base/atomic_file.h"
 #include "base/strings.h"
 #include "cli/command.h"
+#include "cli/completion.h"
 #include "cli/messages.h"
 #include "cli/options.h"
 #include "tonewright/definition.h"
@@ -42,7 +44,13 @@ int run(int argc, char** argv) {
                                add_shader, add_config, add_list, add_import, add_eval, add_plot,
                                add_check, add_verify, add_report})
             add(program);
-        const int exit_code = program.run(argc, argv);
+        int exit_code = kOk;
+        if (argc > 1 && std::string_view(argv[1]) == "complete") {  // for the scripts of shells
+            const std::string text = to_text(complete(program.tables(), {argv + 2, argv + argc}));
+            std::fputs(text.c_str(), stdout);
+        } else {
+            exit_code = program.run(argc, argv);
+        }
         if (std::fflush(stdout) != 0) return report("write: standard output: cannot write", kFile);
         return exit_code;
     } catch (const std::system_error& e) {  // what printing throws, and a thread that has no stack

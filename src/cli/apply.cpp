@@ -3,6 +3,7 @@
 
 #include "cli/picture_commands.h"
 #include "cli/shared_options.h"
+#include "cli/suggestions.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -24,6 +25,7 @@ Option add_frame_options(const Command& command, FrameOptions& options) {
         .add("--missing", options.missing,
              "missing input frames: `error`, `skip`, or `hold` (use the last earlier frame)")
         .value("ACTION")
+        .suggest({"error", "skip", "hold"})
         .show_default()
         .group(group)
         .needs(frames);
@@ -43,11 +45,13 @@ void add_file_options(const Command& command, ApplyOptions& options) {
     const char* const group = "Output";
     command.add("-d", options.type, "uint8, uint16, half or float (default: the format's)")
         .value("TYPE")
+        .suggest({"uint8", "uint16", "half", "float"})
         .group(group);
     command
         .add("--alpha", options.alpha,
              "`keep`, `ignore` (leave it out) or `opaque` (1); the last two do not divide by it")
         .value("ACTION")
+        .suggest({"keep", "ignore", "opaque"})
         .show_default()
         .group(group);
     command.add_flag("--in-place", options.is_in_place, "allow the output to replace the input")
@@ -91,14 +95,16 @@ void add_apply(CommandLine& program) {
         .group("Output");
     command.add("--format", options->format, "extension of the pictures in a folder")
         .value("EXT")
+        .suggest({"exr", "png", "tif", "jpg", "webp", "dpx"})
         .group("Output");
     const Option op = command.add("--operator", options->op,
                                   "operator[:preset], .tone file or LUT (default AgX)");
-    op.value("NAME").group("Operator");
+    op.value("NAME").suggest(suggest_operators).group("Operator");
     options->input = "auto";
     add_view_options(command, *options);
-    command.option("--input").describe(
-        "color space of the input: a space, a display or `auto` (what the file says)");
+    command.option("--input")
+        .describe("color space of the input: a space, a display or `auto` (what the file says)")
+        .suggest(suggest_source_colors);
     command.option("--exposure").group("Exposure");
     const Option false_color =
         command.add_flag("--false-color", options->is_false_color,
@@ -111,6 +117,7 @@ void add_apply(CommandLine& program) {
         .add("--statistics", options->statistics,
              "operators measure each `picture`, the whole `sequence`, or use `defaults`")
         .value("NAME")
+        .suggest({"picture", "sequence", "defaults"})
         .show_default()
         .group("Operator");
     add_file_options(command, *options);
@@ -124,6 +131,7 @@ void add_apply(CommandLine& program) {
                                     "meter the picture: log-average, histogram, mean or max; "
                                     "--exposure is added")
                                .value("METHOD")
+                               .suggest({"log-average", "histogram", "mean", "max"})
                                .group("Exposure");
     const Option frames = add_frame_options(command, options->frames);
     for (const char* other : {"--frames", "--subimage", "--timeout"})

@@ -11,6 +11,7 @@
 #include "cli/messages.h"
 #include "cli/picture_commands.h"
 #include "cli/shared_options.h"
+#include "cli/suggestions.h"
 #include "lut/lut_warnings.h"
 #include "lut/shipped_set.h"
 #include "measure/error_metric.h"
@@ -153,16 +154,19 @@ void add_bake(CommandLine& program) {
     command.group("LUTs, shaders and configs");
     const char* const output = "Output";
     const char* const table = "Table";
-    command.add("operator", options->op, "operator, operator:preset, .tone file or LUT");
+    command.add("operator", options->op, "operator, operator:preset, .tone file or LUT")
+        .suggest(suggest_operators);
     command.add("-o", options->file, "file to write").value("FILE").group(output);
     command
         .add("--for", options->host,
              "application that reads the LUT (see `tonewright list --hosts`); sets format, size, "
              "input and display")
         .value("NAME")
+        .suggest(suggest_lut_applications)
         .group(output);
     command.add("--format", options->format, "LUT format; see below (default: by the extension)")
         .value("NAME")
+        .suggest(suggest_lut_formats)
         .group(output);
     command
         .add("--all", options->all, "write the shipped LUTs; with --for, those of one application")
@@ -171,6 +175,7 @@ void add_bake(CommandLine& program) {
     add_view_options(command, *options);
     command.add("--input-encoding", options->encoding, "encoding of the LUT's input; see below")
         .value("NAME")
+        .suggest(suggest_encodings)
         .show_default()
         .group("Color");
     command

@@ -26,6 +26,7 @@ void add_chart(CommandLine& program) {
         .group(group);
     command.add("-d", options->type, "pixel type: half or float")
         .value("TYPE")
+        .suggest({"half", "float"})
         .show_default()
         .group(group);
     command.footer("Example:\n  tonewright chart -o chart.exr");

@@ -10,6 +10,7 @@
 #include "cli/messages.h"
 #include "cli/plot.h"
 #include "cli/shared_options.h"
+#include "cli/suggestions.h"
 #include "cli/terminal_plot.h"
 #include "measure/laws.h"
 #include "tonewright/registry.h"
@@ -85,7 +86,9 @@ void add_check(CommandLine& program) {
     const Command command =
         program.add("check", "Check an operator against the laws of tone curves.");
     command.group("Checks");
-    command.add("operator", options->op, "operator, operator:preset, .tone file or LUT").required();
+    command.add("operator", options->op, "operator, operator:preset, .tone file or LUT")
+        .suggest(suggest_operators)
+        .required();
     add_operator_options(command, *options);
     add_lut_input_options(command, options->lut);
     const char* const output = "Output";

@@ -14,6 +14,17 @@ class CommandLine;
 
 /// Exit codes of the command.
 enum ExitCode { kOk = 0, kCheckFailed = 1, kUsage = 2, kFile = 3 };
+struct ExitMeaning {
+    ExitCode code;
+    const char* text;
+};
+/// For the help and the manual.
+inline constexpr ExitMeaning kExitMeanings[] = {
+    {kOk, "ok"},
+    {kCheckFailed, "a check or a frame failed"},
+    {kUsage, "wrong usage"},
+    {kFile, "a file could not be read or written"},
+};
 
 /// Options that most subcommands share: which operator, with what, in which view.
 struct ViewOptions {

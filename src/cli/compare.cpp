@@ -6,6 +6,7 @@
 #include "cli/messages.h"
 #include "cli/options.h"
 #include "cli/picture_commands.h"
+#include "cli/suggestions.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
@@ -18,9 +19,10 @@ void add_compare(CommandLine& program) {
     const char* const sheet = "Contact sheet";
     const char* const split_group = "Split picture";
     command.add("in", options->in, "a picture, in any format that OpenImageIO reads").required();
-    command.add(
-        "operators", options->operators,
-        "NAME[:PRESET][:PARAMETER=VALUE...][:look=LOOK] (default: the views of the config)");
+    command
+        .add("operators", options->operators,
+             "NAME[:PRESET][:PARAMETER=VALUE...][:look=LOOK] (default: the views of the config)")
+        .suggest(suggest_operators);
     command.add("-o", options->file, "file to write; its extension sets the format")
         .value("FILE")
         .required()
@@ -33,6 +35,7 @@ void add_compare(CommandLine& program) {
         .add("--input", options->input,
              "color space of the input: a space, a display or `auto` (what the file says)")
         .value("SPACE")
+        .suggest(suggest_source_colors)
         .show_default()
         .group(output);
     const Option columns =

@@ -14,6 +14,7 @@
 #include "cli/elapsed_line.h"
 #include "cli/messages.h"
 #include "cli/options.h"
+#include "cli/suggestions.h"
 #include "tonewright/error.h"
 #include "tonewright/generated_files.h"
 #include "tonewright/ocio.h"
@@ -234,20 +235,24 @@ void add_config(CommandLine& program) {
              "views (\"AgX Punchy\") or operators, in order; `standard` (a dozen) or `all` "
              "(default standard)")
         .value("LIST")
+        .suggest(suggest_views)
         .separated_by(',')
         .group(contents);
     command.add("--displays", config.displays, "displays (default: all)")
         .value("LIST")
+        .suggest(suggest_config_displays)
         .separated_by(',')
         .group(contents);
     command
         .add("--looks", config.looks,
              "looks (\"AgX - Punchy\"), or `none` (default: all looks of the views)")
         .value("LIST")
+        .suggest(suggest_view_looks)
         .separated_by(',')
         .group(contents);
     command.add("--working", config.working, "color space in which applications compute")
         .value("SPACE")
+        .suggest(suggest_spaces)
         .show_default()
         .group(contents);
     command
@@ -255,6 +260,7 @@ void add_config(CommandLine& program) {
              "add a view: NAME[:PRESET][:PARAMETER=VALUE...], a .tone file or a LUT; repeat for "
              "more")
         .value("OPERATOR")
+        .suggest(suggest_operators)
         .one_value_each()
         .group(own);
     command.add("--name", options->names, "name of the added view, one for each --operator")

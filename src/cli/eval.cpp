@@ -14,6 +14,7 @@
 #include "base/strings.h"
 #include "cli/picture_commands.h"
 #include "cli/shared_options.h"
+#include "cli/suggestions.h"
 #include "ocio/gpu.h"
 #include "ocio/operator_facts.h"
 #include "ocio/transforms.h"
@@ -238,11 +239,13 @@ void add_eval(CommandLine& program) {
     command.group("Operators");
     const Option op =
         command.add("operator", options->op, "operator, operator:preset, .tone file or LUT");
+    op.suggest(suggest_operators);
     add_view_options(command, *options);
     command
         .add("--engine", options->engine,
              "`reference` (double precision), `simd`, `ocio` or `ocio-gpu` (floats)")
         .value("NAME")
+        .suggest({"reference", "simd", "ocio", "ocio-gpu"})
         .show_default()
         .group("Computation");
     command.add("--digits", options->digits, "significant digits of the output")

@@ -119,6 +119,7 @@ void add_import(CommandLine& program) {
         .add("--encoded", options->encoded,
              "what the function returns: linear (default), srgb, gamma22 or gamma24")
         .value("NAME")
+        .suggest({"linear", "srgb", "gamma22", "gamma24"})
         .group(color);
     command
         .add("--primaries", options->primaries,

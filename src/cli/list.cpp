@@ -13,6 +13,7 @@
 #include "cli/json.h"
 #include "cli/json_forms.h"
 #include "cli/options.h"
+#include "cli/suggestions.h"
 #include "tonewright/definition.h"
 #include "tonewright/lut.h"
 #include "tonewright/lut_applications.h"
@@ -371,7 +372,8 @@ void add_list(CommandLine& program) {
     command.group("Operators");
     const char* const contents = "What to list";
     const char* const format = "Format";
-    command.add("operator", options->op, "operator to describe in full, a .tone file or a LUT");
+    command.add("operator", options->op, "operator to describe in full, a .tone file or a LUT")
+        .suggest(suggest_operators);
     const Option json = command.add_flag("--json", options->json, "print JSON");
     json.group(format);
     const Option markdown =

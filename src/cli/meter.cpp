@@ -3,6 +3,7 @@
 
 #include "cli/picture_commands.h"
 #include "cli/shared_options.h"
+#include "cli/suggestions.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
@@ -17,6 +18,7 @@ void add_meter(CommandLine& program) {
         .group("Output");
     command.add("--method", options->metering.method, "method: log-average, histogram, mean or max")
         .value("NAME")
+        .suggest({"log-average", "histogram", "mean", "max"})
         .show_default()
         .group("Exposure");
     const Option frames =
@@ -27,6 +29,7 @@ void add_meter(CommandLine& program) {
         .add("--input", options->input,
              "color space of the input: a space, a display or `auto` (what the file says)")
         .value("SPACE")
+        .suggest(suggest_source_colors)
         .group("Pictures")
         .show_default();
     add_picture_input(command, options->picture);

@@ -141,8 +141,9 @@ class HelpFormatter : public CLI::FormatterBase {
         return help;
     }
 
-  private:
     [[nodiscard]] HelpPage page_of(const CLI::App& app, const std::string& name) const;
+
+  private:
     [[nodiscard]] OptionHelp help_of(const CLI::Option& option) const {
         const auto found = helps_.find(&option);
         return found == helps_.end() ? OptionHelp() : found->second;
@@ -273,7 +274,7 @@ const Option& Option::choices(const std::vector<std::string>& texts) const {
         return std::string();
     };
     option_->transform(CLI::Validator(as_listed, {}));
-    return *this;
+    return suggest(texts);
 }
 
 const Option& Option::choices(const std::vector<int>& numbers) const {
@@ -292,6 +293,20 @@ const Option& Option::one_value_each() const {
 const Option& Option::separated_by(char separator) const {
     option_->delimiter(separator);
     return *this;
+}
+
+const Option& Option::suggest(Suggest suggest) const {
+    (*helps_)[option_].suggest = std::move(suggest);
+    return *this;
+}
+
+const Option& Option::suggest(const std::vector<std::string>& words) const {
+    return suggest([words](const TypedValue&) {
+        Suggestions all;
+        for (const std::string& word : words)
+            all.words.push_back({word, ""});
+        return all;
+    });
 }
 
 const Option& Option::needs(const Option& other) const {
@@ -417,6 +432,37 @@ Command CommandLine::add(const std::string& name, const std::string& description
 }
 
 void CommandLine::footer(const std::string& text) { app_->footer(text); }
+
+std::vector<CommandTable> CommandLine::tables() const {
+    const HelpFormatter formatter(helps_);
+    std::vector<const CLI::App*> apps = subcommands(*app_);
+    apps.insert(apps.begin(), app_.get());
+    std::vector<CommandTable> tables;
+    for (const CLI::App* app : apps) {
+        CommandTable& table = tables.emplace_back();
+        table.name = app->get_name();
+        const std::string prefix = app == app_.get() ? "" : app_->get_name() + " ";
+        table.page = formatter.page_of(*app, prefix + table.name);
+        for (const CLI::Option* option : app->get_options()) {
+            OptionTable& row = table.options.emplace_back();
+            row.is_argument = option->get_positional();
+            for (const std::string& name : option->get_lnames())
+                row.names.push_back("--" + name);
+            for (const std::string& name : option->get_snames())
+                row.names.push_back("-" + name);
+            if (row.is_argument) row.names = {argument_name(*option)};
+            row.text = option->get_description();
+            row.has_value = option->get_items_expected_max() > 0;
+            row.may_repeat = option->get_items_expected_max() > 1;
+            row.separator = option->get_delimiter();
+            const auto help = helps_.find(option);
+            if (help == helps_.end()) continue;
+            row.value = help->second.value;
+            row.suggest = help->second.suggest;
+        }
+    }
+    return tables;
+}
 
 namespace {
 

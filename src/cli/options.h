@@ -13,6 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "cli/completion.h"
+#include "cli/help_text.h"
 #include "tonewright/version.h"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): CLI11's own name
@@ -28,6 +30,8 @@ struct OptionHelp {
     /// Of a number: the lowest and the highest that it can be.
     std::optional<std::pair<double, double>> limits;
     bool is_common = false;
+    /// What a shell offers as the value. Null: nothing, or files where the value is one.
+    Suggest suggest = {};
 };
 using OptionHelps = std::map<const CLI::Option*, OptionHelp>;
 
@@ -55,6 +59,9 @@ class Option {
     const Option& one_value_each() const;
     /// Of a list: one occurrence may hold several values with `separator` between them.
     const Option& separated_by(char separator) const;
+    /// What a shell offers as the value. choices() declares it, too.
+    const Option& suggest(Suggest suggest) const;
+    const Option& suggest(const std::vector<std::string>& words) const;
     const Option& needs(const Option& other) const;
     const Option& excludes(const Option& other) const;
 
@@ -118,6 +125,9 @@ class CommandLine {
 
     Command add(const std::string& name, const std::string& description);
     void footer(const std::string& text);
+
+    /// The program itself, under its own name, and its commands in the order of the help.
+    [[nodiscard]] std::vector<CommandTable> tables() const;
 
     /// Parses the arguments and runs the command that they name, or prints help or the version.
     /// @returns      the command's exit code

@@ -13,6 +13,7 @@
 #include "cli/picture_commands.h"
 #include "cli/plot.h"
 #include "cli/shared_options.h"
+#include "cli/suggestions.h"
 #include "tonewright/lut.h"
 #include "tonewright/ocio.h"
 #include "tonewright/registry.h"
@@ -262,6 +263,7 @@ void add_plot(CommandLine& program) {
     const Command command = program.add("plot", "Plot the tone curves of operators.");
     command.group("Operators");
     command.add("operators", options->operators, "NAME[:PRESET][:PARAMETER=VALUE...][:look=LOOK]")
+        .suggest(suggest_operators)
         .required();
     const char* const output = "Plot";
     command.add("-o", options->file, "file to write: .svg, .pdf, or a picture such as .png")
@@ -272,6 +274,7 @@ void add_plot(CommandLine& program) {
         .add("--y", options->y,
              "vertical axis: `code` (code values), `light` (percent of white or cd/m2) or `log`")
         .value("NAME")
+        .suggest({"code", "light", "log"})
         .show_default()
         .group(output);
     command.add("--title", options->title, "title of the plot").value("TEXT").group(output);

@@ -17,6 +17,7 @@
 #include "cli/messages.h"
 #include "cli/options.h"
 #include "cli/picture_commands.h"
+#include "cli/suggestions.h"
 #include "report/backends.h"
 #include "report/page.h"
 #include "tonewright/definition.h"
@@ -324,6 +325,7 @@ void add_report(CommandLine& program) {
         .add("--operators", options->operators,
              "operators, as `compare` takes them, or `all`: with presets and looks (default: "
              "every operator without them)")
+        .suggest(suggest_operators)
         .one_value_each()
         .separated_by(',')
         .value("LIST")

@@ -11,6 +11,7 @@
 #include "cli/messages.h"
 #include "cli/npm_package.h"
 #include "cli/shared_options.h"
+#include "cli/suggestions.h"
 #include "measure/error_metric.h"
 #include "pipeline/stand_ins.h"
 #include "tonewright/generated_files.h"
@@ -281,16 +282,19 @@ void add_shader(CommandLine& program) {
     const Command command = program.add("shader", "Write an operator as shader source.");
     command.group("LUTs, shaders and configs");
     const char* const output = "Output";
-    command.add("operator", options->op, "operator, operator:preset, .tone file or LUT");
+    command.add("operator", options->op, "operator, operator:preset, .tone file or LUT")
+        .suggest(suggest_operators);
     command
         .add("--language", options->language,
              "language of the text; see --list (default: by the extension)")
         .value("NAME")
+        .suggest(suggest_languages)
         .group(output);
     command
         .add("--for", options->application,
              "application that takes the whole file; see --list. Sets language and display")
         .value("NAME")
+        .suggest(suggest_shader_applications)
         .group(output);
     command.add("-o", options->file, "file to write (default, or -: standard output)")
         .value("FILE")
@@ -309,6 +313,7 @@ void add_shader(CommandLine& program) {
              "arguments behind the color: exposure, and live parameters (see `tonewright list "
              "OPERATOR`)")
         .value("NAME,...")
+        .suggest(suggest_uniforms)
         .separated_by(',')
         .one_value_each()
         .group(output);

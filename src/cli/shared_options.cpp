@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/shared_options.h"
+#include "cli/suggestions.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
@@ -7,9 +8,13 @@ void add_operator_options(const Command& command, ViewOptions& options) {
     const char* const op = "Operator";
     command.add("--set", options.set, "operator parameter; repeat for more")
         .value("NAME=VALUE")
+        .suggest(suggest_settings)
         .one_value_each()
         .group(op);
-    command.add("--look", options.look, "look of the operator").value("NAME").group(op);
+    command.add("--look", options.look, "look of the operator")
+        .value("NAME")
+        .suggest(suggest_looks)
+        .group(op);
 }
 
 void add_view_options(const Command& command, ViewOptions& options) {
@@ -21,12 +26,14 @@ void add_view_options(const Command& command, ViewOptions& options) {
         .group("Operator");
     command.add("--input", options.input, "scene-linear color space of the input")
         .value("SPACE")
+        .suggest(suggest_spaces)
         .show_default()
         .group(color);
     command
         .add("--display", options.display,
              "display, `linear` (unclamped Rec.709) or `native` (output of the operator)")
         .value("NAME")
+        .suggest(suggest_displays)
         .show_default()
         .group(color);
     command
@@ -42,11 +49,13 @@ void add_lut_input_options(const Command& command, LutOptions& options, const ch
         .add("--input-encoding", options.encoding,
              "encoding that the LUT expects (see `bake --help`) or `none` (default: its header's)")
         .value("NAME")
+        .suggest(suggest_encodings)
         .group(group);
     command
         .add("--lut-space", options.space,
              "scene-linear space of the LUT's input (default: that of its encoding)")
         .value("SPACE")
+        .suggest(suggest_spaces)
         .group(group);
 }
 
@@ -63,6 +72,7 @@ void add_lut_options(const Command& command, LutOptions& options, const Option& 
         .add("--interpolation", options.interpolation,
              "between grid points: tetrahedral, trilinear, or auto (what the file says)")
         .value("NAME")
+        .suggest({"tetrahedral", "trilinear", "auto"})
         .show_default()
         .group(group)
         .needs(lut);
@@ -156,6 +166,7 @@ void add_shot_options(const Command& command, ShotOptions& options, const Option
         "adaptation speed when the scene gets darker (default: as --adapt-up)", adapt);
     add("--adapt-form", options.form, "NAME",
         "`exponential` (1 - e^(-speed dt)) or `0.98` (1 - 0.98^(30 speed dt))", adapt)
+        .suggest({"exponential", "0.98"})
         .show_default();
     add("--adapt-start", options.start, "STOPS",
         "exposure of the first frame (default: its metered exposure)", adapt);

@@ -17,6 +17,7 @@
 #include "cli/messages.h"
 #include "cli/options.h"
 #include "cli/picture_commands.h"
+#include "cli/suggestions.h"
 #include "tonewright/lint.h"
 #include "tonewright/lut_match.h"
 #include "tonewright/ocio.h"
@@ -243,9 +244,10 @@ void add_verify(CommandLine& program) {
     const char* const what = "What to verify";
     const char* const how = "Measurement";
     const char* const output = "Output";
-    command.add(
-        "operators", options->verify.operators,
-        "operators (default: all with their presets and looks, or the views of the config)");
+    command
+        .add("operators", options->verify.operators,
+             "operators (default: all with their presets and looks, or the views of the config)")
+        .suggest(suggest_operators);
     command
         .add("--config", options->verify.config,
              "config file or its folder, from Tonewright or not (default: a new config)")
@@ -260,10 +262,12 @@ void add_verify(CommandLine& program) {
         .add("--display", options->verify.displays,
              "display; repeat for more (default: srgb, or all displays of the config)")
         .value("NAME")
+        .suggest(suggest_config_displays)
         .one_value_each()
         .group(what);
     command.add("--input", options->verify.input, "scene-linear color space of the samples")
         .value("SPACE")
+        .suggest(suggest_spaces)
         .show_default()
         .group(what);
     command.add("--picture", options->picture, "add the pixels of this picture to the samples")
@@ -287,6 +291,7 @@ void add_verify(CommandLine& program) {
         .one_value_each()
         .separated_by(',')
         .value("LIST")
+        .suggest({"glsl", "glsl-es", "wgsl", "hlsl", "dctl", "c", "none"})
         .group(how);
     command.add_flag("--summary", options->summary, "print one line for each operator")
         .group(output);

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// What a shell offers behind the words that stand on a command line. The scripts of the shells ask
+// `tonewright complete`, so that they all offer the same.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "cli/help_text.h"
+#include "tonewright/version.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+
+struct Suggestion {
+    std::string word;
+    /// What the word means, for shells that show it; may be empty.
+    std::string meaning;
+};
+
+struct Suggestions {
+    std::vector<Suggestion> words;
+    /// Names of files or of folders fit, too. The shell knows them.
+    bool has_files = false;
+    bool has_folders = false;
+};
+
+/// The value at the cursor, and the words before it.
+struct TypedValue {
+    std::string text;
+    /// Values of the options and arguments before it, by name: `--operator`, `OPERATOR`.
+    std::map<std::string, std::vector<std::string>> others = {};
+};
+/// May give words that do not begin with the typed text; complete() drops them.
+using Suggest = std::function<Suggestions(const TypedValue&)>;
+
+struct OptionTable {
+    /// All names, the long ones first; `OPERATOR` for an argument.
+    std::vector<std::string> names;
+    std::string text;
+    std::string value;
+    bool is_argument = false;
+    bool has_value = false;
+    bool may_repeat = false;
+    /// Between several values in one word; 0: one value a word.
+    char separator = 0;
+    Suggest suggest = {};
+};
+
+/// A command: its help, and its options as completion and the manual need them.
+struct CommandTable {
+    std::string name;
+    HelpPage page;
+    std::vector<OptionTable> options;
+};
+
+/// What may stand in the place of the last word.
+/// @param tables  the program and its commands
+/// @param words   without the name of the program; the last one may be empty
+[[nodiscard]] Suggestions complete(const std::vector<CommandTable>& tables,
+                                   const std::vector<std::string>& words);
+
+/// A word a line, with its meaning behind a tab, then `:files` or `:folders`.
+[[nodiscard]] std::string to_text(const Suggestions& suggestions);
+
+TONEWRIGHT_NAMESPACE_END

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The manual pages, of the text that `--help` prints. The build asks `tonewright manual` for them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/completion.h"
+#include "tonewright/version.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+
+struct ManualSource {
+    /// The program and its commands.
+    std::vector<CommandTable> tables;
+    /// Path of the document that has the reference of .tone files, in Markdown.
+    std::string reference;
+    /// Of all pages: `2026-01-31`.
+    std::string date;
+};
+
+/// Writes man1/tonewright.1, man1/tonewright-COMMAND.1 and man5/tonewright-tone.5 into the folder.
+/// @throws Error
+void write_manual(const ManualSource& source, const std::string& folder);
+
+TONEWRIGHT_NAMESPACE_END

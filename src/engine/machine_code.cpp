@@ -4,7 +4,6 @@
 #if defined(TONEWRIGHT_HAVE_XBYAK) && defined(__x86_64__) && !defined(_WIN32)
 
 #include <xbyak/xbyak.h>
-#include <xbyak/xbyak_util.h>
 
 #include <algorithm>
 #include <cstring>
@@ -15,12 +14,8 @@ namespace simd {
 namespace {
 
 constexpr std::int32_t kNone = VectorOperand::kNone;
-constexpr int kRegisters = 32;
 constexpr int kFirstMask = 1;  // k0 means "no mask"
 constexpr int kLastMask = 5;
-/// Blocks of pixels that a turn of the loop computes side by side. Three gained nothing: registers
-/// run out.
-constexpr int kInterleaved = 2;
 /// How far ahead pixels are fetched by code that runs over all of them at once, in bytes: 512 to
 /// 4096 were equally fast, a third faster than without.
 constexpr int kFetchAhead = 1024;
@@ -39,18 +34,22 @@ struct NoMaskLeft {};
 /// Of a part among those of a program.
 enum class Place : std::uint8_t { only, first, later };
 
-/// Straight-line code in a loop over blocks of 16 pixels. Registers are given as the code is
+/// Straight-line code in a loop over blocks of pixels. Registers are given as the code is
 /// written; where none is free, the value that is needed latest goes to the stack (Belady).
 class Generator : public Xbyak::CodeGenerator {
   public:
-    Generator() : CodeGenerator(Xbyak::DEFAULT_MAX_CODE_SIZE, Xbyak::AutoGrow) {}
+    explicit Generator(const VectorMachine& machine)
+        : CodeGenerator(Xbyak::DEFAULT_MAX_CODE_SIZE, Xbyak::AutoGrow),
+          machine_(machine),
+          holder_(static_cast<std::size_t>(machine.registers)),
+          is_locked_(holder_.size()) {}
 
     /// Where the function begins.
     /// @param place  of the part among the parts of a program with tiles of `tile` pixels
     std::size_t write(const VectorCode& code, const unsigned char* pool, PixelLayout layout,
                       Place place, std::size_t tile, int interleaved_blocks) {
         layout_ = layout;
-        const int tile_bytes = static_cast<int>(tile) / 16 * pixel_bytes();
+        const int tile_bytes = static_cast<int>(tile) / machine_.lanes * pixel_bytes();
         const bool has_pixels = layout != PixelLayout::planes;
         fetch_ahead_ = !has_pixels             ? 0
                        : place == Place::only  ? kFetchAhead
@@ -72,8 +71,10 @@ class Generator : public Xbyak::CodeGenerator {
         const std::size_t frame = getSize() - sizeof(std::int32_t);
         sub(rsp, r9);
         mov(rax, reinterpret_cast<std::size_t>(pool));
-        mov(r9d, 0x7777);
-        kmovw(k7, r9d);
+        if (machine_.has_avx512) {
+            mov(r9d, 0x7777);
+            kmovw(k7, r9d);
+        }
         xor_(r8, r8);
         if (interleaved_blocks > 1)
             write_loop(interleaved(code, interleaved_blocks), interleaved_blocks);
@@ -83,16 +84,17 @@ class Generator : public Xbyak::CodeGenerator {
         pop(rbp);
         vzeroupper();
         ret();
-        rewrite(frame, static_cast<std::uint64_t>(slot_count_) * kVectorBytes,
-                sizeof(std::int32_t));
+        // The stack stays aligned to 64.
+        const int frame_bytes = (slot_count_ * machine_.bytes() + 63) / 64 * 64;
+        rewrite(frame, static_cast<std::uint64_t>(frame_bytes), sizeof(std::int32_t));
         return entry;
     }
 
   private:
     struct State {
-        int reg = -1;  // zmm or, of a mask, k
-        bool is_mask = false;
-        int slot = -1;  // on the stack
+        int reg = -1;
+        bool is_mask = false;  // in k
+        int slot = -1;         // on the stack
         std::vector<std::size_t> uses;
         std::size_t next = 0;  // of the uses
     };
@@ -107,11 +109,16 @@ class Generator : public Xbyak::CodeGenerator {
         L(loop);
         if (fetch_ahead_ > 0) fetch(blocks);
         for (position_ = 0; position_ < code.instructions.size(); ++position_) {
-            write(code.instructions[position_]);
+            const VectorInstruction& step = code.instructions[position_];
+            if (step.result != kNone && state(step.result).uses.empty()) {
+                release(step);  // nobody reads it
+            } else {
+                write(step);
+            }
             free_slots_.insert(free_slots_.end(), dropped_slots_.begin(), dropped_slots_.end());
             dropped_slots_.clear();
         }
-        add(r8, 64 * blocks);
+        add(r8, machine_.bytes() * blocks);
         if (layout_ != PixelLayout::planes) {
             add(rsi, pixel_bytes() * blocks);
             add(rdx, pixel_bytes() * blocks);
@@ -132,14 +139,18 @@ class Generator : public Xbyak::CodeGenerator {
     }
 
     /// Of a block.
-    [[nodiscard]] int pixel_bytes() const { return layout_ == PixelLayout::rgb ? 3 * 64 : 4 * 64; }
+    [[nodiscard]] int pixel_bytes() const {
+        return (layout_ == PixelLayout::rgb ? 3 : 4) * machine_.bytes();
+    }
 
     // --- registers -------------------------------------------------------------------------------
 
     void begin(const VectorCode& code) {
         state_.assign(static_cast<std::size_t>(code.value_count), {});
-        holder_.fill(kNone);
-        is_locked_.fill(false);
+        std::fill(holder_.begin(), holder_.end(), kNone);
+        unlock();
+        row_address_ = nullptr;
+        row_index_ = kNone;
         mask_holder_.fill(kNone);
         free_slots_.clear();
         for (int slot = 0; slot < slot_count_; ++slot)
@@ -159,15 +170,19 @@ class Generator : public Xbyak::CodeGenerator {
         return s.next < s.uses.size() ? s.uses[s.next] : std::numeric_limits<std::size_t>::max();
     }
 
+    [[nodiscard]] Xbyak::Xmm vector(int reg) const {
+        return {machine_.has_avx512 ? Xbyak::Operand::ZMM : Xbyak::Operand::YMM, reg};
+    }
+    void unlock() { std::fill(is_locked_.begin(), is_locked_.end(), false); }
     Xbyak::Address slot_of(int slot) {
-        return ptr[rsp + static_cast<std::size_t>(slot) * kVectorBytes];
+        return ptr[rsp + static_cast<std::size_t>(slot * machine_.bytes())];
     }
 
     /// A register that holds nothing, not locked.
     int take() {
         int best = -1;
         std::size_t latest = 0;
-        for (int r = 0; r < kRegisters; ++r) {
+        for (int r = 0; r < machine_.registers; ++r) {
             const auto i = static_cast<std::size_t>(r);
             if (is_locked_[i]) continue;
             if (holder_[i] == kNone) {
@@ -188,7 +203,7 @@ class Generator : public Xbyak::CodeGenerator {
                 s.slot = free_slots_.back();
                 free_slots_.pop_back();
             }
-            vmovaps(slot_of(s.slot), Xbyak::Zmm(best));
+            vmovaps(slot_of(s.slot), vector(best));
         }
         s.reg = -1;
         holder_[static_cast<std::size_t>(best)] = kNone;
@@ -197,11 +212,13 @@ class Generator : public Xbyak::CodeGenerator {
     }
 
     /// The operand in a register, which stays its own until the instruction is written.
-    Xbyak::Zmm in_register(const VectorOperand& operand, bool wide) {
+    Xbyak::Xmm in_register(const VectorOperand& operand, bool wide) {
         if (operand.is_constant()) {
-            const Xbyak::Zmm r(take());
-            if (wide) {
-                vbroadcastsd(r, ptr[rax + operand.pool]);
+            const Xbyak::Xmm r = vector(take());
+            if (!machine_.has_avx512) {
+                vmovaps(r, table(operand.pool));
+            } else if (wide) {
+                vbroadcastsd(zmm(r), ptr[rax + operand.pool]);
             } else {
                 vbroadcastss(r, ptr[rax + operand.pool]);
             }
@@ -211,23 +228,24 @@ class Generator : public Xbyak::CodeGenerator {
         if (s.reg < 0) {
             s.reg = take();
             holder_[static_cast<std::size_t>(s.reg)] = operand.value;
-            vmovaps(Xbyak::Zmm(s.reg), slot_of(s.slot));
+            vmovaps(vector(s.reg), slot_of(s.slot));
         }
         is_locked_[static_cast<std::size_t>(s.reg)] = true;
-        return Xbyak::Zmm(s.reg);
+        return vector(s.reg);
     }
     [[nodiscard]] bool is_in_memory(const VectorOperand& operand) {
         return operand.is_constant() || state(operand.value).reg < 0;
     }
     /// An operand that is in memory, as the last operand of an instruction.
     Xbyak::Address in_memory(const VectorOperand& operand) {
-        if (operand.is_constant()) return ptr_b[rax + operand.pool];
+        if (operand.is_constant())
+            return machine_.has_avx512 ? ptr_b[rax + operand.pool] : table(operand.pool);
         return slot_of(state(operand.value).slot);
     }
 
     /// Counts the uses of this instruction; what is not used any more leaves its register.
     void release(const VectorInstruction& step) {
-        is_locked_.fill(false);
+        unlock();
         for (const VectorOperand& operand : step.in) {
             if (operand.is_value()) drop(operand.value);
         }
@@ -258,39 +276,35 @@ class Generator : public Xbyak::CodeGenerator {
     void define(std::int32_t value, int reg) {
         state(value).reg = reg;
         holder_[static_cast<std::size_t>(reg)] = value;
-        if (state(value).uses.empty()) {  // nobody reads it
-            holder_[static_cast<std::size_t>(reg)] = kNone;
-            state(value).reg = -1;
-        }
-        is_locked_.fill(false);
+        unlock();
     }
     /// For the result, when the operands have been read: may be the register of one of them.
-    Xbyak::Zmm result_after(const VectorInstruction& step) {
+    Xbyak::Xmm result_after(const VectorInstruction& step) {
         release(step);
         const int r = take();
         define(step.result, r);
-        return Xbyak::Zmm(r);
+        return vector(r);
     }
     /// For a result that is written before all operands are read.
-    Xbyak::Zmm result_apart(const VectorInstruction& step) {
+    Xbyak::Xmm result_apart(const VectorInstruction& step) {
         const int r = take();
         release(step);
         define(step.result, r);
-        return Xbyak::Zmm(r);
+        return vector(r);
     }
     /// A register with a copy of `from`: its own, where nobody else needs it.
-    Xbyak::Zmm result_over(const VectorInstruction& step, const VectorOperand& operand,
-                           const Xbyak::Zmm& from) {
+    Xbyak::Xmm result_over(const VectorInstruction& step, const VectorOperand& operand,
+                           const Xbyak::Xmm& from) {
         if (operand.is_constant() || dies(operand)) {  // a constant's copy is ours
             release(step);
             define(step.result, from.getIdx());
             return from;
         }
         const int r = take();
-        vmovaps(Xbyak::Zmm(r), from);
+        vmovaps(vector(r), from);
         release(step);
         define(step.result, r);
-        return Xbyak::Zmm(r);
+        return vector(r);
     }
 
     Xbyak::Opmask mask(std::int32_t value) { return Xbyak::Opmask(state(value).reg); }
@@ -298,11 +312,9 @@ class Generator : public Xbyak::CodeGenerator {
         release(step);
         for (int k = kFirstMask; k <= kLastMask; ++k) {
             if (mask_holder_[static_cast<std::size_t>(k)] != kNone) continue;
-            if (!state(step.result).uses.empty()) {
-                mask_holder_[static_cast<std::size_t>(k)] = step.result;
-                state(step.result).reg = k;
-                state(step.result).is_mask = true;
-            }
+            mask_holder_[static_cast<std::size_t>(k)] = step.result;
+            state(step.result).reg = k;
+            state(step.result).is_mask = true;
             return Xbyak::Opmask(k);
         }
         throw NoMaskLeft();
@@ -316,12 +328,12 @@ class Generator : public Xbyak::CodeGenerator {
         VectorOperand a = step.in[0];
         VectorOperand b = step.in[1];
         if (commutes && is_in_memory(a) && !is_in_memory(b)) std::swap(a, b);
-        const Xbyak::Zmm ra = in_register(a, step.wide);
+        const Xbyak::Xmm ra = in_register(a, step.wide);
         if (is_in_memory(b)) {
             const Xbyak::Address mb = in_memory(b);
             op(result_after(step), ra, mb);
         } else {
-            const Xbyak::Zmm rb = in_register(b, step.wide);
+            const Xbyak::Xmm rb = in_register(b, step.wide);
             op(result_after(step), ra, rb);
         }
     }
@@ -331,7 +343,7 @@ class Generator : public Xbyak::CodeGenerator {
             const Xbyak::Address m = in_memory(step.in[0]);
             op(result_after(step), m);
         } else {
-            const Xbyak::Zmm r = in_register(step.in[0], step.wide);
+            const Xbyak::Xmm r = in_register(step.in[0], step.wide);
             op(result_after(step), r);
         }
     }
@@ -343,10 +355,10 @@ class Generator : public Xbyak::CodeGenerator {
         VectorOperand b = step.in[1];
         const VectorOperand c = step.in[2];
         if (is_in_memory(a) && !is_in_memory(b)) std::swap(a, b);
-        const Xbyak::Zmm ra = in_register(a, step.wide);
+        const Xbyak::Xmm ra = in_register(a, step.wide);
         if (is_in_memory(c)) {
             // a := a*b + [c]
-            const Xbyak::Zmm rb = in_register(b, step.wide);
+            const Xbyak::Xmm rb = in_register(b, step.wide);
             if (!is_in_memory(c)) return fused(step, over_a, over_a_c_first, over_c);
             const Xbyak::Address mc = in_memory(c);
             if (!dies(a) && !a.is_constant() && dies(b)) {
@@ -356,7 +368,7 @@ class Generator : public Xbyak::CodeGenerator {
             }
             return;
         }
-        const Xbyak::Zmm rc = in_register(c, step.wide);
+        const Xbyak::Xmm rc = in_register(c, step.wide);
         if (is_in_memory(b)) {
             const Xbyak::Address mb = in_memory(b);
             if (dies(c) || (!dies(a) && !a.is_constant())) {
@@ -366,7 +378,7 @@ class Generator : public Xbyak::CodeGenerator {
             }
             return;
         }
-        const Xbyak::Zmm rb = in_register(b, step.wide);
+        const Xbyak::Xmm rb = in_register(b, step.wide);
         if (dies(c) || (!dies(a) && !dies(b))) {
             over_c(result_over(step, c, rc), ra, rb);
         } else if (dies(a)) {
@@ -383,39 +395,85 @@ class Generator : public Xbyak::CodeGenerator {
             std::swap(a, b);
             predicate = swapped;
         }
-        const Xbyak::Zmm ra = in_register(a, step.wide);
+        const Xbyak::Xmm ra = in_register(a, step.wide);
         const auto write = [&](const Xbyak::Operand& vb) {
+            const auto to = [&](const Xbyak::Xmm& r) {
+                step.wide ? vcmppd(r, ra, vb, predicate) : vcmpps(r, ra, vb, predicate);
+            };
+            if (!machine_.has_avx512) return to(result_after(step));
             const Xbyak::Opmask k = new_mask(step);
-            if (step.wide) {
-                vcmppd(k, ra, vb, predicate);
-            } else {
-                vcmpps(k, ra, vb, predicate);
-            }
+            step.wide ? vcmppd(k, ra, vb, predicate) : vcmpps(k, ra, vb, predicate);
         };
         if (is_in_memory(b)) return write(in_memory(b));
         write(in_register(b, step.wide));
     }
 
     Xbyak::Address plane(const VectorInstruction& step) {
+        const auto vector_bytes = static_cast<std::size_t>(machine_.bytes());
         if (step.wide) {
             const std::size_t half = step.immediate + std::size_t{2} * step.block;
-            return ptr[rdi + r8 * 2 + (step.offset + kVectorBytes * half)];
+            return ptr[rdi + r8 * 2 + (step.offset + vector_bytes * half)];
         }
-        return ptr[rdi + r8 + (step.offset + kVectorBytes * step.block)];
+        return ptr[rdi + r8 + (step.offset + vector_bytes * step.block)];
     }
     Xbyak::Address pixels(const Xbyak::Reg64& base, const VectorInstruction& step) {
-        const int offset = 64 * step.immediate + pixel_bytes() * step.block;
-        return ptr[base + static_cast<std::size_t>(offset)];
+        return pixels(base, step, machine_.bytes() * step.immediate);
+    }
+    Xbyak::Address pixels(const Xbyak::Reg64& base, const VectorInstruction& step, int at) {
+        return ptr[base + static_cast<std::size_t>(at + pixel_bytes() * step.block)];
     }
     /// The stack's first lines, behind those of the spilled values.
     Xbyak::Address kept_index(const VectorInstruction& step, int number, int pixel) {
         const int offset = 64 * (number + 4 * step.block) + 4 * pixel;
         return ptr[rbp - static_cast<std::size_t>(kKeptBytes - offset)];
     }
-    Xbyak::Address table(std::uint32_t offset) { return ptr[rax + std::size_t{offset}]; }
+    template <class T>
+    Xbyak::Address table(T offset) {
+        return ptr[rax + static_cast<std::size_t>(offset)];
+    }
+
+    /// What has half the bits of a vector.
+    [[nodiscard]] Xbyak::Xmm half(const Xbyak::Xmm& r) const {
+        return {machine_.has_avx512 ? Xbyak::Operand::YMM : Xbyak::Operand::XMM, r.getIdx()};
+    }
+    static Xbyak::Zmm zmm(const Xbyak::Xmm& r) { return Xbyak::Zmm(r.getIdx()); }
+
+    void rows(const VectorInstruction& step) {
+        const Xbyak::Xmm r = result_apart(step);
+        const Xbyak::Xmm low(r.getIdx());
+        const int quarter = step.immediate / 4;
+        Xbyak::Reg64 base = rax;
+        if (step.address) {
+            base = r10;
+            if (step.address != row_address_) mov(r10, reinterpret_cast<std::size_t>(step.address));
+            row_address_ = step.address;
+        }
+        const auto index_of = [&](int pixel) {
+            return kept_index(step, step.immediate % 4, pixel);
+        };
+        const auto row = [&](const Xbyak::Reg64& at) {
+            return ptr[base + at + static_cast<std::size_t>(step.offset)];
+        };
+        if (machine_.has_avx512) {
+            for (int i = 0; i < 4; ++i) {
+                const Xbyak::Reg64 at = i % 2 == 0 ? r9 : r11;
+                mov(at.cvt32(), index_of(4 * quarter + i));
+                i == 0 ? vmovaps(low, row(at))
+                       : vinsertf32x4(zmm(r), zmm(r), row(at), static_cast<std::uint8_t>(i));
+            }
+            return;
+        }
+        if (row_index_ != step.immediate + 16 * step.block) {
+            mov(r9d, index_of(quarter));
+            mov(r11d, index_of(quarter + 4));
+            row_index_ = step.immediate + 16 * step.block;
+        }
+        vmovaps(low, row(r9));
+        vinsertf128(Xbyak::Ymm(r.getIdx()), Xbyak::Ymm(r.getIdx()), row(r11), 1);
+    }
 
     void write(const VectorInstruction& step) {
-        using Z = Xbyak::Zmm;
+        using Z = Xbyak::Xmm;
         using O = Xbyak::Operand;
         const bool wide = step.wide;
         switch (step.op) {
@@ -445,21 +503,31 @@ class Generator : public Xbyak::CodeGenerator {
                 });
             case VectorOp::bit_and:
                 return binary(
-                    step, [&](Z r, Z a, const O& b) { wide ? vpandq(r, a, b) : vpandd(r, a, b); },
+                    step, [&](Z r, Z a, const O& b) { wide ? vandpd(r, a, b) : vandps(r, a, b); },
                     true);
             case VectorOp::bit_or:
                 return binary(
-                    step, [&](Z r, Z a, const O& b) { wide ? vporq(r, a, b) : vpord(r, a, b); },
+                    step, [&](Z r, Z a, const O& b) { wide ? vorpd(r, a, b) : vorps(r, a, b); },
                     true);
             case VectorOp::bit_xor:
                 return binary(
-                    step, [&](Z r, Z a, const O& b) { wide ? vpxorq(r, a, b) : vpxord(r, a, b); },
+                    step, [&](Z r, Z a, const O& b) { wide ? vxorpd(r, a, b) : vxorps(r, a, b); },
                     true);
-            case VectorOp::integer_or:
+            case VectorOp::bit_and_not:
+                return binary(step, [&](Z r, Z a, const O& b) {
+                    wide ? vandnpd(r, a, b) : vandnps(r, a, b);
+                });
+            case VectorOp::integer_add:
                 return binary(
-                    step, [&](Z r, Z a, const O& b) { vpord(r, a, b); }, true);
+                    step, [&](Z r, Z a, const O& b) { wide ? vpaddq(r, a, b) : vpaddd(r, a, b); },
+                    true);
             case VectorOp::integer_subtract:
-                return binary(step, [&](Z r, Z a, const O& b) { vpsubd(r, a, b); });
+                return binary(
+                    step, [&](Z r, Z a, const O& b) { wide ? vpsubq(r, a, b) : vpsubd(r, a, b); });
+            case VectorOp::constant:
+                return (void)result_over(step, step.in[0], in_register(step.in[0], wide));
+            case VectorOp::to_float:
+                return unary(step, [&](Z r, const O& a) { vcvtdq2ps(r, a); });
             case VectorOp::multiply_add:
                 return fused(
                     step,
@@ -502,7 +570,11 @@ class Generator : public Xbyak::CodeGenerator {
             case VectorOp::floor: {
                 const std::uint8_t mode = step.op == VectorOp::round ? 8 : 9;
                 return unary(step, [&](Z r, const O& a) {
-                    wide ? vrndscalepd(r, a, mode) : vrndscaleps(r, a, mode);
+                    if (machine_.has_avx512) {
+                        wide ? vrndscalepd(r, a, mode) : vrndscaleps(r, a, mode);
+                    } else {
+                        wide ? vroundpd(r, a, mode) : vroundps(r, a, mode);
+                    }
                 });
             }
             case VectorOp::exponent:
@@ -512,28 +584,44 @@ class Generator : public Xbyak::CodeGenerator {
                 return unary(step, [&](Z r, const O& a) {
                     wide ? vgetmantpd(r, a, 7) : vgetmantps(r, a, 7);
                 });
-            case VectorOp::shift_right:
-                return unary(step, [&](Z r, const O& a) { vpsrad(r, a, step.immediate); });
+            case VectorOp::shift_right: {
+                const Z a = in_register(step.in[0], wide);
+                const Z r = result_after(step);
+                return wide ? vpsrlq(r, a, step.immediate) : vpsrad(r, a, step.immediate);
+            }
+            case VectorOp::shift_left: {
+                const Z a = in_register(step.in[0], wide);
+                const Z r = result_after(step);
+                return wide ? vpsllq(r, a, step.immediate) : vpslld(r, a, step.immediate);
+            }
             case VectorOp::promote_low: {
                 const Z a = in_register(step.in[0], false);
-                return vcvtps2pd(result_after(step), Xbyak::Ymm(a.getIdx()));
+                return vcvtps2pd(result_after(step), half(a));
             }
             case VectorOp::promote_high: {
                 const Z a = in_register(step.in[0], false);
                 const Z r = result_after(step);
-                vextractf64x4(Xbyak::Ymm(r.getIdx()), a, 1);
-                return vcvtps2pd(r, Xbyak::Ymm(r.getIdx()));
+                if (machine_.has_avx512) {
+                    vextractf64x4(half(r), zmm(a), 1);
+                } else {
+                    vextractf128(half(r), Xbyak::Ymm(a.getIdx()), 1);
+                }
+                return vcvtps2pd(r, half(r));
             }
             case VectorOp::demote: {
                 const Z low = in_register(step.in[0], true);
                 const Z high = in_register(step.in[1], true);
-                const Xbyak::Ymm upper(take());
+                const Z upper = half(vector(take()));
                 vcvtpd2ps(upper, high);
                 release(step);
                 is_locked_[static_cast<std::size_t>(upper.getIdx())] = true;
-                const Z r(take());
-                vcvtpd2ps(Xbyak::Ymm(r.getIdx()), low);
-                vinsertf64x4(r, r, upper, 1);
+                const Z r = vector(take());
+                vcvtpd2ps(half(r), low);
+                if (machine_.has_avx512) {
+                    vinsertf64x4(zmm(r), zmm(r), upper, 1);
+                } else {
+                    vinsertf128(Xbyak::Ymm(r.getIdx()), Xbyak::Ymm(r.getIdx()), upper, 1);
+                }
                 return define(step.result, r.getIdx());
             }
             case VectorOp::equal:
@@ -553,13 +641,19 @@ class Generator : public Xbyak::CodeGenerator {
             }
             case VectorOp::is_minus: {
                 const Z a = in_register(step.in[0], wide);
+                if (!machine_.has_avx512) return (void)result_over(step, step.in[0], a);
                 const Xbyak::Opmask k = new_mask(step);
                 return wide ? vpmovq2m(k, a) : vpmovd2m(k, a);
             }
             case VectorOp::blend: {
-                const Xbyak::Opmask k = mask(step.mask);
                 const Z no = in_register(step.in[1], wide);
                 const auto write = [&](const O& yes) {
+                    if (!machine_.has_avx512) {
+                        const Z where = in_register({step.mask, kNone}, wide);
+                        const Z r = result_after(step);
+                        return wide ? vblendvpd(r, no, yes, where) : vblendvps(r, no, yes, where);
+                    }
+                    const Xbyak::Opmask k = mask(step.mask);
                     const Z r = result_after(step);
                     wide ? vblendmpd(r | k, no, yes) : vblendmps(r | k, no, yes);
                 };
@@ -567,11 +661,18 @@ class Generator : public Xbyak::CodeGenerator {
                 return write(in_register(step.in[0], wide));
             }
             case VectorOp::zero_unless: {
+                if (!machine_.has_avx512) {
+                    VectorInstruction both = step;
+                    both.op = VectorOp::bit_and;
+                    both.in[1] = {step.mask, kNone};
+                    both.mask = kNone;
+                    return write(both);
+                }
                 const Xbyak::Opmask k = mask(step.mask);
                 if (step.in[0].is_constant()) {
                     const Z r = result_after(step);
                     const Xbyak::Address number = ptr[rax + step.in[0].pool];
-                    return wide ? vbroadcastsd(r | k | Xbyak::util::T_z, number)
+                    return wide ? vbroadcastsd(zmm(r) | k | Xbyak::util::T_z, number)
                                 : vbroadcastss(r | k | Xbyak::util::T_z, number);
                 }
                 const Z a = in_register(step.in[0], wide);
@@ -586,16 +687,14 @@ class Generator : public Xbyak::CodeGenerator {
                 const Z r = result_over(step, step.in[0], a);
                 return vpaddd(r | k, r, b);
             }
-            case VectorOp::shift_left:
-                return unary(step, [&](Z r, const O& a) { vpslld(r, a, step.immediate); });
             case VectorOp::to_index: {
                 const Z a = in_register(step.in[0], wide);
                 if (!wide) return vcvttps2dq(result_after(step), a);
-                return vcvttpd2dq(Xbyak::Ymm(result_after(step).getIdx()), a);
+                return vcvttpd2dq(half(result_after(step)), a);
             }
             case VectorOp::permute_16: {
                 const Z index = in_register(step.in[0], false);
-                return vpermps(result_after(step), index, table(step.offset));
+                return vpermps(zmm(result_after(step)), zmm(index), table(step.offset));
             }
             case VectorOp::permute_32: {
                 const Z index = in_register(step.in[0], false);
@@ -605,38 +704,33 @@ class Generator : public Xbyak::CodeGenerator {
             }
             case VectorOp::gather: {
                 const Z index = in_register(step.in[0], false);
+                if (!machine_.has_avx512) {
+                    const Z all = vector(take());
+                    const Z r = result_apart(step);
+                    vpcmpeqd(all, all, all);
+                    vxorpd(r, r, r);
+                    return vgatherdpd(r, ptr[rax + half(index) * 8 + static_cast<int>(step.offset)],
+                                      all);
+                }
                 const Z r = result_apart(step);
                 kxnorw(k6, k6, k6);
-                vpxord(r, r, r);
-                return vgatherdpd(
-                    r | k6,
-                    ptr[rax + Xbyak::Ymm(index.getIdx()) * 8 + static_cast<int>(step.offset)]);
+                vxorpd(r, r, r);
+                return vgatherdpd(r | k6,
+                                  ptr[rax + half(index) * 8 + static_cast<int>(step.offset)]);
             }
             case VectorOp::spill_index: {
                 const Z a = in_register(step.in[0], false);
-                vmovdqa32(kept_index(step, step.immediate, 0), a);
+                vmovaps(kept_index(step, step.immediate, 0), a);
+                row_index_ = kNone;
                 return release(step);
             }
-            case VectorOp::nodes: {
-                const Z r = result_apart(step);
-                mov(r10, reinterpret_cast<std::size_t>(step.address));
-                for (int pixel = 0; pixel < 4; ++pixel) {
-                    const Xbyak::Reg64 at = pixel % 2 == 0 ? r9 : r11;
-                    mov(at.cvt32(),
-                        kept_index(step, step.immediate % 4, 4 * (step.immediate / 4) + pixel));
-                    if (pixel == 0) {
-                        vmovaps(Xbyak::Xmm(r.getIdx()), ptr[r10 + at]);
-                    } else {
-                        vinsertf32x4(r, r, ptr[r10 + at], static_cast<std::uint8_t>(pixel));
-                    }
-                }
-                return;
-            }
+            case VectorOp::rows:
+                return rows(step);
             case VectorOp::expand: {
                 const Z a = in_register(step.in[0], false);
                 const Z r = result_apart(step);
                 vmovaps(r, table(step.offset));
-                return vpermps(r, r, a);
+                return vpermps(zmm(r), zmm(r), a);
             }
             case VectorOp::load_plane:
                 return vmovaps(result_after(step), plane(step));
@@ -652,8 +746,25 @@ class Generator : public Xbyak::CodeGenerator {
                 vmovups(pixels(rdx, step), a);
                 return release(step);
             }
+            case VectorOp::load_halves: {
+                const Xbyak::Ymm r(result_after(step).getIdx());
+                vmovups(Xbyak::Xmm(r.getIdx()), pixels(rsi, step, 16 * step.immediate));
+                return vinsertf128(r, r, pixels(rsi, step, 16 * (step.immediate + 3)), 1);
+            }
+            case VectorOp::store_halves: {
+                const Xbyak::Ymm a(in_register(step.in[0], false).getIdx());
+                vmovups(pixels(rdx, step, 16 * step.immediate), Xbyak::Xmm(a.getIdx()));
+                vextractf128(pixels(rdx, step, 16 * (step.immediate + 3)), a, 1);
+                return release(step);
+            }
             case VectorOp::store_colors: {
                 const Z a = in_register(step.in[0], false);
+                if (!machine_.has_avx512) {  // the fourth as it was read: masked stores are slow
+                    const Z r = dies(step.in[0]) ? a : vector(take());
+                    vblendps(r, a, pixels(rdx, step), 0x88);
+                    vmovups(pixels(rdx, step), r);
+                    return release(step);
+                }
                 vmovups(pixels(rdx, step) | k7, a);
                 return release(step);
             }
@@ -667,14 +778,20 @@ class Generator : public Xbyak::CodeGenerator {
             case VectorOp::shuffle_128: {
                 const Z a = in_register(step.in[0], false);
                 const Z b = in_register(step.in[1], false);
-                return vshuff64x2(result_after(step), a, b, step.immediate);
+                return vshuff64x2(zmm(result_after(step)), zmm(a), b, step.immediate);
+            }
+            case VectorOp::shuffle_4: {
+                const Z a = in_register(step.in[0], false);
+                const Z b = in_register(step.in[1], false);
+                return vshufps(result_after(step), a, b, step.immediate);
             }
         }
     }
 
+    VectorMachine machine_;
     std::vector<State> state_;
-    std::array<std::int32_t, kRegisters> holder_{};
-    std::array<bool, kRegisters> is_locked_{};
+    std::vector<std::int32_t> holder_;  // by register
+    std::vector<bool> is_locked_;
     std::array<std::int32_t, 8> mask_holder_{};
     std::vector<int> free_slots_, dropped_slots_;
     int slot_count_ = 0;
@@ -682,12 +799,15 @@ class Generator : public Xbyak::CodeGenerator {
     int fetch_ahead_ = 0;  // in bytes
     int claim_ahead_ = 0;
     std::size_t position_ = 0;
+    const void* row_address_ = nullptr;  // in r10
+    int row_index_ = kNone;              // in r9 and r11, of AVX2
 };
 
 /// The code and what it reads.
 class Assembled final : public MachineCode {
   public:
-    Assembled(VectorProgram program, int interleaved_blocks) : MachineCode(std::move(program)) {
+    Assembled(VectorProgram program, const VectorMachine& machine, int interleaved_blocks)
+        : MachineCode(std::move(program)), generator_(machine) {
         pool_.resize(program_.pool.size() / kVectorBytes + 2);
         std::memcpy(pool_.data(), program_.pool.data(), program_.pool.size());
         const auto* pool = reinterpret_cast<const unsigned char*>(pool_.data());
@@ -722,15 +842,13 @@ class Assembled final : public MachineCode {
 bool MachineCode::is_built_in() noexcept { return true; }
 
 std::shared_ptr<const MachineCode> MachineCode::make(const Code& code) {
-    using Xbyak::util::Cpu;
-    static const Cpu cpu;
-    if (!cpu.has(Cpu::tAVX512F) || !cpu.has(Cpu::tAVX512DQ)) return nullptr;
     const std::optional<VectorProgram> program = translate(code);
     if (!program) return nullptr;
     // Side by side, blocks need more mask registers than there are when each needs three.
-    for (int blocks = kInterleaved; blocks > 0; --blocks) {
+    const VectorMachine& machine = *code.target->machine;
+    for (int blocks = machine.interleaved; blocks > 0; --blocks) {
         try {
-            return std::make_shared<const Assembled>(*program, blocks);
+            return std::make_shared<const Assembled>(*program, machine, blocks);
         } catch (const NoMaskLeft&) {
             continue;
         } catch (const Xbyak::Error&) {

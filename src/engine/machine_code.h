@@ -13,10 +13,11 @@ namespace simd {
 /// interpreter writes each to the first-level cache and reads it back. Computes the same bits.
 class MachineCode {
   public:
-    /// Nothing where the processor has no AVX-512, the system gives no memory that can be executed,
-    /// the build has no assembler, or the program has more values between its parts than a tile
-    /// holds or more than five comparisons open at once (no operator of the catalogue has): then
-    /// the interpreter runs, slower.
+    /// Nothing where the system gives no memory that can be executed, the build has no assembler,
+    /// or the program has more values between its parts than a tile holds or, for AVX-512, more
+    /// than five comparisons open at once (no operator of the catalogue has): then the interpreter
+    /// runs, slower.
+    /// @pre the code's target has machine code
     [[nodiscard]] static std::shared_ptr<const MachineCode> make(const Code& code);
 
     /// False where the build had no assembler.
@@ -28,7 +29,7 @@ class MachineCode {
 
     [[nodiscard]] const VectorProgram& program() const noexcept { return program_; }
 
-    /// Runs one part over `blocks` times 16 pixels.
+    /// Runs one part over blocks of as many pixels as the target's vectors have lanes.
     /// @param tile     values that come from other parts or go there, and pixels in planes
     /// @param in, out  of the first and the last part with interleaved pixels. May be the same.
     void run(std::size_t part, PixelLayout layout, unsigned char* tile, const float* in, float* out,

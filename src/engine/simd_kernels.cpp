@@ -1160,7 +1160,7 @@ HWY_NOINLINE void store_tile(const TilePorts& ports, const Frame& frame,
     }
 }
 
-#if HWY_TARGET <= HWY_AVX3
+#if HWY_TARGET <= HWY_AVX2
 
 /// One part after the other over each tile, with what runs over the whole tile between them.
 void run_parts(const Code& code, PixelLayout layout, unsigned char* tile, const float* in,
@@ -1168,7 +1168,7 @@ void run_parts(const Code& code, PixelLayout layout, unsigned char* tile, const 
     const VectorProgram& program = code.machine->program();
     const Frame frame{tile, reinterpret_cast<const unsigned char*>(code.constants.data()), count};
     for (std::size_t part = 0; part <= program.tile_steps.size(); ++part) {
-        code.machine->run(part, layout, tile, in, out, count / kLaneMultiple);
+        code.machine->run(part, layout, tile, in, out, count / hn::Lanes(DF()));
         if (part == program.tile_steps.size()) return;
         for (const Instruction& step : program.tile_steps[part])
             run_instruction(frame, code, step);
@@ -1218,7 +1218,8 @@ void run_machine(const Code& code, unsigned char* tile, const std::array<const f
     }
 }
 
-#elif HWY_TARGET <= HWY_SSE4
+#endif
+#if HWY_TARGET > HWY_AVX3 && HWY_TARGET <= HWY_SSE4
 
 /// What is one curve of every channel needs no planes: whether it is, and the pixels lie so.
 bool run_without_tiles(const Code& code, const std::array<const float*, 3>& in,
@@ -1247,10 +1248,14 @@ bool run_without_tiles(const Code& code, const std::array<const float*, 3>& in,
 void run(const Code& code, const std::array<const float*, 3>& in, std::ptrdiff_t in_stride,
          const std::array<float*, 3>& out, std::ptrdiff_t out_stride, std::size_t count) noexcept {
 #if HWY_TARGET > HWY_AVX3 && HWY_TARGET <= HWY_SSE4
-    if (run_without_tiles(code, in, in_stride, out, out_stride, count)) return;
+    // Machine code has a tile for planes, but none for pixels.
+    if ((!code.machine || in_stride == 1) &&
+        run_without_tiles(code, in, in_stride, out, out_stride, count)) {
+        return;
+    }
 #endif
     alignas(kVectorBytes) unsigned char registers[kRegisterFileBytes];
-#if HWY_TARGET <= HWY_AVX3
+#if HWY_TARGET <= HWY_AVX2
     if (code.machine) return run_machine(code, registers, in, in_stride, out, out_stride, count);
 #endif
     const auto* constants = reinterpret_cast<const unsigned char*>(code.constants.data());
@@ -1270,8 +1275,15 @@ void run(const Code& code, const std::array<const float*, 3>& in, std::ptrdiff_t
     }
 }
 
-constexpr Target kTarget = {
-    .curve_form = kCurveForm, .runs_machine_code = HWY_TARGET <= HWY_AVX3, .run = run};
+#if HWY_TARGET <= HWY_AVX3
+constexpr std::optional<VectorMachine> kMachine = VectorMachine{16, 32, true, 2};
+#elif HWY_TARGET <= HWY_AVX2
+constexpr std::optional<VectorMachine> kMachine = VectorMachine{8, 16, false, 1};
+#else
+constexpr std::optional<VectorMachine> kMachine;
+#endif
+
+constexpr Target kTarget = {.curve_form = kCurveForm, .machine = kMachine, .run = run};
 
 // NOLINTNEXTLINE(google-readability-namespace-comments)
 }  // namespace HWY_NAMESPACE

@@ -137,13 +137,25 @@ struct TilePorts {
 class MachineCode;
 struct Code;
 
+/// What the vectors of an instruction set are, for machine code.
+struct VectorMachine {
+    int lanes;      // floats in a vector: the pixels of a block
+    int registers;  // for vectors
+    /// Registers for masks, broadcasts in operands, permutes of whole tables, exponents.
+    bool has_avx512;
+    /// Blocks of pixels that a turn of the loop computes side by side.
+    int interleaved;
+
+    [[nodiscard]] constexpr int bytes() const { return lanes * 4; }
+};
+
 /// An instruction set, and the kernels that are compiled for it.
 struct Target {
     const char* target = nullptr;  // its name
     /// The form of compiled curves that is fastest there.
     CurveForm curve_form = CurveForm::none;
-    /// True for the instruction set that machine code is made for.
-    bool runs_machine_code = false;
+    /// Of an instruction set that machine code is made for.
+    std::optional<VectorMachine> machine;
     void (*run)(const Code& code, const std::array<const float*, 3>& in, std::ptrdiff_t in_stride,
                 const std::array<float*, 3>& out, std::ptrdiff_t out_stride,
                 std::size_t count) noexcept = nullptr;
@@ -168,7 +180,7 @@ struct Code : TilePorts {
     std::optional<std::uint32_t> only_curve;
     /// Pixels per tile: a multiple of kLaneMultiple, such that the registers fit into the file.
     std::size_t tile = 0;
-    /// The same for a processor with AVX-512, where it could be made. Refers to the lattices: a
+    /// The same as machine code, where it could be made. Refers to the lattices: a
     /// program is moved, not copied.
     std::shared_ptr<const MachineCode> machine;
 

@@ -439,7 +439,7 @@ class Assembler {
         code.lattices = std::move(lattices_);
         code.curves = std::move(curves_);
         code.only_curve = only_curve(code);
-        if (target.runs_machine_code) code.machine = MachineCode::make(code);
+        if (target.machine) code.machine = MachineCode::make(code);
         return code;
     }
 

@@ -18,7 +18,7 @@ namespace simd {
 /// 4. products and sums contracted to fused multiply-adds and dot products, comparisons joined to
 ///    their selects;
 /// 5. registers allocated, and the tile made as large as the first-level cache allows;
-/// 6. for AVX-512, machine code of the same (machine_code.h).
+/// 6. for AVX2 and AVX-512, machine code of the same (machine_code.h).
 /// @param has_curves  false leaves 2 out, to test the kernels that curves replace
 [[nodiscard]] Code compile(const Pipeline& pipeline, double max_error = kSimdError,
                            const Target& target = find_target(), bool has_curves = true);

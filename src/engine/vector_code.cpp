@@ -27,13 +27,18 @@ constexpr std::size_t kTileBytes = std::size_t{24} * 1024;
 /// Constants and tables, each once.
 class Pool {
   public:
+    /// @param copies  bytes that a number fills with copies of itself; 0 for one copy
+    explicit Pool(std::size_t copies) : copies_(copies) {}
     Number number(double value, bool wide) {
-        if (wide) return {kNone, place(&value, sizeof value, sizeof value)};
-        const auto narrow = static_cast<float>(value);
-        return {kNone, place(&narrow, sizeof narrow, sizeof narrow)};
+        return wide ? bits(value) : bits(static_cast<float>(value));
     }
-    Number bits(std::uint32_t value) { return {kNone, place(&value, sizeof value, sizeof value)}; }
-    Number bits(std::uint64_t value) { return {kNone, place(&value, sizeof value, sizeof value)}; }
+    /// @param value  of 32 or 64 bits
+    template <class T>
+    Number bits(T value) {
+        const std::vector<T> copies(std::max<std::size_t>(copies_ / sizeof value, 1), value);
+        const std::size_t size = copies.size() * sizeof value;
+        return {kNone, place(copies.data(), size, size)};
+    }
     template <class T>
     std::uint32_t table(const T* numbers, std::size_t count) {
         return static_cast<std::uint32_t>(place(numbers, count * sizeof(T), kVectorBytes));
@@ -52,11 +57,12 @@ class Pool {
         return it->second;
     }
 
+    std::size_t copies_;
     std::vector<unsigned char> bytes_;
     std::map<std::string, std::int32_t> offset_;  // by the bytes themselves
 };
 
-/// One value of all 16 pixels: a vector of floats, or two of doubles, or both.
+/// One value of all pixels of a block: a vector of floats, or two of doubles, or both.
 struct Lanes {
     Number narrow;
     std::array<Number, 2> wide;
@@ -66,7 +72,7 @@ struct Lanes {
 /// compute, operation by operation, so that both give the same bits.
 class Writer {
   public:
-    explicit Writer(Pool& pool) : pool_(pool) {}
+    Writer(Pool& pool, const VectorMachine& machine) : pool_(pool), machine_(machine) {}
 
     VectorCode take() { return std::move(code_); }
 
@@ -157,11 +163,72 @@ class Writer {
     struct Split {
         Number e, f;
     };
+    /// As in simd_math-inl.h.
     Split split(bool w, Number x) {
+        if (!machine_.has_avx512) return split_bits(w, x);
         const Number up =
             w ? k(true, 0x1.5555555555555p+0) : k(false, static_cast<double>(1.33333337F));
         const Number e = op(VectorOp::exponent, w, mul(w, x, up));
         return {e, sub(w, op(VectorOp::mantissa, w, x), k(w, 1))};
+    }
+
+    Split split_bits(bool w, Number x) {
+        const std::int32_t denormal =
+            compare(VectorOp::less, w, x,
+                    k(w, w ? std::numeric_limits<double>::min()
+                           : static_cast<double>(std::numeric_limits<float>::min())));
+        const Number scaled = blend(w, denormal, mul(w, x, k(w, w ? 0x1p53 : 0x1p24)), x);
+        const Number lost = zero_unless(w, denormal, k(w, w ? 53 : 24));
+        if (!w) {
+            const Number three_quarters = pool_.bits(std::uint32_t{0x3F400000});
+            const Number bits = op(VectorOp::integer_subtract, w, scaled, three_quarters);
+            const Number fraction =
+                op(VectorOp::bit_and, w, bits, pool_.bits(std::uint32_t{0x007FFFFF}));
+            const Number whole =
+                op(VectorOp::to_float, w, shifted(VectorOp::shift_right, w, bits, 23));
+            return {sub(w, whole, lost),
+                    sub(w, op(VectorOp::integer_add, w, fraction, three_quarters), k(w, 1))};
+        }
+        constexpr std::uint64_t kThreeQuarters = 0x3FE8000000000000;
+        constexpr std::uint64_t kBias = 0x3FF0000000000000;
+        const Number bits =
+            op(VectorOp::integer_add, w, scaled, pool_.bits(kBias - kThreeQuarters));
+        const Number fraction =
+            op(VectorOp::bit_and, w, bits, pool_.bits(std::uint64_t{0x000FFFFFFFFFFFFF}));
+        const Number whole = op(VectorOp::bit_or, w, shifted(VectorOp::shift_right, w, bits, 52),
+                                pool_.bits(std::uint64_t{0x4330000000000000}));
+        return {
+            sub(w, sub(w, whole, k(w, 0x1p52 + 1023)), lost),
+            sub(w, op(VectorOp::integer_add, w, fraction, pool_.bits(kThreeQuarters)), k(w, 1))};
+    }
+    Number shifted(VectorOp o, bool w, Number x, int bits) {
+        VectorInstruction step;
+        step.op = o;
+        step.wide = w;
+        step.immediate = static_cast<std::uint8_t>(bits);
+        step.in[0] = x;
+        return emit(step);
+    }
+    /// x * 2^n.
+    /// @param is_limited  n is, to what exp2() limits it to
+    Number scale(bool w, Number x, Number n, bool is_limited) {
+        if (machine_.has_avx512) return op(VectorOp::scale, w, x, n);
+        if (!is_limited) n = limited(w, n, w ? 2000 : 250);
+        if (w) {
+            const Number half = op(VectorOp::floor, w, mul(w, n, k(w, 0.5)));
+            const auto power_of_two = [&](Number e) {
+                return shifted(VectorOp::shift_left, w, add(w, e, k(w, 0x1p52 + 1023)), 52);
+            };
+            return mul(w, mul(w, x, power_of_two(half)), power_of_two(sub(w, n, half)));
+        }
+        const Number whole = op(VectorOp::to_index, w, n);
+        const Number half = shifted(VectorOp::shift_right, w, whole, 1);
+        const auto power_of_two = [&](Number e) {
+            return shifted(VectorOp::shift_left, w,
+                           op(VectorOp::integer_add, w, e, pool_.bits(std::uint32_t{127})), 23);
+        };
+        return mul(w, mul(w, x, power_of_two(half)),
+                   power_of_two(op(VectorOp::integer_subtract, w, whole, half)));
     }
 
     Number exp2_fraction(Number r) {
@@ -177,13 +244,13 @@ class Writer {
         x = limited(w, x, w ? 2000 : 250);
         const Number n = op(VectorOp::round, w, x);
         const Number r = sub(w, x, n);
-        if (!w) return op(VectorOp::scale, false, exp2_fraction(r), n);
+        if (!w) return scale(false, exp2_fraction(r), n, true);
         const Number p =
             horner(true, r, 0.6931471805599453, 0.2402265069591013, 0.05550410866482009,
                    0.009618129107594187, 0.0013333558146773998, 0.00015403530457037794,
                    1.5252733493437096e-05, 1.3215435315483844e-06, 1.0178199518826279e-07,
                    7.073778059560721e-09, 4.4347715552879237e-10);
-        return op(VectorOp::scale, true, fma(true, p, r, k(true, 1)), n);
+        return scale(true, fma(true, p, r, k(true, 1)), n, true);
     }
 
     Number log2_curvature(Number f) {
@@ -229,7 +296,7 @@ class Writer {
         r = fma(false, k(false, static_cast<double>(slope_hi)), f, r);
         r = fma(false, vy, curvature, r);
         r = add(false, r, fma(false, k(false, slope_lo), f, mul(false, k(false, y_lo), e)));
-        return op(VectorOp::scale, false, exp2_fraction(r), n);
+        return scale(false, exp2_fraction(r), n, false);
     }
     Number power_double(Number a, Number b) {
         const auto [e, f] = split(true, a);
@@ -252,7 +319,7 @@ class Writer {
             whole[h] = op(VectorOp::round, true, p);
             rest[h] = sub(true, p, whole[h]);
         }
-        return op(VectorOp::scale, false, exp2_fraction(demote(rest)), demote(whole));
+        return scale(false, exp2_fraction(demote(rest)), demote(whole), true);
     }
     Number power_of_any(bool w, Number a, Number b, Number magnitude) {
         const Number zero = k(w, 0);
@@ -390,37 +457,48 @@ class Writer {
         const std::array<Number, 4> weight = {sub(false, one, highest), sub(false, highest, middle),
                                               sub(false, middle, lowest), lowest};
         for (std::uint8_t i = 0; i < 4; ++i) {
-            VectorInstruction step;
-            step.op = VectorOp::shift_left;
-            step.immediate = 4;  // of bytes of a node
-            step.in[0] = op(VectorOp::to_index, false, node[i]);
-            const Number index = emit(step);
-            step.op = VectorOp::spill_index;
-            step.immediate = i;
-            step.in[0] = index;
-            emit_store(step);
+            keep_index(i, shifted(VectorOp::shift_left, false,
+                                  op(VectorOp::to_index, false, node[i]), kNodeShift));
         }
-        std::array<Number, 4> rgba;  // of four pixels each
-        for (std::int32_t four = 0; four < 4; ++four) {
-            std::array<std::int32_t, 16> of_pixel{};
-            for (std::int32_t i = 0; i < 16; ++i)
-                of_pixel[static_cast<std::size_t>(i)] = 4 * four + i / 4;
+        std::array<Number, 4> rgba;  // of a quarter of the pixels each
+        for (std::uint8_t quarter = 0; quarter < 4; ++quarter) {
             Number sum;
             for (std::uint8_t i = 0; i < 4; ++i) {
-                VectorInstruction step;
-                step.op = VectorOp::nodes;
-                step.immediate = static_cast<std::uint8_t>(i + 4 * four);
-                step.address = lattice.narrow.data();
-                const Number nodes = emit(step);
-                step.op = VectorOp::expand;
-                step.offset = pool_.table(of_pixel.data(), of_pixel.size());
-                step.in[0] = weight[i];
-                const Number weights = emit(step);
+                const Number nodes = rows(i, quarter, lattice.narrow.data(), 0);
+                const Number weights = expand(weight[i], quarter);
                 sum = i == 0 ? mul(false, weights, nodes) : fma(false, weights, nodes, sum);
             }
-            rgba[static_cast<std::size_t>(four)] = sum;
+            rgba[quarter] = sum;
         }
         return channels(rgba);
+    }
+    void keep_index(std::uint8_t number, Number bytes) {
+        VectorInstruction step;
+        step.op = VectorOp::spill_index;
+        step.immediate = number;
+        step.in[0] = bytes;
+        emit_store(step);
+    }
+    Number rows(std::uint8_t index, std::uint8_t quarter, const void* address,
+                std::uint32_t offset) {
+        VectorInstruction step;
+        step.op = VectorOp::rows;
+        step.immediate = static_cast<std::uint8_t>(index + 4 * quarter);
+        step.address = address;
+        step.offset = offset;
+        return emit(step);
+    }
+    /// The floats of a quarter of the pixels, four times each.
+    Number expand(Number x, std::uint8_t quarter) {
+        if (!machine_.has_avx512) return shuffle_4(x, x, quarter * 0x55);
+        std::array<std::int32_t, 16> of_pixel{};
+        for (std::int32_t i = 0; i < 16; ++i)
+            of_pixel[static_cast<std::size_t>(i)] = 4 * quarter + i / 4;
+        VectorInstruction step;
+        step.op = VectorOp::expand;
+        step.offset = pool_.table(of_pixel.data(), of_pixel.size());
+        step.in[0] = x;
+        return emit(step);
     }
 
     Number segment_of(const CompiledCurve& curve, Number x) {
@@ -430,7 +508,7 @@ class Writer {
             const int size = size_of(curve.segments);
             Number index = k(false, 0);
             for (int bit = size / 2; bit > 0; bit /= 2) {
-                const Number next = op(VectorOp::integer_or, false, value_of(false, index),
+                const Number next = op(VectorOp::bit_or, false, value_of(false, index),
                                        pool_.bits(static_cast<std::uint32_t>(bit)));
                 const std::int32_t is_there =
                     compare(VectorOp::greater_equal, false, x, pick(next, threshold, size));
@@ -440,12 +518,10 @@ class Writer {
         }
         const int size = curve.cells <= 32 ? 32 : 64;
         const auto segment = pool_.table(curve.segment.data(), curve.segment.size());
-        VectorInstruction shift;
-        shift.op = VectorOp::shift_right;
-        shift.immediate = static_cast<std::uint8_t>(curve.shift);
-        shift.in[0] = max(false, x, k(false, static_cast<double>(curve.cell_floor)));
-        const Number cell =
-            op(VectorOp::integer_subtract, false, emit(shift), pool_.bits(curve.first_cell));
+        const Number limited = max(false, x, k(false, static_cast<double>(curve.cell_floor)));
+        const Number cell = op(VectorOp::integer_subtract, false,
+                               shifted(VectorOp::shift_right, false, limited, curve.shift),
+                               pool_.bits(curve.first_cell));
         const std::int32_t is_behind =
             compare(VectorOp::greater_equal, false, x, pick(cell, threshold, size));
         VectorInstruction next;
@@ -457,25 +533,30 @@ class Writer {
 
     static int size_of(int segments) { return segments <= 16 ? 16 : segments <= 32 ? 32 : 64; }
 
-    Lanes curve(Lanes& source, bool is_wide, const CompiledCurve& curve) {
+    /// What float leaves out of a double that is x, and 0 where x is limited.
+    Number rest_of(Lanes& source, Number x) {
+        std::array<Number, 2> rest;
+        for (int half = 0; half < 2; ++half)
+            rest[static_cast<std::size_t>(half)] =
+                sub(true, wide(source, half), promote(source.narrow, half));
+        const std::int32_t is_inside = compare(VectorOp::equal, false, source.narrow, x);
+        return zero_unless(false, is_inside, demote(rest));
+    }
+
+    /// y t + first; of a precise curve y + first, and the sum in double.
+    struct Polynomial {
+        Number y, t, first;
+    };
+    Polynomial segment_polynomial(Lanes& source, bool has_rest, Number x,
+                                  const CompiledCurve& curve) {
         const int size = size_of(curve.segments);
         const auto table = [&](const std::array<float, CompiledCurve::kMaxSegments>& numbers) {
             return pool_.table(numbers.data(), numbers.size());
         };
-        const Number given = narrow(source);
-        const Number lo = k(false, static_cast<double>(curve.lo));
-        const Number x = min(false, max(false, given, lo), k(false, static_cast<double>(curve.hi)));
         const Number index = segment_of(curve, x);
         const Number scale = pick(index, table(curve.scale), size);
         Number t = fma(false, x, scale, pick(index, table(curve.offset), size));
-        if (curve.is_precise && is_wide) {
-            std::array<Number, 2> rest;
-            for (int half = 0; half < 2; ++half)
-                rest[static_cast<std::size_t>(half)] =
-                    sub(true, wide(source, half), promote(given, half));
-            const std::int32_t is_inside = compare(VectorOp::equal, false, given, x);
-            t = fma(false, zero_unless(false, is_inside, demote(rest)), scale, t);
-        }
+        if (has_rest) t = fma(false, rest_of(source, x), scale, t);
         const auto coefficient = [&](int i) {
             return pick(index, table(curve.coefficient[static_cast<std::size_t>(i)]), size);
         };
@@ -483,7 +564,63 @@ class Writer {
         Number y = coefficient(curve.degree);
         for (int i = curve.degree - 1; i >= 1; --i)
             y = fma(false, y, t, coefficient(i));
-        const Number first = coefficient(0);
+        if (curve.is_precise) y = fma(false, y, t, pick(index, table(curve.rest), size));
+        return {y, t, coefficient(0)};
+    }
+    /// As RowPolynomial in simd_kernels.cpp.
+    /// @param x  not below 0
+    Polynomial row_polynomial(Lanes& source, bool has_rest, Number x, const CurveRows& table) {
+        const bool is_long = table.length == 8;
+        Number base = pool_.bits(table.base);
+        const Number bits = max(false, x, base);
+        for (const CurveRows::Restart& restart : table.restarts) {
+            // In the order of their bits, too.
+            const std::int32_t is_behind =
+                compare(VectorOp::greater_equal, false, bits, pool_.bits(restart.from));
+            base = blend(false, is_behind, pool_.bits(restart.base), value_of(false, base));
+        }
+        const Number cell = shifted(VectorOp::shift_right, false,
+                                    op(VectorOp::integer_subtract, false, bits, base), table.shift);
+        kept_ = static_cast<std::uint8_t>((kept_ + 1) % 4);
+        keep_index(kept_, shifted(VectorOp::shift_left, false, cell, is_long ? 5 : kNodeShift));
+        const std::uint32_t in_cell = (std::uint32_t{1} << table.shift) - 1;
+        const Number x0 = table.restarts.empty() && (table.base & in_cell) == 0
+                              ? op(VectorOp::bit_and, false, bits, pool_.bits(~in_cell))
+                              : op(VectorOp::integer_add, false,
+                                   shifted(VectorOp::shift_left, false, cell, table.shift), base);
+        const Number scale =  // 0x7F000000 less the exponent
+            op(VectorOp::integer_add, false,
+               op(VectorOp::bit_and_not, false, x0, pool_.bits(std::uint32_t{0x7F800000})),
+               pool_.bits(std::uint32_t{0xFF800000}));
+        Number distance = sub(false, x, x0);
+        if (has_rest) distance = add(false, distance, rest_of(source, x));
+        const Number t = mul(false, distance, scale);
+        const std::uint32_t offset = pool_.table(table.numbers.data(), table.numbers.size());
+        std::array<Number, 4> low, high;
+        for (std::uint8_t quarter = 0; quarter < 4; ++quarter) {
+            low[quarter] = rows(kept_, quarter, nullptr, offset);
+            if (is_long) high[quarter] = rows(kept_, quarter, nullptr, offset + 4 * sizeof(float));
+        }
+        Number y;
+        if (is_long) {
+            high = columns(high);
+            y = high[3];
+            for (std::size_t i = 3; i-- > 0;)
+                y = fma(false, y, t, high[i]);
+        }
+        low = columns(low);
+        y = is_long ? fma(false, y, t, low[3]) : low[3];
+        y = fma(false, fma(false, y, t, low[2]), t, low[1]);
+        return {y, t, low[0]};
+    }
+
+    Lanes curve(Lanes& source, bool is_wide, const CompiledCurve& curve) {
+        const Number given = narrow(source);
+        const Number lo = k(false, static_cast<double>(curve.lo));
+        const Number x = min(false, max(false, given, lo), k(false, static_cast<double>(curve.hi)));
+        const bool has_rest = curve.is_precise && is_wide;
+        const Polynomial p = curve.rows ? row_polynomial(source, has_rest, x, *curve.rows)
+                                        : segment_polynomial(source, has_rest, x, curve);
         const auto finished = [&](bool w, Number sum, std::int32_t is_above) {
             sum = min(w, max(w, sum, k(w, static_cast<double>(curve.least))),
                       k(w, static_cast<double>(curve.most)));
@@ -491,13 +628,12 @@ class Writer {
         };
         Lanes result;
         if (!curve.is_precise) {
-            const Number sum = fma(false, y, t, first);
+            const Number sum = fma(false, p.y, p.t, p.first);
             result.narrow = finished(false, sum, compare(VectorOp::greater, false, x, lo));
             return result;
         }
-        const Number change = fma(false, y, t, pick(index, table(curve.rest), size));
         for (int half = 0; half < 2; ++half) {
-            const Number sum = add(true, promote(first, half), promote(change, half));
+            const Number sum = add(true, promote(p.first, half), promote(p.y, half));
             const std::int32_t is_above = compare(VectorOp::greater, true, promote(x, half),
                                                   k(true, static_cast<double>(curve.lo)));
             result.wide[static_cast<std::size_t>(half)] = finished(true, sum, is_above);
@@ -506,7 +642,7 @@ class Writer {
     }
 
     /// In a register also where it is a constant: for operands that cannot be memory.
-    Number value_of(bool w, Number x) { return x.is_value() ? x : op(VectorOp::bit_or, w, x, x); }
+    Number value_of(bool w, Number x) { return x.is_value() ? x : op(VectorOp::constant, w, x); }
 
     // --- pixels --------------------------------------------------------------------------------
 
@@ -528,7 +664,28 @@ class Writer {
         step.immediate = static_cast<std::uint8_t>(number);
         return emit(step);
     }
+    /// RGB as it lies in memory, for what computes the same of each channel.
+    std::array<Number, 3> load_floats() { return {load_pixels(0), load_pixels(1), load_pixels(2)}; }
+    void store_floats(const std::array<Number, 3>& floats) {
+        for (std::size_t i = 0; i < 3; ++i)
+            store(VectorOp::store_pixels, static_cast<int>(i), floats[i]);
+    }
+    Number load_halves(int number) {
+        VectorInstruction step;
+        step.op = VectorOp::load_halves;
+        step.immediate = static_cast<std::uint8_t>(number);
+        return emit(step);
+    }
     std::array<Number, 3> load_rgb() {
+        if (!machine_.has_avx512) {
+            // The first four pixels in the low half of each vector, the others in the high half.
+            const std::array<Number, 3> v = {load_halves(0), load_halves(1), load_halves(2)};
+            const Number red_green = shuffle_4(v[1], v[2], shuffle_code(2, 3, 1, 2));
+            const Number green_blue = shuffle_4(v[0], v[1], shuffle_code(1, 2, 0, 1));
+            return {shuffle_4(v[0], red_green, shuffle_code(0, 3, 0, 2)),
+                    shuffle_4(green_blue, red_green, shuffle_code(0, 2, 1, 3)),
+                    shuffle_4(green_blue, v[2], shuffle_code(1, 3, 0, 3))};
+        }
         const std::array<Number, 3> v = {load_pixels(0), load_pixels(1), load_pixels(2)};
         std::array<Number, 3> result;
         for (std::int32_t c = 0; c < 3; ++c) {
@@ -544,17 +701,40 @@ class Writer {
         return result;
     }
     Number shuffle_128(Number a, Number b, std::uint8_t which) {
+        return shuffle_by(VectorOp::shuffle_128, a, b, which);
+    }
+    Number shuffle_4(Number a, Number b, int which) {
+        return shuffle_by(VectorOp::shuffle_4, a, b, which);
+    }
+    Number shuffle_by(VectorOp o, Number a, Number b, int which) {
         VectorInstruction step;
-        step.op = VectorOp::shuffle_128;
-        step.immediate = which;
+        step.op = o;
+        step.immediate = static_cast<std::uint8_t>(which);
         step.in = {a, b, {}};
         return emit(step);
+    }
+    /// For shuffle_4: floats i, j of a, then k, l of b.
+    static constexpr int shuffle_code(int i, int j, int k, int l) {
+        return i + 4 * j + 16 * k + 64 * l;
+    }
+    /// Of four vectors, the first floats of each four, the second and so on.
+    std::array<Number, 4> columns(const std::array<Number, 4>& v) {
+        const Number first01 = shuffle_4(v[0], v[1], 0x44);
+        const Number first23 = shuffle_4(v[2], v[3], 0x44);
+        const Number last01 = shuffle_4(v[0], v[1], 0xEE);
+        const Number last23 = shuffle_4(v[2], v[3], 0xEE);
+        return {shuffle_4(first01, first23, 0x88), shuffle_4(first01, first23, 0xDD),
+                shuffle_4(last01, last23, 0x88), shuffle_4(last01, last23, 0xDD)};
     }
     std::array<Number, 3> load_rgba() {
         return channels({load_pixels(0), load_pixels(1), load_pixels(2), load_pixels(3)});
     }
-    /// Of 16 pixels of four floats.
+    /// Of a block's pixels of four floats.
     std::array<Number, 3> channels(const std::array<Number, 4>& v) {
+        if (!machine_.has_avx512) {
+            const std::array<Number, 4> rgba = columns(v);
+            return {rgba[0], rgba[1], rgba[2]};
+        }
         std::array<std::int32_t, 16> red_green{}, blue{};
         for (std::int32_t i = 0; i < 8; ++i) {
             red_green[static_cast<std::size_t>(i)] = 4 * i;
@@ -576,6 +756,15 @@ class Writer {
         emit_store(step);
     }
     void store_rgb(const std::array<Number, 3>& c) {
+        if (!machine_.has_avx512) {
+            const Number red_green = shuffle_4(c[0], c[1], 0x88);
+            const Number green_blue = shuffle_4(c[1], c[2], 0xDD);
+            const Number blue_red = shuffle_4(c[2], c[0], shuffle_code(0, 2, 1, 3));
+            store(VectorOp::store_halves, 0, shuffle_4(red_green, blue_red, 0x88));
+            store(VectorOp::store_halves, 1,
+                  shuffle_4(green_blue, red_green, shuffle_code(0, 2, 1, 3)));
+            return store(VectorOp::store_halves, 2, shuffle_4(blue_red, green_blue, 0xDD));
+        }
         for (std::int32_t v = 0; v < 3; ++v) {
             std::array<std::int32_t, 16> first{}, second{};
             for (std::int32_t i = 0; i < 16; ++i) {
@@ -591,6 +780,15 @@ class Writer {
         }
     }
     void store_rgba(const std::array<Number, 3>& c) {
+        if (!machine_.has_avx512) {
+            for (int v = 0; v < 4; v += 2) {
+                const Number red_green = shuffle_4(c[0], c[1], v == 0 ? 0x44 : 0xEE);
+                for (int i = 0; i < 2; ++i)
+                    store(VectorOp::store_colors, v + i,
+                          shuffle_4(red_green, c[2], shuffle_code(i, i + 2, v + i, v + i)));
+            }
+            return;
+        }
         for (std::int32_t v = 0; v < 4; ++v) {
             std::array<std::int32_t, 16> first{}, second{};
             for (std::int32_t i = 0; i < 16; ++i) {
@@ -605,9 +803,12 @@ class Writer {
 
   private:
     static constexpr float kLog2e = 1.4426950216293335F;  // as in simd_math-inl.h
+    static constexpr int kNodeShift = 4;                  // of 16 bytes
 
     Pool& pool_;
+    VectorMachine machine_;
     VectorCode code_;
+    std::uint8_t kept_ = 0;  // of spill_index, the last one
 };
 
 /// What runs over a whole tile: what is rare, and what goes pixel by pixel.
@@ -666,7 +867,10 @@ int operand_count(Op op) {
 /// The program with every value defined once, divided into parts.
 class Translator {
   public:
-    explicit Translator(const Code& code) : code_(code) {
+    explicit Translator(const Code& code)
+        : code_(code),
+          machine_(*code.target->machine),
+          pool_(machine_.has_avx512 ? 0 : static_cast<std::size_t>(machine_.bytes())) {
         for (std::size_t c = 0; c < 3; ++c) {
             if (code.reads_input[c]) {
                 input_[c] = define(false);
@@ -812,6 +1016,7 @@ class Translator {
         switch (step.op) {
             case Op::curve: {
                 const CompiledCurve& curve = code_.curves[step.table];
+                if (curve.rows) return 25 + 3 * curve.rows->length;
                 return 20 + (curve.segments > 32 ? 5 : 2) * curve.degree;
             }
             case Op::dot3:
@@ -908,7 +1113,7 @@ class Translator {
     // --- one part --------------------------------------------------------------------------------
 
     VectorCode write(std::size_t part, PixelLayout layout) {
-        Writer writer(pool_);
+        Writer writer(pool_, machine_);
         writer_ = &writer;
         lanes_.assign(values_.size(), {});
         if (part == 0) read_inputs(layout);
@@ -921,7 +1126,8 @@ class Translator {
 
     void read_inputs(PixelLayout layout) {
         std::array<Number, 3> given;
-        if (layout == PixelLayout::rgb) given = writer_->load_rgb();
+        if (layout == PixelLayout::rgb)
+            given = code_.only_curve ? writer_->load_floats() : writer_->load_rgb();
         if (layout == PixelLayout::rgba) given = writer_->load_rgba();
         for (std::size_t c = 0; c < 3; ++c) {
             if (input_[c] == kNone) continue;
@@ -947,7 +1153,8 @@ class Translator {
                 result[c] = writer_->narrow(given(output_[c]));
             }
         }
-        if (layout == PixelLayout::rgb) return writer_->store_rgb(result);
+        if (layout == PixelLayout::rgb)
+            return code_.only_curve ? writer_->store_floats(result) : writer_->store_rgb(result);
         if (layout == PixelLayout::rgba) return writer_->store_rgba(result);
         for (std::size_t c = 0; c < 3; ++c) {
             if (output_[c] != kNone) store(output_offset_[c], false, 0, result[c]);
@@ -1190,6 +1397,7 @@ class Translator {
     }
 
     const Code& code_;
+    VectorMachine machine_;
     std::vector<Value> values_;
     std::map<std::uint32_t, std::int32_t> at_;  // by offset in the interpreter's tile
     std::vector<Step> steps_;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// A float program (simd_kernels.h) as instructions of one AVX-512 processor over values in
-// registers, 16 pixels at a time. Nothing here knows the processor's encoding: machine_code.cpp
-// does.
+// A float program (simd_kernels.h) as instructions over vectors in registers, for AVX2 (blocks of 8
+// pixels) and AVX-512 (16 pixels). Nothing here knows an encoding: machine_code.cpp does.
 #pragma once
 
 #include <array>
@@ -15,7 +14,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace simd {
 
-/// What a vector instruction does. Floats are 16 to a vector, doubles 8.
+/// What a vector instruction does. Doubles are half as many to a vector as floats.
 enum class VectorOp : std::uint8_t {
     add,
     subtract,
@@ -30,48 +29,55 @@ enum class VectorOp : std::uint8_t {
     bit_and,
     bit_or,
     bit_xor,
-    round,     // to the nearest whole number
-    floor,     //
-    exponent,  // floor(log2 |a|)
-    mantissa,  // a / 2^exponent, in [3/4, 3/2)
-    scale,     // a * 2^b
+    bit_and_not,  // ~a & b
+    round,        // to the nearest whole number
+    floor,        //
+    exponent,     // floor(log2 |a|); AVX-512
+    mantissa,     // a / 2^exponent, in [3/4, 3/2); AVX-512
+    scale,        // a * 2^b; AVX-512
+    constant,     // a, from the pool to a register
     // Between floats and pairs of vectors of doubles
     promote_low,
     promote_high,
     demote,  // (low, high) -> floats
-    // Masks
+    // Masks; of AVX2 all bits of a vector's element
     equal,
     less,
     less_equal,
     greater,
     greater_equal,
-    has_bit,   // integer a & b != 0
-    is_minus,  // the sign bit of a
+    has_bit,   // integer a & b != 0; AVX-512
+    is_minus,  // the sign bit of a, for a blend
     blend,     // mask ? a : b
     zero_unless,
-    // Whole numbers
-    shift_right,  // of the bits of a, by `immediate`
+    // Whole numbers; of 64 bits where wide
+    shift_right,  // of the bits of a, by `immediate`; with the sign unless wide
+    shift_left,
+    integer_add,
     integer_subtract,
-    integer_or,
-    integer_add_where,  // mask ? a + b : a
+    integer_add_where,  // mask ? a + b : a; AVX-512
     to_index,           // from floats, or from doubles to half a vector
-    shift_left,         // as shift_right
+    to_float,           // from whole numbers
     // Tables
-    permute_16,  // the element of 16 floats at `offset` that a says
-    permute_32,
+    permute_16,   // the element of 16 floats at `offset` that a says; AVX-512
+    permute_32,   // AVX-512
     gather,       // of the doubles at `offset`, that of number a
     spill_index,  // the whole numbers a, on the stack, number `immediate`
-    nodes,        // four floats each for four pixels, at `address` + 4 times what spill_index kept:
-                  // `immediate` says which index, and times 4, which pixels
+    rows,  // four floats each for a quarter of the pixels, at `address`, or without one in the
+           // pool, + `offset` + the bytes that spill_index kept: `immediate` says which
+           // index, and times 4, which pixels: AVX-512 k to k+3, AVX2 k and k+4
     // Memory
     load_plane,
     store_plane,
-    load_pixels,   // the vector number `immediate` of 16 pixels
+    load_pixels,   // the vector number `immediate` of the block's pixels
     store_pixels,  //
     store_colors,  // only the first three of each four floats
-    shuffle,       // of the 32 floats of a, b: those that 16 numbers at `offset` say
-    expand,        // the floats of a that 16 numbers at `offset` say
-    shuffle_128,   // two shuffle_128 of a, two of b
+    load_halves,   // four floats each from the places `immediate` and `immediate` + 3; AVX2
+    store_halves,  // AVX2
+    shuffle,       // of the 32 floats of a, b: those that 16 numbers at `offset` say; AVX-512
+    expand,        // the floats of a that 16 numbers at `offset` say; AVX-512
+    shuffle_128,   // two fours of a, two of b; AVX-512
+    shuffle_4,     // two floats of each four of a, two of b; AVX2
 };
 
 /// A value in a register, or a number in the pool.
@@ -88,9 +94,9 @@ struct VectorInstruction {
     VectorOp op = VectorOp::add;
     bool wide = false;  // doubles
     std::uint8_t immediate = 0;
-    std::uint8_t block = 0;         // of 16 pixels, of those that one turn of the loop computes
-    std::uint32_t offset = 0;       // in the pool, or in the tile: bytes
-    const void* address = nullptr;  // of a lattice's nodes
+    std::uint8_t block = 0;                      // of those that one turn of the loop computes
+    std::uint32_t offset = 0;                    // in the pool, or in the tile: bytes
+    const void* address = nullptr;               // of a lattice's nodes
     std::int32_t result = VectorOperand::kNone;  // a mask, of a comparison
     std::int32_t mask = VectorOperand::kNone;
     std::array<VectorOperand, 3> in;
@@ -129,7 +135,7 @@ struct VectorProgram : TilePorts {
 };
 
 /// Nothing where more values go from part to part than a tile of 16 pixels has room for.
-/// @param code  owns the lattices that the result refers to
+/// @param code  for a target with machine code; owns the lattices that the result refers to
 [[nodiscard]] std::optional<VectorProgram> translate(const Code& code);
 
 }  // namespace simd

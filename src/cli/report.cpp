@@ -132,7 +132,10 @@ class PageContents {
                            {"pictures", pictures},          {"backends", backends},
                            {"backend_notes", notes_},       {"parity", parity()}};
         files_.push_back({"page.json", page.dump()});
-        return make_report_page(make_archive(files_));
+        const std::string references =
+            "globalThis.tonewrightReferences = {" + references_ + "\n};\n";
+        files_.push_back({"references.js", references});
+        return make_report_page(make_archive(files_), references);
     }
 
   private:
@@ -188,12 +191,15 @@ class PageContents {
             measured.push_back(measured_json(request.view, i, index));
         entry.add("function", glsl.function);
         entry.add("glsl", glsl.text);
-        entry.add("reference", reference.text);
+        add_reference(operator_text(op), reference);
         entry.add("uniforms", request.uniforms);
         entry.add("values", values);
-        entry.add("textures", textures_json(glsl));
-        if (drawn.textures.size() > glsl.textures.size())
-            entry.add("drawn", Json{{"glsl", drawn.text}, {"textures", textures_json(drawn)}});
+        entry.add("textures", textures_json(glsl, reference));
+        if (drawn.textures.size() > glsl.textures.size()) {
+            entry.add("drawn",
+                      Json{{"glsl", drawn.text}, {"textures", textures_json(drawn, reference)}});
+        }
+        entry.add("hdr", hdr_json(op, request.uniforms));
         entry.add("error", glsl.errors.in_float);
         entry.add("measured", measured);
         entry.add("definition", definition_or_null(op));
@@ -218,23 +224,89 @@ class PageContents {
         return title;
     }
 
-    Json textures_json(const Shader& shader) {
+    /// What the operator makes for an HDR display, as light of which 1 is white, for WebGPU; null
+    /// where it makes nothing brighter.
+    Json hdr_json(const ResolvedOperator& op, const std::vector<std::string>& uniforms) {
+        // Light of Rec.709 with channels below 0 and above 1, as far as P3 and 1000 cd/m2 reach.
+        const ResolvedOperator shown = resolve_for_display(op, {kP3D65, true, 1000});
+        if (!(shown.peak() > 1)) return nullptr;
+        ShaderRequest request;
+        request.view = make_view(shown, "lin_rec709", 0, kLinearOutput);
+        request.uniforms = uniforms;
+        request.language = ShaderLanguage::wgsl;
+        request.tables = ShaderTables::by_size;
+        const Shader wgsl = write_shader(request);
+        request.language = ShaderLanguage::javascript;
+        const Shader reference = write_shader(request, &wgsl.errors);
+        const std::string name = operator_text(op) + " hdr";
+        add_reference(name, reference);
+        Json values = Json::object();
+        for (const std::string& uniform : uniforms) {
+            if (uniform != kExposureUniform) values.add(uniform, shown.params.number(uniform));
+        }
+        return {{"name", name},
+                {"function", wgsl.function},
+                {"wgsl", wgsl.text},
+                {"uniforms", uniforms},
+                {"values", values},
+                {"settings", settings_of(shown)},
+                {"error", wgsl.errors.in_float},
+                {"textures", textures_json(wgsl, reference)}};
+    }
+
+    /// Settings that the display decided, as `--set` takes them.
+    static Json settings_of(const ResolvedOperator& op) {
+        Json settings = Json::array();
+        for (const ParameterSpec& spec : op.op->parameters) {
+            if (!spec.from_display) continue;
+            const std::string value = spec.kind == ParameterSpec::Kind::choice
+                                          ? op.params.choice(spec.name)
+                                          : fmt::format("{}", op.params.number(spec.name));
+            settings.push_back(spec.name + "=" + value);
+        }
+        return settings;
+    }
+
+    /// As a property of an object: a function of what fetches texels that gives the operator's
+    /// function, and those that compute texels, by the names of the textures.
+    void add_reference(const std::string& name, const Shader& reference) {
+        std::vector<std::string> textures;
+        std::string formulas;
+        for (const ShaderTexture& texture : reference.textures) {
+            textures.push_back(texture.name);
+            if (!texture.formula.empty())
+                formulas += fmt::format("{}: {}, ", texture.name, texture.formula);
+        }
+        references_ +=
+            fmt::format("\n{}: ({}) => {{\n{}\nreturn [{}, {{ {} }}];\n}},", Json(name).dump(),
+                        fmt::join(textures, ", "), reference.text, reference.function, formulas);
+    }
+
+    Json textures_json(const Shader& shader, const Shader& reference) {
         Json textures = Json::array();
-        for (const ShaderTexture& texture : shader.textures)
-            textures.push_back(texture_json(texture));
+        for (const ShaderTexture& texture : shader.textures) {
+            const bool has_formula = std::any_of(
+                reference.textures.begin(), reference.textures.end(), [&](const ShaderTexture& t) {
+                    return t.name == texture.name && !t.formula.empty();
+                });
+            textures.push_back(texture_json(texture, has_formula));
+        }
         return textures;
     }
 
-    /// Looks share lattices: each is one file.
-    Json texture_json(const ShaderTexture& texture) {
+    /// Looks share lattices: each is one file. The page computes those that have a formula.
+    Json texture_json(const ShaderTexture& texture, bool has_formula) {
         std::string rgb;
         for (std::size_t i = 0; i < texture.rgba.size(); ++i) {
             if (i % 4 != 3)
                 rgb.append(reinterpret_cast<const char*>(&texture.rgba[i]), sizeof(float));
         }
         const std::string file = content_hash(rgb) + ".rgb32f";
-        if (written_.insert(file).second) files_.push_back({file, std::move(rgb)});
-        return {{"name", texture.name}, {"size", texture.size}, {"file", file}};
+        if (!has_formula && written_.insert(file).second) files_.push_back({file, std::move(rgb)});
+        return {{"name", texture.name},
+                {"size", texture.size},
+                {"file", file},
+                {"has_formula", has_formula}};
     }
 
     /// The file of the differences, null where nothing was measured.
@@ -286,6 +358,7 @@ class PageContents {
     std::map<std::string, std::string> notes_;
     std::vector<GeneratedFile> files_;
     std::set<std::string> written_;
+    std::string references_;
 };
 
 int run_report(const Options& options) {

@@ -51,7 +51,11 @@ double Table::operator()(double x) const noexcept {
 }
 
 Lattice::Lattice(int edge, std::function<std::vector<double>()> make)
-    : edge_(edge), make_(std::move(make)) {
+    : Lattice(edge, std::move(make), nullptr) {}
+
+Lattice::Lattice(int edge, std::function<std::vector<double>()> make,
+                 std::function<std::vector<Expr>()> formula)
+    : edge_(edge), make_(std::move(make)), formula_(std::move(formula)) {
     if (edge < 2) {
         throw Error("lattice: edge is " + std::to_string(edge) + "; expected at least 2");
     }
@@ -70,6 +74,8 @@ const std::vector<double>& Lattice::nodes() const {
     });
     return nodes_;
 }
+
+std::vector<Expr> Lattice::formula() const { return formula_(); }
 
 double Lattice::operator()(int channel, double r, double g, double b) const {
     const LatticePlace t(edge_, {r, g, b});

@@ -287,115 +287,153 @@ constexpr double kHighest = 12.5260688117;
 
 Matrix3 rec2020_to_e_gamut() { return multiply(inverse(kEGamutToXyz), rgb_to_xyz(kRec2020)); }
 
-/// What `node(Rec.2020 light)` returns for every node of a cube.
+template <class T>
+Color<T> times(const Matrix3& m, const Color<T>& c) {
+    Color<T> out = c;
+    for (std::size_t i = 0; i < 3; ++i)
+        out[i] = m[i][0] * c[0] + m[i][1] * c[1] + m[i][2] * c[2];
+    return out;
+}
+
+/// Light of a node, from its place on an axis.
+template <class T>
+T light_at(const T& place) {
+    return kMidGrey * exp2(25 * place - 10);
+}
+
+/// A cube, computed when it is first looked into, and kept; and the formula of its nodes.
+/// @param node  a functor: Rec.2020 light -> what the cube has, of numbers and of expressions
 template <class Node>
-std::vector<double> all_nodes(int edge, const Node& node) {
-    const auto n = static_cast<std::size_t>(edge);
-    const Matrix3 to_rec2020 = multiply(kXyzToRec2020, kEGamutToXyz);
-    std::vector<double> light(n);
-    for (std::size_t i = 0; i < n; ++i) {
-        const double place = static_cast<double>(i) / static_cast<double>(n - 1);
-        light[i] = kMidGrey * std::exp2(25 * place - 10);
-    }
-    std::vector<double> nodes;
-    nodes.reserve(3 * n * n * n);
-    for (const double r : light) {
-        for (const double g : light) {
-            for (const double b : light) {
-                const Vector3 value = node(multiply(to_rec2020, Vector3{r, g, b}));
-                nodes.insert(nodes.end(), value.begin(), value.end());
+std::shared_ptr<const Lattice> make_cube(int edge, const Node& node) {
+    const auto nodes = [edge, node] {
+        const auto n = static_cast<std::size_t>(edge);
+        const Matrix3 to_rec2020 = multiply(kXyzToRec2020, kEGamutToXyz);
+        std::vector<double> light(n);
+        for (std::size_t i = 0; i < n; ++i)
+            light[i] = light_at(static_cast<double>(i) / static_cast<double>(n - 1));
+        std::vector<double> all;
+        all.reserve(3 * n * n * n);
+        for (const double r : light) {
+            for (const double g : light) {
+                for (const double b : light) {
+                    const Vector3 value = node(times(to_rec2020, Vector3{r, g, b}));
+                    all.insert(all.end(), value.begin(), value.end());
+                }
             }
         }
-    }
-    return nodes;
+        return all;
+    };
+    const auto formula = [node] {
+        const std::array<Expr, 3>& place = inputs();
+        const Color<Expr> light = {light_at(place[0]), light_at(place[1]), light_at(place[2])};
+        const Color<Expr> color = node(times(multiply(kXyzToRec2020, kEGamutToXyz), light));
+        return std::vector<Expr>(color.begin(), color.end());
+    };
+    return std::make_shared<const Lattice>(edge, nodes, formula);
 }
 
 constexpr int kEdge = 57;
 constexpr int kRailEdge = 37;
 
 /// Codes of a 2.4 power.
-/// @param from_xyz  to the limit, the generator's; null: the limit is Rec.2020, which has no rail.
-std::vector<double> sdr_nodes(const Primaries& limit, const Matrix3* from_xyz) {
-    const Matrix3 to_limit = from_xyz
-                                 ? multiply(multiply(*from_xyz, kRec2020ToXyz), kAgxOutsetRec2020)
-                                 : kAgxOutsetRec2020;
-    const Vector3 weights = weights_of(limit, kRailWeights);
-    return all_nodes(kEdge, [&](const Vector3& c) {
-        const Vector3 scene = multiply(kAgxInsetRec2020, scene_rail(c, kRailWeights));
-        Vector3 out = multiply(to_limit, sdr_map(scene));
-        if (from_xyz) out = display_rail(out, weights);
-        for (double& v : out)
-            v = std::pow(min(max(v, 0), 1), 1 / 2.4);
+struct SdrNode {
+    Matrix3 to_limit;
+    Vector3 weights;
+    bool has_rail;
+
+    /// @param from_xyz  to the limit, the generator's; null: the limit is Rec.2020, which has no
+    ///                  rail.
+    SdrNode(const Primaries& limit, const Matrix3* from_xyz)
+        : to_limit(from_xyz ? multiply(multiply(*from_xyz, kRec2020ToXyz), kAgxOutsetRec2020)
+                            : kAgxOutsetRec2020),
+          weights(weights_of(limit, kRailWeights)),
+          has_rail(from_xyz != nullptr) {}
+
+    template <class T>
+    Color<T> operator()(const Color<T>& c) const {
+        const Color<T> scene = times(kAgxInsetRec2020, scene_rail(c, kRailWeights));
+        Color<T> out = times(to_limit, sdr_map(scene));
+        if (has_rail) out = display_rail(out, weights);
+        for (T& v : out)
+            v = pow(min(max(v, 0), 1), 1 / 2.4);
         return out;
-    });
-}
+    }
+};
 
 /// ITU-R BT.2100-2, table 5: Rec.2020 light of [0, 1], 1 = 1000 cd/m2, to HLG codes. The file ends
 /// at 1, which the scene light of a saturated blue passes.
-Vector3 hlg_codes(const Vector3& light) {
+template <class T>
+Color<T> hlg_codes(const Color<T>& light) {
+    using std::log;
+    using std::sqrt;
     constexpr double a = 0.17883277;
     constexpr double b = 1 - 4 * a;
     const double c = 0.5 - a * std::log(4 * a);
-    const double y = luminance(light, kRec2020Weights);
-    const double gain = y > 0 ? std::pow(y, 1 / 1.2 - 1) : 0.0;
-    Vector3 out{};
+    const T y = luminance(light, kRec2020Weights);
+    const T gain = if_less(
+        T(0), y, [&]() -> T { return pow(max(y, kTiny), 1 / 1.2 - 1); }, []() -> T { return 0; });
+    Color<T> out = light;
     for (std::size_t i = 0; i < 3; ++i) {
-        const double e = light[i] * gain;
-        out[i] = e <= 1.0 / 12 ? std::sqrt(3 * e) : a * std::log(12 * e - b) + c;
-        out[i] = min(out[i], 1);
+        const T e = light[i] * gain;
+        out[i] =
+            min(if_less(
+                    T(1.0 / 12), e, [&]() -> T { return a * log(T(max(12 * e - b, kTiny))) + c; },
+                    [&]() -> T { return sqrt(T(3 * max(e, 0))); }),
+                1);
     }
     return out;
 }
 
-std::vector<double> hdr_nodes() {
-    const Matrix3 to_p3 = multiply(kXyzToP3, kRec2020ToXyz);
-    const Matrix3 outset = multiply(to_p3, kAgxOutsetRec2020);
-    const Matrix3 back = inverse(to_p3);
-    const Vector3 weights = weights_of(kP3D65, kRailWeights2025);
-    return all_nodes(kEdge, [&](const Vector3& c) {
-        const Vector3 scene = multiply(kAgxInsetRec2020, scene_rail(c, kRailWeights2025));
-        Vector3 out = multiply(back, display_rail(multiply(outset, hdr_map(scene)), weights));
-        for (double& v : out)
+struct HdrNode {
+    Matrix3 to_p3 = multiply(kXyzToP3, kRec2020ToXyz);
+    Matrix3 outset = multiply(to_p3, kAgxOutsetRec2020);
+    Matrix3 back = inverse(to_p3);
+    Vector3 weights = weights_of(kP3D65, kRailWeights2025);
+
+    template <class T>
+    Color<T> operator()(const Color<T>& c) const {
+        const Color<T> scene = times(kAgxInsetRec2020, scene_rail(c, kRailWeights2025));
+        Color<T> out = times(back, display_rail(times(outset, hdr_map(scene)), weights));
+        for (T& v : out)
             v = min(max(v, 0), 1);
         return hlg_codes(out);
-    });
-}
+    }
+};
 
 /// The first guard rail alone, before looks: log values, of the axes' own kind.
-std::vector<double> rail_nodes() {
-    const Matrix3 to_e_gamut = multiply(inverse(kEGamutToXyz), kRec2020ToXyz);
-    return all_nodes(kRailEdge, [&](const Vector3& c) {
-        Vector3 out = multiply(to_e_gamut, scene_rail(c, kRailWeights));
-        for (double& v : out) {
-            v = max((std::log2(max(v, kTiny) / kMidGrey) + 10) / 25, 0);
-            v = std::round(v * 1e7) / 1e7;  // as the file has it
+struct RailNode {
+    Matrix3 to_e_gamut = multiply(inverse(kEGamutToXyz), kRec2020ToXyz);
+
+    template <class T>
+    Color<T> operator()(const Color<T>& c) const {
+        using std::floor;
+        Color<T> out = times(to_e_gamut, scene_rail(c, kRailWeights));
+        for (T& v : out) {
+            v = max((log2(max(v, kTiny) / kMidGrey) + 10) / 25, 0);
+            v = floor(T(v * 1e7 + 0.5)) / 1e7;  // as the file has it
         }
         return out;
-    });
-}
+    }
+};
 
-/// Each cube is computed when it is first looked into, and kept.
 std::shared_ptr<const Lattice> sdr_lattice(const std::string& limit) {
     if (limit == "rec709") {
-        static const auto rec709 = std::make_shared<const Lattice>(
-            kEdge, [] { return sdr_nodes(kRec709, &kXyzToRec709); });
+        static const auto rec709 = make_cube(kEdge, SdrNode(kRec709, &kXyzToRec709));
         return rec709;
     }
     if (limit == "p3d65") {
-        static const auto p3 =
-            std::make_shared<const Lattice>(kEdge, [] { return sdr_nodes(kP3D65, &kXyzToP3); });
+        static const auto p3 = make_cube(kEdge, SdrNode(kP3D65, &kXyzToP3));
         return p3;
     }
-    static const auto rec2020 =
-        std::make_shared<const Lattice>(kEdge, [] { return sdr_nodes(kRec2020, nullptr); });
+    static const auto rec2020 = make_cube(kEdge, SdrNode(kRec2020, nullptr));
     return rec2020;
 }
 std::shared_ptr<const Lattice> hdr_lattice() {
-    static const auto lattice = std::make_shared<const Lattice>(kEdge, hdr_nodes);
+    static const auto lattice = make_cube(kEdge, HdrNode{});
     return lattice;
 }
 std::shared_ptr<const Lattice> rail_lattice() {
-    static const auto lattice = std::make_shared<const Lattice>(kRailEdge, rail_nodes);
+    static const auto lattice = make_cube(kRailEdge, RailNode{});
     return lattice;
 }
 

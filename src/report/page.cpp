@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "report/sha256.h"
 #include "report/viewer.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -30,10 +31,13 @@ std::string base64(std::string_view bytes) {
 
 }  // namespace
 
-std::string make_report_page(std::string_view archive) {
-    constexpr std::string_view kPlace = "@TONEWRIGHT_DATA@";
+std::string make_report_page(std::string_view archive, std::string_view references) {
     std::string page(kReportViewer);
-    page.replace(page.find(kPlace), kPlace.size(), base64(archive));
+    const auto fill = [&](std::string_view place, const std::string& text) {
+        page.replace(page.find(place), place.size(), text);
+    };
+    fill("@TONEWRIGHT_REFERENCES@", base64(sha256(references)));
+    fill("@TONEWRIGHT_DATA@", base64(archive));
     return page;
 }
 

@@ -360,6 +360,23 @@ class ProgramPrinter {
         end();
     }
 
+    /// A function of a color with this name, as the expressions say it.
+    void print_formula(const std::string& name, const std::vector<Expr>& f) {
+        const std::array<std::string, 3> c = channels_of("c");
+        FunctionBody body(language_, {c.begin(), c.end()}, {"c"}, {}, {});
+        std::array<std::string, 3> out;
+        for (const Expr& e : f)
+            body.count(e);
+        for (std::size_t i = 0; i < 3; ++i)
+            out[i] = body.value(f[i]);
+        text_ +=
+            "\n// Computes a node of the texture: [z/(depth - 1), y/(height - 1), x/(width - 1)].";
+        begin(language_.color, name, {declared(language_.color, "c")});
+        text_ += body.lines();
+        line("return " + made_on_lines(out) + ";");
+        end();
+    }
+
     /// How the text of a node of the lattice is had: from an array, or from a texture.
     std::string print_nodes(const std::string& name, const Lattice& lattice) {
         const std::vector<double>& numbers = lattice.nodes();
@@ -383,6 +400,10 @@ class ProgramPrinter {
         for (std::size_t i = 0; i < numbers.size(); ++i) {
             texture.rgba.push_back(static_cast<float>(numbers[i]));
             if (i % 3 == 2) texture.rgba.push_back(1);
+        }
+        if (language_.is_double && lattice.has_formula()) {
+            texture.formula = nodes + "_formula";
+            print_formula(texture.formula, lattice.formula());
         }
         // The third coordinate runs fastest.
         return fmt::format(fmt::runtime(language_.fetch), fmt::arg("name", nodes),

@@ -23,7 +23,7 @@ KEYS = {"ArrowUp": 38, "ArrowDown": 40, "ArrowLeft": 37, "ArrowRight": 39, "Tab"
 class Page:
     """One page in a browser of its own. `errors` has what the console and the page's own policy reported."""
 
-    def __init__(self, width: int = 1440, height: int = 900):
+    def __init__(self, width: int = 1440, height: int = 900, flags: tuple[str, ...] = ()):
         chromium = shutil.which("chromium")
         if not chromium:
             skip("Chromium is missing (Debian: chromium)")
@@ -43,7 +43,7 @@ class Page:
             os.dup2(copies[1], 4)
 
         self.browser = subprocess.Popen(
-            [chromium, *FLAGS, "--remote-debugging-pipe", "--enable-precise-memory-info", f"--user-data-dir={self.profile.name}",
+            [chromium, *FLAGS, *flags, "--remote-debugging-pipe", "--enable-precise-memory-info", f"--user-data-dir={self.profile.name}",
              f"--window-size={width},{height}", "about:blank"],
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, preexec_fn=take_pipes, close_fds=False, start_new_session=True)
         os.close(theirs_in)

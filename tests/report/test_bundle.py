@@ -75,23 +75,59 @@ def check_speed(report, command, page, file, scratch):
     page.wait("tonewright.view.picture?.name === '4k.exr'")
     seconds = time.monotonic() - start
     report.check(f"4K picture of half floats shown after {seconds:.2f} s (bound 9)", seconds < 9)
-    flips = page.run("""(() => {
-        const { canvas } = tonewright.view;
-        const gl = canvas.getContext('webgl2');
-        const names = tonewright.operators.filter((op) => op.glsl && !op.facts.is_diagnostic).map((op) => op.name);
-        const times = {};
-        for (let round = 0; round < 3; round++) for (const name of names) {
-            tonewright.state.slots[0].op = name;
-            const start = performance.now();
-            tonewright.change({ mode: 'single' });
-            gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
-            times[name] = performance.now() - start;
-        }
-        return [`${canvas.width} x ${canvas.height}`, times];
-    })()""")
-    times = sorted(flips[1].values())
-    print(f"     flipping, canvas of {flips[0]} pixels: " + ", ".join(f"{k} {v:.0f} ms" for k, v in flips[1].items()))
-    report.check(f"flipping: median {times[len(times) // 2]:.0f} ms (bound 600)", times[len(times) // 2] < 600)
+    check_flips(report, page)
+
+
+# Milliseconds from the change of the operator to its pixels.
+FLIP = """(async (name) => {
+    const gl = tonewright.view.canvas.getContext('webgl2');
+    const start = performance.now();
+    tonewright.state.slots[0].op = name;
+    tonewright.change({ mode: 'single', active: 0 });
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+    return performance.now() - start;
+})"""
+
+
+def check_flips(report, page):
+    """At 1920 x 1080, with software rendering, on the chart that fills the view."""
+    page.run("document.getElementById('choose').value = '0'; document.getElementById('choose').dispatchEvent(new Event('change'))")
+    size = page.run("`${tonewright.view.canvas.width} x ${tonewright.view.canvas.height}`")
+    names = page.run("tonewright.operators.filter((op) => op.glsl && !op.facts.is_diagnostic).map((op) => op.name)")
+
+    def flip(kind, bound):
+        times = {name: page.run(f"{FLIP}({json.dumps(name)})") for name in names}
+        median = sorted(times.values())[len(times) // 2]
+        print(f"     {kind}, canvas of {size} pixels: " + ", ".join(f"{name} {time:.0f} ms" for name, time in times.items()))
+        report.check(f"flipping, {kind}: median {median:.0f} ms (bound {bound})", median < bound)
+
+    # Half a million pixels through one operator on two cores. The bound is for a machine that does other work, too.
+    page.run("tonewright.change({ exposure: 0.3 })")
+    flip("for the first time", 600)
+    # Nothing is computed again: 50 ms is what a user takes for at once.
+    flip("again", 50)
+    # The arrow keys show what was drawn ahead.
+    page.run("tonewright.change({ exposure: 0.7 })")
+    times = []
+    page.run(f"{FLIP}({json.dumps(names[0])})")
+    for name in names[1:4]:
+        page.wait(f"tonewright.view.drawAhead([tonewright.findOperator({json.dumps(name)})]) === false")
+        times.append(page.run(f"{FLIP}({json.dumps(name)})"))
+    report.check(f"flipping, drawn ahead: {max(times):.0f} ms at most (bound 50)", max(times) < 50)
+
+
+def check_gallery(report, command, page, scratch):
+    """The pictures of `./run gallery`: OpenImageIO reads them, and the page shows each."""
+    subprocess.run([sys.executable, REPORT / "gallery_pictures.py", scratch / "gallery"], check=True)
+    pictures = sorted((scratch / "gallery").iterdir())
+    subprocess.run([command, "report", "-o", scratch / "gallery.html", "--operators", "agx_blender", "--no-parity", *pictures], check=True)
+    page.open(scratch / "gallery.html")
+    for i, picture in enumerate(pictures):
+        page.run(f"document.getElementById('choose').value = '{i}'; document.getElementById('choose').dispatchEvent(new Event('change'))")
+        # Each has shadows and what is brighter than white.
+        low, high = page.run("tonewright.view.picture.rgba.reduce(([a, b], x, i) => i % 4 === 3 ? [a, b] : [Math.min(a, x), Math.max(b, x)], [1, 0])")
+        report.check(f"gallery: {picture.stem} from {low:.3g} to {high:.3g}", page.run("tonewright.view.picture.name") == picture.name
+                     and low < 0.01 and high > 2, page.run("document.getElementById('message').textContent"))
 
 
 def main() -> int:
@@ -107,6 +143,7 @@ def main() -> int:
             axe = (web / "node_modules" / "axe-core" / "axe.min.js").read_text() + "; undefined"
             check_axe(report, page, file, axe)
             check_speed(report, command, page, file, scratch)
+            check_gallery(report, command, page, scratch)
             report.check("console: nothing", not page.errors, "\n".join(page.errors))
     return report.finish()
 

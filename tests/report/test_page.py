@@ -9,6 +9,7 @@ links, damaged files. All operators with TONEWRIGHT_TEST_ALL=1, else ten. The la
 import base64
 import json
 import os
+import re
 import struct
 import subprocess
 import sys
@@ -28,7 +29,7 @@ from pictures import Report  # noqa: E402
 OPERATORS = ["agx_blender", "aces_20", "camera_response", "hable", "khronos_neutral", "gt7", "reinhard:luminance", "uchimura", "drago",
              "exposure_fusion"]
 KEEP = Path(sys.argv[3]) if sys.argv[2:3] == ["--screenshots"] else None
-MOST_BYTES = 3_000_000  # issue 21, without pictures; the embedded chart is part of it here
+MOST_BYTES = 3_000_000  # without pictures; the embedded chart is part of it here
 
 
 def tonewright_run(command, *arguments):
@@ -51,10 +52,11 @@ def check_reference(report, command, page):
             options = [f"--set={key}={value}" for key, value in setting.items()]
             want = reference(command, name, rgb, f"--exposure={exposure}", *options)
             # eval prints 12 digits. Formulas are written as shaders need them: where the reference subtracts numbers that are
-            # nearly equal, a series of a few terms is up to 3e-10 off. Nodes of lattices are floats, rounded by 6e-8 of a code
-            # at most, and looks steepen that up to 4 times.
-            has_lattice = page.run(f"tonewright.operators.find((op) => op.name === {json.dumps(name)}).textures.length > 0")
-            bound = 4e-7 if has_lattice else 1e-9
+            # nearly equal, a series of a few terms is up to 3e-10 off. The page has nodes of a LUT file as floats, rounded by
+            # 6e-8 of a code at most. Nodes of the guard rail of looks are decimals with seven digits, whose last one may be
+            # another where two logarithms differ; looks steepen either up to 4 times.
+            is_rounded = page.run(f"tonewright.findOperator({json.dumps(name)}).textures.some((t) => !t.has_formula || t.size[0] === 37)")
+            bound = 4e-7 if is_rounded else 1e-9
             error = float(np.max(np.abs(got - want)))
             report.check(f"{name} {exposure:+g} {setting or ''}: reference {error:.1e} (bound {bound:g})", error <= bound,
                          f"worst at {rgb[np.argmax(np.max(np.abs(got - want), axis=1))]}")
@@ -336,6 +338,67 @@ def check_silence(report, page):
     report.check("policy: the page cannot fetch", blocked in ("connect-src", "default-src"), blocked)
 
 
+def check_hdr(report, command, page, file):
+    """The HDR form of operators on WebGPU, where the display is HDR; else one line that says why there is none."""
+    page.open(file)
+    note = "document.querySelector('.tools > .note').textContent"
+    report.check("HDR: the page says that the display is not HDR", "not HDR" in page.run(note), page.run(note))
+    # Chromium's DevTools do not emulate an HDR display, and only with Vulkan has it canvases of WebGPU without a GPU.
+    with Page(flags=("--use-vulkan=swiftshader", "--enable-features=Vulkan")) as hdr:
+        hdr.call("Page.addScriptToEvaluateOnNewDocument", source="""const original = matchMedia;
+            globalThis.matchMedia = (query) => query.includes('dynamic-range') ? { matches: true, addEventListener() {} } : original(query);""")
+        check_hdr_forms(report, command, hdr, file)
+        report.check("HDR: console: nothing", not hdr.errors, "\n".join(hdr.errors))
+
+
+def extended_srgb(light):
+    """IEC 61966-2-1 beyond [0, 1], as CSS Color 4 extends it."""
+    size = np.abs(np.array(light))
+    return np.sign(light) * np.where(size <= 0.0031308, 12.92 * size, 1.055 * size ** (1 / 2.4) - 0.055)
+
+
+def check_hdr_forms(report, command, page, file):
+    note = "document.querySelector('.tools > .note').textContent"
+    page.open(file, "#a=agx_blender&hdr=1")
+    page.wait("!document.getElementById('hdr_canvas').hidden")
+    names = page.run("tonewright.operators.filter((op) => op.hdr).map((op) => op.name)")
+    report.check("HDR: operators that have it", {"agx_blender", "aces_20", "gt7"} <= set(names), str(names))
+    for name in names:
+        # A lit sphere, a light of 60, and a hue sweep of the chart.
+        for x, y in ((520, 240), (553, 203), (100, 200)):
+            got = page.run(f"""(async () => {{
+                const op = tonewright.findOperator({json.dumps(name)});
+                const hdr = await tonewright.view.hdrRenderer();
+                const picture = tonewright.view.picture;
+                hdr.setPicture(picture);
+                const values = tonewright.hdrValuesOf({{ op: op.name, values: {{}} }});
+                const at = 4 * (picture.width * {y} + {x});
+                const scene = [...picture.rgba.subarray(at, at + 3)];
+                return {{ scene, settings: op.hdr.settings, error: op.hdr.error, light: await hdr.probe(op, values, 1, {x}, {y}, true),
+                    code: await hdr.probe(op, values, 1, {x}, {y}, false), exact: tonewright.reference(op.hdr, scene, 1, values) }};
+            }})()""")
+            settings = [f"--set={setting}" for setting in got["settings"]]
+            want = reference(command, name, np.array([got["scene"]], np.float32), "--exposure=1", "--display=linear", *settings)[0]
+            error = np.max(np.abs(np.array(got["exact"]) - want))
+            # As check_reference(), of light up to 10.
+            report.check(f"HDR: {name}, pixel {x}, {y}: reference {error:.1e} (bound 1e-8)", error <= 1e-8, f"{got} {want}")
+            # The error that the shader's text states, in sRGB code values that go on above 1, is of operations rounded once;
+            # SwiftShader is up to three times as far off (measured_errors.inc).
+            bound = max(3 * got["error"], 1e-5)
+            error = np.max(np.abs(extended_srgb(got["light"]) - extended_srgb(want))) / max(1, np.max(extended_srgb(want)))
+            report.check(f"HDR: {name}, pixel {x}, {y}: WGSL {error:.1e} (bound {bound:.1e})", error <= bound, f"{got} {want}")
+            # WGSL allows pow an error of some 1e-5 of codes up to 3.
+            error = np.max(np.abs(extended_srgb(got["light"]) - got["code"]))
+            report.check(f"HDR: {name}, pixel {x}, {y}: extended sRGB {error:.1e} (bound 6e-5)", error <= 6e-5, str(got))
+    bright = page.run("""(async () => {
+        const hdr = await tonewright.view.hdrRenderer();
+        return hdr.probe(tonewright.findOperator('agx_blender'), tonewright.hdrValuesOf({ op: 'agx_blender', values: {} }), 6, 553, 203, false);
+    })()""")
+    report.check("HDR: lights are brighter than white", max(bright) > 1.5, str(bright))
+    page.run("tonewright.state.slots[0].op = 'hable'; tonewright.state.hdr = true; tonewright.change()")
+    report.check("HDR: an operator without it says so", "no HDR form" in page.run(note), page.run(note))
+
+
 def take_screenshots(page, file, folder):
     for width, height, scale in ((1440, 900, 1), (1920, 1080, 1), (390, 844, 2), (720, 450, 2)):
         page.resize(width, height, scale, width < 500)
@@ -355,8 +418,9 @@ def main() -> int:
         file = scratch / "page.html"
         options = ["--operators", "all" if IS_FULL else ",".join(OPERATORS), "--no-parity"]
         tonewright_run(command, "report", "-o", file, *options)
-        if not IS_FULL:
-            report.check("size", file.stat().st_size < MOST_BYTES, f"{file.stat().st_size}")
+        report.check(f"size: {file.stat().st_size} bytes (bound {MOST_BYTES})", file.stat().st_size < MOST_BYTES)
+        policy = re.search(r'Content-Security-Policy" content="([^"]*)"', file.read_text())[1]
+        report.check("policy: no script but these two", "unsafe" not in policy and policy.count("sha256-") == 3, policy)
         check_command(report, command, scratch)
         page.open(file)
         check_reference(report, command, page)
@@ -370,6 +434,7 @@ def main() -> int:
         check_damaged(report, command, page, scratch)
         check_not_finite(report, command, page, scratch)
         check_own(report, command, page, scratch)
+        check_hdr(report, command, page, file)
         check_silence(report, page)
         if KEEP:
             take_screenshots(page, file, KEEP)

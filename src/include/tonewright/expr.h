@@ -61,6 +61,8 @@ struct Table {
     [[nodiscard]] double operator()(double x) const noexcept;
 };
 
+class Expr;
+
 /// Colours on a grid of edge^3 nodes over the unit cube, interpolated in tetrahedra along the grey
 /// diagonal; outside, the nearest face holds.
 class TONEWRIGHT_API Lattice {
@@ -70,12 +72,20 @@ class TONEWRIGHT_API Lattice {
     ///              called once, when a node is first asked for.
     /// @throws Error  for an edge below 2.
     Lattice(int edge, std::function<std::vector<double>()> make);
+    /// @param formula  gives the same colors as three expressions of the node's place: inputs 0, 1,
+    /// 2 are
+    ///                 its coordinates in [0, 1].
+    Lattice(int edge, std::function<std::vector<double>()> make,
+            std::function<std::vector<Expr>()> formula);
 
     [[nodiscard]] int edge() const noexcept { return edge_; }
     /// Safe to call from several threads.
     /// @throws Error  when `make` has not given 3 edge^3 numbers; and whatever `make` throws. The
     ///                next call tries again.
     [[nodiscard]] const std::vector<double>& nodes() const;
+    [[nodiscard]] bool has_formula() const noexcept { return formula_ != nullptr; }
+    /// @pre has_formula()
+    [[nodiscard]] std::vector<Expr> formula() const;
 
     /// NaN counts as 0. These throw what nodes() throws, and nothing once it has returned.
     [[nodiscard]] std::array<double, 3> operator()(double r, double g, double b) const;
@@ -89,6 +99,7 @@ class TONEWRIGHT_API Lattice {
     mutable std::once_flag made_;
     mutable std::function<std::vector<double>()> make_;
     mutable std::vector<double> nodes_;
+    std::function<std::vector<Expr>()> formula_;
 };
 
 struct ExprNode;

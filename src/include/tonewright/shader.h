@@ -92,6 +92,9 @@ struct ShaderTexture {
     std::string name;         // in the text
     std::array<int, 3> size;  // x, y, z
     std::vector<float> rgba;
+    /// In JavaScript, of a lattice that has a formula: the function of the text that computes a
+    /// node, in 64-bit float, from its coordinates z, y, x in [0, 1]. Else empty.
+    std::string formula = {};
 };
 
 /// How exact the function is: the same in all languages. Code values of the display, or of sRGB

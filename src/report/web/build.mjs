@@ -28,9 +28,9 @@ const bundle = async (entry, loader = {}) => {
 const script = (await bundle('main.js')).replaceAll('</script', '<\\/script');
 const style = await bundle('style.css');
 const hash = (text) => `'sha256-${createHash('sha256').update(text).digest('base64')}'`;
-// Only this script and this style. 'unsafe-eval' is for the reference, whose functions are part of the data.
+// Only this script, the references, whose hash `tonewright report` fills in, and this style.
 // Nothing is fetched: there is no connect-src, and forms have no target.
-const policy = `default-src 'none'; script-src ${hash(script)} 'unsafe-eval'; style-src ${hash(style)}; `
+const policy = `default-src 'none'; script-src ${hash(script)} 'sha256-@TONEWRIGHT_REFERENCES@'; style-src ${hash(style)}; `
     + `img-src blob: data:; form-action 'none'; base-uri 'none'`;
 
 const packages = ['parse-exr', 'fflate', 'uplot'];

@@ -58,7 +58,13 @@ export function makeOperatorList() {
             () => change({ active: i }), { 'aria-pressed': String(i === state.active) })));
     }
     onChange(update);
-    return { elements: [h('h2', {}, 'Operators'), slots, search, list, none], update };
+    // Those that the arrow keys reach with one or two strokes.
+    function neighbors() {
+        const shown = visible();
+        const at = shown.findIndex(({ op }) => op.name === activeSlot().op);
+        return [1, -1, 2, -2].map((by) => shown[at + by]?.op).filter(Boolean);
+    }
+    return { elements: [h('h2', {}, 'Operators'), slots, search, list, none], update, neighbors };
 }
 
 // Sliders of numbers over several powers of ten are logarithmic.

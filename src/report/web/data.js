@@ -22,16 +22,3 @@ export function file(name) {
 export const page = JSON.parse(new TextDecoder().decode(file('page.json')));
 export const operators = page.operators;
 export const findOperator = (name) => operators.find((op) => op.name === name);
-
-// Nodes of a lattice as RGBA, x fastest.
-const lattices = new Map();
-export function texels(texture) {
-    if (!lattices.has(texture.file)) {
-        const bytes = file(texture.file);
-        const rgb = new Float32Array(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength));
-        const rgba = new Float32Array(rgb.length / 3 * 4).fill(1);
-        for (let i = 0; i < rgb.length / 3; i++) rgba.set(rgb.subarray(3 * i, 3 * i + 3), 4 * i);
-        lattices.set(texture.file, rgba);
-    }
-    return lattices.get(texture.file);
-}

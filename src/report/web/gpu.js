@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Draws pictures through the exported GLSL ES, with WebGL 2.
-import { texels } from './data.js';
+import { texels } from './reference.js';
 
 const VERTEX = `#version 300 es
 void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0); }`;
@@ -22,25 +22,46 @@ void main() {
 }`;
 
 const drawn = (op) => op.drawn ?? op;
+const PLACE = `
+uniform vec3 page_view;    // picture's pixel at the target's top left corner, and pixels of it for a pixel of the target
+uniform vec2 page_corner;  // of the target in the canvas
+ivec2 page_place() {
+    vec2 at = vec2(gl_FragCoord.x - page_corner.x, page_corner.y - gl_FragCoord.y);
+    return ivec2(floor(page_view.xy + page_view.z * at));
+}`;
 const fragment = (op) => `#version 300 es
 ${drawn(op).glsl}
 uniform highp sampler2D page_light;
-uniform vec3 page_view;    // picture's pixel at the panel's top left corner, and pixels of it for a pixel of the panel
-uniform vec2 page_corner;  // of the panel in the canvas
-uniform bool page_marks;
+${PLACE}
 ${op.uniforms.map((name) => `uniform float page_${name};`).join('\n')}
 out vec4 page_shown;
 void main() {
-    vec2 at = vec2(gl_FragCoord.x - page_corner.x, page_corner.y - gl_FragCoord.y);
-    ivec2 place = ivec2(floor(page_view.xy + page_view.z * at));
+    ivec2 place = page_place();
     ivec2 size = textureSize(page_light, 0);
     if (any(lessThan(place, ivec2(0))) || any(greaterThanEqual(place, size))) {
-        page_shown = vec4(vec3(0.1255), 1.0);
+        page_shown = vec4(0.0);
         return;
     }
     vec3 scene = texelFetch(page_light, place, 0).rgb;
     scene = mix(scene, vec3(0.0), isnan(scene));
-    vec3 shown = ${op.function}(${['scene', ...op.uniforms.map((name) => `page_${name}`)].join(', ')});
+    page_shown = vec4(${op.function}(${['scene', ...op.uniforms.map((name) => `page_${name}`)].join(', ')}), 1.0);
+}`;
+
+// From what an operator gave, which has its bottom row first, onto the canvas.
+const PRESENT = `#version 300 es
+precision highp float;
+uniform sampler2D page_result;
+${PLACE}
+uniform bool page_marks;
+out vec4 page_shown;
+void main() {
+    ivec2 place = page_place();
+    ivec2 size = textureSize(page_result, 0);
+    page_shown = vec4(vec3(0.1255), 1.0);
+    if (any(lessThan(place, ivec2(0))) || any(greaterThanEqual(place, size))) return;
+    vec4 result = texelFetch(page_result, ivec2(place.x, size.y - 1 - place.y), 0);
+    if (result.a == 0.0) return;
+    vec3 shown = result.rgb;
     if (page_marks) {
         bool is_stripe = mod(gl_FragCoord.x + gl_FragCoord.y, 8.0) < 4.0;
         if (max(max(shown.r, shown.g), shown.b) >= 254.5 / 255.0) shown = is_stripe ? vec3(1.0, 0.55, 0.0) : vec3(0.0);
@@ -49,21 +70,28 @@ void main() {
     page_shown = vec4(shown, 1.0);
 }`;
 
+const MOST_RESULT_BYTES = 1 << 27;
+
 export class Renderer {
     constructor(canvas) {
         this.canvas = canvas;
         this.gl = canvas.getContext('webgl2', { alpha: false, antialias: false, depth: false, preserveDrawingBuffer: true });
         if (!this.gl) throw new Error('this browser has no WebGL 2, which shows the pictures; curves and tables work');
         if (!this.gl.getExtension('EXT_color_buffer_float')) throw new Error('this machine cannot draw into floats');
+        this.parallel = this.gl.getExtension('KHR_parallel_shader_compile');
         this.programs = new Map();
+        this.results = new Map();  // the one that was used last is the last one
+        this.resultBytes = 0;
         this.levels = [];
         this.textures = new Map();
-        this.halve = this.link(HALVE);
+        this.halve = this.finished(this.compiling(HALVE));
+        this.present = this.finished(this.compiling(PRESENT));
         this.point = this.makeTexture(this.gl.TEXTURE_2D);
         this.gl.texImage2D(this.gl.TEXTURE_2D, 0, this.gl.RGBA32F, 1, 1, 0, this.gl.RGBA, this.gl.FLOAT, null);
     }
 
-    link(text) {
+    // A program that may still be compiled elsewhere.
+    compiling(text) {
         const gl = this.gl;
         const program = gl.createProgram();
         for (const [kind, source] of [[gl.VERTEX_SHADER, VERTEX], [gl.FRAGMENT_SHADER, text]]) {
@@ -73,15 +101,28 @@ export class Renderer {
             gl.attachShader(program, shader);
         }
         gl.linkProgram(program);
+        return { program, places: null };
+    }
+
+    // With the places of its uniforms; waits until it is compiled.
+    finished(entry) {
+        const gl = this.gl;
+        if (entry.places) return entry;
+        const { program } = entry;
         if (!gl.getProgramParameter(program, gl.LINK_STATUS))
             throw new Error(`the shader does not compile: ${gl.getProgramInfoLog(program)}`);
-        const places = {};
+        entry.places = {};
         const count = gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS);
         for (let i = 0; i < count; i++) {
             const { name } = gl.getActiveUniform(program, i);
-            places[name] = gl.getUniformLocation(program, name);
+            entry.places[name] = gl.getUniformLocation(program, name);
         }
-        return { program, places };
+        return entry;
+    }
+
+    programOf(op) {
+        if (!this.programs.has(op.name)) this.programs.set(op.name, this.compiling(fragment(op)));
+        return this.programs.get(op.name);
     }
 
     makeTexture(target) {
@@ -99,6 +140,7 @@ export class Renderer {
         if (Math.max(width, height) > most)
             throw new Error(`${width} x ${height} pixels are too many for this machine's graphics; expected at most ${most} a side`);
         for (const level of this.levels) gl.deleteTexture(level.texture);
+        this.forgetResults(0);
         const texture = this.makeTexture(gl.TEXTURE_2D);
         gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA32F, width, height, 0, gl.RGBA, gl.FLOAT, rgba);
         this.levels = [{ texture, width, height }];
@@ -137,23 +179,30 @@ export class Renderer {
         return result;
     }
 
-    use(op, values, exposure, view, corner, marks, level) {
+    forgetResults(most) {
+        for (const [key, { texture, bytes }] of this.results) {
+            if (this.resultBytes <= most) break;
+            this.gl.deleteTexture(texture);
+            this.results.delete(key);
+            this.resultBytes -= bytes;
+        }
+    }
+
+    use(op, values, exposure, view, corner, level) {
         const gl = this.gl;
-        if (!this.programs.has(op.name)) this.programs.set(op.name, this.link(fragment(op)));
-        const { program, places } = this.programs.get(op.name);
+        const { program, places } = this.finished(this.programOf(op));
         gl.useProgram(program);
         gl.activeTexture(gl.TEXTURE0);
         gl.bindTexture(gl.TEXTURE_2D, this.level(level).texture);
         gl.uniform1i(places.page_light, 0);
         gl.uniform3fv(places.page_view, view);
         gl.uniform2fv(places.page_corner, corner);
-        gl.uniform1i(places.page_marks, marks ? 1 : 0);
         for (const name of op.uniforms) gl.uniform1f(places[`page_${name}`], name === 'exposure' ? exposure : values[name]);
         drawn(op).textures.forEach((texture, i) => {
             gl.activeTexture(gl.TEXTURE1 + i);
             if (!this.textures.has(texture.file)) {
                 this.textures.set(texture.file, this.makeTexture(gl.TEXTURE_3D));
-                gl.texImage3D(gl.TEXTURE_3D, 0, gl.RGBA32F, ...texture.size, 0, gl.RGBA, gl.FLOAT, texels(texture));
+                gl.texImage3D(gl.TEXTURE_3D, 0, gl.RGBA32F, ...texture.size, 0, gl.RGBA, gl.FLOAT, texels(op, texture));
             }
             gl.bindTexture(gl.TEXTURE_3D, this.textures.get(texture.file));
             gl.uniform1i(places[texture.name], 1 + i);
@@ -167,25 +216,95 @@ export class Renderer {
         gl.clear(gl.COLOR_BUFFER_BIT);
     }
 
-    // rect: left, top, width, height in pixels of the canvas. view: the picture's place at the corner, and zoom.
-    draw(op, { values, exposure, rect, origin, zoom, clip = rect, marks = false }) {
-        const gl = this.gl;
+    // The part of the picture that a panel shows, computed once for each pixel of the picture or of the panel, whichever
+    // are fewer; and how the panel shows it.
+    planned(op, { values, exposure, rect, origin, zoom }) {
         const level = zoom < 1 ? Math.max(0, Math.floor(Math.log2(1 / zoom) + 1e-6)) : 0;
         const scale = 2 ** level;
-        this.level(level);  // makes it with a program and a target of its own
+        const { width, height } = this.level(level);
+        const step = 1 / zoom / scale;
+        const at = [origin[0] / scale, origin[1] / scale];
+        const plan = { level, view: [...at, step], shown: [0, 0, 1], width: rect[2], height: rect[3] };
+        if (step <= 1) {
+            const first = at.map((x) => Math.max(0, Math.floor(x)));
+            plan.width = Math.min(width, Math.ceil(at[0] + rect[2] * step)) - first[0];
+            plan.height = Math.min(height, Math.ceil(at[1] + rect[3] * step)) - first[1];
+            plan.view = [...first, 1];
+            plan.shown = [at[0] - first[0], at[1] - first[1], step];
+        }
+        plan.isEmpty = !(plan.width > 0 && plan.height > 0);
+        plan.key = JSON.stringify([op.name, op.uniforms.map((name) => (name === 'exposure' ? exposure : values[name])),
+            level, plan.view, plan.width, plan.height]);
+        return plan;
+    }
+
+    result(op, { values, exposure }, { key, level, view, width, height }) {
+        const gl = this.gl;
+        let result = this.results.get(key);
+        if (result) {
+            this.results.delete(key);
+        } else {
+            const bytes = 4 * width * height;
+            this.forgetResults(MOST_RESULT_BYTES - bytes);
+            result = { texture: this.makeTexture(gl.TEXTURE_2D), bytes };
+            gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, width, height, 0, gl.RGBA, gl.UNSIGNED_BYTE, null);
+            this.level(level);  // makes it with a program and a target of its own
+            this.into(result.texture, width, height, () => {
+                this.use(op, values, exposure, view, [0, height], level);
+                gl.drawArrays(gl.TRIANGLES, 0, 3);
+            });
+            this.resultBytes += bytes;
+        }
+        this.results.set(key, result);
+        return result.texture;
+    }
+
+    // rect: left, top, width, height in pixels of the canvas; origin: the picture's place at its corner.
+    draw(op, panel) {
+        const { rect, clip = rect, marks = false } = panel;
+        const gl = this.gl;
+        const plan = this.planned(op, panel);
+        if (plan.isEmpty) return;
+        const texture = this.result(op, panel, plan);
         gl.viewport(0, 0, this.canvas.width, this.canvas.height);
-        this.use(op, values, exposure, [origin[0] / scale, origin[1] / scale, 1 / zoom / scale],
-            [rect[0], this.canvas.height - rect[1]], marks, level);
+        const { program, places } = this.present;
+        gl.useProgram(program);
+        gl.activeTexture(gl.TEXTURE0);
+        gl.bindTexture(gl.TEXTURE_2D, texture);
+        gl.uniform1i(places.page_result, 0);
+        gl.uniform3fv(places.page_view, plan.shown);
+        gl.uniform2fv(places.page_corner, [rect[0], this.canvas.height - rect[1]]);
+        gl.uniform1i(places.page_marks, marks ? 1 : 0);
         gl.enable(gl.SCISSOR_TEST);
         gl.scissor(clip[0], this.canvas.height - clip[1] - clip[3], clip[2], clip[3]);
         gl.drawArrays(gl.TRIANGLES, 0, 3);
+    }
+
+    // Does a piece of the work that drawing this would take, and never waits. False: nothing is left to do.
+    drawAhead(op, panel) {
+        const gl = this.gl;
+        if (this.ahead && gl.clientWaitSync(this.ahead, 0, 0) === gl.TIMEOUT_EXPIRED) return true;
+        gl.deleteSync(this.ahead ?? null);
+        this.ahead = null;
+        const entry = this.programOf(op);
+        if (!entry.places) {
+            if (this.parallel && !gl.getProgramParameter(entry.program, this.parallel.COMPLETION_STATUS_KHR)) return true;
+            this.finished(entry);
+            return true;
+        }
+        const plan = this.planned(op, panel);
+        if (plan.isEmpty || this.results.has(plan.key)) return false;
+        this.result(op, panel, plan);
+        this.ahead = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+        gl.flush();
+        return true;
     }
 
     // What the shader gives for one pixel, in 32-bit floats.
     probe(op, values, exposure, x, y) {
         const gl = this.gl;
         return this.into(this.point, 1, 1, () => {
-            this.use(op, values, exposure, [x, y, 0], [0, 1], false, 0);
+            this.use(op, values, exposure, [x, y, 0], [0, 1], 0);
             gl.drawArrays(gl.TRIANGLES, 0, 3);
             const rgba = new Float32Array(4);
             gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.FLOAT, rgba);

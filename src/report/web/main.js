@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 import { makeOperatorList, makeParameters } from './controls.js';
 import { makeCurves } from './curves.js';
-import { file, operators, page } from './data.js';
+import { file, findOperator, operators, page } from './data.js';
 import { button, h, say, short } from './dom.js';
 import { Renderer } from './gpu.js';
+import { whyNot } from './hdr.js';
 import { makeDialects, makeParity, onOpen } from './parity.js';
 import { measure, readPicture } from './picture.js';
 import { makeProbe, probeRows } from './probe.js';
-import { reference } from './reference.js';
+import { computeSomeRows, reference } from './reference.js';
 import { cubeOf, makeSave, toneOf } from './save.js';
-import { change, MODES, onChange, setStatistics, state, TABS } from './state.js';
+import { change, hdrValuesOf, MODES, onChange, setStatistics, state, TABS } from './state.js';
 import { makeView } from './view.js';
 
 const TITLES = { picture: 'Picture', curves: 'Curves', parity: 'Parity', dialects: 'Dialects',
@@ -74,8 +75,18 @@ const wipe = h('input', { type: 'range', id: 'wipe', min: 0, max: 1, step: 0.01,
 const wipeLabel = h('label', { for: 'wipe' }, 'Wipe', wipe);
 const toggles = { falseColor: button('False color', () => change({ falseColor: !state.falseColor })),
     clipping: button('Clipping', () => change({ clipping: !state.clipping }), { title: 'Stripes where a channel reaches white (orange) or all are black (blue)' }) };
-// WebGL has no canvas for more than white.
-const hdrNote = h('span', { class: 'note' }, matchMedia('(dynamic-range: high)').matches ? 'The display is HDR; the page shows sRGB.' : '');
+const hdr = button('HDR', () => change({ hdr: !state.hdr }), { title: 'What the operator makes for an HDR display' });
+const hdrNote = h('span', { class: 'note' });
+function updateHdr() {
+    const why = whyNot();
+    const op = findOperator(state.slots[0].op);
+    hdr.hidden = why !== '';
+    hdr.setAttribute('aria-pressed', state.hdr);
+    hdrNote.textContent = why || (!state.hdr ? '' : !op.hdr ? `${op.title} has no HDR form: this is SDR.`
+        : state.mode !== 'single' ? 'The Single view shows HDR; this is SDR.'
+            : state.falseColor || state.clipping ? 'Without false color and clipping, this view shows HDR.' : '');
+}
+matchMedia('(dynamic-range: high)').addEventListener('change', () => change());
 const zoomText = h('span', { class: 'note' });
 const tools = h('div', { class: 'tools' },
     h('label', { for: 'choose' }, 'Picture', choose),
@@ -85,7 +96,7 @@ const tools = h('div', { class: 'tools' },
     h('div', { class: 'group', role: 'group', 'aria-label': 'Marks' }, ...Object.values(toggles)),
     h('div', { class: 'group', role: 'group', 'aria-label': 'Zoom' }, button('Fit', () => change({ zoom: 0, x: 0, y: 0 })),
         button('1:1', () => view.zoomTo(1)), button('-', () => view.zoomTo(view.zoom() / 2), { 'aria-label': 'Zoom out' }),
-        button('+', () => view.zoomTo(view.zoom() * 2), { 'aria-label': 'Zoom in' }), zoomText), hdrNote);
+        button('+', () => view.zoomTo(view.zoom() * 2), { 'aria-label': 'Zoom in' }), zoomText), hdr, hdrNote);
 
 const sections = {
     picture: h('section', { id: 'picture', 'aria-label': 'Picture' }, tools, view.stage,
@@ -126,6 +137,7 @@ function update() {
     wipe.value = state.wipe;
     wipeLabel.hidden = state.mode !== 'wipe';
     if (view.picture) zoomText.textContent = `${Math.round(100 * view.zoom())} %`;
+    updateHdr();
     save.update();
     if (state.tab === 'dialects') dialects.draw();
 }
@@ -147,6 +159,19 @@ addEventListener('drop', (event) => {
     openFile(event.dataTransfer.files[0]);
 });
 
+// In idle time: the nodes of lattices, then what the next keys show.
+const whenIdle = globalThis.requestIdleCallback ?? ((work) => setTimeout(() => work({ timeRemaining: () => 8 }), 50));
+let isWaiting = true;  // until the picture is there
+function workAhead() {
+    if (isWaiting) return;
+    isWaiting = true;
+    whenIdle((deadline) => {
+        isWaiting = false;
+        if (computeSomeRows(() => deadline.timeRemaining() > 3) || view.drawAhead(list.neighbors())) workAhead();
+    });
+}
+onChange(workAhead);
+
 // Before the first paint: everything has its place, so that nothing jumps when the picture comes.
 update();
 list.update();
@@ -155,8 +180,10 @@ curves.draw();
 requestAnimationFrame(() => setTimeout(() => {
     openEmbedded();
     document.documentElement.dataset.ready = 'true';
+    isWaiting = false;
+    workAhead();
 }));
 
 // For tests and for the curious: the same functions that the page uses.
 globalThis.tonewright = { operators, state, change, view, reference, cubeOf, toneOf,
-    probe: (slot, x, y) => probeRows(state.slots[slot], view.picture, renderer, x, y) };
+    probe: (slot, x, y) => probeRows(state.slots[slot], view.picture, renderer, x, y), hdrValuesOf, findOperator };

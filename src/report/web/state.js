@@ -13,7 +13,7 @@ const defaults = () => {
     const slots = [...usual, ...operators.filter((op) => op.glsl && !op.facts.is_diagnostic), first].slice(0, 4);
     while (slots.length < 4) slots.push(slots.at(-1));
     return {
-        tab: 'picture', picture: 0, exposure: 0, mode: 'single', active: 0, wipe: 0.5, falseColor: false, clipping: false,
+        tab: 'picture', picture: 0, exposure: 0, mode: 'single', active: 0, wipe: 0.5, falseColor: false, clipping: false, hdr: false,
         slots: slots.map((op) => ({ op: op.name, values: {} })), zoom: 0, x: 0, y: 0,
     };
 };
@@ -35,6 +35,12 @@ export function valuesOf(slot) {
     }
     return { ...values, ...slot.values };
 }
+// Of the operator's HDR form, whose defaults may be others.
+export function hdrValuesOf(slot) {
+    const op = findOperator(slot.op);
+    const decided = Object.entries(op.hdr.values).filter(([name, value]) => value !== op.values[name]);
+    return { ...valuesOf(slot), ...Object.fromEntries(decided), ...slot.values };
+}
 export const isDefault = (slot) => Object.keys(slot.values).length === 0;
 
 export const activeSlot = () => state.slots[state.active];
@@ -46,7 +52,7 @@ function toHash() {
     for (const name of ['tab', 'picture', 'exposure', 'mode', 'active', 'wipe', 'zoom', 'x', 'y']) {
         if (state[name] !== usual[name]) out.set(name, typeof state[name] === 'number' ? Number(state[name].toFixed(4)) : state[name]);
     }
-    for (const name of ['falseColor', 'clipping']) if (state[name]) out.set(name, 1);
+    for (const name of ['falseColor', 'clipping', 'hdr']) if (state[name]) out.set(name, 1);
     shownSlots().forEach((slot, i) => {
         out.set(LETTERS[i], slot.op);
         for (const [name, value] of Object.entries(slot.values)) out.set(`${LETTERS[i]}.${name}`, value);
@@ -74,6 +80,7 @@ function fromHash(hash) {
     if (TABS.includes(given.get('tab'))) state.tab = given.get('tab');
     state.falseColor = given.get('falseColor') === '1';
     state.clipping = given.get('clipping') === '1';
+    state.hdr = given.get('hdr') === '1';
     state.slots.forEach((slot, i) => {
         const op = findOperator(given.get(LETTERS[i]));
         if (!op) return;

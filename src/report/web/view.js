@@ -3,7 +3,8 @@
 // The stage: panels of the picture, zoom and pan, the wipe line, the pixel that is probed.
 import { file, findOperator, page } from './data.js';
 import { h, say } from './dom.js';
-import { change, onChange, shownSlots, state, valuesOf } from './state.js';
+import { HdrRenderer, whyNot } from './hdr.js';
+import { change, hdrValuesOf, onChange, shownSlots, state, valuesOf } from './state.js';
 
 const SURROUND = 0.1255;
 
@@ -13,9 +14,11 @@ export function makeView(renderer, showProbe) {
     const cross = h('div', { class: 'cross', hidden: true });
     const labels = h('div', {});
     const images = h('div', {});
+    const hdrCanvas = h('canvas', { id: 'hdr_canvas', 'aria-hidden': true, hidden: true });
     const stage = h('div', { id: 'stage', tabindex: 0, role: 'application',
         'aria-label': 'Picture. Arrow keys move the pixel that is probed, plus and minus zoom, 0 fits the picture.' },
-        canvas ?? '', images, line, cross, labels);
+        canvas ?? '', hdrCanvas, images, line, cross, labels);
+    canvas?.addEventListener('webglcontextlost', () => say('The browser stopped the graphics of this page; reload it.'));
     let picture = null;
     let pixel = null;
     let ratio = 1;
@@ -73,9 +76,21 @@ export function makeView(renderer, showProbe) {
             label.style[isRight ? 'right' : 'left'] = isRight ? '6px' : `${rect[0] / ratio + 6}px`;
             labels.append(label);
         });
+        drawHdr();
         line.hidden = state.mode !== 'wipe';
         line.style.left = `${100 * state.wipe}%`;
         placeCross();
+    }
+    // A piece of the work for the operators that the next keys may show; false when nothing is left to do.
+    function drawAhead(ops) {
+        if (!picture || !renderer || state.tab !== 'picture' || state.falseColor) return false;
+        const rect = panelOf(state.active);
+        const panel = { exposure: state.exposure, rect, origin: origin(rect), zoom: zoom() };
+        try {
+            return ops.some((op) => op.glsl && renderer.drawAhead(op, { ...panel, values: valuesOf({ op: op.name, values: {} }) }));
+        } catch {
+            return false;  // draw() says why when the operator is chosen
+        }
     }
     function drawPanel(slot, op, rect, clip) {
         const common = { exposure: state.exposure, rect, clip, origin: origin(rect), zoom: zoom() };
@@ -85,6 +100,33 @@ export function makeView(renderer, showProbe) {
             else drawShown(op, rect, clip);
         } catch (error) {
             say(`${op.title}: ${error.message}`);
+        }
+    }
+    let hdr = null;  // a promise: WebGPU starts when it is first asked for
+    function hdrRenderer() {
+        hdr ??= HdrRenderer.make(hdrCanvas, () => {
+            hdr = null;
+            hdrCanvas.hidden = true;
+            say('The browser stopped the graphics of the HDR view; the page shows SDR.');
+            change({ hdr: false });
+        });
+        return hdr;
+    }
+    async function drawHdr() {
+        const op = findOperator(state.slots[0].op);
+        const isShown = () => state.hdr && !whyNot() && state.mode === 'single' && op.hdr && !state.falseColor && !state.clipping;
+        hdrCanvas.hidden = !isShown();
+        if (!isShown()) return;
+        try {
+            const drawer = await hdrRenderer();
+            if (!isShown() || findOperator(state.slots[0].op) !== op) return;
+            const [width, height] = size();
+            if (hdrCanvas.width !== width || hdrCanvas.height !== height) Object.assign(hdrCanvas, { width, height });
+            drawer.setPicture(picture);
+            drawer.draw(op, hdrValuesOf(state.slots[0]), state.exposure, origin(panelOf(0)), zoom());
+        } catch (error) {
+            hdrCanvas.hidden = true;
+            say(`HDR: ${error.message}`);
         }
     }
     // What a local operator showed of an embedded picture.
@@ -231,7 +273,7 @@ export function makeView(renderer, showProbe) {
     });
     new ResizeObserver(resize).observe(stage);
     return {
-        stage, draw, zoomTo, zoom,
+        stage, draw, drawAhead, zoomTo, zoom,
         setPicture(next) {
             renderer?.setPicture(next);
             picture = next;
@@ -241,7 +283,7 @@ export function makeView(renderer, showProbe) {
             draw();
         },
         get picture() { return picture; },
-        probeAt, canvas,
+        probeAt, canvas, hdrRenderer,
         pageVersion: page.version,
     };
 }

@@ -73,7 +73,7 @@ def tubes(u, v):
     colors = [(1, 0.01, 0.02), (1, 0.25, 0), (0.05, 1, 0.03), (0, 0.6, 1), (0.02, 0.04, 1), (0.9, 0.02, 1)]
     is_floor = v > 0.78
     y = v if not is_floor else 2 * 0.78 - v
-    wave = 0.012 * (noise(60 * u, 200 * v) - 0.5) if is_floor else 0
+    wave = 0.008 * (noise(20 * u, 90 * v) - 0.5) if is_floor else 0
     wall = 0.05 + 0.03 * noise(40 * u, 40 * v)
     total = [0.0004] * 3
     for i, color in enumerate(colors):
@@ -91,12 +91,12 @@ def window(u, v):
     if 0.52 < u < 0.92 and 0.12 < v < 0.7 and abs(u - 0.72) > 0.006 and abs(v - 0.41) > 0.01:
         sun = math.hypot((u - 0.83) * 16 / 9, v - 0.24)
         sky = 1 - (v - 0.12) / 0.58
-        cloud = max(0, noise(14 * u, 26 * v) * 0.7 + noise(40 * u, 70 * v) * 0.3 - 0.45) * 14
-        disc = 20000 * inside(sun, 0.018, 0.0011) + 6 / (0.03 + sun)
+        cloud = max(0, noise(14 * u, 26 * v) * 0.7 + noise(40 * u, 70 * v) * 0.3 - 0.45) * 6
+        disc = 20000 * inside(sun, 0.018, 0.0011) + 0.12 / (0.03 + sun)
         hill = 0.62 + 0.04 * noise(9 * u, 1)
         if v > hill:
-            return [x * (0.8 + 0.5 * noise(150 * u, 150 * v)) for x in (0.5, 0.9, 0.18)]
-        return [4 + 3 * (1 - sky) + cloud + disc, 7 + 2 * (1 - sky) + cloud + 0.93 * disc, 14 - 3 * (1 - sky) + cloud + 0.8 * disc]
+            return [x * (0.8 + 0.5 * noise(150 * u, 150 * v)) for x in (0.3, 0.6, 0.1)]
+        return [0.7 + 1.2 * (1 - sky) + cloud + disc, 1.5 + 0.8 * (1 - sky) + cloud + 0.93 * disc, 4 - sky + cloud + 0.8 * disc]
     distance = math.hypot((u - 0.72) * 16 / 9, v - 0.41)
     light = 0.9 / (0.5 + 4 * distance * distance) * (0.96 + 0.08 * noise(120 * u, 90 * v))
     warm = [0.75, 0.68, 0.6]
@@ -110,7 +110,7 @@ def window(u, v):
     elif v > 0.86:
         light *= 0.35
         warm = [0.4, 0.2, 0.1]
-    return [0.12 * light * c for c in warm]
+    return [0.5 * light * c for c in warm]
 
 
 def embers(u, v):

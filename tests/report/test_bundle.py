@@ -95,25 +95,28 @@ def check_flips(report, page):
     size = page.run("`${tonewright.view.canvas.width} x ${tonewright.view.canvas.height}`")
     names = page.run("tonewright.operators.filter((op) => op.glsl && !op.facts.is_diagnostic).map((op) => op.name)")
 
-    def flip(kind, bound):
-        times = {name: page.run(f"{FLIP}({json.dumps(name)})") for name in names}
+    def flip(kind, bound, rounds):
+        # The least of some rounds: other programs use the machine, too.
+        times = {name: min(page.run(f"{FLIP}({json.dumps(name)})") for _ in range(rounds)) for name in names}
         median = sorted(times.values())[len(times) // 2]
         print(f"     {kind}, canvas of {size} pixels: " + ", ".join(f"{name} {time:.0f} ms" for name, time in times.items()))
         report.check(f"flipping, {kind}: median {median:.0f} ms (bound {bound})", median < bound)
 
-    # Half a million pixels through one operator on two cores. The bound is for a machine that does other work, too.
+    # Half a million pixels through one operator, and its compilation, while other programs may use both cores.
     page.run("tonewright.change({ exposure: 0.3 })")
-    flip("for the first time", 600)
-    # Nothing is computed again: 50 ms is what a user takes for at once.
-    flip("again", 50)
-    # The arrow keys show what was drawn ahead.
-    page.run("tonewright.change({ exposure: 0.7 })")
-    times = []
-    page.run(f"{FLIP}({json.dumps(names[0])})")
-    for name in names[1:4]:
-        page.wait(f"tonewright.view.drawAhead([tonewright.findOperator({json.dumps(name)})]) === false")
-        times.append(page.run(f"{FLIP}({json.dumps(name)})"))
-    report.check(f"flipping, drawn ahead: {max(times):.0f} ms at most (bound 50)", max(times) < 50)
+    flip("for the first time", 600, 1)
+    # Nothing is computed again: one copy of the view, which takes 17 ms. A change within 50 ms seems to come at once.
+    flip("again", 50, 8)
+    # The arrow keys show what was drawn ahead: the same copy.
+    times = {name: [] for name in names[1:4]}
+    for exposure in (0.7, 0.8, 0.9):
+        page.run(f"tonewright.change({{ exposure: {exposure} }})")
+        page.run(f"{FLIP}({json.dumps(names[0])})")
+        for name in times:
+            page.wait(f"tonewright.view.drawAhead([tonewright.findOperator({json.dumps(name)})]) === false")
+            times[name].append(page.run(f"{FLIP}({json.dumps(name)})"))
+    worst = max(map(min, times.values()))
+    report.check(f"flipping, drawn ahead: {worst:.0f} ms at most (bound 50)", worst < 50)
 
 
 def check_gallery(report, command, page, scratch):

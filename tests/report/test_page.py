@@ -307,6 +307,42 @@ def check_own(report, command, page, scratch):
     report.check("report: operators from files", "own.tone" in named and "film.cube" in named, named)
 
 
+def check_kinds(report, command, page, scratch):
+    """Every compression and kind of OpenEXR file, as OpenImageIO writes them."""
+    plain = scratch / "none.exr"
+    tonewright_run(command, "chart", "-o", scratch / "kinds.exr", "-d", "half", "--width", 320, "--height", 180)
+
+    def write(name, *arguments, source=None):
+        file = scratch / f"{name}.exr"
+        subprocess.run(["oiiotool", source or plain, *arguments, "-o", file], check=True)
+        return file
+
+    def shown(file):
+        page.run("document.getElementById('message').textContent = ''")
+        page.give_file("#open", file)
+        page.wait(f"tonewright.view.picture?.name === {json.dumps(file.name)} || document.getElementById('message').textContent !== ''", 20)
+        message = page.run("document.getElementById('message').textContent")
+        return message, np.array(page.run("[...tonewright.view.picture.rgba.filter((_, i) => i % 4 < 3 && i % 7 === 0)]"))
+
+    write("none", "--compression", "none", source=scratch / "kinds.exr")
+    want = shown(plain)[1]
+    for name, arguments in (("rle", ()), ("zips", ()), ("zip", ()), ("piz", ()), ("pxr24", ()), ("tiles", ("--tile", 64, 64))):
+        file = write(name, *map(str, arguments or ("--compression", name)))
+        message, got = shown(file)
+        report.check(f"OpenEXR, {name}: the same numbers", message == "" and np.array_equal(got, want), message)
+    for name in ("dwaa", "dwab"):
+        # With losses: against what OpenImageIO reads, whose transform rounds at another place. parse-exr is off by more in
+        # blocks with channels far below 0, which are 0.3 % of the chart.
+        read = write(name + "_read", "--compression", "none", source=write(name, "--compression", name))
+        theirs, (message, got) = shown(read)[1], shown(scratch / f"{name}.exr")
+        share = np.mean(np.abs(got - theirs) <= 0.01 * (np.abs(theirs) + 0.01))
+        report.check(f"OpenEXR, {name}: {100 * share:.2f} % of the numbers within 1 %", message == "" and share > 0.995, message)
+    for name, words, arguments in (("b44", "B44", ("--compression", "b44")), ("real_deep", "deep", ("--ch", "A=1,R,G,B,Z=1", "--deepen")),
+                                   ("parts", "several parts", (plain, "--siappend"))):
+        message = shown(write(name, *map(str, arguments)))[0]
+        report.check(f"OpenEXR, {name}: {message}", words in message and message.startswith(f"{name}.exr: "))
+
+
 def check_not_finite(report, command, page, scratch):
     """NaN and infinities are shown as `apply` shows them: NaN as black."""
     file = scratch / "nan.hdr.exr"
@@ -365,7 +401,7 @@ def check_hdr_forms(report, command, page, file):
     report.check("HDR: operators that have it", {"agx_blender", "aces_20", "gt7"} <= set(names), str(names))
     for name in names:
         # A lit sphere, a light of 60, and a hue sweep of the chart.
-        for x, y in ((520, 240), (553, 203), (100, 200)):
+        for x, y in ((520, 240), (553, 203), (100, 200))[:3 if IS_FULL else 1]:
             got = page.run(f"""(async () => {{
                 const op = tonewright.findOperator({json.dumps(name)});
                 const hdr = await tonewright.view.hdrRenderer();
@@ -432,6 +468,8 @@ def main() -> int:
         check_keyboard(report, page)
         check_link(report, page, file)
         check_damaged(report, command, page, scratch)
+        if IS_FULL:
+            check_kinds(report, command, page, scratch)
         check_not_finite(report, command, page, scratch)
         check_own(report, command, page, scratch)
         check_hdr(report, command, page, file)

@@ -69,6 +69,8 @@ export function checkExr(buffer) {
     const [width, height] = sizeOf(found.window);
     const [shownWidth, shownHeight] = sizeOf(found.shown);
     if (!(found.compression in LINES)) throw new Error('its compression is unknown');
+    if (found.compression === 6 || found.compression === 7)
+        throw new Error('its compression, B44, is not supported; write the file with another one, such as ZIP');
     const has = (name) => found.channels.includes(name);
     if (!(has('R') && has('G') && has('B')) && !has('Y'))
         throw new Error(`it has no channels R, G and B; it has ${found.channels.slice(0, 8).join(', ')}`);

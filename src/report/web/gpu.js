@@ -36,37 +36,29 @@ ${PLACE}
 ${op.uniforms.map((name) => `uniform float page_${name};`).join('\n')}
 out vec4 page_shown;
 void main() {
-    ivec2 place = page_place();
-    ivec2 size = textureSize(page_light, 0);
-    if (any(lessThan(place, ivec2(0))) || any(greaterThanEqual(place, size))) {
-        page_shown = vec4(0.0);
-        return;
-    }
-    vec3 scene = texelFetch(page_light, place, 0).rgb;
+    vec3 scene = texelFetch(page_light, clamp(page_place(), ivec2(0), textureSize(page_light, 0) - 1), 0).rgb;
     scene = mix(scene, vec3(0.0), isnan(scene));
     page_shown = vec4(${op.function}(${['scene', ...op.uniforms.map((name) => `page_${name}`)].join(', ')}), 1.0);
 }`;
 
-// From what an operator gave, which has its bottom row first, onto the canvas.
-const PRESENT = `#version 300 es
+// From what an operator gave, which has its bottom row first, onto the canvas. Software rendering takes half the time of
+// texelFetch and a test of the place.
+const PRESENT_HEAD = `#version 300 es
 precision highp float;
-uniform sampler2D page_result;
-${PLACE}
-uniform bool page_marks;
-out vec4 page_shown;
+uniform highp sampler2D page_result;
+uniform vec2 page_scale;  // from pixels of the canvas to the result, from 0 to 1
+uniform vec2 page_offset;
+out vec4 page_shown;`;
+const PRESENT = `${PRESENT_HEAD}
 void main() {
-    ivec2 place = page_place();
-    ivec2 size = textureSize(page_result, 0);
-    page_shown = vec4(vec3(0.1255), 1.0);
-    if (any(lessThan(place, ivec2(0))) || any(greaterThanEqual(place, size))) return;
-    vec4 result = texelFetch(page_result, ivec2(place.x, size.y - 1 - place.y), 0);
-    if (result.a == 0.0) return;
-    vec3 shown = result.rgb;
-    if (page_marks) {
-        bool is_stripe = mod(gl_FragCoord.x + gl_FragCoord.y, 8.0) < 4.0;
-        if (max(max(shown.r, shown.g), shown.b) >= 254.5 / 255.0) shown = is_stripe ? vec3(1.0, 0.55, 0.0) : vec3(0.0);
-        else if (max(max(shown.r, shown.g), shown.b) <= 0.5 / 255.0) shown = is_stripe ? vec3(0.35, 0.7, 0.9) : vec3(0.0);
-    }
+    page_shown = texture(page_result, page_scale * gl_FragCoord.xy + page_offset);
+}`;
+const PRESENT_MARKED = `${PRESENT_HEAD}
+void main() {
+    vec3 shown = texture(page_result, page_scale * gl_FragCoord.xy + page_offset).rgb;
+    bool is_stripe = mod(gl_FragCoord.x + gl_FragCoord.y, 8.0) < 4.0;
+    if (max(max(shown.r, shown.g), shown.b) >= 254.5 / 255.0) shown = is_stripe ? vec3(1.0, 0.55, 0.0) : vec3(0.0);
+    else if (max(max(shown.r, shown.g), shown.b) <= 0.5 / 255.0) shown = is_stripe ? vec3(0.35, 0.7, 0.9) : vec3(0.0);
     page_shown = vec4(shown, 1.0);
 }`;
 
@@ -86,6 +78,7 @@ export class Renderer {
         this.textures = new Map();
         this.halve = this.finished(this.compiling(HALVE));
         this.present = this.finished(this.compiling(PRESENT));
+        this.presentMarked = this.finished(this.compiling(PRESENT_MARKED));
         this.point = this.makeTexture(this.gl.TEXTURE_2D);
         this.gl.texImage2D(this.gl.TEXTURE_2D, 0, this.gl.RGBA32F, 1, 1, 0, this.gl.RGBA, this.gl.FLOAT, null);
     }
@@ -217,28 +210,35 @@ export class Renderer {
     }
 
     // The part of the picture that a panel shows, computed once for each pixel of the picture or of the panel, whichever
-    // are fewer; and how the panel shows it.
+    // are fewer; and where the panel shows it.
     planned(op, { values, exposure, rect, origin, zoom }) {
         const level = zoom < 1 ? Math.max(0, Math.floor(Math.log2(1 / zoom) + 1e-6)) : 0;
         const scale = 2 ** level;
         const { width, height } = this.level(level);
+        const size = [width, height];
         const step = 1 / zoom / scale;
         const at = [origin[0] / scale, origin[1] / scale];
-        const plan = { level, view: [...at, step], shown: [0, 0, 1], width: rect[2], height: rect[3] };
+        // Pixels of the panel whose middle is inside of the picture.
+        const pixelOf = (place, i) => Math.min(Math.max(Math.ceil((place - at[i]) / step - 0.5), 0), rect[2 + i]);
+        const first = [0, 1].map((i) => pixelOf(0, i));
+        const count = [0, 1].map((i) => pixelOf(size[i], i) - first[i]);
+        const plan = { level, first, count, isEmpty: !(count[0] > 0 && count[1] > 0) };
         if (step <= 1) {
-            const first = at.map((x) => Math.max(0, Math.floor(x)));
-            plan.width = Math.min(width, Math.ceil(at[0] + rect[2] * step)) - first[0];
-            plan.height = Math.min(height, Math.ceil(at[1] + rect[3] * step)) - first[1];
-            plan.view = [...first, 1];
-            plan.shown = [at[0] - first[0], at[1] - first[1], step];
+            const from = [0, 1].map((i) => Math.floor(at[i] + step * (first[i] + 0.5)));
+            plan.size = [0, 1].map((i) => Math.floor(at[i] + step * (first[i] + count[i] - 0.5)) + 1 - from[i]);
+            plan.view = [...from, 1];
+            plan.shown = [...[0, 1].map((i) => at[i] + step * first[i] - from[i]), step];
+        } else {
+            plan.size = count;
+            plan.view = [...[0, 1].map((i) => at[i] + step * first[i]), step];
+            plan.shown = [0, 0, 1];
         }
-        plan.isEmpty = !(plan.width > 0 && plan.height > 0);
         plan.key = JSON.stringify([op.name, op.uniforms.map((name) => (name === 'exposure' ? exposure : values[name])),
-            level, plan.view, plan.width, plan.height]);
+            level, plan.view, plan.size]);
         return plan;
     }
 
-    result(op, { values, exposure }, { key, level, view, width, height }) {
+    result(op, { values, exposure }, { key, level, view, size: [width, height] }) {
         const gl = this.gl;
         let result = this.results.get(key);
         if (result) {
@@ -266,18 +266,27 @@ export class Renderer {
         const plan = this.planned(op, panel);
         if (plan.isEmpty) return;
         const texture = this.result(op, panel, plan);
+        const { first, count, shown: [x, y, step], size: [width, height] } = plan;
         gl.viewport(0, 0, this.canvas.width, this.canvas.height);
-        const { program, places } = this.present;
+        const { program, places } = marks ? this.presentMarked : this.present;
         gl.useProgram(program);
         gl.activeTexture(gl.TEXTURE0);
         gl.bindTexture(gl.TEXTURE_2D, texture);
         gl.uniform1i(places.page_result, 0);
-        gl.uniform3fv(places.page_view, plan.shown);
-        gl.uniform2fv(places.page_corner, [rect[0], this.canvas.height - rect[1]]);
-        gl.uniform1i(places.page_marks, marks ? 1 : 0);
+        // At whole zooms, the middle of a pixel may lie on the edge of two of the result: it is the second, as for floor().
+        const [px, py] = [x + 1 / 256, y + 1 / 256];
+        const left = rect[0] + first[0];
+        const top = this.canvas.height - rect[1] - first[1];  // counted from below, as the canvas does
+        gl.uniform2f(places.page_scale, step / width, step / height);
+        gl.uniform2f(places.page_offset, (px - step * left) / width, 1 - (py + step * top) / height);
+        const [low, high] = [Math.max(left, clip[0]), Math.min(left + count[0], clip[0] + clip[2])];
+        const bottom = Math.max(top - count[1], this.canvas.height - clip[1] - clip[3]);
+        const end = Math.min(top, this.canvas.height - clip[1]);
         gl.enable(gl.SCISSOR_TEST);
-        gl.scissor(clip[0], this.canvas.height - clip[1] - clip[3], clip[2], clip[3]);
-        gl.drawArrays(gl.TRIANGLES, 0, 3);
+        if (high > low && end > bottom) {
+            gl.scissor(low, bottom, high - low, end - bottom);
+            gl.drawArrays(gl.TRIANGLES, 0, 3);
+        }
     }
 
     // Does a piece of the work that drawing this would take, and never waits. False: nothing is left to do.

@@ -34,7 +34,7 @@ TEST(LatticeFormula, GivesTheNodes) {
                 // of the two differ in their last bit, the decimal may be the next one.
                 const double bound = edge == 37 ? 1.01e-7 : 1e-12;
                 double worst = 0;
-                for (std::size_t i = 0; i < edge * edge * edge; i += 7) {
+                for (std::size_t i = 0; i < edge * edge * edge; i += 61) {
                     const auto place = [&](std::size_t k) {
                         return static_cast<double>(k % edge) / static_cast<double>(edge - 1);
                     };

@@ -1276,9 +1276,9 @@ void run(const Code& code, const std::array<const float*, 3>& in, std::ptrdiff_t
 }
 
 #if HWY_TARGET <= HWY_AVX3
-constexpr std::optional<VectorMachine> kMachine = VectorMachine{16, 32, true, 2};
+constexpr std::optional<VectorMachine> kMachine = VectorMachine{16, 32, true, 115};
 #elif HWY_TARGET <= HWY_AVX2
-constexpr std::optional<VectorMachine> kMachine = VectorMachine{8, 16, false, 1};
+constexpr std::optional<VectorMachine> kMachine = VectorMachine{8, 16, false, 80};
 #else
 constexpr std::optional<VectorMachine> kMachine;
 #endif

@@ -17,10 +17,6 @@ using Number = VectorOperand;  // of a vector: a value or a constant
 
 constexpr std::int32_t kNone = VectorOperand::kNone;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Vector instructions of a part. Measured: longer ones leave the processor waiting for their own
-/// results (ACES 2.0 with 400: a tenth slower, in one part: a quarter), much shorter ones write
-/// more values to the tile than they compute.
-constexpr int kLongestPart = 115;
 /// Bytes of a tile: stays in a first-level cache of 32 KiB.
 constexpr std::size_t kTileBytes = std::size_t{24} * 1024;
 
@@ -993,8 +989,8 @@ class Translator {
             int length = 0;
             for (; end < steps_.size() && !is_tile_step(*steps_[end].step); ++end) {
                 length += vectors_of(*steps_[end].step);
-                if (length > kLongestPart) break;
-                if (length >= kLongestPart / 2 &&
+                if (length > machine_.longest_part) break;
+                if (length >= machine_.longest_part / 2 &&
                     (best == begin || across[end + 1] <= across[best]))
                     best = end + 1;
             }
@@ -1016,7 +1012,7 @@ class Translator {
         switch (step.op) {
             case Op::curve: {
                 const CompiledCurve& curve = code_.curves[step.table];
-                if (curve.rows) return 25 + 3 * curve.rows->length;
+                if (curve.rows) return 16 + 2 * curve.rows->length;
                 return 20 + (curve.segments > 32 ? 5 : 2) * curve.degree;
             }
             case Op::dot3:

@@ -453,8 +453,8 @@ class Writer {
         const std::array<Number, 4> weight = {sub(false, one, highest), sub(false, highest, middle),
                                               sub(false, middle, lowest), lowest};
         for (std::uint8_t i = 0; i < 4; ++i) {
-            keep_index(i, shifted(VectorOp::shift_left, false,
-                                  op(VectorOp::to_index, false, node[i]), kNodeShift));
+            spill_index(i, shifted(VectorOp::shift_left, false,
+                                   op(VectorOp::to_index, false, node[i]), kNodeShift));
         }
         std::array<Number, 4> rgba;  // of a quarter of the pixels each
         for (std::uint8_t quarter = 0; quarter < 4; ++quarter) {
@@ -468,7 +468,7 @@ class Writer {
         }
         return channels(rgba);
     }
-    void keep_index(std::uint8_t number, Number bytes) {
+    void spill_index(std::uint8_t number, Number bytes) {
         VectorInstruction step;
         step.op = VectorOp::spill_index;
         step.immediate = number;
@@ -577,8 +577,8 @@ class Writer {
         }
         const Number cell = shifted(VectorOp::shift_right, false,
                                     op(VectorOp::integer_subtract, false, bits, base), table.shift);
-        kept_ = static_cast<std::uint8_t>((kept_ + 1) % 4);
-        keep_index(kept_, shifted(VectorOp::shift_left, false, cell, is_long ? 5 : kNodeShift));
+        spilled_ = static_cast<std::uint8_t>((spilled_ + 1) % 4);
+        spill_index(spilled_, shifted(VectorOp::shift_left, false, cell, is_long ? 5 : kNodeShift));
         const std::uint32_t in_cell = (std::uint32_t{1} << table.shift) - 1;
         const Number x0 = table.restarts.empty() && (table.base & in_cell) == 0
                               ? op(VectorOp::bit_and, false, bits, pool_.bits(~in_cell))
@@ -594,8 +594,9 @@ class Writer {
         const std::uint32_t offset = pool_.table(table.numbers.data(), table.numbers.size());
         std::array<Number, 4> low, high;
         for (std::uint8_t quarter = 0; quarter < 4; ++quarter) {
-            low[quarter] = rows(kept_, quarter, nullptr, offset);
-            if (is_long) high[quarter] = rows(kept_, quarter, nullptr, offset + 4 * sizeof(float));
+            low[quarter] = rows(spilled_, quarter, nullptr, offset);
+            if (is_long)
+                high[quarter] = rows(spilled_, quarter, nullptr, offset + 4 * sizeof(float));
         }
         Number y;
         if (is_long) {
@@ -804,7 +805,7 @@ class Writer {
     Pool& pool_;
     VectorMachine machine_;
     VectorCode code_;
-    std::uint8_t kept_ = 0;  // of spill_index, the last one
+    std::uint8_t spilled_ = 0;  // of spill_index, the last one
 };
 
 /// What runs over a whole tile: what is rare, and what goes pixel by pixel.

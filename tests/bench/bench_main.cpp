@@ -4,7 +4,7 @@
 // picture and OpenColorIO's CPU path, in one run. Ratios to memcpy ("of_memcpy") are the figures to
 // keep: they depend less on the machine. table.py runs this and prints them.
 //
-//   tonewright_bench --benchmark_filter='^(memcpy|[a-z0-9_]+/hable$)'
+//   tonewright_bench --benchmark_filter='^(memcpy|[a-z0-9_]+/hable$)' [--target=AVX2]
 #include <OpenColorIO/OpenColorIO.h>
 #include <OpenImageIO/parallel.h>
 #include <benchmark/benchmark.h>
@@ -16,6 +16,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/random.h"
@@ -78,6 +79,12 @@ Pipeline view_of(const std::string& name) {
     return build_view(make_view(resolve_operator(name), "lin_rec709", 0, "srgb"));
 }
 
+/// Of the engine: an instruction set, or "" for the best of this machine.
+std::string& target() {
+    static std::string name;
+    return name;
+}
+
 double goal_of(const std::string& name) { return resolve_operator(name).op->bounds.simd_goal; }
 
 void report(benchmark::State& state, std::size_t pixels) {
@@ -119,7 +126,7 @@ void run_rows(const SimdEngine& engine, std::size_t begin, std::size_t end) {
 
 /// @param threads  0: all
 void simd(benchmark::State& state, const std::string& name, int threads) {
-    const SimdEngine engine(view_of(name), goal_of(name));
+    const SimdEngine engine(view_of(name), goal_of(name), target());
     for (auto _ : state) {
         if (threads == 1) {
             run_rows(engine, 0, kHeight);
@@ -139,7 +146,7 @@ void simd(benchmark::State& state, const std::string& name, int threads) {
 /// RGB pictures of other sizes: the cost of a pixel should not depend on how many there are.
 void simd_size(benchmark::State& state, const std::string& name) {
     const auto pixels = static_cast<std::size_t>(state.range(0));
-    const SimdEngine engine(view_of(name), goal_of(name));
+    const SimdEngine engine(view_of(name), goal_of(name), target());
     std::vector<float> in(3 * pixels), out(3 * pixels);
     for (std::size_t i = 0; i < in.size(); ++i)
         in[i] = picture()[i % picture().size()];
@@ -218,7 +225,7 @@ void reference(benchmark::State& state, const std::string& name) {
 void prepare(benchmark::State& state, const std::string& name) {
     const Pipeline view = view_of(name);
     for (auto _ : state)
-        benchmark::DoNotOptimize(SimdEngine(view, goal_of(name)));
+        benchmark::DoNotOptimize(SimdEngine(view, goal_of(name), target()));
 }
 
 template <class F, class... Args>
@@ -253,6 +260,13 @@ void register_all() {
 TONEWRIGHT_NAMESPACE_END
 
 int main(int argc, char** argv) {
+    constexpr std::string_view kTarget = "--target=";
+    const auto is_target = [&](const char* a) { return std::string_view(a).starts_with(kTarget); };
+    if (char** at = std::find_if(argv + 1, argv + argc, is_target); at != argv + argc) {
+        tonewright::target() = std::string_view(*at).substr(kTarget.size());
+        std::copy(at + 1, argv + argc, at);
+        --argc;
+    }
     tonewright::register_all();
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;

@@ -208,7 +208,8 @@ def print_commands(rows, frames, start):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0],
-                                     epilog="Further arguments go to Google Benchmark, as --benchmark_repetitions=5.")
+                                     epilog="Further arguments go to the benchmark of the engine: --target=AVX2, or "
+                                     "Google Benchmark's, as --benchmark_repetitions=5.")
     parser.add_argument("bench", type=Path)
     parser.add_argument("command", type=Path)
     parser.add_argument("--operators", default=OPERATORS)

@@ -26,6 +26,12 @@ def call(command, *arguments):
     return done.returncode, done.stdout, done.stderr
 
 
+def check_standard_output(report, command):
+    code, plain, _ = call(command, "hable", "--language", "glsl")
+    report.check("-o - is the standard output", call(command, "hable", "--language", "glsl", "-o", "-")[:2] == (code, plain)
+                 and "vec3 tw_hable(" in plain and not Path("-").exists())
+
+
 def check_refusals(report, command, scratch):
     for arguments, code, words in [
         (["hable"], USAGE, "shader: --language and --for are missing; expected one of them"),
@@ -144,6 +150,7 @@ def main(command):
     report = Report()
     with tempfile.TemporaryDirectory() as folder:
         scratch = Path(folder)
+        check_standard_output(report, command)
         check_refusals(report, command, scratch)
         check_files(report, command, scratch)
         check_applications(report, command, scratch)

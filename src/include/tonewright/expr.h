@@ -213,7 +213,8 @@ class TONEWRIGHT_API PartNames {
 
     /// Of the innermost object: nothing where there is none.
     static void add(const std::string& name, const Expr& part);
-    /// The last name that this part was given; null: none. Inputs and uniforms have none.
+    /// The last name that this part was given, of a number the first; null: none. Inputs and
+    /// uniforms have none.
     [[nodiscard]] static const std::string* of(const Expr& part);
     /// For whoever rewrites expressions: `after` takes the name of `before`.
     static void move(const Expr& before, const Expr& after);

@@ -15,7 +15,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// rounding adds in an inner one then counts with the slope of the outer ones.
 class ErrorCurve {
   public:
-    /// @param is_rounded  false: whoever computes it does so without an error of its own
+    /// @param is_rounded  false: computing it adds no error of its own
     ErrorCurve(const Expr& f, bool is_rounded);
 
     [[nodiscard]] Bounded operator()(const Bounded& x);

@@ -68,13 +68,11 @@ class Expr;
 /// diagonal; outside, the nearest face holds.
 class TONEWRIGHT_API Lattice {
   public:
-    /// @param make  gives red, green, blue of each node, the third coordinate running fastest. It
-    /// is
-    ///              called once, when a node is first asked for.
+    /// @param make  gives red, green, blue of each node, the third coordinate running fastest.
+    ///              It is called once, when a node is first asked for.
     /// @throws Error  for an edge below 2.
     Lattice(int edge, std::function<std::vector<double>()> make);
-    /// @param formula  gives three expressions that compute the same node. Inputs 0, 1 and 2 are
-    /// the
+    /// @param formula  gives three expressions that compute the same node. Inputs 0, 1, 2: the
     ///                 coordinates of the node in [0, 1].
     Lattice(int edge, std::function<std::vector<double>()> make,
             std::function<std::vector<Expr>()> formula);
@@ -195,9 +193,8 @@ TONEWRIGHT_API Expr clamp(const Expr& a, const Expr& lo, const Expr& hi);  // mi
 TONEWRIGHT_API Expr mix(const Expr& a, const Expr& b, const Expr& t);      // a + t*(b - a)
 TONEWRIGHT_API Expr smoothstep(const Expr& edge0, const Expr& edge1, const Expr& x);
 
-/// Collects, while it exists, the names that its thread gives with named(). A part that is
-/// rewritten keeps its name. An object within another one starts without names and hides the outer
-/// one.
+/// Collects, while it exists, the names that its thread gives with named(). A rewritten part keeps
+/// its name. An object within another one starts without names and hides the outer one.
 class TONEWRIGHT_API PartNames {
   public:
     struct Entry {

@@ -664,7 +664,8 @@ class Reader {
         const std::string encoding = table.text("input", lut.encoding);
         const std::string space = table.text("space", input ? "" : lut.space);
         try {
-            stage.stages = table_stages(lut, encoding, space, op_.working);
+            stage.lut = {path.string(), encoding, space,
+                         table_stages(lut, encoding, space, op_.working)};
         } catch (const Error& e) {
             fail(input ? input->at : main.at, e.what());
         }
@@ -773,14 +774,9 @@ class Reader {
 
     void set_functions() {
         const std::shared_ptr<const OperatorRecipe> recipe = recipe_;
-        op_.build = [recipe](const Params& params) {
-            return build_stages(*recipe, recipe->stages, params);
-        };
-        if (!recipe->inverse.empty()) {
-            op_.build_inverse = [recipe](const Params& params) {
-                return build_stages(*recipe, recipe->inverse, params);
-            };
-        }
+        op_.build = BuildRecipe{recipe};
+        if (!recipe->inverse.empty())
+            op_.build_inverse = BuildRecipe{recipe, &OperatorRecipe::inverse};
         if (!(recipe->output_primaries == op_.working)) {
             op_.output_primaries = [recipe](const Params&) { return recipe->output_primaries; };
         }

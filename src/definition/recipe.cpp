@@ -88,7 +88,7 @@ Stage stage_of(const StageRecipe& recipe, const UniformValues& values) {
 }
 
 Pipeline stages_of(const StageRecipe& recipe, const UniformValues& values) {
-    return recipe.kind == Kind::lut ? recipe.stages : Pipeline{stage_of(recipe, values)};
+    return recipe.kind == Kind::lut ? recipe.lut.stages : Pipeline{stage_of(recipe, values)};
 }
 
 /// The expressions' values for many inputs, each node once.
@@ -161,6 +161,17 @@ Size size_of(const std::array<Expr, 3>& f) {
 
 }  // namespace
 
+std::vector<const StageRecipe*> stages_used(const OperatorRecipe& recipe,
+                                            const std::vector<StageRecipe>& stages,
+                                            const Params& params) {
+    const UniformValues values = values_of(recipe, params);
+    std::vector<const StageRecipe*> used;
+    for (const StageRecipe& stage : stages) {
+        if (!bind_uniforms(stage.when, values).is_constant(0)) used.push_back(&stage);
+    }
+    return used;
+}
+
 Pipeline build_stages(const OperatorRecipe& recipe, const std::vector<StageRecipe>& stages,
                       const Params& params) {
     for (const PartNames::Entry& entry : recipe.names)
@@ -170,17 +181,16 @@ Pipeline build_stages(const OperatorRecipe& recipe, const std::vector<StageRecip
     std::array<std::vector<double>, 3> rgb = sample_colors();
     bool is_bound = true;
     Size size;
-    for (const StageRecipe& stage : stages) {
-        if (bind_uniforms(stage.when, values).is_constant(0)) continue;
-        const Pipeline stages_here = stages_of(stage, values);
+    for (const StageRecipe* const stage : stages_used(recipe, stages, params)) {
+        const Pipeline stages_here = stages_of(*stage, values);
         pipeline.insert(pipeline.end(), stages_here.begin(), stages_here.end());
         const std::array<Expr, 3> f = compose(stages_here);
         const Size own = size_of(f);
         size = {size.operations + own.operations, size.depth + own.depth};
         const auto limit = [&](std::size_t count, std::size_t most, const char* what) {
             if (count <= most) return;
-            throw StageError(stage.at, "stages up to here have " + std::to_string(count) + " " +
-                                           what + "; expected at most " + std::to_string(most));
+            throw StageError(stage->at, "stages up to here have " + std::to_string(count) + " " +
+                                            what + "; expected at most " + std::to_string(most));
         };
         limit(size.operations, kMostOperations, "operations");
         limit(static_cast<std::size_t>(size.depth), kDeepestOperator,
@@ -192,11 +202,12 @@ Pipeline build_stages(const OperatorRecipe& recipe, const std::vector<StageRecip
         for (std::size_t i = 0; i < rgb[0].size(); ++i) {
             for (const std::vector<double>& channel : rgb) {
                 if (std::isfinite(channel[i])) continue;
-                throw StageError(stage.at, std::string("stage gives ") +
-                                               (std::isnan(channel[i]) ? "no number" : "infinity") +
-                                               " for the color " + shortest(in[0][i]) + " " +
-                                               shortest(in[1][i]) + " " + shortest(in[2][i]) +
-                                               "; expected a finite number, as with max(x, 1e-10)");
+                throw StageError(stage->at,
+                                 std::string("stage gives ") +
+                                     (std::isnan(channel[i]) ? "no number" : "infinity") +
+                                     " for the color " + shortest(in[0][i]) + " " +
+                                     shortest(in[1][i]) + " " + shortest(in[2][i]) +
+                                     "; expected a finite number, as with max(x, 1e-10)");
             }
         }
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,7 +22,7 @@ struct StageRecipe {
         hexcone,         // f: offset, value, chroma
         cross_talk,      // f: three
         clamp,           // lo, hi
-        lut,             // stages
+        lut,             // lut
     };
     Kind kind = Kind::matrix;
     std::vector<Expr> f;
@@ -30,8 +31,13 @@ struct StageRecipe {
     Vector3 weights{};
     double lo = 0;
     double hi = kInfinity;
-    /// Those of a LUT.
-    Pipeline stages;
+    /// Path, encoding and space of its input, stages.
+    struct Lut {
+        std::string path;
+        std::string input;
+        std::string space;
+        Pipeline stages;
+    } lut;
     const char* name = "";
     /// The stage is there where this is not 0.
     Expr when = 1;
@@ -60,6 +66,11 @@ class StageError : public Error {
     TextPosition at;
 };
 
+/// The stages whose `when` is not 0 with these parameters, which none that is live decides.
+[[nodiscard]] std::vector<const StageRecipe*> stages_used(const OperatorRecipe& recipe,
+                                                          const std::vector<StageRecipe>& stages,
+                                                          const Params& params);
+
 /// The stages with these parameters; those that are live stay uniforms.
 /// @throws StageError  a stage gives no finite number for a color of the sample set. It is not
 ///                     looked for where a parameter is live.
@@ -67,6 +78,15 @@ class StageError : public Error {
                                     const std::vector<StageRecipe>& stages, const Params& params);
 /// The number, which no live parameter decides.
 [[nodiscard]] double number_of(const OperatorRecipe& recipe, const Expr& e, const Params& params);
+
+/// Operator::build and build_inverse of what a file defines: definition_of() finds its LUTs here.
+struct BuildRecipe {
+    std::shared_ptr<const OperatorRecipe> recipe;
+    std::vector<StageRecipe> OperatorRecipe::*stages = &OperatorRecipe::stages;
+    Pipeline operator()(const Params& params) const {
+        return build_stages(*recipe, (*recipe).*stages, params);
+    }
+};
 
 /// A name that lives as long as the process, as stages want it.
 [[nodiscard]] const char* kept_name(const std::string& name);

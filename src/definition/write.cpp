@@ -7,6 +7,7 @@
 #include "base/format_number.h"
 #include "base/strings.h"
 #include "definition/primaries_names.h"
+#include "definition/recipe.h"
 #include "definition/table_stages.h"
 #include "formula/formula.h"
 #include "tonewright/definition.h"
@@ -64,29 +65,27 @@ class Writer {
         }
         write_declarations();
         if (is_table_) {
-            write_lut();
+            text_ += "\n[[stage]]\n";
+            write_lut({op_.file, resolved_.params.text("input"), space_of_table(resolved_), {}});
             return std::move(text_);
         }
-        write_stages("stage", build_live(resolved_, live_));
+        write_stages("stage", resolved_);
         if (op_.build_inverse) {
             Operator back = op_;
             back.build = op_.build_inverse;
             ResolvedOperator inverse = resolved_;
             inverse.op = &back;
-            write_stages("inverse", build_live(inverse, live_));
+            write_stages("inverse", inverse);
         }
         return std::move(text_);
     }
 
   private:
     /// A LUT is one stage, which names its file.
-    void write_lut() {
-        text_ += "\n[[stage]]\n";
-        text_line("lut", op_.file);
-        const std::string& input = resolved_.params.text("input");
-        text_line("input", input.empty() ? std::string(kNoEncoding) : input);
-        const std::string space = space_of_table(resolved_);
-        text_line("space", space);
+    void write_lut(const StageRecipe::Lut& lut) {
+        text_line("lut", lut.path);
+        text_line("input", lut.input.empty() ? std::string(kNoEncoding) : lut.input);
+        text_line("space", lut.space);
     }
 
     void line(const std::string& key, const std::string& value) {
@@ -210,10 +209,30 @@ class Writer {
         text_line("reason", b.reason);
     }
 
-    void write_stages(const std::string& key, const Pipeline& pipeline) {
-        for (const Stage& stage : pipeline) {
-            text_ += "\n[[" + key + "]]\n";
+    void write_stages(const std::string& key, const ResolvedOperator& of) {
+        const Pipeline pipeline = build_live(of, live_);
+        const auto begin = [&] { text_ += "\n[[" + key + "]]\n"; };
+        const auto write = [&](const Stage& stage) {
+            begin();
             std::visit([&](const auto& s) { write_stage(s); }, stage);
+        };
+        const auto* const file = of.op->build.target<BuildRecipe>();
+        if (!file) {
+            std::for_each(pipeline.begin(), pipeline.end(), write);
+            return;
+        }
+        // A LUT is written as its file, not as its stages.
+        auto next = pipeline.begin();
+        const OperatorRecipe& recipe = *file->recipe;
+        for (const StageRecipe* const stage :
+             stages_used(recipe, recipe.*file->stages, of.params)) {
+            if (stage->kind == StageRecipe::Kind::lut) {
+                begin();
+                write_lut(stage->lut);
+                next += static_cast<std::ptrdiff_t>(stage->lut.stages.size());
+            } else {
+                write(*next++);
+            }
         }
     }
 

@@ -180,6 +180,21 @@ def check_forms(report, command, scratch):
     (scratch / "again.tone").write_text(run(command, "list", text, "--definition"))
     report.check("list --definition reads back",
                  np.array_equal(evaluate(command, COLORS, scratch / "again.tone"), evaluate(command, COLORS, text)))
+    # Stages around a LUT, one that is not there, a live parameter.
+    between = scratch / "sub" / "between.tone"
+    between.write_text('tonewright = 1\nid = "between"\n[parameter.lift]\ndefault = 0.5\nmin = 0\nmax = 1\n'
+                       '[parameter.kind]\nchoices = ["plain", "other"]\ndefault = "plain"\n'
+                       '[[stage]]\nlut = "../film.cube"\ninput = "acescct"\nwhen = "kind == kind.other"\n'
+                       '[[stage]]\ncurve = "x * lift"\n[[stage]]\nlut = "../film.cube"\ninput = "acescct"\n'
+                       '[[stage]]\nclamp = [0.1, 0.9]\n')
+    for setting in ("kind=plain", "kind=other"):
+        printed = scratch / "printed.tone"
+        printed.write_text(run(command, "list", f"{between}:{setting}", "--definition"))
+        for lift in ("lift=0.5", "lift=1"):
+            report.check(f"list --definition with LUTs reads back, {setting}:{lift}", np.array_equal(
+                evaluate(command, COLORS, f"{printed}:{lift}"), evaluate(command, COLORS, f"{between}:{setting}:{lift}")))
+        luts = printed.read_text().count("lut = ")
+        report.check(f"list --definition: {setting} names its LUTs", luts == 1 + (setting == "kind=other"), printed.read_text())
     listed = run(command, "list", text)
     report.check("list: title and size", "Film Print" in listed and "33 x 33 x 33" in listed, listed)
 

@@ -274,7 +274,9 @@ TEST(Definition, MessagesHaveThePlace) {
          "'tonewright'"},
         // The library's parser is undefined for some of these.
         {kHead + "title = 44\"\xEF\xB3\xBF\"\n",
-         "3:11: quote stands behind a value; expected the end of the line"},
+         "3:11: Error while parsing decimal integer: expected digit, saw '\"'"},
+        {kHead + "m=2k=@m=\"=u!2k=6\xEF\xB3\xBF{[stage]]\n",
+         "3:3: Error while parsing value: could not determine value type"},
         {kHead + "titl\xC3\xA9 = 1\n", "3:5: character is not ASCII; expected it in quotes"},
         {kHead + "title = \"\"\"a\\ \xC3\xA9\"\"\"\n",
          "3:13: escape is not ASCII; expected \\n, \\t, ..."},

@@ -232,8 +232,8 @@ void add_config(CommandLine& program) {
         .excludes(into);
     command
         .add("--views", config.views,
-             "views (\"AgX Punchy\") or operators, in order; `standard` (a dozen) or `all` "
-             "(default standard)")
+             "views (\"AgX Punchy\") or operators, in order; `none`, `all`, or `standard` "
+             "(default), which are a dozen")
         .value("LIST")
         .suggest(suggest_views)
         .separated_by(',')

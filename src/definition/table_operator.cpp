@@ -38,7 +38,8 @@ ParameterSpec text_with_default(std::string name, std::string value, std::string
 std::string display_of(const TableFile& table, const Params& params) {
     const std::string& given = params.text("output");
     const std::string name = given.empty() ? table.likely_display : given;
-    return is_same_name(name, kLinearOutput) ? std::string(kLinearOutput) : find_display(name).id;
+    return is_same_name(name, kLinearOutput) ? std::string(kLinearOutput)
+                                             : find_display(name, {std::string(kLinearOutput)}).id;
 }
 
 const Display* shown_on(const TableFile& table, const Params& params) {

@@ -247,6 +247,8 @@ ExtendedConfig reduce_config(const std::string& path) {
 ExtendedConfig extend_config(const std::string& path, const ConfigOptions& given, bool is_updated) {
     std::string text = read_config_text(path);
     ConfigOptions options = given;
+    // Who adds an operator to a config of their own wants that one.
+    if (given.views.empty() && !given.custom.empty()) options.views = {"none"};
     AddedRecord record;
     std::vector<std::string> replaced;
     if (is_updated) {

@@ -602,6 +602,7 @@ std::vector<ConfigModel::View> choose_views(const ConfigOptions& options) {
     };
     if (options.views.empty()) add_standard();
     for (const std::string& wanted : options.views) {
+        if (is_same_name(wanted, "none")) continue;
         if (wanted == "standard") {  // "Standard" is the view of that name, Blender's
             add_standard();
             continue;
@@ -619,7 +620,7 @@ std::vector<ConfigModel::View> choose_views(const ConfigOptions& options) {
             throw;
         } catch (const Error& e) {
             throw Error(
-                fmt::format("config: view is {}; expected standard, all, or the name of a "
+                fmt::format("config: view is {}; expected standard, all, none, or the name of a "
                             "view or an operator ({})",
                             wanted, e.what()));
         }
@@ -636,6 +637,7 @@ std::vector<ConfigModel::View> choose_views(const ConfigOptions& options) {
             throw Error("config: the view of " + custom.op + " has no name; expected one");
         views.push_back({custom.name, op, description_of(*op.op) + " As " + op.label + "."});
     }
+    if (views.empty()) throw Error("config: views are none; expected --operator beside it");
     const std::size_t count = views.size();
     for (const double stops : options.exposure_stops) {
         for (std::size_t i = 0; i < count; ++i) {

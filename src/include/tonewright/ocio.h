@@ -16,9 +16,9 @@ struct ConfigOptions {
     /// 2.0, 2.1 and 2.5: one file for each, with the same views. The first is `config.ocio`, the
     /// others `config-2.0.ocio` and so on.
     std::vector<std::string> profiles = {"2.1", "2.0", "2.5"};
-    /// Names of views ("AgX", "AgX Punchy"), operators (`id`, `id:preset`) or `all`, in the order
-    /// of the config; the first is what applications start with. Empty: the standard ones, without
-    /// the HDR forms whose tables are largest.
+    /// Names of views ("AgX", "AgX Punchy"), operators (`id`, `id:preset`), `all`, or `none` beside
+    /// `custom`, in the order of the config; the first is what applications start with. Empty: the
+    /// standard ones, without the HDR forms whose tables are largest.
     std::vector<std::string> views = {};
     /// Ids, titles or aliases. Empty: all.
     std::vector<std::string> displays = {};
@@ -95,7 +95,8 @@ struct ExtendedConfig {
 
 /// A user's config with more views, looks and output spaces, on those of its displays that are one
 /// of ours by their numbers. All else in the file stays as it is, comments and order included.
-/// @param options     views, displays (of the config), looks, custom, exposure_stops
+/// @param options     views (empty beside custom: none), displays (of the config), looks, custom,
+///                    exposure_stops
 /// @param is_updated  take out what was added before; options that are all empty are those of then
 /// @throws FileError  for a config that cannot be read
 /// @throws Error  for a config without both interchange roles or such a display, for a name that is

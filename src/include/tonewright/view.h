@@ -41,9 +41,11 @@ struct Display {
 [[nodiscard]] TONEWRIGHT_API const std::vector<InputSpace>& all_input_spaces();
 [[nodiscard]] TONEWRIGHT_API const std::vector<Display>& all_displays();
 /// By id, title or alias, in any case, with `-`, `_` and blanks alike.
+/// @param others  what else the caller takes for a display: the message lists it
 /// @throws Error  with the nearest name.
 [[nodiscard]] TONEWRIGHT_API const InputSpace& find_input_space(std::string_view name);
-[[nodiscard]] TONEWRIGHT_API const Display& find_display(std::string_view name);
+[[nodiscard]] TONEWRIGHT_API const Display& find_display(
+    std::string_view name, const std::vector<std::string>& others = {});
 
 /// What the numbers of a picture mean: light of some primaries, as it is or through a curve.
 struct SourceColor {

@@ -1408,6 +1408,10 @@ TEST(View, UnknownNamesGetTheNearest) {
     EXPECT_EQ(view_error("lin_rec709", 0, "srbg"),
               "display is srbg; expected srgb, display_p3, rec1886, rec2020, g22, rec2100_pq, "
               "rec2100_hlg, p3d65_pq, linear or native; did you mean srgb?");
+    // Where no light is shown, `linear` is no display.
+    EXPECT_EQ(error_of([] { (void)find_display("linear"); }),
+              "display is linear; expected srgb, display_p3, rec1886, rec2020, g22, rec2100_pq, "
+              "rec2100_hlg or p3d65_pq");
     EXPECT_EQ(view_error("lin_rec709", 65, "srgb"), "exposure is 65; expected [-64, 64] stops");
     EXPECT_EQ(view_error("lin_rec709", -64.5, "srgb"),
               "exposure is -64.5; expected [-64, 64] stops");

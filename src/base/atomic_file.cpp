@@ -100,12 +100,8 @@ void release_unfinished(std::atomic<const char*>*& place) {
     place = nullptr;
 }
 
-void remove_unfinished(int number) {
-    is_ending = true;
-    for (std::atomic<const char*>& place : unfinished_names) {
-        // Folders stay where something is in them.
-        if (const char* name = place.exchange(nullptr); name && ::unlink(name) != 0) ::rmdir(name);
-    }
+void end_by_signal(int number) {
+    remove_unfinished_files();
     ::signal(number, SIG_DFL);
     ::raise(number);
 }
@@ -134,10 +130,18 @@ std::vector<std::string> parts_of_temporary(const std::string& name) {
 
 }  // namespace
 
+void remove_unfinished_files() noexcept {
+    is_ending = true;
+    for (std::atomic<const char*>& place : unfinished_names) {
+        // Folders stay where something is in them.
+        if (const char* name = place.exchange(nullptr); name && ::unlink(name) != 0) ::rmdir(name);
+    }
+}
+
 void remove_unfinished_files_on_signals() {
     for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
         // nohup stays in force.
-        if (::signal(number, remove_unfinished) == SIG_IGN) ::signal(number, SIG_IGN);
+        if (::signal(number, end_by_signal) == SIG_IGN) ::signal(number, SIG_IGN);
     }
     ::signal(SIGXFSZ, SIG_IGN);
 }

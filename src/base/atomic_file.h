@@ -71,6 +71,10 @@ TONEWRIGHT_API void require_writable_folder(const std::string& folder);
 /// cannot be asked). Files that cannot be removed stay.
 TONEWRIGHT_API void remove_leftovers(const std::vector<std::string>& paths);
 
+/// Removes unfinished files and new empty folders, for a process that ends at once. Without memory;
+/// also for signal handlers. Threads that create a file afterward stop there.
+TONEWRIGHT_API void remove_unfinished_files() noexcept;
+
 /// On SIGINT, SIGTERM and SIGHUP, removes unfinished files and new empty folders before the process
 /// ends; a file that becomes too large (SIGXFSZ) is an error of writing it, and ends nothing. For a
 /// program to call once.

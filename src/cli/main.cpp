@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <atomic>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <string>
@@ -20,7 +25,56 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
+std::terminate_handler default_handler = nullptr;
+std::atomic<bool> has_failed_to_allocate = false;
+int messages = -1;  // stderr, which is turned off while OpenImageIO writes into it
+
+/// Where a function that must not throw is compiled into its caller, GCC 12 ends the process
+/// without telling the handler which exception it was.
+bool is_about_memory_now() {
+    try {
+        if (const std::exception_ptr exception = std::current_exception())
+            std::rethrow_exception(exception);
+    } catch (const std::bad_alloc&) {
+        return true;
+    } catch (...) {
+        return false;
+    }
+    return has_failed_to_allocate;
+}
+
+/// Memory that is missing in a function that must not throw, or while another exception is
+/// handled, ends the process like any other missing memory. Nothing here takes memory.
+[[noreturn]] void end_without_memory() {
+    if (is_about_memory_now()) {
+        // One line, however many threads come here.
+        static std::atomic_flag is_ending = ATOMIC_FLAG_INIT;
+        while (is_ending.test_and_set())
+            ::pause();
+        remove_unfinished_files();
+        constexpr std::string_view kMessage = "tonewright: not enough memory\n";
+        [[maybe_unused]] const ssize_t size = ::write(messages, kMessage.data(), kMessage.size());
+        ::_exit(kFile);
+    }
+    default_handler();
+    std::abort();
+}
+
+/// Before the program's own static objects: those of CLI11 take memory.
+[[gnu::constructor(101)]] void handle_missing_memory() {
+    messages = ::fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+    default_handler = std::set_terminate(end_without_memory);
+    std::set_new_handler([] {
+        has_failed_to_allocate = true;
+        throw std::bad_alloc();
+    });
+}
+
+constexpr std::string_view kNotEnoughMemory = "not enough memory";
+bool is_out_of_memory = false;
+
 int report(const std::string& message, int exit_code) {
+    if (message.find(kNotEnoughMemory) != message.npos) is_out_of_memory = true;
     print_message(message);
     return exit_code;
 }
@@ -69,7 +123,7 @@ int run(int argc, char** argv) {
             return report(command + "not enough memory or threads", kFile);
         return report("write: standard output: " + e.code().message(), kFile);
     } catch (const std::bad_alloc&) {
-        return report(command + "not enough memory", kFile);
+        return report(command + std::string(kNotEnoughMemory), kFile);
     } catch (const DefinitionError& e) {
         report(e.what(), kFile);
         print_excerpt(e.excerpt());
@@ -88,5 +142,8 @@ TONEWRIGHT_NAMESPACE_END
 
 int main(int argc, char** argv) {
     tonewright::remove_unfinished_files_on_signals();
-    return tonewright::run(argc, argv);
+    const int exit_code = tonewright::run(argc, argv);
+    // OpenImageIO 2.4 stops in a destructor where an exception passed a lock of its cache.
+    if (tonewright::is_out_of_memory) ::_exit(exit_code);
+    return exit_code;
 }

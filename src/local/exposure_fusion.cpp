@@ -442,31 +442,34 @@ Operator define_exposure_fusion() {
     op.id = "exposure_fusion";
     op.title = "Exposure fusion";
     op.character =
-        "shows shadows and lights each in the exposure that suits them, as bracketed photographs "
-        "put together; contrast of large areas gets lost first";
+        "shows shadows and highlights each at a suitable exposure, like merged bracketed "
+        "photographs; loses the contrast of large areas first";
     op.source =
         "Wronski, Exposure Fusion - local tonemapping for real-time rendering, 2022; Mertens, "
         "Kautz, Van Reeth, Exposure Fusion, Pacific Graphics 2007; curve: Hill's ACES fit";
     op.licence = "MIT";
     op.negatives = kLocalNegatives;
     op.parameters = {
-        number_parameter("exposure", "", 0.7, 0.001, 1000, "factor on light before the curve"),
-        number_parameter("shadows", "stops", 1.5, 0, 8, "brighter exposure, for shadows"),
-        number_parameter("highlights", "stops", 2, 0, 8, "darker exposure, for lights"),
+        number_parameter("exposure", "", 0.7, 0.001, 1000,
+                         "factor on the scene value before the curve"),
+        number_parameter("shadows", "stops", 1.5, 0, 8,
+                         "stops of the brighter exposure, for shadows"),
+        number_parameter("highlights", "stops", 2, 0, 8,
+                         "stops of the darker exposure, for highlights"),
         number_parameter("sigma", "", 5, 0, 20,
-                         "how strictly an exposure counts only where it shows middle greys"),
+                         "preference for middle grays in the weight of an exposure"),
         number_parameter("mip", "", 6, 0, 12,
-                         "coarsest level of the pyramid, a whole number: the larger, the farther "
-                         "exposures fade into each other"),
-        number_parameter("display_mip", "", 2, 0, 12,
-                         "finest level that is fused, a whole number; the rest is guided by the "
-                         "picture"),
+                         "coarsest pyramid level, a whole number; larger values blend exposures "
+                         "over larger areas"),
+        number_parameter(
+            "display_mip", "", 2, 0, 12,
+            "finest pyramid level that is fused, a whole number; the picture guides finer levels"),
         choice_parameter("boost_local_contrast", {"no", "yes"}, "no",
-                         "weights by local contrast, too"),
+                         "also weight exposures by local contrast"),
     };
     op.warnings = {
-        "levels halve the picture's size: at twice the size, the same picture is shown with mip "
-        "one more"};
+        "each pyramid level halves the picture: at twice the size, the same result needs mip one "
+        "higher"};
     op.build = [](const Params& p) -> Pipeline {
         (void)whole_number(p, "mip");
         (void)whole_number(p, "display_mip");

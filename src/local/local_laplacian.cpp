@@ -405,25 +405,26 @@ Operator define_local_laplacian() {
     op.id = "local_laplacian";
     op.title = "Local Laplacian";
     op.character =
-        "fits any scene into the display's range and keeps its details at the contrast that is "
-        "set; "
-        "absolute brightness is lost, and noise in blacks is lifted";
+        "fits any scene into the display's range and keeps detail at the chosen contrast; loses "
+        "absolute brightness, and lifts noise in blacks";
     op.source =
         "Paris, Hasinoff, Kautz, Local Laplacian Filters, SIGGRAPH 2011; Aubry, Paris, Hasinoff, "
         "Kautz, Durand, Fast Local Laplacian Filters, ACM TOG 33(5), 2014";
     op.licence = "published formula";
     op.negatives = kLocalNegatives;
     op.parameters = {
-        number_parameter("contrast", "stops", 7.5, 1, 24,
-                         "from the 0.5 % to the 99.5 % percentile of what is shown, at most"),
-        number_parameter("base", "", 0.25, 0, 1, "slope of log light over large differences"),
-        number_parameter("detail", "", 1, 0, 4, "slope of log light over small differences"),
-        number_parameter("threshold", "stops", 1.3, 0.25, 8, "where differences begin to be large"),
+        number_parameter(
+            "contrast", "stops", 7.5, 1, 24,
+            "largest contrast of the result, between its 0.5 % and 99.5 % percentiles"),
+        number_parameter("base", "", 0.25, 0, 1, "slope of log luminance for large differences"),
+        number_parameter("detail", "", 1, 0, 4, "slope of log luminance for small differences"),
+        number_parameter("threshold", "stops", 1.3, 0.25, 8,
+                         "smallest difference that counts as large"),
         number_parameter("saturation", "", 0.8, 0, 1,
-                         "of colors, whose luminance stays; 1 keeps chromaticity"),
+                         "saturation at constant luminance (1: same chromaticity)"),
     };
     op.warnings = {
-        "percentiles are each picture's own: the frames of a shot may differ in brightness"};
+        "each picture has its own percentiles, so frames of a shot may differ in brightness"};
     op.build = [](const Params&) -> Pipeline { return {}; };
     op.run_local = run;
     return op;

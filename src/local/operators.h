@@ -12,7 +12,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 
 /// What all of them do with negatives: light is in planes of Rec.709.
 inline constexpr const char* kLocalNegatives =
-    "clamped at 0 in Rec.709, before the operator: colors outside of it are limited to it";
+    "clamped at 0 in Rec.709, before the operator, which limits colors outside Rec.709 to it";
 
 /// A parameter that has to be a whole number.
 /// @throws Error

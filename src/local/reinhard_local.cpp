@@ -242,9 +242,8 @@ Operator define_reinhard_local() {
     op.id = "reinhard_local";
     op.title = "Reinhard, dodging and burning";
     op.character =
-        "Reinhard with an exposure for every pixel, of its surroundings up to the next edge: "
-        "lights "
-        "and shadows keep their local contrast; saturated lights clip";
+        "Reinhard with one exposure per pixel, from its surroundings up to the next edge: "
+        "highlights and shadows keep their local contrast; clips saturated highlights";
     op.source =
         "Reinhard, Stark, Shirley, Ferwerda, Photographic Tone Reproduction for Digital Images, "
         "SIGGRAPH 2002, eq. 1-9";
@@ -253,25 +252,25 @@ Operator define_reinhard_local() {
     op.dialects = "Reinhard";
     op.parameters = {
         number_parameter("key", "", 0.18, 0.001, 10,
-                         "what the picture's log average becomes before the curve: 0.045 for dark "
-                         "scenes, 0.72 for bright ones"),
+                         "value of the log average before the curve: 0.045 for dark scenes, 0.72 "
+                         "for bright ones"),
         number_parameter("log_average", "scene-linear", 0, 0, kHalfMax,
-                         "0: the picture's own; for the frames of a shot, one for all"),
+                         "log average luminance (0: measured in each picture); use one value for "
+                         "all frames of a shot"),
         number_parameter("sharpening", "", 8, 0, 15,
-                         "phi: the larger, the farther a pixel's surroundings reach in shadows"),
+                         "phi: larger values extend a pixel's surroundings in shadows"),
         number_parameter("threshold", "", 0.05, 0.001, 1,
-                         "epsilon: contrast that ends a pixel's surroundings"),
+                         "epsilon: contrast at which a pixel's surroundings end"),
         number_parameter("scales", "", 8, 1, 10,
-                         "sizes of surroundings, each 1.6 times the one before; the first is 1 "
-                         "pixel; a whole number"),
+                         "number of sizes of the surroundings, a whole number; from 1 pixel, each "
+                         "1.6 times the one before"),
         number_parameter("white", "", 0, 0, kHalfMax,
-                         "smallest luminance, times key/log_average, that a uniform picture shows "
-                         "as display white; 0: none"),
+                         "lowest luminance, times key/log_average, that a uniform picture shows as "
+                         "display white (0: none)"),
     };
-    op.warnings = {
-        "keeps chromaticity, so a saturated channel may exceed 1 and clip",
-        "surroundings are counted in pixels: at twice the size, the same picture is shown with "
-        "smaller ones (scales)"};
+    op.warnings = {"keeps chromaticity, so a saturated channel may exceed 1 and clip",
+                   "surroundings are measured in pixels: at twice the size, the same scales show "
+                   "less of the picture"};
     op.build = [](const Params& p) -> Pipeline {
         (void)whole_number(p, "scales");
         return {};

@@ -318,60 +318,63 @@ std::vector<Operator> define_aces_13() {
     op.title = "ACES 1.3";
     op.view = "ACES 1.3";
     op.character =
-        "the film look of ACES 1: strong contrast, mid grey at 0.104; bright saturated colors turn "
-        "to yellow, cyan and magenta";
+        "film look of ACES 1: strong contrast, mid gray at 0.104; bright saturated colors shift to "
+        "yellow, cyan and magenta";
     op.source =
         "Academy of Motion Picture Arts and Sciences, aces-dev 1.3: RRT 1.0.3, ODT and RRTODT, "
         "LMT.Academy.ReferenceGamutCompress; OpenColorIO 2.1, built-in transforms ACES-OUTPUT";
     op.licence =
-        "Academy (free to use with its notice), BSD-3-Clause; formulas and constants, no code of "
-        "them is used";
+        "Academy (free to use with its notice), BSD-3-Clause; formulas and constants only; none of "
+        "their code is used";
     op.negatives =
-        "pass through glow and red modifier, in AP0, then clamped at 0 there and again in AP1; "
-        "gamut_compression=yes first brings in those of AP1";
+        "kept by the glow and the red modifier in AP0, then clamped at 0 there and again in AP1; "
+        "gamut_compression=yes first moves colors outside AP1 into it";
     op.dialects = "ACES";
     op.working = kAP0;
     // simd: AVX2 at 1000 cd/m2 for light of -25, 49, 38: 3.1e-5; AVX-512 keeps to 2e-5.
-    op.bounds = {.simd = 4e-5,
-                 .simd_goal = 8e-6,
-                 .ocio_cpu = 3e-5,
-                 .ocio_gpu = 6e-5,
-                 .cube = 2e-3,
-                 .reason =
-                     "simd: twice as fast as with 1e-6; hdr: light of 10, of which a float's unit "
-                     "is 1e-6; ctl: OpenColorIO's red "
-                     "modifier takes another saturation in the dark"};
+    op.bounds = {
+        .simd = 4e-5,
+        .simd_goal = 8e-6,
+        .ocio_cpu = 3e-5,
+        .ocio_gpu = 6e-5,
+        .cube = 2e-3,
+        .reason =
+            "simd: twice as fast as with 1e-6; hdr: output up to 10, where a float has steps of "
+            "1e-6; ctl: OpenColorIO's red modifier uses another saturation in dark colors"};
     ParameterSpec output = choice_parameter(
         "output", {"sdr_video", "sdr_cinema", "hdr_1000", "hdr_2000", "hdr_4000", "hdr_cinema"},
         "sdr_video",
-        "sdr: 1 is white, in a dim surround (video) or a dark one; hdr: 1 is 100 cd/m2, the number "
-        "the peak; hdr_cinema: of 108 cd/m2");
+        "sdr: 1 is display white, in a dim (video) or dark (cinema) surround; hdr: 1 is 100 cd/m2, "
+        "and the number is the peak (hdr_cinema: 108 cd/m2)");
     output = display_parameter(std::move(output), [](const DisplayFacts& display) -> std::string {
         if (!display.is_hdr) return "sdr_video";
         if (display.peak >= 4000) return "hdr_4000";
         return display.peak >= 2000 ? "hdr_2000" : "hdr_1000";
     });
     ParameterSpec limit = limit_parameter({"none", "rec709", "p3d65", "rec2020"}, "rec709");
-    limit.help +=
-        "; none, of an sdr output: the display limits them; Blender: p3d65 on Rec.2020 displays";
+    limit.help += "; none: no limit, sdr output only; Blender uses p3d65 on Rec.2020 displays";
     op.parameters = {
         output,
         limit,
-        choice_parameter("gamut_compression", {"no", "yes"}, "no",
-                         "the reference gamut compression of ACES 1.3 first, for colors outside "
-                         "AP1"),
-        choice_parameter("spline", {"ocio", "ctl"}, "ocio",
-                         "ocio: as OpenColorIO and its hosts show it; ctl: as the Academy's CTL"),
+        choice_parameter(
+            "gamut_compression", {"no", "yes"}, "no",
+            "apply the reference gamut compression of ACES 1.3 first, for colors outside AP1"),
+        choice_parameter(
+            "spline", {"ocio", "ctl"}, "ocio",
+            "ocio: the curve of OpenColorIO and its applications; ctl: the Academy's CTL"),
     };
     op.presets = {
-        {"sdr_cinema", "for a cinema: white 48 cd/m2, dark surround", {{"output", "sdr_cinema"}}},
-        {"hdr_1000", "for an HDR display of 1000 cd/m2", {{"output", "hdr_1000"}}},
-        {"ctl", "the curve of the Academy's CTL", {{"spline", "ctl"}}},
+        {"sdr_cinema",
+         "cinema projector: white at 48 cd/m2, dark surround",
+         {{"output", "sdr_cinema"}}},
+        {"hdr_1000", "HDR display of 1000 cd/m2", {{"output", "hdr_1000"}}},
+        {"ctl", "tone curve of the Academy's CTL", {{"spline", "ctl"}}},
         {"gamut_compressed",
-         "with the reference gamut compression before it",
+         "reference gamut compression before the transform",
          {{"gamut_compression", "yes"}}},
     };
-    op.warnings = {"of hdr outputs greys near the peak are a little blue: red is limited first"};
+    op.warnings = {
+        "hdr outputs tint grays near the peak slightly blue, because red reaches its limit first"};
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, 10, "hdr_1000"},
                      {DocumentedDifference::Kind::crushes_black, 0.00199, "ctl"}};
     op.build = build;

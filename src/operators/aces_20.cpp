@@ -896,30 +896,31 @@ std::vector<Operator> define_aces_20() {
     op.title = "ACES 2.0";
     op.view = "ACES 2.0";
     op.character =
-        "the Academy's rendering of 2024: film-like contrast, lights fade to white and keep their "
-        "hue, one look on displays of all peaks; mid grey 0.18 is shown at 0.10";
+        "the Academy's rendering of 2024: film-like contrast, highlights fade to white and keep "
+        "their hue, the same look on displays of any peak; shows mid gray 0.18 at 0.10";
     op.source =
         "Academy of Motion Picture Arts and Sciences, ACES 2: aces-core, "
         "Lib.Academy.OutputTransform, Lib.Academy.Tonescale; OpenColorIO 2.4.2, ACES2";
-    op.licence = "Academy licence (aces-core); BSD-3-Clause (OpenColorIO); no code of them is used";
+    op.licence =
+        "Academy license (aces-core), BSD-3-Clause (OpenColorIO); none of their code is used";
     op.negatives = "clamped at 0 in AP1, before the first non-linear step";
     op.dialects = "ACES";
     op.working = kAP1;
-    op.bounds = {.simd = 3e-5,
-                 .simd_goal = 2.4e-5,
-                 .cube = 0.2,
-                 .cube_hdr = 0.4,
-                 .reason =
-                     "simd: twice as fast as with 1e-6, which takes doubles throughout; a "
-                     "cube: the gamut compression bends in every direction, and jumps near the "
-                     "edge of AP1"};
+    op.bounds = {
+        .simd = 3e-5,
+        .simd_goal = 2.4e-5,
+        .cube = 0.2,
+        .cube_hdr = 0.4,
+        .reason =
+            "simd: twice as fast as with 1e-6, which needs double precision throughout; 3D LUT: "
+            "the gamut compression bends in every direction, and jumps near the edge of AP1"};
     op.parameters = fixed_parameters({
         // The tone scale is made for 100 cd/m2 and up; below 49.8 its compression turns around.
-        display_parameter(
-            number_parameter("peak", "cd/m2", 100, kLowestPeak, kHighestPeak, "of the display"),
-            [](const DisplayFacts& display) {
-                return shortest(std::clamp(display.peak, kLowestPeak, kHighestPeak));
-            }),
+        display_parameter(number_parameter("peak", "cd/m2", 100, kLowestPeak, kHighestPeak,
+                                           "peak luminance of the display"),
+                          [](const DisplayFacts& display) {
+                              return shortest(std::clamp(display.peak, kLowestPeak, kHighestPeak));
+                          }),
         // For SDR displays the standard has forms of Rec.709 and P3 only.
         display_parameter(limit_parameter({"rec709", "p3d65", "rec2020"}, "rec709"),
                           [](const DisplayFacts& display) -> std::string {
@@ -928,13 +929,12 @@ std::vector<Operator> define_aces_20() {
                               return is_p3 ? "p3d65" : "rec2020";
                           }),
         text_parameter("primaries",
-                       "x and y of red, green, blue and white of any other display, eight numbers; "
-                       "empty: those of limit"),
+                       "any other display: eight numbers, x and y of red, green, blue and white "
+                       "(empty: limit decides)"),
     });
-    op.warnings = {
-        "a peak above the display's clips: an SDR display shows light up to 100 cd/m2",
-        "primaries with another white than D65 are adapted to the display's: the standard's "
-        "D60 variants, which are not, are left out"};
+    op.warnings = {"a display clips a peak above its own: SDR displays show up to 100 cd/m2",
+                   "primaries with a white other than D65 are adapted to the display's white; the "
+                   "standard's D60 variants, which are not adapted, are not included"};
     op.output_primaries = primaries_of;
     op.peak = [](const Params& p) { return p.number("peak") / 100; };
     op.build = [](const Params& p) -> Pipeline {

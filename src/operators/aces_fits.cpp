@@ -36,17 +36,18 @@ Operator narkowicz() {
     op.title = "ACES fit (Narkowicz)";
     op.view = "ACES Narkowicz";
     op.character =
-        "five constants, contrasty; without the 0.6 prescale about a stop brighter than ACES";
+        "five constants, high contrast; about a stop brighter than ACES without the 0.6 prescale";
     op.source = "K. Narkowicz, ACES Filmic Tone Mapping Curve, 2016";
     op.licence = "public domain (CC0), MIT";
     op.dialects = "ACES";
     op.negatives = kNegativesClampAtZero;
     op.parameters = with_apply(
-        "channels", {number_parameter(
-                        "prescale", "", 1, 0.01, 100,
-                        "factor on the scene value; 0.6 is the author's match to ACES exposure")});
+        "channels",
+        {number_parameter(
+            "prescale", "", 1, 0.01, 100,
+            "factor on the scene value; the author uses 0.6 to match the exposure of ACES")});
     op.presets = {
-        {"matched", "with the 0.6 prescale that matches ACES exposure", {{"prescale", "0.6"}}}};
+        {"matched", "0.6 prescale, which matches the exposure of ACES", {{"prescale", "0.6"}}}};
     op.build = [](const Params& p) -> Pipeline {
         const Expr x = p.expr("prescale") * Expr::input();
         const Expr f = x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14);
@@ -75,25 +76,26 @@ Operator hill() {
     op.id = "aces_hill";
     op.title = "ACES fit (Hill)";
     op.view = "ACES Hill";
-    op.character = "close to ACES 1 SDR with its desaturating lights; darker than Narkowicz";
+    op.character = "close to ACES 1 SDR, including desaturated highlights; darker than Narkowicz";
     op.source = "S. Hill, ACES.hlsl of BakingLab, 2016; gains of Godot and three.js";
     op.licence = "MIT";
     op.dialects = "ACES";
     op.negatives = kNegativesClampAtZero;
     op.parameters = {
         number_parameter("prescale", "", 1, 0.01, 100, "factor on the scene value"),
-        number_parameter("gain", "", 1, 0.01, 100, "factor on the result, behind its clamp"),
+        number_parameter("gain", "", 1, 0.01, 100, "factor on the result, after the clamp"),
         number_parameter("white", "scene-linear", 0, 0, 65504,
-                         "scene value, before the prescale, whose curve value divides the result; "
-                         "0: nothing does"),
-        choice_parameter("clamp", {"yes", "no"}, "yes", "limit the result to [0, 1] before gain"),
+                         "scene value before the prescale; the result is divided by the curve at "
+                         "this value (0: no division)"),
+        choice_parameter("clamp", {"yes", "no"}, "yes",
+                         "limit the result to [0, 1] before the gain"),
     };
     op.presets = {
-        {"bakinglab", "as BakingLab shows it: the clamped result times 1.8", {{"gain", "1.8"}}},
+        {"bakinglab", "BakingLab: clamped result times 1.8", {{"gain", "1.8"}}},
         {"godot",
-         "as in Godot: prescale 1.8, divided by the curve at white, not clamped",
+         "Godot: prescale 1.8, divided by the curve at white, not clamped",
          {{"prescale", "1.8"}, {"white", "1"}, {"clamp", "no"}}},
-        {"threejs", "as in three.js: prescale 1/0.6", {{"prescale", "1.6666666666666667"}}},
+        {"threejs", "three.js: prescale 1/0.6", {{"prescale", "1.6666666666666667"}}},
     };
     op.deviations = {{DocumentedDifference::Kind::crushes_black, 0.0032, ""},
                      {DocumentedDifference::Kind::crushes_black, 0.0018, "godot"},
@@ -124,11 +126,11 @@ Operator hill() {
 
 /// The factor of the first term of the denominator stands outside of its bracket.
 Operator hill_misplaced_bracket() {
-    Operator op = defect_of(
-        "aces_hill:threejs", "aces_hill_misplaced_bracket",
-        "three.js for WebGPU (mrdoob/three.js 0a0cd973, ToneMappingFunctions.js)",
-        "a bracket of the curve's denominator is misplaced: v (v + 0.432951) 0.983729 where Hill "
-        "has v (0.983729 v + 0.432951)");
+    Operator op =
+        defect_of("aces_hill:threejs", "aces_hill_misplaced_bracket",
+                  "three.js for WebGPU (mrdoob/three.js 0a0cd973, ToneMappingFunctions.js)",
+                  "a misplaced bracket in the denominator: v (v + 0.432951) 0.983729 instead of v "
+                  "(0.983729 v + 0.432951)");
     op.deviations = {{DocumentedDifference::Kind::crushes_black, 0.0019, ""}};
     op.build = [](const Params&) -> Pipeline {
         const Expr v = Expr::input();
@@ -152,11 +154,10 @@ Matrix3 green_for_red(const Matrix3& m) {
 }
 
 Operator hill_misprinted_product() {
-    Operator op = defect_of(
-        "aces_hill", "aces_hill_misprinted_product",
-        "the page 64.github.io/tonemapping (before its commit 936048c)",
-        "its product of matrix and vector takes green for red in two rows, so grays are right and "
-        "colors are wrong");
+    Operator op = defect_of("aces_hill", "aces_hill_misprinted_product",
+                            "the page 64.github.io/tonemapping (before its commit 936048c)",
+                            "its matrix product reads green instead of red in two rows, so grays "
+                            "are right and colors are wrong");
     op.deviations = {{DocumentedDifference::Kind::crushes_black, 0.0032, ""},
                      {DocumentedDifference::Kind::black, -0.00038, ""},
                      {DocumentedDifference::Kind::exceeds_white, 1.02, ""}};
@@ -179,20 +180,21 @@ Operator filament() {
     op.title = "ACES fit (Filament)";
     op.view = "ACES Filament";
     op.character =
-        "the RRT's own glow and red modifier before a fitted curve; whites turn reddish, as its "
+        "glow and red modifier of the RRT before a fitted curve; whites turn reddish, because its "
         "conversions are not adapted";
     op.source = "Google Filament, ToneMapper.cpp: ACES, ACESLegacy";
-    op.licence = "Apache-2.0; formula and constants, no code of it is used";
+    op.licence = "Apache-2.0; formula and constants only; none of its code is used";
     op.dialects = "ACES";
     op.negatives = kNegativesClampAtZero;
     op.working = kRec2020;
     // The largest difference that the formulas of the two weights, up to 0.0074 apart, make for any
     // color (test_operators.py): 7.37e-3 on sRGB, at Rec.2020 light 11.4, 0, 6.8.
     op.bounds = {.cube = 7.4e-3,
-                 .reason = "fixed functions of OpenColorIO: another weight of hues about red"};
-    op.parameters = {number_parameter("brightness", "", 1, 0.01, 100,
-                                      "factor before the curve: 1 in ACES, 1/0.6 in ACESLegacy")};
-    op.presets = {{"legacy", "as Filament's ACESLegacy", {{"brightness", "1.6666666666666667"}}}};
+                 .reason = "OpenColorIO's fixed functions weight hues near red differently"};
+    op.parameters = {number_parameter(
+        "brightness", "", 1, 0.01, 100,
+        "factor before the curve: 1 for Filament's ACES, 1/0.6 for its ACESLegacy")};
+    op.presets = {{"legacy", "Filament's ACESLegacy", {{"brightness", "1.6666666666666667"}}}};
     op.deviations = {{DocumentedDifference::Kind::never_reaches_white, 0.869, ""},
                      {DocumentedDifference::Kind::tints_gray, 0.057, ""}};
     op.build = [](const Params& p) -> Pipeline {

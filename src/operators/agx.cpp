@@ -104,17 +104,17 @@ Operator sobotka() {
     op.title = "AgX (Sobotka)";
     op.view = "AgX Sobotka";
     op.character =
-        "low contrast, colours fade to white with light; holds blues and neon where others clip";
+        "low contrast, bright colors fade to white; keeps detail in saturated blues and neon "
+        "colors where others clip";
     op.source = "T. Sobotka, AgX configuration for OpenColorIO (SB2383), 2022";
-    op.licence = "formula and constants; no file of it is used";
+    op.licence = "formula and constants only; none of its files is used";
     op.dialects = "AgX";
     op.negatives = kNegativesClampAtZero;
     op.output = OutputKind::code_value;
     op.code_power = 2.2;
     op.looks = {{"golden", "Golden", "warm: ASC CDL slope 1 0.9 0.5, power 0.8, saturation 1.3"},
                 {"punchy", "Punchy", "darker and stronger: ASC CDL power 1.35, saturation 1.4"}};
-    op.warnings = {
-        "this is not the AgX of Blender: mid grey is shown at code value 0.5, Blender's at 0.46"};
+    op.warnings = {"not Blender's AgX: it shows mid gray at code value 0.5, Blender at 0.46"};
     op.deviations = {{DocumentedDifference::Kind::never_reaches_white, 0.193, "golden"},
                      {DocumentedDifference::Kind::exceeds_white, 1.06, "golden"},
                      {DocumentedDifference::Kind::tints_gray, 0.54, "golden"}};
@@ -137,8 +137,8 @@ Operator minimal() {
     op.title = "AgX (minimal, Wrensch)";
     op.view = "AgX Minimal";
     op.character =
-        "AgX of shaders: a polynomial for the sigmoid and the inset undone; more saturated than "
-        "Sobotka's";
+        "AgX for shaders: polynomial sigmoid, and the inverse of the inset after it; more "
+        "saturated than Sobotka's";
     op.source = "B. Wrensch, Minimal AgX Implementation, 2023; order 7: Filament ToneMapper.cpp";
     op.licence = "MIT";
     op.dialects = "AgX";
@@ -146,7 +146,7 @@ Operator minimal() {
     op.output = OutputKind::code_value;
     op.code_power = 2.2;
     op.parameters = {choice_parameter("order", {"6", "7"}, "6", "order of the polynomial")};
-    op.presets = {{"order7", "with Filament's polynomial", {{"order", "7"}}}};
+    op.presets = {{"order7", "Filament's polynomial of order 7", {{"order", "7"}}}};
     op.deviations = {{DocumentedDifference::Kind::black, -0.0023, ""},
                      {DocumentedDifference::Kind::black, 0.0029, "order7"},
                      {DocumentedDifference::Kind::never_reaches_white, 0.997, ""},
@@ -166,7 +166,7 @@ Operator minimal_clamped() {
     Operator op =
         defect_of("agx_minimal", "agx_minimal_clamped",
                   "ByroRedux (matiaszanolli/ByroRedux c5663fe39, presentation.frag; issue 4578)",
-                  "it limits scene-linear light to 1 before the logarithm, so everything above 1 "
+                  "it limits scene-linear values to 1 before the logarithm, so everything above 1 "
                   "is shown at 0.59 of white");
     op.output = OutputKind::code_value;
     op.code_power = 2.2;
@@ -186,8 +186,8 @@ Operator matrix_and_power() {
     Operator op = defect_of(
         "agx_blender", "agx_matrix_and_power",
         "QtMeshEditor (fernandotonon/QtMeshEditor 251f723f, HdrTonemap.cpp; pull request 782)",
-        "it has no logarithm and no sigmoid, but limits light to 1, applies a matrix that turns "
-        "grays green, and raises the result to the power 1.35");
+        "it has no logarithm and no sigmoid: it limits scene values to 1, applies a matrix that "
+        "turns grays green, and raises the result to the power 1.35");
     op.deviations = {{DocumentedDifference::Kind::never_reaches_white, 0.29, ""},
                      {DocumentedDifference::Kind::tints_gray, 0.42, ""}};
     op.build = [](const Params&) -> Pipeline {
@@ -214,15 +214,15 @@ Operator threejs() {
     op.title = "AgX (three.js)";
     op.view = "AgX three.js";
     op.character =
-        "Blender's matrices with Sobotka's curve: soft and pale; mid grey at 0.21 of the light, "
+        "Blender's matrices with Sobotka's curve: soft and pale; mid gray at display-linear 0.21, "
         "brighter than Blender's AgX";
     op.source = "three.js, tonemapping_pars_fragment: AgXToneMapping; after Filament";
     op.licence = "MIT";
     op.dialects = "AgX";
     op.negatives =
-        "pass through the matrices to Rec.2020 and of the inset; what is below the shaper's range "
-        "there is its lower end";
-    op.warnings = {"where the shaper ends, at scene-linear 16.3, greys fall by 5e-6 of the light"};
+        "kept by the matrix to Rec.2020 and the inset; then limited to the lower end of the "
+        "shaper's range";
+    op.warnings = {"grays get darker by 5e-6 at scene-linear 16.3, where the shaper ends"};
     op.deviations = {{DocumentedDifference::Kind::never_reaches_white, 0.997, ""},
                      {DocumentedDifference::Kind::not_monotone, 16, ""}};
     op.build = [](const Params&) -> Pipeline {
@@ -262,9 +262,9 @@ Operator filament() {
     op.title = "AgX (Filament)";
     op.view = "AgX Filament";
     op.character =
-        "as three.js, in Rec.2020 and with the polynomial of order 7: white at 0.96 of the light";
+        "three.js's AgX in Rec.2020 with the polynomial of order 7: white at display-linear 0.96";
     op.source = "Google Filament, ToneMapper.cpp: AgxToneMapper";
-    op.licence = "Apache-2.0; formula and constants, no code of it is used";
+    op.licence = "Apache-2.0; formula and constants only; none of its code is used";
     op.dialects = "AgX";
     op.negatives = kNegativesClampAtZero;
     op.working = kRec2020;
@@ -277,8 +277,8 @@ Operator filament() {
     op.bounds = {.ocio_cpu = 4e-7,
                  .cube = 2.4e-2,
                  .reason =
-                     "matrices that cancel enlarge roundings of the tables; looks saturate about a "
-                     "luma taken before their power: a cube"};
+                     "matrices with cancellation amplify the rounding of the tables; the looks "
+                     "need a 3D LUT, because they saturate about a luma from before their power"};
     // Punchy takes black below 0 before it is light: there the lifted black is gone.
     op.deviations = {{DocumentedDifference::Kind::black, 2.5e-6, ""},
                      {DocumentedDifference::Kind::black, 5.2e-5, "golden"},
@@ -310,12 +310,13 @@ Operator godot44() {
     op.title = "AgX (Godot 4.4)";
     op.view = "AgX Godot 4.4";
     op.character =
-        "a polynomial for Blender's sigmoid, decoded with 2.4: mid grey kept, soft lights";
+        "polynomial for Blender's sigmoid, decoded with the power 2.4: mid gray kept, soft "
+        "highlights";
     op.source = "Godot Engine 4.4, tonemap.glsl: tonemap_agx";
     op.licence = "MIT";
     op.dialects = "AgX";
-    op.negatives = "2e-10, before the first matrix";
-    op.warnings = {"where the shaper ends, at scene-linear 16.3, greys fall by 4e-6 of the light"};
+    op.negatives = "set to 2e-10, before the first matrix";
+    op.warnings = {"grays get darker by 4e-6 at scene-linear 16.3, where the shaper ends"};
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, 1.0003, ""},
                      {DocumentedDifference::Kind::not_monotone, 16, ""}};
     op.build = [](const Params&) -> Pipeline {
@@ -350,7 +351,8 @@ Operator godot() {
     op.title = "AgX (Godot 4.6)";
     op.view = "AgX Godot";
     op.character =
-        "AgX without logarithm: contrast, white and peak to choose, mid grey kept; fit for HDR";
+        "AgX without a logarithm: keeps mid gray; adjustable contrast, white and peak, suitable "
+        "for HDR";
     op.source = "Godot Engine 4.6, tonemap.glsl: tonemap_agx; curve by allenwp";
     op.licence = "MIT";
     op.dialects = "AgX";
@@ -358,9 +360,9 @@ Operator godot() {
     op.parameters = {
         number_parameter("contrast", "", 1.25, 0.1, 4, "power of the toe"),
         number_parameter("white", "scene-linear", 16.29, 2, 65504,
-                         "smallest scene value that is shown at output_max"),
+                         "lowest scene value shown at output_max"),
         number_parameter("output_max", "display-linear", 1, 0.2, 100,
-                         "display peak over paper white"),
+                         "display peak divided by paper white"),
     };
     op.build = [](const Params& p) -> Pipeline {
         // clang-format off

@@ -541,10 +541,10 @@ Pipeline apply_look(const std::string& look, bool is_lattice) {
 std::vector<Look> looks() {
     std::vector<Look> all = {
         {"punchy", "Punchy", "darker shadows: GradingTone 0.2 and 0.35, log power 1.0912"},
-        {"greyscale", "Greyscale", "without colors, of equal luminance"}};
+        {"greyscale", "Greyscale", "black and white, with the luminance of the colors"}};
     for (const Contrast& c : kContrasts) {
         all.push_back({c.id, c.title,
-                       "log contrast " + shortest(c.slope) + " about mid grey, saturation " +
+                       "log contrast " + shortest(c.slope) + " about mid gray, saturation " +
                            shortest(c.saturation)});
     }
     return all;
@@ -560,35 +560,38 @@ std::vector<Operator> define_agx_blender() {
     op.title = "AgX (Blender)";
     op.view = "AgX";
     op.character =
-        "soft: bright colors fade to white and keep most of their hue, mid grey stays; low in "
-        "contrast until a look is chosen";
+        "soft: bright colors fade to white and keep most of their hue, mid gray stays; low "
+        "contrast unless a look is chosen";
     op.source =
         "E. Chow, AgX and AgX_LUT_Gen, github.com/EaryChow; Blender 5.2, config.ocio: AgX, AgX - "
         "HDR 1000 nits and their looks";
-    op.licence = "formula and constants; no file or code of it is used";
+    op.licence = "formula and constants only; none of its files or code is used";
     op.dialects = "AgX";
     op.negatives =
-        "colors outside Rec.2020 are lifted until no channel is below 0, and scaled for the light "
-        "that this adds; the lattice limits to E-Gamut first";
+        "colors outside Rec.2020 are lifted until no channel is below 0, then scaled to compensate "
+        "for the added light; Blender's 3D LUT limits them to E-Gamut first";
     op.working = kRec2020;
     op.parameters = {
         limit_parameter({"rec709", "p3d65", "rec2020"}, "rec709"),
-        choice_parameter("method", {"lattice", "formula"}, "lattice",
-                         "lattice: the cube that Blender has; formula: what the cube samples"),
+        choice_parameter(
+            "method", {"lattice", "formula"}, "lattice",
+            "lattice: Blender's own 3D LUT; formula: the formula that the LUT samples"),
         display_parameter(choice_parameter("range", {"sdr", "hdr"}, "sdr",
-                                           "hdr: for displays of 1000 cd/m2, within P3"),
+                                           "hdr: displays of 1000 cd/m2, colors within P3"),
                           [](const DisplayFacts& display) -> std::string {
                               return display.is_hdr ? "hdr" : "sdr";
                           }),
     };
-    op.presets = {{"formula", "without the cube's interpolation", {{"method", "formula"}}},
-                  {"hdr", "for an HDR display of 1000 cd/m2", {{"range", "hdr"}}}};
+    op.presets = {{"formula",
+                   "exact formula, without the interpolation of the 3D LUT",
+                   {{"method", "formula"}}},
+                  {"hdr", "HDR display of 1000 cd/m2", {{"range", "hdr"}}}};
     op.looks = looks();
     op.warnings = {
-        "the lattice is what Blender shows: its interpolation moves saturated colors by up to 0.1 "
-        "of the sRGB code from the formula",
-        "with range=hdr an SDR display clips at 100 cd/m2",
-        "Blender multiplies the light of its HDR view by 2.03 where it shows or saves it"};
+        "Blender shows the 3D LUT, whose interpolation moves saturated colors by up to 0.1 of the "
+        "sRGB code value from the formula",
+        "SDR displays clip range=hdr at 100 cd/m2",
+        "Blender multiplies its HDR view by 2.03 when it shows or saves it"};
     // The cube of the looks' guard rail ends 10 stops below mid grey, where these looks lift.
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, 10, "hdr"},
                      {DocumentedDifference::Kind::black, 0.000105, "punchy"},
@@ -601,9 +604,9 @@ std::vector<Operator> define_agx_blender() {
                  .ocio_gpu = 2e-4,
                  .cube = 0.11,
                  .reason =
-                     "simd: twice as fast as with 1e-6; hdr: HLG codes as light of 10; colors far "
-                     "outside of Rec.709 cancel; "
-                     "formula: its guard rails have corners that no cube holds"};
+                     "simd: twice as fast as with 1e-6; hdr: HLG codes decode to values up to 10; "
+                     "colors far outside Rec.709 suffer from cancellation; formula: a 3D LUT "
+                     "smooths the corners of the guard rails"};
     op.build = [](const Params& p) -> Pipeline {
         const bool is_lattice = p.choice("method") == "lattice";
         const Pipeline look = apply_look(p.look(), is_lattice);

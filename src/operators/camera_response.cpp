@@ -65,32 +65,31 @@ std::vector<Operator> define_camera_response() {
     op.title = "Camera response (DoRF)";
     op.view = "Camera Response";
     op.character =
-        "a film's or camera's own curve from a file, hard white at iso; the built-in one is bright "
-        "and flat";
+        "measured curve of a film or camera from a file, hard white at iso; the built-in curve is "
+        "bright and flat";
     op.source =
         "M. Grossberg, S. Nayar, What is the Space of Camera Response Functions?, CVPR 2003; 64, "
         "Tone Mapping, 64.github.io";
-    op.licence = "published method; measured curves are not part of it";
+    op.licence = "published method; no measured curves are included";
     op.bounds = {.ocio_cpu = 1e-6,
                  .ocio_gpu = 3e-6,
-                 .reason = "straight lines between the samples: an edge at each"};
+                 .reason = "straight lines between the samples, so the slope jumps at each sample"};
     op.negatives = kNegativesClampAtZero;
     op.output = OutputKind::code_value;
     op.code_power = 2.2;
     op.parameters = fixed_parameters({
-        text_parameter("file",
-                       "response curves: .rf, CSV or DoRF's text; none: a synthetic curve, built "
-                       "in"),
+        text_parameter(
+            "file", "response curves: .rf, CSV or DoRF's text (empty: a built-in synthetic curve)"),
         text_parameter("curve",
-                       "of DoRF: a name, or what the names of three channels begin with; of four "
-                       "columns: red, green or blue for all channels"),
+                       "curve of a DoRF file: its name, or the common start of three channels' "
+                       "names; of a file with four columns: red, green or blue for all channels"),
         number_parameter("iso", "scene-linear", 6, 1e-5, 65504,
-                         "light that irradiance 1 stands for: it is shown as the curve's end"),
+                         "scene value of irradiance 1, shown at the end of the curve"),
     });
     op.warnings = {
-        "the response is the encoding: nothing is encoded after it, and for other "
-        "displays its light is decoded with 2.2",
-        "without a file the curve is synthetic, of no film or camera"};
+        "the response already encodes: its code values are not encoded again; for other displays "
+        "they are decoded with the power 2.2",
+        "the built-in curve is synthetic: no film or camera has it"};
     op.build = [](const Params& p) -> Pipeline {
         const double iso = p.number("iso");
         const ResponseCurves curves = curves_of(p);

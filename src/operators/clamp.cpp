@@ -18,10 +18,10 @@ std::vector<Operator> define_clamp() {
     op.id = "clamp";
     op.title = "Clamp";
     op.view = "Standard";
-    op.character = "hard clip at 1: exact below, flat and hue-shifting above";
+    op.character = "hard clip at 1: exact below, flat with shifted hues above";
     op.source = "common practice";
     op.licence = "public domain";
-    op.negatives = "0";
+    op.negatives = "clamped at 0";
     op.build = [](const Params&) -> Pipeline { return {ClampStage{0, 1}}; };
     return {op};
 }

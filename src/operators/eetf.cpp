@@ -66,13 +66,15 @@ double output_unit(const Params& p) {
 
 std::vector<ParameterSpec> with_limits(std::vector<ParameterSpec> own) {
     std::vector<ParameterSpec> all = {
-        number_parameter("source_peak", "cd/m2", 1000, 1, 10000, "of what the source was made for"),
-        display_parameter(number_parameter("target_peak", "cd/m2", 100, 1, 10000, "of the display"),
+        number_parameter("source_peak", "cd/m2", 1000, 1, 10000,
+                         "peak luminance that the source was mastered for"),
+        display_parameter(number_parameter("target_peak", "cd/m2", 100, 1, 10000,
+                                           "peak luminance of the display"),
                           [](const DisplayFacts& display) { return shortest(display.peak); }),
-        number_parameter("source_black", "cd/m2", 0, 0, 10000, "of what the source was made for"),
-        number_parameter("target_black", "cd/m2", 0, 0, 10000, "of the display"),
-        number_parameter("reference_white", "cd/m2", 100, 1, 1000,
-                         "what scene-linear 1 stands for"),
+        number_parameter("source_black", "cd/m2", 0, 0, 10000,
+                         "black level that the source was mastered for"),
+        number_parameter("target_black", "cd/m2", 0, 0, 10000, "black level of the display"),
+        number_parameter("reference_white", "cd/m2", 100, 1, 1000, "luminance of scene-linear 1"),
         sdr_or_hdr_parameter("sdr: 1 is target_peak; hdr: 1 is 100 cd/m2"),
     };
     all.insert(all.end(), own.begin(), own.end());
@@ -89,7 +91,9 @@ Operator eetf_operator() {
         .simd_goal = 7e-7,
         .ocio_cpu = 3e-5,
         .ocio_gpu = 5e-5,
-        .reason = "hdr: light of 10 in PQ, beside which a channel near 0 keeps float's rounding"};
+        .reason =
+            "hdr: values up to 10 in PQ; a channel near 0 keeps the float rounding of the larger "
+            "ones"};
     op.peak = [](const Params& p) { return p.number("target_peak") / output_unit(p); };
     return op;
 }
@@ -153,19 +157,19 @@ Operator bt2390() {
     op.title = "BT.2390 EETF";
     op.view = "BT.2390 EETF";
     op.character =
-        "HDR masters on a smaller display: untouched below a knee, then a spline in PQ; darker "
-        "than scene operators";
+        "HDR masters on a display with a lower peak: unchanged below a knee, then a spline in PQ; "
+        "darker than scene operators";
     op.source = "Report ITU-R BT.2390, EETF; knee and black of libplacebo, tone_mapping.c: bt2390";
-    op.licence = "published formula; libplacebo LGPL-2.1+: formula only, no code of it is used";
+    op.licence = "published formula; libplacebo: LGPL-2.1+, formula only, none of its code is used";
     op.parameters = with_limits({
         number_parameter("knee_offset", "", 0.5, 0.5, 2,
                          "o of the knee (1 + o) mx - o: 0.5 in the Report, 1 in libplacebo"),
         choice_parameter("black_lift", {"report", "libplacebo"}, "report",
-                         "how target_black is reached: mn (1 - E)^4 added; or that with a power of "
-                         "its own, and a gain that keeps the peak"),
+                         "black lift to target_black; report: adds mn (1 - E)^4; libplacebo: "
+                         "another power, and a gain that keeps the peak"),
     });
     op.presets = {{"libplacebo",
-                   "as libplacebo has it",
+                   "libplacebo's variant",
                    {{"knee_offset", "1"}, {"black_lift", "libplacebo"}}}};
     op.build = [](const Params& p) -> Pipeline {
         const Limits limits(p);
@@ -201,7 +205,7 @@ Operator bt2446a() {
     op.view = "BT.2446 A";
     op.character =
         "HDR masters of 1000 cd/m2 for SDR television: one smooth curve over the whole range, low "
-        "in contrast";
+        "contrast";
     op.source = "Report ITU-R BT.2446, method A, its tone mapping curve";
     op.licence = "published formula";
     op.parameters = with_limits({});
@@ -210,7 +214,7 @@ Operator bt2446a() {
     // 0.001 of the light, which a matrix and sRGB's slope at black enlarge.
     op.bounds = {.ocio_cpu = 5e-3,
                  .ocio_gpu = 5e-3,
-                 .reason = "the Report's curve jumps where its parts meet"};
+                 .reason = "the Report's curve jumps where its segments meet"};
     op.build = [](const Params& p) -> Pipeline {
         const Limits limits(p);
         return eetf(limits.is_compressed() ? bt2446a_curve(limits) : source_nits(limits), limits,
@@ -257,13 +261,15 @@ Operator spline() {
     op.title = "Spline (libplacebo)";
     op.view = "Spline libplacebo";
     op.character =
-        "HDR masters on a smaller display around a pivot that a scene average can move; contrast "
-        "to choose";
+        "HDR masters on a display with a lower peak, about a pivot that follows the scene average; "
+        "adjustable contrast";
     op.source = "libplacebo, tone_mapping.c: spline, its default";
-    op.licence = "LGPL-2.1+; formula only, no code of it is used";
+    op.licence = "LGPL-2.1+; formula only, none of its code is used";
     op.parameters = with_limits({
-        number_parameter("contrast", "", 0.5, 0, 1.5, "1 keeps the slope of the pivot at 1"),
-        number_parameter("average", "cd/m2", 0, 0, 10000, "of the scene; 0: not known"),
+        number_parameter("contrast", "", 0.5, 0, 1.5,
+                         "contrast about the pivot; 1 keeps its slope at 1"),
+        number_parameter("average", "cd/m2", 0, 0, 10000,
+                         "average luminance of the scene (0: unknown)"),
     });
     op.build = [](const Params& p) -> Pipeline {
         const Limits limits(p);

@@ -48,14 +48,12 @@ Operator linear() {
     op.title = "Linear (division by the maximum)";
     op.view = "Linear";
     op.character =
-        "contrast and colours exactly as in the scene, then clipped; dark where a picture has "
-        "bright lights";
+        "contrast and colors of the scene, then a clip; dark if the picture has bright highlights";
     op.source = "common practice; division by the maximum in 64, Tone Mapping, 64.github.io";
     op.licence = "common practice";
     op.negatives = kNegativesClampAtZero;
     op.parameters = with_apply(
-        "channels",
-        {maximum_luminance("divisor", 4, 1e-6, "scene value that is shown as display white")});
+        "channels", {maximum_luminance("divisor", 4, 1e-6, "scene value shown as display white")});
     op.build = [](const Params& p) -> Pipeline {
         const Expr x = Expr::input();
         const Expr divisor = p.expr("divisor");
@@ -71,16 +69,17 @@ Operator exponential() {
     op.title = "Exponential";
     op.view = "Exponential";
     op.character =
-        "steep in the dark, soft above the average, never clips a grey; bright, with flat lights";
+        "steep in the shadows, soft above the average, never clips a gray; bright, with flat "
+        "highlights";
     op.source = std::string("1 - exp(-L/Lavg) as in ") + kZeltner;
     op.licence = "published formula (program: MIT)";
     op.negatives = kNegativesClampAtZero;
     op.parameters = with_apply(
         "luminance",
-        {statistic_parameter(
-            number_parameter("average", "scene-linear", 1, 1e-6, kHalfMax,
-                             "scene value that is shown at 1 - 1/e = 0.63 of the display's light"),
-            "mean luminance", [](const SceneStatistics& s) { return s.mean_luminance; })});
+        {statistic_parameter(number_parameter("average", "scene-linear", 1, 1e-6, kHalfMax,
+                                              "scene value shown at display-linear 1 - 1/e = 0.63"),
+                             "mean luminance",
+                             [](const SceneStatistics& s) { return s.mean_luminance; })});
     op.warnings = {kChannelsMayClip};
     op.build = [](const Params& p) -> Pipeline {
         return tone_curve_pipeline({.f = 1 - exp(-(Expr::input() / p.expr("average")))}, p);
@@ -93,15 +92,16 @@ Operator logarithmic() {
     op.id = "logarithmic";
     op.title = "Logarithmic";
     op.view = "Logarithmic";
-    op.character = "equal steps for equal ratios: opens shadows, greys everything, dark mid tones";
+    op.character =
+        "equal steps for equal ratios: opens shadows, low contrast everywhere, dark midtones";
     op.source = std::string("log10(1 + p L)/log10(1 + p Lmax) as in ") + kZeltner;
     op.licence = "published formula (program: MIT)";
     op.negatives = kNegativesClampAtZero;
     op.parameters = with_apply(
         "luminance",
         {number_parameter("p", "", 1, 0.001, 1000,
-                          "factor on the scene value inside the logarithm: larger is flatter"),
-         maximum_luminance("maximum", 100, 1e-6, "scene value that is shown as display white")});
+                          "factor on the scene value in the logarithm; larger is flatter"),
+         maximum_luminance("maximum", 100, 1e-6, "scene value shown as display white")});
     op.warnings = {kChannelsMayClip};
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, 2.4, ""}};
     op.build = [](const Params& p) -> Pipeline {
@@ -118,18 +118,17 @@ Operator log_tonemap() {
     op.title = "Log tone map (Madams)";
     op.view = "Log Tone Map";
     op.character =
-        "a logarithm that is white at `limit`; flat, but for the optional S-curve behind it";
+        "a logarithm that reaches white at `limit`; flat, unless the optional S-curve follows it";
     op.source =
         "T. Madams, Why Reinhard desaturates my blacks, imdoingitwrong.wordpress.com, 2010-08-19, "
         "comment 9";
     op.licence = "published formula";
     op.negatives = kNegativesClampAtZero;
     op.parameters = with_apply(
-        "luminance",
-        {maximum_luminance("limit", 16, 0.001, "scene value that is shown as display white"),
-         number_parameter("contrast", "", 0, 0, 1,
-                          "share of the S-curve x^2 (3 - 2x), of each channel, after a limit to "
-                          "[0, 1]; 0: neither")});
+        "luminance", {maximum_luminance("limit", 16, 0.001, "scene value shown as display white"),
+                      number_parameter("contrast", "", 0, 0, 1,
+                                       "share of the S-curve x^2 (3 - 2x), per channel, after a "
+                                       "limit to [0, 1] (0: no curve and no limit)")});
     op.warnings = {kChannelsMayClip};
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, 3.9, ""}};
     op.build = [](const Params& p) -> Pipeline {
@@ -152,18 +151,19 @@ Operator exponentiation() {
     op.id = "exponentiation";
     op.title = "Exponentiation";
     op.view = "Exponentiation";
-    op.character = "a power of the scene: every ratio shrinks alike; lifts shadows, grey and flat";
+    op.character =
+        "a power of the scene: reduces every contrast by the same factor; lifts shadows, flat";
     op.source = std::string("(L/Lmax)^p as in ") + kZeltner;
     op.licence = "published formula (program: MIT)";
     op.negatives = kNegativesClampAtZero;
     op.parameters = with_apply(
         "luminance",
-        {number_parameter("p", "", 0.5, 0.01, 1, "the power: smaller is flatter, 1 is linear"),
-         maximum_luminance("maximum", 100, 1e-6, "scene value that is shown as display white")});
+        {number_parameter("p", "", 0.5, 0.01, 1, "exponent; smaller is flatter, 1 is linear"),
+         maximum_luminance("maximum", 100, 1e-6, "scene value shown as display white")});
     op.warnings = {kChannelsMayClip};
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
     op.bounds.ocio_cpu = op.bounds.ocio_gpu = 2e-3;
-    op.bounds.reason = "infinitely steep at black, where half floats end at 6e-8";
+    op.bounds.reason = "infinite slope at black, and half floats end at 6e-8";
     op.build = [](const Params& p) -> Pipeline {
         const Expr x = Expr::input();
         const Expr power = named("power", pow(x / p.expr("maximum"), p.expr("p")));

@@ -40,8 +40,8 @@ std::vector<Operator> define_false_color() {
     op.title = "False color";
     op.view = "False Color";
     op.character =
-        "a color for every stop: grey is mid grey, blue to purple below, yellow to red above, "
-        "white from 7 stops";
+        "one color per stop: gray at mid gray, blue to purple below, yellow to red above, white "
+        "from 7 stops";
     op.source = "Tonewright";
     op.licence = "Apache-2.0";
     op.negatives = kNegativesClampAtZero;
@@ -51,7 +51,7 @@ std::vector<Operator> define_false_color() {
                      {DocumentedDifference::Kind::tints_gray, 0.75, ""}};
     op.bounds = {.ocio_cpu = 2e-5,
                  .ocio_gpu = 2e-5,
-                 .reason = "a color goes over into the next within a quarter of a stop"};
+                 .reason = "one color blends into the next within a quarter of a stop"};
     op.build = [](const Params&) -> Pipeline {
         const Expr stops = named("stops", log2(Expr::input() / 0.18));
         CurveStage colors = curve_stage(0);

@@ -47,7 +47,7 @@ inline Operator defect_of(std::string meant, std::string id, std::string source,
     Operator op;
     op.id = std::move(id);
     op.source = std::move(source);
-    op.licence = "formula and constants; no code of it is used";
+    op.licence = "formula and constants only; none of its code is used";
     op.negatives = kNegativesClampAtZero;
     op.defect = std::move(defect);
     op.meant = std::move(meant);
@@ -78,7 +78,7 @@ inline ParameterSpec sdr_or_hdr_parameter(std::string help) {
 /// @param choices  of none, rec709, p3d65, rec2020
 inline ParameterSpec limit_parameter(std::vector<std::string> choices, std::string value) {
     ParameterSpec spec = choice_parameter("limit", std::move(choices), std::move(value),
-                                          "primaries that its colors are kept inside");
+                                          "gamut that limits the colors");
     return display_parameter(std::move(spec), [](const DisplayFacts& display) -> std::string {
         if (display.primaries == kRec709) return "rec709";
         return display.primaries == kP3D65 ? "p3d65" : "rec2020";

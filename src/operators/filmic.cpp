@@ -62,8 +62,8 @@ Operator hejl_burgess_dawson() {
     op.title = "Hejl/Burgess-Dawson";
     op.view = "Hejl Burgess-Dawson";
     op.character =
-        "film print in four constants: crisp blacks, strong contrast, long shoulder; crushes the "
-        "last shadows";
+        "film print in four constants: crisp blacks, high contrast, long shoulder; crushes the "
+        "deepest shadows";
     op.source =
         "J. Hejl, R. Burgess-Dawson, in J. Hable, Filmic Tonemapping Operators, filmicworlds.com, "
         "2010-05-05";
@@ -87,17 +87,18 @@ Operator hejl_2015() {
     op.title = "Hejl 2015";
     op.view = "Hejl 2015";
     op.character =
-        "Hejl's film curve as light, with a white of your choice: softer toe, very long shoulder";
+        "Hejl's film curve with display-linear output and an adjustable white: softer toe, very "
+        "long shoulder";
     op.source =
         "J. Hejl, twitter.com/jimhejl/status/633777619998130176, 2015, as in M. Pettineo's "
         "BakingLab, ToneMapping.hlsl";
     op.licence = "published formula (BakingLab: MIT)";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Hejl";
-    op.parameters = with_apply(
-        "channels", {number_parameter("white", "scene-linear", 11.2, 0.1, kHalfMax,
-                                      "smallest scene value that is shown as display white")});
-    op.warnings = {"quoted elsewhere with 1.425 where this, as BakingLab, has 1.435"};
+    op.parameters =
+        with_apply("channels", {number_parameter("white", "scene-linear", 11.2, 0.1, kHalfMax,
+                                                 "lowest scene value shown as display white")});
+    op.warnings = {"other sources quote 1.425 where BakingLab and this operator use 1.435"};
     op.deviations = {{DocumentedDifference::Kind::black, -0.00072, ""},
                      {DocumentedDifference::Kind::crushes_black, 0.0046, ""},
                      {DocumentedDifference::Kind::exceeds_white, 1.0, ""}};
@@ -116,7 +117,7 @@ Operator aldridge() {
     op.id = "aldridge";
     op.title = "Aldridge";
     op.view = "Aldridge";
-    op.character = "Hejl/Burgess-Dawson with a soft start instead of crushed blacks";
+    op.character = "Hejl/Burgess-Dawson with a soft toe instead of crushed blacks";
     op.source =
         "G. Aldridge, Approximating Film with Tonemapping, iwasbeingirony.blogspot.com, "
         "2010-04-19, as in T. Zeltner, Tone Mapper, github.com/tizian/tonemapper";
@@ -127,8 +128,9 @@ Operator aldridge() {
     op.dialects = "Hejl";
     op.parameters = with_apply(
         "channels",
-        {number_parameter("cutoff", "scene-linear", 0.025, 0.001, 1,
-                          "what is taken from the lights; the start is soft up to twice this")});
+        {number_parameter(
+            "cutoff", "scene-linear", 0.025, 0.001, 1,
+            "value subtracted from the highlights; the toe reaches up to twice this value")});
     op.build = [](const Params& p) -> Pipeline {
         const Expr q = p.expr("cutoff");
         const Expr v = Expr::input();
@@ -179,7 +181,7 @@ Operator lottes() {
     op.title = "Lottes";
     op.view = "Lottes";
     op.character =
-        "contrast and shoulder set apart, mid grey and white pinned: bright mid tones, firm blacks";
+        "separate contrast and shoulder, fixed mid gray and white: bright midtones, deep blacks";
     op.source = "T. Lottes, Advanced Techniques and Optimization of HDR Color Pipelines, GDC 2016";
     op.licence = "published formula";
     op.negatives = kNegativesClampAtZero;
@@ -187,18 +189,19 @@ Operator lottes() {
     op.parameters = with_apply(
         "channels",
         {number_parameter("contrast", "", 1.6, 1, 2, "a: power of the toe"),
-         number_parameter("shoulder", "", 0.977, 0.01, 2, "d: 1 has an end, smaller is softer"),
+         number_parameter("shoulder", "", 0.977, 0.01, 2,
+                          "d: smaller is softer; with 1 the curve has an upper bound"),
          number_parameter("hdr_max", "scene-linear", 8, 1, kHalfMax,
-                          "scene value that is shown as display white"),
-         number_parameter("mid_in", "scene-linear", 0.18, 0.01, 1, "mid grey of the scene"),
+                          "scene value shown as display white"),
+         number_parameter("mid_in", "scene-linear", 0.18, 0.01, 1, "mid gray of the scene"),
          number_parameter("mid_out", "display-linear", 0.267, 0.01, 0.99,
-                          "light that mid grey is shown with")});
-    op.warnings = {"with a shoulder above 1 lights get darker again above some scene value"};
+                          "display-linear value of mid gray")});
+    op.warnings = {"with a shoulder above 1, highlights above some scene value get darker again"};
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, 1.4, ""}};
     op.bounds = {.simd = 1e-5,
                  .reason =
-                     "with a shoulder above 1 the curve may pass far above white and come "
-                     "back, and apply=hue_preserving takes the difference"};
+                     "with a shoulder above 1 the curve may rise far above white and fall again, "
+                     "and apply=hue_preserving subtracts such values"};
     op.build = [](const Params& p) -> Pipeline {
         return tone_curve_pipeline({.f = lottes_curve(p)}, p);
     };
@@ -232,7 +235,7 @@ Operator filament_generic() {
     op.id = "filament_generic";
     op.title = "Generic (Filament)";
     op.view = "Filament Generic";
-    op.character = "Lottes without its shoulder's parameter: has an end a little above white";
+    op.character = "Lottes without the shoulder parameter: its upper bound is a little above white";
     op.source =
         "Filament, filament/src/ToneMapper.cpp, GenericToneMapper, github.com/google/filament";
     op.licence = "Apache-2.0";
@@ -241,11 +244,11 @@ Operator filament_generic() {
     op.parameters = with_apply(
         "channels",
         {number_parameter("contrast", "", 1.55, 1, 3, "power of the toe"),
-         number_parameter("mid_in", "scene-linear", 0.18, 0.01, 1, "mid grey of the scene"),
+         number_parameter("mid_in", "scene-linear", 0.18, 0.01, 1, "mid gray of the scene"),
          number_parameter("mid_out", "display-linear", 0.215, 0.01, 1,
-                          "light that mid grey is shown with"),
+                          "display-linear value of mid gray"),
          number_parameter("hdr_max", "scene-linear", 10, 1, kHalfMax,
-                          "scene value that is shown as display white")});
+                          "scene value shown as display white")});
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, 1.0, ""}};
     op.build = [](const Params& p) -> Pipeline {
         return tone_curve_pipeline({.f = filament_curve(p)}, p);
@@ -258,7 +261,7 @@ Operator ue3() {
     op.id = "ue3";
     op.title = "Unreal Engine 3";
     op.view = "Unreal 3";
-    op.character = "Reinhard's shape on code values: bright, low contrast, no toe; white at 8.2";
+    op.character = "Reinhard's shape in code values: bright, low contrast, no toe; white at 8.2";
     op.source = "Unreal Engine 3 documentation, Color Grading; R. Guy, shadertoy llXyWr";
     op.licence = "published formula";
     op.negatives = kNegativesClampAtZero;
@@ -303,27 +306,27 @@ Operator day() {
     op.title = "Day (Insomniac)";
     op.view = "Day";
     op.character =
-        "black, white, crossover and two strengths by hand; as it comes, dark with hard blacks";
+        "manual black, white, crossover and two strengths; dark with hard blacks by default";
     op.source =
         "M. Day, An efficient and user-friendly tone mapping operator, Insomniac Games, 2012";
     op.licence = "published formula";
-    op.bounds = {.ocio_gpu = 3e-6, .reason = "steep where its black ends"};
+    op.bounds = {.ocio_gpu = 3e-6, .reason = "steep slope just above black"};
     op.negatives = kNegativesClampAtZero;
     op.parameters = with_apply(
         "channels",
         {number_parameter("white", "times the average", 10, 0.1, kHalfMax,
-                          "value that is shown as display white"),
+                          "value shown as display white"),
          number_parameter("black", "times the average", 0.1, 0, 1,
-                          "value that is shown as black; below it the curve is negative"),
-         number_parameter("toe", "", 0.7, 0, 0.99, "strength of the toe: 0 is a straight line"),
+                          "value shown as black; the curve is negative below it"),
+         number_parameter("toe", "", 0.7, 0, 0.99, "strength of the toe (0: straight line)"),
          number_parameter("shoulder", "", 0.8, 0, 0.99,
-                          "strength of the shoulder: 0 is a straight line"),
+                          "strength of the shoulder (0: straight line)"),
          number_parameter("crossover", "times the average", 2, 0.01, 1000,
                           "value where the toe meets the shoulder"),
-         statistic_parameter(number_parameter("average", "scene-linear", 1, 1e-6, kHalfMax,
-                                              "scene value that the others are multiples of"),
-                             "mean luminance",
-                             [](const SceneStatistics& s) { return s.mean_luminance; })});
+         statistic_parameter(
+             number_parameter("average", "scene-linear", 1, 1e-6, kHalfMax,
+                              "scene value that is the unit of white, black and crossover"),
+             "mean luminance", [](const SceneStatistics& s) { return s.mean_luminance; })});
     op.deviations = {{DocumentedDifference::Kind::black, -0.0040, ""},
                      {DocumentedDifference::Kind::crushes_black, 0.099, ""},
                      {DocumentedDifference::Kind::exceeds_white, 1.2, ""}};
@@ -338,7 +341,8 @@ Operator schlick() {
     op.id = "schlick";
     op.title = "Schlick";
     op.view = "Schlick";
-    op.character = "Reinhard's shape with white pinned at the maximum: opens shadows, soft lights";
+    op.character =
+        "Reinhard's shape with white fixed at the maximum: opens shadows, soft highlights";
     op.source =
         "C. Schlick, Quantization Techniques for Visualization of High Dynamic Range Pictures, "
         "Eurographics Workshop on Rendering, 1994";
@@ -346,9 +350,9 @@ Operator schlick() {
     op.negatives = kNegativesClampAtZero;
     op.parameters = with_apply(
         "luminance",
-        {number_parameter("p", "", 20, 1, 1000, "slope at black times the maximum; 1 is linear"),
+        {number_parameter("p", "", 20, 1, 1000, "slope at black times the maximum (1: linear)"),
          statistic_parameter(number_parameter("maximum", "scene-linear", 100, 1e-6, kHalfMax,
-                                              "scene value that is shown as display white"),
+                                              "scene value shown as display white"),
                              "maximum luminance",
                              [](const SceneStatistics& s) { return s.maximum_luminance; })});
     op.warnings = {
@@ -369,30 +373,31 @@ Operator toe() {
     op.title = "Toe";
     op.view = "Toe";
     op.character =
-        "darkens only the deepest shadows, as games of 2009 did: on a plain picture, or (ramp) on "
-        "Reinhard Extended";
+        "darkens only the deepest shadows, as in games of 2009: on the unchanged scene, or (ramp) "
+        "on Reinhard Extended";
     op.source =
-        "ours, after T. Madams, Why Reinhard desaturates my blacks, imdoingitwrong.wordpress.com, "
-        "2010-08-19, which describes two games' toes without a formula";
-    op.licence = "ours";
+        "Tonewright, after T. Madams, Why Reinhard desaturates my blacks, "
+        "imdoingitwrong.wordpress.com, 2010-08-19, which describes the toes of two games without a "
+        "formula";
+    op.licence = "Apache-2.0";
     op.negatives = kNegativesClampAtZero;
     op.parameters = with_apply(
-        "channels",
-        {choice_parameter("form", {"quadratic", "ramp"}, "quadratic",
-                          "quadratic: a smooth toe on the scene value; ramp: two multiply-adds "
-                          "behind Reinhard Extended"),
-         number_parameter("width", "", 0.05, 0.001, 1, "value where the toe ends"),
-         number_parameter("strength", "", 1, 0, 1, "0: no toe; 1: no slope at black"),
-         number_parameter("brightness", "", 0, -1, 1, "added behind the toe"),
-         number_parameter("contrast", "", 1, 0.01, 4, "slope behind the toe, about 0.5"),
-         number_parameter("white", "scene-linear", 4, 0.01, kHalfMax,
-                          "white of Reinhard Extended; read with form=ramp")});
+        "channels", {choice_parameter("form", {"quadratic", "ramp"}, "quadratic",
+                                      "quadratic: a smooth toe on the scene value; ramp: two "
+                                      "multiply-adds after Reinhard Extended"),
+                     number_parameter("width", "", 0.05, 0.001, 1, "value at the end of the toe"),
+                     number_parameter("strength", "", 1, 0, 1,
+                                      "strength of the toe (0: no toe, 1: zero slope at black)"),
+                     number_parameter("brightness", "", 0, -1, 1, "offset added after the toe"),
+                     number_parameter("contrast", "", 1, 0.01, 4, "slope about 0.5, after the toe"),
+                     number_parameter("white", "scene-linear", 4, 0.01, kHalfMax,
+                                      "white of Reinhard Extended; only with form=ramp")});
     op.presets = {{"ramp",
-                   "Reinhard Extended with its shadows ramped down",
+                   "Reinhard Extended with darker shadows",
                    {{"form", "ramp"}, {"width", "0.25"}, {"strength", "0.5"}}}};
-    op.warnings = {"a definition of ours: neither game's formula was published"};
+    op.warnings = {"Tonewright defines this formula, because neither game published its own"};
     op.bounds.ocio_cpu = op.bounds.ocio_gpu = 5e-5;
-    op.bounds.reason = "the ramp ends with an edge, between two half floats";
+    op.bounds.reason = "the slope jumps at the end of the ramp, between two half floats";
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const Expr x = Expr::input();

@@ -99,15 +99,16 @@ std::vector<Operator> define_frostbite() {
     op.title = "Frostbite (hue preserving)";
     op.view = "Frostbite";
     op.character =
-        "flat by design, a base for grading: hues kept, lights fade to white, shadows untouched";
+        "flat by design, a base for grading: keeps hues, highlights fade to white, shadows "
+        "unchanged";
     op.source =
-        "A. Fry, High Dynamic Range Color Grading and Display in Frostbite, GDC 2017; numbers of "
+        "A. Fry, High Dynamic Range Color Grading and Display in Frostbite, GDC 2017; constants of "
         "T. Stachowiak's shadertoy";
-    op.licence = "published formula; no code of it is used";
+    op.licence = "published formula; none of its code is used";
     op.negatives = kNegativesClampAtZero;
-    op.bounds = {.cube = 1.2e-2, .reason = "a cube: chroma goes within a stop about white"};
+    op.bounds = {.cube = 1.2e-2, .reason = "3D LUT: chroma falls to 0 within a stop about white"};
     op.parameters = {number_parameter("linear_end", "scene-linear", 0.25, 0.01, 0.99,
-                                      "end of the straight part of the compression")};
+                                      "end of the linear segment of the compression")};
     op.build = [](const Params& p) -> Pipeline {
         return {limit_to_positive(), frostbite_mapping(p.expr("linear_end"))};
     };

@@ -103,29 +103,29 @@ std::vector<Operator> define_gt7() {
     op.title = "Gran Turismo 7";
     op.view = "Gran Turismo 7";
     op.character =
-        "filmic and clean, lights keep their hue and lose chroma only near the peak; dark unless "
-        "the scene is exposed in units of 100 cd/m2";
+        "filmic and clean, highlights keep their hue and lose chroma only near the peak; dark "
+        "unless scene-linear 1 stands for 100 cd/m2";
     op.source =
         "Yasutomi, Suzuki, Uchimura, Driving Toward Reality: Physically Based Tone Mapping and "
         "Perceptual Fidelity in Gran Turismo 7, SIGGRAPH 2025; gt7_tone_mapping.cpp 1.0";
     op.licence = "MIT";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Gran Turismo";
-    op.bounds = {.cube = 0.26, .reason = "a cube: lights lose their chroma within 1.4 stops"};
+    op.bounds = {.cube = 0.26, .reason = "3D LUT: highlights lose their chroma within 1.4 stops"};
     op.working = kRec2020;
     op.parameters = fixed_parameters({
         sdr_or_hdr_parameter("sdr: 1 is the peak of a display of 250 cd/m2; hdr: 1 is 100 cd/m2"),
         display_parameter(number_parameter("peak", "cd/m2", 1000, 250, 10000,
-                                           "of the display; read with output=hdr"),
+                                           "peak luminance of the display; only with output=hdr"),
                           [](const DisplayFacts& display) -> std::string {
                               return display.is_hdr ? shortest(std::max(display.peak, 250.0)) : "";
                           }),
     });
-    op.presets = {{"hdr", "for an HDR display, in units of 100 cd/m2", {{"output", "hdr"}}}};
+    op.presets = {{"hdr", "HDR display, in units of 100 cd/m2", {{"output", "hdr"}}}};
     op.warnings = {
         "scene-linear 1 stands for 100 cd/m2: expose about 1.3 stops more than for "
         "operators that show 1 near white",
-        "with output=hdr an SDR display clips at 100 cd/m2"};
+        "SDR displays clip output=hdr at 100 cd/m2"};
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, 10, "hdr"}};
     op.peak = [](const Params& p) {
         return p.choice("output") == "hdr" ? p.number("peak") / kReferenceLuminance : 1;

@@ -55,8 +55,9 @@ Pipeline hable_pipeline(const Hable& h, const Params& p) {
 }
 
 ParameterSpec white() {
-    return number_parameter("white", "scene-linear, after the bias", 11.2, 0.1, kHalfMax,
-                            "W of the formula: biased scene value that is shown as display white");
+    return number_parameter(
+        "white", "scene-linear, after the bias", 11.2, 0.1, kHalfMax,
+        "W of the formula: scene value after the bias that is shown as display white");
 }
 ParameterSpec exposure_bias(double value) {
     return number_parameter("exposure_bias", "", value, 0.01, 100, "factor on the scene value");
@@ -67,9 +68,10 @@ Operator uncharted() {
     op.id = "hable";
     op.title = "Hable (Uncharted 2)";
     op.view = "Hable";
-    op.character = "strong toe, long soft shoulder: contrasty and dark, the game look of 2010";
+    op.character =
+        "strong toe, long soft shoulder: high contrast and dark, the look of games in 2010";
     op.source = "J. Hable, Filmic Tonemapping Operators, filmicworlds.com, 2010-05-05";
-    op.licence = "published formula (page: public domain code)";
+    op.licence = "published formula (code on the page: public domain)";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Hable";
     // D and F bounded away from 0: their product is the curve's denominator at black.
@@ -83,13 +85,13 @@ Operator uncharted() {
          number_parameter("toe_denominator", "", 0.30, 0.01, 1, "F of the formula"), white(),
          exposure_bias(2)});
     op.presets = {{"gdc",
-                   "the constants of the GDC 2010 slides, without a bias",
+                   "constants of the GDC 2010 slides, without a bias",
                    {{"shoulder_strength", "0.22"},
                     {"linear_strength", "0.3"},
                     {"toe_numerator", "0.01"},
                     {"exposure_bias", "1"}}},
                   {"godot",
-                   "as Godot's Filmic with its white at 1",
+                   "Godot's Filmic with its white at 1",
                    {{"shoulder_strength", "0.22"},
                     {"linear_strength", "0.3"},
                     {"toe_numerator", "0.01"},
@@ -110,11 +112,10 @@ Operator uncharted() {
 }
 
 Operator bias_on_result() {
-    Operator op = defect_of(
-        "hable", "hable_bias_on_result",
-        "Tonemapper (tizian/tonemapper 5215acc3, HableFilmicOperator.cpp)",
-        "the exposure bias of 2 is a factor on the result, not on the scene value, so light above "
-        "2.05 is clipped");
+    Operator op = defect_of("hable", "hable_bias_on_result",
+                            "Tonemapper (tizian/tonemapper 5215acc3, HableFilmicOperator.cpp)",
+                            "it applies the exposure bias of 2 to the result instead of the scene "
+                            "value, so it clips scene values above 2.05");
     op.build = [](const Params&) -> Pipeline {
         const Hable curve{.A = 0.15, .B = 0.50, .C = 0.10, .D = 0.20, .E = 0.02, .F = 0.30};
         return {limit_to_positive(), curve_stage(2.0 * curve(Expr::input()) / curve(11.2)),
@@ -219,8 +220,7 @@ Operator piecewise() {
     op.id = "hable_piecewise";
     op.title = "Hable piecewise power curve";
     op.view = "Hable Piecewise";
-    op.character =
-        "toe, straight part and shoulder by the artist's numbers; as it comes, a clip at 1";
+    op.character = "manual toe, linear segment and shoulder; a clip at 1 by default";
     op.source =
         "J. Hable, Filmic Tonemapping with Piecewise Power Curves, filmicworlds.com, 2017-03-26; "
         "github.com/johnhable/fw-public";
@@ -230,32 +230,33 @@ Operator piecewise() {
     op.parameters = with_apply(
         "channels",
         fixed_parameters(
-            {number_parameter("toe_strength", "", 0, 0, 1, "0: no toe; 1: black to the toe's end"),
+            {number_parameter("toe_strength", "", 0, 0, 1,
+                              "strength of the toe (0: no toe, 1: black up to the end of the toe)"),
              number_parameter(
                  "toe_length", "", 0.5, 0, 1,
-                 "of the toe; its 2.2 power is twice the scene value where the toe ends"),
+                 "length of the toe: its 2.2 power is twice the scene value at the end of the toe"),
              number_parameter("shoulder_strength", "stops", 0, 0, 16,
-                              "by how much the white of the scene is moved up"),
+                              "stops by which the scene value of white increases"),
              number_parameter("shoulder_length", "", 0.5, 1e-5, 1,
-                              "share of what is above the toe that the shoulder takes"),
+                              "share of the range above the toe that the shoulder covers"),
              number_parameter("shoulder_angle", "", 0, 0, 1,
-                              "how far the shoulder aims above white, which it then passes"),
-             number_parameter("gamma", "", 1, 0.1, 10,
-                              "power of the light that the curve puts out"),
+                              "how far above white the shoulder aims; values above 0 exceed white"),
+             number_parameter("gamma", "", 1, 0.1, 10, "power on the output of the curve"),
              display_parameter(
-                 number_parameter("max_brightness", "display-linear", 1, 1, 100,
-                                  "P: display peak over paper white; the curve f becomes P f(x/P)"),
+                 number_parameter(
+                     "max_brightness", "display-linear", 1, 1, 100,
+                     "P: display peak divided by paper white; the curve f becomes P f(x/P)"),
                  [](const DisplayFacts& display) { return shortest(display.peak / 100); })}));
     op.peak = [](const Params& params) { return params.number("max_brightness"); };
     op.presets = {{"film",
-                   "a toe, two stops of highlights and a shoulder that goes on",
+                   "toe, two stops of highlights and a shoulder that exceeds white",
                    {{"toe_strength", "0.5"},
                     {"toe_length", "0.5"},
                     {"shoulder_strength", "2"},
                     {"shoulder_length", "0.5"},
                     {"shoulder_angle", "1"}}},
                   {"soft",
-                   "a short toe, four stops of highlights",
+                   "short toe, four stops of highlights",
                    {{"toe_strength", "0.2"},
                     {"toe_length", "0.3"},
                     {"shoulder_strength", "4"},

@@ -30,9 +30,9 @@ namespace {
 std::vector<ParameterSpec> neutral_parameters() {
     return {
         number_parameter("start_compression", "scene-linear", 0.8, 0.1, 0.99,
-                         "scene value of a grey from which on lights are compressed"),
+                         "scene value of a gray above which highlights are compressed"),
         number_parameter("desaturation", "", 0.15, 0, 1,
-                         "how fast compressed lights fade to white"),
+                         "how fast compressed highlights fade to white"),
     };
 }
 
@@ -80,8 +80,8 @@ Operator khronos() {
     op.title = "Khronos PBR Neutral";
     op.view = "Khronos PBR Neutral";
     op.character =
-        "colors of products as their materials have them, less a reflection of 0.04; only lights "
-        "are compressed and fade to white";
+        "product colors match their materials, minus a reflection of 0.04; compresses only "
+        "highlights, which fade to white";
     op.source = "Khronos Group, Khronos PBR Neutral Tone Mapper, 2024: pbrNeutral.glsl";
     op.licence = "Apache-2.0 (code), CC-BY-4.0 (text)";
     op.dialects = "PBR Neutral";
@@ -97,9 +97,11 @@ Operator filament() {
     op.id = "khronos_neutral_filament";
     op.title = "PBR Neutral (Filament)";
     op.view = "PBR Neutral Filament";
-    op.character = "Khronos PBR Neutral with lights mixed towards 1: brighter above the start";
+    op.character =
+        "Khronos PBR Neutral with highlights mixed towards 1: brighter above the start of the "
+        "compression";
     op.source = "Google Filament, ToneMapper.cpp: PBRNeutralToneMapper";
-    op.licence = "Apache-2.0; formula and constants, no code of it is used";
+    op.licence = "Apache-2.0; formula and constants only; none of its code is used";
     op.dialects = "PBR Neutral";
     op.negatives = kNegativesClampAtZero;
     op.parameters = neutral_parameters();

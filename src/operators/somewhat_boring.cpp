@@ -45,12 +45,13 @@ std::vector<Operator> define_somewhat_boring() {
     op.title = "Somewhat Boring Display Transform";
     op.view = "Somewhat Boring";
     op.character =
-        "hues of dull colors kept, of bright lights bent to white; soft, little contrast";
+        "keeps the hues of dull colors and bends those of bright highlights to white; soft, low "
+        "contrast";
     op.source =
         "T. Stachowiak, Somewhat boring display transform, in Bevy: tonemapping_shared.wgsl";
     op.licence = "MIT or Apache-2.0";
     op.negatives = kNegativesClampAtZero;
-    op.bounds = {.cube = 1.4e-2, .reason = "a cube: the desaturation starts with an edge"};
+    op.bounds = {.cube = 1.4e-2, .reason = "3D LUT: the slope jumps where the desaturation starts"};
     op.deviations = {{DocumentedDifference::Kind::never_reaches_white, 0.97, ""}};
     op.build = [](const Params&) -> Pipeline { return {limit_to_positive(), boring_mapping()}; };
     return {op};

@@ -42,12 +42,12 @@ namespace {
 constexpr const char* kChannelsMayClip =
     "apply=luminance keeps chromaticity, so a saturated channel may exceed 1 and clip";
 constexpr const char* kScenesAreLuminances =
-    "takes scene values for cd/m2: the picture's absolute level changes its contrast or colours";
+    "reads scene values as cd/m2: the absolute level of the picture changes its contrast or colors";
 
 ParameterSpec log_average(double value) {
     return statistic_parameter(
         number_parameter("log_average", "scene-linear", value, 1e-6, kHalfMax,
-                         "geometric mean of the scene's luminances: what the eye has adapted to"),
+                         "geometric mean luminance of the scene, to which the eye has adapted"),
         "log mean luminance", [](const SceneStatistics& s) { return s.log_average; });
 }
 
@@ -62,8 +62,8 @@ Operator drago() {
     op.title = "Drago";
     op.view = "Drago";
     op.character =
-        "a logarithm whose base grows with the light: opens shadows, keeps lights apart, grey mid "
-        "tones";
+        "logarithm whose base grows with luminance: opens shadows, keeps highlights distinct, gray "
+        "midtones";
     op.source =
         "F. Drago, K. Myszkowski, T. Annen, N. Chiba, Adaptive Logarithmic Mapping for Displaying "
         "High Contrast Scenes, Computer Graphics Forum 22(3), Eurographics 2003, eq. 4";
@@ -75,10 +75,10 @@ Operator drago() {
                           "b: smaller is brighter and flatter; also scales the log average, by "
                           "(1 + b - 0.85)^-5"),
          number_parameter("display_max", "cd/m2", 100, 1, 10000,
-                          "luminance that the maximum is shown with, where 100 is display white"),
+                          "luminance at which the maximum is shown; display white is 100"),
          log_average(1),
          statistic_parameter(number_parameter("maximum", "scene-linear", 100, 1e-6, kHalfMax,
-                                              "brightest scene value"),
+                                              "highest scene luminance"),
                              "maximum luminance",
                              [](const SceneStatistics& s) { return s.maximum_luminance; })});
     op.warnings = {kChannelsMayClip};
@@ -106,8 +106,8 @@ Operator ward() {
     op.title = "Ward (contrast-based scale factor)";
     op.view = "Ward";
     op.character =
-        "one factor for the whole picture, so that what is just visible in the scene is just "
-        "visible on the display; clips lights";
+        "one factor for the whole picture: just visible differences of the scene stay just visible "
+        "on the display; clips highlights";
     op.source =
         "G. Ward, A Contrast-Based Scalefactor for Luminance Display, Graphics Gems IV, 1994, "
         "pp. 415-421";
@@ -144,18 +144,18 @@ Operator tumblin_rushmeier() {
     op.title = "Tumblin-Rushmeier";
     op.view = "Tumblin-Rushmeier";
     op.character =
-        "the same brightness for the eye before scene and display: night scenes get darker and "
-        "flatter; crushes black, clips lights";
+        "matches the perceived brightness of display and scene: night scenes get darker and "
+        "flatter; crushes black, clips highlights";
     op.source =
         "J. Tumblin, H. Rushmeier, Tone Reproduction for Realistic Images, IEEE Computer Graphics "
         "and Applications 13(6), 1993, pp. 42-48";
     op.licence = "published formula";
     op.negatives = kNegativesClampAtZero;
-    op.parameters = with_apply(
-        "luminance", {display_max(80),
-                      number_parameter("contrast_max", "", 36, 2, 10000,
-                                       "contrast of the display: white over its darkest black"),
-                      log_average(0.5)});
+    op.parameters = with_apply("luminance",
+                               {display_max(80),
+                                number_parameter("contrast_max", "", 36, 2, 10000,
+                                                 "contrast of the display: white divided by black"),
+                                log_average(0.5)});
     op.warnings = {kScenesAreLuminances};
     op.deviations = {{DocumentedDifference::Kind::crushes_black, 0.060, ""},
                      {DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
@@ -227,17 +227,17 @@ std::vector<ParameterSpec> rod_parameters() {
     return {
         display_max(80),
         statistic_parameter(number_parameter("photopic_adaptation", "cd/m2", 2, 1e-6, kHalfMax,
-                                             "luminance that the cones have adapted to"),
+                                             "luminance to which the cones have adapted"),
                             "half the maximum luminance",
                             [](const SceneStatistics& s) { return s.maximum_luminance / 2; }),
         statistic_parameter(number_parameter("scotopic_adaptation", "scotopic cd/m2", 1.5, 1e-6,
-                                             kHalfMax, "signal that the rods have adapted to"),
-                            "half the rods' signal of the channels' maxima",
+                                             kHalfMax, "rod signal to which the rods have adapted"),
+                            "half the rod signal of the channel maxima",
                             [](const SceneStatistics& s) { return dot(kRods, s.maximum_rgb) / 2; }),
         choice_parameter("rod_weight_from", {"adaptation", "fixed"}, "adaptation",
-                         "share of the rods: by what the eye has adapted to, or rod_weight"),
+                         "source of the rods' share: the adaptation of the eye, or rod_weight"),
         number_parameter("rod_weight", "", 0.5, 0, 1,
-                         "k, share of the rods; read with rod_weight_from=fixed")};
+                         "k: share of the rods; only with rod_weight_from=fixed")};
 }
 
 /// C' = (mp C + k ms tint Ls)/Ldmax.
@@ -256,7 +256,7 @@ DeclaredBounds rod_bounds() {
             .ocio_cpu = 1.5e-4,
             .ocio_gpu = 6e-3,
             .cube = 0.3,
-            .reason = "the matrix back from the rods' coordinates cancels near black"};
+            .reason = "the matrix from the rods' coordinates to RGB cancels near black"};
 }
 
 Operator ferwerda() {
@@ -265,8 +265,8 @@ Operator ferwerda() {
     op.title = "Ferwerda";
     op.view = "Ferwerda";
     op.character =
-        "what is just visible in the scene is just visible on the display; in the dark the rods' "
-        "grey takes over. Clips lights";
+        "just visible differences of the scene stay just visible on the display; dark scenes turn "
+        "to the gray of the rods; clips highlights";
     op.source =
         "J. Ferwerda, S. Pattanaik, P. Shirley, D. Greenberg, A Model of Visual Adaptation for "
         "Realistic Image Synthesis, SIGGRAPH 1996";
@@ -290,7 +290,8 @@ Operator durand_dorsey_rods() {
     op.id = "durand_dorsey_rods";
     op.title = "Ferwerda with blue shift (Durand-Dorsey)";
     op.view = "Durand-Dorsey Rods";
-    op.character = "Ferwerda whose night is bluish; rods fade more slowly with the light";
+    op.character =
+        "Ferwerda with bluish night scenes; the share of the rods falls more slowly with luminance";
     op.source =
         "F. Durand, J. Dorsey, Interactive Tone Mapping, Eurographics Workshop on "
         "Rendering, 2000";
@@ -301,7 +302,7 @@ Operator durand_dorsey_rods() {
     op.bounds = rod_bounds();
     const auto shift = [&](const std::string& color, double value) {
         op.parameters.push_back(
-            number_parameter("blue_shift_" + color, "", value, 0, 2, color + " of the rods' grey"));
+            number_parameter("blue_shift_" + color, "", value, 0, 2, color + " of the rods' gray"));
     };
     shift("red", 1.05);
     shift("green", 0.97);

@@ -39,7 +39,7 @@ Operator gran_turismo() {
     op.id = "uchimura";
     op.title = "Gran Turismo (Uchimura 2017)";
     op.view = "Gran Turismo";
-    op.character = "mid tones untouched, short toe and exponential shoulder; clean and bright";
+    op.character = "unchanged midtones, short toe and exponential shoulder; clean and bright";
     op.source = "H. Uchimura, HDR Theory and Practice, CEDEC 2017";
     op.licence = "published formula";
     op.negatives = kNegativesClampAtZero;
@@ -50,18 +50,17 @@ Operator gran_turismo() {
         "channels",
         {display_parameter(
              number_parameter("max_brightness", "display-linear", 1, 1, 100,
-                              "P: display peak over paper white"),
+                              "P: display peak divided by paper white"),
              [](const DisplayFacts& display) { return shortest(display.peak / 100); }),
-         number_parameter("contrast", "", 1, 0.01, 5, "a: slope of the straight part"),
+         number_parameter("contrast", "", 1, 0.01, 5, "a: slope of the linear segment"),
          number_parameter("linear_start", "scene-linear", 0.22, 0.01, 0.99,
-                          "m: where the straight part starts"),
-         number_parameter("linear_length", "", 0.4, 0.01, 0.99, "l: length of the straight part"),
+                          "m: start of the linear segment"),
+         number_parameter("linear_length", "", 0.4, 0.01, 0.99, "l: length of the linear segment"),
          number_parameter("black_tightness", "", 1.33, 1, 3, "c: power of the toe"),
-         number_parameter("pedestal", "display-linear", 0, 0, 1, "b: light at black")});
-    op.presets = {{"hdr",
-                   "for a display with ten times the light of paper white",
-                   {{"max_brightness", "10"}}}};
-    op.warnings = {"with max_brightness above 1 an SDR display clips at paper white"};
+         number_parameter("pedestal", "display-linear", 0, 0, 1, "b: output at black")});
+    op.presets = {
+        {"hdr", "HDR display with a peak of ten times paper white", {{"max_brightness", "10"}}}};
+    op.warnings = {"SDR displays clip at paper white if max_brightness is above 1"};
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, 10, "hdr"}};
     op.peak = [](const Params& params) { return params.number("max_brightness"); };
     op.build = [](const Params& params) -> Pipeline {
@@ -82,8 +81,8 @@ Operator misprinted() {
     Operator op = defect_of(
         "uchimura", "uchimura_misprinted",
         "gran_turismo.h of tizian/tonemapper pull request 3 (and shadertoy.com/view/Xstyzn)",
-        "it divides by the length of the straight part where Uchimura multiplies by it, so there "
-        "is no shoulder and light above 1 is clipped");
+        "it divides by the length of the linear segment instead of multiplying, so it has no "
+        "shoulder and clips scene values above 1");
     op.build = [](const Params&) -> Pipeline {
         const double P = 1, a = 1, m = 0.22, l = 0.4, c = 1.33, b = 0;
         // The shoulder rises without end. Light of 4 is far above its start and below its overflow.

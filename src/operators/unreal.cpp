@@ -93,29 +93,29 @@ std::vector<Operator> define_unreal() {
     op.title = "Unreal Engine (filmic)";
     op.view = "Unreal Filmic";
     op.character =
-        "ACES look with adjustable toe and shoulder, anchored at mid grey; white a little above "
-        "the display's";
+        "ACES look with adjustable toe and shoulder, fixed mid gray; its white is a little above "
+        "display white";
     op.source = "Epic Games, FilmToneMap of TonemapCommon.ush, Unreal Engine 4.15 and later";
-    op.licence = "Epic EULA; formula and constants as facts, no code of it is used";
+    op.licence = "Epic EULA; formula and constants as facts; none of its code is used";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Unreal";
     op.bounds = {.cube = 7e-3,
-                 .reason = "fixed functions of OpenColorIO: another weight of hues about red"};
+                 .reason = "OpenColorIO's fixed functions weight hues near red differently"};
     op.working = kAP1;
     op.parameters = fixed_parameters({
-        number_parameter("slope", "", 0.88, 0.01, 1, "slope of the straight part, per log10"),
-        number_parameter("toe", "", 0.55, 0.01, 1, "how much of the range is toe"),
-        number_parameter("shoulder", "", 0.26, 0.01, 1, "how much of the range is shoulder"),
+        number_parameter("slope", "", 0.88, 0.01, 1, "slope of the linear segment, per log10"),
+        number_parameter("toe", "", 0.55, 0.01, 1, "share of the range that is toe"),
+        number_parameter("shoulder", "", 0.26, 0.01, 1, "share of the range that is shoulder"),
         number_parameter("black_clip", "display-linear", 0, 0, 1,
-                         "how far below black the toe ends"),
+                         "distance from black down to the end of the toe"),
         number_parameter("white_clip", "display-linear", 0.04, 0, 1,
-                         "how far above white the shoulder ends"),
+                         "distance from white up to the end of the shoulder"),
         choice_parameter("glow_and_red", {"on", "off"}, "on",
-                         "glow of dark colors and modifier of reds of the ACES rendering "
-                         "transform, in AP0, before the curve"),
+                         "apply the glow and the red modifier of the ACES rendering transform in "
+                         "AP0, before the curve"),
     });
     op.presets = {{"legacy",
-                   "settings near the tone mapper of Unreal Engine 4 before 4.15",
+                   "close to the tone mapper of Unreal Engine 4 before 4.15",
                    {{"slope", "0.98"},
                     {"toe", "0.3"},
                     {"shoulder", "0.22"},

@@ -45,7 +45,7 @@ Expr norm_curve(const ToneCurve& curve, const std::string& apply) {
     const Expr at_black = substitute(curve.f, std::span(&black, 1));
     if (at_black.is_constant() && at_black.value() > kZero) {
         throw Error("apply is " + apply + "; expected channels or hue_preserving: the curve is " +
-                    shortest(at_black.value()) + " at black, which no ratio of colors makes of 0");
+                    shortest(at_black.value()) + " at black, and a factor cannot lift 0");
     }
     const Expr f = select(equal(at_black, 0), curve.f, max(curve.f, 0));
     return curve.code_power == 0 ? f : pow(f, curve.code_power);
@@ -116,18 +116,18 @@ void check(const Params& params) {
 std::vector<ParameterSpec> with_apply(std::string default_apply, std::vector<ParameterSpec> own) {
     own.push_back(choice_parameter(
         "apply", {"channels", "luminance", "max", "hue_preserving"}, std::move(default_apply),
-        "how the curve f meets color: f of each channel; or all three scaled by f(n)/n, where n is "
-        "the relative luminance or the largest channel; or f of the largest and the smallest, with "
-        "the middle one in its place between them"));
+        "how the curve f is applied; channels: f of each channel; luminance, max: all channels "
+        "times f(n)/n, where n is the relative luminance or the largest channel; hue_preserving: f "
+        "of the largest and smallest channels, between which the middle one keeps its place"));
     own.push_back(choice_parameter(
         "color_correction", {"ratio", "nonlinear", "luminance_preserving"}, "ratio",
-        "with apply=luminance, L -> f(L): color is C/L f(L); or (C/L)^s f(L); or "
-        "((C/L - 1) s + 1) f(L) (Mantiuk et al. 2009)"));
+        "with apply=luminance, where L becomes f(L); ratio: C/L f(L); nonlinear: (C/L)^s f(L); "
+        "luminance_preserving: ((C/L - 1) s + 1) f(L) (Mantiuk et al. 2009)"));
     own.push_back(number_parameter("saturation", "", 1, 0, 2,
-                                   "s of the color correction: 1 as in the scene, 0 grey"));
-    own.push_back(choice_parameter(
-        "saturation_from", {"fixed", "contrast"}, "fixed",
-        "s as it is; or times the paper's fit to the curve's contrast at the pixel's luminance"));
+                                   "s of the color correction (1: as in the scene, 0: gray)"));
+    own.push_back(choice_parameter("saturation_from", {"fixed", "contrast"}, "fixed",
+                                   "fixed: s as given; contrast: s times the paper's fit to the "
+                                   "curve's contrast at the pixel's luminance"));
     return own;
 }
 

@@ -33,7 +33,7 @@ const std::vector<LutApplication>& all_lut_applications() {
          "srgb",
          {},
          "tetrahedral",
-         "OCIOFileTransform with the file and interpolation tetrahedral, behind a conversion to "
+         "OCIOFileTransform with the file and interpolation tetrahedral, after a conversion to "
          "ACEScct",
          ""},
         {"ffmpeg",
@@ -85,7 +85,8 @@ const std::vector<LutApplication>& all_lut_applications() {
          ""},
         {"unreal", "Unreal Engine", LutFormat::strip, 16, "srgb", "srgb", 8, "trilinear",
          "import as texture, Mip Gen Settings NoMipmaps, Texture Group ColorLookupTable; Post "
-         "Process Volume > Color Grading > Misc > Color Grading LUT: works on what is shown",
+         "Process Volume > Color Grading > Misc > Color Grading LUT: works on the displayed "
+         "picture",
          ""},
         {"unity",
          "Unity HDRP",
@@ -104,11 +105,11 @@ const std::vector<LutApplication>& all_lut_applications() {
         {"unity_urp", "Unity URP", LutFormat::strip_up, 32, "srgb", "srgb", 8, "trilinear",
          "import with sRGB off, no mip maps, no compression; Volume > Color Lookup > Lookup "
          "Texture. Its height must be the URP Asset's Grading LUT Size, 32 unless changed: --size. "
-         "Works on what is shown",
+         "Works on the displayed picture",
          ""},
         {"godot", "Godot", LutFormat::strip, 32, "srgb", "srgb", 8, "trilinear",
          "import as Texture3D with 32 horizontal slices; Environment > Adjustments > Color "
-         "Correction: works on what is shown",
+         "Correction: works on the displayed picture",
          ""},
         {"obs",
          "OBS Studio",
@@ -169,7 +170,7 @@ const std::vector<LutApplication>& all_lut_applications() {
          "srgb",
          {},
          "trilinear",
-         "in a compositing network: Lookup COP with the file, behind a conversion to ACEScct; to "
+         "in a compositing network: Lookup COP with the file, after a conversion to ACEScct; to "
          "look "
          "only: right mouse button on the viewer's LUT button, load it",
          ""},
@@ -187,7 +188,8 @@ const std::vector<LutApplication>& all_lut_applications() {
          "srgb",
          {},
          "tetrahedral",
-         "FileTransform with the file and interpolation tetrahedral, behind ACEScct; the config "
+         "FileTransform with the file and interpolation tetrahedral, after a conversion to "
+         "ACEScct; the config "
          "has "
          "no such step",
          "OpenColorIO 2.1.2"},
@@ -199,8 +201,8 @@ const std::vector<LutApplication>& all_lut_applications() {
          "srgb",
          {},
          "trilinear",
-         "new LUTCubeLoader().setType(FloatType), which by itself cuts numbers off to 8 bits; then "
-         "LUTPass behind OutputPass: works on what is shown",
+         "new LUTCubeLoader().setType(FloatType), because its default is 8 bits; then "
+         "LUTPass after OutputPass: works on the displayed picture",
          "three.js r187 in Chromium 156"},
     };
     return hosts;

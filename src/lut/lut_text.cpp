@@ -700,7 +700,7 @@ class XmlText {
             tag.remove_prefix(1);
             if (open_.empty() || name_of(tag) != open_.back().name)
                 fail(fmt::format("</{}> closes no element; expected {}", printable(tag),
-                                 open_.empty() ? "nothing behind the document"
+                                 open_.empty() ? "nothing after the document"
                                                : "</" + printable(open_.back().title) + ">"));
             open_.pop_back();
             advance(end + 1);

@@ -55,8 +55,8 @@ std::vector<std::string> header_lines(const Lut& lut, const LutRequest& r, const
     lines.push_back("Source: " + op.source);
     if (has_shaper(r.format)) {
         lines.push_back(fmt::format(
-            "Input: scene-linear {}, {:.6g} to {:.6g} ({:+.2f} stops from 0.18); the table before "
-            "the cube makes {} of it",
+            "Input: scene-linear {}, {:.6g} to {:.6g} ({:+.2f} stops from 0.18); the 1D LUT before "
+            "the 3D LUT encodes it as {}",
             find_input_space(r.view.input).title, r.encoding.scene_lo, r.encoding.scene_hi,
             std::log2(r.encoding.scene_hi / 0.18), r.encoding.title));
     } else if (lut.is_half_domain) {
@@ -71,9 +71,8 @@ std::vector<std::string> header_lines(const Lut& lut, const LutRequest& r, const
     }
     if (!lut.is_half_domain) {
         const std::string clipped = to_string(measure_clipping(r, lut));
-        lines.push_back(clipped.empty()
-                            ? "Clips nothing that would show (within one code of 10 bits)"
-                            : "Clips what would show " + clipped);
+        lines.push_back(clipped.empty() ? "Clips nothing visible (within one 10-bit code value)"
+                                        : "Clips visible values " + clipped);
     }
     // An operator's own code values may be a display's.
     const std::string display =
@@ -95,11 +94,10 @@ std::vector<std::string> header_lines(const Lut& lut, const LutRequest& r, const
     if (other) add_error_lines(lines, *other);
     lines.emplace_back(
         lut.dimension == 3
-            ? "The maximum is that of all colors of the input range. 99.9 % and mean are those of "
-              "the samples: grays, grids of Rec.709, Rec.2020 and AP1 at five exposures, random "
-              "colors"
-            : "All three are those of the samples: grays, grids of Rec.709, Rec.2020 and AP1 at "
-              "five exposures, random colors");
+            ? "The maximum is of all colors of the input range; 99.9 % and mean are of the "
+              "samples: grays, grids of Rec.709, Rec.2020 and AP1 at five exposures, random colors"
+            : "All three are of the samples: grays, grids of Rec.709, Rec.2020 and AP1 at five "
+              "exposures, random colors");
     if (ringing) {
         lines.push_back(fmt::format(
             "{}, {} interpolation, along rising exposure of the test chart's lamps and hues: {}; "
@@ -107,7 +105,7 @@ std::vector<std::string> header_lines(const Lut& lut, const LutRequest& r, const
             rings(*ringing) ? "RINGS" : "Does not ring", e.interpolation, to_string(*ringing),
             three_digits_up(ringing->p999)));
     }
-    lines.push_back(fmt::format("{}, size {}, numbers {}", lut.dimension == 3 ? "Cube" : "Table",
+    lines.push_back(fmt::format("{}, size {}, numbers {}", lut.dimension == 3 ? "3D LUT" : "1D LUT",
                                 lut.size, hash_of(lut)));
     return lines;
 }

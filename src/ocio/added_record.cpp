@@ -149,8 +149,8 @@ std::string AddedRecord::without(std::string text, const std::string& config) co
         const std::size_t at = find_piece(text, *piece);
         if (at == std::string::npos) {
             throw FileError(
-                fmt::format("config: {}: what --into added was changed since: {}; expected it as "
-                            "{} has it",
+                fmt::format("config: {}: entries that --into added were changed since: {}; "
+                            "expected them as in {}",
                             config, printable(trimmed(piece->text)), path_of(config)));
         }
         text.erase(at, piece->text.size());

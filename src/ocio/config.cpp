@@ -28,9 +28,9 @@ std::string quoted(const std::string& name) {
 }
 
 const char* what_it_is(const std::string& profile) {
-    if (profile == "2.0") return "for applications that stop there; the same as 2.1";
+    if (profile == "2.0") return "applications with OpenColorIO 2.0; same content as 2.1";
     if (profile == "2.1") return "any application";
-    return "its own ACES 2.0 instead of a cube, interop ids, the ids of ACES Metadata Files";
+    return "built-in ACES 2.0 instead of a 3D LUT, interop ids, ids of ACES Metadata Files";
 }
 
 std::string readme(const ConfigModel& model, const std::vector<std::string>& profiles,
@@ -58,30 +58,29 @@ std::string readme(const ConfigModel& model, const std::vector<std::string>& pro
     for (const Display* d : model.displays)
         text += (d == model.displays.front() ? "" : ", ") + d->title;
     text +=
-        ".\n\n| view | operator | how | max error | 99.9 % | mean | and back, 99.9 %: "
-        "without loss | by default |\n"
+        ".\n\n| view | operator | method | max error | 99.9 % | mean | round trip, 99.9 %: "
+        "lossless | default |\n"
         "|---|---|---|---|---|---|---|---|\n";
     for (const auto& view : model.views) {
         const ViewError& e = errors.at(view.name);
         text +=
             fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} |\n", view.name, view.op.op->title,
-                        e.is_exact ? "exact chain" : "65^3 cube", rounded_up(e.in_gamut.max),
+                        e.is_exact ? "exact" : "65^3 3D LUT", rounded_up(e.in_gamut.max),
                         rounded_up(e.in_gamut.p999), rounded_up(e.in_gamut.mean),
                         e.back.exists ? rounded_up(e.back.lossless.p999) : "none",
                         e.back.exists ? rounded_up(e.back.by_default.p999) : "none");
     }
     text += fmt::format(
-        "\nErrors: sRGB code values (1 code of 10 bits is 0.00098) of OpenColorIO {}'s CPU path "
-        "against the\n"
-        "double-precision reference, for Rec.709 light from 0 to 4096 and more. "
-        "`python_check/check_config.py`\n"
-        "measures the same in the application that you run it in, against `probe.csv`. And back: "
-        "how far code\n"
-        "values that the view makes are from themselves after `Output - VIEW - sRGB` to the scene "
-        "and the view\n"
-        "again; by default is what applications and the GPU do. Every space's description has its "
-        "own figures.\n"
-        "False Color has no inverse: it shows many colors as one, and OpenColorIO refuses it.\n",
+        "\n*Errors* are differences of sRGB code values between the CPU path of OpenColorIO {} and "
+        "the\ndouble-precision reference, for Rec.709 colors from 0 to above 4096. One 10-bit code "
+        "value is 0.00098.\n`python_check/check_config.py` measures them in your application, "
+        "against `probe.csv`.\n\n"
+        "*Round trip* is the difference of code values after the space `Output - VIEW - sRGB` "
+        "converts them\nto the scene and the view shows them again. *Lossless* turns off the "
+        "optimizations of OpenColorIO;\n*default* is what applications and the GPU use. The "
+        "description of each space has its own figures.\n\n"
+        "False Color has no inverse, because it shows many colors as one. OpenColorIO refuses "
+        "it.\n",
         OCIO::GetVersion());
     return text;
 }
@@ -201,11 +200,11 @@ std::vector<std::string> config_warnings(const ConfigOptions& options) {
         if (!caution.empty() && view.exposure_stops == 0) texts.push_back(caution);
         const std::string constants = stand_ins(view.op);
         if (constants.empty() || !said.insert(view.op.op).second) continue;
-        views.push_back(fmt::format("{} takes {}", view.name, constants));
+        views.push_back(fmt::format("{} uses {}", view.name, constants));
     }
     if (!views.empty()) {
         texts.push_back(fmt::format(
-            "a config measures no picture: {} (--operator ID:PARAMETER=VALUE sets others)",
+            "a config cannot measure pictures: {} (--operator ID:PARAMETER=VALUE changes it)",
             fmt::join(views, "; ")));
     }
     return texts;

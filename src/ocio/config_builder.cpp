@@ -183,9 +183,8 @@ OCIO::ColorSpaceRcPtr make_output_space(const DisplayedView& shown, const std::s
     if (display == shown.display->title)
         cs->addAlias(output_alias(shown.name, shown.display->id).c_str());
     cs->setFamily(("Output/" + display).c_str());
-    cs->setDescription(("The picture of the view " + shown.name + " on " + display +
-                        ", in its code values." + inverse_space)
-                           .c_str());
+    cs->setDescription(
+        ("Code values of the view " + shown.name + " on " + display + "." + inverse_space).c_str());
     cs->setEncoding(shown.display->is_hdr ? "hdr-video" : "sdr-video");
     cs->setBitDepth(OCIO::BIT_DEPTH_F32);
     cs->addCategory("file-io");
@@ -260,18 +259,17 @@ std::string describe(const ConfigModel::View& view, const DisplayedView& shown) 
 
 /// For descriptions: what comes back, and how near.
 std::string describe_inverse(const RoundTripError& back, bool is_diagnostic) {
-    if (is_diagnostic) return " There is no inverse: many colors of a scene are shown as one.";
+    if (is_diagnostic) return " No inverse: the view shows many scene colors as one.";
     if (!back.is_measured) return "";
-    if (!back.exists) return " There is no inverse.";
+    if (!back.exists) return " No inverse.";
     const auto figures = [](const ErrorStats& stats) {
         return fmt::format("max {}, 99.9 % {}, mean {}", rounded_up(stats.max),
                            rounded_up(stats.p999), rounded_up(stats.mean));
     };
     std::string text =
-        " To the scene and back, for code values that the view makes of Rec.709 light: " +
-        figures(back.by_default);
+        " Round trip of the view's code values of Rec.709 colors: " + figures(back.by_default);
     if (back.lossless.p999 < back.by_default.p999 / 2)
-        text += " (without loss: " + figures(back.lossless) + ")";
+        text += " (lossless: " + figures(back.lossless) + ")";
     return text + ".";
 }
 
@@ -387,7 +385,8 @@ void ConfigBuilder::add_spaces() {
 void ConfigBuilder::add_untonemapped() {
     OCIO::ViewTransformRcPtr plain = OCIO::ViewTransform::Create(OCIO::REFERENCE_SPACE_SCENE);
     plain->setName(kUntonemappedView);
-    plain->setDescription("Scene light shown as it is, not limited: 1 is display white.");
+    plain->setDescription(
+        "Scene-linear values without tone mapping, not limited: 1 is display white.");
     plain->setTransform(
         lower_part(luts_, {MatrixStage{rgb_to_xyz_d65(kAP0)}}, {}, kUntonemappedView),
         OCIO::VIEWTRANSFORM_DIR_FROM_REFERENCE);
@@ -480,8 +479,8 @@ void ConfigBuilder::add_views() {
         }
     }
     add_shared_view(kUntonemappedView, kUntonemappedView, OCIO::OCIO_VIEW_USE_DISPLAY_NAME,
-                    "Scene light shown as it is, not limited.");
-    add_shared_view(kRawView, "", kDataSpace, "The numbers as they are.");
+                    "Scene-linear values without tone mapping, not limited.");
+    add_shared_view(kRawView, "", kDataSpace, "Unconverted values.");
     activate(kUntonemappedView);
     activate(kRawView);
     add_virtual_display();
@@ -676,13 +675,11 @@ void ConfigBuilder::add_view_transform(const ConfigModel::View& view, const Disp
     errors_.emplace(view.name, error);
     if (!error.is_exact) cubes_.insert(shown.transform);
     std::string text = fmt::format(
-        "{} Error against the double reference, {} code values, OCIO CPU: max {}, 99.9 % {}.",
-        view.description, shown.display->title, rounded_up(error.in_gamut.max),
-        rounded_up(error.in_gamut.p999));
+        "{} Error of OCIO's CPU path in {} code values: max {}, 99.9 % {}.", view.description,
+        shown.display->title, rounded_up(error.in_gamut.max), rounded_up(error.in_gamut.p999));
     if (!error.is_exact) {
         text += fmt::format(
-            " A 3D table: mean {}, dE ITP at most {}; colors of all of AP1: max {}, 99.9 % {}, "
-            "mean {}.",
+            " 3D LUT: mean {}, dE ITP at most {}; all AP1 colors: max {}, 99.9 % {}, mean {}.",
             rounded_up(error.in_gamut.mean), rounded_up(error.delta_e),
             rounded_up(lowered.wide.max), rounded_up(lowered.wide.p999),
             rounded_up(lowered.wide.mean));

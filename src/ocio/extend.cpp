@@ -269,9 +269,8 @@ ExtendedConfig extend_config(const std::string& path, const ConfigOptions& given
     const std::string original_active_views = config->getActiveViews();
     for (const char* role : {"aces_interchange", "cie_xyz_d65_interchange"}) {
         if (!config->hasRole(role)) {
-            throw FileError(
-                "config: " + path + " has no role " + role +
-                "; expected both interchange roles, which say what its color spaces are");
+            throw FileError("config: " + path + " has no role " + role +
+                            "; expected both interchange roles, which define its color spaces");
         }
     }
     const std::map<std::string, std::vector<float>> before = pictures_of(config);

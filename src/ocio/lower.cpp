@@ -231,7 +231,7 @@ class Lowering {
         const std::vector<signed char> slack = unused_entries(shaper, 0, top);
         emit(lut_1d({shaper, shaper, shaper}, {slack, slack, slack}), "half LUT shaper");
         emit(Lut3DOp{options_.cube_edge, cube->nodes}, std::to_string(options_.cube_edge) +
-                                                           "^3 cube to " + shortest(top) +
+                                                           "^3 3D LUT to " + shortest(top) +
                                                            (is_fitted ? ", fitted" : ""));
         result_.is_exact = false;
         domain_ = {};
@@ -262,9 +262,9 @@ class Lowering {
         emit_affine(cube->less_sum);
         emit_table(cube->back, "LUT of hue");
         emit_affine(cube->plus_hue);
-        emit_table(cube->place, "LUT of places");
+        emit_table(cube->place, "LUT of positions");
         emit(Lut3DOp{cube->edge, cube->nodes, HueCube::kUnit},
-             std::to_string(cube->edge) + "^3 cube of hues to " + shortest(top) + ", fitted");
+             std::to_string(cube->edge) + "^3 3D LUT of hues to " + shortest(top) + ", fitted");
         emit_table(cube->light, "LUT of light");
         emit_affine(cube->ratios);
         emit(FixedFunctionOp{"XYZ_TO_xyY"}, "xyY inverse", true);
@@ -324,7 +324,7 @@ class Lowering {
             clip(tables[c], slack[c], behind);
         Lut1DOp lut = lut_1d(tables, slack);
         lut.keeps_hue = keeps_hue;
-        emit(std::move(lut), keeps_hue ? "half LUT keeping hue" : "half LUT");
+        emit(std::move(lut), keeps_hue ? "half LUT that keeps hue" : "half LUT");
     }
 
     /// Holds the limit where an entry and those next to it are beyond it.

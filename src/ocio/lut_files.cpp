@@ -167,7 +167,7 @@ std::string LutFiles::file_for(File file, const LutStem& stem, const std::string
 
 std::string LutFiles::contents_of(const File& file) {
     const auto* curve = std::get_if<Lut1DOp>(&file.table);
-    const std::string note = curve ? ": one entry for every half float" : ": behind its shaper";
+    const std::string note = curve ? ": one entry for every half float" : ": after its shaper";
     const ClfTable table =
         curve ? table_of(*curve, file.least_precision)
               : table_of(std::get<Lut3DOp>(file.table), file.use.is_exact, file.use.is_inverted);

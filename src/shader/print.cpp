@@ -381,7 +381,7 @@ class ProgramPrinter {
     std::string print_nodes(const std::string& name, const Lattice& lattice) {
         const std::vector<double>& numbers = lattice.nodes();
         const std::string nodes = name + "_nodes";
-        if (!is_texture(fmt::format("a lattice of {}^3 colors", lattice.edge()), numbers.size())) {
+        if (!is_texture(fmt::format("a 3D LUT of {}^3 colors", lattice.edge()), numbers.size())) {
             const std::string values = array(nodes, numbers);
             if (!language_.has_local_arrays) text_ += "\n" + values;
             const std::string node = name + "_node";

@@ -396,7 +396,7 @@ std::string header(const ShaderRequest& request, const Shader& shader,
     add("Settings", settings_text(view.op, request.uniforms));
     const bool has_exposure = std::find(request.uniforms.begin(), request.uniforms.end(),
                                         kExposureUniform) != request.uniforms.end();
-    add("Exposure", has_exposure ? "the argument, in stops: scene values times 2^exposure"
+    add("Exposure", has_exposure ? "argument in stops: scene values times 2^exposure"
                                  : shortest(view.exposure_stops) + " stops");
     for (const std::string& uniform : request.uniforms) {
         for (const ParameterSpec& spec : op.parameters) {
@@ -413,15 +413,15 @@ std::string header(const ShaderRequest& request, const Shader& shader,
         add("Precision",
             "64-bit float: the formulas of the double reference, with the mathematical functions "
             "of the JavaScript engine.");
-        add("NaN", "make it 0 first, as every engine of Tonewright does");
+        add("NaN", "replace it by 0 first, as every engine of Tonewright does");
         return text;
     }
-    const char* const unit = request.is_inverse      ? "what the view shows of it"
+    const char* const unit = request.is_inverse      ? "the view's code values of the result"
                              : is_of_a_display(view) ? "code values from 0 to 1"
                                                      : "sRGB code values from 0 to 1";
     std::string precision = fmt::format(
-        "32-bit float throughout. Each operation rounded once: within {} of the double reference, "
-        "in {} (measured).",
+        "32-bit float. Each operation rounded once: within {} of the double reference, in {} "
+        "(measured).",
         rounded_up(shader.errors.in_float), unit);
     if (std::isfinite(shader.errors.guaranteed)) {
         precision += fmt::format(
@@ -432,8 +432,9 @@ std::string header(const ShaderRequest& request, const Shader& shader,
         precision +=
             " Curves are polynomials of segments, fitted and measured; no guaranteed bound.";
     } else if (!request.is_inverse) {
-        precision += fmt::format(" No useful guaranteed bound: too much may arise in {}_{}.",
-                                 shader.function, shader.errors.arises_in);
+        precision +=
+            fmt::format(" No useful guaranteed bound: the error of {}_{} may be too large.",
+                        shader.function, shader.errors.arises_in);
         if (std::isfinite(shader.errors.vulkan_estimate)) {
             precision += fmt::format(
                 " With the errors that Vulkan and WGSL allow each operation: about {} (first "
@@ -456,7 +457,7 @@ std::string header(const ShaderRequest& request, const Shader& shader,
                 ? "not with these settings; `tonewright verify` measures GLSL on a machine's GPU"
                 : "in code values of sRGB, negatives included: " + measured);
     }
-    add("NaN", "whatever the compiler makes of it; all other inputs give finite results");
+    add("NaN", "undefined, depends on the compiler; all other inputs give finite results");
     return text;
 }
 

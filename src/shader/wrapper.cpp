@@ -239,14 +239,14 @@ const std::vector<ShaderApplication>& shader_applications() {
          "A Full Screen Pass Renderer Feature after post-processing, with Tonemapping None and HDR "
          "on."},
         {"unreal", "Unreal Engine", ".ush", ShaderLanguage::hlsl, "srgb",
-         "A post-process material at `Replacing the Tonemapper` with a Custom node; what it "
-         "returns is not encoded again, and bloom and vignette are left out there."},
+         "A post-process material at `Replacing the Tonemapper` with a Custom node; its result is "
+         "not encoded again, and bloom and vignette are left out there."},
         {"mpv", "mpv", ".glsl", ShaderLanguage::glsl, "srgb",
          "mpv --vo=gpu --vf=format=gamma=srgb --glsl-shader=FILE on scene-linear pictures (EXR); "
          "sliders need mpv 0.36."},
         {"reshade", "ReShade", ".fx", ShaderLanguage::hlsl, "linear",
-         "For games that hand scRGB (linear light) to ReShade; elsewhere the picture is tone "
-         "mapped already."},
+         "For games that pass scRGB (scene-linear) to ReShade; in other games the picture is "
+         "already tone mapped."},
         {"resolve", "DaVinci Resolve (DCTL)", ".dctl", ShaderLanguage::dctl, "rec1886",
          "Copy it into the LUT folder; a DCTL effect on a node whose input is scene-linear."},
         {"nuke", "Nuke (BlinkScript)", ".rpp", ShaderLanguage::blink, "linear",
@@ -254,7 +254,7 @@ const std::vector<ShaderApplication>& shader_applications() {
          "node "
          "encode what it returns, with sRGB."},
         {"shadertoy", "Shadertoy", ".glsl", ShaderLanguage::glsl_es, "srgb",
-         "Paste it into Image; iChannel0 holds scene-linear light."},
+         "Paste it into Image; iChannel0 holds the scene-linear picture."},
         {"gstreamer", "GStreamer glshader", ".frag", ShaderLanguage::glsl_es, "srgb",
          "glshader fragment=\"$(cat FILE)\" on scene-linear frames; uniforms by its property "
          "`uniforms`."},

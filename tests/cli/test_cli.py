@@ -670,7 +670,7 @@ def check_archive(report, command, scratch):
     code, _, err = call(command, ["config", "-o", scratch / "measuring", "--views", "drago", "--displays", "srgb"])
     text = (scratch / "measuring/config.ocio").read_text()
     report.check("config: constants that stand in for measured numbers", code == OK and err.count("\n") == 1
-                 and "warning" in err and "Drago takes " in err and "Measures no picture here" in text, err)
+                 and "warning" in err and "Drago uses " in err and "Cannot measure pictures here" in text, err)
     code, _, err = call(command, ["config", "-o", scratch / "strict", "--views", "drago", "--strict"])
     report.check("config --strict: they are an error", code == 1 and not (scratch / "strict").exists(), err)
     with zipfile.ZipFile(path) as archive:

@@ -165,7 +165,7 @@ void collect(const Expr& e, std::unordered_set<const ExprNode*>& seen, std::vect
     order.push_back(e);
 }
 
-/// The x in [lo, hi] between which f changes sign, to neighbouring doubles.
+/// The x in [lo, hi] between which f changes sign, to neighboring doubles.
 double sign_change(const Expr& f, double lo, double hi) {
     const bool below = evaluate(f, lo) < 0;
     while (true) {

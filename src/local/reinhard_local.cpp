@@ -9,7 +9,7 @@
 //           channels.
 // Formula   L1 = key L / Lavg, Lavg = exp(mean ln(0.001 + L)) of the picture before exposure.
 //           B_k: L1 blurred with exp(-d^2/(s_k/(2 sqrt 2))^2), s_k = 1.6^k, taps within
-//           ceil(3 s_k/4) pixels, their weights normalised over those inside the picture.
+//           ceil(3 s_k/4) pixels, their weights normalized over those inside the picture.
 //           The surround of one scale is the center of the next: alpha2 s_k = alpha1 s_(k+1).
 //           V_k = (B_k - B_(k+1))/(2^phi key/s_k^2 + B_k); m is the last k up to which |V| < eps;
 //           C' = C key/Lavg (1 + L1/white^2)/(1 + B_m).

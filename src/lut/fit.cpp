@@ -14,7 +14,7 @@
 #include "tonewright/lut.h"
 
 // With weights that interpolate linearly inside each of a cell's six tetrahedra, the normal matrix
-// of the least squares connects a node with those that it shares an edge with: seven neighbours up
+// of the least squares connects a node with those that it shares an edge with: seven neighbors up
 // (the other corners of the cell above it) and seven down. So it is eight numbers a node, however
 // many samples are in it, and a step of conjugate gradients costs little; some 15 are needed.
 
@@ -25,11 +25,11 @@ namespace {
 constexpr double kToe = 0.01;
 constexpr double kLights = 64;
 
-/// Training colours: their darkest channel in stops, and the brightest of most.
+/// Training colors: their darkest channel in stops, and the brightest of most.
 constexpr double kDarkest = -10;
 constexpr double kUsualBrightest = 6.5;
 
-/// One training colour in ten is as pictures have them. None is grey: greys are fitted on their
+/// One training color in ten is as pictures have them. None is gray: grays are fitted on their
 /// own.
 constexpr bool is_picture_color(std::size_t i) { return i % 10 == 0; }
 
@@ -42,7 +42,7 @@ constexpr int kRounds = 3;
 constexpr int kSteps = 30;
 constexpr double kConverged = 1e-8;
 
-/// A training colour: where it is, and what is wanted there.
+/// A training color: where it is, and what is wanted there.
 struct Sample : Tetrahedron {
     std::array<float, 3> code;
 };
@@ -75,7 +75,7 @@ class Fit {
         return nodes;
     }
 
-    /// Of the sampled cube, from what is seen: over colours of pictures times over all others, as
+    /// Of the sampled cube, from what is seen: over colors of pictures times over all others, as
     /// neither is to be had at the other's cost; fourth powers, as what is worst is what matters.
     double error_of_sampled() {
         take_sampled();
@@ -94,7 +94,7 @@ class Fit {
     }
 
   private:
-    /// A number for every node, and zeros around, so that every neighbour can be read.
+    /// A number for every node, and zeros around, so that every neighbor can be read.
     using Plane = std::vector<float>;
 
     /// matrix[mask][i]: between node i and the one that many steps above; matrix[0]: with itself.
@@ -104,7 +104,7 @@ class Fit {
     };
 
     [[nodiscard]] Plane make_plane() const { return Plane(node_count_ + 2 * pad_, 0.0F); }
-    /// Distance of the nodes of two neighbouring greys.
+    /// Distance of the nodes of two neighboring grays.
     [[nodiscard]] std::size_t grey_step() const { return step_[7]; }
 
     std::vector<double> take_sampled() {
@@ -117,8 +117,8 @@ class Fit {
         return start;
     }
 
-    /// Least squares in one dimension, with colours at equal distances: the edge between two greys'
-    /// nodes is an edge of tetrahedra, so no other node has to do with a grey.
+    /// Least squares in one dimension, with colors at equal distances: the edge between two grays'
+    /// nodes is an edge of tetrahedra, so no other node has to do with a gray.
     void fit_greys() {
         constexpr std::size_t kPerStep = 64;
         const std::size_t count = (n_ - 1) * kPerStep;
@@ -137,7 +137,7 @@ class Fit {
         }
     }
 
-    /// @param code  of greys, so many in each step of the axis.
+    /// @param code  of grays, so many in each step of the axis.
     void fit_greys(const std::vector<double>& code, std::size_t per_step, Plane& x) const {
         // A tridiagonal matrix; black is known.
         std::vector<double> diagonal(n_, static_cast<double>(kPull));

@@ -65,11 +65,11 @@ struct CubeFitOptions {
 [[nodiscard]] TONEWRIGHT_API std::vector<double> sample_cube(const CubeProblem& problem);
 
 /// The nodes whose tetrahedral interpolation is nearest to the pipeline: least squares of the seen
-/// differences over colours that are like those of pictures and beyond, from the sampled nodes on.
+/// differences over colors that are like those of pictures and beyond, from the sampled nodes on.
 ///
 /// A sampled cube is exact at its nodes and errs to one side between them, where the operator bends
-/// one way; a fitted one errs to both sides, half as much. Greys are fitted first, on their own, so
-/// they stay as neutral as the operator makes them; black stays what it is. Nodes that no colour
+/// one way; a fitted one errs to both sides, half as much. Grays are fitted first, on their own, so
+/// they stay as neutral as the operator makes them; black stays what it is. Nodes that no color
 /// needs stay as sampled. The same nodes on every run.
 [[nodiscard]] TONEWRIGHT_API std::vector<double> fit_cube(const CubeProblem& problem,
                                                           const CubeFitOptions& options = {});

@@ -69,7 +69,7 @@ class InverseFit {
     }
 
     /// As pictures have them, or log-uniform from black to the brightest light; in Rec.709 or the
-    /// scene's primaries, greys, and with a channel at 0.
+    /// scene's primaries, grays, and with a channel at 0.
     [[nodiscard]] Vector3 draw_color(std::size_t i, SampleRandom& random,
                                      const Matrix3& from_rec709) const {
         Vector3 color{};
@@ -123,7 +123,7 @@ class InverseFit {
         solver_.sort_samples();
     }
 
-    /// Every channel as greys have it at its place.
+    /// Every channel as grays have it at its place.
     void start_from_greys() {
         constexpr std::size_t kGreys = 2048;
         Colors held = make_colors(kGreys);

@@ -28,7 +28,7 @@ struct InverseCubeProblem {
 /// the difference between their codes and those of forward(cube(light)). A cube sampled from the
 /// exact inverse errs where the inverse is steep, and by that slope; this one errs by what is seen.
 ///
-/// Gauss and Newton's method, from what greys need on. Between the nodes that no light reaches the
+/// Gauss and Newton's method, from what grays need on. Between the nodes that no light reaches the
 /// cube goes on evenly, drawn to what is nearest in code. Black comes back as what the nodes hold
 /// of black. The same nodes on every run.
 /// @returns RGB at the nodes, blue fastest, as fit_cube().

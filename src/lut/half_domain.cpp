@@ -70,7 +70,7 @@ std::vector<float> sample_half_domain(const Expr& f, double lo, double hi) {
     }
     std::vector<double> y(kHalfCount);
     engine.run({x.data(), x.data(), x.data()}, {y.data(), y.data(), y.data()}, kHalfCount);
-    // What leaves the floats is their largest: an infinite entry makes its neighbours NaN.
+    // What leaves the floats is their largest: an infinite entry makes its neighbors NaN.
     constexpr auto largest = static_cast<double>(std::numeric_limits<float>::max());
     for (double& value : y)
         value = std::clamp(value, -largest, largest);

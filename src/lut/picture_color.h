@@ -9,7 +9,7 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// A colour as pictures have them, linear Rec.709: brightness log-uniform over 15 stops, channels
+/// A color as pictures have them, linear Rec.709: brightness log-uniform over 15 stops, channels
 /// some half of a stop apart.
 [[nodiscard]] inline Vector3 draw_picture_color(SampleRandom& random) {
     const double stops = std::log2(0.18) + random.uniform(-9, 6.2);

@@ -174,7 +174,7 @@ std::string output_alias(const std::string& view, const std::string& display) {
     return alias + "_" + display;
 }
 
-/// A view as a colour space: write nodes, textures and `--colorconvert` know no views.
+/// A view as a color space: write nodes, textures and `--colorconvert` know no views.
 /// @param inverse_space  what the description says of it
 OCIO::ColorSpaceRcPtr make_output_space(const DisplayedView& shown, const std::string& display,
                                         const std::string& inverse_space) {

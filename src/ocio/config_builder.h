@@ -32,7 +32,7 @@ struct DisplayedView {
 /// How far code values that a view makes are from themselves after the inverse to the scene and
 /// the view again.
 struct RoundTripError {
-    /// Without loss, and as applications have it: with OpenColorIO's default optimisation.
+    /// Without loss, and as applications have it: with OpenColorIO's default optimization.
     ErrorStats lossless;
     ErrorStats by_default;
     bool is_measured = false;

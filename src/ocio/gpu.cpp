@@ -18,7 +18,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// Colours per draw: a texture of kBatchWidth x kBatchHeight texels, 4 MiB each way. Eight times as
+/// Colors per draw: a texture of kBatchWidth x kBatchHeight texels, 4 MiB each way. Eight times as
 /// many were no faster.
 constexpr GLsizei kBatchWidth = 1024;
 constexpr GLsizei kBatchHeight = 256;
@@ -50,7 +50,7 @@ void main() {
 }
 )";
 
-/// Behind the function: every fragment is the colour of the texel in the same place.
+/// Behind the function: every fragment is the color of the texel in the same place.
 constexpr const char* kFragmentTail = R"(
 uniform highp sampler2D tonewright_input;
 out vec4 tonewright_output;
@@ -116,7 +116,7 @@ std::vector<EGLDisplay> candidate_displays() {
 }
 
 /// A display and a context that needs no surface. Destroying the context
-/// frees all that was made in it. The display stays initialised: eglTerminate() would end it for
+/// frees all that was made in it. The display stays initialized: eglTerminate() would end it for
 /// all its users in the process, and Mesa leaks its driver's tables when it unloads the driver.
 class EglContext {
   public:
@@ -172,7 +172,7 @@ class EglContext {
     EGLContext context_ = EGL_NO_CONTEXT;
 };
 
-/// Any OpenGL function by name; takes the type of the pointer that it initialises.
+/// Any OpenGL function by name; takes the type of the pointer that it initializes.
 struct Function {
     const char* name;
 
@@ -243,7 +243,7 @@ struct Gl {
     }
 };
 
-/// A context of the process, and in it what all processors share: the texels that colours are
+/// A context of the process, and in it what all processors share: the texels that colors are
 /// read from and drawn into. Texture unit 0 stays with the input.
 class Device {
   public:

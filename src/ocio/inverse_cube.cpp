@@ -21,7 +21,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// Scene light that counts as the brightest: 14 stops over middle grey. What is shown as white
+/// Scene light that counts as the brightest: 14 stops over middle gray. What is shown as white
 /// comes from all that is brighter.
 constexpr double kBrightest = 4096;
 

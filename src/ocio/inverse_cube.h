@@ -7,7 +7,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 
 // Inverses that mix channels, as cubes over a display's light: OpenColorIO's own inversion of a
 // forward cube is one of its codes, 48 nodes a side and sampled, and far from the inverse where the
-// forward cube squeezes many colours into few.
+// forward cube squeezes many colors into few.
 
 /// Sampled from an exact inverse.
 /// @param back  light of [0, peak] -> scene light

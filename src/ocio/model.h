@@ -100,7 +100,7 @@ struct ConfigModel {
 inline constexpr const char* kDataSpace = "Non-Color";
 inline constexpr const char* kUntonemappedView = "Un-tone-mapped";
 inline constexpr const char* kRawView = "Raw";
-/// Display colour spaces have the display's name, as Blender looks for them, and with this behind
+/// Display color spaces have the display's name, as Blender looks for them, and with this behind
 /// it, as the ACES configs have them, for an alias.
 inline constexpr const char* kDisplaySuffix = " - Display";
 

@@ -14,14 +14,14 @@
 // Out       SDR: display-linear RGB of the limiting primaries, 1.0 = white (48 cd/m2 in the cinema,
 //           100 else); [0, 1]; with limit=none of AP1 and up to 1.1. HDR: display-linear RGB of
 //           Rec.2020, 1.0 = 100 cd/m2. It is limited to [0, peak] in the limiting primaries, still
-//           under the ACES white, and then adapted to D65: that moves colours at the limit a little
+//           under the ACES white, and then adapted to D65: that moves colors at the limit a little
 //           outside of the primaries, and blue to at most 1.09 times the peak, which OpenColorIO
 //           and the CTL show. So the output is of Rec.2020 for all limits.
 // Kind      3D (gamut compression, glow and red modifier), then matrix, curve, for video a scale by
 //           luminance (dim surround), matrix. Monotone on the neutral axis: SDR yes; HDR in the
-//           limiting primaries not in the last 5 % below the peak, where the red of greys, which
+//           limiting primaries not in the last 5 % below the peak, where the red of grays, which
 //           has arrived at its limit, falls by up to 0.13 % while green and blue still rise.
-// Keeps     0 -> 0 (spline=ocio: 6e-12). In SDR greys up to 0.00199 are at black.
+// Keeps     0 -> 0 (spline=ocio: 6e-12). In SDR grays up to 0.00199 are at black.
 // Differs   spline=ocio is OpenColorIO's built-in transform, spline=ctl the Academy's. The two
 //           differ in the saturation that the red modifier takes (after the glow, before it), in
 //           the CTL's limit of AP1 at 65504, in a floor of OpenColorIO's under the luminance of the
@@ -30,7 +30,7 @@
 //           limit=rec2020 of SDR and rec709 of HDR, and limits of the cinema that OpenColorIO has
 //           no transform for, are made like the others. Left out: the simulations of the D60 and
 //           DCI whites.
-// Check     mid grey 0.18 -> 0.104063516219 (ocio), 0.104063518162 (ctl); output=hdr_1000: 0.15
+// Check     mid gray 0.18 -> 0.104063516219 (ocio), 0.104063518162 (ctl); output=hdr_1000: 0.15
 //           (check_values.json).
 #include <algorithm>
 #include <cmath>
@@ -87,7 +87,7 @@ Knots bspline_knots(const std::array<double, N>& c, double begin, double end) {
     return knots;
 }
 
-/// The CTL's curves: below and above mid grey, where either has a knot.
+/// The CTL's curves: below and above mid gray, where either has a knot.
 struct TwoSplines {
     Knots low, high;
 };
@@ -177,7 +177,7 @@ TwoSplines ssts_splines(double peak, double mid_light) {
     const double mid = std::log10(kMidLight);
     constexpr double low_stops = -15;  // of 0.0001 cd/m2; 0.02 has -6.5
     const double high_stops = between(top, std::log10(48.0), 4, 6.5, 18);
-    // Half an interval up or down the slope at mid grey, of the outermost coefficients.
+    // Half an interval up or down the slope at mid gray, of the outermost coefficients.
     const double half_low = kMidSlope * std::log10(2.0) * -low_stops / 6;
     const double half_high = kMidSlope * std::log10(2.0) * high_stops / 6;
     const std::array low = {bottom, bottom, std::lerp(bottom, mid, 0.18), mid - half_low,

@@ -16,14 +16,14 @@
 //           chroma compressed with J, within what AP1 reaches; colors outside the display's hull
 //           moved along lines towards an anchor on the J axis; back to RGB. Monotone on the neutral
 //           axis: yes; invertible where nothing is clamped.
-// Keeps     0 -> 0, r -> peak/100; hue h; greys have R = G = B in the limiting primaries.
+// Keeps     0 -> 0, r -> peak/100; hue h; grays have R = G = B in the limiting primaries.
 // Differs   nowhere, down to the tables: 360 entries and the coarse tolerances of their searches
 //           are part of what a picture looks like. h itself is only needed to look up tables: the
 //           sines and cosines of its multiples are polynomials of a/M and b/M, and powers that meet
 //           their own inverse are left out, which is equal but for rounding. J and M are in units
 //           of the peak's J. Left out: the variants with a D60 white inside D65 primaries and for
 //           cinemas, which only scale or convert the output.
-// Check     AP0 mid grey 0.18 -> 0.09999932511 (100 cd/m2), AP0 (4, 0.5, 0.1) -> (1, 0.2329307895,
+// Check     AP0 mid gray 0.18 -> 0.09999932511 (100 cd/m2), AP0 (4, 0.5, 0.1) -> (1, 0.2329307895,
 //           0.1916180599) (check_values.json).
 #include <algorithm>
 #include <charconv>

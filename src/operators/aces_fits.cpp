@@ -20,8 +20,8 @@
 //           black from 0/0; here black stays black. Hill's matrices hold the conversions from and
 //           to Rec.709 and the RRT's and ODT's desaturation: the input is Rec.709, not ACEScg.
 //           Filament's conversions between Rec.2020 and AP1 are not adapted from D65 to the ACES
-//           white, so greys are tinted: that is in the source. No form holds a display encoding.
-// Check     mid grey 0.18 -> 0.266898920 (Narkowicz; 0.140119567 with prescale 0.6), red
+//           white, so grays are tinted: that is in the source. No form holds a display encoding.
+// Check     mid gray 0.18 -> 0.266898920 (Narkowicz; 0.140119567 with prescale 0.6), red
 //           0.105591247 (Hill), 0.106938283 (Filament, Rec.2020) (check_values.json).
 #include "base/format_number.h"
 #include "operators/color_modifiers.h"

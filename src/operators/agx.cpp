@@ -12,18 +12,18 @@
 // In        scene-linear RGB; working primaries Rec.709 (agx_filament Rec.2020), D65; domain
 //           [0, inf), negatives: clamped at 0, but agx_threejs lets them into its matrices and
 //           limits what comes out: domain (-inf, inf). All but agx_godot end at 16.29, 6.5 stops
-//           above mid grey, and begin 10 stops below it: what is outside is as its ends.
+//           above mid gray, and begin 10 stops below it: what is outside is as its ends.
 // Out       agx_sobotka, agx_minimal: CODE VALUES of a 2.2 power, [0, 1], except agx_minimal's
 //           polynomial ends of -0.0023 and 0.9986 (order 6), 0.0029 and 0.982 (order 7), and looks
 //           that saturate past 1. The others: display-linear RGB, 1.0 = display peak; agx_threejs
 //           before the source's last clamp, agx_godot44 and agx_godot as the source has them: the
-//           matrices at the end put saturated colours below 0 or above 1.
+//           matrices at the end put saturated colors below 0 or above 1.
 // Kind      clamp, matrix, log and sigmoid, (matrix); the looks of agx_filament are 3D, as their
 //           luma is of the value before the power. Monotone on the neutral axis: yes, but order 7
 //           (agx_minimal:order7, agx_filament) dips within the lowest 2.5 % of its range, and where
-//           the shaper ends the channels of greys in agx_threejs and agx_godot44 arrive one after
+//           the shaper ends the channels of grays in agx_threejs and agx_godot44 arrive one after
 //           another, so that the last matrix takes 5e-6 of the light away.
-// Keeps     mid grey 0.18 -> code value 0.5 (agx_sobotka), 0.18 of the light (agx_godot, and
+// Keeps     mid gray 0.18 -> code value 0.5 (agx_sobotka), 0.18 of the light (agx_godot, and
 //           agx_godot44 within 0.5 %).
 // Differs   agx_sobotka uses the sigmoid in closed form where the configuration has its 4096-entry
 //           table: 5e-8 apart, the table's own rounding. The floors of 1e-10 before log2 are not
@@ -33,7 +33,7 @@
 //           The defects: agx_minimal_clamped has no floor in the source; below the shaper, whose
 //           end is the floor here, the polynomial leaves its range and shows light of 1e-6 as
 //           white.
-// Check     mid grey 0.18 -> (0.500023782, 0.499993460, 0.499991575) (agx_sobotka), red 0.214548629
+// Check     mid gray 0.18 -> (0.500023782, 0.499993460, 0.499991575) (agx_sobotka), red 0.214548629
 //           (agx_threejs), 0.214848193 (agx_filament, Rec.2020), red 0.179190952 (agx_godot44),
 //           0.18 (agx_godot) (check_values.json).
 #include <cmath>
@@ -57,17 +57,17 @@ constexpr Matrix3 kOutset = {{
     {-0.0529716355144438, -0.0980434501171241,  1.15107367264116}}};
 // clang-format on
 
-/// The shaper: log2 from 10 stops below to 6.5 stops above mid grey. Both sources print its ends
+/// The shaper: log2 from 10 stops below to 6.5 stops above mid gray. Both sources print its ends
 /// with seven digits (log2(0.18) - 10 = -12.4739312, log2(0.18) + 6.5 = 4.0260688), so those are
 /// the ends.
 constexpr double kLowest = -12.47393;
 constexpr double kHighest = 4.026069;
 
-/// The clamp of the normalised log value, in scene-linear: a stage of its own, not a part of the
+/// The clamp of the normalized log value, in scene-linear: a stage of its own, not a part of the
 /// curve.
 Stage limit_to_shaper() { return ClampStage{std::exp2(kLowest), std::exp2(kHighest)}; }
 
-/// Scene-linear in the shaper's range -> [0, 1]; mid grey -> 10/16.5.
+/// Scene-linear in the shaper's range -> [0, 1]; mid gray -> 10/16.5.
 Expr normalised_log(const Expr& x) {
     return named("n", (log2(x) - kLowest) / (kHighest - kLowest));
 }

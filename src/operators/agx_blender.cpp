@@ -6,13 +6,13 @@
 // Source    E. Chow, AgX and AgX_LUT_Gen (github.com/EaryChow), 2023 to 2025; Blender 5.2,
 //           release/datafiles/colormanagement: config.ocio, its views AgX and AgX - HDR 1000 nits
 //           and its looks. Sigmoid: T. Sobotka, SB2383. Axes of the cubes: FilmLight E-Gamut.
-// In        scene-linear RGB, working primaries Rec.2020, D65; domain (-inf, inf). Formula: colours
+// In        scene-linear RGB, working primaries Rec.2020, D65; domain (-inf, inf). Formula: colors
 //           outside Rec.2020 are lifted until no channel is below 0 and scaled for the light that
-//           this adds. Lattice: limited to its axes, 10 stops below to 15 above mid grey in
+//           this adds. Lattice: limited to its axes, 10 stops below to 15 above mid gray in
 //           E-Gamut.
 // Out       display-linear RGB. range=sdr: primaries of `limit`, 1.0 = display peak; [0, 1]. The
 //           source stores codes of a 2.4 power, which are decoded. range=hdr: Rec.2020 light of
-//           colours within P3, 1.0 = 100 cd/m2; [0, 10].
+//           colors within P3, 1.0 = 100 cd/m2; [0, 10].
 // Kind      lattice: 57^3, behind it a power, or the inverse of an HLG display. Formula: 3D, with
 //           c the scene in the inset and f(c) its light through log, sigmoid and 2.4 power:
 //             0.4 f(c) + 0.6 (f(min) + (f(max) - f(min)) (c - min)/(max - min)).
@@ -25,9 +25,9 @@
 //           complement has above the complement's luminance: 2 Y - min, since the weights sum to 1.
 //           For r that is never less than for c; so r is multiplied by 1 - off/(2 Y(r)), or black.
 //           Monotone on the neutral axis: yes.
-// Keeps     formula: 0 -> 0, mid grey 0.18 -> 0.18, greys neutral. Lattice: mid grey within 3e-5
-//           (hdr: 0.181), greys within 4e-5 of the sRGB code (hdr: 7e-5).
-// Differs   Where Y(r) of a colour outside Rec.2020 is below off/2, the source multiplies by a
+// Keeps     formula: 0 -> 0, mid gray 0.18 -> 0.18, grays neutral. Lattice: mid gray within 3e-5
+//           (hdr: 0.181), grays within 4e-5 of the sRGB code (hdr: 7e-5).
+// Differs   Where Y(r) of a color outside Rec.2020 is below off/2, the source multiplies by a
 //           negative number; the next step makes it black: here it is black at once. The cubes are
 //           computed in double: 5e-8 from the files, which have seven decimals; only that of the
 //           looks' guard rail is rounded to them as well. The formula has exact matrices where the
@@ -132,12 +132,12 @@ Color<T> display_rail(const Color<T>& c, const Vector3& weights) {
     return out;
 }
 
-/// Blender's: mid grey stays where it is behind the 2.4 power.
+/// Blender's: mid gray stays where it is behind the 2.4 power.
 AgxSigmoid sigmoid(double shoulder_power) {
     return {10 / 16.5, std::pow(kMidGrey, 1 / 2.4), 2.4, 1.5, shoulder_power};
 }
 
-/// Stops from 10 below to 6.5 above mid grey as [0, 1], which goes on above.
+/// Stops from 10 below to 6.5 above mid gray as [0, 1], which goes on above.
 template <class T>
 T stops_of(const T& x) {
     constexpr double lowest = kMidGrey / 1024;
@@ -157,7 +157,7 @@ T first_hdr_light(const T& x) {
     return pow(max(curve(T(min(stops_of(x), 1))), 0), 2.4);
 }
 
-/// That light, mid grey where the peak has it: over the stops from 20 below mid grey to 1, a
+/// That light, mid gray where the peak has it: over the stops from 20 below mid gray to 1, a
 /// sigmoid of slope 1.000001 whose shoulder is a plain hyperbola. Black stays black.
 /// @param x  the scene's, `light` its first light.
 template <class T>
@@ -186,7 +186,7 @@ T second_hdr_light(const T& x, const T& light) {
         []() -> T { return 0; });
 }
 
-/// (c - min)/(max - min): the place of each channel between the others. Greys: 0.
+/// (c - min)/(max - min): the place of each channel between the others. Grays: 0.
 template <class T>
 Color<T> places(const Color<T>& c) {
     const T lo = smallest(c);
@@ -280,7 +280,7 @@ Pipeline hdr_formula(const Pipeline& look) {
 // The cubes
 
 /// Axes of the cubes where pictures are looked up: log2 of E-Gamut light, as the configuration
-/// prints the ends; the generator places its nodes from exactly 10 stops below mid grey on, over
+/// prints the ends; the generator places its nodes from exactly 10 stops below mid gray on, over
 /// exactly 25.
 constexpr double kLowest = -12.47393;
 constexpr double kHighest = 12.5260688117;
@@ -437,7 +437,7 @@ std::shared_ptr<const Lattice> rail_lattice() {
     return lattice;
 }
 
-/// log2 of light as places on the axes: mid grey is at 0.4.
+/// log2 of light as places on the axes: mid gray is at 0.4.
 Expr log_encode(const Expr& x) { return (log2(x) - kLowest) / (kHighest - kLowest); }
 Expr log_decode(const Expr& v) { return exp2(kLowest + (kHighest - kLowest) * v); }
 
@@ -464,7 +464,7 @@ constexpr double kSmallestLog = 0x1p-126;
 /// Above which nothing is: with more, the largest contrast would leave the floats.
 constexpr double kLargestLog = 0x1p60;
 
-/// Slope and saturation of the looks that are a contrast about mid grey.
+/// Slope and saturation of the looks that are a contrast about mid gray.
 struct Contrast {
     const char* id;
     const char* title;
@@ -592,7 +592,7 @@ std::vector<Operator> define_agx_blender() {
         "sRGB code value from the formula",
         "SDR displays clip range=hdr at 100 cd/m2",
         "Blender multiplies its HDR view by 2.03 when it shows or saves it"};
-    // The cube of the looks' guard rail ends 10 stops below mid grey, where these looks lift.
+    // The cube of the looks' guard rail ends 10 stops below mid gray, where these looks lift.
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, 10, "hdr"},
                      {DocumentedDifference::Kind::black, 0.000105, "punchy"},
                      {DocumentedDifference::Kind::black, 1.85e-5, "medium_low_contrast"},

@@ -56,7 +56,7 @@ class AgxSigmoid {
         return std::pow(std::pow(k * lx, -p) * (std::pow(k * lx / ly, p) - 1), -1 / p);
     }
 
-    /// Of a normalised log value: 0 -> 0, px -> py, 1 -> 1.
+    /// Of a normalized log value: 0 -> 0, px -> py, 1 -> 1.
     template <class T>
     [[nodiscard]] T operator()(const T& n) const {
         const auto arm = [&](double s, double p) -> T {

@@ -21,7 +21,7 @@
 //           is off by up to 1.04e-4; it divides 0 by 0 in the last interval; at iso itself it reads
 //           behind the table. And it encodes the pixel values once more with the sRGB curve. Its
 //           table is the red curve of dscs315-1 for all channels: curve=red of a four-column file.
-// Check     mid grey 0.18 -> 0.239063797 (python_check/operators/camera_response.py).
+// Check     mid gray 0.18 -> 0.239063797 (python_check/operators/camera_response.py).
 #include <cmath>
 
 #include "operators/camera_response/response_curve.h"

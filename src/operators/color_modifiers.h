@@ -8,7 +8,7 @@
 #include "tonewright/color.h"
 #include "tonewright/pipeline.h"
 
-/// What several operators do to colour beside their curve.
+/// What several operators do to color beside their curve.
 TONEWRIGHT_NAMESPACE_BEGIN
 
 /// s I + (1 - s) [w; w; w]: saturation about the luminance of weights w.

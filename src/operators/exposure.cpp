@@ -20,7 +20,7 @@
 //           its slope at 0 has no end. log_tonemap's S-curve ("hacky contrast") falls again above 1
 //           and is negative from 1.5 on, so the light is limited to [0, 1] before it; the post has
 //           a dash for its minus and no closing braces.
-// Check     mid grey 0.18 -> 0.045 (linear), 0.164729789 (exponential), 0.0358635138 (logarithmic),
+// Check     mid gray 0.18 -> 0.045 (linear), 0.164729789 (exponential), 0.0358635138 (logarithmic),
 //           0.0584193346 (log_tonemap), 0.0424264069 (exponentiation)
 //           (python_check/operators/exposure.py).
 #include <cmath>

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// False color: one color for every stop of luminance about mid grey. Shows exposure, not a picture.
+// False color: one color for every stop of luminance about mid gray. Shows exposure, not a picture.
 //
 // Source    Ours.
 // In        scene-linear RGB, working primaries Rec.709, D65; domain [0, inf), negatives: clamped
 //           at 0.
 // Out       display-linear RGB, 1.0 = display peak; [0, 1].
 // Kind      a matrix of three equal rows, then one curve for each channel; not monotone.
-// Keeps     mid grey -> code value 0x80 of sRGB. Black and all below -6.63 stops is black, all
+// Keeps     mid gray -> code value 0x80 of sRGB. Black and all below -6.63 stops is black, all
 //           above +6.63 stops white.
 // Differs   nowhere.
-// Check     mid grey 0.18 -> 0.215860500 (code value 128 of 255, decoded).
+// Check     mid gray 0.18 -> 0.215860500 (code value 128 of 255, decoded).
 #include <cmath>
 
 #include "operators/family.h"

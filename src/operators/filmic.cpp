@@ -38,7 +38,7 @@
 //           filament_generic: Filament applies it in Rec.2020.
 //           day: both denominators are written so that they keep their digits where the crossover
 //           comes near black or white.
-// Check     mid grey 0.18 -> 0.508028282 (hejl_burgess_dawson), 0.237508884 (hejl_2015),
+// Check     mid gray 0.18 -> 0.508028282 (hejl_burgess_dawson), 0.237508884 (hejl_2015),
 //           0.479315490 (aldridge), 0.267 (lottes), 0.215 (filament_generic), 0.547522388 (ue3),
 //           0.00341873507 (day), 0.0348095146 (schlick), 0.18 (toe)
 //           (python_check/operators/filmic.py).

@@ -12,12 +12,12 @@
 //           [0, 1]. output=hdr: units of 100 cd/m2; [0, peak/100].
 // Kind      3D. Monotone on the neutral axis: yes; at 1.4717 of the peak it meets the peak with a
 //           corner, and above that it is flat.
-// Keeps     0 -> 0; greys from 0.538 up to 0.444 of the peak.
+// Keeps     0 -> 0; grays from 0.538 up to 0.444 of the peak.
 // Differs   nowhere. As in the source the code of PQ is limited to [0, 1] before it is decoded:
-//           dark saturated colours come below 0 there, bright ones of a large peak above 1. The
-//           matrices back from ICtCp are the source's six digits and no exact inverses: greys are
+//           dark saturated colors come below 0 there, bright ones of a large peak above 1. The
+//           matrices back from ICtCp are the source's six digits and no exact inverses: grays are
 //           tinted by some 1e-6.
-// Check     mid grey 0.18 in Rec.2020 -> red 0.0579497689 (sdr), 0.144874422 (hdr)
+// Check     mid gray 0.18 in Rec.2020 -> red 0.0579497689 (sdr), 0.144874422 (hdr)
 //           (check_values.json).
 #include <algorithm>
 #include <cmath>

@@ -25,7 +25,7 @@
 //           aims a million times above white is an error: no digits of the curve are left. The
 //           source's floors of 1e-5 on the light of a joint, and its slope of 1 where the straight
 //           part has no length, are kept.
-// Check     mid grey 0.18 -> 0.128338449 (hable), 0.305855436 (hable:godot), 0.0664512855
+// Check     mid gray 0.18 -> 0.128338449 (hable), 0.305855436 (hable:godot), 0.0664512855
 //           (hable_piecewise:film) (python_check/operators/hable.py).
 #include <algorithm>
 #include <cmath>
@@ -174,7 +174,7 @@ Expr piecewise_curve(const Params& p) {
     const double overshoot_x = 2 * angle * shoulder_strength;  // in units of white
     const double overshoot_y = std::pow(1 + 0.5 * angle * shoulder_strength, gamma) - 1;
 
-    // Of normalised x/white: slope m of the straight part, and of the curve at its two ends.
+    // Of normalized x/white: slope m of the straight part, and of the curve at its two ends.
     const double m = straight == 0 ? 1 : white;
     const auto slope = [&](double y) {
         return std::clamp(gamma * m * std::pow(y, gamma - 1), 0x1p-24, 0x1p24);

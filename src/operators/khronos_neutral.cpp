@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Khronos PBR Neutral: base colours of materials as they are, lights compressed and whitened; and
+// Khronos PBR Neutral: base colors of materials as they are, lights compressed and whitened; and
 // Filament's variant.
 //
 // Source    Khronos Group, "Khronos PBR Neutral Tone Mapper", 2024: KhronosGroup/ToneMapping,
@@ -17,11 +17,11 @@
 //           So value(p) is p, then n; chroma(p) is 1, then (1 - g) n/p. Filament mixes towards 1:
 //           its value(p) is (1 - g) n + g. Both go over at Ks with one slope. Monotone on the
 //           neutral axis: yes; invertible.
-// Keeps     0 -> 0; the hue of HSV; colours whose smallest channel is 0.08 or more come out less
+// Keeps     0 -> 0; the hue of HSV; colors whose smallest channel is 0.08 or more come out less
 //           0.04, up to Ks.
 // Differs   nowhere. The constants 0.04 and 6.25 (a Fresnel reflectance F90 of 0.04, and 1/(4 F90))
 //           stay what they are when start_compression moves.
-// Check     mid grey 0.18 -> 0.14, 1 -> 0.869090909 (check_values.json).
+// Check     mid gray 0.18 -> 0.14, 1 -> 0.869090909 (check_values.json).
 #include "operators/family.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN

@@ -29,7 +29,7 @@
 //           reinhard_devlin: the adaptation is at least 2^-100; where it is 0 the paper has 0/0.
 //           The 3D part is a function of a power of the channels, for the sake of cubes: the same
 //           values.
-// Check     mid grey 0.18 -> 0.152542373 (reinhard), 0.154258475 (reinhard_extended), 0.177781456
+// Check     mid gray 0.18 -> 0.152542373 (reinhard), 0.154258475 (reinhard_extended), 0.177781456
 //           (nebula), 0.334941443 (reinhard_devlin) (python_check/operators/reinhard.py).
 #include <algorithm>
 #include <cmath>
@@ -272,7 +272,7 @@ Operator devlin() {
         "infinite slope at black, and half floats end at 6e-8; elsewhere the error of a 3D LUT";
     op.build = [](const Params& p) -> Pipeline {
         const Expr m = p.expr("contrast");
-        // Of greys the formula makes x^(1-m)/(x^(1-m) + exp(-f m)), whose slope at black has no
+        // Of grays the formula makes x^(1-m)/(x^(1-m) + exp(-f m)), whose slope at black has no
         // end. That of this power has none either, and no cube has to hold it.
         const Expr steepness = named("steepness", max(1 - m, 0.25));
         Channels in = inputs();

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Somewhat Boring Display Transform, Tomasz Stachowiak: exponential, between luminance and channels
-// by how colourful the light is.
+// by how colorful the light is.
 //
 // Source    T. Stachowiak, "Somewhat boring display transform", in Bevy's tonemapping_shared.wgsl.
 // In        scene-linear RGB, working primaries Rec.709, D65; domain [0, inf), negatives: clamped
 //           at 0.
-// Out       display-linear RGB, 1.0 = display peak; white at 0.97; saturated colours up to a little
+// Out       display-linear RGB, 1.0 = display peak; white at 0.97; saturated colors up to a little
 //           above 1. Not clamped.
 // Kind      3D. Monotone on the neutral axis: yes, 0.97 (1 - exp(-x)).
 // Keeps     0 -> 0.
 // Differs   nowhere.
-// Check     mid grey 0.18 -> 0.159787895, (0.05, 0.1, 2) -> blue 1.003109218 (check_values.json).
+// Check     mid gray 0.18 -> 0.159787895, (0.05, 0.1, 2) -> blue 1.003109218 (check_values.json).
 #include "operators/family.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN

@@ -27,7 +27,7 @@
 //           ferwerda, durand_dorsey_rods: the rods' signal -0.702 X + 1.039 Y + 0.433 Z is negative
 //           for saturated reds: no signal here. k is limited to [0, 1] before it is squared
 //           (T. Zeltner's "Tone Mapper" squares first, so bright scenes get night vision).
-// Check     mid grey 0.18 -> 0.0616409117 (drago), 0.0302864674 (ward), 0.0424389891
+// Check     mid gray 0.18 -> 0.0616409117 (drago), 0.0302864674 (ward), 0.0424389891
 //           (tumblin_rushmeier); (0.05, 0.1, 2) -> (0.0241295151, 0.0273945785, 0.151466987)
 //           (ferwerda, rod_weight 0.5), (0.0251727377, 0.0267686450, 0.157100389)
 //           (durand_dorsey_rods, rod_weight 0.5) (python_check/operators/statistics.py).

@@ -10,7 +10,7 @@
 // Keeps     f(0) = b; straight line of slope a through (m, m).
 // Differs   nowhere: the unused helpers L0, L1 of most ports are left out, and the shoulder is
 //           evaluated from its own start on, which it has weight 0 before.
-// Check     mid grey 0.18 -> 0.178994806 (python_check/operators/uchimura.py).
+// Check     mid gray 0.18 -> 0.178994806 (python_check/operators/uchimura.py).
 #include "base/format_number.h"
 #include "operators/family.h"
 

@@ -3,13 +3,13 @@
 // Unreal Engine 4.15 and later: the filmic curve on log10, between the RRT's modifiers.
 //
 // Source    Epic Games, FilmToneMap of TonemapCommon.ush, Unreal Engine 4.15 and later, as facts:
-//           its text is under the Epic licence and nothing of it is here.
+//           its text is under the Epic license and nothing of it is here.
 // In        scene-linear RGB, working primaries AP1 (ACEScg); domain [0, inf), negatives: clamped
 //           at 0.
 // Out       display-linear RGB in AP1, 1.0 = display peak; range [0, 1 + white_clip).
 // Kind      matrix, curve, matrix; with glow_and_red=on 3D before them. Monotone on the neutral
 //           axis: yes with the defaults.
-// Keeps     mid grey 0.18 -> 0.18 for every slope and toe, where the shoulder begins above it; 0 ->
+// Keeps     mid gray 0.18 -> 0.18 for every slope and toe, where the shoulder begins above it; 0 ->
 //           0 (with black_clip above 0 more than black is shown as 0).
 // Differs   The source takes log10 of its input and blends toe, straight line and shoulder with
 //           weights of 0 beyond their parts; at black that is 0 times infinity. Here each part is a
@@ -18,7 +18,7 @@
 //           ToneCurveAmount, which come before and after it in the engine, are not in it. Toe 1
 //           without black_clip and shoulder 1 without white_clip leave no toe or shoulder: an
 //           error. The preset legacy has the numbers of the documentation, from memory.
-// Check     mid grey 0.18 -> 0.18, (0.8, 0.1, 0.05) in AP1 -> red 0.582348314 (check_values.json).
+// Check     mid gray 0.18 -> 0.18, (0.8, 0.1, 0.05) in AP1 -> red 0.582348314 (check_values.json).
 #include <algorithm>
 #include <cmath>
 
@@ -49,7 +49,7 @@ Expr film_curve(double slope, double toe, double shoulder, double black_clip, do
     constexpr double kMidGrey = 0.18;  // in and out
     const double mid = std::log10(kMidGrey);
     const bool is_long_toe = toe > 0.8;
-    // Height of mid grey in the toe, of its whole height 2 ts.
+    // Height of mid gray in the toe, of its whole height 2 ts.
     const double grey_in_toe = (kMidGrey + black_clip) / ts / 2;
     const double tm = is_long_toe
                           ? (1 - toe - kMidGrey) / slope + mid
@@ -61,8 +61,8 @@ Expr film_curve(double slope, double toe, double shoulder, double black_clip, do
     constexpr double top = 6;  // no input comes to 10^6
     const double toe_power = 2 * slope / ts / std::log(10.0);
     const double shoulder_power = 2 * slope / ss / std::log(10.0);
-    // Both arms are written from a point that is a float: of the short toe mid grey (tm may be
-    // 10^230), of the long one tm, which is below mid grey.
+    // Both arms are written from a point that is a float: of the short toe mid gray (tm may be
+    // 10^230), of the long one tm, which is below mid gray.
     const Expr u =
         named("u", is_long_toe ? pow(min(x, std::pow(10, tm)) / std::pow(10, tm), toe_power)
                                : grey_in_toe / (1 - grey_in_toe) * pow(x / kMidGrey, toe_power));

@@ -55,7 +55,7 @@ bool is_identity(const Stage& stage) {
     return std::visit(
         Overloaded{[](const MatrixStage& s) { return s.m == kIdentity3; },
                    [](const CurveStage& s) { return s.is_uniform() && same(s.f[0], input0()); },
-                   // Even with f(n) = n, colours of norm 0 or below become black.
+                   // Even with f(n) = n, colors of norm 0 or below become black.
                    [](const ToneScaleStage&) { return false; },
                    [](const HuePreservingStage& s) { return same(s.f, input0()); },
                    [](const HexconeStage&) { return false; },
@@ -140,7 +140,7 @@ std::array<Expr, 3> apply_stage(const Stage& stage, const std::array<Expr, 3>& r
                 const Expr f_lo = substitute(s.f, std::span(&lo, 1));
                 const Expr range = substitute(s.f, std::span(&hi, 1)) - f_lo;
                 std::array<Expr, 3> out = rgb;
-                // Greys: 0/0, but the range that it would scale is 0. The condition is on
+                // Grays: 0/0, but the range that it would scale is 0. The condition is on
                 // what is divided by: in float a difference may be 0 where its terms differ.
                 const Expr spread = hi - lo;
                 for (Expr& c : out)

@@ -6,7 +6,7 @@
 
 #include "tonewright/pipeline.h"
 
-/// How a pure tone curve meets colour: one mechanism for every operator that has one.
+/// How a pure tone curve meets color: one mechanism for every operator that has one.
 TONEWRIGHT_NAMESPACE_BEGIN
 
 struct ToneCurve {
@@ -32,7 +32,7 @@ struct ToneCurve {
 /// channel; a curve that starts below 0 starts at 0 there. hue_preserving: f of the largest and the
 /// smallest, the middle one keeps its place.
 ///
-/// Colour corrections, with L the luminance and s the saturation (R. Mantiuk, R. Mantiuk,
+/// Color corrections, with L the luminance and s the saturation (R. Mantiuk, R. Mantiuk,
 /// A. Tomaszewska, W. Heidrich, "Color correction for tone mapping", Computer Graphics Forum 28(2),
 /// Eurographics 2009): nonlinear (C/L)^s f(L), equation 2; luminance_preserving
 /// ((C/L - 1) s + 1) f(L), equation 3. s may come from the curve's own contrast c = d ln f/d ln L

@@ -10,7 +10,7 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// How film or a camera answers light: normalised irradiance in [0, 1] -> pixel value in [0, 1],
+/// How film or a camera answers light: normalized irradiance in [0, 1] -> pixel value in [0, 1],
 /// rising, straight lines between the measured points. Of red, green and blue; equal curves are one
 /// table.
 using ResponseCurves = std::array<std::shared_ptr<const Table>, 3>;
@@ -22,7 +22,7 @@ using ResponseCurves = std::array<std::shared_ptr<const Table>, 3>;
 /// * `.rf`: columns with blanks between, irradiance and one or three pixel values;
 /// * CSV: the same with commas, and perhaps a first line of names.
 ///
-/// A line that begins with # is a comment. Of equal neighbouring irradiances the last counts.
+/// A line that begins with # is a comment. Of equal neighboring irradiances the last counts.
 ///
 /// @param curve  of DoRF: a curve's name, which then serves all channels, or what three names have
 ///               before Red, Green, Blue (or R, G, B); may be empty when nothing else could be

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Exposure fusion of a picture with itself.
+// Exposure fusion of one picture.
 //
 // Source    B. Wronski, "Exposure Fusion - local tonemapping for real-time rendering", 2022, and
 //           its demo; weights after T. Mertens, J. Kautz, F. Van Reeth, "Exposure Fusion", Pacific
@@ -10,14 +10,14 @@
 //           (aces_hill:threejs), whose clamp is part of it.
 // Formula   Three exposures c = exposure {2^-highlights, 1, 2^shadows} rgb, each tone mapped; their
 //           lightness e = sqrt(0.1 R + 0.7 G + 0.2 B); weights exp(-(e - 0.5)^2 sigma^2/2), divided
-//           by their sum. Both in pyramids by bilinear sampling, whose levels have two pixels or
-//           more a side. From the level `mip` up to `display_mip`, the Laplacian of e is summed by
-//           the weights of its level. To full size with a linear model of the middle exposure's
-//           lightness in 3 x 3 samples; the quotient of new and old lightness is a factor on light
-//           before the curve.
-// Differs   the demo encodes with a square root; here the display does. With shadows = highlights =
-//           0 there is one exposure, and the curve alone is shown: the demo's epsilons are up to
-//           6 % in near-black.
+//           by their sum. Both in pyramids by bilinear sampling, whose levels are at least two
+//           pixels wide and high. From the level `mip` up to `display_mip`, the weights of each
+//           level sum the Laplacian of e. A linear model of the middle exposure's lightness in 3 x
+//           3 samples upsamples the result; the quotient of new and old lightness scales the scene
+//           value before the curve.
+// Differs   the demo encodes with a square root; here the display encodes. With shadows =
+//           highlights = 0 there is one exposure, and only the curve is applied; the demo's
+//           epsilons change near-black by up to 6 %.
 // Check     python_check/local_operators.py
 #include <algorithm>
 #include <cmath>

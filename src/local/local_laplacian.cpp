@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Local Laplacian filter: contrast of large differences compressed, that of small ones kept.
+// Local Laplacian filter: compresses the contrast of large differences and keeps that of small
+// ones.
 //
 // Source    S. Paris, S. Hasinoff, J. Kautz, "Local Laplacian Filters: Edge-aware Image Processing
 //           with a Laplacian Pyramid", SIGGRAPH 2011, and M. Aubry, S. Paris, S. Hasinoff, J.
 //           Kautz, F. Durand, "Fast Local Laplacian Filters: Theory and Applications", ACM TOG
 //           33(5), 2014. Pyramids: P. Burt, E. Adelson, 1983, with (1 4 6 4 1)/16.
 // In        scene-linear planes of Rec.709, L = 0.2126 R + 0.7152 G + 0.0722 B.
-// Out       display-linear Rec.709; half a percent of the pixels, and saturated channels, are above
-//           1.
+// Out       display-linear Rec.709; half a percent of the pixels, and saturated channels, exceed 1.
 // Formula   Y = log2 L, from 24 stops below the largest L on. References g from the smallest to the
 //           largest Y, at most `threshold` apart; for each the picture g + r(Y - g),
 //           r(d) = base d + (detail - base) d/sqrt(1 + (d/threshold)^2), and its Laplacian pyramid.
@@ -16,9 +16,9 @@
 //           of Y there, interpolated. The coarsest level is that of Y. The result's 99.5 %
 //           percentile is shown as 1; where the 0.5 % percentile is more than `contrast` stops
 //           below it, the result is scaled to that. C' = L' (1 + saturation (C/L - 1)).
-// Differs   r is a smooth form of the paper's, which is linear up to the threshold and bends there:
-//           references may be farther apart. Percentiles are of bins of 1/64 stop, of pixels that
-//           have light.
+// Differs   r is a smooth version of the paper's function, which is linear up to the threshold and
+//           bends there, so references may be farther apart. Percentiles are of bins of 1/64 stop,
+//           of pixels above 0.
 // Check     python_check/local_operators.py
 #include <algorithm>
 #include <cmath>

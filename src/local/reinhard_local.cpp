@@ -5,17 +5,16 @@
 // Source    E. Reinhard, M. Stark, P. Shirley, J. Ferwerda, "Photographic Tone Reproduction for
 //           Digital Images", SIGGRAPH 2002, eq. 1-4 (exposure, white) and 5-9 (local adaptation).
 // In        scene-linear planes of Rec.709, L = 0.2126 R + 0.7152 G + 0.0722 B.
-// Out       display-linear Rec.709; without end above 1 where white is set, and for saturated
-//           channels.
+// Out       display-linear Rec.709; unbounded above 1 if white is set, and for saturated channels.
 // Formula   L1 = key L / Lavg, Lavg = exp(mean ln(0.001 + L)) of the picture before exposure.
 //           B_k: L1 blurred with exp(-d^2/(s_k/(2 sqrt 2))^2), s_k = 1.6^k, taps within
 //           ceil(3 s_k/4) pixels, their weights normalized over those inside the picture.
 //           The surround of one scale is the center of the next: alpha2 s_k = alpha1 s_(k+1).
 //           V_k = (B_k - B_(k+1))/(2^phi key/s_k^2 + B_k); m is the last k up to which |V| < eps;
 //           C' = C key/Lavg (1 + L1/white^2)/(1 + B_m).
-// Differs   as printed, eq. 1 divides by N outside of the exponential, and the kernels of eq. 5 sum
-//           to 1 only for large s: here both are as meant. Where not even the first scale passes,
-//           it is taken. White is printed for the global operator only.
+// Differs   as printed, eq. 1 divides by N outside the exponential, and the kernels of eq. 5 sum to
+//           1 only for large s; here both are as intended. If no scale passes, the first one is
+//           used. The paper prints white for the global operator only.
 // Check     python_check/local_operators.py
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The output transforms of ACES 1.0 to 1.3: RRT and ODT for SDR, the single-stage ones for HDR, and
-// before them, if wanted, the reference gamut compression.
+// The output transforms of ACES 1.0 to 1.3: RRT and ODT for SDR, single-stage transforms for HDR,
+// and optionally the reference gamut compression before them.
 //
 // Source    Academy of Motion Picture Arts and Sciences, aces-dev 1.3 (CTL): RRT 1.0.3 with
 //           ACESlib.RRT_Common, ACESlib.Tonescales and ACESlib.ODT_Common; ODT.Academy.* of 48 and
@@ -11,24 +11,24 @@
 //           ACES_GAMUT_COMP_13.
 // In        scene-linear RGB, working primaries AP0 (ACES2065-1); domain (-inf, inf), limited to
 //           +-65504.
-// Out       SDR: display-linear RGB of the limiting primaries, 1.0 = white (48 cd/m2 in the cinema,
-//           100 else); [0, 1]; with limit=none of AP1 and up to 1.1. HDR: display-linear RGB of
-//           Rec.2020, 1.0 = 100 cd/m2. It is limited to [0, peak] in the limiting primaries, still
-//           under the ACES white, and then adapted to D65: that moves colors at the limit a little
-//           outside of the primaries, and blue to at most 1.09 times the peak, which OpenColorIO
-//           and the CTL show. So the output is of Rec.2020 for all limits.
+// Out       SDR: display-linear RGB of the limiting primaries, 1.0 = white (48 cd/m2 for the
+//           cinema, otherwise 100); [0, 1]. With limit=none: AP1, up to 1.1. HDR: display-linear
+//           RGB of Rec.2020, 1.0 = 100 cd/m2. The limiting primaries clip it to [0, peak] under the
+//           ACES white; then it is adapted to D65. The adaptation moves clipped colors slightly
+//           outside the primaries, and blue to at most 1.09 times the peak. OpenColorIO and the CTL
+//           show the same. The output is Rec.2020 for every limit.
 // Kind      3D (gamut compression, glow and red modifier), then matrix, curve, for video a scale by
-//           luminance (dim surround), matrix. Monotone on the neutral axis: SDR yes; HDR in the
-//           limiting primaries not in the last 5 % below the peak, where the red of grays, which
-//           has arrived at its limit, falls by up to 0.13 % while green and blue still rise.
-// Keeps     0 -> 0 (spline=ocio: 6e-12). In SDR grays up to 0.00199 are at black.
-// Differs   spline=ocio is OpenColorIO's built-in transform, spline=ctl the Academy's. The two
-//           differ in the saturation that the red modifier takes (after the glow, before it), in
-//           the CTL's limit of AP1 at 65504, in a floor of OpenColorIO's under the luminance of the
-//           dim surround, and in the curve: OpenColorIO's stands on knots of eight decimals, and
-//           the tops of three of its curves (RRT, 1000 and 108 cd/m2) are others: ocio_knots().
-//           limit=rec2020 of SDR and rec709 of HDR, and limits of the cinema that OpenColorIO has
-//           no transform for, are made like the others. Left out: the simulations of the D60 and
+//           luminance (dim surround), matrix. Monotone on the neutral axis: SDR yes; HDR not in the
+//           last 5 % below the peak, in the limiting primaries: red has reached its limit and falls
+//           by up to 0.13 % while green and blue still rise.
+// Keeps     0 -> 0 (spline=ocio: 6e-12). SDR shows grays up to 0.00199 as black.
+// Differs   spline=ocio is OpenColorIO's built-in transform, spline=ctl is the Academy's. They
+//           differ in four points: the saturation for the red modifier (after or before the glow);
+//           the CTL's limit of AP1 at 65504; OpenColorIO's floor under the luminance of the dim
+//           surround; and the curve. OpenColorIO's curve has knots with eight decimals, and the
+//           tops of three of its curves (RRT, 1000 and 108 cd/m2) differ: see ocio_knots().
+//           OpenColorIO has no transform for limit=rec2020 of SDR, rec709 of HDR and some limits of
+//           the cinema; these are built like the others. Left out: the simulations of the D60 and
 //           DCI whites.
 // Check     mid gray 0.18 -> 0.104063516219 (ocio), 0.104063518162 (ctl); output=hdr_1000: 0.15
 //           (check_values.json).

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// ACES 2.0: the Academy's output transform, for any peak and any primaries of a display.
+// ACES 2.0: the Academy's output transform, for displays with any peak and any primaries.
 //
 // Source    Academy of Motion Picture Arts and Sciences, ACES 2: aces-core, Lib.Academy.Tonescale
 //           and Lib.Academy.OutputTransform; as OpenColorIO 2.4.2 and later have it,
@@ -9,20 +9,20 @@
 //           Hellwig and Fairchild, "Brightness, lightness, colorfulness, and chroma in CIECAM02 and
 //           CAM16", Color Research and Application 47, 2022.
 // In        scene-linear RGB, working primaries AP1 (ACEScg); domain [0, 8r], r = 128 + 768
-//           log100(peak/100): outside, the ends of it (the standard's own clamp). The standard's
-//           input is ACES2065-1, which it converts to AP1 for the clamp.
+//           log100(peak/100). The standard clamps to this domain. Its input is ACES2065-1, which it
+//           converts to AP1 for the clamp.
 // Out       display-linear RGB in the limiting primaries, 1.0 = 100 cd/m2; [0, peak/100].
-// Kind      3D. The color's J, M, h (lightness, colorfulness, hue) of the model; a tone scale on J;
-//           chroma compressed with J, within what AP1 reaches; colors outside the display's hull
-//           moved along lines towards an anchor on the J axis; back to RGB. Monotone on the neutral
-//           axis: yes; invertible where nothing is clamped.
+// Kind      3D. Converts the color to J, M, h (lightness, colorfulness, hue) of the model; applies
+//           a tone scale to J; compresses chroma with J, within the reach of AP1; moves colors
+//           outside the display's hull along lines towards an anchor on the J axis; converts to
+//           RGB. Monotone on the neutral axis: yes; invertible where nothing is clamped.
 // Keeps     0 -> 0, r -> peak/100; hue h; grays have R = G = B in the limiting primaries.
-// Differs   nowhere, down to the tables: 360 entries and the coarse tolerances of their searches
-//           are part of what a picture looks like. h itself is only needed to look up tables: the
-//           sines and cosines of its multiples are polynomials of a/M and b/M, and powers that meet
-//           their own inverse are left out, which is equal but for rounding. J and M are in units
-//           of the peak's J. Left out: the variants with a D60 white inside D65 primaries and for
-//           cinemas, which only scale or convert the output.
+// Differs   nowhere, not even in the tables: their 360 entries and the coarse tolerances of their
+//           searches are visible in pictures. h itself is only needed for table lookups: the sines
+//           and cosines of its multiples are polynomials of a/M and b/M. Powers that meet their own
+//           inverse are left out, which only changes rounding. J and M are in units of the peak's
+//           J. Left out: the variants with a D60 white inside D65 primaries and for cinemas, which
+//           only scale or convert the output.
 // Check     AP0 mid gray 0.18 -> 0.09999932511 (100 cd/m2), AP0 (4, 0.5, 0.1) -> (1, 0.2329307895,
 //           0.1916180599) (check_values.json).
 #include <algorithm>

@@ -7,20 +7,21 @@
 //           (tonemap.glsl) and three.js (tonemapping_pars_fragment) have them. Google Filament,
 //           ToneMapper.cpp, ACES and ACESLegacy, whose rational is a fit of the colour-science
 //           project (colour-unity).
-// In        scene-linear RGB; working primaries Rec.709 (aces_filament Rec.2020), D65; domain
-//           [0, inf), negatives: clamped at 0 (Narkowicz' rational has a zero at -0.012 and rises
-//           again below it).
+// In        scene-linear RGB; working primaries Rec.709 (aces_filament Rec.2020), D65; domain [0,
+//           inf), negatives clamped at 0 (Narkowicz's rational has a zero at -0.012 and rises again
+//           below it).
 // Out       display-linear RGB, 1.0 = display peak. Narkowicz and Hill end with a clamp to [0, 1],
-//           which Godot leaves out; Filament is not clamped and stays below 1.
+//           which Godot leaves out; Filament does not clamp and stays below 1.
 // Kind      aces_narkowicz per channel; aces_hill matrix, curve, matrix; aces_filament 3D (glow and
 //           red modifier), then matrix, curve, scale by luminance (dim surround), matrix. Monotone
 //           on the neutral axis: yes (Hill: 0 up to scene-linear 0.0032).
-// Keeps     0 -> 0, except Godot's unclamped -0.0005. At 65504 all are at their asymptotes.
-// Differs   aces_filament: for the dim surround Filament floors X+Y+Z at 1e-5, which only keeps
-//           black from 0/0; here black stays black. Hill's matrices hold the conversions from and
-//           to Rec.709 and the RRT's and ODT's desaturation: the input is Rec.709, not ACEScg.
-//           Filament's conversions between Rec.2020 and AP1 are not adapted from D65 to the ACES
-//           white, so grays are tinted: that is in the source. No form holds a display encoding.
+// Keeps     0 -> 0, except Godot's unclamped -0.0005. At 65504 all reach their asymptotes.
+// Differs   aces_filament: for the dim surround Filament floors X+Y+Z at 1e-5, which only prevents
+//           0/0 at black; here black stays black. Hill's matrices include the conversions from and
+//           to Rec.709 and the desaturation of the RRT and the ODT: the input is Rec.709, not
+//           ACEScg. Filament does not adapt its conversions between Rec.2020 and AP1 from D65 to
+//           the ACES white, so it tints grays; the source does the same. No variant includes a
+//           display encoding.
 // Check     mid gray 0.18 -> 0.266898920 (Narkowicz; 0.140119567 with prescale 0.6), red
 //           0.105591247 (Hill), 0.106938283 (Filament, Rec.2020) (check_values.json).
 #include "base/format_number.h"

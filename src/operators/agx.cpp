@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// AgX, six of its dialects: Troy Sobotka's configuration, Benjamin Wrensch's minimal form, and what
-// three.js, Filament and Godot (4.4, and since 4.6) made of them.
+// AgX, six dialects: Troy Sobotka's configuration, Benjamin Wrensch's minimal version, and the
+// versions of three.js, Filament and Godot (4.4, and since 4.6).
 //
 // Source    T. Sobotka, AgX OpenColorIO configuration (github.com/sobotka/AgX), 2022, and the
 //           SB2383 sigmoid that its lookup table samples. B. Wrensch, "Minimal AgX Implementation",
@@ -9,30 +9,30 @@
 //           Google Filament, ToneMapper.cpp, AgxToneMapper. Godot Engine, tonemap.glsl of 4.4 and
 //           of 4.6 (curve by allenwp). Insets and outsets of three.js, Filament and Godot are those
 //           of Blender: E. Chow, AgX_LUT_Gen.
-// In        scene-linear RGB; working primaries Rec.709 (agx_filament Rec.2020), D65; domain
-//           [0, inf), negatives: clamped at 0, but agx_threejs lets them into its matrices and
-//           limits what comes out: domain (-inf, inf). All but agx_godot end at 16.29, 6.5 stops
-//           above mid gray, and begin 10 stops below it: what is outside is as its ends.
-// Out       agx_sobotka, agx_minimal: CODE VALUES of a 2.2 power, [0, 1], except agx_minimal's
+// In        scene-linear RGB; working primaries Rec.709 (agx_filament Rec.2020), D65; domain [0,
+//           inf), negatives clamped at 0. agx_threejs passes negatives to its matrices and clamps
+//           their result: domain (-inf, inf). All except agx_godot are constant above 16.29, 6.5
+//           stops above mid gray, and below 10 stops under it.
+// Out       agx_sobotka, agx_minimal: CODE VALUES of a 2.2 power, [0, 1], except for agx_minimal's
 //           polynomial ends of -0.0023 and 0.9986 (order 6), 0.0029 and 0.982 (order 7), and looks
-//           that saturate past 1. The others: display-linear RGB, 1.0 = display peak; agx_threejs
-//           before the source's last clamp, agx_godot44 and agx_godot as the source has them: the
-//           matrices at the end put saturated colors below 0 or above 1.
-// Kind      clamp, matrix, log and sigmoid, (matrix); the looks of agx_filament are 3D, as their
-//           luma is of the value before the power. Monotone on the neutral axis: yes, but order 7
-//           (agx_minimal:order7, agx_filament) dips within the lowest 2.5 % of its range, and where
-//           the shaper ends the channels of grays in agx_threejs and agx_godot44 arrive one after
-//           another, so that the last matrix takes 5e-6 of the light away.
-// Keeps     mid gray 0.18 -> code value 0.5 (agx_sobotka), 0.18 of the light (agx_godot, and
+//           that saturate above 1. The others: display-linear RGB, 1.0 = display peak; agx_threejs
+//           without the source's last clamp, agx_godot44 and agx_godot like the source: their last
+//           matrices put saturated colors below 0 or above 1.
+// Kind      clamp, matrix, log and sigmoid, (matrix). The looks of agx_filament are 3D, because
+//           their luma is taken before the power. Monotone on the neutral axis: yes, with two
+//           exceptions. Order 7 (agx_minimal:order7, agx_filament) dips in the lowest 2.5 % of its
+//           range. In agx_threejs and agx_godot44, the channels of grays reach the end of the
+//           shaper one after another, so the last matrix subtracts 5e-6.
+// Keeps     mid gray 0.18 -> code value 0.5 (agx_sobotka), display-linear 0.18 (agx_godot, and
 //           agx_godot44 within 0.5 %).
-// Differs   agx_sobotka uses the sigmoid in closed form where the configuration has its 4096-entry
-//           table: 5e-8 apart, the table's own rounding. The floors of 1e-10 before log2 are not
-//           there where the shaper's lower end, 1.76e-4, is one already; Godot's of 2e-10 on the
-//           input is. agx_filament's looks have the luma weights of Rec.709 although its primaries
-//           are Rec.2020: that is in the source.
-//           The defects: agx_minimal_clamped has no floor in the source; below the shaper, whose
-//           end is the floor here, the polynomial leaves its range and shows light of 1e-6 as
-//           white.
+// Differs   agx_sobotka computes the sigmoid in closed form; the configuration has a 4096-entry
+//           table: 5e-8 apart, the rounding of the table. The sources floor log2 at 1e-10; here the
+//           lower end of the shaper, 1.76e-4, is the floor. Godot's floor of 2e-10 on the input
+//           stays. agx_filament's looks use the luma weights of Rec.709 although its primaries are
+//           Rec.2020; the source does the same.
+//           Defects: the source of agx_minimal_clamped has no floor. Below the shaper its
+//           polynomial leaves its range and shows 1e-6 as white; here the end of the shaper is the
+//           floor.
 // Check     mid gray 0.18 -> (0.500023782, 0.499993460, 0.499991575) (agx_sobotka), red 0.214548629
 //           (agx_threejs), 0.214848193 (agx_filament, Rec.2020), red 0.179190952 (agx_godot44),
 //           0.18 (agx_godot) (check_values.json).

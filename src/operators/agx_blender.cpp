@@ -1,38 +1,40 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// AgX as Blender shows it: the cubes of its configuration, computed; and the formula that they
-// sample. For SDR displays of three gamuts, and for HDR displays of 1000 cd/m2.
+// Blender's AgX: the 3D LUTs of its configuration, computed, and the formula that they sample. For
+// SDR displays of three gamuts, and for HDR displays of 1000 cd/m2.
 //
 // Source    E. Chow, AgX and AgX_LUT_Gen (github.com/EaryChow), 2023 to 2025; Blender 5.2,
 //           release/datafiles/colormanagement: config.ocio, its views AgX and AgX - HDR 1000 nits
-//           and its looks. Sigmoid: T. Sobotka, SB2383. Axes of the cubes: FilmLight E-Gamut.
+//           and its looks. Sigmoid: T. Sobotka, SB2383. Axes of the 3D LUTs: FilmLight E-Gamut.
 // In        scene-linear RGB, working primaries Rec.2020, D65; domain (-inf, inf). Formula: colors
-//           outside Rec.2020 are lifted until no channel is below 0 and scaled for the light that
-//           this adds. Lattice: limited to its axes, 10 stops below to 15 above mid gray in
-//           E-Gamut.
+//           outside Rec.2020 are lifted until no channel is below 0, then scaled to compensate for
+//           the added light. 3D LUT: limited to its axes, 10 stops below to 15 stops above mid gray
+//           in E-Gamut.
 // Out       display-linear RGB. range=sdr: primaries of `limit`, 1.0 = display peak; [0, 1]. The
-//           source stores codes of a 2.4 power, which are decoded. range=hdr: Rec.2020 light of
-//           colors within P3, 1.0 = 100 cd/m2; [0, 10].
-// Kind      lattice: 57^3, behind it a power, or the inverse of an HLG display. Formula: 3D, with
-//           c the scene in the inset and f(c) its light through log, sigmoid and 2.4 power:
+//           source stores codes of a 2.4 power, which are decoded. range=hdr: Rec.2020, colors
+//           within P3, 1.0 = 100 cd/m2; [0, 10].
+// Kind      method=lattice: 57^3 nodes, then a power, or the inverse of an HLG display. Formula:
+//           3D, with c the scene color in the inset and f(c) its log, sigmoid and 2.4 power:
 //             0.4 f(c) + 0.6 (f(min) + (f(max) - f(min)) (c - min)/(max - min)).
-//           The source turns the hue of HSV back by 60 % of what f has turned it. f is monotone, so
-//           the channels keep their order and the hue its sixth of the circle, within which it is
-//           the place of the middle channel between the others: that is the formula above. The HDR
-//           form has a second curve after f, of which hue and saturation count half.
-//           Guard rails: with off = max(-min, 0), r = c + off and Y the luminance, the source
-//           compares the luminances of c and r, each plus what the largest channel of the
-//           complement has above the complement's luminance: 2 Y - min, since the weights sum to 1.
-//           For r that is never less than for c; so r is multiplied by 1 - off/(2 Y(r)), or black.
-//           Monotone on the neutral axis: yes.
-// Keeps     formula: 0 -> 0, mid gray 0.18 -> 0.18, grays neutral. Lattice: mid gray within 3e-5
+//           The source rotates the HSV hue of f(c) towards the hue of c by 60 % of their
+//           difference. f is monotone, so the channels keep their order, and the hue keeps its
+//           sextant. Within a sextant the hue is the relative position of the middle channel
+//           between the others, which gives the formula above. The HDR version applies a second
+//           curve after f, which contributes half of hue and saturation.
+//           Guard rails: with off = max(-min, 0), r = c + off and luminance Y, the source compares
+//           the luminances of c and r. To each it adds the complement's largest channel minus the
+//           complement's luminance: 2 Y - min, because the weights sum to 1. The sum for r is never
+//           less than that for c, so r is multiplied by 1 - off/(2 Y(r)), or set to black. Monotone
+//           on the neutral axis: yes.
+// Keeps     formula: 0 -> 0, mid gray 0.18 -> 0.18, neutral grays. 3D LUT: mid gray within 3e-5
 //           (hdr: 0.181), grays within 4e-5 of the sRGB code (hdr: 7e-5).
 // Differs   Where Y(r) of a color outside Rec.2020 is below off/2, the source multiplies by a
-//           negative number; the next step makes it black: here it is black at once. The cubes are
-//           computed in double: 5e-8 from the files, which have seven decimals; only that of the
-//           looks' guard rail is rounded to them as well. The formula has exact matrices where the
-//           generator's have a white of (0.31271, 0.32902). The light of HLG codes is by the exact
-//           inverse of OpenColorIO's DISPLAY - CIE-XYZ-D65_to_REC.2100-HLG-1000nit.
+//           negative number, and its next step makes the color black; here it is black at once. The
+//           3D LUTs are computed in double precision: 5e-8 from the files, which have seven
+//           decimals. Only the 3D LUT of the looks' guard rail is rounded like its file. The
+//           formula uses exact matrices; the generator's have a white of (0.31271, 0.32902). HLG
+//           codes are decoded with the exact inverse of OpenColorIO's DISPLAY -
+//           CIE-XYZ-D65_to_REC.2100-HLG-1000nit.
 // Check     (0.8, 0.1, 0.05) in Rec.709 -> red 0.597988220 (formula), 0.595668176 (lattice)
 //           (check_values.json).
 #include <cmath>

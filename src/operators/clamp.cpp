@@ -2,7 +2,7 @@
 //
 // Clamp: no tone mapping at all.
 //
-// Source    Common practice; the first operator of every survey.
+// Source    common practice; the first operator of every survey.
 // In        scene-linear RGB, working primaries Rec.709, D65; domain (-inf, inf), negatives: 0.
 // Out       display-linear RGB, 1.0 = display peak; range [0, 1].
 // Kind      per channel; monotone on the neutral axis: yes; inverse: within [0, 1].

@@ -1,26 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// EETFs: from the light of one display to that of a smaller one. Report BT.2390, Report BT.2446
-// method A, and libplacebo's spline.
+// EETFs: map the luminance of one display to that of a display with a lower peak. Report BT.2390,
+// Report BT.2446 method A, and libplacebo's spline.
 //
 // Source    Report ITU-R BT.2390, "High dynamic range television for production and international
 //           programme exchange", EETF. Report ITU-R BT.2446, "Methods for conversion of high
 //           dynamic range content to standard dynamic range content and vice-versa", method A, its
 //           curve. libplacebo, tone_mapping.c: spline, and its variant of bt2390.
-// In        RGB light, working primaries Rec.2020, D65; 1.0 = reference_white cd/m2; domain
-//           [source_black, source_peak], what is outside is as its ends (negatives: 0).
+// In        display-linear RGB of the master, working primaries Rec.2020, D65; 1.0 =
+//           reference_white cd/m2; domain [source_black, source_peak], constant outside (negatives:
+//           0).
 // Out       display-linear RGB; output=sdr: 1.0 = target_peak, [target_black/target_peak, 1];
-//           output=hdr: the same in units of 100 cd/m2. But bt2390 with
-//           target_black above source_black ends a little above 1, as its black is added there too.
+//           output=hdr: the same in units of 100 cd/m2. bt2390 with target_black above source_black
+//           ends slightly above 1, because it adds the black lift there, too.
 // Kind      per channel, luminance, max or hue-preserving (parameter `apply`). Monotone on the
-//           neutral axis: yes with the defaults; bt2446a jumps up where its parts meet, by 0.0006
-//           and 0.00001 of Yc, as printed.
-// Keeps     source_black -> target_black, source_peak -> target_peak (but see Out).
+//           neutral axis: yes with the defaults; bt2446a as printed jumps up where its segments
+//           meet, by 0.0006 and 0.00001 of Yc.
+// Keeps     source_black -> target_black, source_peak -> target_peak (except as under Out).
 // Differs   bt2446a is the Report's curve without its color correction: method A works on Y' of
-//           gamma-encoded Y'CbCr; here `apply` says what the curve works on. The result is not
-//           below target_black, which a knee below 0 (large knee_offset) would take it to. Where
-//           the source's peak is not above the target's there is nothing to compress: only the
-//           source's limits remain. The exponent 1/mn of libplacebo's black is 4 for mn <= 0.
+//           gamma-encoded Y'CbCr; here `apply` chooses what the curve works on. The result is
+//           limited to target_black, which a knee below 0 (large knee_offset) would undercut.
+//           Without compression (source peak at or below target peak) only the source's limits
+//           apply. The exponent 1/mn of libplacebo's black is 4 for mn <= 0.
 // Check     18 cd/m2 of 1000 to 100 cd/m2: 18 (bt2390), 16.540679 (preset libplacebo), 5.25011361
 //           (bt2446a), 10.5269722 (spline) (check_values.json).
 #include <algorithm>

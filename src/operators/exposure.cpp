@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The plainest curves: a division, an exponential, two logarithms, a power. Each needs one number
+// Elementary curves: a division, an exponential, two logarithms, a power. Each uses one statistic
 // of the picture: its mean or its maximum.
 //
 // Source    linear: common practice, "maximum division" where the divisor is the picture's maximum.
@@ -10,16 +10,16 @@
 // In        scene-linear RGB, working primaries Rec.709, D65; domain [0, 65504], negatives: clamped
 //           at 0.
 // Out       display-linear RGB, 1.0 = display peak. linear [0, 1]; exponential [0, 1); the others
-//           are 1 at `maximum` or `limit` and go on rising above it.
+//           are 1 at `maximum` or `limit` and keep rising above it.
 // Kind      per channel (linear) or luminance, as `apply` says; monotone on the neutral axis: yes.
 //           linear has an inverse within [0, divisor].
 // Keeps     f(0) = 0; linear f(divisor) = 1; logarithmic and exponentiation f(maximum) = 1;
 //           log_tonemap f(limit) = 1.
-// Differs   luminance forms are 0/0 at black in every source: here black stays black. ln(1 + x) is
-//           computed so that it keeps its digits for small x. exponentiation is black up to 2^-100:
-//           its slope at 0 has no end. log_tonemap's S-curve ("hacky contrast") falls again above 1
-//           and is negative from 1.5 on, so the light is limited to [0, 1] before it; the post has
-//           a dash for its minus and no closing braces.
+// Differs   luminance variants are 0/0 at black in every source; here black stays black. ln(1 + x)
+//           keeps its digits for small x. exponentiation is black up to 2^-100, because its slope
+//           at 0 is infinite. log_tonemap's S-curve ("hacky contrast") falls above 1 and is
+//           negative from 1.5, so its input is limited to [0, 1]; the post has a dash instead of
+//           the minus sign and no closing braces.
 // Check     mid gray 0.18 -> 0.045 (linear), 0.164729789 (exponential), 0.0358635138 (logarithmic),
 //           0.0584193346 (log_tonemap), 0.0424264069 (exponentiation)
 //           (python_check/operators/exposure.py).

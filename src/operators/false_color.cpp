@@ -2,13 +2,13 @@
 //
 // False color: one color for every stop of luminance about mid gray. Shows exposure, not a picture.
 //
-// Source    Ours.
+// Source    Tonewright.
 // In        scene-linear RGB, working primaries Rec.709, D65; domain [0, inf), negatives: clamped
 //           at 0.
 // Out       display-linear RGB, 1.0 = display peak; [0, 1].
 // Kind      a matrix of three equal rows, then one curve for each channel; not monotone.
-// Keeps     mid gray -> code value 0x80 of sRGB. Black and all below -6.63 stops is black, all
-//           above +6.63 stops white.
+// Keeps     mid gray -> code value 0x80 of sRGB. Everything below -6.63 stops is black, everything
+//           above +6.63 stops is white.
 // Differs   nowhere.
 // Check     mid gray 0.18 -> 0.215860500 (code value 128 of 255, decoded).
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Filmic curves: toe, straight part, shoulder, each in its author's few numbers.
+// Filmic curves: toe, linear segment and shoulder, with few parameters each.
 //
 // Source    hejl_burgess_dawson: J. Hejl, R. Burgess-Dawson, in J. Hable, "Filmic Tonemapping
 //           Operators", filmicworlds.com, 2010-05-05. hejl_2015: J. Hejl,
@@ -18,26 +18,26 @@
 // In        scene-linear RGB, working primaries Rec.709, D65; domain [0, 65504], negatives: clamped
 //           at 0.
 // Out       CODE VALUES of a 2.2 power: hejl_burgess_dawson and aldridge [0, 1), ue3 [0, 1]. The
-//           others display-linear RGB, 1.0 = display peak, and none has its end there: hejl_2015
-//           [-0.00072, 1.038), filament_generic below its output scale, schlick below p/(p-1), day
-//           below its shoulder's end, lottes and toe without end.
-// Kind      per channel; schlick luminance. Monotone on the neutral axis: yes, but lottes with a
-//           shoulder above 1 falls again.
+//           others: display-linear RGB, 1.0 = display peak, and all may exceed it: hejl_2015
+//           [-0.00072, 1.038), filament_generic up to its output scale, schlick up to p/(p-1), day
+//           up to the end of its shoulder, lottes and toe without an upper bound.
+// Kind      per channel; schlick luminance. Monotone on the neutral axis: yes, except that lottes
+//           falls again with a shoulder above 1.
 // Keeps     hejl_2015, day f(white) = 1; lottes, filament_generic f(mid_in) = mid_out and
 //           f(hdr_max) = 1; schlick f(maximum) = 1; toe: values above its width.
-// Differs   hejl_burgess_dawson, schlick: nowhere (T. Zeltner's schlick ignores p). ue3: its code
-//           values go up to 1.019 in most ports; here they end at 1, where the display does.
-//           hejl_2015: the first factor is BakingLab's 1.435; the author's post is quoted with
-//           1.425 elsewhere, which is up to 0.0017 darker.
-//           aldridge: below twice the cutoff v + (2q - v)^2/(4q) - q is written v^2/(4q), the same
-//           without the difference, so that 0 stays 0. With a cutoff above 0.5 the source is
-//           negative below, down to the pole of the rational: 0 here.
+// Differs   hejl_burgess_dawson, schlick: nowhere (T. Zeltner's schlick ignores p). ue3: most ports
+//           reach code values of 1.019; here they end at 1, like the display.
+//           hejl_2015: the first factor is BakingLab's 1.435; others quote the author's post with
+//           1.425, which is up to 0.0017 darker.
+//           aldridge: below twice the cutoff, v + (2q - v)^2/(4q) - q is written as v^2/(4q). It is
+//           equal without the difference, so 0 stays 0. With a cutoff above 0.5 the source is
+//           negative for low values, down to the pole of the rational; here it is 0.
 //           lottes: the power in the denominator ends at 2^-100, because the slope of a power below
-//           1 has no end at 0. The talk's crosstalk between the channels is not in it, as in all
-//           ports.
+//           1 is infinite at 0. Like all ports, it leaves out the talk's crosstalk between the
+//           channels.
 //           filament_generic: Filament applies it in Rec.2020.
-//           day: both denominators are written so that they keep their digits where the crossover
-//           comes near black or white.
+//           day: both denominators are written so that they keep their digits if the crossover is
+//           close to black or white.
 // Check     mid gray 0.18 -> 0.508028282 (hejl_burgess_dawson), 0.237508884 (hejl_2015),
 //           0.479315490 (aldridge), 0.267 (lottes), 0.215 (filament_generic), 0.547522388 (ue3),
 //           0.00341873507 (day), 0.0348095146 (schlick), 0.18 (toe)

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Frostbite: hue-preserving range compression with a little of the per-channel look.
+// Frostbite: hue-preserving range compression with some of the per-channel look.
 //
-// Source    A. Fry, "High Dynamic Range Color Grading and Display in Frostbite", GDC 2017; the
-//           numbers of T. Stachowiak's shadertoy after it.
+// Source    A. Fry, "High Dynamic Range Color Grading and Display in Frostbite", GDC 2017;
+//           constants of T. Stachowiak's shadertoy after it.
 // In        scene-linear RGB, working primaries Rec.709, D65; 1.0 = 100 cd/m2; domain [0, inf),
-//           negatives: clamped at 0 (PQ has powers).
-// Out       display-linear RGB, 1.0 = display peak; not clamped: saturated colors come out up to
-//           about 1.1, and a little below 0.
-// Kind      3D. Monotone on the neutral axis: yes, but for the tint of grays (the printed matrices
-//           do not take white to Ct = Cp = 0), which grows to 4e-4 near white and takes red down by
-//           up to 1e-6 each 1/64 stop.
-// Keeps     0 -> 0; grays up to linear_end, but for that tint.
-// Differs   Of the largest channel 0 the source divides by it: here the ratio there is 1, as
-//           everywhere below linear_end. smoothstep with falling edges, which GLSL leaves
-//           undefined, is its formula. The inverses of the matrices are computed: the published
-//           ones are rounded.
+//           negatives clamped at 0 (PQ has powers).
+// Out       display-linear RGB, 1.0 = display peak; not clamped: saturated colors reach about 1.1,
+//           and slightly below 0.
+// Kind      3D. Monotone on the neutral axis: yes, except for the tint of grays (the printed
+//           matrices do not map white to Ct = Cp = 0). It grows to 4e-4 near white and lowers red
+//           by up to 1e-6 per 1/64 stop.
+// Keeps     0 -> 0; grays up to linear_end, except for that tint.
+// Differs   The source divides by the largest channel, also if it is 0; here the ratio is 1 there,
+//           as everywhere below linear_end. smoothstep with falling edges, undefined in GLSL, uses
+//           its formula. The inverses of the matrices are computed, because the published ones are
+//           rounded.
 // Check     mid gray 0.18 -> red 0.179998742, (0.8, 0.1, 0.05) -> red 0.636523412
 //           (check_values.json).
 #include "operators/family.h"

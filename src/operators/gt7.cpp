@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Gran Turismo 7: the curve of 2017 with a new shoulder, per channel, blended with a form that
+// Gran Turismo 7: the curve of 2017 with a new shoulder, per channel, blended with a version that
 // keeps the chroma of ICtCp.
 //
 // Source    K. Yasutomi, K. Suzuki, H. Uchimura, "Driving Toward Reality: Physically Based Tone
 //           Mapping and Perceptual Fidelity in Gran Turismo 7", SIGGRAPH 2025 course; sample code
-//           gt7_tone_mapping.cpp 1.0, Polyphony Digital 2025 (its ICtCp form).
+//           gt7_tone_mapping.cpp 1.0, Polyphony Digital 2025 (its ICtCp variant).
 // In        scene-linear RGB, working primaries Rec.2020, D65; 1.0 = 100 cd/m2; domain [0, inf),
-//           negatives: clamped at 0 (the toe has a power).
-// Out       output=sdr: display-linear RGB, 1.0 = display peak, which is taken as 250 cd/m2;
-//           [0, 1]. output=hdr: units of 100 cd/m2; [0, peak/100].
-// Kind      3D. Monotone on the neutral axis: yes; at 1.4717 of the peak it meets the peak with a
-//           corner, and above that it is flat.
+//           negatives clamped at 0 (the toe has a power).
+// Out       output=sdr: display-linear RGB, 1.0 = display peak, assumed to be 250 cd/m2; [0, 1].
+//           output=hdr: units of 100 cd/m2; [0, peak/100].
+// Kind      3D. Monotone on the neutral axis: yes; it reaches the peak with a corner at 1.4717
+//           times the peak, and is constant above.
 // Keeps     0 -> 0; grays from 0.538 up to 0.444 of the peak.
-// Differs   nowhere. As in the source the code of PQ is limited to [0, 1] before it is decoded:
-//           dark saturated colors come below 0 there, bright ones of a large peak above 1. The
-//           matrices back from ICtCp are the source's six digits and no exact inverses: grays are
-//           tinted by some 1e-6.
+// Differs   nowhere. Like the source, it limits the PQ code to [0, 1] before decoding: dark
+//           saturated colors are below 0 there, bright ones of a high peak above 1. The matrices
+//           from ICtCp have the source's six digits and are not exact inverses: they tint grays by
+//           about 1e-6.
 // Check     mid gray 0.18 in Rec.2020 -> red 0.0579497689 (sdr), 0.144874422 (hdr)
 //           (check_values.json).
 #include <algorithm>

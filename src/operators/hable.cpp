@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// John Hable's curves: the rational one of Uncharted 2 with two sets of constants, and the
-// piecewise one of 2017.
+// John Hable's curves: the rational curve of Uncharted 2 with two sets of constants, and the
+// piecewise curve of 2017.
 //
 // Source    J. Hable, "Filmic Tonemapping Operators", filmicworlds.com, 2010-05-05, with the
 //           constants of that page (A .15 ... W 11.2, exposure bias 2): hable. J. Hable, "Uncharted
@@ -9,22 +9,22 @@
 //           tonemap.glsl. J. Hable, "Filmic Tonemapping with Piecewise Power Curves",
 //           filmicworlds.com, 2017-03-26, and github.com/johnhable/fw-public (CC0):
 //           hable_piecewise.
-// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, 65504], negatives: clamped
+// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, 65504], negatives clamped
 //           at 0.
 // Out       display-linear RGB, 1.0 = display peak; hable [0, 1.287) with the defaults,
 //           hable_piecewise up to (1 + overshoot)/(value at white).
 // Kind      per channel; monotone on the neutral axis: yes.
-// Keeps     f(0) = 0. hable: f(white/exposure_bias) = 1; hable_piecewise: 1 at the white that
-//           shoulder_strength says, and with the defaults the identity up to it.
-// Differs   hable: nowhere. As on the page, the white W is not scaled by the bias: with the bias of
-//           2, white is reached at scene-linear 5.6. (Godot scales both, so its preset has white 2
-//           for a scene white of 1; some ports put the bias on the output.)
-//           hable_piecewise: a toe that ends below 2^-100 is no toe (the source takes the logarithm
-//           of 0), and the slopes where the segments meet are limited to [2^-24, 2^24], where the
-//           source has 0 and infinity: a joint at black with a gamma that is not 1. A shoulder that
-//           aims a million times above white is an error: no digits of the curve are left. The
-//           source's floors of 1e-5 on the light of a joint, and its slope of 1 where the straight
-//           part has no length, are kept.
+// Keeps     f(0) = 0. hable: f(white/exposure_bias) = 1; hable_piecewise: 1 at the white given by
+//           shoulder_strength, and the identity up to it with the defaults.
+// Differs   hable: nowhere. As on the page, the bias does not scale the white W: with the bias of
+//           2, scene-linear 5.6 is white. (Godot scales both, so its preset has white 2 for a scene
+//           white of 1; some ports apply the bias to the output.)
+//           hable_piecewise: a toe that ends below 2^-100 counts as no toe (the source takes the
+//           logarithm of 0). The slopes at the joints of the segments are limited to [2^-24, 2^24];
+//           the source has 0 and infinity for a joint at black with a gamma other than 1. A
+//           shoulder that aims a million times above white is an error, because no digits of the
+//           curve remain. The source's floors of 1e-5 on the output at a joint, and its slope of 1
+//           for a linear segment without length, are kept.
 // Check     mid gray 0.18 -> 0.128338449 (hable), 0.305855436 (hable:godot), 0.0664512855
 //           (hable_piecewise:film) (python_check/operators/hable.py).
 #include <algorithm>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Khronos PBR Neutral: base colors of materials as they are, lights compressed and whitened; and
-// Filament's variant.
+// Khronos PBR Neutral: keeps the base colors of materials, compresses highlights and fades them to
+// white; and Filament's variant.
 //
 // Source    Khronos Group, "Khronos PBR Neutral Tone Mapper", 2024: KhronosGroup/ToneMapping,
 //           PBR_Neutral, pbrNeutral.glsl. Google Filament, ToneMapper.cpp, PBRNeutralToneMapper.
-// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, inf), negatives: clamped
-//           at 0 (the toe's parabola takes them further down).
+// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, inf), negatives clamped at
+//           0 (the toe's parabola would lower them further).
 // Out       display-linear RGB, 1.0 = display peak; range [0, 1).
 // Kind      3D, of the largest and the smallest channel: a hexcone stage. With x = min, p = max -
 //           offset(x), Ks = start_compression - 0.04 and d = 1 - Ks, the source subtracts the
@@ -15,12 +15,12 @@
 //           g = 1 - 1/(desaturation (p - n) + 1):
 //             n/p (p - (max - in)) (1 - g) + g n = n - (1 - g) n/p (max - in).
 //           So value(p) is p, then n; chroma(p) is 1, then (1 - g) n/p. Filament mixes towards 1:
-//           its value(p) is (1 - g) n + g. Both go over at Ks with one slope. Monotone on the
+//           its value(p) is (1 - g) n + g. Both have a continuous slope at Ks. Monotone on the
 //           neutral axis: yes; invertible.
-// Keeps     0 -> 0; the hue of HSV; colors whose smallest channel is 0.08 or more come out less
+// Keeps     0 -> 0; the hue of HSV; colors whose smallest channel is at least 0.08 are lowered by
 //           0.04, up to Ks.
 // Differs   nowhere. The constants 0.04 and 6.25 (a Fresnel reflectance F90 of 0.04, and 1/(4 F90))
-//           stay what they are when start_compression moves.
+//           do not change with start_compression.
 // Check     mid gray 0.18 -> 0.14, 1 -> 0.869090909 (check_values.json).
 #include "operators/family.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Reinhard's global operator and its relatives: with a white point, with a key and an average,
-// blended, with constant luminance; and Reinhard and Devlin's photoreceptor.
+// Reinhard's global operator and its variants: with a white point, with a key and an average,
+// blended, with constant luminance; and the photoreceptor model of Reinhard and Devlin.
 //
 // Source    E. Reinhard, M. Stark, P. Shirley, J. Ferwerda, "Photographic Tone Reproduction for
 //           Digital Images", ACM Transactions on Graphics 21(3), SIGGRAPH 2002: equation 3
@@ -10,25 +10,25 @@
 //           4dBcD1, 2017. reinhard_constant_luminance: 64, code/tonemapping of 64.github.io.
 //           E. Reinhard, K. Devlin, "Dynamic Range Reduction Inspired by Photoreceptor Physiology",
 //           IEEE Transactions on Visualization and Computer Graphics 11(1), 2005.
-// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, 65504], negatives: clamped
+// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, 65504], negatives clamped
 //           at 0 (f has a pole at -1).
 // Out       display-linear RGB, 1.0 = display peak; reinhard and reinhard_devlin [0, 1),
-//           reinhard_extended and nebula unbounded above their white, reinhard_jodie up to 1.36 and
-//           reinhard_constant_luminance up to 13.9, both for pure blue.
+//           reinhard_extended and nebula unbounded above their white. Pure blue reaches 1.36 with
+//           reinhard_jodie and 13.9 with reinhard_constant_luminance.
 // Kind      per channel, luminance or max (parameter `apply`); jodie and constant_luminance 3D,
 //           devlin a curve and 3D. Monotone on the neutral axis: yes; analytic inverse of reinhard:
 //           yes.
 // Keeps     f(0) = 0; reinhard f'(0) = 1; reinhard_extended f(white) = 1; nebula
 //           f(average maximum/middle_grey) = 1.
-// Differs   the paper scales by key/log-average first: here that is the exposure (nebula has both
-//           as parameters). Luminance forms are 0/0 at black in every source: here black stays
+// Differs   the paper first scales by key/log-average; here that is the exposure (nebula has both
+//           as parameters). Luminance variants are 0/0 at black in every source; here black stays
 //           black, the limit.
-//           nebula: the post's code forgets to divide by the luminance, so its picture is quadratic
-//           near black and has no end, and copies of it have that too; it limits the average to
-//           [0.3, 1]. Neither here.
-//           reinhard_devlin: the adaptation is at least 2^-100; where it is 0 the paper has 0/0.
-//           The 3D part is a function of a power of the channels, for the sake of cubes: the same
-//           values.
+//           nebula: the post's code does not divide by the luminance, so its picture is quadratic
+//           near black and has no upper bound; copies of the code do the same. The post limits the
+//           average to [0.3, 1]. Neither applies here.
+//           reinhard_devlin: the adaptation is at least 2^-100; the paper has 0/0 where it is 0.
+//           The 3D part is a function of a power of the channels, so that 3D LUTs fit it better;
+//           the values are the same.
 // Check     mid gray 0.18 -> 0.152542373 (reinhard), 0.154258475 (reinhard_extended), 0.177781456
 //           (nebula), 0.334941443 (reinhard_devlin) (python_check/operators/reinhard.py).
 #include <algorithm>

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Somewhat Boring Display Transform, Tomasz Stachowiak: exponential, between luminance and channels
-// by how colorful the light is.
+// Somewhat Boring Display Transform, Tomasz Stachowiak: an exponential on luminance for dull colors
+// and on channels for colorful ones.
 //
 // Source    T. Stachowiak, "Somewhat boring display transform", in Bevy's tonemapping_shared.wgsl.
-// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, inf), negatives: clamped
-//           at 0.
-// Out       display-linear RGB, 1.0 = display peak; white at 0.97; saturated colors up to a little
-//           above 1. Not clamped.
+// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, inf), negatives clamped at
+//           0.
+// Out       display-linear RGB, 1.0 = display peak; white at 0.97; saturated colors slightly above
+//           1. Not clamped.
 // Kind      3D. Monotone on the neutral axis: yes, 0.97 (1 - exp(-x)).
 // Keeps     0 -> 0.
 // Differs   nowhere.

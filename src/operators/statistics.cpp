@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Operators of the 1990s and 2000s that measure a picture first: by its log mean, its maximum, and
-// the eye's adaptation to it.
+// Operators of the 1990s and 2000s that measure the picture: its log mean, its maximum, and the
+// eye's adaptation to it.
 //
 // Source    drago: F. Drago, K. Myszkowski, T. Annen, N. Chiba, "Adaptive Logarithmic Mapping for
 //           Displaying High Contrast Scenes", Computer Graphics Forum 22(3), Eurographics 2003.
@@ -12,21 +12,23 @@
 //           Adaptation for Realistic Image Synthesis", SIGGRAPH 1996.
 //           durand_dorsey_rods: F. Durand, J. Dorsey, "Interactive Tone Mapping", Eurographics
 //           Workshop on Rendering, 2000.
-// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, 65504], negatives: clamped
-//           at 0. ward, tumblin_rushmeier, ferwerda and durand_dorsey_rods take scene values for
+// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, 65504], negatives clamped
+//           at 0. ward, tumblin_rushmeier, ferwerda and durand_dorsey_rods read scene values as
 //           cd/m2.
-// Out       display-linear RGB, 1.0 = display peak, all without end above it: none clamps.
-// Kind      luminance, as `apply` says; the two with rods mix the channels (matrix, curve, matrix).
-//           Monotone on the neutral axis: yes.
-// Keeps     0 -> 0, but tumblin_rushmeier f(0) = -1/contrast_max; drago maximum -> display_max/100.
-// Differs   luminance forms are 0/0 at black in every source: here black stays black.
-//           drago: without the paper's changed gamma, which a display's encoding takes the place
-//           of. ln(1 + x) is computed so that it keeps its digits for small x, and the bias power
-//           ends at 2^-100 of the maximum, because its slope has no end at 0.
-//           tumblin_rushmeier: luminance and max forms show negative light as black.
+// Out       display-linear RGB, 1.0 = display peak. No operator clamps, and all are unbounded above
+//           it.
+// Kind      luminance, or as `apply` chooses; the two with rods mix the channels (matrix, curve,
+//           matrix). Monotone on the neutral axis: yes.
+// Keeps     0 -> 0, except tumblin_rushmeier f(0) = -1/contrast_max; drago maximum ->
+//           display_max/100.
+// Differs   luminance variants are 0/0 at black in every source; here black stays black.
+//           drago: the display's encoding replaces the paper's changed gamma. ln(1 + x) keeps its
+//           digits for small x, and the bias power ends at 2^-100 of the maximum, because its slope
+//           is infinite at 0.
+//           tumblin_rushmeier: luminance and max variants show negative output as black.
 //           ferwerda, durand_dorsey_rods: the rods' signal -0.702 X + 1.039 Y + 0.433 Z is negative
-//           for saturated reds: no signal here. k is limited to [0, 1] before it is squared
-//           (T. Zeltner's "Tone Mapper" squares first, so bright scenes get night vision).
+//           for saturated reds; here it is 0 there. k is limited to [0, 1] before it is squared (T.
+//           Zeltner's "Tone Mapper" squares first, so bright scenes get night vision).
 // Check     mid gray 0.18 -> 0.0616409117 (drago), 0.0302864674 (ward), 0.0424389891
 //           (tumblin_rushmeier); (0.05, 0.1, 2) -> (0.0241295151, 0.0273945785, 0.151466987)
 //           (ferwerda, rod_weight 0.5), (0.0251727377, 0.0267686450, 0.157100389)

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Gran Turismo, Hajime Uchimura 2017: three joined parts, toe, straight line, shoulder.
+// Gran Turismo, Hajime Uchimura 2017: toe, linear segment and shoulder.
 //
 // Source    H. Uchimura, "HDR Theory and Practice", CEDEC 2017, slides 130-150.
-// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, 65504], negatives: clamped
-//           at 0 (the toe's power has no value there).
+// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, 65504], negatives clamped
+//           at 0 (the toe's power is undefined below).
 // Out       display-linear RGB, 1.0 = paper white; range [b, P].
 // Kind      per channel; monotone on the neutral axis: yes.
-// Keeps     f(0) = b; straight line of slope a through (m, m).
+// Keeps     f(0) = b; a line of slope a through (m, m).
 // Differs   nowhere: the unused helpers L0, L1 of most ports are left out, and the shoulder is
-//           evaluated from its own start on, which it has weight 0 before.
+//           evaluated only from its start, because its weight is 0 below.
 // Check     mid gray 0.18 -> 0.178994806 (python_check/operators/uchimura.py).
 #include "base/format_number.h"
 #include "operators/family.h"

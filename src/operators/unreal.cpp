@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Unreal Engine 4.15 and later: the filmic curve on log10, between the RRT's modifiers.
+// Unreal Engine 4.15 and later: the filmic curve in log10, between the RRT's modifiers.
 //
 // Source    Epic Games, FilmToneMap of TonemapCommon.ush, Unreal Engine 4.15 and later, as facts:
-//           its text is under the Epic license and nothing of it is here.
-// In        scene-linear RGB, working primaries AP1 (ACEScg); domain [0, inf), negatives: clamped
-//           at 0.
+//           its text is under the Epic license, and none of it is here.
+// In        scene-linear RGB, working primaries AP1 (ACEScg); domain [0, inf), negatives clamped at
+//           0.
 // Out       display-linear RGB in AP1, 1.0 = display peak; range [0, 1 + white_clip).
-// Kind      matrix, curve, matrix; with glow_and_red=on 3D before them. Monotone on the neutral
-//           axis: yes with the defaults.
-// Keeps     mid gray 0.18 -> 0.18 for every slope and toe, where the shoulder begins above it; 0 ->
-//           0 (with black_clip above 0 more than black is shown as 0).
-// Differs   The source takes log10 of its input and blends toe, straight line and shoulder with
-//           weights of 0 beyond their parts; at black that is 0 times infinity. Here each part is a
-//           rational in a power of x, u/(1 + u), and is taken only where it has weight, so black is
-//           the toe's own limit, -black_clip, clamped to 0. BlueCorrection, ExpandGamut and
-//           ToneCurveAmount, which come before and after it in the engine, are not in it. Toe 1
-//           without black_clip and shoulder 1 without white_clip leave no toe or shoulder: an
-//           error. The preset legacy has the numbers of the documentation, from memory.
+// Kind      matrix, curve, matrix; with glow_and_red=on a 3D stage before them. Monotone on the
+//           neutral axis: yes with the defaults.
+// Keeps     mid gray 0.18 -> 0.18 for every slope and toe, if the shoulder begins above it; 0 -> 0
+//           (with black_clip above 0, more than black is shown as 0).
+// Differs   The source takes log10 of its input and blends toe, line and shoulder with weights of 0
+//           outside their segments; at black that is 0 times infinity. Here each segment is a
+//           rational in a power of x, u/(1 + u), and is evaluated only where it has weight, so
+//           black is the limit of the toe, -black_clip, clamped to 0. BlueCorrection, ExpandGamut
+//           and ToneCurveAmount, which the engine applies before and after it, are not included.
+//           Toe 1 without black_clip and shoulder 1 without white_clip leave no toe or shoulder,
+//           which is an error. The preset legacy has the numbers of the documentation, from memory.
 // Check     mid gray 0.18 -> 0.18, (0.8, 0.1, 0.05) in AP1 -> red 0.582348314 (check_values.json).
 #include <algorithm>
 #include <cmath>

@@ -42,7 +42,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// A form of the standard: what `output` chooses.
+/// A variant of the standard, chosen by `output`.
 struct Form {
     const char* id;
     bool is_hdr;
@@ -68,7 +68,7 @@ const Form& form_of(const Params& p) {
 }
 
 // ---------------------------------------------------------------------------------------------
-// Curves, of log10 to log10: quadratics between knots
+// Curves from log10 to log10: quadratics between knots
 
 struct Knot {
     double x, y, slope;
@@ -87,7 +87,7 @@ Knots bspline_knots(const std::array<double, N>& c, double begin, double end) {
     return knots;
 }
 
-/// The CTL's curves: below and above mid gray, where either has a knot.
+/// The CTL's curves, below and above mid gray. Both halves have a knot there.
 struct TwoSplines {
     Knots low, high;
 };
@@ -117,7 +117,7 @@ Quadratics quadratics(const TwoSplines& splines) {
     return pieces;
 }
 
-/// Flat below the first piece; the last one has no end.
+/// Constant below the first piece; the last piece is unbounded.
 Expr spline(const Quadratics& pieces, const Expr& x) {
     const Expr at = named("inside", max(x, pieces.front().x));
     const auto value = [&](const Quadratic& q) {
@@ -134,10 +134,10 @@ constexpr double kMidGrey = 0.18;
 constexpr double kMidLight = 4.8;  // cd/m2 of it
 constexpr double kMidSlope = 1.55;
 
-/// Of scene-linear 0.18, `stops` up.
+/// Scene value of `stops` above scene-linear 0.18.
 double log10_scene(double stops) { return std::log10(kMidGrey) + stops * std::log10(2.0); }
 
-/// ACESlib.Tonescales, segmented_spline_c5, without the last of each six coefficients, which no
+/// ACESlib.Tonescales, segmented_spline_c5, without the last of six coefficients each, which no
 /// interval uses.
 TwoSplines rrt_splines() {
     constexpr std::array low = {-4.0, -4.0, -3.1573765773, -0.4852499958, 1.8477324706};
@@ -177,7 +177,7 @@ TwoSplines ssts_splines(double peak, double mid_light) {
     const double mid = std::log10(kMidLight);
     constexpr double low_stops = -15;  // of 0.0001 cd/m2; 0.02 has -6.5
     const double high_stops = between(top, std::log10(48.0), 4, 6.5, 18);
-    // Half an interval up or down the slope at mid gray, of the outermost coefficients.
+    // The outermost coefficients lie half an interval away, along the slope at mid gray.
     const double half_low = kMidSlope * std::log10(2.0) * -low_stops / 6;
     const double half_high = kMidSlope * std::log10(2.0) * high_stops / 6;
     const std::array low = {bottom, bottom, std::lerp(bottom, mid, 0.18), mid - half_low,
@@ -197,7 +197,8 @@ TwoSplines ssts_splines(double peak, double mid_light) {
     return splines;
 }
 
-/// Two quadratics with the slopes of two knots where one would miss the second: where they meet.
+/// Position where two quadratics meet that have the slopes of two knots. One quadratic would miss
+/// the second knot.
 Knot knot_between(const Knot& a, const Knot& b) {
     const double width = b.x - a.x;
     const double mean = (b.y - a.y) / width;
@@ -212,8 +213,8 @@ Knot knot_between(const Knot& a, const Knot& b) {
 
 /// The knots as OpenColorIO prints them, with eight decimals.
 /// @param has_other_top  OpenColorIO limits slopes so that a curve stays monotone. In the flat last
-///                       interval of this curve a rounding to float makes it take 0.995 of the
-///                       slope at its begin, and divide the two intervals that meet there.
+///                       interval of this curve, rounding to float makes it use 0.995 of the slope
+///                       at the start of the interval, and split both intervals that meet there.
 Knots ocio_knots(const TwoSplines& splines, bool has_other_top) {
     Knots knots = splines.low;
     knots.insert(knots.end(), splines.high.begin() + 1, splines.high.end());
@@ -233,9 +234,9 @@ Knots ocio_knots(const TwoSplines& splines, bool has_other_top) {
 
 Expr power_of_10(const Expr& y) { return exp2(y * std::log2(10.0)); }
 
-/// Light of a channel of AP1 -> light between the black and the peak of the form, [0, 1].
+/// A channel of AP1 -> display-linear value between black and peak, [0, 1].
 Expr tone_curve(const Form& form, bool is_ocio) {
-    constexpr double half_min = 0x1p-24;  // below it all curves are flat
+    constexpr double half_min = 0x1p-24;  // below it all curves are constant
     const Expr x = named("log_scene", log2(max(Expr::input(), half_min)) * std::log10(2.0));
     const auto curve = [&](const TwoSplines& splines, bool has_other_top) {
         return is_ocio ? quadratics(ocio_knots(splines, has_other_top)) : quadratics(splines);
@@ -258,7 +259,7 @@ Expr tone_curve(const Form& form, bool is_ocio) {
 }
 
 // ---------------------------------------------------------------------------------------------
-// Behind it
+// After the curve
 
 /// Limited in the primaries under the ACES white, then adapted to D65, in units of 100 cd/m2.
 Pipeline hdr_light(const Primaries& limit, double peak) {
@@ -268,7 +269,7 @@ Pipeline hdr_light(const Primaries& limit, double peak) {
             MatrixStage{scale(multiply(inverse(rgb_to_xyz(kRec2020)), adapted), peak / 100)}};
 }
 
-/// From a dark to a dim surround: Y^0.9811 with the chromaticity kept.
+/// From a dark to a dim surround: Y^0.9811, same chromaticity.
 ToneScaleStage dim_surround(bool is_ocio) {
     const Expr x = Expr::input();
     constexpr double gamma = 0.9811;

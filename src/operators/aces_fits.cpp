@@ -125,7 +125,7 @@ Operator hill() {
     return op;
 }
 
-/// The factor of the first term of the denominator stands outside of its bracket.
+/// The factor of the denominator's first term stands outside its bracket.
 Operator hill_misplaced_bracket() {
     Operator op =
         defect_of("aces_hill:threejs", "aces_hill_misplaced_bracket",
@@ -170,7 +170,7 @@ Operator hill_misprinted_product() {
     return op;
 }
 
-/// From Rec.2020 by way of XYZ without adaptation: D65 stays D65 and is no neutral of AP1.
+/// From Rec.2020 through XYZ without adaptation: D65 stays D65, which is not neutral in AP1.
 Matrix3 rec2020_to_ap1_unadapted() {
     return multiply(inverse(rgb_to_xyz(kAP1)), rgb_to_xyz(kRec2020));
 }
@@ -188,8 +188,8 @@ Operator filament() {
     op.dialects = "ACES";
     op.negatives = kNegativesClampAtZero;
     op.working = kRec2020;
-    // The largest difference that the formulas of the two weights, up to 0.0074 apart, make for any
-    // color (test_operators.py): 7.37e-3 on sRGB, at Rec.2020 light 11.4, 0, 6.8.
+    // The two weights differ by up to 0.0074. Their largest effect on any color is 7.37e-3 on sRGB,
+    // at Rec.2020 11.4, 0, 6.8 (test_operators.py).
     op.bounds = {.cube = 7.4e-3,
                  .reason = "OpenColorIO's fixed functions weight hues near red differently"};
     op.parameters = {number_parameter(
@@ -203,13 +203,13 @@ Operator filament() {
         const Vector3 w = ap1_weights();
         const Expr x = Expr::input();
         return {limit_to_positive(), MatrixStage{to_ap1, "to_ap1"},
-                ClampStage{0, kInfinity},  // finds nothing: Rec.2020 lies inside AP1
+                ClampStage{0, kInfinity},  // no effect: Rec.2020 lies inside AP1
                 ap1_glow_and_red_modifier(1e-5), ClampStage{0, kHalfMax},
                 MatrixStage{saturation_matrix(0.96, w), "rrt_saturation"},
                 scale_stage(p.expr("brightness")),
                 curve_stage((x * (2.785085 * x + 0.107772)) /
                             (x * (2.936045 * x + 0.887122) + 0.806889)),
-                // To the dim surround: Y^0.9811 with the chromaticity kept.
+                // To the dim surround: Y^0.9811, same chromaticity.
                 ToneScaleStage{ToneScaleStage::Norm::luminance, w, pow(x, 0.9811)},
                 MatrixStage{saturation_matrix(0.93, w), "odt_saturation"},
                 MatrixStage{inverse(to_ap1), "from_ap1"}};

@@ -63,8 +63,8 @@ constexpr Matrix3 kOutset = {{
 constexpr double kLowest = -12.47393;
 constexpr double kHighest = 4.026069;
 
-/// The clamp of the normalized log value, in scene-linear: a stage of its own, not a part of the
-/// curve.
+/// Clamp of the normalized log value, in scene-linear. It is a separate stage, so that the curve
+/// has no corners.
 Stage limit_to_shaper() { return ClampStage{std::exp2(kLowest), std::exp2(kHighest)}; }
 
 /// Scene-linear in the shaper's range -> [0, 1]; mid gray -> 10/16.5.
@@ -161,7 +161,7 @@ Operator minimal() {
     return op;
 }
 
-/// log2 never gets more than 0, so 4 of the 16.5 stops of the curve are never used.
+/// The input of log2 is at most 1, so the upper 4 of the curve's 16.5 stops are never used.
 Operator minimal_clamped() {
     Operator op =
         defect_of("agx_minimal", "agx_minimal_clamped",
@@ -202,7 +202,8 @@ Operator matrix_and_power() {
     return op;
 }
 
-/// Outset, and code values to light: what is below 0 has no power.
+/// Outset, then code values to display-linear. Values below 0 are clamped, because the power is
+/// undefined there.
 Pipeline outset_to_light() {
     return {MatrixStage{kAgxOutsetRec2020, "outset"}, ClampStage{0, kInfinity},
             named("to_light", curve_stage(pow(Expr::input(), 2.2)))};
@@ -226,14 +227,12 @@ Operator threejs() {
     op.deviations = {{DocumentedDifference::Kind::never_reaches_white, 0.997, ""},
                      {DocumentedDifference::Kind::not_monotone, 16, ""}};
     op.build = [](const Params&) -> Pipeline {
-        // clang-format off
-        // Rec.709 to Rec.2020 and back, as the source prints them: 0.0113 is not the rounded value.
-        constexpr Matrix3 to_rec2020 = {{{0.6274, 0.3293, 0.0433},
-                                         {0.0691, 0.9195, 0.0113},
-                                         {0.0164, 0.0880, 0.8956}}};
-        constexpr Matrix3 to_rec709 = {{{ 1.6605, -0.5876, -0.0728},
-                                        {-0.1246,  1.1329, -0.0083},
-                                        {-0.0182, -0.1006,  1.1187}}};
+        // clang-format off Rec.709 to Rec.2020 and its inverse, as the source prints them: 0.0113
+        // is not the rounded value.
+        constexpr Matrix3 to_rec2020 = {
+            {{0.6274, 0.3293, 0.0433}, {0.0691, 0.9195, 0.0113}, {0.0164, 0.0880, 0.8956}}};
+        constexpr Matrix3 to_rec709 = {
+            {{1.6605, -0.5876, -0.0728}, {-0.1246, 1.1329, -0.0083}, {-0.0182, -0.1006, 1.1187}}};
         // clang-format on
         const Pipeline stages = {
             MatrixStage{to_rec2020, "to_rec2020"}, MatrixStage{kAgxInsetRec2020, "inset"},
@@ -244,8 +243,8 @@ Operator threejs() {
     return op;
 }
 
-/// Filament's look on code values: a CDL whose saturation is about the luma from before slope and
-/// power, so that no chain of curves and matrices makes it.
+/// Filament's look on code values: a CDL that saturates about the luma from before slope and power,
+/// which no chain of curves and matrices can express.
 CrossTalkStage filament_look(const Vector3& slope, double power, double saturation) {
     const std::array<Expr, 3> v = {Expr::input(0), Expr::input(1), Expr::input(2)};
     const Expr luma =
@@ -270,16 +269,16 @@ Operator filament() {
     op.working = kRec2020;
     op.looks = {{"golden", "Golden", "warm: slope 1 0.9 0.5, power 0.8, saturation 1.3"},
                 {"punchy", "Punchy", "darker and stronger: power 1.35, saturation 1.4"}};
-    // Measured with AP1, not derived: red of 0.156 0.938 0.094 is 0.370 - 0.334 - 0.011 of light,
-    // and off by 1.65e-6 of the code. Rounding of what enters the matrices explains 1.34e-6. The
-    // rest is of the tables (the curve's entries, 2.7e-7; straight lines for the power 2.2, 3.3e-7)
-    // and of the matrices' own sums; were all of these as large as they can be, it would be 3.0e-6.
+    // Measured with AP1, not derived: red of 0.156 0.938 0.094 is 0.370 - 0.334 - 0.011, with an
+    // error of 1.65e-6 in the code value. Rounding before the matrices explains 1.34e-6. The tables
+    // (curve entries, 2.7e-7; straight lines for the power 2.2, 3.3e-7) and the sums in the
+    // matrices explain the rest. The worst case of all of them is 3.0e-6.
     op.bounds = {.ocio_cpu = 4e-7,
                  .cube = 2.4e-2,
                  .reason =
                      "matrices with cancellation amplify the rounding of the tables; the looks "
                      "need a 3D LUT, because they saturate about a luma from before their power"};
-    // Punchy takes black below 0 before it is light: there the lifted black is gone.
+    // Punchy moves black below 0 before it is decoded, which removes the lifted black.
     op.deviations = {{DocumentedDifference::Kind::black, 2.5e-6, ""},
                      {DocumentedDifference::Kind::black, 5.2e-5, "golden"},
                      {DocumentedDifference::Kind::black, 0, "punchy"},
@@ -295,7 +294,7 @@ Operator filament() {
             limit_to_positive(), MatrixStage{kAgxInsetRec2020, "inset"}, limit_to_shaper(),
             named("contrast", curve_stage(polynomial7(normalised_log(Expr::input()))))};
         if (!p.look().empty()) {
-            stages.push_back(ClampStage{0, 1});  // finds nothing: the polynomial stays inside
+            stages.push_back(ClampStage{0, 1});  // no effect: the polynomial stays inside
             stages.push_back(p.look() == "golden" ? filament_look({1, 0.9, 0.5}, 0.8, 1.3)
                                                   : filament_look({1, 1, 1}, 1.35, 1.4));
         }
@@ -328,8 +327,7 @@ Operator godot44() {
         constexpr Matrix3 out = {{{ 1.964550960273326, -0.855858451178075, -0.108867108268316},
                                   {-0.299322433909111,  1.326451074150236, -0.027084020983875},
                                   {-0.164368338060804, -0.238224640688606,  1.402665347143272}}};
-        // clang-format on
-        // The shaper's ends with all digits, not those that the other dialects print.
+        // clang-format on Ends of the shaper with all digits; the other dialects print fewer.
         const double lowest = std::log2(0.18) - 10;
         const double highest = std::log2(0.18) + 6.5;
         const Expr n = named("n", (log2(Expr::input()) - lowest) / (highest - lowest));
@@ -337,7 +335,7 @@ Operator godot44() {
         const Expr n4 = named("n4", n2 * n2);
         const Expr code = named("code", 0.021 * n + 4.0111 * n2 - 25.682 * n2 * n + 70.359 * n4 -
                                             74.778 * n4 * n + 27.069 * n4 * n2);
-        // n, and the code with it, may be rounded to below 0 at the lower end.
+        // Rounding may move n, and with it the code, below 0 at the lower end.
         return {ClampStage{2e-10, kHalfMax}, MatrixStage{in, "inset"},
                 ClampStage{std::exp2(lowest), std::exp2(highest)},
                 curve_stage(pow(max(code, 0), 2.4)), MatrixStage{out, "outset"}};
@@ -373,7 +371,7 @@ Operator godot() {
                                   {-0.299313364904742,  1.3263979646198,   -0.0270845997150571},
                                   {-0.164352742528393, -0.238183969428088,  1.40253671195648}}};
         // clang-format on
-        constexpr double cross = 0.18;  // where toe and shoulder meet: in and out
+        constexpr double cross = 0.18;  // input and output where toe and shoulder meet
         const Expr contrast = p.expr("contrast");
         const Expr output_max = p.expr("output_max");
         const Expr a = named("a", (1 / cross - 1) * pow(cross, contrast));

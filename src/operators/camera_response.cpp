@@ -13,9 +13,9 @@
 // Kind      per channel, straight lines between the measured points; monotone (the reader refuses
 //           curves that fall).
 // Keeps     the first and the last value of the file; of the built-in curve 0 -> 0, iso -> 1.
-// Built in  no measured curve, because the database does not state a license. Without a file the
-//           curve is synthetic: I(B) = (1 - exp(-3 B^0.7)) / (1 - exp(-3)) at the 1024 irradiances
-//           i/1023, with straight lines between them.
+// Built in  no measured curve, because the database does not state terms of redistribution. Without
+//           a file the curve is synthetic: I(B) = (1 - exp(-3 B^0.7)) / (1 - exp(-3)) at the 1024
+//           irradiances i/1023, with straight lines between them.
 // Differs   from the program of 64.github.io, which has four errors. It uses the end of an interval
 //           as its start (the result of upper_bound) and extrapolates from the next interval, an
 //           error of up to 1.04e-4. It divides 0 by 0 in the last interval. At iso it reads past

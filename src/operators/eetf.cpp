@@ -34,7 +34,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// What the curves are between, in cd/m2.
+/// Limits of source and target, in cd/m2.
 struct Limits {
     double source_black, source_peak, target_black, target_peak, reference_white;
 
@@ -55,7 +55,7 @@ struct Limits {
         }
     }
     [[nodiscard]] bool is_compressed() const { return source_peak > target_peak; }
-    /// The source's limits as scene values.
+    /// Limits of the source as scene values.
     [[nodiscard]] double lowest() const { return source_black / reference_white; }
     [[nodiscard]] double highest() const { return source_peak / reference_white; }
 };
@@ -88,7 +88,7 @@ Operator eetf_operator() {
     op.working = kRec2020;
     op.dialects = "EETF";
     op.bounds = {
-        // With 1e-6 for its goal a color far outside of the gamut was found just beyond it.
+        // With a goal of 1e-6, one color far outside the gamut exceeded the bound slightly.
         .simd_goal = 7e-7,
         .ocio_cpu = 3e-5,
         .ocio_gpu = 5e-5,
@@ -99,12 +99,12 @@ Operator eetf_operator() {
     return op;
 }
 
-/// @param nits  light of the target in cd/m2, of the scene value between the source's limits.
+/// @param nits  luminance on the target in cd/m2, for a scene value between the source's limits.
 Pipeline eetf(const Expr& nits, const Limits& limits, const Params& params) {
     const double unit = output_unit(params);
     const double target_lo = limits.is_compressed() ? limits.target_black / unit : 0;
     const Expr f = nits / unit;
-    // Channel by channel the limits are stages of their own: their corners stay out of the tables.
+    // Per channel, the limits are separate stages, so that the tables have no corners.
     if (params.choice("apply") == "channels") {
         return Pipeline{ClampStage{limits.lowest(), limits.highest()}} +
                apply_tone_curve({.f = f, .weights = kRec2020Weights}, params) +
@@ -120,7 +120,7 @@ Expr source_nits(const Limits& limits) { return Expr::input() * limits.reference
 double pq(double nits) { return pq_encode_nits(nits).value(); }
 double lerp(double a, double b, double t) { return a + t * (b - a); }
 
-/// Code values of PQ with the source's range as [0, 1]: `E` of the Report.
+/// PQ code values with the source's range scaled to [0, 1]: `E` of the Report.
 Expr bt2390_curve(const Limits& limits, double knee_offset, bool is_libplacebo) {
     const double lo = pq(limits.source_black);
     const double range = pq(limits.source_peak) - lo;
@@ -212,7 +212,7 @@ Operator bt2446a() {
     op.parameters = with_limits({});
     // 1.0770 Y and -1.1510 Y^2 + 2.7811 Y - 0.6302 differ at Y = 0.7399.
     op.deviations = {{DocumentedDifference::Kind::jumps, 0.00104, ""}};
-    // 0.001 of the light, which a matrix and sRGB's slope at black enlarge.
+    // 0.001 display-linear, amplified by a matrix and by sRGB's slope at black.
     op.bounds = {.ocio_cpu = 5e-3,
                  .ocio_gpu = 5e-3,
                  .reason = "the Report's curve jumps where its segments meet"};
@@ -224,8 +224,8 @@ Operator bt2446a() {
     return op;
 }
 
-/// Two polynomials that meet in a pivot with one slope, all in code values of PQ.
-/// @param average  of the scene, cd/m2; 0: not known.
+/// Two polynomials that meet at a pivot with equal slope, in PQ code values.
+/// @param average  of the scene, in cd/m2; 0 if unknown.
 Expr spline_curve(const Limits& limits, double contrast, double average) {
     const double smin = pq(limits.source_black);
     const double smax = pq(limits.source_peak);

@@ -35,7 +35,7 @@ constexpr const char* kZeltner =
 constexpr const char* kChannelsMayClip =
     "apply=luminance keeps chromaticity, so a saturated channel may exceed 1 and clip";
 
-/// A scene value that every picture has one of its own for: its maximum.
+/// A parameter that the maximum of the picture sets.
 ParameterSpec maximum_luminance(std::string name, double value, double min, std::string help) {
     return statistic_parameter(
         number_parameter(std::move(name), "scene-linear", value, min, kHalfMax, std::move(help)),

@@ -23,8 +23,8 @@ constexpr std::array<unsigned, 15> kColors = {0x000000, 0x16003B, 0x3B0A6B, 0x2A
                                               0x1E97B5, 0x1FA36B, 0x808080, 0x7FB13A, 0xC9C22A,
                                               0xE8982A, 0xE2602C, 0xD62839, 0xF27BB5, 0xFFFFFF};
 constexpr double kLowestStop = -7;
-/// Of the way from one color to the next, in stops: wide enough for tables over half floats, which
-/// have 1024 entries to the stop, to show every picture within a step of 16 bits.
+/// Half the width of a transition between two colors, in stops. It is wide enough that half-float
+/// tables, with 1024 entries per stop, show every picture within a 16-bit step.
 constexpr double kHalfWidth = 1.0 / 8;
 
 double light(unsigned color, unsigned channel) {
@@ -65,7 +65,8 @@ std::vector<Operator> define_false_color() {
                 f = f + (light(kColors[i + 1], channel) - light(kColors[i], channel)) * weight;
             }
         }
-        // Eight stops to either side everything is as at seven, and black has a logarithm.
+        // The colors are constant beyond seven stops. The limit of eight stops gives black a
+        // logarithm.
         return {limit_to_positive(), MatrixStage{{kRec709Weights, kRec709Weights, kRec709Weights}},
                 ClampStage{0.18 * std::exp2(-8), 0.18 * std::exp2(8)}, colors};
     };

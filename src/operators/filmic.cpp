@@ -50,10 +50,10 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// Its light is code values: a 2.2 power is in the constants.
+/// Its output is code values: the constants include a 2.2 power.
 constexpr double kBakedPower = 2.2;
 
-/// The rational that approximates Kodak's film with its print and gamma; of x >= 0.
+/// Rational that approximates Kodak's film, print and gamma, for x >= 0.
 Expr hejl_rational(const Expr& x) { return x * (6.2 * x + 0.5) / (x * (6.2 * x + 1.7) + 0.06); }
 
 Operator hejl_burgess_dawson() {
@@ -136,7 +136,7 @@ Operator aldridge() {
         const Expr v = Expr::input();
         // v + (2q - v) clamp(2q - v, 0, 1) (0.25/q) - q
         Expr x = select(less(v, 2 * q), v * v / (4 * q), v - q);
-        // Nothing below 2q - 1 where that is 0.
+        // No value below 2q - 1 reaches the curve, where the clamp is 0.
         if (!fails(less(0.5, q)))
             x = select(less(v, 2 * q - 1), max(v + (2 * q - v) * (0.25 / q) - q, 0), x);
         return tone_curve_pipeline({.f = hejl_rational(x), .code_power = kBakedPower}, p);
@@ -208,7 +208,7 @@ Operator lottes() {
     return op;
 }
 
-/// The same with d = 1, in Filament's letters.
+/// The same with d = 1, with Filament's names.
 Expr filament_curve(const Params& p) {
     const Expr contrast = p.expr("contrast");
     const Expr mid_out = p.expr("mid_out");
@@ -277,7 +277,8 @@ Operator ue3() {
     return op;
 }
 
-/// Two hyperbolas that meet in (c, k) with one slope: a toe from black b, a shoulder to white w.
+/// Two hyperbolas that meet at (c, k) with equal slope: a toe from black b and a shoulder to white
+/// w.
 Expr day_curve(const Params& p) {
     const Expr w = p.expr("white");
     const Expr b = p.expr("black");

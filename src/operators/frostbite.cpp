@@ -65,7 +65,7 @@ CrossTalkStage frostbite_mapping(const Expr& linear_end) {
                                           linear_end + rest * (1 - exp(-(above / rest)))));
     };
 
-    // Chroma falls with intensity: lights fade to white before anything is compressed.
+    // Chroma falls with intensity, so highlights fade to white before the compression.
     const std::array<Expr, 3> in = to_ictcp(compose({}));
     const Expr intensity = named("intensity", in[0]);
     const Expr saturation = named("saturation", pow(smoothstep(1, 0.3, intensity), 1.3));
@@ -82,7 +82,7 @@ CrossTalkStage frostbite_mapping(const Expr& linear_end) {
     for (Expr& v : compressed)
         v = named("mixed", mix(compress(v), v * ratio, 0.6));
 
-    // What compression took from the chroma is given back in part, where the input was not bright.
+    // Restores part of the chroma that the compression removed, unless the input was bright.
     const std::array<Expr, 3> m = to_ictcp(compressed);
     const Expr boost = named("boost", 0.3 * smoothstep(1, 0.5, intensity));
     const Expr dimmed = named("dimmed", m[0] / max(intensity, 1e-3));

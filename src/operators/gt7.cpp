@@ -36,7 +36,7 @@ constexpr Matrix3 kRgbToLms = {{{1688.0 / 4096, 2146.0 / 4096,  262.0 / 4096},
 constexpr Matrix3 kLmsToIctcp = {{{ 2048.0 / 4096,   2048.0 / 4096,    0.0},
                                   { 6610.0 / 4096, -13613.0 / 4096, 7003.0 / 4096},
                                   {17933.0 / 4096, -17390.0 / 4096, -543.0 / 4096}}};
-/// Their inverses as the sample code prints them.
+/// The inverses that the sample code prints.
 constexpr Matrix3 kIctcpToLms = {{{1.0,  0.00860904,  0.11103},
                                   {1.0, -0.00860904, -0.11103},
                                   {1.0,  0.560031,   -0.320627}}};

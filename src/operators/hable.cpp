@@ -74,7 +74,7 @@ Operator uncharted() {
     op.licence = "published formula (code on the page: public domain)";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Hable";
-    // D and F bounded away from 0: their product is the curve's denominator at black.
+    // D and F stay away from 0, because their product is the curve's denominator at black.
     op.parameters = with_apply(
         "channels",
         {number_parameter("shoulder_strength", "", 0.15, 0.01, 1, "A of the formula"),
@@ -143,27 +143,27 @@ Operator gdc() {
     return op;
 }
 
-/// base^exponent, 0 for a base up to 2^-100: at 0 the slope of a power below 1 has no end.
+/// base^exponent, 0 for a base up to 2^-100, because the slope of a power below 1 is infinite at 0.
 Expr power(const Expr& base, double exponent) {
     return select(less(0x1p-100, base), pow(base, exponent), 0);
 }
 
-/// (1 - t)^exponent for an exponent of 1 or more, 0 below e^-69 = 1e-30. What 1 - t rounds away,
-/// and a large exponent would show, is missing in both parts of the quotient.
+/// (1 - t)^exponent for an exponent of 1 or more, 0 below e^-69 = 1e-30. The rounding error of 1 -
+/// t, which a large exponent would amplify, cancels in the quotient.
 Expr power_of_1_minus(const Expr& t, double exponent) {
     const Expr u = named("u", 1 - t);
     const Expr log_u = named("log_u", select(equal(u, 1), -t, t * (log(u) / (1 - u))));
     return select(less(-69, exponent * log_u), exp(exponent * log_u), 0);
 }
 
-/// Three powers of the scene value x: a toe through black up to x0, then the straight part to the
-/// power of gamma, from x1 on a shoulder. Letters are those of the source.
+/// Three powers of the scene value x: a toe from black up to x0, then the linear segment to the
+/// power of gamma, and a shoulder from x1. The names are those of the source.
 Expr piecewise_curve(const Params& p) {
     const double shoulder_strength = p.number("shoulder_strength");
     const double angle = p.number("shoulder_angle");
     const double gamma = p.number("gamma");
 
-    // The user's parameters as points of the curve, before gamma. The straight part has slope 1.
+    // Points of the curve from the user's parameters, before gamma. The linear segment has slope 1.
     const double x0 = std::pow(p.number("toe_length"), 2.2) / 2;
     const double y0 = (1 - p.number("toe_strength")) * x0;
     const double remaining = 1 - y0;
@@ -174,7 +174,8 @@ Expr piecewise_curve(const Params& p) {
     const double overshoot_x = 2 * angle * shoulder_strength;  // in units of white
     const double overshoot_y = std::pow(1 + 0.5 * angle * shoulder_strength, gamma) - 1;
 
-    // Of normalized x/white: slope m of the straight part, and of the curve at its two ends.
+    // In normalized x/white: slope m of the linear segment, and slope of the curve at both of its
+    // ends.
     const double m = straight == 0 ? 1 : white;
     const auto slope = [&](double y) {
         return std::clamp(gamma * m * std::pow(y, gamma - 1), 0x1p-24, 0x1p24);
@@ -182,7 +183,7 @@ Expr piecewise_curve(const Params& p) {
     const double toe_y = std::max(1e-5, std::pow(y0, gamma));
     const double shoulder_y = std::max(1e-5, std::pow(y1, gamma));
 
-    const double X = (white - x1) / white + overshoot_x;  // from the shoulder's start to its end
+    const double X = (white - x1) / white + overshoot_x;  // from start to end of the shoulder
     const double Y = 1 + overshoot_y - shoulder_y;
     const double shoulder_exponent = slope(y1) * X / Y;
     const auto shoulder = [&](const Expr& x) {

@@ -41,7 +41,7 @@ Pipeline neutral(const Params& params, bool towards_white) {
     const Expr start = named("start", params.expr("start_compression") - 0.04);
     const Expr d = named("d", 1 - start);
     const Expr x = Expr::input();
-    // Below the start q is constant, so nothing is divided by 0 there.
+    // q is constant below the start, so no division by 0 occurs there.
     const Expr q = named("peak", max(x, start));
     const Expr n = named("n", 1 - d * d / (q + d - start));
     const Expr rest =
@@ -53,14 +53,14 @@ Pipeline neutral(const Params& params, bool towards_white) {
                          .chroma = select(is_base, 1, rest * (n / q))}};
 }
 
-/// Back: light of the largest channel from value(p), the others by chroma(p), then the offset from
-/// the smallest: 6.25 x^2 = m below 0.04.
+/// Inverse: the largest channel from value(p), the others from chroma(p), then the offset from the
+/// smallest: 6.25 x^2 = m below 0.04.
 Pipeline neutral_inverse(const Params& params) {
     const Expr start = named("start", params.expr("start_compression") - 0.04);
     const Expr d = named("d", 1 - start);
     const Expr x = Expr::input();
     const Expr n = named("n", max(x, start));
-    // White is infinite light: the largest that half floats hold.
+    // White is infinite in the scene: use the largest half float.
     const Expr p = named("p", d * d / max(1 - n, d * d / 65504) - d + start);
     const Expr is_base = named("is_base", less(x, start));
     const Expr to_light = named("to_light", (params.expr("desaturation") * (p - n) + 1) * (p / n));
@@ -68,7 +68,7 @@ Pipeline neutral_inverse(const Params& params) {
             HexconeStage{.offset = Expr(0),
                          .value = select(is_base, x, p),
                          .chroma = select(is_base, 1, to_light)},
-            // A color that the operator never puts out may have a channel below 0 here.
+            // Colors that the operator never produces may have a channel below 0 here.
             HexconeStage{.offset = select(less(x, 0.04), x - sqrt(max(x, 0) / 6.25), -0.04),
                          .value = x,
                          .chroma = Expr(1)}};

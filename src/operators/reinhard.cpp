@@ -137,7 +137,7 @@ Operator nebula() {
     return op;
 }
 
-/// The light of equation 4 times the color, which is not divided by its luminance.
+/// Equation 4 times the color, without the division by its luminance.
 Operator nebula_as_printed() {
     Operator op = defect_of("nebula", "nebula_as_printed", "the post on HDR of the Nebula engine",
                             "it does not divide by the luminance, so the picture is quadratic near "
@@ -198,15 +198,15 @@ Operator constant_luminance() {
                      "a 3D LUT is there"};
     op.build = [](const Params&) -> Pipeline {
         const Channels c = inputs();  // scaled by 1/(1 + L)
-        Channels handed_on = c;       // by channel i to each of the others: of the same luminance
+        Channels handed_on = c;       // passed by channel i to each other one, at equal luminance
         for (std::size_t i = 0; i < 3; ++i) {
             const double w = kRec709Weights[i];
             handed_on[i] = max(c[i] - 1, 0) * (w / (1 - w));
         }
         const Expr x = Expr::input();
         const ToneScaleStage scale{ToneScaleStage::Norm::luminance, kRec709Weights, x / (1 + x)};
-        // No channel is above 1/w, of blue 13.9. Of the 65 nodes of a cube that ends at 16 one is
-        // at 1.00, where what is handed on starts with an edge.
+        // No channel exceeds 1/w, 13.9 for blue. One of the 65 nodes of a 3D LUT that ends at 16 is
+        // at 1.00, where channels start to pass on their excess and the slope jumps.
         return {
             limit_to_positive(), scale, ClampStage{0, 16},
             CrossTalkStage{{c[0] + handed_on[1] + handed_on[2], c[1] + handed_on[2] + handed_on[0],
@@ -215,8 +215,8 @@ Operator constant_luminance() {
     return op;
 }
 
-/// The paper's m from the key k of the picture: 0.3 + 0.7 k^1.4. A picture of one luminance has no
-/// key; it gets the parameter's default.
+/// The paper's m from the key k of the picture: 0.3 + 0.7 k^1.4. A picture with a single luminance
+/// has no key and gets the parameter's default.
 double devlin_contrast(const SceneStatistics& s) {
     if (!(s.minimum_luminance > 0 && s.maximum_luminance > s.minimum_luminance)) return 0.6;
     const double k = (std::log(s.maximum_luminance) - std::log(s.log_average)) /
@@ -272,8 +272,8 @@ Operator devlin() {
         "infinite slope at black, and half floats end at 6e-8; elsewhere the error of a 3D LUT";
     op.build = [](const Params& p) -> Pipeline {
         const Expr m = p.expr("contrast");
-        // Of grays the formula makes x^(1-m)/(x^(1-m) + exp(-f m)), whose slope at black has no
-        // end. That of this power has none either, and no cube has to hold it.
+        // For grays the formula is x^(1-m)/(x^(1-m) + exp(-f m)), whose slope at black is infinite.
+        // This power takes the infinite slope out of the 3D LUT.
         const Expr steepness = named("steepness", max(1 - m, 0.25));
         Channels in = inputs();
         for (Expr& channel : in)

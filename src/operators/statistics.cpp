@@ -177,14 +177,15 @@ Operator tumblin_rushmeier() {
 // ---------------------------------------------------------------------------------------------
 // Cones and rods
 
-/// What the rods see of red, green and blue: -0.702 X + 1.039 Y + 0.433 Z, with the XYZ of Rec.709.
+/// Response of the rods to red, green and blue: -0.702 X + 1.039 Y + 0.433 Z, with the XYZ of
+/// Rec.709.
 constexpr Vector3 kRods = {-0.702 * 0.412453 + 1.039 * 0.212671 + 0.433 * 0.019334,
                            -0.702 * 0.357580 + 1.039 * 0.715160 + 0.433 * 0.119193,
                            -0.702 * 0.180423 + 1.039 * 0.072169 + 0.433 * 0.950227};
 
 double dot(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/// Smallest luminance difference that cones see when adapted to La cd/m2.
+/// Smallest luminance difference visible to cones adapted to La cd/m2.
 double cone_threshold(double La) {
     const double l = std::log10(La);
     if (l <= -2.6) return std::pow(10, -0.72);
@@ -192,7 +193,7 @@ double cone_threshold(double La) {
     return std::pow(10, std::pow(0.249 * l + 0.65, 2.7) - 0.72);
 }
 
-/// The same of rods.
+/// The same for rods.
 double rod_threshold(double La) {
     const double l = std::log10(La);
     if (l <= -3.94) return std::pow(10, -2.86);
@@ -203,8 +204,8 @@ double rod_threshold(double La) {
 /// C' = cones C + rods tint max(dot(kRods, C), 0).
 Pipeline cones_and_rods(double cones, double rods, const Vector3& tint) {
     const Expr x = Expr::input();
-    // In coordinates of which one is the rods' signal and the others do not change along the tint,
-    // only that one bends: exact as matrix, curve, matrix.
+    // Choose coordinates in which one is the rods' signal and the others do not change along the
+    // tint. Only the signal has a nonlinear curve, so matrix, curve, matrix is exact.
     const auto p =
         static_cast<std::size_t>(std::max_element(tint.begin(), tint.end()) - tint.begin());
     const double along_tint = dot(kRods, tint);
@@ -217,7 +218,7 @@ Pipeline cones_and_rods(double cones, double rods, const Vector3& tint) {
         response.f[p] = cones * x + rods * along_tint * max(x, 0);
         return {limit_to_positive(), MatrixStage{basis}, response, MatrixStage{inverse(basis)}};
     }
-    // The rods hardly see their own tint: no such coordinates.
+    // The rods hardly respond to their own tint, so these coordinates do not exist.
     const std::array<Expr, 3> c = {Expr::input(0), Expr::input(1), Expr::input(2)};
     const Expr signal =
         named("signal", max(kRods[0] * c[0] + kRods[1] * c[1] + kRods[2] * c[2], 0));

@@ -17,7 +17,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// @param l0  length of the straight part
+/// @param l0  length of the linear segment
 Expr curve(const Expr& P, const Expr& a, const Expr& m, const Expr& l0, const Expr& c,
            const Expr& b) {
     const Expr S0 = named("S0", m + l0);
@@ -44,8 +44,7 @@ Operator gran_turismo() {
     op.licence = "published formula";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Gran Turismo";
-    // Slope 0 and the ends of m and l make the formula divide by 0: the intervals stop short of
-    // them.
+    // Slope 0 and the ends of m and l make the formula divide by 0, so the ranges exclude them.
     op.parameters = with_apply(
         "channels",
         {display_parameter(
@@ -76,7 +75,7 @@ Operator gran_turismo() {
     return op;
 }
 
-/// The straight part ends at 2.17, so that the shoulder begins above the display's peak.
+/// The linear segment ends at 2.17, so the shoulder begins above the display's peak.
 Operator misprinted() {
     Operator op = defect_of(
         "uchimura", "uchimura_misprinted",
@@ -85,7 +84,7 @@ Operator misprinted() {
         "shoulder and clips scene values above 1");
     op.build = [](const Params&) -> Pipeline {
         const double P = 1, a = 1, m = 0.22, l = 0.4, c = 1.33, b = 0;
-        // The shoulder rises without end. Light of 4 is far above its start and below its overflow.
+        // The shoulder is unbounded. 4 is far above its start and below its overflow.
         return {ClampStage{0, 4}, curve_stage(curve(P, a, m, (P - m) / l / a, c, b)),
                 ClampStage{0, 1}};
     };

@@ -29,12 +29,12 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// One s-shaped arm, level * 2u/(1 + u) with u = (x/x0)^power: a logistic function of log x. At x0
-/// it is at `level`, half its height.
+/// One s-shaped arm, level * 2u/(1 + u) with u = (x/x0)^power: a logistic function of log x. Its
+/// value at x0 is `level`, half its height.
 Expr arm(double level, const Expr& u) { return 2 * level * (u / (1 + u)); }
 
-/// The source's names: ts, ss are half the heights of toe and shoulder; tm, sm the log10 of where
-/// they are half done; st the offset of the straight line.
+/// The source's names: ts, ss are half the heights of toe and shoulder; tm, sm the log10 of the
+/// inputs at half height; st the offset of the line.
 Expr film_curve(double slope, double toe, double shoulder, double black_clip, double white_clip) {
     const double ts = 1 + black_clip - toe;
     const double ss = 1 + white_clip - shoulder;
@@ -49,7 +49,7 @@ Expr film_curve(double slope, double toe, double shoulder, double black_clip, do
     constexpr double kMidGrey = 0.18;  // in and out
     const double mid = std::log10(kMidGrey);
     const bool is_long_toe = toe > 0.8;
-    // Height of mid gray in the toe, of its whole height 2 ts.
+    // Height of mid gray as a fraction of the toe's height 2 ts.
     const double grey_in_toe = (kMidGrey + black_clip) / ts / 2;
     const double tm = is_long_toe
                           ? (1 - toe - kMidGrey) / slope + mid
@@ -58,11 +58,11 @@ Expr film_curve(double slope, double toe, double shoulder, double black_clip, do
     const double sm = shoulder / slope - st;
 
     const Expr x = Expr::input();
-    constexpr double top = 6;  // no input comes to 10^6
+    constexpr double top = 6;  // no input reaches 10^6
     const double toe_power = 2 * slope / ts / std::log(10.0);
     const double shoulder_power = 2 * slope / ss / std::log(10.0);
-    // Both arms are written from a point that is a float: of the short toe mid gray (tm may be
-    // 10^230), of the long one tm, which is below mid gray.
+    // Both arms start from a point that fits a float: mid gray for a short toe (tm may be 10^230),
+    // tm for a long toe, where it is below mid gray.
     const Expr u =
         named("u", is_long_toe ? pow(min(x, std::pow(10, tm)) / std::pow(10, tm), toe_power)
                                : grey_in_toe / (1 - grey_in_toe) * pow(x / kMidGrey, toe_power));
@@ -74,7 +74,7 @@ Expr film_curve(double slope, double toe, double shoulder, double black_clip, do
         named("shoulder_part",
               1 + white_clip - arm(ss, pow(x_shoulder / max(x, x_shoulder), shoulder_power)));
     if (sm < tm) {
-        // No straight part: toe and shoulder go over into each other.
+        // No linear segment: toe and shoulder blend into each other.
         const Expr l = named("log_light", log2(max(x, x_shoulder)) * std::log10(2.0));
         return mix(toe_part, shoulder_part, smoothstep(sm, tm, l));
     }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What applications expect of a LUT. Sources: their manuals, as far as nothing else stands beside
-// an entry.
+// What applications expect of a LUT. Sources: their manuals, unless an entry names another source.
 #include "base/strings.h"
 #include "tonewright/lut.h"
 #include "tonewright/lut_applications.h"
@@ -44,8 +43,8 @@ const std::vector<LutApplication>& all_lut_applications() {
          "rec1886",
          {},
          "tetrahedral",
-         // The LUT changes the numbers, not what the frames say of themselves: setparams says it,
-         // zscale goes by that, and the last options write it into the file.
+         // The LUT changes pixels, not the color tags of the frames: setparams sets the tags,
+         // zscale reads them, and the last options write them into the file.
          "ffmpeg -i hdr10.mkv -vf "
          "zscale=matrix=gbr:range=full,format=gbrp16le,lut3d=FILE:interp=tetrahedral,"
          "setparams=color_primaries=bt709:color_trc=bt709,zscale=matrix=bt709:range=limited,"

@@ -17,15 +17,15 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// What people ask for by name. A LUT of any other operator is one `tonewright bake` away.
+/// Operators that users ask for by name. `tonewright bake` makes LUTs of all others.
 const std::vector<std::string> kOperators = {
     "agx_blender",    "agx_sobotka", "aces_13", "aces_20",         "aces_hill",
     "aces_narkowicz", "gt7",         "hable",   "khronos_neutral", "reinhard_extended",
 };
-/// Of the numbers in cubes.
+/// Decimals of the numbers in .cube files.
 constexpr int kDecimals = 4;
 
-/// An identifier of an encoding as part of a file's name: without parameters.
+/// Identifier of an encoding in a file name, without parameters.
 std::string name_part(const std::string& id) { return id.substr(0, id.find(':')); }
 
 ShippedLut plan(const LutPresetSet& set, const std::string& id) {
@@ -65,7 +65,7 @@ void bake_shipped_lut(ShippedLut& planned) {
         planned.contents = write_lut(baked, planned.request);
     planned.lut = std::move(baked.lut);
     planned.is_fitted = baked.is_fitted;
-    // Of a 1D table there is one figure only.
+    // A 1D table has only one figure.
     const LutError other = baked.other_error.value_or(baked.error);
     planned.tetrahedral = trilinear ? other : baked.error;
     planned.trilinear = trilinear ? baked.error : other;
@@ -230,8 +230,8 @@ bool is_trilinear(const LutApplication& host) {
 }
 
 const std::vector<LutPresetSet>& lut_preset_sets() {
-    // What takes sRGB is for pictures of 8 bits: 17 points are half a code of these off in the
-    // mean. The unit test ShippedSet.FollowsItsOperators measures that none of these rings.
+    // LUTs with sRGB input are for 8-bit pictures: with 17 nodes their mean error is half a code
+    // value. The unit test ShippedSet.FollowsItsOperators measures that none of these rings.
     static const std::vector<LutPresetSet> sets = {
         {&find_lut_application("resolve"),
          "",

@@ -22,7 +22,7 @@ namespace {
 
 constexpr const char* kLutFolder = "luts";
 
-/// As one argument of a shell.
+/// Quotes a name as one shell argument.
 std::string quoted(const std::string& name) {
     return name.find(' ') == std::string::npos ? name : '"' + name + '"';
 }
@@ -85,8 +85,8 @@ std::string readme(const ConfigModel& model, const std::vector<std::string>& pro
     return text;
 }
 
-/// How far code values may be from the reference where light may be `bound`/12.92 away from it,
-/// which is sRGB's slope at black, or the code value `bound`: powers are infinitely steep there.
+/// Tolerance of code values: an error of `bound` in the code value, or of `bound`/12.92 in
+/// display-linear. 12.92 is sRGB's slope at black, where powers are infinitely steep.
 Vector3 code_tolerance(const Display& display, const Vector3& code, double bound) {
     constexpr double kSrgbSlopeAtBlack = 12.92;
     const ReferenceEngine decode(display.decode);
@@ -103,19 +103,18 @@ Vector3 code_tolerance(const Display& display, const Vector3& code, double bound
     return tolerance;
 }
 
-/// Expected code values and how near they are to be met, for check_config.py: a program that has
-/// only PyOpenColorIO.
-/// @param errors  of each view on each display, largest code value
+/// Expected code values and tolerances for check_config.py, which only needs PyOpenColorIO.
+/// @param errors  largest code value error of each view on each display
 std::string probe_csv(const ConfigModel& model,
                       const std::map<std::string, std::map<std::string, double>>& errors) {
     // Debian's OpenColorIO 2.1 is within 3e-7 of exact chains; other versions and processors round
-    // in another order and get the rest. What was measured of the others is of random colors: there
-    // is more between them.
+    // in a different order and get the rest. The errors of other views were measured on random
+    // colors, and colors between them have larger ones.
     constexpr double exact = 1e-6;
     constexpr double between_samples = 3;
     const InputSpace& space = find_input_space("lin_rec709");
     // Floats, as processors take them. Rounding all of them in a loop is wrong in GCC 12 at -O3:
-    // its vectorizer (-ftree-slp-vectorize) leaves out the way from double to float and back.
+    // its vectorizer (-ftree-slp-vectorize) drops the conversion from double to float to double.
     std::vector<std::array<float, 3>> colors;
     const auto add = [&](double r, double g, double b) {
         colors.push_back({static_cast<float>(r), static_cast<float>(g), static_cast<float>(b)});
@@ -220,14 +219,15 @@ std::vector<GeneratedFile> make_config(const ConfigOptions& options) {
     config->setSearchPath(kLutFolder);
     config->setStrictParsingEnabled(true);
     config->setEnvironmentMode(OCIO::ENV_ENVIRONMENT_LOAD_PREDEFINED);
-    // Not for pictures; some hosts start with the first space of the list.
+    // Inactive, because it is not for pictures and some applications start with the first space of
+    // the list.
     config->setInactiveColorSpaces("CIE-XYZ-D65");
     double luma[3] = {kRec709Weights[0], kRec709Weights[1], kRec709Weights[2]};
     config->setDefaultLumaCoefs(luma);
 
     ConfigBuilder builder(model, config, LutFiles(kLutFolder));
     builder.add_spaces();
-    // First in the list: what libraries before 2.3.1 take as the default.
+    // First in the list, because libraries before 2.3.1 use the first one as default.
     builder.add_untonemapped();
     builder.add_view_transforms();
     builder.add_looks();
@@ -242,7 +242,7 @@ std::vector<GeneratedFile> make_config(const ConfigOptions& options) {
             {texts.empty() ? "config.ocio" : "config-" + profile + ".ocio", builder.text(profile)});
     std::string manifest = "path,content_hash\n";
     for (const GeneratedFile& table : builder.tables()) {
-        // Where 2.5 alone is asked for, some tables are not.
+        // Profile 2.5 alone does not use some tables.
         const std::string name = table.path.substr(table.path.rfind('/') + 1);
         const bool is_used = std::any_of(texts.begin(), texts.end(), [&](const auto& text) {
             return text.contents.find(name) != std::string::npos;

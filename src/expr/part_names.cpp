@@ -29,7 +29,7 @@ void PartNames::add(const std::string& name, const Expr& part) {
     const auto [known, is_new] = innermost->place_.emplace(part.node(), innermost->all_.size());
     if (is_new) {
         innermost->all_.push_back({part, name});
-    } else if (!part.is_constant()) {  // two names may stand for one number
+    } else if (!part.is_constant()) {  // two names may belong to one number
         innermost->all_[known->second].name = name;
     }
 }

@@ -35,14 +35,14 @@ namespace {
 
 constexpr Vector3 kLightness = {0.1, 0.7, 0.2};
 
-/// Where a sample lies between two texels of an axis.
+/// Position of a sample between two texels of an axis.
 struct Sample {
     std::size_t before;
     std::size_t after;
     float fraction;
 };
 
-/// @param texel  place in units of texels, the first one's center at 0; clamped at the edges.
+/// @param texel  position in texels, with the first center at 0; clamped at the edges.
 Sample sample_at(double texel, int size) {
     const double floor = std::floor(texel);
     const auto clamped = [&](double i) {
@@ -62,7 +62,7 @@ std::vector<Sample> samples_of(int count, int size, int shift = 0) {
 
 float mix(float a, float b, float t) { return a + t * (b - a); }
 
-/// Some planes of one size: three of lightness and three of weights, or one.
+/// Planes of one size: three of lightness and three of weights, or one.
 struct Level {
     int width = 0;
     int height = 0;
@@ -93,7 +93,7 @@ void resample_row(const float* above, const float* below, float fraction,
 constexpr std::size_t kExposures = 3;
 constexpr std::size_t kMiddle = 1;
 
-/// `aces_hill:threejs`, the tone curve of the source.
+/// `aces_hill:threejs`, the source's tone curve.
 Pipeline tone_curve() {
     const std::vector<Operator> family = define_aces_fits();
     const auto op = std::find_if(family.begin(), family.end(),
@@ -206,7 +206,7 @@ class Fusion {
         return level;
     }
 
-    /// Half of full_size(), which is not kept.
+    /// Half the size of full_size(), which is not stored.
     Level first_level() {
         Level level(picture_.width / 2, picture_.height / 2, 2 * kExposures);
         const std::vector<Sample> across = samples_of(level.width, picture_.width);
@@ -295,8 +295,8 @@ class Fusion {
         return to;
     }
 
-    /// Rows of a level at the picture's width: of guide and fused lightness, one texel to the left,
-    /// here, and one to the right. The last few are kept.
+    /// Rows of a level at the picture's width: guide and fused lightness, at one texel to the left,
+    /// here, and one to the right. Caches the last few.
     class WideRows {
       public:
         WideRows(const Level& guide, const Level& fused, std::size_t width)
@@ -307,7 +307,7 @@ class Fusion {
             }
             kept_.fill(static_cast<std::size_t>(-1));
         }
-        /// Guide of the three shifts, then fused lightness of the three.
+        /// Guide at the three shifts, then fused lightness at the three shifts.
         const Row& at(std::size_t y) {
             Row& row = rows_[y % kKept];
             if (kept_[y % kKept] == y) return row;
@@ -333,7 +333,7 @@ class Fusion {
         std::array<std::size_t, kKept> kept_{};
     };
 
-    /// The fused lightness at full size, put into the picture.
+    /// Applies the fused lightness at full size to the picture.
     void upsample(const Level& guide, const Level& fused) {
         std::array<std::vector<Sample>, 3> down;
         for (std::size_t i = 0; i < 3; ++i)
@@ -362,7 +362,7 @@ class Fusion {
         });
     }
 
-    /// Sums over the nine samples, of differences from the middle one: nothing cancels.
+    /// Sums over the nine samples of differences from the middle one, to avoid cancellation.
     void fit(WideRows& wide, const std::array<std::vector<Sample>, 3>& down, std::size_t y,
              const std::array<float, 9>& weights, Row& model) const {
         {
@@ -400,7 +400,7 @@ class Fusion {
         }
     }
 
-    /// Light times the quotient of fused and own lightness.
+    /// Scales the color by the quotient of fused and own lightness.
     void apply(const Row& model, const Row& shown, const std::array<float*, 3>& light) const {
         const auto [r_weight, g_weight, b_weight] = lightness_weights();
         for (std::size_t x = 0; x < width_; ++x) {

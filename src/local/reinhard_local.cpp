@@ -29,7 +29,7 @@ namespace {
 constexpr double kDelta = 1e-3;
 constexpr double kScaleRatio = 1.6;
 
-/// A Gaussian along one axis of a picture, and what its taps inside the picture sum to.
+/// A Gaussian along one axis, and the sums of its weights inside the picture.
 struct Blur {
     int radius = 0;
     std::vector<float> weights;  // of distance 0, 1, ... radius
@@ -75,8 +75,8 @@ Blur make_blur(int k, int width, int height) {
     return blur;
 }
 
-/// to[x] = sum over d of weights[|d|] tap(d)[x], for `count` columns and up to a whole block. The
-/// columns of a block stay in registers while all taps pass.
+/// to[x] = sum over d of weights[|d|] tap(d)[x], for `count` columns, rounded up to a whole block.
+/// The columns of a block stay in registers for all taps.
 constexpr std::size_t kBlock = 16;
 template <class Tap>
 void convolve(const std::vector<float>& weights, const Tap& tap, std::size_t count, float* to) {
@@ -98,7 +98,7 @@ void convolve(const std::vector<float>& weights, const Tap& tap, std::size_t cou
     }
 }
 
-/// Scaled luminance with margins of zeros: what lies outside of the picture adds nothing.
+/// Scaled luminance with margins of zeros, which add nothing to the sums.
 class PaddedPlane {
   public:
     PaddedPlane(const ScenePlanes& picture, const std::vector<float>& luminance, int margin)
@@ -130,13 +130,13 @@ class PaddedPlane {
     std::vector<float> pixels_;
 };
 
-/// What each pixel of a row adapts to: the blurred light at its scale.
+/// Adaptation of each pixel of a row: the blurred luminance at its scale.
 class Adaptation {
   public:
-    /// Columns that are worked on at a time: the rows around them stay in the second-level cache.
+    /// Columns per strip, so that the surrounding rows stay in the second-level cache.
     static constexpr std::size_t kStrip = 1024;
 
-    /// @param activity  2^phi key/s^2 of each scale; one less than there are blurs.
+    /// @param activity  2^phi key/s^2 per scale; one fewer than the blurs.
     Adaptation(const PaddedPlane& plane, const std::vector<Blur>& blurs,
                const std::vector<float>& activity, float threshold)
         : plane_(plane),

@@ -11,7 +11,7 @@ const std::vector<std::string>& difference_names() {
     return names;
 }
 
-/// Differences are declared with two significant digits, what is near 1 with three.
+/// Differences have two significant digits, values near 1 have three.
 std::string to_string(const DocumentedDifference& d) {
     using Kind = DocumentedDifference::Kind;
     const std::string prefix = d.when.empty() ? "" : d.when + ": ";

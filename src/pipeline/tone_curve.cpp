@@ -37,9 +37,9 @@ Stage saturation_stage(const Expr& s, const Vector3& weights) {
     return stage;
 }
 
-/// The curve as norms need it: light, and 0 at 0.
+/// The curve for norms: display-linear, and 0 at 0.
 Expr norm_curve(const ToneCurve& curve, const std::string& apply) {
-    // A tenth of a millionth of white: the rounding of a formula that is 0 at 0.
+    // Rounding error of formulas that are 0 at 0.
     constexpr double kZero = 1e-7;
     const Expr black = 0;
     const Expr at_black = substitute(curve.f, std::span(&black, 1));
@@ -51,7 +51,7 @@ Expr norm_curve(const ToneCurve& curve, const std::string& apply) {
     return curve.code_power == 0 ? f : pow(f, curve.code_power);
 }
 
-/// The corrections that no norm and matrix express.
+/// Corrections that a norm and a matrix cannot express.
 CrossTalkStage corrected(const Expr& f, const Params& params, const Vector3& w) {
     const std::array<Expr, 3> c = {Expr::input(0), Expr::input(1), Expr::input(2)};
     const Expr L = named("L", w[0] * c[0] + w[1] * c[1] + w[2] * c[2]);
@@ -71,7 +71,7 @@ CrossTalkStage corrected(const Expr& f, const Params& params, const Vector3& w) 
     const auto channel = [&](const Expr& v) {
         const Expr ratio = named("ratio", v / L);
         if (s.is_constant(0)) return select(less(0, L), Lo, 0);
-        // 0^s is 0 for every s above 0, also where the curve is so flat that s is 0 but for that.
+        // 0^s is 0 for every s above 0, also if the curve is so flat that s rounds to 0.
         const Expr at_0 = is_live ? equal(params.expr("saturation"), 0) : 0;
         const Expr power =
             s.is_constant() ? pow(ratio, s) : select(less(0, v), pow(ratio, s), at_0);
@@ -88,7 +88,7 @@ Pipeline apply_norm(const ToneCurve& curve, const Params& params) {
     const ToneScaleStage scale{ToneScaleStage::Norm::luminance, curve.weights, f};
     const std::string& correction = params.choice("color_correction");
     if (correction == "ratio") return {scale};
-    // ((C/L - 1) s + 1) f(L) with one s for all is linear in what the norm makes.
+    // ((C/L - 1) s + 1) f(L) with a constant s is linear in the result of the norm.
     if (correction == "luminance_preserving" && params.choice("saturation_from") == "fixed")
         return {scale, saturation_stage(params.expr("saturation"), curve.weights)};
     return {corrected(f, params, curve.weights)};

@@ -11,20 +11,20 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// What stands around the functions. In the patterns `@function` is the last one, `@call` are the
-/// arguments behind its color, each with a comma before it, `@arguments` the lines of `argument`
-/// and `@declarations` those of `declaration`. What stands between `@[` and `@]` is left out when
-/// there are no arguments. Where there is a `@header`, the comments of the text stand there.
+/// Text around the functions. In the patterns `@function` is the last function, `@call` are the
+/// arguments after its color, each with a comma before it, `@arguments` the lines of `argument` and
+/// `@declarations` those of `declaration`. Text between `@[` and `@]` is left out if there are no
+/// arguments. `@header` is replaced by the comments of the text.
 struct Wrapper {
     const char* id;
     const char* before;
     const char* after;
-    /// One for each argument: @name, @help, @value, @min, @max.
+    /// One per argument: @name, @help, @value, @min, @max.
     const char* argument;
-    /// What an argument is called where the function is called.
+    /// Name of an argument in the call of the function.
     const char* argument_in_call = "@name";
     const char* declaration = "";
-    /// Before each line of the functions.
+    /// Prefix of each line of the functions.
     const char* indent = "";
 };
 
@@ -299,8 +299,8 @@ std::string wrap(const ShaderApplication& application, const Shader& shader,
         text = replaced(text, "@declarations", declarations);
         return replaced(text, "@arguments", lines);
     };
-    // Applications have a word for the start of the file: what the text says of itself comes
-    // after. Their shaders begin with a language's own lines already.
+    // Applications require certain first lines, so the header comes after them. Their shaders
+    // already begin with the lines of the language.
     if (*language.prologue && application.id != "threejs")
         functions = replaced(functions, std::string("\n") + language.prologue, "");
     if (*wrapper.indent) {

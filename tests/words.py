@@ -61,6 +61,7 @@ BRITISH = {
 ALLOWED = [
     ("bake --help-all", "Formats: cube,", "the name of a format"),
     ("--help-all", "unpremult", "the one explanation of un-premultiply"),
+    ("docs/operators.md", "lattice or formula", "the values of a parameter"),
 ]
 # The operators' texts are also in ocio_config/. `./run artifacts` writes both.
 GENERATED = {"docs/operators.md"}
@@ -108,7 +109,8 @@ def main():
     texts += help_texts(sys.argv[1])
     used = set()
     found = [finding for where, text in texts for finding in findings(where, text, used)]
-    found += [f"tests/words.py: nothing needs {entry}" for entry in ALLOWED if entry not in used]
+    found += [f"tests/words.py: nothing needs {entry}" for entry in ALLOWED
+              if entry not in used and entry[0] not in GENERATED]
     print("\n".join(found + [f"{len(texts)} texts, {len(found)} findings"]))
     return 1 if found else 0
 

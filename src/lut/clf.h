@@ -36,7 +36,7 @@ struct ClfTable {
         /// Multiples of 1/65535, as 16-bit integers: for 3D LUTs with a much larger interpolation
         /// error than half of that. Not limited to [0, 65535].
         codes,
-        decimals_7,  // as the cubes that hosts ship have
+        decimals_7,  // like the 3D LUTs that applications ship
         /// Integer multiples of `unit`, with a matrix after the table that multiplies by it.
         /// Shorter than decimals, but the table exceeds [0, 1], which OpenColorIO's fast inversion
         /// of a 3D LUT does not support.

@@ -29,7 +29,7 @@ struct CubeText {
         int size = 0;  // 0: there is none
         std::array<double, 3> lo = {0, 0, 0};
         std::array<double, 3> hi = {1, 1, 1};
-        std::vector<float> rows;  // RGB triplets; of a cube red fastest
+        std::vector<float> rows;  // RGB triplets; of a 3D LUT red fastest
     };
     Table table;
     Table cube;

@@ -28,7 +28,7 @@ struct FormatTraits {
     const char* name;
     bool has_1d;
     bool has_3d;
-    int default_size;  // of a cube
+    int default_size;  // of a 3D LUT
     int smallest;
     int largest;
     std::array<int, 3> bits;  // the first is the default; 0: none

@@ -188,7 +188,7 @@ class Lowering {
         flush_curves();
         const std::vector<double>& nodes = stage.lattice->nodes();
         emit(Lut3DOp{stage.lattice->edge(), {nodes.begin(), nodes.end()}},
-             std::to_string(stage.lattice->edge()) + "^3 lattice");
+             std::to_string(stage.lattice->edge()) + "^3 3D LUT");
         // Powers of two, so that similar 3D LUTs share the tables after them.
         const auto [lo, hi] = std::minmax_element(nodes.begin(), nodes.end());
         const auto outwards = [](double x) {

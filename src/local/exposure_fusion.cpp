@@ -457,7 +457,7 @@ Operator define_exposure_fusion() {
         number_parameter("highlights", "stops", 2, 0, 8,
                          "stops of the darker exposure, for highlights"),
         number_parameter("sigma", "", 5, 0, 20,
-                         "preference for middle grays in the weight of an exposure"),
+                         "how strongly the weight of an exposure prefers middle grays"),
         number_parameter("mip", "", 6, 0, 12,
                          "coarsest pyramid level, a whole number; larger values blend exposures "
                          "over larger areas"),

@@ -37,7 +37,7 @@ Operator narkowicz() {
     op.title = "ACES fit (Narkowicz)";
     op.view = "ACES Narkowicz";
     op.character =
-        "five constants, high contrast; about a stop brighter than ACES without the 0.6 prescale";
+        "five constants, high contrast; about a stop brighter than ACES unless the prescale is 0.6";
     op.source = "K. Narkowicz, ACES Filmic Tone Mapping Curve, 2016";
     op.licence = "public domain (CC0), MIT";
     op.dialects = "ACES";

@@ -676,8 +676,10 @@ void ConfigBuilder::add_view_transform(const ConfigModel::View& view, const Disp
     errors_.emplace(view.name, error);
     if (!error.is_exact) cubes_.insert(shown.transform);
     std::string text = fmt::format(
-        "{} Error of OCIO's CPU path in {} code values: max {}, 99.9 % {}.", view.description,
-        shown.display->title, rounded_up(error.in_gamut.max), rounded_up(error.in_gamut.p999));
+        "{} Error of OCIO's CPU path against the double reference, in {} code values: max {}, 99.9 "
+        "% {}.",
+        view.description, shown.display->title, rounded_up(error.in_gamut.max),
+        rounded_up(error.in_gamut.p999));
     if (!error.is_exact) {
         text += fmt::format(
             " 3D LUT: mean {}, dE ITP at most {}; all AP1 colors: max {}, 99.9 % {}, mean {}.",

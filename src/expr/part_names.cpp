@@ -23,13 +23,13 @@ void PartNames::move(const Expr& before, const Expr& after) {
     if (const std::string* name = of(before); name && !of(after)) add(std::string(*name), after);
 }
 
-void PartNames::add(const std::string& name, const Expr& part) {
+void PartNames::add(std::string_view name, const Expr& part) {
     const bool is_computed = part.operand_count() > 0 || part.is_constant();
     if (!innermost || !is_computed) return;
     const auto [known, is_new] = innermost->place_.emplace(part.node(), innermost->all_.size());
     if (is_new) {
-        innermost->all_.push_back({part, name});
-    } else if (!part.is_constant()) {  // two names may belong to one number
+        innermost->all_.push_back({part, std::string(name)});
+    } else if (!part.is_constant()) {  // two names may stand for one number
         innermost->all_[known->second].name = name;
     }
 }

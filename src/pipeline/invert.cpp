@@ -134,7 +134,7 @@ Expr numeric_inverse(const Expr& f, Range domain, const std::string& name) {
         if (!falls) throw Error(name + " falls " + to_string(*fall));
         fall->y_from = -fall->y_from;
         fall->y_to = -fall->y_to;
-        throw Error(name + ", which falls, rises " + to_string(*fall));
+        throw Error(name + " falls, but also rises " + to_string(*fall));
     }
     nodes = ascending(std::move(nodes));
     if (nodes.size() < 2) return nodes.front().x;

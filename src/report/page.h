@@ -9,10 +9,9 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 
 /// The page as one HTML file: the viewer, and what it shows.
-/// @param archive     a ZIP archive with page.json, references.js and the files that page.json
-/// names
-/// @param references  what references.js is: besides the viewer, the page's policy lets only this
-///                    script run
+/// @param archive     a ZIP archive: page.json, the files that it names, references.js
+/// @param references  the text of references.js. The page's policy lets the viewer and this script
+///                    run, and no other.
 [[nodiscard]] std::string make_report_page(std::string_view archive, std::string_view references);
 
 TONEWRIGHT_NAMESPACE_END

@@ -7,15 +7,15 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// A function of one number in small pieces, with the range, the slope and the rounding error of
-/// each. The error of the argument is multiplied by the slope of the whole function, not by those
-/// of its operations, which may be much larger and cancel.
+/// A function of one number, in pieces that are small enough to say of each where its values lie,
+/// how steep it is, and what rounding adds. An error of its argument then counts with the slope of
+/// the whole function, not with those of its operations, which may be far larger and cancel.
 ///
-/// A composition of functions is split as well: the rounding error of an inner function is
-/// multiplied by the slope of the outer ones.
+/// A function that is several ones, each of what the one before gives, is taken apart as well: what
+/// rounding adds in an inner one then counts with the slope of the outer ones.
 class ErrorCurve {
   public:
-    /// @param is_rounded  false: it is computed without an error of its own
+    /// @param is_rounded  false: computing it adds no error of its own
     ErrorCurve(const Expr& f, bool is_rounded);
 
     [[nodiscard]] Bounded operator()(const Bounded& x);
@@ -27,13 +27,13 @@ class ErrorCurve {
         double rounding = 0;  // computed against exact, at the same argument
         double slope = 0;
         double jump = 0;
-        double too_much = 0;  // estimate of the excess that halving would remove
+        double too_much = 0;  // about what two halves would do without
     };
     struct Link {
         RunningError f;
         RunningError slope;
         bool is_one_operation = false;
-        /// Pieces of [2^k, 2^(k+1)], of the negative range, and of the range between them.
+        /// The pieces of [2^k, 2^(k+1)], of the same below 0, and of what is left between.
         std::map<std::pair<int, int>, std::vector<Piece>> octaves = {};
         std::size_t piece_count = 0;
 
@@ -46,7 +46,7 @@ class ErrorCurve {
     };
 
     Link whole_;
-    std::vector<Link> links_;  // empty if it is a single function
+    std::vector<Link> links_;  // empty where it is one
     bool is_rounded_;
 };
 

@@ -237,6 +237,10 @@ def check_inverses(report, command, folder):
     code, _, err = call(command, "eval", folder / "hill.tone", "--inverse")
     report.check("no inverse: the place", code == USAGE and len(err.splitlines()) == 1
                  and re.search(r"hill\.tone has no inverse: stage 1, a curve, falls from 0.5 at x = (1|0.99\d|1.00\d*) to", err), err)
+    valley = write(folder, "valley", CLAMP + '[[stage]]\ncurve = "1/(1 + x) + 0.2*smoothstep(1, 1.1, x)"\n')
+    code, _, err = call(command, "eval", valley, "--inverse")
+    report.check("no inverse: a curve that falls, and rises at 1", code == USAGE and len(err.splitlines()) == 1
+                 and re.search(r"stage 2, a curve, falls, but also rises from 0\.5\S* at x = 1\S* to 0\.6", err), err)
     code, _, err = call(command, "eval", "agx_blender", "--inverse")
     report.check("no inverse: the stage", code == USAGE and "agx_blender has no inverse: stage" in err, err)
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What holds for every operator, preset and look of the registry, whoever wrote it: an operator is
-// under these tests before anyone writes a test for it.
+// Laws of every operator, preset and look of the registry. A new operator is under these tests
+// before it has a test of its own.
 #include <gtest/gtest.h>
 
 #include <algorithm>

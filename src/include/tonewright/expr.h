@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <vector>
 
@@ -67,14 +68,12 @@ class Expr;
 /// diagonal; outside, the nearest face holds.
 class TONEWRIGHT_API Lattice {
   public:
-    /// @param make  gives red, green, blue of each node, the third coordinate running fastest. It
-    /// is
-    ///              called once, when a node is first asked for.
+    /// @param make  gives red, green, blue of each node, the third coordinate running fastest.
+    ///              It is called once, when a node is first asked for.
     /// @throws Error  for an edge below 2.
     Lattice(int edge, std::function<std::vector<double>()> make);
-    /// @param formula  gives the same colors as three expressions of the node's place: inputs 0, 1,
-    /// 2 are
-    ///                 its coordinates in [0, 1].
+    /// @param formula  gives three expressions that compute the same node. Inputs 0, 1, 2: the
+    ///                 coordinates of the node in [0, 1].
     Lattice(int edge, std::function<std::vector<double>()> make,
             std::function<std::vector<Expr>()> formula);
 
@@ -194,8 +193,8 @@ TONEWRIGHT_API Expr clamp(const Expr& a, const Expr& lo, const Expr& hi);  // mi
 TONEWRIGHT_API Expr mix(const Expr& a, const Expr& b, const Expr& t);      // a + t*(b - a)
 TONEWRIGHT_API Expr smoothstep(const Expr& edge0, const Expr& edge1, const Expr& x);
 
-/// While it exists, on its thread: the names of what named() is called with, and of what rewriting
-/// makes of those parts. An object within another one starts without names and hides the outer one.
+/// Collects, while it exists, the names that its thread gives with named(). A rewritten part keeps
+/// its name. An object within another one starts without names and hides the outer one.
 class TONEWRIGHT_API PartNames {
   public:
     struct Entry {
@@ -211,12 +210,12 @@ class TONEWRIGHT_API PartNames {
     /// In the order in which they were named.
     [[nodiscard]] const std::vector<Entry>& all() const { return all_; }
 
-    /// Of the innermost object: nothing where there is none.
-    static void add(const std::string& name, const Expr& part);
-    /// The last name that this part was given, of a number the first; null: none. Inputs and
-    /// uniforms have none.
+    /// Adds a name to the innermost object, if there is one. A part keeps the last name, a number
+    /// the first. Inputs and uniforms get none.
+    static void add(std::string_view name, const Expr& part);
+    /// The name of the part; null: it has none.
     [[nodiscard]] static const std::string* of(const Expr& part);
-    /// For whoever rewrites expressions: `after` takes the name of `before`.
+    /// Gives `after` the name of `before`. Each function that rewrites expressions calls it.
     static void move(const Expr& before, const Expr& after);
 
   private:
@@ -225,8 +224,8 @@ class TONEWRIGHT_API PartNames {
     PartNames* outer_;
 };
 
-/// Gives a part of a formula the name that it has in its source, and returns the part. Whoever
-/// writes the formula as text, with a PartNames, uses the name; nothing else looks at it.
+/// Gives a part of a formula the name that it has in its source, and returns the part. Shaders and
+/// .tone files show the name; results do not depend on it.
 inline Expr named(const char* name, const Expr& part) {
     PartNames::add(name, part);
     return part;

@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A page of docs/ as a reader follows it: all commands in their order, what they print, and the pictures that they write.
+
+Fences of a page say what their text is:
+
+    sh            commands, which must succeed
+    sh NAME       commands that are skipped where NAME is missing
+    output        what the commands above print, errors and warnings included
+    (nothing)     text that is not run
+
+In an output, `...` stands for any text, or as a line of its own for any lines.
+"""
+
+import argparse
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+TESTS = Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(TESTS / "parity"), str(TESTS / "parity" / "clients")]
+from pictures import PROJECT, Report, read_rgb  # noqa: E402
+from test_artifacts import FIGURE_ABSOLUTE, FIGURE_RELATIVE, LINE, NUMBER, figures_differ  # noqa: E402
+
+DOCS = PROJECT / "docs"
+# Two roundings to 8 bits of values that differ by float32 may be neighbors.
+ONE_CODE = 1.01 / 255
+# Another version of libjpeg may write other bits: one code on average. Another curve moves most grays by more.
+JPEG_MEAN = 1 / 255
+
+
+def blocks(page):
+    """(words behind the fence, the text) of each block of code."""
+    return re.findall(r"^```([^`\n]*)\n(.*?)^```$", page, re.S | re.M)
+
+
+def output_differs(output, expected):
+    """None, or what differs. Whole numbers are counts and names; others are measured and may differ by a tenth."""
+    def pattern(text):
+        words = NUMBER.split(text)
+        return r"([-+.\de]+)".join(re.escape(word) for word in words)
+
+    lines = [r"(?:.*\n)*" if line == "..." else ".*".join(map(pattern, line.split("..."))) + "\n"
+             for line in expected.splitlines()]
+    found = re.fullmatch("".join(lines), output)
+    if not found:
+        return f"printed:\n{output}expected:\n{expected}"
+    for is_, number in zip(found.groups(), NUMBER.findall(expected)):
+        tolerance = 0 if number.lstrip("+-").isdigit() else FIGURE_RELATIVE * abs(float(number)) + FIGURE_ABSOLUTE
+        if not NUMBER.fullmatch(is_) or abs(float(is_) - float(number)) > tolerance:
+            return f"{is_}, expected {number}"
+    return None
+
+
+def installed(build, folder):
+    """pkg-config finds the build's libraries as it would find installed ones."""
+    library = folder / "lib"
+    (library / "pkgconfig").mkdir(parents=True)
+    for path in (build / "lib").glob("libtonewright_*"):
+        (library / path.name).symlink_to(path)
+    for path in (build / "src").glob("*.pc"):
+        shutil.copy(path, library / "pkgconfig")
+    (folder / "include").symlink_to(PROJECT / "src" / "include")
+    return library
+
+
+def says(*command):
+    return subprocess.run(command, capture_output=True, text=True, check=False).stdout
+
+
+def missing(name, build):
+    """None, or why commands that need NAME cannot run."""
+    if name == "python":
+        return None if (build / "python" / "tonewright").is_dir() else "the build has no Python module"
+    if not shutil.which(name):
+        return f"{name} is not installed; `./run packages --all`"
+    if name == "ffmpeg" and ("libx265" not in says(name, "-v", "error", "-encoders")
+                             or "zscale" not in says(name, "-v", "error", "-filters")):
+        return "ffmpeg has no libx265 or no zscale"
+    if name == "g++" and ("-fsanitize" in (build / "CMakeCache.txt").read_text() or not shutil.which("pkg-config")
+                          or not (build / "lib" / "libtonewright_core.so").exists()):
+        return "needs pkg-config and shared libraries without sanitizers"
+    return None
+
+
+def follow(report, page, command, folder):
+    """Returns (commands, what they print) of each block that ran, and the names that are missing."""
+    build = command.parents[1]
+    library = installed(build, folder / ".installed")
+    environment = {**os.environ, "LC_ALL": "C.UTF-8", "EXAMPLES": str(DOCS / "examples"),
+                   "PATH": f"{command.parent}:{Path(sys.executable).parent}:{os.environ['PATH']}",
+                   "PYTHONPATH": str(build / "python"), "PKG_CONFIG_PATH": str(library / "pkgconfig"),
+                   "LD_LIBRARY_PATH": str(library)}
+    said, lacking, ran = [], set(), None
+    for kind, text in blocks(page):
+        name = kind[3:] if kind.startswith("sh ") else None
+        if kind == "sh" or name:
+            ran = None
+            reason = name and missing(name, build)
+            if reason:
+                print(f"skipped: {text.splitlines()[0]} ({reason})")
+                lacking.add(name)
+                continue
+            done = subprocess.run(["sh", "-ec", text], cwd=folder, env=environment, stdin=subprocess.DEVNULL,
+                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+            ran = text, done.stdout
+            report.check(text.splitlines()[-1], done.returncode == 0, ran[1])
+            said.append(ran)
+        elif kind == "output" and ran:
+            differs = output_differs(ran[1], text)
+            report.check("  prints what the page says", differs is None, differs)
+    return said, lacking
+
+
+def check_picture(report, shown, written, folder):
+    name = f"{shown.parent.name}/{shown.name}"
+    if shown.suffix == ".svg":
+        differs = figures_differ(shown.read_text(), written.read_text(), 0, LINE)
+        report.check(f"images/{name} is what the page's commands write", differs is None, differs)
+        return
+    old, new = (read_rgb(path, folder).astype(float) for path in (shown, written))
+    if shown.suffix == ".png":
+        report.compare(f"images/{name} is what the page's commands write", old, new, ONE_CODE)
+    elif report.check(f"images/{name} has the size of what the page's commands write", old.shape == new.shape,
+                      f"{old.shape}, expected {new.shape}"):
+        report.bound(f"images/{name} shows the same", np.abs(old - new).mean(), JPEG_MEAN)
+
+
+def main(name, check):
+    """Follows docs/NAME.md; check(report, page, folder, said) tests what only this page has."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("command", type=Path)
+    parser.add_argument("--record", action="store_true", help="write the pictures of the page")
+    arguments = parser.parse_args()
+    report = Report()
+    page = (DOCS / f"{name}.md").read_text()
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = Path(scratch)
+        said, lacking = follow(report, page, arguments.command.resolve(), folder)
+        if report.failed:
+            return report.finish()
+        for path in re.findall(r"!\[.*?\]\((images/.*?)\)", page):
+            written = next(folder.rglob(Path(path).name), None)
+            if written and arguments.record:
+                (DOCS / path).parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy(written, DOCS / path)
+            elif written:
+                check_picture(report, DOCS / path, written, folder)
+            else:
+                report.check(f"the commands write {path}", lacking)
+        if not arguments.record:
+            check(report, page, folder, said)
+    return report.finish()

@@ -251,7 +251,7 @@ class LocalLaplacian {
         });
     }
 
-    /// Adds the coefficients of one reference, weighted by the distance of each pixel.
+    /// Adds the coefficients of one reference, weighted by how close each pixel is to it.
     void add_reference(float reference, float step) {
         if (guide_.size() == 1) return;
         reduce_remapped(reference);

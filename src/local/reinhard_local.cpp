@@ -268,8 +268,8 @@ Operator define_reinhard_local() {
                          "display white (0: none)"),
     };
     op.warnings = {"keeps chromaticity, so a saturated channel may exceed 1 and clip",
-                   "surroundings are measured in pixels: at twice the size, the same scales show "
-                   "less of the picture"};
+                   "surroundings are measured in pixels: at twice the size, they cover less of the "
+                   "picture"};
     op.build = [](const Params& p) -> Pipeline {
         (void)whole_number(p, "scales");
         return {};

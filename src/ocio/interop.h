@@ -18,7 +18,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 [[nodiscard]] std::vector<std::string> amf_ids_of_space(std::string_view name);
 
 /// Id of the output transform of an OpenColorIO built-in style, in code values of a display.
-/// @param style    OCIO style from ACES2065-1 to CIE XYZ D65
+/// @param style    OCIO style from ACES2065-1 to CIE XYZ D65; empty: the ids of all styles
 /// @param display  id
 [[nodiscard]] std::vector<std::string> amf_ids_of_output(std::string_view style,
                                                          std::string_view display);

@@ -12,8 +12,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// the operator's working space. The first available one of
 ///
 /// - OpenColorIO's built-in transform, if the operator equals one;
-/// - stage by stage: inverts matrices, and turns every run of per-channel curves and clamps into
-/// one
+/// - stage by stage: inverts matrices, and turns every run of per-channel curves and clamps into a
 ///   table of its inverse, with entries at equal display-linear distances (an inverted half-domain
 ///   table has few entries near white);
 /// - if the operator is a 3D LUT: a 3D LUT sampled from the operator's own inverse, or fitted for

@@ -69,9 +69,9 @@ std::array<T, 3> transform(const Matrix3& m, const std::array<T, 3>& v) {
     return {row(0), row(1), row(2)};
 }
 
-// --------------------------------------------------------------------------------------------- The
-// color appearance model: adapting luminance L_A 100, background Y_b 20, surround factor 0.59, N_c
-// 0.9, full adaptation to the white of the given RGB.
+// ---------------------------------------------------------------------------------------------
+// The color appearance model: adapting luminance L_A 100, background Y_b 20, surround factor 0.59,
+// N_c 0.9, full adaptation to the white of the given RGB.
 
 constexpr double kLuminanceLevel = 0.7937005275461673;  // F_L of L_A, CIECAM02
 constexpr double kConePower = 0.42;

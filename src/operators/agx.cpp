@@ -227,12 +227,15 @@ Operator threejs() {
     op.deviations = {{DocumentedDifference::Kind::never_reaches_white, 0.997, ""},
                      {DocumentedDifference::Kind::not_monotone, 16, ""}};
     op.build = [](const Params&) -> Pipeline {
-        // clang-format off Rec.709 to Rec.2020 and its inverse, as the source prints them: 0.0113
-        // is not the rounded value.
-        constexpr Matrix3 to_rec2020 = {
-            {{0.6274, 0.3293, 0.0433}, {0.0691, 0.9195, 0.0113}, {0.0164, 0.0880, 0.8956}}};
-        constexpr Matrix3 to_rec709 = {
-            {{1.6605, -0.5876, -0.0728}, {-0.1246, 1.1329, -0.0083}, {-0.0182, -0.1006, 1.1187}}};
+        // Rec.709 to Rec.2020 and its inverse, as the source prints them: 0.0113 is not the rounded
+        // value.
+        // clang-format off
+        constexpr Matrix3 to_rec2020 = {{{0.6274, 0.3293, 0.0433},
+                                         {0.0691, 0.9195, 0.0113},
+                                         {0.0164, 0.0880, 0.8956}}};
+        constexpr Matrix3 to_rec709 = {{{ 1.6605, -0.5876, -0.0728},
+                                        {-0.1246,  1.1329, -0.0083},
+                                        {-0.0182, -0.1006,  1.1187}}};
         // clang-format on
         const Pipeline stages = {
             MatrixStage{to_rec2020, "to_rec2020"}, MatrixStage{kAgxInsetRec2020, "inset"},
@@ -327,7 +330,9 @@ Operator godot44() {
         constexpr Matrix3 out = {{{ 1.964550960273326, -0.855858451178075, -0.108867108268316},
                                   {-0.299322433909111,  1.326451074150236, -0.027084020983875},
                                   {-0.164368338060804, -0.238224640688606,  1.402665347143272}}};
-        // clang-format on Ends of the shaper with all digits; the other dialects print fewer.
+        // clang-format on
+
+        // Ends of the shaper with all digits; the other dialects print fewer.
         const double lowest = std::log2(0.18) - 10;
         const double highest = std::log2(0.18) + 6.5;
         const Expr n = named("n", (log2(Expr::input()) - lowest) / (highest - lowest));

@@ -85,8 +85,8 @@ constexpr double kHdrPeak = 10;
 /// Smallest divisor and smallest argument of a logarithm.
 constexpr double kTiny = 1e-30;
 
-// --------------------------------------------------------------------------------------------- The
-// formula, for expressions (Expr) and for the nodes of the 3D LUTs (double)
+// ---------------------------------------------------------------------------------------------
+// The formula, for expressions (Expr) and for the nodes of the 3D LUTs (double)
 
 template <class T>
 using Color = std::array<T, 3>;
@@ -279,8 +279,8 @@ Pipeline hdr_formula(const Pipeline& look) {
             ClampStage{0, 1}, MatrixStage{scale(kIdentity3, kHdrPeak)}};
 }
 
-// --------------------------------------------------------------------------------------------- The
-// 3D LUTs
+// ---------------------------------------------------------------------------------------------
+// The 3D LUTs
 
 /// Axes for lookups in the 3D LUTs: log2 of E-Gamut, with the ends that the configuration prints.
 /// The generator places its nodes from exactly 10 stops below mid gray over exactly 25 stops.

@@ -3,7 +3,8 @@
 // Clamp: no tone mapping at all.
 //
 // Source    common practice; the first operator of every survey.
-// In        scene-linear RGB, working primaries Rec.709, D65; domain (-inf, inf), negatives: 0.
+// In        scene-linear RGB, working primaries Rec.709, D65; domain (-inf, inf), negatives clamped
+//           at 0.
 // Out       display-linear RGB, 1.0 = display peak; range [0, 1].
 // Kind      per channel; monotone on the neutral axis: yes; inverse: within [0, 1].
 // Keeps     everything inside [0, 1].

@@ -383,16 +383,17 @@ Operator toe() {
     op.licence = "Apache-2.0";
     op.negatives = kNegativesClampAtZero;
     op.parameters = with_apply(
-        "channels", {choice_parameter("form", {"quadratic", "ramp"}, "quadratic",
-                                      "quadratic: a smooth toe on the scene value; ramp: two "
-                                      "multiply-adds after Reinhard Extended"),
-                     number_parameter("width", "", 0.05, 0.001, 1, "value at the end of the toe"),
-                     number_parameter("strength", "", 1, 0, 1,
-                                      "strength of the toe (0: no toe, 1: zero slope at black)"),
-                     number_parameter("brightness", "", 0, -1, 1, "offset added after the toe"),
-                     number_parameter("contrast", "", 1, 0.01, 4, "slope about 0.5, after the toe"),
-                     number_parameter("white", "scene-linear", 4, 0.01, kHalfMax,
-                                      "white of Reinhard Extended; only with form=ramp")});
+        "channels",
+        {choice_parameter("form", {"quadratic", "ramp"}, "quadratic",
+                          "quadratic: a smooth toe on the scene value; ramp: two "
+                          "multiply-adds after Reinhard Extended"),
+         number_parameter("width", "", 0.05, 0.001, 1, "value at the end of the toe"),
+         number_parameter("strength", "", 1, 0, 1,
+                          "strength of the toe (0: no toe, 1: zero slope at black)"),
+         number_parameter("brightness", "", 0, -1, 1, "offset added after the toe"),
+         number_parameter("contrast", "", 1, 0.01, 4, "contrast about 0.5, after the toe"),
+         number_parameter("white", "scene-linear", 4, 0.01, kHalfMax,
+                          "white of Reinhard Extended; only with form=ramp")});
     op.presets = {{"ramp",
                    "Reinhard Extended with darker shadows",
                    {{"form", "ramp"}, {"width", "0.25"}, {"strength", "0.5"}}}};

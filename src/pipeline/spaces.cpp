@@ -198,10 +198,10 @@ const std::vector<Display>& all_displays() {
             [](const Expr& x) { return power_encode(x, 2.2); },
             [](const Expr& x) { return power_decode(x, 2.2); }, "2.2 power, BT.709-6 primaries"),
         pq_display("rec2100_pq", "Rec.2100-PQ", {"rec2100_pq_display", "pq_rec2020_display"},
-                   kRec2020, "ITU-R BT.2100-2 PQ (SMPTE ST 2084); display-linear 1 is 100 cd/m2"),
+                   kRec2020, "ITU-R BT.2100-2 PQ (SMPTE ST 2084); linear 1 is 100 cd/m2"),
         hlg_display(),
         pq_display("p3d65_pq", "P3-D65 PQ", {"st2084_p3d65_display", "pq_p3d65_display"}, kP3D65,
-                   "SMPTE EG 432-1 primaries, D65, SMPTE ST 2084; display-linear 1 is 100 cd/m2"),
+                   "SMPTE EG 432-1 primaries, D65, SMPTE ST 2084; linear 1 is 100 cd/m2"),
     };
     return displays;
 }

@@ -24,7 +24,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 // ---------------------------------------------------------------------------------------------
-// What a plot and a table need to know of an operator
+// Variants of an operator, for plots and tables
 
 /// An operator as it is, with one of its presets, or with one of its looks.
 struct Variant {
@@ -50,7 +50,7 @@ std::vector<Variant> variants_of(const Operator& op) {
 // ---------------------------------------------------------------------------------------------
 // Plots
 
-/// A color whose hue and saturation are to be watched; its largest channel is 1.
+/// A color whose hue and saturation the plots show; its largest channel is 1.
 struct SceneColor {
     const char* name;
     const char* numbers;
@@ -137,14 +137,14 @@ CurvePlot plot_of(const Operator& op) {
 // ---------------------------------------------------------------------------------------------
 // Dialects: operators of one name
 
-/// One picture that has the name of the group: an operator, or a preset of it.
+/// One member of a group: an operator, or a preset of it.
 struct Dialect {
     std::string letter;
     std::string name;
     std::string op;
     std::string help;
     View view;
-    /// Of the samples; interleaved RGB.
+    /// Results for the samples; interleaved RGB.
     std::vector<double> codes = {};
     std::vector<double> ictcp = {};
 };
@@ -176,7 +176,7 @@ std::string letter_of(std::size_t index) {
     return index < 26 ? last : letter_of(index / 26 - 1) + last;
 }
 
-/// False where no other operator has that name yet.
+/// False if no other operator has that dialect's name.
 bool is_dialect(const Operator& op) {
     if (op.dialects.empty()) return false;
     const std::vector<Operator>& all = all_operators();
@@ -222,7 +222,7 @@ double round_scale(double value) {
 CurvePlot plot_of(const DialectGroup& group) {
     const std::vector<double> scene = scene_of(plot_stops());
     CurvePlot plot;
-    plot.title = group.name + ": the gray curves";
+    plot.title = group.name + ": gray curves";
     plot.subtitle = "sRGB code value of scene-linear gray";
     std::vector<double> mean(scene.size());
     for (const Dialect& d : group.dialects) {
@@ -247,7 +247,7 @@ CurvePlot plot_of(const DialectGroup& group) {
         plot.lower_lines.push_back(line);
     }
     const double scale = round_scale(largest);
-    plot.lower_heading = "difference from their mean, in codes of 8 bits";
+    plot.lower_heading = "difference from their mean, in 8-bit code values";
     plot.lower_scale = {-scale, scale, scale};
     plot.lines.push_back(reference_line(scene));
     return plot;
@@ -256,7 +256,7 @@ CurvePlot plot_of(const DialectGroup& group) {
 PatchChart colors_of(const DialectGroup& group) {
     PatchChart chart;
     chart.title = group.name + ": colors";
-    chart.subtitle = "scene color at stops from mid gray, as shown on sRGB";
+    chart.subtitle = "scene color at stops from mid gray, on an sRGB display";
     const std::vector<double> stops = {-2, 0, 2, 4, 6};
     const std::vector<SceneColor> colors = {kOrange, kGreen, kBlue};
     for (const SceneColor& color : colors) {
@@ -275,7 +275,7 @@ PatchChart colors_of(const DialectGroup& group) {
     return chart;
 }
 
-/// How far two dialects are apart.
+/// Difference of two dialects.
 struct Distance {
     std::size_t a, b;
     ErrorStats codes;  // of 255
@@ -334,7 +334,7 @@ std::vector<Distance> distances_of(DialectGroup& group, const std::vector<float>
 // ---------------------------------------------------------------------------------------------
 // The page
 
-/// Text for a cell of a table.
+/// Escapes text for a cell of a table.
 std::string cell(std::string text) {
     for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2)
         text.insert(at, "\\");
@@ -343,7 +343,7 @@ std::string cell(std::string text) {
 
 std::string signed_stops(double stops) { return fmt::format("{:+.1f}", stops); }
 
-/// Stops from mid grey where the shown grey first passes `code`; nothing where it does not.
+/// Stops from mid gray at which the displayed gray reaches `code`; nothing if it never does.
 std::optional<double> stops_at_code(const View& view, double code) {
     std::vector<double> stops;
     for (int i = -20 * 32; i <= 18 * 32; ++i)
@@ -361,7 +361,7 @@ std::optional<double> stops_at_code(const View& view, double code) {
     return hi;
 }
 
-/// Slope of log light over log scene at mid grey: 1 for no tone mapping.
+/// Slope of log output over log scene value at mid gray: 1 without tone mapping.
 double contrast_at_mid_grey(const View& view) {
     View linear = view;
     const Display& display = find_display(view.display);
@@ -398,14 +398,14 @@ std::string measured_line(const Operator& op) {
     return text;
 }
 
-/// Where an operator stands in the index.
+/// Group of an operator in the index.
 std::string family_of(const Operator& op) {
     if (op.is_diagnostic) return "Diagnostic";
     if (is_dialect(op)) return op.dialects;
     for (const ParameterSpec& p : op.parameters) {
-        if (p.from_picture) return "Adapting to the picture";
+        if (p.from_picture) return "Operators that adapt to the picture";
     }
-    return is_per_channel(resolve_operator(op.id).build()) ? "Curves of each channel"
+    return is_per_channel(resolve_operator(op.id).build()) ? "Per-channel curves"
                                                            : "Operators that mix channels";
 }
 
@@ -417,20 +417,18 @@ std::string index_section(const std::vector<DialectGroup>& groups) {
     for (const auto& [name, members] : families) {
         if (is_dialect(*members[0])) order.push_back(name);
     }
-    for (const char* name : {"Curves of each channel", "Operators that mix channels",
-                             "Adapting to the picture", "Diagnostic"}) {
+    for (const char* name : {"Per-channel curves", "Operators that mix channels",
+                             "Operators that adapt to the picture", "Diagnostic"}) {
         if (families.count(name)) order.emplace_back(name);
     }
     std::string text =
-        "## Index\n\n| operator | what it is like | 0.18 \u2192 | 1 \u2192 |\n|---|---|---|---|\n";
+        "## Index\n\n| operator | character | 0.18 \u2192 | 1 \u2192 |\n|---|---|---|---|\n";
     for (const std::string& family : order) {
         const auto group = std::find_if(groups.begin(), groups.end(),
                                         [&](const DialectGroup& g) { return g.name == family; });
-        text +=
-            fmt::format("| **{}** | {} | | |\n", cell(family),
-                        group == groups.end()
-                            ? ""
-                            : fmt::format("[how far apart they are](#dialects_{})", group->slug));
+        text += fmt::format(
+            "| **{}** | {} | | |\n", cell(family),
+            group == groups.end() ? "" : fmt::format("[differences](#dialects_{})", group->slug));
         for (const Operator* op : families[family]) {
             const View view = srgb_view(op->id);
             text += fmt::format("| [{}](#{})<br>`{}` | {} | {:.3f} | {:.3f} |\n", cell(op->title),
@@ -438,7 +436,7 @@ std::string index_section(const std::vector<DialectGroup>& groups) {
                                 grey_code(view, 1));
         }
     }
-    text += "| **Local: pictures only** | [what that is](local.md) | | |\n";
+    text += "| **Local: pictures only** | [local operators](local.md) | | |\n";
     for (const Operator& op : local_operators()) {
         text += fmt::format("| [{}](#{})<br>`{}` | {} | | |\n", cell(op.title), op.id, op.id,
                             cell(op.character));
@@ -449,7 +447,7 @@ std::string index_section(const std::vector<DialectGroup>& groups) {
 std::string link_to(const Dialect& d) { return fmt::format("[`{}`](#{})", d.name, d.op); }
 
 std::string pair_table(const DialectGroup& group, std::vector<Distance> distances) {
-    // By what is printed: the order does not hang on the last digits of a double.
+    // Compare the printed digits, so that rounding of doubles does not change the order.
     std::stable_sort(distances.begin(), distances.end(), [](const Distance& x, const Distance& y) {
         return std::lround(100 * x.delta_e.mean) > std::lround(100 * y.delta_e.mean);
     });
@@ -512,8 +510,8 @@ std::string dialect_section(DialectGroup& group, const std::vector<float>& sampl
         distances.begin(), distances.end(),
         [](const auto& x, const auto& y) { return x.delta_e.mean < y.delta_e.mean; });
     text += fmt::format(
-        "Mean differences: above the diagonal of code values, below it \u0394E ITP. Closest are {} "
-        "and {}, farthest apart {} and {}.\n\n",
+        "Mean differences: code values above the diagonal, \u0394E ITP below it. Closest pair: {} "
+        "and {}; farthest pair: {} and {}.\n\n",
         group.dialects[closest->a].letter, group.dialects[closest->b].letter,
         group.dialects[farthest->a].letter, group.dialects[farthest->b].letter);
     text += distance_matrix(group, distances);
@@ -523,47 +521,44 @@ std::string dialect_section(DialectGroup& group, const std::vector<float>& sampl
 
 std::string introduction() {
     return fmt::format(
-        "# The operators\n\n"
-        "Generated from the registry by `./run artifacts` (`tonewright list --catalogue docs`); do "
-        "not edit. Operators that share\na name are compared under [Dialects](#dialects).\n\n"
+        "# Operators\n\n"
+        "`./run artifacts` generates this page from the registry (`tonewright list --catalogue "
+        "docs`); do not edit. [Dialects](#dialects)\ncompares operators that share a name.\n\n"
         "**The plots** show an operator with its default parameters on an sRGB display, from the "
         "double-precision reference.\n\n"
-        "* *Upper graph*: the code value of a scene-linear gray, over stops from mid gray. The "
-        "right "
-        "axis has the light of the code\n  value; below the stops is the scene value. Thin lines "
-        "are "
-        "presets and looks. A tinted gray counts by its luminance. The\n  vertical lines are at "
-        "0.18 "
-        "(mid gray) and 1 (diffuse white). The broken line is a clamp, without tone mapping.\n"
+        "* *Upper graph*: code value of a scene-linear gray, over stops from mid gray. The right "
+        "axis shows the display-linear value\n  of the code value; the numbers below the stops "
+        "are scene values. Thin lines are presets and looks. The line of a tinted\n  gray is its "
+        "luminance. Vertical lines mark 0.18 (mid gray) and 1 (diffuse white). The broken line "
+        "is a clamp, without\n  tone mapping.\n"
         "* *Lower graph*: red, green and blue of a saturated orange, ({}) times the scene value. "
-        "Where the lines meet,\n  bright colors fade to white. Where one stays at 1 while the "
-        "others rise, the hue shifts.\n"
-        "* *Strips*: the shown colors, one patch for each stop: of gray, of that orange, and of a "
-        "blue ({}).\n"
-        "* *Small graphs*: one line each, with the first line in gray behind it, where a plot has "
-        "more than six lines.\n\n"
-        "Light above the display's white is cut off, as in every SDR view. Presets for brighter "
-        "displays clip in their plots.\n\n"
-        "**Measured** are code values from 0 to 1. *Contrast at mid gray* is the slope of log "
-        "light over log scene: 1 without tone\nmapping. *Black* and *white* are where 8 bits "
-        "show 0 and 255. An operator that adapts to the picture is shown with its\ndefault "
-        "numbers; `tonewright apply` measures the picture.\n\n",
+        "Where the lines meet,\n  bright colors fade to white. Where one line stays at 1 while "
+        "the others rise, the hue shifts.\n"
+        "* *Strips*: displayed colors, one patch per stop: of gray, of that orange, and of a blue "
+        "({}).\n"
+        "* *Small graphs*: one per line, with the first line in gray, if a plot has more than six "
+        "lines.\n\n"
+        "The plots clip at display white, as every SDR view does. Presets for brighter displays "
+        "also clip.\n\n"
+        "**Measured** values are code values from 0 to 1. *Contrast at mid gray* is the slope of "
+        "log output over log scene value: 1 without\ntone mapping. *Black* and *white* are the "
+        "scene values at 8-bit codes 0 and 255. An operator that adapts to the picture is\nshown "
+        "with its default parameters; `tonewright apply` measures the picture.\n\n",
         kOrange.numbers, kBlue.numbers);
 }
 
 std::string dialect_introduction(std::size_t sample_count) {
     return fmt::format(
         "## Dialects\n\n"
-        "Operators of one name that show different pictures, with their presets; looks are meant "
-        "to "
-        "differ and are left out. How\nfar apart two of them are is measured on the {} colors "
-        "of the [sample set](conventions.md) that have no negative\nchannel, in linear Rec.709, on "
-        "an sRGB display: differences of code values in codes of 8 bits (code value \u00d7 255; of "
-        "each\ncolor the worst channel), and \u0394E ITP (ITU-R BT.2124, white at 100 "
-        "cd/m\u00b2), where 1 is about the smallest difference\nthat can be seen. Most samples are "
-        "saturated, and many are far above white: the largest figures are of colors "
-        "that\npictures "
-        "seldom have, and the means are for comparison with each other.\n\n",
+        "Operators of one name that show different pictures, and their presets. Looks are left "
+        "out, because they are meant to differ. The\ndifference of two dialects is measured on "
+        "the {} colors of the [sample set](conventions.md) without negative channels, in\nlinear "
+        "Rec.709, on an sRGB display.\n\n"
+        "The first columns are differences in 8-bit code values (code value \u00d7 255), of the "
+        "worst channel of each color. \u0394E ITP (ITU-R BT.2124,\nwhite at 100 cd/m\u00b2) is "
+        "about 1 for the smallest visible difference. Most samples are saturated, and many are "
+        "far above\nwhite, so the largest differences belong to colors that are rare in pictures. "
+        "Use the means to compare pairs.\n\n",
         sample_count);
 }
 
@@ -604,7 +599,7 @@ std::vector<GeneratedFile> make_catalogue() {
 }
 
 void write_catalogue(const std::string& folder) {
-    // The manifest of the plots is beside them: a folder of documents has other files too.
+    // The manifest lies beside the plots, because the folder of documents has other files, too.
     const std::string plots = "curves/";
     require_writable_folder(folder + "/curves");
     std::vector<GeneratedFile> curves;

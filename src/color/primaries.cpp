@@ -52,7 +52,7 @@ Matrix3 inverse(const Matrix3& m) {
 Vector3 xyz_of(Chromaticity xy) noexcept { return {xy.x / xy.y, 1.0, (1 - xy.x - xy.y) / xy.y}; }
 
 Matrix3 rgb_to_xyz(const Primaries& p) {
-    // Any multiple of a primary will do: its amount is found below.
+    // Any multiple of a primary works; the amounts are computed below.
     const auto column = [](Chromaticity xy) {
         return xy.y == 0 ? Vector3{xy.x, 0, 1 - xy.x} : xyz_of(xy);
     };
@@ -60,7 +60,7 @@ Matrix3 rgb_to_xyz(const Primaries& p) {
     const Vector3 g = column(p.green);
     const Vector3 b = column(p.blue);
     const Matrix3 columns = {{{r[0], g[0], b[0]}, {r[1], g[1], b[1]}, {r[2], g[2], b[2]}}};
-    // How much of each primary makes (1,1,1) the white.
+    // Amounts of the primaries for which (1,1,1) is the white.
     const Vector3 amount = multiply(inverse(columns), xyz_of(p.whitepoint));
     Matrix3 m = columns;
     for (auto& row : m) {
@@ -72,7 +72,7 @@ Matrix3 rgb_to_xyz(const Primaries& p) {
 
 namespace {
 
-/// By the responses of the cones, scaled from one white to another.
+/// Scales the cone responses from one white to another.
 Matrix3 adaptation(const Matrix3& cone, Chromaticity from, Chromaticity to) {
     if (from == to) return kIdentity3;
     const Vector3 source = multiply(cone, xyz_of(from));
@@ -95,7 +95,7 @@ bool is_adapted_by_cat02(const Primaries& p) {
     return p == kArriWideGamut3 || p == kArriWideGamut4 || p == kSGamut3 || p == kSGamut3Cine;
 }
 
-/// By Bradford where the whites differ.
+/// Adapts with Bradford if the whites differ.
 Matrix3 by_bradford(const Primaries& from, const Primaries& to) {
     const Matrix3 adapt = bradford_adaptation(from.whitepoint, to.whitepoint);
     return multiply(inverse(rgb_to_xyz(to)), multiply(adapt, rgb_to_xyz(from)));

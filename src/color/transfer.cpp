@@ -6,7 +6,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 
 Expr srgb_encode(const Expr& linear) {
-    // The power sees no negative number: the straight part is taken there.
+    // The power never gets negative numbers, because the linear segment applies there.
     return select(less_equal(linear, 0.0031308), 12.92 * linear,
                   1.055 * pow(max(linear, 0.0031308), 1 / 2.4) - 0.055);
 }

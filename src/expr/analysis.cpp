@@ -165,7 +165,7 @@ void collect(const Expr& e, std::unordered_set<const ExprNode*>& seen, std::vect
     order.push_back(e);
 }
 
-/// The x in [lo, hi] between which f changes sign, to neighbouring doubles.
+/// The x in [lo, hi] where f changes sign, to neighboring doubles.
 double sign_change(const Expr& f, double lo, double hi) {
     const bool below = evaluate(f, lo) < 0;
     while (true) {
@@ -257,7 +257,7 @@ double inverse_at(const Expr& f, double y, double lo, double hi) {
     }
     const Expr slope = derivative(f);
     double x = lo + (hi - lo) / 2;
-    // 2100 halvings go from the largest double to the smallest; Newton needs a handful.
+    // 2100 halvings cover the range of double; Newton needs a few.
     for (int i = 0; i < 2100; ++i) {
         const double value = evaluate(f, x);
         if (value == y) return x;

@@ -95,7 +95,7 @@ std::array<double, 3> Lattice::gradient(int channel, double r, double g, double 
 
 namespace {
 
-/// Key under which a node is shared. Constants are told apart by their bits: 0 and -0 differ.
+/// Key of a shared node. Constants are compared by their bits, because 0 and -0 differ.
 struct NodeKey {
     ExprOp op;
     std::uint64_t bits;  // of the constant, or the input's index, or the lattice's channel
@@ -122,7 +122,7 @@ struct SharedNodes {
     std::unordered_map<NodeKey, std::weak_ptr<const ExprNode>, NodeKeyHash> nodes;
 };
 
-// Never destroyed: expressions in static objects may outlive any static of ours.
+// Never destroyed, because expressions in static objects may outlive this one.
 SharedNodes& shared_nodes() {
     static auto* shared = new SharedNodes;
     return *shared;
@@ -146,8 +146,8 @@ std::shared_ptr<const ExprNode> share(ExprNode node) {
         const std::lock_guard lock(shared.mutex);
         if (auto alive = known()) return alive;
     }
-    // The deleter takes the entry out before the operands (whose addresses are in the key) go. It
-    // locks: `made` is made and destroyed where nobody holds the lock, whatever throws for memory.
+    // The deleter removes the entry before it releases the operands, whose addresses are in the
+    // key. It locks, so `made` is created and destroyed without the lock, even if memory runs out.
     auto deleter = [key](const ExprNode* p) {
         {
             SharedNodes& all = shared_nodes();
@@ -164,7 +164,7 @@ std::shared_ptr<const ExprNode> share(ExprNode node) {
     return made;
 }
 
-/// x+0, x*1, select of a constant, ...: the operand that the operation comes to, if any.
+/// x+0, x*1, select of a constant, ...: the operand that equals the operation, if any.
 const Expr* neutral(ExprOp op, std::span<const Expr> in, Expr& zero) {
     const auto is = [&](std::size_t i, double v) { return in[i].is_constant(v); };
     switch (op) {

@@ -20,14 +20,14 @@ Interval hull(std::initializer_list<double> values) {
     return r;
 }
 
-/// An end that is infinite stands for numbers as large as one likes: times 0 they are 0.
+/// An infinite end stands for arbitrarily large numbers, so its product with 0 is 0.
 double product(double a, double b) { return a == 0 || b == 0 ? 0 : a * b; }
 
-/// @pre the base is not below 0
+/// @pre the base is at least 0
 Interval power_of(const Interval& base, const Interval& exponent) {
     Interval r = hull({std::pow(base.lo, exponent.lo), std::pow(base.lo, exponent.hi),
                        std::pow(base.hi, exponent.lo), std::pow(base.hi, exponent.hi)});
-    // Where an exponent changes sign, so does the direction of the power: x^0 is 1.
+    // The power changes direction where the exponent changes sign: x^0 is 1.
     if (exponent.lo <= 0 && exponent.hi >= 0) r = hull({r.lo, r.hi, 1});
     return r;
 }

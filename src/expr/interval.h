@@ -7,16 +7,16 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// Between which values a result lies, ends included.
+/// Closed interval of a result.
 struct Interval {
     double lo = -std::numeric_limits<double>::infinity();
     double hi = std::numeric_limits<double>::infinity();
 };
 
-/// Where the result of an operation lies when its operands lie in a, b and c; both infinities where
-/// that is not known. Not of constants, inputs and uniforms.
-/// @param table    of a lookup
-/// @param lattice  of a lattice
+/// Interval of the result of an operation for operands in a, b and c; infinite if unknown. Not for
+/// constants, inputs and uniforms.
+/// @param table    for a lookup
+/// @param lattice  for a Lattice
 /// @throws Error   as Lattice::nodes()
 [[nodiscard]] TONEWRIGHT_API Interval interval_of(ExprOp op, const Interval& a, const Interval& b,
                                                   const Interval& c, const Table* table,

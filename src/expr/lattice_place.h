@@ -10,8 +10,8 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// The tetrahedron of a place: its four nodes, from the one nearest to the origin on, each one step
-/// along another coordinate, in the order of the fractions.
+/// Tetrahedron of a position: four nodes, starting with the one nearest to the origin. Each next
+/// node is one step along another coordinate, in the order of the fractions.
 struct LatticePlace {
     std::array<std::size_t, 4> node{};
     std::array<double, 4> weight{};
@@ -43,7 +43,7 @@ struct LatticePlace {
         }
     }
 
-    /// @param channel  of the first node; the next node is three numbers further.
+    /// @param channel  of the first node; the next node is three numbers later.
     [[nodiscard]] double interpolate(const double* channel) const noexcept {
         double sum = 0;
         for (std::size_t i = 0; i < 4; ++i)
@@ -51,7 +51,7 @@ struct LatticePlace {
         return sum;
     }
     /// Lattice::gradient().
-    /// @param at  the place
+    /// @param at  the position
     [[nodiscard]] std::array<double, 3> gradient(const double* channel, int edge,
                                                  const std::array<double, 3>& at) const noexcept {
         std::array<double, 3> slope{};

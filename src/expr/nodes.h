@@ -7,7 +7,7 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// Every node that the expressions reach, once, operands before what reads them.
+/// Every node of the expressions once, operands before the nodes that read them.
 [[nodiscard]] TONEWRIGHT_API std::vector<Expr> nodes_of(Span<const Expr> exprs);
 
 TONEWRIGHT_NAMESPACE_END

@@ -7,8 +7,8 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// What each operation means, in double; of a lattice, Lattice::operator(). Folding, evaluate() and
-/// the reference engine all call it.
+/// Defines each operation in double; Lattice::operator() defines its own. Constant folding,
+/// evaluate() and the reference engine use it.
 inline double scalar_op(ExprOp op, double a, double b, double c, const Table* table) noexcept {
     switch (op) {
         case ExprOp::add:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Exposure fusion of a picture with itself.
+// Exposure fusion of one picture.
 //
 // Source    B. Wronski, "Exposure Fusion - local tonemapping for real-time rendering", 2022, and
 //           its demo; weights after T. Mertens, J. Kautz, F. Van Reeth, "Exposure Fusion", Pacific
@@ -10,14 +10,14 @@
 //           (aces_hill:threejs), whose clamp is part of it.
 // Formula   Three exposures c = exposure {2^-highlights, 1, 2^shadows} rgb, each tone mapped; their
 //           lightness e = sqrt(0.1 R + 0.7 G + 0.2 B); weights exp(-(e - 0.5)^2 sigma^2/2), divided
-//           by their sum. Both in pyramids by bilinear sampling, whose levels have two pixels or
-//           more a side. From the level `mip` up to `display_mip`, the Laplacian of e is summed by
-//           the weights of its level. To full size with a linear model of the middle exposure's
-//           lightness in 3 x 3 samples; the quotient of new and old lightness is a factor on light
-//           before the curve.
-// Differs   the demo encodes with a square root; here the display does. With shadows = highlights =
-//           0 there is one exposure, and the curve alone is shown: the demo's epsilons are up to
-//           6 % in near-black.
+//           by their sum. Both in pyramids by bilinear sampling, whose levels are at least two
+//           pixels wide and high. From the level `mip` up to `display_mip`, the weights of each
+//           level sum the Laplacian of e. A linear model of the middle exposure's lightness in 3 x
+//           3 samples upsamples the result; the quotient of new and old lightness scales the scene
+//           value before the curve.
+// Differs   the demo encodes with a square root; here the display encodes. With shadows =
+//           highlights = 0 there is one exposure, and only the curve is applied; the demo's
+//           epsilons change near-black by up to 6 %.
 // Check     python_check/local_operators.py
 #include <algorithm>
 #include <cmath>
@@ -35,14 +35,14 @@ namespace {
 
 constexpr Vector3 kLightness = {0.1, 0.7, 0.2};
 
-/// Where a sample lies between two texels of an axis.
+/// Position of a sample between two texels of an axis.
 struct Sample {
     std::size_t before;
     std::size_t after;
     float fraction;
 };
 
-/// @param texel  place in units of texels, the first one's center at 0; clamped at the edges.
+/// @param texel  position in texels, with the first center at 0; clamped at the edges.
 Sample sample_at(double texel, int size) {
     const double floor = std::floor(texel);
     const auto clamped = [&](double i) {
@@ -62,7 +62,7 @@ std::vector<Sample> samples_of(int count, int size, int shift = 0) {
 
 float mix(float a, float b, float t) { return a + t * (b - a); }
 
-/// Some planes of one size: three of lightness and three of weights, or one.
+/// Planes of one size: three of lightness and three of weights, or one.
 struct Level {
     int width = 0;
     int height = 0;
@@ -93,7 +93,7 @@ void resample_row(const float* above, const float* below, float fraction,
 constexpr std::size_t kExposures = 3;
 constexpr std::size_t kMiddle = 1;
 
-/// `aces_hill:threejs`, the tone curve of the source.
+/// `aces_hill:threejs`, the source's tone curve.
 Pipeline tone_curve() {
     const std::vector<Operator> family = define_aces_fits();
     const auto op = std::find_if(family.begin(), family.end(),
@@ -206,7 +206,7 @@ class Fusion {
         return level;
     }
 
-    /// Half of full_size(), which is not kept.
+    /// Half the size of full_size(), which is not stored.
     Level first_level() {
         Level level(picture_.width / 2, picture_.height / 2, 2 * kExposures);
         const std::vector<Sample> across = samples_of(level.width, picture_.width);
@@ -295,8 +295,8 @@ class Fusion {
         return to;
     }
 
-    /// Rows of a level at the picture's width: of guide and fused lightness, one texel to the left,
-    /// here, and one to the right. The last few are kept.
+    /// Rows of a level at the picture's width: guide and fused lightness, at one texel to the left,
+    /// here, and one to the right. Caches the last few.
     class WideRows {
       public:
         WideRows(const Level& guide, const Level& fused, std::size_t width)
@@ -307,7 +307,7 @@ class Fusion {
             }
             kept_.fill(static_cast<std::size_t>(-1));
         }
-        /// Guide of the three shifts, then fused lightness of the three.
+        /// Guide at the three shifts, then fused lightness at the three shifts.
         const Row& at(std::size_t y) {
             Row& row = rows_[y % kKept];
             if (kept_[y % kKept] == y) return row;
@@ -333,7 +333,7 @@ class Fusion {
         std::array<std::size_t, kKept> kept_{};
     };
 
-    /// The fused lightness at full size, put into the picture.
+    /// Applies the fused lightness at full size to the picture.
     void upsample(const Level& guide, const Level& fused) {
         std::array<std::vector<Sample>, 3> down;
         for (std::size_t i = 0; i < 3; ++i)
@@ -362,7 +362,7 @@ class Fusion {
         });
     }
 
-    /// Sums over the nine samples, of differences from the middle one: nothing cancels.
+    /// Sums over the nine samples of differences from the middle one, to avoid cancellation.
     void fit(WideRows& wide, const std::array<std::vector<Sample>, 3>& down, std::size_t y,
              const std::array<float, 9>& weights, Row& model) const {
         {
@@ -400,7 +400,7 @@ class Fusion {
         }
     }
 
-    /// Light times the quotient of fused and own lightness.
+    /// Scales the color by the quotient of fused and own lightness.
     void apply(const Row& model, const Row& shown, const std::array<float*, 3>& light) const {
         const auto [r_weight, g_weight, b_weight] = lightness_weights();
         for (std::size_t x = 0; x < width_; ++x) {
@@ -442,31 +442,34 @@ Operator define_exposure_fusion() {
     op.id = "exposure_fusion";
     op.title = "Exposure fusion";
     op.character =
-        "shows shadows and lights each in the exposure that suits them, as bracketed photographs "
-        "put together; contrast of large areas gets lost first";
+        "shows shadows and highlights each at a suitable exposure, like merged bracketed "
+        "photographs; loses the contrast of large areas first";
     op.source =
         "Wronski, Exposure Fusion - local tonemapping for real-time rendering, 2022; Mertens, "
         "Kautz, Van Reeth, Exposure Fusion, Pacific Graphics 2007; curve: Hill's ACES fit";
     op.licence = "MIT";
     op.negatives = kLocalNegatives;
     op.parameters = {
-        number_parameter("exposure", "", 0.7, 0.001, 1000, "factor on light before the curve"),
-        number_parameter("shadows", "stops", 1.5, 0, 8, "brighter exposure, for shadows"),
-        number_parameter("highlights", "stops", 2, 0, 8, "darker exposure, for lights"),
+        number_parameter("exposure", "", 0.7, 0.001, 1000,
+                         "factor on the scene value before the curve"),
+        number_parameter("shadows", "stops", 1.5, 0, 8,
+                         "stops of the brighter exposure, for shadows"),
+        number_parameter("highlights", "stops", 2, 0, 8,
+                         "stops of the darker exposure, for highlights"),
         number_parameter("sigma", "", 5, 0, 20,
-                         "how strictly an exposure counts only where it shows middle greys"),
+                         "how strongly the weight of an exposure prefers middle grays"),
         number_parameter("mip", "", 6, 0, 12,
-                         "coarsest level of the pyramid, a whole number: the larger, the farther "
-                         "exposures fade into each other"),
-        number_parameter("display_mip", "", 2, 0, 12,
-                         "finest level that is fused, a whole number; the rest is guided by the "
-                         "picture"),
+                         "coarsest pyramid level, a whole number; larger values blend exposures "
+                         "over larger areas"),
+        number_parameter(
+            "display_mip", "", 2, 0, 12,
+            "finest pyramid level that is fused, a whole number; the picture guides finer levels"),
         choice_parameter("boost_local_contrast", {"no", "yes"}, "no",
-                         "weights by local contrast, too"),
+                         "also weight exposures by local contrast"),
     };
     op.warnings = {
-        "levels halve the picture's size: at twice the size, the same picture is shown with mip "
-        "one more"};
+        "each pyramid level halves the picture: at twice the size, the same result needs mip one "
+        "higher"};
     op.build = [](const Params& p) -> Pipeline {
         (void)whole_number(p, "mip");
         (void)whole_number(p, "display_mip");

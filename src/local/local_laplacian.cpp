@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Local Laplacian filter: contrast of large differences compressed, that of small ones kept.
+// Local Laplacian filter: compresses the contrast of large differences and keeps that of small
+// ones.
 //
 // Source    S. Paris, S. Hasinoff, J. Kautz, "Local Laplacian Filters: Edge-aware Image Processing
 //           with a Laplacian Pyramid", SIGGRAPH 2011, and M. Aubry, S. Paris, S. Hasinoff, J.
 //           Kautz, F. Durand, "Fast Local Laplacian Filters: Theory and Applications", ACM TOG
 //           33(5), 2014. Pyramids: P. Burt, E. Adelson, 1983, with (1 4 6 4 1)/16.
 // In        scene-linear planes of Rec.709, L = 0.2126 R + 0.7152 G + 0.0722 B.
-// Out       display-linear Rec.709; half a percent of the pixels, and saturated channels, are above
-//           1.
+// Out       display-linear Rec.709; half a percent of the pixels, and saturated channels, exceed 1.
 // Formula   Y = log2 L, from 24 stops below the largest L on. References g from the smallest to the
 //           largest Y, at most `threshold` apart; for each the picture g + r(Y - g),
 //           r(d) = base d + (detail - base) d/sqrt(1 + (d/threshold)^2), and its Laplacian pyramid.
@@ -16,9 +16,9 @@
 //           of Y there, interpolated. The coarsest level is that of Y. The result's 99.5 %
 //           percentile is shown as 1; where the 0.5 % percentile is more than `contrast` stops
 //           below it, the result is scaled to that. C' = L' (1 + saturation (C/L - 1)).
-// Differs   r is a smooth form of the paper's, which is linear up to the threshold and bends there:
-//           references may be farther apart. Percentiles are of bins of 1/64 stop, of pixels that
-//           have light.
+// Differs   r is a smooth version of the paper's function, which is linear up to the threshold and
+//           bends there, so references may be farther apart. Percentiles are of bins of 1/64 stop,
+//           of pixels above 0.
 // Check     python_check/local_operators.py
 #include <algorithm>
 #include <cmath>
@@ -61,9 +61,9 @@ std::vector<Plane> make_pyramid(int width, int height, bool with_finest) {
     return levels;
 }
 
-/// (1 4 6 4 1)/16 of five rows, then of every second column; clamped at the edges.
+/// Filters five rows with (1 4 6 4 1)/16, then every second column; clamped at the edges.
 void reduce_row(const std::array<const float*, 5>& rows, int width, float* column_sums, float* to) {
-    // Two more on either side, which repeat the edge.
+    // Two more on each side repeat the edge.
     float* sums = column_sums + 2;
     for (int x = 0; x < width; ++x) {
         sums[x] = (rows[0][x] + rows[4][x]) + 4 * (rows[1][x] + rows[3][x]) + 6 * rows[2][x];
@@ -77,8 +77,8 @@ void reduce_row(const std::array<const float*, 5>& rows, int width, float* colum
     }
 }
 
-/// A row of the next finer size, from the rows of a plane: (1 6 1)/8 at its places, (4 4)/8
-/// between.
+/// A row of the next finer size from the rows of a plane: (1 6 1)/8 at its positions, (4 4)/8
+/// between them.
 class Expansion {
   public:
     explicit Expansion(int width) : column_sums_(static_cast<std::size_t>(width) / 2 + 3) {}
@@ -119,7 +119,7 @@ class Expansion {
     std::vector<float> column_sums_;  // and one more on either side
 };
 
-/// How a difference from the reference is changed.
+/// Remapping of a difference from the reference.
 struct Remapping {
     float base;
     float extra;          // detail - base
@@ -134,7 +134,7 @@ struct Remapping {
     }
 };
 
-/// The least and the largest value of each group of pixels in a row.
+/// Minimum and maximum of each group of pixels in a row.
 class Extents {
   public:
     static constexpr int kGroup = 64;
@@ -153,7 +153,7 @@ class Extents {
             }
         });
     }
-    /// Some value of the group that begins at x is nearer to `value` than `distance`.
+    /// True if a value of the group at x is closer to `value` than `distance`.
     [[nodiscard]] bool has_near(int x, int y, float value, float distance) const {
         const Extent& e =
             extents_[static_cast<std::size_t>(y) * groups_ + static_cast<std::size_t>(x / kGroup)];
@@ -225,7 +225,7 @@ class LocalLaplacian {
         });
     }
 
-    /// The first reduction of the remapped picture, which is not kept.
+    /// First reduction of the remapped picture, which is not stored.
     void reduce_remapped(float reference) {
         const Plane& from = guide_[0];
         Plane& to = remapped_[1];
@@ -251,7 +251,7 @@ class LocalLaplacian {
         });
     }
 
-    /// Adds the coefficients of one reference, as much as each pixel is near to it.
+    /// Adds the coefficients of one reference, weighted by how close each pixel is to it.
     void add_reference(float reference, float step) {
         if (guide_.size() == 1) return;
         reduce_remapped(reference);
@@ -300,7 +300,7 @@ class LocalLaplacian {
     std::vector<Extents> extents_;
 };
 
-/// Counts in bins of 1/64 stop, the same for any threads.
+/// Histogram with bins of 1/64 stop, identical for any number of threads.
 class Histogram {
   public:
     void add(float stops) {
@@ -312,7 +312,7 @@ class Histogram {
         for (std::size_t i = 0; i < bins_.size(); ++i)
             bins_[i] += other.bins_[i];
     }
-    /// The middle of the bin that the given part of what was counted lies up to; 0 for nothing.
+    /// Middle of the bin of a percentile; 0 for an empty histogram.
     [[nodiscard]] float percentile(double part) const {
         double count = 0;
         for (const std::size_t bin : bins_)
@@ -333,7 +333,7 @@ class Histogram {
     std::vector<std::size_t> bins_ = std::vector<std::size_t>(std::size_t{2} * 64 * 64);
 };
 
-/// Of the pixels that count and have light.
+/// Histogram of the measured pixels above 0.
 Histogram histogram_of(const ScenePlanes& picture, const std::vector<float>& luminance,
                        const Plane& stops) {
     const bool all_count = std::none_of(picture.counts.begin(), picture.counts.end(),
@@ -405,25 +405,26 @@ Operator define_local_laplacian() {
     op.id = "local_laplacian";
     op.title = "Local Laplacian";
     op.character =
-        "fits any scene into the display's range and keeps its details at the contrast that is "
-        "set; "
-        "absolute brightness is lost, and noise in blacks is lifted";
+        "fits any scene into the display's range and keeps detail at the chosen contrast; loses "
+        "absolute brightness, and lifts noise in blacks";
     op.source =
         "Paris, Hasinoff, Kautz, Local Laplacian Filters, SIGGRAPH 2011; Aubry, Paris, Hasinoff, "
         "Kautz, Durand, Fast Local Laplacian Filters, ACM TOG 33(5), 2014";
     op.licence = "published formula";
     op.negatives = kLocalNegatives;
     op.parameters = {
-        number_parameter("contrast", "stops", 7.5, 1, 24,
-                         "from the 0.5 % to the 99.5 % percentile of what is shown, at most"),
-        number_parameter("base", "", 0.25, 0, 1, "slope of log light over large differences"),
-        number_parameter("detail", "", 1, 0, 4, "slope of log light over small differences"),
-        number_parameter("threshold", "stops", 1.3, 0.25, 8, "where differences begin to be large"),
+        number_parameter(
+            "contrast", "stops", 7.5, 1, 24,
+            "largest contrast of the result, between its 0.5 % and 99.5 % percentiles"),
+        number_parameter("base", "", 0.25, 0, 1, "slope of log luminance for large differences"),
+        number_parameter("detail", "", 1, 0, 4, "slope of log luminance for small differences"),
+        number_parameter("threshold", "stops", 1.3, 0.25, 8,
+                         "smallest difference that counts as large"),
         number_parameter("saturation", "", 0.8, 0, 1,
-                         "of colors, whose luminance stays; 1 keeps chromaticity"),
+                         "saturation at constant luminance (1: same chromaticity)"),
     };
     op.warnings = {
-        "percentiles are each picture's own: the frames of a shot may differ in brightness"};
+        "each picture has its own percentiles, so frames of a shot may differ in brightness"};
     op.build = [](const Params&) -> Pipeline { return {}; };
     op.run_local = run;
     return op;

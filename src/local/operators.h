@@ -3,18 +3,18 @@
 
 #include "tonewright/local.h"
 
-/// Each file of this folder defines one operator: what it is, and what it does to a picture.
+/// Each file of this folder defines one operator and its implementation for pictures.
 TONEWRIGHT_NAMESPACE_BEGIN
 
 [[nodiscard]] Operator define_exposure_fusion();
 [[nodiscard]] Operator define_local_laplacian();
 [[nodiscard]] Operator define_reinhard_local();
 
-/// What all of them do with negatives: light is in planes of Rec.709.
+/// Negatives of all local operators: their planes are in Rec.709.
 inline constexpr const char* kLocalNegatives =
-    "clamped at 0 in Rec.709, before the operator: colors outside of it are limited to it";
+    "clamped at 0 in Rec.709, before the operator, which limits colors outside Rec.709 to it";
 
-/// A parameter that has to be a whole number.
+/// Value of a parameter that must be a whole number.
 /// @throws Error
 [[nodiscard]] int whole_number(const Params& params, const char* name);
 

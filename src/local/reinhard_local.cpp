@@ -5,17 +5,16 @@
 // Source    E. Reinhard, M. Stark, P. Shirley, J. Ferwerda, "Photographic Tone Reproduction for
 //           Digital Images", SIGGRAPH 2002, eq. 1-4 (exposure, white) and 5-9 (local adaptation).
 // In        scene-linear planes of Rec.709, L = 0.2126 R + 0.7152 G + 0.0722 B.
-// Out       display-linear Rec.709; without end above 1 where white is set, and for saturated
-//           channels.
+// Out       display-linear Rec.709; unbounded above 1 if white is set, and for saturated channels.
 // Formula   L1 = key L / Lavg, Lavg = exp(mean ln(0.001 + L)) of the picture before exposure.
 //           B_k: L1 blurred with exp(-d^2/(s_k/(2 sqrt 2))^2), s_k = 1.6^k, taps within
-//           ceil(3 s_k/4) pixels, their weights normalised over those inside the picture.
+//           ceil(3 s_k/4) pixels, their weights normalized over those inside the picture.
 //           The surround of one scale is the center of the next: alpha2 s_k = alpha1 s_(k+1).
 //           V_k = (B_k - B_(k+1))/(2^phi key/s_k^2 + B_k); m is the last k up to which |V| < eps;
 //           C' = C key/Lavg (1 + L1/white^2)/(1 + B_m).
-// Differs   as printed, eq. 1 divides by N outside of the exponential, and the kernels of eq. 5 sum
-//           to 1 only for large s: here both are as meant. Where not even the first scale passes,
-//           it is taken. White is printed for the global operator only.
+// Differs   as printed, eq. 1 divides by N outside the exponential, and the kernels of eq. 5 sum to
+//           1 only for large s; here both are as intended. If no scale passes, the first one is
+//           used. The paper prints white for the global operator only.
 // Check     python_check/local_operators.py
 #include <algorithm>
 #include <cmath>
@@ -30,7 +29,7 @@ namespace {
 constexpr double kDelta = 1e-3;
 constexpr double kScaleRatio = 1.6;
 
-/// A Gaussian along one axis of a picture, and what its taps inside the picture sum to.
+/// A Gaussian along one axis, and the sums of its weights inside the picture.
 struct Blur {
     int radius = 0;
     std::vector<float> weights;  // of distance 0, 1, ... radius
@@ -76,8 +75,8 @@ Blur make_blur(int k, int width, int height) {
     return blur;
 }
 
-/// to[x] = sum over d of weights[|d|] tap(d)[x], for `count` columns and up to a whole block. The
-/// columns of a block stay in registers while all taps pass.
+/// to[x] = sum over d of weights[|d|] tap(d)[x], for `count` columns, rounded up to a whole block.
+/// The columns of a block stay in registers for all taps.
 constexpr std::size_t kBlock = 16;
 template <class Tap>
 void convolve(const std::vector<float>& weights, const Tap& tap, std::size_t count, float* to) {
@@ -99,7 +98,7 @@ void convolve(const std::vector<float>& weights, const Tap& tap, std::size_t cou
     }
 }
 
-/// Scaled luminance with margins of zeros: what lies outside of the picture adds nothing.
+/// Scaled luminance with margins of zeros, which add nothing to the sums.
 class PaddedPlane {
   public:
     PaddedPlane(const ScenePlanes& picture, const std::vector<float>& luminance, int margin)
@@ -131,13 +130,13 @@ class PaddedPlane {
     std::vector<float> pixels_;
 };
 
-/// What each pixel of a row adapts to: the blurred light at its scale.
+/// Adaptation of each pixel of a row: the blurred luminance at its scale.
 class Adaptation {
   public:
-    /// Columns that are worked on at a time: the rows around them stay in the second-level cache.
+    /// Columns per strip, so that the surrounding rows stay in the second-level cache.
     static constexpr std::size_t kStrip = 1024;
 
-    /// @param activity  2^phi key/s^2 of each scale; one less than there are blurs.
+    /// @param activity  2^phi key/s^2 per scale; one fewer than the blurs.
     Adaptation(const PaddedPlane& plane, const std::vector<Blur>& blurs,
                const std::vector<float>& activity, float threshold)
         : plane_(plane),
@@ -242,9 +241,8 @@ Operator define_reinhard_local() {
     op.id = "reinhard_local";
     op.title = "Reinhard, dodging and burning";
     op.character =
-        "Reinhard with an exposure for every pixel, of its surroundings up to the next edge: "
-        "lights "
-        "and shadows keep their local contrast; saturated lights clip";
+        "Reinhard with one exposure per pixel, from its surroundings up to the next edge: "
+        "highlights and shadows keep their local contrast; clips saturated highlights";
     op.source =
         "Reinhard, Stark, Shirley, Ferwerda, Photographic Tone Reproduction for Digital Images, "
         "SIGGRAPH 2002, eq. 1-9";
@@ -253,25 +251,25 @@ Operator define_reinhard_local() {
     op.dialects = "Reinhard";
     op.parameters = {
         number_parameter("key", "", 0.18, 0.001, 10,
-                         "what the picture's log average becomes before the curve: 0.045 for dark "
-                         "scenes, 0.72 for bright ones"),
+                         "value of the log average before the curve: 0.045 for dark scenes, 0.72 "
+                         "for bright ones"),
         number_parameter("log_average", "scene-linear", 0, 0, kHalfMax,
-                         "0: the picture's own; for the frames of a shot, one for all"),
+                         "log average luminance (0: measured in each picture); use one value for "
+                         "all frames of a shot"),
         number_parameter("sharpening", "", 8, 0, 15,
-                         "phi: the larger, the farther a pixel's surroundings reach in shadows"),
+                         "phi: larger values extend a pixel's surroundings in shadows"),
         number_parameter("threshold", "", 0.05, 0.001, 1,
-                         "epsilon: contrast that ends a pixel's surroundings"),
+                         "epsilon: contrast at which a pixel's surroundings end"),
         number_parameter("scales", "", 8, 1, 10,
-                         "sizes of surroundings, each 1.6 times the one before; the first is 1 "
-                         "pixel; a whole number"),
+                         "number of sizes of the surroundings, a whole number; from 1 pixel, each "
+                         "1.6 times the one before"),
         number_parameter("white", "", 0, 0, kHalfMax,
-                         "smallest luminance, times key/log_average, that a uniform picture shows "
-                         "as display white; 0: none"),
+                         "lowest luminance, times key/log_average, that a uniform picture shows as "
+                         "display white (0: none)"),
     };
-    op.warnings = {
-        "keeps chromaticity, so a saturated channel may exceed 1 and clip",
-        "surroundings are counted in pixels: at twice the size, the same picture is shown with "
-        "smaller ones (scales)"};
+    op.warnings = {"keeps chromaticity, so a saturated channel may exceed 1 and clip",
+                   "surroundings are measured in pixels: at twice the size, they cover less of the "
+                   "picture"};
     op.build = [](const Params& p) -> Pipeline {
         (void)whole_number(p, "scales");
         return {};

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What applications expect of a LUT. Sources: their manuals, as far as nothing else stands beside
-// an entry.
+// What applications expect of a LUT. Sources: their manuals, unless an entry names another source.
 #include "base/strings.h"
 #include "tonewright/lut.h"
 #include "tonewright/lut_applications.h"
@@ -33,7 +32,7 @@ const std::vector<LutApplication>& all_lut_applications() {
          "srgb",
          {},
          "tetrahedral",
-         "OCIOFileTransform with the file and interpolation tetrahedral, behind a conversion to "
+         "OCIOFileTransform with the file and interpolation tetrahedral, after a conversion to "
          "ACEScct",
          ""},
         {"ffmpeg",
@@ -44,8 +43,8 @@ const std::vector<LutApplication>& all_lut_applications() {
          "rec1886",
          {},
          "tetrahedral",
-         // The LUT changes the numbers, not what the frames say of themselves: setparams says it,
-         // zscale goes by that, and the last options write it into the file.
+         // The LUT changes pixels, not the color tags of the frames: setparams sets the tags,
+         // zscale reads them, and the last options write them into the file.
          "ffmpeg -i hdr10.mkv -vf "
          "zscale=matrix=gbr:range=full,format=gbrp16le,lut3d=FILE:interp=tetrahedral,"
          "setparams=color_primaries=bt709:color_trc=bt709,zscale=matrix=bt709:range=limited,"
@@ -85,7 +84,8 @@ const std::vector<LutApplication>& all_lut_applications() {
          ""},
         {"unreal", "Unreal Engine", LutFormat::strip, 16, "srgb", "srgb", 8, "trilinear",
          "import as texture, Mip Gen Settings NoMipmaps, Texture Group ColorLookupTable; Post "
-         "Process Volume > Color Grading > Misc > Color Grading LUT: works on what is shown",
+         "Process Volume > Color Grading > Misc > Color Grading LUT: works on the displayed "
+         "picture",
          ""},
         {"unity",
          "Unity HDRP",
@@ -104,11 +104,11 @@ const std::vector<LutApplication>& all_lut_applications() {
         {"unity_urp", "Unity URP", LutFormat::strip_up, 32, "srgb", "srgb", 8, "trilinear",
          "import with sRGB off, no mip maps, no compression; Volume > Color Lookup > Lookup "
          "Texture. Its height must be the URP Asset's Grading LUT Size, 32 unless changed: --size. "
-         "Works on what is shown",
+         "Works on the displayed picture",
          ""},
         {"godot", "Godot", LutFormat::strip, 32, "srgb", "srgb", 8, "trilinear",
          "import as Texture3D with 32 horizontal slices; Environment > Adjustments > Color "
-         "Correction: works on what is shown",
+         "Correction: works on the displayed picture",
          ""},
         {"obs",
          "OBS Studio",
@@ -169,7 +169,7 @@ const std::vector<LutApplication>& all_lut_applications() {
          "srgb",
          {},
          "trilinear",
-         "in a compositing network: Lookup COP with the file, behind a conversion to ACEScct; to "
+         "in a compositing network: Lookup COP with the file, after a conversion to ACEScct; to "
          "look "
          "only: right mouse button on the viewer's LUT button, load it",
          ""},
@@ -187,7 +187,8 @@ const std::vector<LutApplication>& all_lut_applications() {
          "srgb",
          {},
          "tetrahedral",
-         "FileTransform with the file and interpolation tetrahedral, behind ACEScct; the config "
+         "FileTransform with the file and interpolation tetrahedral, after a conversion to "
+         "ACEScct; the config "
          "has "
          "no such step",
          "OpenColorIO 2.1.2"},
@@ -199,8 +200,8 @@ const std::vector<LutApplication>& all_lut_applications() {
          "srgb",
          {},
          "trilinear",
-         "new LUTCubeLoader().setType(FloatType), which by itself cuts numbers off to 8 bits; then "
-         "LUTPass behind OutputPass: works on what is shown",
+         "new LUTCubeLoader().setType(FloatType), because its default is 8 bits; then "
+         "LUTPass after OutputPass: works on the displayed picture",
          "three.js r187 in Chromium 156"},
     };
     return hosts;

@@ -16,10 +16,11 @@ BakedLut measured(Lut lut, const LutRequest& request, bool trilinear, bool is_fi
     return {std::move(lut), error, {}, is_fitted, std::move(ringing)};
 }
 
-/// With nodes that follow the operator along rising exposure, where such can be had.
+/// Fits nodes that follow the operator along rising exposure, if possible.
 BakedLut smooth(Lut lut, const LutRequest& request, bool trilinear, bool is_fitted) {
     BakedLut baked = measured(lut, request, trilinear, is_fitted);
-    // Where the operator clips colors of the domain, no nodes help: mends that worked began below.
+    // If the operator clips colors of the domain, no nodes help: successful repairs started below
+    // this error.
     constexpr double kHopeless = 0.3;
     const LutRinging& ringing = baked.ringing;
     if ((!rings(ringing) && ringing.p999 <= kFittedRayError) || ringing.p999 > kHopeless)
@@ -32,7 +33,7 @@ BakedLut smooth(Lut lut, const LutRequest& request, bool trilinear, bool is_fitt
     return is_better ? calm : baked;
 }
 
-/// With what the other interpolation makes of it.
+/// Also measures the other interpolation.
 BakedLut complete(BakedLut baked, const LutRequest& request, bool trilinear) {
     if (baked.lut.dimension == 3) baked.other_error = measure_lut(baked.lut, request, !trilinear);
     return baked;
@@ -58,7 +59,7 @@ BakedLut bake_size(const LutRequest& request, LutNodes nodes, bool trilinear, bo
     return is_nearer ? fitted : plain;
 }
 
-/// Sizes that are worth trying, of which each format takes those it has.
+/// Sizes to try; each format uses those that it supports.
 std::vector<int> sizes_of(LutFormat format) {
     if (format == LutFormat::hald) return {16, 25, 36, 49, 64, 81, 100, 121, 144};
     if (is_strip(format)) return {16, 32, 64};
@@ -78,7 +79,7 @@ BakedLut bake_lut(const LutRequest& request, LutNodes nodes, bool trilinear,
     }
     if (!(*max_error > 0))
         throw Error("bake: max error is " + shortest(*max_error) + "; expected above 0");
-    // A 1D table has as many entries as it needs.
+    // A 1D table chooses its own number of entries.
     BakedLut baked = bake_size(request, nodes, trilinear, true);
     if (baked.lut.dimension == 1 && baked.error.max <= *max_error) return baked;
     if (baked.lut.dimension == 3) {

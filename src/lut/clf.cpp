@@ -46,8 +46,8 @@ void append_entry(std::string& text, const ClfTable& table, std::size_t i, doubl
     }
 }
 
-/// The power of two that makes the numbers of a channel shortest. Not above what half floats have:
-/// OpenColorIO inverts a table with one over half floats.
+/// The power of two with the shortest numbers for a channel. Limited to the range of half floats,
+/// because OpenColorIO inverts a table with a half-float table.
 double shortest_gain(const ClfTable& table, std::size_t channel) {
     const auto stride = static_cast<std::size_t>(table.channels);
     double largest = 0;
@@ -72,7 +72,7 @@ double shortest_gain(const ClfTable& table, std::size_t channel) {
 
 std::string write_clf(const ClfTable& table, const std::string& name,
                       const std::vector<std::string>& description) {
-    // `id` must be unique to the contents; the hash of the numbers is.
+    // `id` must be unique to the contents; so use the hash of the numbers.
     std::string numbers;
     const std::span<const float> v = table.values;
     const auto per_line = static_cast<std::size_t>(table.dimension == 3 ? 3 : table.channels);
@@ -106,7 +106,7 @@ std::string write_clf(const ClfTable& table, const std::string& name,
     }
     const char* depth = table.numbers == ClfTable::Numbers::codes ? "16i" : "32f";
     std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
-    // A file has the version of one format only.
+    // A file states the version of only one format.
     text +=
         fmt::format("<ProcessList id=\"tonewright-{}\" name=\"{}\" {}>\n", content_hash(numbers),
                     xml_escape(name), is_ctf(table) ? "version=\"1.4\"" : "compCLFversion=\"3\"");

@@ -18,11 +18,11 @@ constexpr int kStepsPerStop = 16;
 
 double stops_of(double light) { return std::log2(light / kMidGrey); }
 
-/// Where half floats end.
+/// Stops at which half floats end.
 double brightest() { return stops_of(kHalfMax); }
 double darkest() { return stops_of(0x1p-24); }
 
-/// How much the picture of a color changes when its light is kept inside [lo, hi].
+/// Change of the displayed color if its scene value is clamped to [lo, hi].
 double change(const ReferenceEngine& engine, const Vector3& rgb, double lo, double hi) {
     Vector3 kept = rgb;
     for (double& channel : kept)
@@ -59,7 +59,7 @@ LutClipping measure_clipping(const LutRequest& request, const Lut& lut) {
             const Vector3 rec709 = {mask & 1 ? light : 0, mask & 2 ? light : 0,
                                     mask & 4 ? light : 0};
             Vector3 rgb = multiply(from_rec709, rec709);
-            // Brightest channel at that stop, in whatever primaries.
+            // The brightest channel is at that stop, in any primaries.
             const double largest = *std::max_element(rgb.begin(), rgb.end());
             for (double& channel : rgb)
                 channel *= light / largest;

@@ -13,13 +13,12 @@ namespace {
 
 constexpr int kSteps = 20;
 constexpr double kConverged = 1e-8;
-/// Of a code by what the cube gives: where the eye's code is infinitely steep, near black, a step
-/// from a steeper one would lead nowhere.
+/// Largest derivative of a code by the color of the 3D LUT. Perceptual codes are infinitely steep
+/// near black, and steps with larger derivatives would not converge.
 constexpr double kSteepest = 512;
-/// Where a block has its diagonal.
+/// Indices of the diagonal of a block.
 constexpr std::array<std::size_t, 3> kDiagonal = {0, 3, 5};
-/// Nodes that a thread takes at once. Sums are added up block by block, so they do not depend on
-/// the threads.
+/// Nodes per task of a thread. Sums are added block by block, so they do not depend on the threads.
 constexpr std::size_t kNodesPerBlock = 8192;
 
 }  // namespace
@@ -32,7 +31,7 @@ CubeSolver::CubeSolver(int edge, const Pipeline& forward, CubeSolverOptions opti
       options_(std::move(options)) {
     for (std::size_t mask = 0; mask < 8; ++mask)
         step_[mask] = node_step(mask, n_);
-    // Second differences read two nodes beyond.
+    // Second differences read two nodes beyond the edge.
     pad_ = std::max(pad_, 2 * n_ * n_);
 }
 
@@ -150,7 +149,8 @@ CubeSolver::Matrix CubeSolver::add_up() const {
     for (auto& blocks : m.blocks)
         blocks.resize(node_count_ + 2 * pad_);
     m.right = make_vector();
-    // Slabs of layers: every other one at a time, because a sample reaches into the next layer.
+    // Threads process every other slab of layers at a time, because a sample reaches into the next
+    // layer.
     constexpr std::size_t kLayers = 4;
     const std::size_t slabs = (n_ + kLayers - 1) / kLayers;
     const auto first_of = [&](std::size_t slab) {
@@ -179,7 +179,7 @@ void CubeSolver::add_evenness(const Vector& x, Vector& out, double sign) const {
                 if (middle == 0 || middle + 1 >= n_) return 0.0F;
                 return x[at - step][c] - 2 * x[at][c] + x[at + step][c];
             };
-            // Runs of nodes that have the same place on the axis.
+            // Runs of nodes with the same position on the axis.
             for (std::size_t i = begin; i < end;) {
                 const std::size_t place = (i - pad_) / step % n_;
                 const std::size_t next = std::min(end, i + step - (i - pad_) % step);
@@ -219,7 +219,7 @@ void CubeSolver::multiply_by(const Matrix& m, const Vector& x, Vector& out) cons
             };
             add(m.blocks[0][i], x[i]);
             for (std::size_t mask = 1; mask < 8; ++mask) {
-                // A block is symmetric: the same in the other direction.
+                // Blocks are symmetric, so the transpose is equal.
                 add(m.blocks[mask][i], x[i + step_[mask]]);
                 add(m.blocks[mask][i - step_[mask]], x[i - step_[mask]]);
             }

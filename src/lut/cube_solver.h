@@ -12,52 +12,53 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// RGB at the nodes of a cube, blue fastest.
+/// RGB at the nodes of a 3D LUT, blue fastest.
 using CubeNodes = std::vector<double>;
 
-/// What a cube has to give at a place.
+/// Wanted color of a 3D LUT at one position.
 struct CubeSample : Tetrahedron {
-    float root_weight;                             // square root of what it counts
-    std::array<float, 3> code;                     // wanted behind the cube
-    std::array<float, 3> missing;                  // of the code, now
-    std::array<std::array<float, 3>, 3> gradient;  // d code / d what the cube gives
+    float root_weight;                             // square root of its weight
+    std::array<float, 3> code;                     // wanted after the 3D LUT
+    std::array<float, 3> missing;                  // current residual of the code
+    std::array<std::array<float, 3>, 3> gradient;  // d code / d color of the 3D LUT
 };
 
 struct CubeSolverOptions {
     /// Weight of the squared second differences between nodes, where one sample at a node counts 1.
     double evenness = 0;
-    /// Keeps a step finite where neither samples nor evenness decide.
+    /// Keeps a step finite where neither samples nor smoothness determine a node.
     double damping = 1e-6;
-    /// Nodes that stay as they are.
+    /// Fixed nodes.
     std::vector<std::size_t> held = {};
-    /// 0: as many as the machine has. The nodes do not depend on it.
+    /// 0: one per hardware thread. The nodes do not depend on it.
     unsigned thread_count = 0;
 };
 
-/// Finds the nodes of a cube whose tetrahedral interpolation is best behind a pipeline: Gauss and
-/// Newton's method, whose linear equations conjugate gradients solve. The same nodes on every run.
+/// Finds the nodes of a 3D LUT for the best result of a pipeline after its tetrahedral
+/// interpolation: Gauss-Newton, with linear equations solved by conjugate gradients. The same nodes
+/// on every run.
 ///
 /// The normal matrix connects a node with the seven that share an edge of a tetrahedron above it
-/// and with seven below, so it is eight blocks of 3 x 3 numbers a node, however many samples are in
-/// it.
+/// and with seven below, so it has eight blocks of 3 x 3 numbers per node, for any number of
+/// samples.
 class CubeSolver {
   public:
-    /// @param forward  what the cube gives -> codes whose distances are nearly what the eye sees
+    /// @param forward  color of the 3D LUT -> code values whose distances are nearly perceptual
     CubeSolver(int edge, const Pipeline& forward, CubeSolverOptions options);
 
     void reserve(std::size_t count) { samples_.reserve(count); }
     void add(const Vector3& place, const Vector3& code, double weight);
     [[nodiscard]] std::vector<CubeSample>& samples() { return samples_; }
-    /// By cell: what is added to the matrix stays in the processor's cache. Call after the last
-    /// add().
+    /// Sorts samples by cell, so that additions to the matrix stay in the processor's cache. Call
+    /// after the last add().
     void sort_samples();
 
     [[nodiscard]] std::array<float, 3> shown(const CubeNodes& nodes, const CubeSample& s) const;
-    /// Sets what is missing of each code, and how it moves with what the cube gives.
+    /// Sets the residual of each code value, and its derivative by the color of the 3D LUT.
     void linearize(const CubeNodes& nodes);
-    /// One step from what linearize() set.
+    /// One step from the state that linearize() set.
     void improve(CubeNodes& nodes) const;
-    /// So many times both.
+    /// Repeats linearize() and step().
     void solve(CubeNodes& nodes, int rounds);
 
   private:
@@ -90,7 +91,7 @@ class CubeSolver {
     std::size_t n_;
     std::size_t node_count_;
     std::size_t pad_;
-    GradientEngine code_;  // of what the cube gives
+    GradientEngine code_;  // of the 3D LUT's color
     CubeSolverOptions options_;
     std::array<std::size_t, 8> step_{};  // from a node to the one that a mask of steps leads to
     std::vector<CubeSample> samples_;

@@ -46,7 +46,7 @@ float float_of(std::uint32_t bits) {
 /// Channel c of a texel.
 float channel_of(Texel texel, std::string_view bytes, std::size_t c) {
     switch (texel) {
-        case Texel::rgb9e5: {  // three mantissas of 9 bits, and the exponent above them
+        case Texel::rgb9e5: {  // three 9-bit mantissas, and the exponent above them
             constexpr int kBias = 15 + 9;
             const std::uint32_t packed = number_at(bytes, 0);
             const auto mantissa = static_cast<float>(packed >> (9 * c) & 0x1FFU);

@@ -57,7 +57,7 @@ LutFormat lut_format_of_file(const std::string& path, std::optional<LutFormat> f
     if (!format && application) format = application->format;
     if (format) {
         const std::vector<std::string>& own = extensions_of(*format);
-        // Every reader of LUTs looks at the extension, so no other one will do, and none neither.
+        // Readers of LUTs recognize formats by the extension, so the file needs the right one.
         if (has(own, extension)) return *format;
         const std::string reason =
             application && *format == application->format
@@ -72,7 +72,7 @@ LutFormat lut_format_of_file(const std::string& path, std::optional<LutFormat> f
                         "picture, or --for",
                         path));
     }
-    // Of two formats of one extension, the first is the usual one.
+    // If two formats share an extension, the first one is the default.
     for (std::size_t i = 0; i < extensions().size(); ++i) {
         if (has(extensions()[i], extension)) return static_cast<LutFormat>(i);
     }

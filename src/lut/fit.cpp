@@ -14,35 +14,35 @@
 #include "tonewright/lut.h"
 
 // With weights that interpolate linearly inside each of a cell's six tetrahedra, the normal matrix
-// of the least squares connects a node with those that it shares an edge with: seven neighbours up
-// (the other corners of the cell above it) and seven down. So it is eight numbers a node, however
-// many samples are in it, and a step of conjugate gradients costs little; some 15 are needed.
+// of the least squares connects a node with those that it shares an edge with: seven neighbors up
+// (the other corners of the cell above it) and seven down. So it has eight numbers per node for any
+// number of samples, and a step of conjugate gradients is cheap; about 15 are needed.
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// Of a logarithmic axis: where its toe ends and its longer steps begin.
+/// Ends of the toe and of the equal steps of a logarithmic axis.
 constexpr double kToe = 0.01;
 constexpr double kLights = 64;
 
-/// Training colours: their darkest channel in stops, and the brightest of most.
+/// Training colors: their darkest channel in stops, and the brightest of most.
 constexpr double kDarkest = -10;
 constexpr double kUsualBrightest = 6.5;
 
-/// One training colour in ten is as pictures have them. None is grey: greys are fitted on their
-/// own.
+/// One training color in ten is typical of pictures. None is gray, because grays are fitted
+/// separately.
 constexpr bool is_picture_color(std::size_t i) { return i % 10 == 0; }
 
-/// Of the squared distance to the sampled node, where one sample at a node counts 1.
+/// Weight of the squared distance to the sampled node; one sample at a node has weight 1.
 constexpr float kPull = 0.1F;
-/// A difference that nobody sees: a quarter of a 10-bit code.
+/// An invisible difference: a quarter of a 10-bit code.
 constexpr float kUnseen = 0.25F / 1023;
 
 constexpr int kRounds = 3;
 constexpr int kSteps = 30;
 constexpr double kConverged = 1e-8;
 
-/// A training colour: where it is, and what is wanted there.
+/// A training color: its position and the wanted code.
 struct Sample : Tetrahedron {
     std::array<float, 3> code;
 };
@@ -75,8 +75,9 @@ class Fit {
         return nodes;
     }
 
-    /// Of the sampled cube, from what is seen: over colours of pictures times over all others, as
-    /// neither is to be had at the other's cost; fourth powers, as what is worst is what matters.
+    /// Visible error of the sampled 3D LUT: the product for colors of pictures and for all others,
+    /// so that neither improves at the cost of the other. Fourth powers, because the worst errors
+    /// matter.
     double error_of_sampled() {
         take_sampled();
         const std::vector<Sample> samples = draw_samples();
@@ -94,17 +95,18 @@ class Fit {
     }
 
   private:
-    /// A number for every node, and zeros around, so that every neighbour can be read.
+    /// A number per node, padded with zeros, so that every neighbor can be read.
     using Plane = std::vector<float>;
 
-    /// matrix[mask][i]: between node i and the one that many steps above; matrix[0]: with itself.
+    /// matrix[mask][i]: between node i and the node at that mask of steps above it; matrix[0]: the
+    /// diagonal.
     struct NormalEquations {
         std::array<Plane, 8> matrix;
         Plane right;
     };
 
     [[nodiscard]] Plane make_plane() const { return Plane(node_count_ + 2 * pad_, 0.0F); }
-    /// Distance of the nodes of two neighbouring greys.
+    /// Distance of the nodes of two neighboring grays.
     [[nodiscard]] std::size_t grey_step() const { return step_[7]; }
 
     std::vector<double> take_sampled() {
@@ -117,8 +119,8 @@ class Fit {
         return start;
     }
 
-    /// Least squares in one dimension, with colours at equal distances: the edge between two greys'
-    /// nodes is an edge of tetrahedra, so no other node has to do with a grey.
+    /// Least squares in one dimension, with colors at equal distances: the edge between two grays'
+    /// nodes is an edge of tetrahedra, so no other node affects a gray.
     void fit_greys() {
         constexpr std::size_t kPerStep = 64;
         const std::size_t count = (n_ - 1) * kPerStep;
@@ -137,7 +139,7 @@ class Fit {
         }
     }
 
-    /// @param code  of greys, so many in each step of the axis.
+    /// @param code  of grays, a fixed number in each step of the axis.
     void fit_greys(const std::vector<double>& code, std::size_t per_step, Plane& x) const {
         // A tridiagonal matrix; black is known.
         std::vector<double> diagonal(n_, static_cast<double>(kPull));
@@ -198,7 +200,7 @@ class Fit {
         return drawn;
     }
 
-    /// By cell: what is added to the matrix stays in the processor's cache.
+    /// Sorts by cell, so that additions to the matrix stay in the processor's cache.
     void sort_samples(const std::vector<Sample>& drawn) {
         std::vector<std::size_t> next(node_count_ + 1, 0);
         for (const Sample& sample : drawn)
@@ -210,8 +212,8 @@ class Fit {
             samples_[next[sample.cell]++] = sample;
     }
 
-    /// As pictures have them, or others: half inside Rec.709 and half inside the primaries of the
-    /// light, channels log-uniform, a tenth with a channel at 0.
+    /// Typical colors of pictures, or others: half inside Rec.709 and half inside the given
+    /// primaries, channels log-uniform, a tenth with a channel at 0.
     [[nodiscard]] Vector3 draw_color(std::size_t i, SampleRandom& random,
                                      const Matrix3& from_rec709) const {
         Vector3 color{};
@@ -242,15 +244,15 @@ class Fit {
         return std::clamp(code, static_cast<float>(problem_.lo), static_cast<float>(problem_.hi));
     }
 
-    /// How much a difference counts: behind the display's clip it is smaller, or nothing. Without a
-    /// step at the clip, or the nodes would hang on the last digit of a code that is exactly there.
+    /// Weight of a difference: smaller or 0 where the display clips. It has no step at the clip;
+    /// otherwise the nodes would depend on the last digit of a code exactly there.
     [[nodiscard]] float importance(float wanted, float shown) const {
         const float seen = std::fabs(clip(wanted) - clip(shown));
         const float share = (seen + kUnseen) / (std::fabs(wanted - shown) + kUnseen);
         return share * share;
     }
 
-    /// What the nodes x make of a sample.
+    /// Interpolates the nodes x at a sample.
     [[nodiscard]] float shown(const Plane& x, const Sample& sample) const {
         const float* first = x.data() + pad_ + sample.cell;
         const auto [second, third, last] = sample.weight;
@@ -258,7 +260,7 @@ class Fit {
                third * first[step_[sample.third]] + last * first[step_[7]];
     }
 
-    /// Equations of what has to be added to the nodes of channel c.
+    /// Equations for the correction of the nodes of channel c.
     void add_up(std::size_t c, NormalEquations& equations) const {
         auto& [matrix, right] = equations;
         for (Plane& plane : matrix)
@@ -288,7 +290,7 @@ class Fit {
             hold(pad_ + i * grey_step(), equations);
     }
 
-    /// The node does not change.
+    /// Fixes the node.
     void hold(std::size_t node, NormalEquations& equations) const {
         auto& [matrix, right] = equations;
         matrix[0][node] = 1;
@@ -388,7 +390,7 @@ CubeAxis make_log_axis(double top, int edge, double share_of_lights) {
 }
 
 double choose_share_of_lights(const CubeProblem& problem, double top) {
-    // A smaller cube tells.
+    // A smaller 3D LUT is enough to choose.
     CubeProblem smaller = problem;
     smaller.edge = std::min(problem.edge, 33);
     double least = kInfinity;

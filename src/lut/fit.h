@@ -9,54 +9,54 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// Where light stands on each of the three axes of a cube.
+/// Position of a scene-linear value on each of the three axes of a 3D LUT.
 struct CubeAxis {
-    /// Light in [0, top] -> place in [0, 1], rising, 0 at 0; of input 0.
+    /// Scene-linear in [0, top] -> position in [0, 1], rising, 0 at 0; of input 0.
     Expr place = Expr::input();
     /// Its inverse.
     Expr light = Expr::input();
     double top = 1;
 };
 
-/// The logarithm of light with a linear toe, log2(x + 0.01): no floor above black, equal steps in
-/// stops above the toe. Equal steps are worth more than short ones where the operator bends: along
-/// the diagonals of the cells only the exposure changes, so whatever an operator does to a hue or a
-/// chroma at any exposure is followed by the same edges.
-/// @param edge             of the cube.
-/// @param share_of_lights  of an axis that reaches further than 64, what is for the lights above,
-///                         in longer steps; 64 is a node. 0: equal steps everywhere.
+/// Logarithmic axis with a linear toe, log2(x + 0.01): black has no floor, and steps in stops are
+/// equal above the toe. Equal steps fit better than short steps where the operator bends: along the
+/// diagonals of the cells only the exposure changes, so the same edges follow the operator for a
+/// hue and chroma at every exposure.
+/// @param edge             of the 3D LUT.
+/// @param share_of_lights  for an axis beyond 64, the share of the values above 64, in longer
+///                         steps; 64 is a node. 0: equal steps everywhere.
 [[nodiscard]] TONEWRIGHT_API CubeAxis make_log_axis(double top, int edge,
                                                     double share_of_lights = 0);
 
-/// What a cube stands for.
+/// The function that a 3D LUT represents.
 struct CubeProblem {
     /// Nodes along each axis.
     int edge = 65;
     CubeAxis axis;
-    /// Light >= 0 -> what the nodes hold: a smooth code, not clipped, whose distances are nearly
-    /// what the eye sees.
+    /// Scene-linear >= 0 -> value of the nodes: a smooth unclipped code whose distances are nearly
+    /// perceptual.
     Pipeline pipeline;
     /// Of the light.
     Primaries primaries = kRec709;
-    /// The codes beyond which nothing is seen, because what is behind the cube clips.
+    /// Range of visible codes: a stage after the 3D LUT clips values outside.
     double lo = -kInfinity;
     double hi = kInfinity;
 };
 
-/// The share of make_log_axis() that suits the pipeline best, @see choose_log_axis.
+/// The best share for make_log_axis() and this pipeline, @see choose_log_axis.
 [[nodiscard]] TONEWRIGHT_API double choose_share_of_lights(const CubeProblem& problem, double top);
 
-/// The logarithmic axis that suits the pipeline best, by the errors of sampled cubes of 33 nodes a
-/// side: with longer steps for the lights where the operator has little left to do above 64.
-/// @param problem  its axis is not read.
+/// The best logarithmic axis for the pipeline, by the errors of sampled 3D LUTs with 33 nodes a
+/// side. Its steps are longer above 64 if the operator changes little there.
+/// @param problem  its axis is ignored.
 [[nodiscard]] TONEWRIGHT_API CubeAxis choose_log_axis(const CubeProblem& problem, double top);
 
 struct CubeFitOptions {
-    /// Twice as many gain a few hundredths.
+    /// Twice as many improve the error by a few percent.
     double samples_per_node = 10;
     /// Of 64 bytes.
     std::size_t largest_sample_count = 4000000;
-    /// 0: as many as the machine has. The nodes do not depend on it.
+    /// 0: one per hardware thread. The nodes do not depend on it.
     unsigned thread_count = 0;
 };
 
@@ -64,13 +64,13 @@ struct CubeFitOptions {
 /// reference.
 [[nodiscard]] TONEWRIGHT_API std::vector<double> sample_cube(const CubeProblem& problem);
 
-/// The nodes whose tetrahedral interpolation is nearest to the pipeline: least squares of the seen
-/// differences over colours that are like those of pictures and beyond, from the sampled nodes on.
+/// The nodes whose tetrahedral interpolation is closest to the pipeline: least squares of visible
+/// differences over colors of pictures and others, starting from the sampled nodes.
 ///
-/// A sampled cube is exact at its nodes and errs to one side between them, where the operator bends
-/// one way; a fitted one errs to both sides, half as much. Greys are fitted first, on their own, so
-/// they stay as neutral as the operator makes them; black stays what it is. Nodes that no colour
-/// needs stay as sampled. The same nodes on every run.
+/// A sampled 3D LUT is exact at its nodes, and its error between them has one sign where the
+/// operator bends one way. The error of a fitted one has both signs and half the size. Grays are
+/// fitted first and separately, so they stay as neutral as the operator makes them; black is fixed.
+/// Unused nodes stay as sampled. The same nodes on every run.
 [[nodiscard]] TONEWRIGHT_API std::vector<double> fit_cube(const CubeProblem& problem,
                                                           const CubeFitOptions& options = {});
 

@@ -15,14 +15,14 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// With half as many, 99.9 % of other colors are off by half as much again.
+/// Half as many make the 99.9 % error of other colors 1.5 times as large.
 constexpr std::size_t kSamplesPerNode = 8;
-/// One sample in so many is a light of the display, reached or not, and counts little.
+/// One sample in this many is any display color, reachable or not, with a small weight.
 constexpr std::size_t kAnyLight = 8;
 constexpr double kWeightOfAny = 0.01;
-/// Of the squared second differences between nodes, where one sample at a node counts 1.
+/// Weight of the squared second differences between nodes; one sample at a node has weight 1.
 constexpr double kEvenness = 0.05;
-/// Another round gains some hundredths.
+/// Another round improves the error by a few percent.
 constexpr int kRounds = 5;
 
 /// Three planes.
@@ -45,7 +45,7 @@ class InverseFit {
     }
 
   private:
-    /// What the nodes hold -> code.
+    /// Value of the nodes -> code.
     static Pipeline code_behind(const InverseCubeProblem& problem) {
         Pipeline stages = problem.forward;
         stages.push_back(curve_stage(problem.code));
@@ -68,8 +68,8 @@ class InverseFit {
         });
     }
 
-    /// As pictures have them, or log-uniform from black to the brightest light; in Rec.709 or the
-    /// scene's primaries, greys, and with a channel at 0.
+    /// Typical colors of pictures, or log-uniform from black to the brightest value; in Rec.709 or
+    /// the scene's primaries; also grays, and colors with a channel at 0.
     [[nodiscard]] Vector3 draw_color(std::size_t i, SampleRandom& random,
                                      const Matrix3& from_rec709) const {
         Vector3 color{};
@@ -102,7 +102,7 @@ class InverseFit {
         apply(ReferenceEngine(problem_.forward), light);
         const double top = *std::max_element(light[0].begin(), light[0].end());
         for (std::size_t i = reached; i < count; ++i) {
-            // Nearly even in what is seen.
+            // Nearly uniform in visible steps.
             for (std::vector<double>& channel : light) {
                 const double share = random.uniform(0, 1);
                 channel.push_back(top * share * share);
@@ -123,7 +123,7 @@ class InverseFit {
         solver_.sort_samples();
     }
 
-    /// Every channel as greys have it at its place.
+    /// Sets every channel to the gray solution at its position.
     void start_from_greys() {
         constexpr std::size_t kGreys = 2048;
         Colors held = make_colors(kGreys);
@@ -154,7 +154,7 @@ class InverseFit {
         }
     }
 
-    /// Where many colors are shown as one, in their midst.
+    /// If many colors map to one, uses their middle.
     void start_from_colors() {
         for (CubeSample& s : solver_.samples()) {
             if (s.root_weight < 1) continue;

@@ -8,29 +8,29 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// A cube over light that leads back through a pipeline.
+/// A 3D LUT over display-linear that inverts a pipeline.
 struct InverseCubeProblem {
     /// Nodes along each axis.
     int edge = 37;
-    /// Light -> place on the axes, in [0, 1]; of input 0.
+    /// Display-linear -> position on the axes, in [0, 1]; of input 0.
     Expr place = Expr::input();
-    /// Light -> a code whose distances are nearly what the eye sees; of input 0.
+    /// Display-linear -> a code whose distances are nearly perceptual; of input 0.
     Expr code = Expr::input();
-    /// The scene -> what the nodes hold: numbers of about [0, 1], in which the inverse is smooth.
+    /// Scene-linear -> value of the nodes, about [0, 1], in which the inverse is smooth.
     Pipeline before;
-    /// What the nodes hold -> light.
+    /// Value of the nodes -> display-linear.
     Pipeline forward;
-    /// Of the scene: the lights that come from colors of these and of Rec.709 are to come back.
+    /// Primaries of the scene: the inverse covers colors of these primaries and of Rec.709.
     Primaries primaries = kRec709;
 };
 
-/// The nodes that are best at leading back: least squares, over lights that the pipeline makes, of
-/// the difference between their codes and those of forward(cube(light)). A cube sampled from the
-/// exact inverse errs where the inverse is steep, and by that slope; this one errs by what is seen.
+/// The best nodes for the round trip: least squares, over display colors that the pipeline
+/// produces, of the difference between their codes and those of forward(lut(color)). A 3D LUT
+/// sampled from the exact inverse has an error proportional to the slope of the inverse; this one
+/// minimizes the visible error.
 ///
-/// Gauss and Newton's method, from what greys need on. Between the nodes that no light reaches the
-/// cube goes on evenly, drawn to what is nearest in code. Black comes back as what the nodes hold
-/// of black. The same nodes on every run.
+/// Gauss-Newton, starting from the solution for grays. Unreached nodes continue smoothly, drawn to
+/// the nearest code. The inverse of black is the node value of black. The same nodes on every run.
 /// @returns RGB at the nodes, blue fastest, as fit_cube().
 [[nodiscard]] TONEWRIGHT_API std::vector<double> fit_inverse_cube(
     const InverseCubeProblem& problem);

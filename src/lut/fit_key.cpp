@@ -18,7 +18,7 @@ std::string key_of_pipeline(const Pipeline& pipeline) {
     for (auto& plane : planes)
         plane.resize(kColors);
     for (std::size_t i = 0; i < kColors; ++i) {
-        // Light of all sizes, and numbers of [0, 1] evenly.
+        // Scene values of all magnitudes, and uniform numbers in [0, 1].
         for (auto& plane : planes)
             plane[i] = i % 4 == 0 ? random.uniform(0, 1) : std::exp2(random.uniform(-14, 14));
         if (i % 16 == 1) planes[random.bits() % 3][i] = 0;

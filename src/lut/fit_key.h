@@ -7,9 +7,8 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// For the keys of cached_numbers(): what the double reference makes of 8192 colors, which tells
-/// one pipeline from another. Another processor or library of mathematical functions may give
-/// another key.
+/// Key for cached_numbers(): the double reference's results for 8192 colors identify a pipeline. A
+/// different processor or math library may give a different key.
 [[nodiscard]] TONEWRIGHT_API std::string key_of_pipeline(const Pipeline& pipeline);
 
 /// The same for primaries.

@@ -48,8 +48,8 @@ std::vector<float> sample_half_domain(const Expr& f, double lo, double hi) {
     lo = std::max(lo, -kHalfMax);
     hi = std::min(hi, kHalfMax);
     const ReferenceEngine engine({curve_stage(f)});
-    // A bound between two half floats is reached by interpolating from the entry beyond it: that
-    // entry keeps the curve's own value, or the kink of holding it would show inside the interval.
+    // Interpolation reaches a bound between two half floats from the entry beyond it. That entry
+    // keeps the value of the curve; a held value would show a kink inside the interval.
     const auto neighbour_is_inside = [&](unsigned bits) {
         const unsigned sign = bits & kSignBit;
         const unsigned magnitude = bits & ~kSignBit;
@@ -70,7 +70,7 @@ std::vector<float> sample_half_domain(const Expr& f, double lo, double hi) {
     }
     std::vector<double> y(kHalfCount);
     engine.run({x.data(), x.data(), x.data()}, {y.data(), y.data(), y.data()}, kHalfCount);
-    // What leaves the floats is their largest: an infinite entry makes its neighbours NaN.
+    // Overflow becomes the largest float, because an infinite entry makes its neighbors NaN.
     constexpr auto largest = static_cast<double>(std::numeric_limits<float>::max());
     for (double& value : y)
         value = std::clamp(value, -largest, largest);

@@ -22,30 +22,30 @@ TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 constexpr std::size_t kEntries = 4096;
-/// Light in stops; what is darker counts as black.
+/// Lowest stop; darker values count as black.
 constexpr double kBlack = -24;
-/// Darker light is nearly linear on the axis of values, for all hues.
+/// Darker values are nearly linear on the value axis, for all hues.
 constexpr double kToe = 0.005;
-/// Of fit_hue_cube(): another number where it makes other nodes of the same problem.
+/// Version of fit_hue_cube(): change it if the nodes of the same problem change.
 constexpr int kVersion = 5;
-/// Of the display's light in the codes that the third channel holds and the fit compares: of
-/// Rec.1886, the steepest near black.
+/// Power of the codes in the third channel and in the fit: that of Rec.1886, the steepest near
+/// black.
 constexpr double kCodePower = 1 / 2.4;
-/// Of samples that are drawn for the cells: the others are what pictures and tests have.
+/// Share of the samples that are drawn for the cells; the others are colors of pictures and tests.
 constexpr double kWeightOfCells = 0.1;
-/// Of the most colorful light: nodes that take part between it and gray.
+/// Share of the most colorful saturation: nodes between it and gray take part in the fit.
 constexpr double kBeyondFringe = 1.02;
-/// How far beyond the display's peak the nodes go, in code.
+/// Range of the nodes above the display's peak, in code values.
 constexpr double kLargestCode = 1.06;
-/// Ranges of the ratios x and y in the nodes; grays are in the midst.
+/// Ranges of the ratios x and y in the nodes; grays are in the middle.
 constexpr double kLowestX = -0.1;
 constexpr double kLowestY = 0.4;
 constexpr double kRatioRange = 0.7;
-/// The ratios of a neutral.
+/// Ratios of a neutral color.
 constexpr double kNeutralX = 0.2;
 constexpr double kNeutralY = 0.6;
 
-/// As OpenColorIO's RGB_TO_HSV has it, of positive channels.
+/// OpenColorIO's RGB_TO_HSV for positive channels.
 Vector3 hsv_of(const Vector3& rgb) {
     const auto& [r, g, b] = rgb;
     const double hi = std::max({r, g, b});
@@ -68,7 +68,7 @@ Vector3 rgb_of(const Vector3& hsv) {
     return rgb;
 }
 
-/// Linear between points of rising x; held at the ends.
+/// Linear between points of rising x; constant beyond the ends.
 class Polyline {
   public:
     Polyline() = default;
@@ -91,7 +91,7 @@ class Polyline {
     std::vector<double> y_;
 };
 
-/// Points of a function of the hue in turns, put around the circle.
+/// Extends the points of a function of the hue, in turns, around the circle.
 Polyline around(std::vector<std::pair<double, double>> points) {
     std::sort(points.begin(), points.end());
     std::vector<double> x = {points.back().first - 1};
@@ -106,8 +106,8 @@ Polyline around(std::vector<std::pair<double, double>> points) {
     return {std::move(x), std::move(y)};
 }
 
-/// Places in [lo, hi] that a density spaces, `count` of them.
-/// @param fixed  rising, from lo to hi: places that are among them
+/// `count` positions in [lo, hi], spaced by a density.
+/// @param fixed  rising, from lo to hi: positions that must be included
 std::vector<double> spaced(std::size_t count, const std::vector<double>& fixed,
                            const auto& density) {
     constexpr std::size_t kSteps = 8000;
@@ -121,7 +121,7 @@ std::vector<double> spaced(std::size_t count, const std::vector<double>& fixed,
     }
     const Polyline to_sum(at, sum);
     const Polyline to_place = to_sum.inverse();
-    // One after the other, the next place goes where the steps are longest.
+    // Adds positions one by one where the steps are longest.
     std::vector<std::size_t> steps(fixed.size() - 1, 1);
     const auto length = [&](std::size_t k) {
         return (to_sum(fixed[k + 1]) - to_sum(fixed[k])) / static_cast<double>(steps[k]);
@@ -145,7 +145,7 @@ std::vector<double> spaced(std::size_t count, const std::vector<double>& fixed,
     return places;
 }
 
-/// Rising, and each at an entry of a table over [0, 1].
+/// Makes the values rising, each at an entry of a table over [0, 1].
 std::vector<double> at_entries(std::vector<double> places) {
     constexpr double kLast = kEntries - 1;
     for (double& x : places)
@@ -155,7 +155,7 @@ std::vector<double> at_entries(std::vector<double> places) {
     return places;
 }
 
-/// Place in [0, 1] of each node's value.
+/// Position in [0, 1] of each node's value.
 Polyline place_of(const std::vector<double>& nodes) {
     std::vector<double> places(nodes.size());
     for (std::size_t i = 0; i < nodes.size(); ++i)
@@ -174,7 +174,7 @@ Table3 make_table(const F& f) {
     return table;
 }
 
-/// As OpenColorIO interpolates it.
+/// Interpolates like OpenColorIO.
 Vector3 look_up(const Table3& table, const Vector3& x) {
     Vector3 y{};
     for (std::size_t c = 0; c < 3; ++c) {
@@ -232,7 +232,7 @@ class Maker {
     }
 
   private:
-    /// Axes of light, with the value in [0, 1].
+    /// Axes of a color, with the value in [0, 1].
     [[nodiscard]] Vector3 axes_of(const Vector3& light) const {
         Vector3 axes = to_axes_(light);
         for (double& x : axes)
@@ -240,7 +240,7 @@ class Maker {
         return axes;
     }
 
-    /// The display's RGB of hue, saturation and value.
+    /// Display RGB of hue, saturation and value.
     [[nodiscard]] Vector3 rgb_at(const Vector3& hsv) const {
         Vector3 axes = rgb_of(hsv);
         for (double& x : axes)
@@ -248,7 +248,7 @@ class Maker {
         return shown_(axes);
     }
 
-    /// What a neutral's value is in stops.
+    /// Value of a neutral color, in stops.
     void find_stops() {
         cube_.gain = 1 / to_axes_({top_, top_, top_})[0];
         constexpr int kSteps = 20000;
@@ -267,7 +267,7 @@ class Maker {
         value_ = stops_.inverse();
     }
 
-    /// The saturation of the most colorful light of each hue: with a channel at 0.
+    /// Saturation of the most colorful color of each hue, with a channel at 0.
     void find_fringe() {
         constexpr std::array<Vector3, 7> kCorners = {
             {{1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}, {1, 0, 1}, {1, 0, 0}}};
@@ -292,8 +292,8 @@ class Maker {
         fringe_ = around(std::move(points));
     }
 
-    /// Stops at which the largest channel is as far below the peak as the smallest is above 0: on a
-    /// hull, at its cusp.
+    /// Stops at which the largest channel is as far below the peak as the smallest is above 0. On
+    /// the hull, that is the cusp.
     [[nodiscard]] double cusp_at(double hue, double saturation) const {
         double lo = kBlack;
         double hi = last_stop_;
@@ -309,7 +309,7 @@ class Maker {
 
     void find_cusps() {
         constexpr int kHues = 720;
-        // With less saturation the cusp is a little lower: a plane for all hues.
+        // The cusp is slightly lower with less saturation: a plane for all hues.
         constexpr double kPart = 0.9;
         std::vector<std::pair<double, double>> stops(kHues);
         std::vector<double> saturation(kHues);
@@ -338,7 +338,7 @@ class Maker {
         toe_ = kToe / std::exp2(cusp_.highest());
     }
 
-    /// All before the nodes.
+    /// Builds the stages before the nodes.
     void make_steps() {
         // hue -> sum, rising: steepness hue + cusp.
         double steepest = 0;
@@ -380,7 +380,7 @@ class Maker {
         return std::log2(std::max(std::exp2(place) - toe_, 0x1p-40));
     }
 
-    /// Places where nodes have to be: where the stage bends.
+    /// Positions that need nodes: where the stage bends.
     void find_bends() {
         std::vector<double> bends = {0, 1};
         for (int i = 1; i < 6; ++i)
@@ -394,7 +394,7 @@ class Maker {
         const double toe = std::log2(toe_);
         density_[0] = [](double) { return 1.0; };
         density_[1] = [](double x) { return 1 / std::sqrt(1.02 - x); };
-        // Equal steps in stops above the toe and in light below, at the cusp the shortest.
+        // Equal steps in stops above the toe and in linear below, shortest at the cusp.
         density_[2] = [=](double x) {
             return 1 + 5 * std::exp(-std::fabs(x - cusp) / 1.2) + 1.5 * std::exp((toe - x) / 2);
         };
@@ -404,7 +404,7 @@ class Maker {
         const auto n = static_cast<std::size_t>(options_.edge);
         for (std::size_t axis = 0; axis < 3; ++axis)
             nodes_[axis] = spaced(n, fixed_[axis], density_[axis]);
-        // Straight between the nodes: what the stage makes of light bends no more than without it.
+        // Linear between the nodes, so that it adds no curvature to the stage.
         std::vector<double> cusps;
         for (const double hue : nodes_[0])
             cusps.push_back(all_cusps_(hue));
@@ -420,7 +420,7 @@ class Maker {
         });
     }
 
-    /// Where a color of the axes is between the nodes.
+    /// Position of a color of the axes between the nodes.
     [[nodiscard]] Vector3 coordinates_of(const Vector3& axes) const {
         const auto [hue, saturation, value] = hsv_of(axes);
         return {hue, saturation / largest_saturation_,
@@ -436,14 +436,14 @@ class Maker {
         return axes;
     }
 
-    /// The display's RGB of coordinates.
+    /// Display RGB at coordinates.
     [[nodiscard]] std::vector<Vector3> shown_at(std::vector<Vector3> coordinates) const {
         for (Vector3& place : coordinates)
             place = axes_at(place);
         return through(shown_, std::move(coordinates));
     }
 
-    /// Nodes along one axis and what straight lines between them miss.
+    /// Nodes along one axis and the error of straight lines between them.
     struct Misses {
         std::vector<double> of_cells;  // sums of squares
         double mean = 0;
@@ -476,7 +476,7 @@ class Maker {
                 between[i][c] = from[c] + t * (to[c] - from[c]);
         }
         between = through(node_to_code, std::move(between));
-        // Nodes beyond the most colorful light may hold anything.
+        // Nodes beyond the most colorful color are free.
         const auto is_reached = [&](const Vector3& place) {
             return place[1] * largest_saturation_ <= kBeyondFringe * fringe_(place[0]);
         };
@@ -493,14 +493,15 @@ class Maker {
         return misses;
     }
 
-    /// Puts nodes where the stage is furthest from straight lines between them. What a line misses
-    /// grows with the square of a cell's width, so the sum of squares over all cells is least where
-    /// the sum of each, divided by the fifth power of its width, is the fifth power of the density.
+    /// Places nodes where straight lines between them have the largest error. The error of a line
+    /// grows with the square of a cell's width. So the sum of squares over all cells is least if
+    /// the sum of each cell, divided by the fifth power of its width, is the fifth power of the
+    /// density.
     void improve_places() {
         constexpr std::size_t kMostColors = 15000;
         constexpr int kRounds = 4;
-        /// Of the mean: no cell becomes wide for want of colors. Few are as dark as the first cells
-        /// of values.
+        /// Lower limit, relative to the mean, so that no cell becomes wide because it has few
+        /// colors. Few colors are as dark as the first cells of the value axis.
         constexpr Vector3 kLeast = {1e-3, 1e-3, 0.2};
         const std::size_t count = std::min(kMostColors, sample_count() / 4);
         std::vector<Vector3> light;
@@ -525,7 +526,7 @@ class Maker {
                 std::vector<double> middle(cells);
                 std::vector<double> density(cells);
                 for (std::size_t i = 0; i < cells; ++i) {
-                    // Few colors are in a cell: those beside it tell, too.
+                    // A cell has few colors, so use those of its neighbors, too.
                     const double around = 0.5 * of_cells[i] + 0.25 * of_cells[i > 0 ? i - 1 : i] +
                                           0.25 * of_cells[std::min(i + 1, cells - 1)];
                     middle[i] = (nodes[i] + nodes[i + 1]) / 2;
@@ -545,7 +546,7 @@ class Maker {
         return look_up(cube_.place, affine(cube_.plus_hue, x));
     }
 
-    /// All behind the nodes.
+    /// Builds the stages after the nodes.
     void make_behind() {
         const double peak = structure_.peak;
         cube_.light = make_table([&](double x) -> Vector3 {
@@ -556,7 +557,7 @@ class Maker {
         cube_.to_rgb = {{{3, 0, 0}, {-3, 3, -3}, {0, 0, 3}}};
     }
 
-    /// What a node holds of the display's RGB.
+    /// Node value of a display RGB.
     [[nodiscard]] Vector3 node_of(const Vector3& rgb) const {
         const double light = (rgb[0] + rgb[1] + rgb[2]) / 3;
         const double sum = rgb[0] / 3 + light + rgb[2] / 3;
@@ -567,10 +568,9 @@ class Maker {
                 std::pow(std::max(light, 0.0) / structure_.peak, kCodePower) / kLargestCode};
     }
 
-    /// The display's light, 1 at the peak -> codes to compare: a power, or PQ where the peak is
-    /// HDR's; straight near black, and nearly level where the display clips. With a shorter
-    /// straight part the few colors that have a channel next to 0 would take the nodes of all
-    /// others, and gain little.
+    /// Display-linear, 1 at the peak -> codes to compare: a power, or PQ for HDR peaks; straight
+    /// near black, and nearly constant where the display clips. With a shorter straight segment,
+    /// the few colors with a channel near 0 would dominate the nodes and gain little.
     [[nodiscard]] Expr code_of(const Expr& light) const {
         constexpr double kBeyondWhite = 0.1;
         constexpr double kBelowBlack = 0.15;
@@ -609,7 +609,7 @@ class Maker {
             std::vector<Vector3> coordinates;
             coordinates.reserve(n * n);
             for (std::size_t s = 0; s < n; ++s) {
-                // Beyond the most colorful light, as there.
+                // Beyond the most colorful color, use the value there.
                 const double saturation = std::min(
                     nodes_[1][s], kBeyondFringe * fringe_(nodes_[0][h]) / largest_saturation_);
                 for (std::size_t v = 0; v < n; ++v)
@@ -627,8 +627,8 @@ class Maker {
         return nodes;
     }
 
-    /// Grays of all hues: the rounding of floats decides which hue a gray has, so the nodes of all
-    /// hues have to show it alike. Least squares along the axis of values; black is known.
+    /// Grays of all hues: float rounding decides the hue of a gray, so the nodes of all hues must
+    /// agree. Least squares along the value axis; black is known.
     void fit_grays(CubeNodes& nodes) const {
         const std::size_t n = nodes_[0].size();
         constexpr std::size_t kPerStep = 16;
@@ -669,7 +669,8 @@ class Maker {
         });
     }
 
-    /// Channels log-uniform, of pictures, or gray; in Rec.709, Rec.2020 or the light's primaries.
+    /// Log-uniform channels, colors of pictures, or grays; in Rec.709, Rec.2020 or the working
+    /// primaries.
     [[nodiscard]] Vector3 draw_unlimited(std::size_t i, SampleRandom& random) const {
         const std::size_t kind = i % 20;
         if (kind < 2) {
@@ -682,7 +683,7 @@ class Maker {
         if (kind == 2) return {color[0], color[0], color[0]};
         if (random.uniform(0, 10) < 1) color[random.bits() % 3] = 0;
         if (random.uniform(0, 4) < 1) {
-            // Nearer to gray.
+            // Moves the color towards gray.
             const double gray = (color[0] + color[1] + color[2]) / 3;
             const double share = random.uniform(0, 1);
             for (double& channel : color)
@@ -699,8 +700,8 @@ class Maker {
         return light;
     }
 
-    /// The axes of a color: evenly among the cells that light reaches. Where nodes are dense,
-    /// colors are few.
+    /// Axes of a color, uniform over the cells that colors reach. Colors are rare where nodes are
+    /// dense.
     [[nodiscard]] Vector3 draw_axes(SampleRandom& random) const {
         while (true) {
             Vector3 at{};
@@ -714,7 +715,7 @@ class Maker {
         }
     }
 
-    /// Every other sample.
+    /// Uses every other sample.
     static bool is_of_cells(std::size_t sample) { return sample % 2 == 0; }
 
     [[nodiscard]] std::size_t sample_count() const {
@@ -764,7 +765,7 @@ class Maker {
             cube_.nodes.push_back(static_cast<float>(std::clamp(x, 0.0, 1.0)));
     }
 
-    /// All that the nodes depend on: the first samples tell one stage from another.
+    /// Cache key of the nodes: the first samples identify the stage.
     [[nodiscard]] std::string key_of(const std::vector<Vector3>& places,
                                      const std::vector<Vector3>& codes, std::size_t count) const {
         std::vector<double> numbers = {structure_.peak, top_, cube_.gain, tilt_, toe_};

@@ -19,17 +19,17 @@ struct AffineStep {
 };
 
 /// A 3D LUT of a channel-mixing stage over hue, saturation and value of the axes of its structure,
-/// and what stands before and behind it.
+/// and the stages before and after it.
 ///
-/// A color that the display's hull limits bends sharply where the hull has its cusp. The cusp is at
-/// another value for every hue, so the third axis of the LUT is the value less the cusp's: the
-/// cusps of all hues are at one of its nodes, and the nodes are densest there. Nodes of hue are at
-/// the hues where the stage bends.
+/// Colors on the display's hull bend sharply at its cusp. Every hue has its cusp at a different
+/// value, so the third axis of the LUT is the value minus that of the cusp: all cusps are at one
+/// node, and the nodes are densest there. The nodes of the hue axis are at the hues where the stage
+/// bends.
 ///
-/// The LUT gives what is exact where a channel of the display is 0: two ratios, which are linear in
-/// light, and the sum of the channels as a code.
+/// The outputs of the LUT are exact where a display channel is 0: two ratios, which are linear in
+/// display-linear, and the sum of the channels as a code.
 struct HueCube {
-    /// What the nodes may be rounded to: next to 0 a code is steep.
+    /// Rounding of the nodes: a code is steep near 0.
     static constexpr double kUnit = 5e-5;
 
     /// Axes -> axes whose value is in [0, 1].
@@ -60,7 +60,7 @@ struct HueCubeOptions {
     unsigned thread_count = 0;
 };
 
-/// @param top  light to limit every channel to: the stage saturates there
+/// @param top  limit of every channel: the stage saturates there
 [[nodiscard]] TONEWRIGHT_API HueCube fit_hue_cube(const HueStructure& structure, double top,
                                                   const HueCubeOptions& options = {});
 

@@ -37,7 +37,7 @@ using Owned = std::unique_ptr<T, Deleter>;
 using OwnedContext =
     std::unique_ptr<std::remove_pointer_t<cmsContext>, decltype(&cmsDeleteContext)>;
 
-/// What LittleCMS complained about last.
+/// Last error message of LittleCMS.
 void keep_message(cmsContext context, cmsUInt32Number, const char* text) {
     auto* message = static_cast<std::string*>(cmsGetContextUserData(context));
     if (message->empty()) *message = text;
@@ -56,7 +56,7 @@ Owned<cmsMLU> text_of(cmsContext context, const std::string& text) {
     return mlu;
 }
 
-/// Where things stand in a profile, ICC.1:2010-12, 7.2.
+/// Layout of a profile, ICC.1:2010-12, 7.2.
 constexpr std::size_t kClass = 12;
 constexpr std::size_t kSpace = 16;
 constexpr std::size_t kConnectionSpace = 20;
@@ -75,7 +75,7 @@ std::string contents_of(const Owned<void>& profile, const std::function<void(boo
     require(cmsSaveProfileToMem(profile.get(), nullptr, &length));
     std::string bytes(length, '\0');
     require(cmsSaveProfileToMem(profile.get(), bytes.data(), &length));
-    // LittleCMS puts the time of day there; the same profile is to be the same file.
+    // LittleCMS writes the current time there; equal profiles must be equal files.
     constexpr std::array<char, 12> kAlways = {2000 >> 8, static_cast<char>(2000 & 255), 0, 1, 0, 1};
     std::copy(kAlways.begin(), kAlways.end(), bytes.begin() + kCreated);
     return bytes;
@@ -136,7 +136,7 @@ std::string write_icc(const std::vector<float>& nodes, int size, int version,
         codes.push_back(static_cast<std::uint16_t>(std::lround(v * 65535.0F)));
     const Owned<cmsPipeline> pipeline(cmsPipelineAlloc(context.get(), 3, 3));
     require(pipeline != nullptr);
-    // Both of the straight curves belong to the form that version 4 has of it.
+    // Version 4 of the tag requires both linear curves.
     for (const int stage : {0, 1, 2}) {
         require(cmsPipelineInsertStage(
             pipeline.get(), cmsAT_END,
@@ -172,7 +172,8 @@ struct DeviceLink::Profile {
 
 namespace {
 
-/// LittleCMS makes room for a table before it knows that the file has as much.
+/// Checks the size of the table, because LittleCMS allocates it before it knows that the file is
+/// large enough.
 /// @returns  nodes a side
 std::array<std::size_t, 3> check_table(const std::string& path, std::string_view bytes) {
     const auto refuse = [&](const std::string& reason) {
@@ -200,7 +201,7 @@ std::array<std::size_t, 3> check_table(const std::string& path, std::string_view
         const std::size_t entry = kHeader + 4 + 12 * i;
         if (entry + 12 > bytes.size()) refuse("the table of tags is longer than the file");
         if (bytes.substr(entry, 4) != "A2B0") continue;
-        // LittleCMS reads the first.
+        // LittleCMS reads the first tag.
         if (has_tag) refuse("tag A2B0 appears twice; expected once");
         has_tag = true;
         const std::size_t begin = big_endian(bytes, entry + 4, 4);

@@ -10,9 +10,9 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// How the code values of a display become light.
+/// Decoding of a display's code values.
 struct IccCurve {
-    /// A power; or the curve of IEC 61966-2-1, whose power it is, too.
+    /// A power, or the curve of IEC 61966-2-1, for which `power` is also its exponent.
     double exponent = 1;
     bool is_srgb = false;
 };
@@ -22,18 +22,18 @@ struct IccCurve {
 
 /// An ICC display profile of version 4 (ICC.1:2010-12): primaries and white, adapted to D50 with
 /// Bradford's matrix, and one parametric curve. The same bytes on every run.
-/// @param is_gray      for pictures of one channel: the curve alone
+/// @param is_gray      for pictures with one channel: only the curve
 /// @param description  one line that programs show
 [[nodiscard]] TONEWRIGHT_API std::string write_display_icc(const Primaries& primaries,
                                                            const IccCurve& curve,
                                                            const std::string& description,
                                                            bool is_gray);
 
-/// A cube as an ICC device link, RGB to RGB, 16 bits: the contents of the file, the same on every
+/// A 3D LUT as an ICC device link, RGB to RGB, 16 bits: the contents of the file, the same on every
 /// run.
 /// @param nodes        RGB triplets of numbers in [0, 1], blue fastest
 /// @param description  one line that programs show
-/// @param text         what else there is to say
+/// @param text         further text
 [[nodiscard]] TONEWRIGHT_API std::string write_icc(const std::vector<float>& nodes, int size,
                                                    int version, const std::string& description,
                                                    const std::vector<std::string>& text);
@@ -42,7 +42,7 @@ struct IccCurve {
 class TONEWRIGHT_API DeviceLink {
   public:
     /// @param path  for errors
-    /// @throws FileError  when it is none, of something else than RGB to RGB, or damaged.
+    /// @throws FileError  if it is no device link from RGB to RGB, or damaged.
     DeviceLink(const std::string& path, std::string_view bytes);
     ~DeviceLink();
     DeviceLink(DeviceLink&&) noexcept;
@@ -50,7 +50,7 @@ class TONEWRIGHT_API DeviceLink {
 
     /// Interleaved RGB; safe to use from several threads at once.
     void run_rgb(const float* in, float* out, std::size_t count) const;
-    /// Nodes a side of its table; 0: the sides differ.
+    /// Nodes a side of its table; 0 if the sides differ.
     [[nodiscard]] int edge() const noexcept { return edge_; }
 
   private:

@@ -13,10 +13,10 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// Threads that in_parallel() has started, less those that wait for one.
+/// Threads that in_parallel() has started, minus those that wait for others.
 std::atomic<int> helper_count = 0;
 
-/// A change of the count for as long as it lives.
+/// Changes the count during its lifetime.
 class Counted {
   public:
     explicit Counted(int by) : by_(by) { helper_count += by_; }
@@ -28,7 +28,7 @@ class Counted {
     int by_;
 };
 
-/// A thread that is counted until its work is done.
+/// Counts a thread until its work is done.
 template <class Work>
 std::future<void> start_helper(const Work& work) {
     auto counted = std::make_unique<Counted>(1);
@@ -56,7 +56,7 @@ void in_parallel(std::size_t count, unsigned thread_count,
             others.push_back(start_helper(run));
         }
     } catch (const std::system_error&) {
-        // No more threads are to be had: these do the work.
+        // No more threads are available: the existing ones do the work.
     }
     run();
     const Counted waits(others.empty() ? 0 : -1);

@@ -51,7 +51,7 @@ double interpolate_1d(const Lut& lut, double x, std::size_t channel) {
     return a + t * (b - a);
 }
 
-/// What the table before a cube makes of light: straight lines between equal steps.
+/// The 1D LUT before a 3D LUT: straight lines between equal steps.
 void run_shaper(const InputEncoding& encoding, std::span<const float> light,
                 std::vector<double>& code) {
     const double lo = encoding.scene_lo;
@@ -61,13 +61,13 @@ void run_shaper(const InputEncoding& encoding, std::span<const float> light,
         code[i] = interpolate_1d(shaper, (static_cast<double>(light[i]) - lo) / span, 0);
 }
 
-/// A table beside what it stands for.
+/// A LUT and the function that it represents.
 class Comparison {
   public:
     Comparison(const Lut& lut, const LutRequest& request, bool trilinear)
         : lut_(lut), request_(request), trilinear_(trilinear), engine_(build_view(request.view)) {}
 
-    /// Where the encoding holds the light.
+    /// Range of the encoding.
     [[nodiscard]] bool is_inside(const float* light) const {
         if (lut_.is_half_domain) return true;
         return std::all_of(light, light + 3, [&](float x) {
@@ -76,7 +76,7 @@ class Comparison {
         });
     }
 
-    /// Of each color the worst channel's.
+    /// Error of the worst channel of each color.
     std::vector<double> errors(const std::vector<float>& light, std::vector<double>& shown,
                                std::vector<double>& wanted) const {
         const std::vector<double> code = table_input(lut_, request_, light);
@@ -97,7 +97,7 @@ class Comparison {
         return errors;
     }
 
-    /// The largest error of any color that goes in: a search uphill from the worst samples.
+    /// Largest error of any input color: an uphill search from the worst samples.
     [[nodiscard]] double largest_error(const std::vector<float>& light,
                                        const std::vector<double>& errors) const {
         constexpr std::size_t kStarts = 400;
@@ -119,8 +119,8 @@ class Comparison {
     }
 
   private:
-    /// A pattern search, of all places at once: along the axes and the diagonals, by half a cell at
-    /// first.
+    /// Pattern search at all positions at once: along the axes and the diagonals, starting with
+    /// half a cell.
     void climb(std::vector<double>& place, std::vector<double>& best) const {
         constexpr int kHalvings = 9;
         constexpr int kStepsEach = 3;
@@ -225,7 +225,8 @@ LutError measure_lut(const Lut& lut, const LutRequest& request, bool trilinear) 
     const Comparison comparison(lut, request, trilinear);
     const InputSpace& space = find_input_space(request.view.input);
     SampleSet samples = make_sample_set(space, {17, 50000});
-    // And table inputs over the whole cube: the corners that no scene color of the set reaches.
+    // Also samples table inputs over the whole 3D LUT, including corners that no scene color of the
+    // set reaches.
     constexpr std::size_t kRandomCount = 50000;
     SampleRandom random(7);
     std::array<std::vector<double>, 3> inputs;

@@ -2,7 +2,7 @@
 //
 // Formats: Adobe, "Cube LUT Specification 1.0" (2013); Blackmagic Design, DaVinci Resolve's own
 // .cube; Academy S-2014-006 (CLF); SideFX, HDK, "Lookup Tables"; Rising Sun Research, cineSpace;
-// the others as OpenColorIO has them.
+// the others as implemented in OpenColorIO.
 #include "lut/lut_text.h"
 
 #include <fmt/format.h>
@@ -24,15 +24,15 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// What OpenColorIO takes.
+/// Limits of OpenColorIO.
 constexpr int kLargestCube = 129;
 constexpr int kLargestTable = 1048576;
-/// Of lines in formats that OpenColorIO reads line by line into a buffer of 4096.
+/// Longest line in formats that OpenColorIO reads by line into a buffer of 4096.
 constexpr std::size_t kLongestLine = 4000;
 
 constexpr std::string_view kBlank = " \t\r\v\f";
 
-/// The whole text; infinite beyond double, 0 below it.
+/// Parses the whole text; overflow is infinite, underflow is 0.
 std::optional<double> parse_number(std::string_view text) {
     if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1);
     double value = 0;
@@ -78,7 +78,7 @@ class Text {
     }
     /// Before any of its words is taken.
     void rewind() { words_ = line_; }
-    /// The first line that has a word, and no comment; its words are all to come.
+    /// Moves to the first line that has a word and is no comment, before its first word.
     bool next_filled(bool has_comments = true) {
         while (next_line()) {
             const std::string_view first = word();
@@ -87,7 +87,7 @@ class Text {
         }
         return false;
     }
-    /// What OpenColorIO reads into a buffer of its own.
+    /// Text that OpenColorIO reads into its own buffer.
     void check_length() const {
         if (line_.size() > kLongestLine)
             fail(fmt::format("the line has {} characters; expected at most {}", line_.size(),
@@ -138,7 +138,7 @@ class Text {
             refuse(name, text, expected);
         return value;
     }
-    /// The rest of the line: so many finite numbers.
+    /// Reads the rest of the line as this many finite numbers.
     std::array<float, 3> numbers(int count) {
         static constexpr std::array<const char*, 4> kNames = {"no", "one", "two", "three"};
         const std::string expected = fmt::format(
@@ -263,7 +263,7 @@ CubeText read_cube(Text& text) {
 
 void check_cube(Text& text) { (void)read_cube(text); }
 
-/// Iridas .itx: a cube without a domain.
+/// Iridas .itx: a 3D LUT without a domain.
 void check_itx(Text& text) {
     Rows rows;
     while (text.next_filled()) {
@@ -414,7 +414,8 @@ void check_csp(Text& text) {
     rows.finish(text);
 }
 
-/// Autodesk: rows of whole numbers, and a line of more than three of them, where the nodes are.
+/// Autodesk: rows of integers, and a line of more than three integers with the positions of the
+/// nodes.
 void check_3dl(Text& text) {
     std::size_t rows = 0;
     bool has_mesh = false;
@@ -431,7 +432,7 @@ void check_3dl(Text& text) {
                 text.refuse("keyword", first, "3DMESH, Mesh, gamma, LUT8 or three numbers");
             continue;
         }
-        constexpr int kLargest = 131071;  // 16 bits, twice as much as there is
+        constexpr int kLargest = 131071;  // twice the 16-bit range
         for (std::string_view word = first; !word.empty(); word = text.word()) {
             (void)text.size("number", word, -kLargest, kLargest);
             ++count;
@@ -452,7 +453,7 @@ void check_3dl(Text& text) {
             "the table ends after {} rows; expected N x N x N, such as 4913 with N = 17", rows));
 }
 
-/// Houdini, and Discreet's 1D tables, which have the same extension.
+/// Houdini, and Discreet's 1D tables with the same extension.
 void check_lut(Text& text) {
     std::string type;
     std::vector<int> length;
@@ -464,7 +465,7 @@ void check_lut(Text& text) {
         if (key == "lut:" && keys.empty()) {
             const std::string_view count = text.word();
             if (count.empty()) text.refuse("Version, Format, Type ... before it");
-            // Discreet: "LUT: 3 1024", then a number a line.
+            // Discreet: "LUT: 3 1024", then one number per line.
             const int tables = text.size("number of tables", count, 1, 4);
             const int entries = text.size("length", text.word(), 2, 65536);
             const auto expected =
@@ -584,8 +585,8 @@ void check_spimtx(Text& text) {
         text.fail(fmt::format("the file ends after {} numbers; expected {}", found, kNumbers));
 }
 
-/// CLF, CTF and CC, which are XML: well nested elements and arrays as large as they say;
-/// OpenColorIO names the line of all else. Names without regard to case, as OpenColorIO takes them.
+/// CLF, CTF and CC, which are XML: checks that elements nest and that arrays have their declared
+/// size. OpenColorIO reports the line of all other errors. Names ignore case, as in OpenColorIO.
 class XmlText {
   public:
     XmlText(const std::string& path, std::string_view text, std::string_view root)
@@ -653,7 +654,7 @@ class XmlText {
             fail(fmt::format("{} does not close; expected {}", what, end_mark));
         advance(end + end_mark.size());
     }
-    /// Where the > of the tag stands: none of those in quotation marks.
+    /// Position of the tag's >, outside quotation marks.
     [[nodiscard]] std::size_t end_of_tag() const {
         char quote = 0;
         for (std::size_t i = at_ + 1; i < text_.size(); ++i) {
@@ -674,7 +675,7 @@ class XmlText {
         return tag.substr(0, tag.find_first_of(kNameEnd));
     }
     static std::string name_of(std::string_view tag) { return lowercase(title_of(tag)); }
-    /// The value of an attribute, by its whole name.
+    /// Value of the attribute with exactly this name.
     [[nodiscard]] std::optional<std::string_view> attribute(std::string_view tag,
                                                             std::string_view name) const {
         tag.remove_prefix(std::min(tag.find_first_of(kNameEnd), tag.size()));
@@ -700,14 +701,14 @@ class XmlText {
             tag.remove_prefix(1);
             if (open_.empty() || name_of(tag) != open_.back().name)
                 fail(fmt::format("</{}> closes no element; expected {}", printable(tag),
-                                 open_.empty() ? "nothing behind the document"
+                                 open_.empty() ? "nothing after the document"
                                                : "</" + printable(open_.back().title) + ">"));
             open_.pop_back();
             advance(end + 1);
             return;
         }
         const std::string name = name_of(tag);
-        // OpenColorIO would read any file that stands there.
+        // OpenColorIO would read any file named there.
         if (name == "reference") fail("Reference is not supported; expected the transform itself");
         const Element parent = open_.empty() ? Element() : open_.back();
         const bool is_closed = tag.ends_with('/');
@@ -736,14 +737,14 @@ class XmlText {
         }
     }
 
-    /// Elements of color corrections and ranges. OpenColorIO makes floats of them.
+    /// Elements of color corrections and ranges, which OpenColorIO parses as floats.
     static bool holds_numbers(std::string_view name) {
         static constexpr std::array<std::string_view, 8> kNames = {
             "slope",      "offset",     "power",       "saturation",
             "mininvalue", "maxinvalue", "minoutvalue", "maxoutvalue"};
         return std::find(kNames.begin(), kNames.end(), name) != kNames.end();
     }
-    /// Of the element that has just begun. What is no number is for OpenColorIO to refuse.
+    /// Checks the element that has just begun. OpenColorIO refuses text that is no number.
     void check_numbers(std::string_view element) const {
         std::string_view body = text_.substr(at_, text_.find('<', at_) - at_);
         while (true) {
@@ -758,7 +759,7 @@ class XmlText {
         }
     }
 
-    /// The numbers of dim: one to four, none above the largest table.
+    /// Numbers of dim: one to four, none above the largest table.
     [[nodiscard]] std::vector<int> sizes_of(std::string_view tag, const char* element) const {
         const std::optional<std::string_view> dim = attribute(tag, "dim");
         if (!dim) fail(fmt::format("{} has no dim; expected dim=\"...\"", element));
@@ -780,7 +781,7 @@ class XmlText {
         if (sizes.empty()) refuse(*dim, "one to four whole numbers above 0");
         return sizes;
     }
-    /// How many numbers an Array says that it has.
+    /// Declared count of numbers of an Array.
     [[nodiscard]] std::size_t declared(const std::vector<int>& sizes,
                                        const Element& element) const {
         const std::string& parent = element.name;
@@ -829,7 +830,7 @@ class XmlText {
     void check_number(std::string_view text, bool is_half_domain) const {
         const std::optional<double> value = parse_number(text);
         if (!value) fail("number is " + printable(text) + "; expected a number");
-        // Of a half-domain table some entries are those of infinities and of no number.
+        // Some entries of a half-domain table belong to infinities and NaN.
         if (!is_float(*value) && !is_half_domain)
             fail("number is " + printable(text) + "; expected a finite number");
     }
@@ -842,8 +843,8 @@ class XmlText {
     int line_ = 1;
 };
 
-/// Where OpenColorIO's reader of a format fails, it tries all of its others: none of them may find
-/// a size of its own to make room for in what was free text (comments, metadata, descriptions).
+/// If OpenColorIO's reader of a format fails, it tries all others. None of them may find a size to
+/// allocate in free text (comments, metadata, descriptions).
 void check_for_other_readers(Text& text, std::string_view bytes) {
     struct Size {
         std::string_view name;

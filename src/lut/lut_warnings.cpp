@@ -15,7 +15,7 @@ std::string ringing_warning(const std::string& file, const LutRequest& request,
         rings(ringing)
             ? fmt::format("rings: along rising exposure, {}, where {} does not", to_string(ringing),
                           request.view.op.label)
-            : fmt::format("does not follow {} in saturated lights", request.view.op.label);
+            : fmt::format("does not follow {} in saturated highlights", request.view.op.label);
     std::string remedy;
     const Operator& op = *request.view.op.op;
     for (const InputSpace& space : all_input_spaces()) {
@@ -25,8 +25,8 @@ std::string ringing_warning(const std::string& file, const LutRequest& request,
     if (remedy.empty() && baked.lut.size < 65 && !is_picture_format(request.format))
         remedy = "; use more nodes: --size 65";
     return fmt::format(
-        "{} {}; errors there up to {} (99.9 %), because clips and kinks of the "
-        "operator run between its nodes{}",
+        "{} {}; errors there up to {} (99.9 %), because clips and kinks of the operator lie "
+        "between its nodes{}",
         file, what, rounded_up(ringing.p999), remedy);
 }
 

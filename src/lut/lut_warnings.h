@@ -7,8 +7,8 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// Why a 3D LUT does not follow its operator in saturated lights, and what helps, in one line.
-/// Empty: it follows.
+/// One line: why a 3D LUT does not follow its operator in saturated highlights, and the remedy.
+/// Empty if it follows.
 [[nodiscard]] TONEWRIGHT_API std::string ringing_warning(const std::string& file,
                                                          const LutRequest& request,
                                                          const BakedLut& baked);

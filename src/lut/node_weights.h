@@ -9,14 +9,14 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// The nodes of a 3D LUT that a color is interpolated between. Red fastest.
+/// Nodes of a 3D LUT for the interpolation of a color. Red fastest.
 struct NodeWeights {
     std::array<std::size_t, 8> node;
     std::array<double, 8> weight;
     std::size_t count;  // 4 in tetrahedra, 8 trilinear
 };
 
-/// @param rgb   in [0, 1]; limited to it, NaN to 0
+/// @param rgb   clamped to [0, 1], NaN to 0
 /// @param edge  nodes a side
 [[nodiscard]] inline NodeWeights node_weights(const Vector3& rgb, std::size_t edge,
                                               bool trilinear) {

@@ -18,7 +18,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// Exposures of a ray. Several lie in each cell of a LUT of 65 nodes.
+/// Exposures of a ray. Each cell of a LUT with 65 nodes has several.
 constexpr double kDarkest = -12;
 constexpr double kBrightest = 12;
 constexpr int kStepsPerStop = 16;
@@ -27,14 +27,14 @@ constexpr std::size_t kPlaces =
 
 double stops_of(std::size_t place) { return kDarkest + static_cast<double>(place) / kStepsPerStop; }
 
-/// Whether what comes out is light, not a code value.
+/// True if the output is display-linear, not a code value.
 bool is_light(const View& view) {
     if (view.display == kNativeOutput) return view.op.output() != OutputKind::code_value;
     return view.display == kLinearOutput;
 }
 
-/// Colors at rising exposures, as a LUT gets them, and what the operator makes of them. All planes
-/// hold kPlaces entries of each color, one color after the other.
+/// Colors at rising exposures as inputs of a LUT, and the results of the operator. All planes hold
+/// kPlaces entries per color, color by color.
 struct Rays {
     /// Interleaved RGB.
     std::vector<double> input;
@@ -49,7 +49,8 @@ Rays make_rays(const std::vector<NamedColor>& colors, const Lut& lut, const LutR
         const Vector3 unit = multiply(to_input, color.rgb);
         for (std::size_t i = 0; i < kPlaces; ++i) {
             const double gain = 0.18 * std::exp2(stops_of(i));
-            // What the encoding does not hold clips before the table: that is not its error.
+            // The encoding clips values outside its range before the table, which is not the
+            // table's error.
             for (const double channel : unit) {
                 light.push_back(static_cast<float>(std::clamp(
                     gain * channel, request.encoding.scene_lo, request.encoding.scene_hi)));
@@ -67,7 +68,7 @@ Rays make_rays(const std::vector<NamedColor>& colors, const Lut& lut, const LutR
     return rays;
 }
 
-/// Light as a display of sRGB shows it: a step of 1/255 is then as visible as one in code values.
+/// Encodes display-linear as sRGB, so that a step of 1/255 is as visible as in code values.
 class Code {
   public:
     explicit Code(const View& view) : is_light_(is_light(view)) {
@@ -94,7 +95,7 @@ class Code {
     }
 
   private:
-    /// Straight lines between so many are 1e-6 off, and the bounds are 1/255 and 0.02.
+    /// Straight lines between this many have an error of 1e-6; the bounds are 1/255 and 0.02.
     static constexpr std::size_t kSteps = 4096;
 
     static double at(const std::vector<double>& table, double x) {
@@ -108,7 +109,7 @@ class Code {
     std::vector<double> decode_;
 };
 
-/// The largest fall between two places of a ray, less what the operator falls by between these.
+/// Largest fall between two positions of a ray, minus the fall of the operator between them.
 struct Fall {
     double size = 0;
     double allowed = 0;
@@ -117,11 +118,11 @@ struct Fall {
 };
 
 /// @param shown, wanted  kPlaces codes of one channel
-/// @param ignored        falls up to this are not looked for
+/// @param ignored        smaller falls are ignored
 Fall largest_fall(const double* shown, const double* wanted, double ignored) {
     Fall worst;
     worst.size = ignored;
-    // Most rays only rise.
+    // Fast path: most rays only rise.
     double highest_shown = shown[0];
     bool falls = false;
     for (std::size_t i = 1; i < kPlaces && !falls; ++i) {
@@ -134,12 +135,12 @@ Fall largest_fall(const double* shown, const double* wanted, double ignored) {
     for (std::size_t i = kPlaces - 1; i-- > 0;)
         lowest_from[i] = std::min(shown[i], lowest_from[i + 1]);
     for (std::size_t i = 0; i + 1 < kPlaces; ++i) {
-        // A fall that begins at a lower place than the one before is part of that one's.
+        // A fall that begins lower than the previous one is part of it.
         if (shown[i + 1] >= shown[i]) continue;
         double highest = wanted[i];
         double allowed = 0;
         for (std::size_t j = i + 1; j < kPlaces; ++j) {
-            // No lower place follows.
+            // No lower position follows.
             if (shown[i] - lowest_from[j] - allowed <= worst.size) break;
             highest = std::max(highest, wanted[j]);
             allowed = std::max(allowed, highest - wanted[j]);
@@ -150,15 +151,15 @@ Fall largest_fall(const double* shown, const double* wanted, double ignored) {
     return worst.to == 0 ? Fall{} : worst;
 }
 
-/// Of all hues and saturations of three gamuts, and of the chart.
+/// Rays of all hues and saturations of three gamuts, and of the chart.
 std::vector<NamedColor> dense_colors() {
     std::vector<NamedColor> colors = chart_colors();
     for (const Primaries* gamut : {&kRec709, &kP3D65, &kRec2020}) {
         const Matrix3 to_rec709 = rgb_to_rgb(*gamut, kRec709);
         for (const double saturation : {1.0, 0.9, 0.7, 0.4, 0.2, 0.08}) {
-            // Near gray, the gamuts have the same colors.
+            // Near gray, the gamuts share their colors.
             if (saturation < 0.4 && gamut != &kRec709) continue;
-            // Operators bend most along the faces of a gamut.
+            // Operators bend most at the faces of a gamut.
             const int hues = saturation == 1.0 ? 144 : 48;
             for (int i = 0; i < hues; ++i) {
                 const double hue = (i + 0.5) / hues;
@@ -169,7 +170,7 @@ std::vector<NamedColor> dense_colors() {
     return colors;
 }
 
-/// What a weighted sum of values changes by with each node.
+/// Change of a weighted sum of values with each node.
 struct Slopes {
     std::array<std::size_t, 16> node{};
     std::array<double, 16> slope{};
@@ -226,12 +227,12 @@ LutRinging measure_ringing(const Lut& lut, const LutRequest& request, bool trili
 }
 
 void fit_rays(Lut& lut, const LutRequest& request, bool trilinear) {
-    // In most rounds only rays that broke a bound in the one before are looked at.
+    // Most rounds only check rays that broke a bound in the previous round.
     constexpr int kRounds = 128;
     constexpr int kAllEvery = 8;
     constexpr int kFallsEach = 4;
-    // Where both bounds cannot be met, the falls are what shows as rings: they have the last
-    // rounds.
+    // If both bounds cannot be met, the last rounds fix the falls, because they are visible as
+    // rings.
     constexpr int kFallsOnly = 40;
     // As for kFittedRayError.
     constexpr double kTolerance = 0.6 * kLargestFall;
@@ -255,7 +256,8 @@ void fit_rays(Lut& lut, const LutRequest& request, bool trilinear) {
                 value += at.weight[k] * static_cast<double>(lut.values[3 * at.node[k] + c]);
             return value;
         };
-        // Kaczmarz's method: the nearest nodes with which a sum of theirs is larger by so much.
+        // Kaczmarz's method: the smallest change of the nodes that changes their sum by this
+        // amount.
         const auto raise = [&](const Slopes& slopes, double by) {
             double square = 0;
             for (std::size_t k = 0; k < slopes.count; ++k)
@@ -267,7 +269,8 @@ void fit_rays(Lut& lut, const LutRequest& request, bool trilinear) {
             }
         };
         std::vector<bool> is_active(rays.count, true);
-        // What each place showed last: encoding takes longest, and few places change in a step.
+        // Last displayed value at each position: encoding is slowest, and few positions change in a
+        // step.
         std::vector<double> values(weights.size());
         std::vector<double> codes(weights.size());
         for (std::size_t i = 0; i < weights.size(); ++i) {

@@ -5,14 +5,14 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// What fit_rays() brings the errors along the rays within: less than kLargestRayError, since other
-/// colors lie between the rays.
+/// Error bound of fit_rays() along the rays: less than kLargestRayError, because other colors lie
+/// between the rays.
 inline constexpr double kFittedRayError = 0.7 * kLargestRayError;
 
-/// Changes the nodes of a 3D LUT as little as it takes to follow the operator along rays of rising
-/// exposure: each channel within kFittedRayError, and without falls that the operator does not
-/// have. The rays are dense: all hues and saturations of Rec.709, P3 and Rec.2020. What cannot be
-/// met stays as near as 128 rounds bring it.
+/// Makes the smallest changes to the nodes of a 3D LUT so that it follows the operator along rays
+/// of rising exposure: each channel within kFittedRayError, and falling only where the operator
+/// falls. The rays are dense: all hues and saturations of Rec.709, P3 and Rec.2020. Rays that
+/// cannot meet the bounds keep the result of 128 rounds.
 void fit_rays(Lut& lut, const LutRequest& request, bool trilinear);
 
 TONEWRIGHT_NAMESPACE_END

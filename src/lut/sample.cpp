@@ -16,7 +16,7 @@ namespace {
 constexpr int kDefaultCubeSize = 33;
 constexpr int kDefaultCurveSize = 4096;
 
-/// Table input -> what the view shows.
+/// Table input -> result of the view.
 Pipeline table_pipeline(const LutRequest& request) {
     Pipeline stages = {curve_stage(request.encoding.decode)};
     const Pipeline view = build_view(request.view);
@@ -28,7 +28,7 @@ struct FormatTraits {
     const char* name;
     bool has_1d;
     bool has_3d;
-    int default_size;  // of a cube
+    int default_size;  // of a 3D LUT
     int smallest;
     int largest;
     std::array<int, 3> bits;  // the first is the default; 0: none
@@ -99,7 +99,7 @@ Lut sample_half_curve(const LutRequest& request) {
     lut.size = static_cast<int>(kHalfCount);
     lut.channels = 1;
     lut.is_half_domain = true;
-    // A view limits its own input; that limit is where the table holds its end values.
+    // A view clamps its own input; the table is constant outside that range.
     lut.values = sample_half_domain(compose(build_view(request.view))[0], -kHalfMax, kHalfMax);
     return lut;
 }
@@ -130,7 +130,8 @@ Lut sample_lut(const LutRequest& request) {
     if (request.decimals && (*request.decimals < 3 || *request.decimals > 9)) {
         throw Error("bake: decimals is " + std::to_string(*request.decimals) + "; expected [3, 9]");
     }
-    // Readers have 65536 equal steps of light at most: up to ACEScct's 222.9 they are short enough.
+    // Readers support at most 65536 equal scene-linear steps, which are short enough up to
+    // ACEScct's 222.9.
     constexpr double kBrightestShaper = 223;
     if (has_shaper(request.format) && request.encoding.scene_hi > kBrightestShaper) {
         throw Error("input encoding is " + request.encoding.id + ", up to " +
@@ -203,7 +204,7 @@ Lut fit_lut(const LutRequest& request, const Lut& sampled) {
     problem.axis = {request.encoding.encode, request.encoding.decode, request.encoding.scene_hi};
     problem.pipeline = build_view(request.view);
     problem.primaries = find_input_space(request.view.input).primaries;
-    // What the view cannot show, a table of it should not hold.
+    // Clamp the table to the range of the view.
     const auto [lowest, highest] =
         std::minmax_element(sampled.values.begin(), sampled.values.end());
     problem.lo = static_cast<double>(*lowest);

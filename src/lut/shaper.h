@@ -7,10 +7,11 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// Entries of the 1D table before a 3D LUT: as many as readers accept, or resample a prelut to.
+/// Entries of the 1D table before a 3D LUT: as many as readers accept, or the size to which they
+/// resample a prelut.
 inline constexpr int kShaperSteps = 65536;
 
-/// The 1D table before a 3D LUT: codes at kShaperSteps equal steps of light, from scene_lo to
+/// The 1D table before a 3D LUT: codes at kShaperSteps equal scene-linear steps, from scene_lo to
 /// scene_hi.
 std::vector<float> shaper_table(const InputEncoding& encoding);
 

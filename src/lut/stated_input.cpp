@@ -12,7 +12,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// What stands between two texts; all that follows the first where the second is empty.
+/// Text between two texts; all text after the first one if the second is empty.
 std::optional<std::string_view> between(std::string_view text, std::string_view before,
                                         std::string_view after) {
     if (!text.starts_with(before)) return std::nullopt;
@@ -22,7 +22,7 @@ std::optional<std::string_view> between(std::string_view text, std::string_view 
     return text.substr(0, end);
 }
 
-/// Numbers of a title as parameters of an encoding's name.
+/// Converts the numbers of a title to parameters of an encoding's name.
 std::string parametrized(std::string_view title) {
     if (const auto white = between(title, "PQ (SMPTE ST 2084), scene-linear 1 at ", " cd/m2"))
         return fmt::format("pq:{}", *white);
@@ -44,10 +44,10 @@ std::optional<std::string> encoding_of(std::string_view title) {
     for (const std::string& id : ids) {
         try {
             const InputEncoding encoding = parse_input_encoding(id);
-            // A table of light has its range in the file: light goes in as it is.
+            // A scene-linear table has its range in the file, so its input is scene-linear.
             if (encoding.title == title) return encoding.is_linear ? "linear" : encoding.id;
         } catch (const Error&) {
-            continue;  // a number that no file of ours has
+            continue;  // no file of Tonewright has this number
         }
     }
     return std::nullopt;
@@ -84,7 +84,7 @@ std::optional<StatedInput> parse_input(std::string_view line) {
     return stated;
 }
 
-/// As write_lut() has it.
+/// Parses the line of write_lut().
 std::optional<std::string> parse_display(std::string_view line) {
     if (line.starts_with("display-linear Rec.709")) return std::string(kLinearOutput);
     for (const Display& display : all_displays()) {
@@ -93,11 +93,11 @@ std::optional<std::string> parse_display(std::string_view line) {
     return std::nullopt;
 }
 
-/// The first line of ours behind `mark` that `parse` understands.
+/// First line after `mark` that `parse` understands, in a file of Tonewright.
 template <class Stated>
 std::optional<Stated> find_stated(std::string_view contents, std::string_view mark,
                                   std::optional<Stated> (*parse)(std::string_view)) {
-    // A device link of version 4 has its text in 16 bits.
+    // A device link of version 4 stores text in 16 bits.
     std::string text;
     std::copy_if(contents.begin(), contents.end(), std::back_inserter(text),
                  [](char c) { return c != '\0'; });

@@ -9,25 +9,25 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// What a LUT file of ours says that goes in.
+/// Input that a LUT file of Tonewright states.
 struct StatedInput {
-    /// Id of an input encoding; `linear` where light goes in as it is.
+    /// Id of an input encoding; `linear` for scene-linear input.
     std::string encoding;
-    /// Id of the input space whose light that is.
+    /// Id of the input space.
     std::string space;
-    /// For people: "DaVinci Intermediate, of scene-linear Linear Rec.709".
+    /// Text for messages: "DaVinci Intermediate, of scene-linear Linear Rec.709".
     std::string text;
 };
 
-/// Reads the line that write_lut() puts into all files that have room for text: comments,
+/// Reads the line that write_lut() writes into all files that can hold text: comments,
 /// descriptions, metadata, the copyright of a device link.
-/// @param contents  of the file: all of a device link; of the others the beginning is enough
-/// @returns  nothing where no line of ours says it
+/// @param contents  of the file: a whole device link, or the beginning of any other file
+/// @returns  nothing if no line of Tonewright states it
 [[nodiscard]] TONEWRIGHT_API std::optional<StatedInput> read_stated_input(
     std::string_view contents);
 
-/// What comes out, as read_stated_input() reads what goes in: the id of the display whose code
-/// values they are, or `linear`. Nothing for the values of an operator itself.
+/// Reads the stated output like read_stated_input(): the id of the display of its code values, or
+/// `linear`. Nothing for an operator's native values.
 [[nodiscard]] TONEWRIGHT_API std::optional<std::string> read_stated_display(
     std::string_view contents);
 

@@ -29,7 +29,7 @@ namespace {
 
 constexpr int kLargestEdge = 129;  // of OpenColorIO
 
-/// One curve where the channels are equal.
+/// One curve if the channels are equal.
 CurveStage curve_of(const std::array<Table, 3>& tables) {
     std::array<Expr, 3> f = {0, 0, 0};
     for (std::size_t c = 0; c < 3; ++c) {
@@ -53,7 +53,7 @@ TableFile read_cube(const std::string& path, const std::string& bytes) {
     return table;
 }
 
-/// LittleCMS runs the profile; its nodes are those of the lattice.
+/// LittleCMS evaluates the profile at the nodes of the 3D LUT.
 TableFile read_device_link(const std::string& path, const std::string& bytes) {
     const DeviceLink link(path, bytes);
     const int n = link.edge();
@@ -73,8 +73,8 @@ TableFile read_device_link(const std::string& path, const std::string& bytes) {
     TableFile table;
     const LatticeStage stage = lattice_of(n, run(n).second);
     table.stages.emplace_back(stage);
-    // Curves before its table would be lost between the nodes. 16 bits round by 1.5e-5, each of
-    // nodes, place and result.
+    // The nodes would lose curves before its table. 16 bits round nodes, position and result by
+    // 1.5e-5 each.
     constexpr double kRounding = 1e-4;
     const auto [at, wanted] = run(18);
     for (std::size_t i = 0; i < at.size(); i += 3) {
@@ -108,7 +108,7 @@ TableFile read_own(const std::string& path, const std::string& extension) {
     return table;
 }
 
-/// What tells a file from what it was before.
+/// Identifies a version of a file.
 struct FileState {
     std::string path;
     std::filesystem::file_time_type time;
@@ -119,7 +119,7 @@ struct FileState {
     }
 };
 
-/// Nothing for what is no file.
+/// Nothing if it is no file.
 std::optional<FileState> state_of(const std::string& path) {
     namespace fs = std::filesystem;
     std::error_code error;
@@ -221,7 +221,7 @@ void describe_table(TableFile& table, const std::string& path, std::string_view 
         table.space = input->space;
     }
     table.display = read_stated_display(text).value_or("");
-    // Formats of light: no code values have a common exponent.
+    // Formats for linear values: code values have no common exponent.
     if (extension == ".dds") table.likely_display = kLinearOutput;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What goes into a table when a picture goes through it, and what it should show.
+// Input of a table for a picture, and the wanted result.
 #pragma once
 
 #include <span>
@@ -10,12 +10,12 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// Table input of scene-linear light, interleaved RGB, as a reader of the file has it: encoded, and
-/// behind a shaper as readers resample it. Of a half-domain table: the light itself.
+/// Table input for scene-linear colors, interleaved RGB, as readers of the file compute it:
+/// encoded, after a shaper as readers resample it. For a half-domain table: the colors themselves.
 [[nodiscard]] std::vector<double> table_input(const Lut& lut, const LutRequest& request,
                                               std::span<const float> light);
 
-/// Scene-linear light of encoded colors, interleaved RGB, as floats.
+/// Scene-linear values of encoded colors, interleaved RGB, as floats.
 [[nodiscard]] std::vector<float> light_of(const InputEncoding& encoding,
                                           std::span<const double> code);
 

@@ -10,7 +10,7 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// Where a place is in a cube of nodes that is interpolated in tetrahedra.
+/// Position in a grid of nodes with tetrahedral interpolation.
 struct Tetrahedron {
     std::uint32_t cell;   // the node at the near corner of its cell
     std::uint8_t second;  // the next two corners, as masks of steps: red 4, green 2, blue 1
@@ -18,7 +18,7 @@ struct Tetrahedron {
     std::array<float, 3> weight;  // of the second, the third and the far corner
 };
 
-/// @param place  in [0, 1] along each axis; limited to it.
+/// @param place  clamped to [0, 1] along each axis.
 /// @param edge   nodes a side, blue fastest.
 [[nodiscard]] inline Tetrahedron tetrahedron_at(const double* place, std::size_t edge) {
     std::array<std::size_t, 3> corner{};
@@ -40,7 +40,7 @@ struct Tetrahedron {
     return t;
 }
 
-/// From a node to the one that a mask of steps leads to.
+/// Distance from a node to the one at a mask of steps.
 [[nodiscard]] constexpr std::size_t node_step(std::size_t mask, std::size_t edge) {
     return ((mask >> 2 & 1) * edge + (mask >> 1 & 1)) * edge + (mask & 1);
 }

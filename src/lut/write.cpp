@@ -22,7 +22,7 @@ std::string title_of(const LutRequest& r) {
                        r.view.display);
 }
 
-/// How exact it is, for one interpolation.
+/// Error of the LUT for one interpolation.
 void add_error_lines(std::vector<std::string>& lines, const LutError& e) {
     lines.push_back(fmt::format(
         "Error against the double-precision operator, {} interpolation, inside the "
@@ -36,13 +36,13 @@ void add_error_lines(std::vector<std::string>& lines, const LutError& e) {
     }
 }
 
-/// Of the numbers, not of the file.
+/// Hash of the numbers, not of the file.
 std::string hash_of(const Lut& lut) {
     return content_hash(
         {reinterpret_cast<const char*>(lut.values.data()), lut.values.size() * sizeof(float)});
 }
 
-/// What it is, what goes in, what comes out, how exact it is.
+/// Operator, input, output and error of the LUT.
 std::vector<std::string> header_lines(const Lut& lut, const LutRequest& r, const LutError& e,
                                       const std::optional<LutError>& other,
                                       const std::optional<LutRinging>& ringing) {
@@ -55,8 +55,8 @@ std::vector<std::string> header_lines(const Lut& lut, const LutRequest& r, const
     lines.push_back("Source: " + op.source);
     if (has_shaper(r.format)) {
         lines.push_back(fmt::format(
-            "Input: scene-linear {}, {:.6g} to {:.6g} ({:+.2f} stops from 0.18); the table before "
-            "the cube makes {} of it",
+            "Input: scene-linear {}, {:.6g} to {:.6g} ({:+.2f} stops from 0.18); the 1D LUT before "
+            "the 3D LUT encodes it as {}",
             find_input_space(r.view.input).title, r.encoding.scene_lo, r.encoding.scene_hi,
             std::log2(r.encoding.scene_hi / 0.18), r.encoding.title));
     } else if (lut.is_half_domain) {
@@ -71,11 +71,10 @@ std::vector<std::string> header_lines(const Lut& lut, const LutRequest& r, const
     }
     if (!lut.is_half_domain) {
         const std::string clipped = to_string(measure_clipping(r, lut));
-        lines.push_back(clipped.empty()
-                            ? "Clips nothing that would show (within one code of 10 bits)"
-                            : "Clips what would show " + clipped);
+        lines.push_back(clipped.empty() ? "Clips nothing visible (within one 10-bit code value)"
+                                        : "Clips visible values " + clipped);
     }
-    // An operator's own code values may be a display's.
+    // The operator's own code values may equal those of a display.
     const std::string display =
         r.view.display == kNativeOutput && !r.view.op.output_display().empty()
             ? r.view.op.output_display()
@@ -95,11 +94,10 @@ std::vector<std::string> header_lines(const Lut& lut, const LutRequest& r, const
     if (other) add_error_lines(lines, *other);
     lines.emplace_back(
         lut.dimension == 3
-            ? "The maximum is that of all colors of the input range. 99.9 % and mean are those of "
-              "the samples: grays, grids of Rec.709, Rec.2020 and AP1 at five exposures, random "
-              "colors"
-            : "All three are those of the samples: grays, grids of Rec.709, Rec.2020 and AP1 at "
-              "five exposures, random colors");
+            ? "The maximum is of all colors of the input range; 99.9 % and mean are of the "
+              "samples: grays, grids of Rec.709, Rec.2020 and AP1 at five exposures, random colors"
+            : "All three are of the samples: grays, grids of Rec.709, Rec.2020 and AP1 at five "
+              "exposures, random colors");
     if (ringing) {
         lines.push_back(fmt::format(
             "{}, {} interpolation, along rising exposure of the test chart's lamps and hues: {}; "
@@ -107,7 +105,7 @@ std::vector<std::string> header_lines(const Lut& lut, const LutRequest& r, const
             rings(*ringing) ? "RINGS" : "Does not ring", e.interpolation, to_string(*ringing),
             three_digits_up(ringing->p999)));
     }
-    lines.push_back(fmt::format("{}, size {}, numbers {}", lut.dimension == 3 ? "Cube" : "Table",
+    lines.push_back(fmt::format("{}, size {}, numbers {}", lut.dimension == 3 ? "3D LUT" : "1D LUT",
                                 lut.size, hash_of(lut)));
     return lines;
 }
@@ -139,7 +137,7 @@ std::string write_cube(const Lut& lut, const LutRequest& r, const Lines& header)
         text += fmt::format("LUT_3D_SIZE {}\nDOMAIN_MIN 0 0 0\nDOMAIN_MAX 1 1 1\n", lut.size);
         return text + triplets(lut);
     }
-    // Only a linear table has another domain: hosts disagree about every other one.
+    // Only a linear table has another domain, because applications disagree about all others.
     const std::string lo = shortest(r.encoding.is_linear ? r.encoding.scene_lo : 0);
     const std::string hi = shortest(r.encoding.is_linear ? r.encoding.scene_hi : 1);
     text += fmt::format("LUT_1D_SIZE {0}\nDOMAIN_MIN {1} {1} {1}\nDOMAIN_MAX {2} {2} {2}\n",
@@ -153,7 +151,7 @@ std::string write_cube(const Lut& lut, const LutRequest& r, const Lines& header)
 }
 
 std::string write_spi1d(const Lut& lut, const LutRequest& r) {
-    // Readers take no comments before the brace.
+    // Readers accept no comments before the brace.
     std::string text =
         fmt::format("Version 1\nFrom {} {}\nLength {}\nComponents 1\n{{\n",
                     shortest(r.encoding.is_linear ? r.encoding.scene_lo : 0),
@@ -184,7 +182,7 @@ std::string write_spi3d(const Lut& lut) {
     return text;
 }
 
-/// The nodes of a cube in the order of CLF and 3dl.
+/// The nodes of a 3D LUT in the order of CLF and 3dl.
 std::vector<float> blue_fastest(const Lut& lut) {
     const auto n = static_cast<std::size_t>(lut.size);
     std::vector<float> values;
@@ -200,8 +198,9 @@ std::vector<float> blue_fastest(const Lut& lut) {
     return values;
 }
 
-/// cineSpace: a prelut from scene-linear to the encoding, then the cube. Readers resample a prelut
-/// of few points, and to as many of equal distances in light: 4096, of equal distances in code.
+/// cineSpace: a prelut from scene-linear to the encoding, then the 3D LUT. Readers resample preluts
+/// of few points at equal scene-linear distances, so this one has 4096 points at equal distances in
+/// the code.
 std::string write_csp(const Lut& lut, const LutRequest& r, const Lines& header) {
     std::string text = "CSPLUTV100\n3D\n\nBEGIN METADATA\n" + title_of(r) + "\n";
     for (const std::string& line : header)
@@ -223,8 +222,8 @@ std::string write_csp(const Lut& lut, const LutRequest& r, const Lines& header) 
     return text + triplets(lut);
 }
 
-/// DaVinci Resolve: equal steps of light, encoded, and then the cube.
-/// OpenColorIO reads it, but with no TITLE.
+/// DaVinci Resolve: equal scene-linear steps, encoded, then the 3D LUT.
+/// OpenColorIO reads it, but only without a TITLE.
 std::string write_resolve_cube(const Lut& lut, const LutRequest& r, const Lines& header) {
     std::string text;
     for (const std::string& line : header)
@@ -243,7 +242,7 @@ std::string write_resolve_cube(const Lut& lut, const LutRequest& r, const Lines&
     return text + triplets(lut);
 }
 
-/// Houdini, version 2: a cube, red fastest.
+/// Houdini, version 2: a 3D LUT, red fastest.
 std::string write_houdini(const Lut& lut) {
     return fmt::format(
                "Version\t\t2\nFormat\t\tany\nType\t\t3D\nFrom\t\t0 1\nTo\t\t0 1\n"
@@ -252,7 +251,7 @@ std::string write_houdini(const Lut& lut) {
            triplets(lut) + " }\n";
 }
 
-/// Autodesk Flame and Lustre: input of 10 bits, blue fastest.
+/// Autodesk Flame and Lustre: 10-bit input, blue fastest.
 std::string write_3dl(const Lut& lut, const LutRequest& r) {
     const auto n = static_cast<std::size_t>(lut.size);
     const int bits = r.bits.value_or(12);
@@ -279,7 +278,7 @@ std::string write_raw(const Lut& lut) {
     return bytes;
 }
 
-/// What follows the word in the first line that begins with it.
+/// Text after the word in the first line that begins with it.
 std::string described(const Lines& header, std::string_view word) {
     for (const std::string& line : header) {
         if (line.starts_with(word)) return line.substr(word.size());

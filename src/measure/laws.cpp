@@ -414,7 +414,7 @@ class Checker {
                                       ? ""
                                       : "the brightest gray, x = 65504, is shown as " +
                                             rounded(found->second, 3) +
-                                            " of the display's light; expected 1";
+                                            " of display white; expected 1";
         return compared("white", Kind::never_reaches_white, words, kHalfMax)
             .value_or(LawResult{"white", Verdict::holds, "", {}});
     }

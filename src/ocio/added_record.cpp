@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Enough of what stands before a piece to tell it from the same text elsewhere.
+/// Length of the context before a piece, enough to distinguish it from the same text elsewhere.
 constexpr std::size_t kContext = 80;
 
 std::string file_of(const std::string& config) {
@@ -31,7 +31,7 @@ std::vector<std::string> texts(const YAML::Node& list) {
     return found;
 }
 
-/// How many characters before `at` are the last ones of `before`.
+/// Number of characters before `at` that match the end of `before`.
 std::size_t common_before(const std::string& text, std::size_t at, const std::string& before) {
     std::size_t count = 0;
     while (count < std::min(at, before.size()) &&
@@ -40,8 +40,8 @@ std::size_t common_before(const std::string& text, std::size_t at, const std::st
     return count;
 }
 
-/// Where the piece begins: the place with most of what stood before it, if that is one place only.
-/// A piece that continues a line needs that line as it was. Lines before it may have changed.
+/// Start of the piece: the position with the longest matching context, if it is unique. A piece
+/// that continues a line needs that line unchanged. Lines before it may have changed.
 std::size_t find_piece(const std::string& text, const AddedRecord::Piece& piece) {
     const std::string& before = piece.before;
     const bool continues_line = !piece.text.starts_with('\n') && !piece.text.starts_with("\r\n");
@@ -144,13 +144,13 @@ void AddedRecord::add(const std::vector<YamlText::Insertion>& insertions,
 }
 
 std::string AddedRecord::without(std::string text, const std::string& config) const {
-    // What was put in last is what the context of the others may have before it.
+    // The last insertion may be part of the context of the others.
     for (auto piece = pieces.rbegin(); piece != pieces.rend(); ++piece) {
         const std::size_t at = find_piece(text, *piece);
         if (at == std::string::npos) {
             throw FileError(
-                fmt::format("config: {}: what --into added was changed since: {}; expected it as "
-                            "{} has it",
+                fmt::format("config: {}: entries that --into added were changed since: {}; "
+                            "expected them as in {}",
                             config, printable(trimmed(piece->text)), path_of(config)));
         }
         text.erase(at, piece->text.size());

@@ -9,31 +9,31 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// What `--into` has put into a config, in a file beside the config's tables: enough to take it out
-/// again, whatever else has been changed in the config since.
+/// Record of the entries that `--into` added to a config, in a file beside the config's tables. It
+/// is enough to remove them again, whatever else has changed in the config since.
 struct AddedRecord {
-    /// A text in the config, and what stands before it.
+    /// A text in the config, and the text before it.
     struct Piece {
         std::string before;
         std::string text;
     };
-    /// In the order in which they were put in.
+    /// In the order of insertion.
     std::vector<Piece> pieces;
-    /// Tables, by their paths beside the config.
+    /// Paths of the tables, relative to the config.
     std::vector<std::string> files;
-    /// Of the last time.
+    /// Options of the last run.
     ConfigOptions options;
 
     /// Its path beside the config: "tonewright/studio.ocio.yaml".
     [[nodiscard]] static std::string path_of(const std::string& config);
-    /// @throws FileError  for one that is missing or damaged
+    /// @throws FileError  if it is missing or damaged
     [[nodiscard]] static AddedRecord read(const std::string& config);
     [[nodiscard]] std::string text() const;
 
     /// @param result  the config's text with the insertions
     void add(const std::vector<YamlText::Insertion>& insertions, const std::string& result);
     /// The config's text without the pieces.
-    /// @throws FileError  where one of them is not there any more, or has been changed
+    /// @throws FileError  if one of them is missing or changed
     [[nodiscard]] std::string without(std::string text, const std::string& config) const;
 };
 

@@ -22,15 +22,15 @@ namespace {
 
 constexpr const char* kLutFolder = "luts";
 
-/// As one argument of a shell.
+/// Quotes a name as one shell argument.
 std::string quoted(const std::string& name) {
     return name.find(' ') == std::string::npos ? name : '"' + name + '"';
 }
 
 const char* what_it_is(const std::string& profile) {
-    if (profile == "2.0") return "for applications that stop there; the same as 2.1";
+    if (profile == "2.0") return "applications with OpenColorIO 2.0; same content as 2.1";
     if (profile == "2.1") return "any application";
-    return "its own ACES 2.0 instead of a cube, interop ids, the ids of ACES Metadata Files";
+    return "built-in ACES 2.0 instead of a 3D LUT, interop ids, ids of ACES Metadata Files";
 }
 
 std::string readme(const ConfigModel& model, const std::vector<std::string>& profiles,
@@ -58,36 +58,35 @@ std::string readme(const ConfigModel& model, const std::vector<std::string>& pro
     for (const Display* d : model.displays)
         text += (d == model.displays.front() ? "" : ", ") + d->title;
     text +=
-        ".\n\n| view | operator | how | max error | 99.9 % | mean | and back, 99.9 %: "
-        "without loss | by default |\n"
+        ".\n\n| view | operator | method | max error | 99.9 % | mean | round trip, 99.9 %: "
+        "lossless | default |\n"
         "|---|---|---|---|---|---|---|---|\n";
     for (const auto& view : model.views) {
         const ViewError& e = errors.at(view.name);
         text +=
             fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} |\n", view.name, view.op.op->title,
-                        e.is_exact ? "exact chain" : "65^3 cube", rounded_up(e.in_gamut.max),
+                        e.is_exact ? "exact" : "65^3 3D LUT", rounded_up(e.in_gamut.max),
                         rounded_up(e.in_gamut.p999), rounded_up(e.in_gamut.mean),
                         e.back.exists ? rounded_up(e.back.lossless.p999) : "none",
                         e.back.exists ? rounded_up(e.back.by_default.p999) : "none");
     }
     text += fmt::format(
-        "\nErrors: sRGB code values (1 code of 10 bits is 0.00098) of OpenColorIO {}'s CPU path "
-        "against the\n"
-        "double-precision reference, for Rec.709 light from 0 to 4096 and more. "
-        "`python_check/check_config.py`\n"
-        "measures the same in the application that you run it in, against `probe.csv`. And back: "
-        "how far code\n"
-        "values that the view makes are from themselves after `Output - VIEW - sRGB` to the scene "
-        "and the view\n"
-        "again; by default is what applications and the GPU do. Every space's description has its "
-        "own figures.\n"
-        "False Color has no inverse: it shows many colors as one, and OpenColorIO refuses it.\n",
+        "\n*Errors* are differences of sRGB code values between the CPU path of OpenColorIO {} and "
+        "the\ndouble-precision reference, for Rec.709 colors from 0 to above 4096. One 10-bit code "
+        "value is 0.00098.\n`python_check/check_config.py` measures them in your application, "
+        "against `probe.csv`.\n\n"
+        "*Round trip* is the difference of code values after the space `Output - VIEW - sRGB` "
+        "converts them\nto the scene and the view shows them again. *Lossless* turns off the "
+        "optimizations of OpenColorIO;\n*default* is what applications and the GPU use. The "
+        "description of each space has its own figures.\n\n"
+        "False Color has no inverse, because it shows many colors as one. OpenColorIO refuses "
+        "it.\n",
         OCIO::GetVersion());
     return text;
 }
 
-/// How far code values may be from the reference where light may be `bound`/12.92 away from it,
-/// which is sRGB's slope at black, or the code value `bound`: powers are infinitely steep there.
+/// Tolerance of code values: an error of `bound` in the code value, or of `bound`/12.92 in
+/// display-linear. 12.92 is sRGB's slope at black, where powers are infinitely steep.
 Vector3 code_tolerance(const Display& display, const Vector3& code, double bound) {
     constexpr double kSrgbSlopeAtBlack = 12.92;
     const ReferenceEngine decode(display.decode);
@@ -104,19 +103,18 @@ Vector3 code_tolerance(const Display& display, const Vector3& code, double bound
     return tolerance;
 }
 
-/// Expected code values and how near they are to be met, for check_config.py: a program that has
-/// only PyOpenColorIO.
-/// @param errors  of each view on each display, largest code value
+/// Expected code values and tolerances for check_config.py, which only needs PyOpenColorIO.
+/// @param errors  largest code value error of each view on each display
 std::string probe_csv(const ConfigModel& model,
                       const std::map<std::string, std::map<std::string, double>>& errors) {
     // Debian's OpenColorIO 2.1 is within 3e-7 of exact chains; other versions and processors round
-    // in another order and get the rest. What was measured of the others is of random colors: there
-    // is more between them.
+    // in a different order and get the rest. The errors of other views were measured on random
+    // colors, and colors between them have larger ones.
     constexpr double exact = 1e-6;
     constexpr double between_samples = 3;
     const InputSpace& space = find_input_space("lin_rec709");
     // Floats, as processors take them. Rounding all of them in a loop is wrong in GCC 12 at -O3:
-    // its vectorizer (-ftree-slp-vectorize) leaves out the way from double to float and back.
+    // its vectorizer (-ftree-slp-vectorize) drops the conversion from double to float to double.
     std::vector<std::array<float, 3>> colors;
     const auto add = [&](double r, double g, double b) {
         colors.push_back({static_cast<float>(r), static_cast<float>(g), static_cast<float>(b)});
@@ -201,11 +199,11 @@ std::vector<std::string> config_warnings(const ConfigOptions& options) {
         if (!caution.empty() && view.exposure_stops == 0) texts.push_back(caution);
         const std::string constants = stand_ins(view.op);
         if (constants.empty() || !said.insert(view.op.op).second) continue;
-        views.push_back(fmt::format("{} takes {}", view.name, constants));
+        views.push_back(fmt::format("{} uses {}", view.name, constants));
     }
     if (!views.empty()) {
         texts.push_back(fmt::format(
-            "a config measures no picture: {} (--operator ID:PARAMETER=VALUE sets others)",
+            "a config cannot measure pictures: {} (--operator ID:PARAMETER=VALUE changes it)",
             fmt::join(views, "; ")));
     }
     return texts;
@@ -221,14 +219,15 @@ std::vector<GeneratedFile> make_config(const ConfigOptions& options) {
     config->setSearchPath(kLutFolder);
     config->setStrictParsingEnabled(true);
     config->setEnvironmentMode(OCIO::ENV_ENVIRONMENT_LOAD_PREDEFINED);
-    // Not for pictures; some hosts start with the first space of the list.
+    // Inactive, because it is not for pictures and some applications start with the first space of
+    // the list.
     config->setInactiveColorSpaces("CIE-XYZ-D65");
     double luma[3] = {kRec709Weights[0], kRec709Weights[1], kRec709Weights[2]};
     config->setDefaultLumaCoefs(luma);
 
     ConfigBuilder builder(model, config, LutFiles(kLutFolder));
     builder.add_spaces();
-    // First in the list: what libraries before 2.3.1 take as the default.
+    // First in the list, because libraries before 2.3.1 use the first one as default.
     builder.add_untonemapped();
     builder.add_view_transforms();
     builder.add_looks();
@@ -243,7 +242,7 @@ std::vector<GeneratedFile> make_config(const ConfigOptions& options) {
             {texts.empty() ? "config.ocio" : "config-" + profile + ".ocio", builder.text(profile)});
     std::string manifest = "path,content_hash\n";
     for (const GeneratedFile& table : builder.tables()) {
-        // Where 2.5 alone is asked for, some tables are not.
+        // Profile 2.5 alone does not use some tables.
         const std::string name = table.path.substr(table.path.rfind('/') + 1);
         const bool is_used = std::any_of(texts.begin(), texts.end(), [&](const auto& text) {
             return text.contents.find(name) != std::string::npos;

@@ -31,7 +31,7 @@ OCIO::GroupTransformRcPtr lower_part(LutFiles& luts, const Pipeline& stages, con
                         {.is_exact = lowered.is_exact, .makes_codes = stem.purpose == "encode"});
 }
 
-/// The scene reference of our configs is AP0, the display reference XYZ D65.
+/// The references of configs of Tonewright are AP0 (scene) and XYZ D65 (display).
 Matrix3 from_reference(const Primaries& p) { return rgb_to_rgb(kAP0, p); }
 Matrix3 to_reference(const Primaries& p) { return rgb_to_rgb(p, kAP0); }
 
@@ -40,12 +40,12 @@ Pipeline joined(Pipeline a, const Pipeline& b) {
     return a;
 }
 
-/// What a name has behind its beginning, or all of another name.
+/// Rest of a name after its prefix, or the whole name without that prefix.
 std::string without(const std::string& name, const std::string& beginning) {
     return name.starts_with(beginning) ? name.substr(beginning.size()) : name;
 }
 
-/// sRGB's straight part goes on below 0; powers do not, and of PQ and HLG only light is shown.
+/// sRGB's linear segment continues below 0; powers do not, and PQ and HLG only have values above 0.
 bool has_code_below_black(const Display& display) {
     return !display.is_hdr && ReferenceEngine(display.encode)({-1, -1, -1})[0] != 0;
 }
@@ -127,8 +127,8 @@ OCIO::ColorSpaceRcPtr make_space(const ConfigModel::Space& space, LutFiles& luts
         case Kind::display: {
             const Matrix3 to_xyz = rgb_to_xyz_d65(*space.primaries);
             Pipeline from = {MatrixStage{inverse(to_xyz)}};
-            // Where the slope at black is infinite, tables are finest where light is limited: twice
-            // the display's largest leaves room for what an application does with its result.
+            // If the slope at black is infinite, tables are finest with a limited range. Twice the
+            // display's maximum leaves room for operations of the application on the result.
             if (!has_code_below_black(*space.display))
                 from.push_back(ClampStage{0, 2 * space.display->largest_light});
             set(joined(space.display->decode, {MatrixStage{to_xyz}}),
@@ -144,10 +144,10 @@ OCIO::ColorSpaceRcPtr make_space(const ConfigModel::Space& space, LutFiles& luts
 
 /// Scene reference -> display reference.
 ///
-/// The matrix to the operator's primaries comes first and its clamp right behind: with an input
-/// space of the same primaries OCIO multiplies the two matrices to the identity, and the clamp is
-/// the first thing that a pixel meets, NaN and infinities included. A Range before the matrix would
-/// keep the matrices apart and cost 1e-6 by float32 cancellation.
+/// The matrix to the operator's primaries comes first, directly followed by its clamp: with an
+/// input space of the same primaries OCIO multiplies the two matrices to the identity, and the
+/// clamp is the first thing that a pixel meets, NaN and infinities included. A Range before the
+/// matrix would keep the matrices apart and cost 1e-6 by float32 cancellation.
 Pipeline view_stages(const ResolvedOperator& op, double exposure_stops, const DisplayLimit& limit) {
     Pipeline stages = {
         MatrixStage{scale(from_reference(op.op->working), std::exp2(exposure_stops))}};
@@ -174,8 +174,9 @@ std::string output_alias(const std::string& view, const std::string& display) {
     return alias + "_" + display;
 }
 
-/// A view as a colour space: write nodes, textures and `--colorconvert` know no views.
-/// @param inverse_space  what the description says of it
+/// A view as a color space, because write nodes, textures and `--colorconvert` do not support
+/// views.
+/// @param inverse_space  text about the inverse in the description
 OCIO::ColorSpaceRcPtr make_output_space(const DisplayedView& shown, const std::string& display,
                                         const std::string& inverse_space) {
     OCIO::ColorSpaceRcPtr cs = OCIO::ColorSpace::Create(OCIO::REFERENCE_SPACE_SCENE);
@@ -183,9 +184,8 @@ OCIO::ColorSpaceRcPtr make_output_space(const DisplayedView& shown, const std::s
     if (display == shown.display->title)
         cs->addAlias(output_alias(shown.name, shown.display->id).c_str());
     cs->setFamily(("Output/" + display).c_str());
-    cs->setDescription(("The picture of the view " + shown.name + " on " + display +
-                        ", in its code values." + inverse_space)
-                           .c_str());
+    cs->setDescription(
+        ("Code values of the view " + shown.name + " on " + display + "." + inverse_space).c_str());
     cs->setEncoding(shown.display->is_hdr ? "hdr-video" : "sdr-video");
     cs->setBitDepth(OCIO::BIT_DEPTH_F32);
     cs->addCategory("file-io");
@@ -197,7 +197,7 @@ OCIO::ColorSpaceRcPtr make_output_space(const DisplayedView& shown, const std::s
     return cs;
 }
 
-/// The space that is linear in these primaries.
+/// The linear space with these primaries.
 const InputSpace& space_of(const Primaries& primaries) {
     for (const InputSpace& space : all_input_spaces()) {
         if (space.primaries == primaries) return space;
@@ -205,13 +205,13 @@ const InputSpace& space_of(const Primaries& primaries) {
     throw Error("config: no space has the primaries " + std::string(primaries.name));
 }
 
-/// Nothing for identities.
+/// Null for identities.
 void append(OCIO::GroupTransformRcPtr& group, const Pipeline& stages) {
     append(group, lower_to_ocio(stages).ops);
 }
 
-/// Display reference -> scene reference, for light that the view transform makes. Nothing where
-/// OpenColorIO's own inversion of the view transform is as good: its tables and cubes, on the CPU.
+/// Display reference -> scene reference, for colors of the view transform. Nothing if OpenColorIO's
+/// own inversion of the view transform is as accurate on the CPU, including its 1D and 3D LUTs.
 std::optional<LoweredOps> inverse_space(const ConfigModel::View& view, const DisplayedView& shown) {
     const DisplayLimit limit = display_limit(shown.op, *shown.display);
     std::optional<LoweredOps> inverted = invert_light(shown.op, limit);
@@ -243,12 +243,12 @@ RoundTripError measure_round_trip(const View& view, const LoweredOps& back, cons
     return {errors(OCIO::OPTIMIZATION_LOSSLESS), errors(OCIO::OPTIMIZATION_DEFAULT), true};
 }
 
-/// Beyond this, what comes back is another picture.
+/// Larger round trip errors give another picture.
 bool is_inverse_space(const ErrorStats& lossless) {
     return lossless.mean <= 5e-3 && lossless.p999 <= 3.5e-2;
 }
 
-/// Of a view on a display: in HDR with what limits it.
+/// Description of a view on a display, for HDR with its limits.
 std::string describe(const ConfigModel::View& view, const DisplayedView& shown) {
     const DisplayLimit limit = display_limit(shown.op, *shown.display);
     if (!shown.display->is_hdr || limit.peak <= 1)
@@ -258,20 +258,19 @@ std::string describe(const ConfigModel::View& view, const DisplayedView& shown) 
                        limit.primaries.name, blender_difference(shown.op));
 }
 
-/// For descriptions: what comes back, and how near.
+/// Text about the inverse and its round trip error.
 std::string describe_inverse(const RoundTripError& back, bool is_diagnostic) {
-    if (is_diagnostic) return " There is no inverse: many colors of a scene are shown as one.";
+    if (is_diagnostic) return " No inverse: the view shows many scene colors as one.";
     if (!back.is_measured) return "";
-    if (!back.exists) return " There is no inverse.";
+    if (!back.exists) return " No inverse.";
     const auto figures = [](const ErrorStats& stats) {
         return fmt::format("max {}, 99.9 % {}, mean {}", rounded_up(stats.max),
                            rounded_up(stats.p999), rounded_up(stats.mean));
     };
     std::string text =
-        " To the scene and back, for code values that the view makes of Rec.709 light: " +
-        figures(back.by_default);
+        " Round trip of the view's code values of Rec.709 colors: " + figures(back.by_default);
     if (back.lossless.p999 < back.by_default.p999 / 2)
-        text += " (without loss: " + figures(back.lossless) + ")";
+        text += " (lossless: " + figures(back.lossless) + ")";
     return text + ".";
 }
 
@@ -281,14 +280,14 @@ std::string yaml_of(const OCIO::Config& config) {
     return yaml.str();
 }
 
-/// The code values of colors by the reference.
+/// Code values of the reference.
 std::vector<double> true_codes(const Pipeline& stages, const SampleSet& samples) {
     std::vector<double> codes(samples.rgb.size());
     ReferenceEngine(stages).run_rgb(samples.rgb.data(), codes.data(), samples.size());
     return codes;
 }
 
-/// OCIO's CPU path of the view against the reference.
+/// Measures OCIO's CPU path of the view against the reference.
 /// @param truth  true_codes() of the samples
 ViewError measure_view(const View& view, const Lowered& lowered, const SampleSet& samples,
                        const std::vector<double>& truth) {
@@ -307,7 +306,7 @@ ViewError measure_view(const View& view, const Lowered& lowered, const SampleSet
     return result;
 }
 
-/// Those with no negative channel.
+/// Samples without negative channels.
 SampleSet measured_samples(const InputSpace& space, const SampleSetOptions& options) {
     const SampleSet all = make_sample_set(space, options);
     SampleSet kept;
@@ -348,7 +347,7 @@ std::vector<DisplayedView> displayed_views(const ConfigModel::View& view,
             ++i;
         if (i == forms.size()) {
             std::string where(limit.primaries.name);
-            // By the peak that people look for, which the light of single channels may exceed.
+            // Named after the nominal peak, which single channels may exceed.
             const double peak = std::min(limit.peak * kReferenceWhite, display->peak);
             if (limit.peak > 1) where += fmt::format(", {:g} nit", peak);
             const std::string name = view.name + " (" + where + ")";
@@ -387,7 +386,8 @@ void ConfigBuilder::add_spaces() {
 void ConfigBuilder::add_untonemapped() {
     OCIO::ViewTransformRcPtr plain = OCIO::ViewTransform::Create(OCIO::REFERENCE_SPACE_SCENE);
     plain->setName(kUntonemappedView);
-    plain->setDescription("Scene light shown as it is, not limited: 1 is display white.");
+    plain->setDescription(
+        "Scene-linear values without tone mapping, not limited: 1 is display white.");
     plain->setTransform(
         lower_part(luts_, {MatrixStage{rgb_to_xyz_d65(kAP0)}}, {}, kUntonemappedView),
         OCIO::VIEWTRANSFORM_DIR_FROM_REFERENCE);
@@ -397,9 +397,9 @@ void ConfigBuilder::add_untonemapped() {
 
 struct ConfigBuilder::LoweredView {
     Lowered forward;
-    std::optional<LoweredOps> back;  // nothing: none of our own
+    std::optional<LoweredOps> back;  // empty: OpenColorIO inverts it
     ViewError error;
-    ErrorStats wide;  // colors of all of AP1, of a view that is not exact
+    ErrorStats wide;  // all AP1 colors, for a view that is not exact
 };
 
 void ConfigBuilder::add_view_transforms() {
@@ -480,8 +480,8 @@ void ConfigBuilder::add_views() {
         }
     }
     add_shared_view(kUntonemappedView, kUntonemappedView, OCIO::OCIO_VIEW_USE_DISPLAY_NAME,
-                    "Scene light shown as it is, not limited.");
-    add_shared_view(kRawView, "", kDataSpace, "The numbers as they are.");
+                    "Scene-linear values without tone mapping, not limited.");
+    add_shared_view(kRawView, "", kDataSpace, "Unconverted values.");
     activate(kUntonemappedView);
     activate(kRawView);
     add_virtual_display();
@@ -492,8 +492,8 @@ void ConfigBuilder::add_views() {
     config_->setActiveViews(fmt::format("{}", fmt::join(active, ", ")).c_str());
 }
 
-/// What a host makes a display of when the system tells it a monitor's profile. The monitor's gamut
-/// is not known here: views are those of the first display that is not HDR.
+/// Applications make a display of this if the system reports a monitor profile. The gamut of the
+/// monitor is unknown here, so the views are those of the first SDR display.
 void ConfigBuilder::add_virtual_display() {
     const auto is_shared = [&](const std::string& name) {
         for (int i = 0; i < config_->getNumViews(OCIO::VIEW_SHARED, ""); ++i) {
@@ -651,7 +651,7 @@ ConfigBuilder::LoweredView ConfigBuilder::lower_view(const ConfigModel::View& vi
     error = measure_view(measured, lower_to_ocio(stages, options), samples_, truth);
     result.forward = lower_to_ocio(shown.stages, options);
     result.back = inverse_space(view, shown);
-    // OpenColorIO takes seconds to invert a cube: once for a view, and of few colors.
+    // OpenColorIO takes seconds to invert a 3D LUT: measure it once per view, with few colors.
     const bool is_slow = !result.back && !result.forward.is_exact;
     if (!view.op.op->is_diagnostic && (is_first || !is_slow)) {
         const RoundTrip trip = is_slow ? RoundTrip(measured, few_samples_)
@@ -676,13 +676,13 @@ void ConfigBuilder::add_view_transform(const ConfigModel::View& view, const Disp
     errors_.emplace(view.name, error);
     if (!error.is_exact) cubes_.insert(shown.transform);
     std::string text = fmt::format(
-        "{} Error against the double reference, {} code values, OCIO CPU: max {}, 99.9 % {}.",
+        "{} Error of OCIO's CPU path against the double reference, in {} code values: max {}, 99.9 "
+        "% {}.",
         view.description, shown.display->title, rounded_up(error.in_gamut.max),
         rounded_up(error.in_gamut.p999));
     if (!error.is_exact) {
         text += fmt::format(
-            " A 3D table: mean {}, dE ITP at most {}; colors of all of AP1: max {}, 99.9 % {}, "
-            "mean {}.",
+            " 3D LUT: mean {}, dE ITP at most {}; all AP1 colors: max {}, 99.9 % {}, mean {}.",
             rounded_up(error.in_gamut.mean), rounded_up(error.delta_e),
             rounded_up(lowered.wide.max), rounded_up(lowered.wide.p999),
             rounded_up(lowered.wide.mean));

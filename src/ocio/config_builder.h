@@ -14,33 +14,33 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// The view transform that a view takes on a display.
+/// View transform of a view on a display.
 struct DisplayedView {
     std::string transform;
     Pipeline stages;
     const Display* display;
-    /// What the view is called on the display.
+    /// Name of the view on the display.
     std::string name;
     ResolvedOperator op;
 };
 
-/// One view transform for all displays that it is the same for. "AgX", or where there are several,
-/// "AgX (P3-D65)", "AgX (Rec.2020, 1000 nit)".
+/// One view transform for all displays that share it: "AgX", or if there are several, "AgX
+/// (P3-D65)", "AgX (Rec.2020, 1000 nit)".
 [[nodiscard]] std::vector<DisplayedView> displayed_views(
     const ConfigModel::View& view, const std::vector<const Display*>& displays);
 
-/// How far code values that a view makes are from themselves after the inverse to the scene and
-/// the view again.
+/// Round trip error: difference of a view's code values after the inverse to the scene and the
+/// view.
 struct RoundTripError {
-    /// Without loss, and as applications have it: with OpenColorIO's default optimisation.
+    /// Lossless, and with OpenColorIO's default optimization, as in applications.
     ErrorStats lossless;
     ErrorStats by_default;
     bool is_measured = false;
-    /// False where what comes back is another picture.
+    /// False if the round trip gives another picture.
     bool exists = false;
 };
 
-/// How far a view is from the reference, and its inverse from itself.
+/// Error of a view against the reference, and of its round trip.
 struct ViewError {
     ErrorStats in_gamut;
     double delta_e = 0;
@@ -48,14 +48,13 @@ struct ViewError {
     RoundTripError back;
 };
 
-/// Makes the parts of a config from the model and adds them to an OCIO one: to a new one, or to
-/// somebody's.
+/// Makes the parts of a config from the model and adds them to a new or an existing OCIO config.
 class ConfigBuilder {
   public:
     ConfigBuilder(const ConfigModel& model, OCIO::ConfigRcPtr config, LutFiles luts);
 
-    /// The config is somebody's, with references of its own.
-    /// @param scene, display  what its interchange spaces are of its references
+    /// Adds to an existing config with its own reference spaces.
+    /// @param scene, display  conversions between its interchange spaces and its references
     void set_references(OCIO::ConstColorSpaceRcPtr scene, OCIO::ConstColorSpaceRcPtr display) {
         scene_ = std::move(scene);
         display_ = std::move(display);
@@ -70,13 +69,13 @@ class ConfigBuilder {
     void add_views();
     void add_output_spaces();
 
-    /// On somebody's display, which shows what `display` does through its own space.
+    /// Adds the view to a display of an existing config, which is equivalent to `display`.
     void add_views_to(const Display& display, const std::string& host_display,
                       const std::string& host_space);
 
     void add_file_rules();
 
-    /// The config as YAML, of the profile that it has.
+    /// The config as YAML, with its own profile.
     [[nodiscard]] std::string text() const;
     /// A new config as YAML.
     /// @param profile  2.0, 2.1 or 2.5
@@ -89,12 +88,12 @@ class ConfigBuilder {
     /// Largest code value error of each view on each display.
     using LargestErrors = std::map<std::string, std::map<std::string, double>>;
     [[nodiscard]] const LargestErrors& largest_errors() const { return largest_errors_; }
-    /// Of each view, on the first display.
+    /// Per view, on the first display.
     [[nodiscard]] const std::map<std::string, ViewError>& errors() const { return errors_; }
 
   private:
-    /// Between the references of somebody's config what goes from ACES2065-1 to CIE XYZ D65, or,
-    /// inverse, the other way.
+    /// Converts a transform from ACES2065-1 to CIE XYZ D65, or its inverse, to the references of an
+    /// existing config.
     [[nodiscard]] OCIO::GroupTransformRcPtr between_references(
         const OCIO::GroupTransformRcPtr& group, OCIO::TransformDirection direction) const;
 
@@ -106,10 +105,10 @@ class ConfigBuilder {
     void add_shared_view(const std::string& name, const std::string& transform,
                          const std::string& space, const std::string& description);
 
-    /// Of OpenColorIO 2.4 and newer: its built-in transform where ours is a cube.
+    /// For OpenColorIO 2.4 and newer: its built-in transform, where ours is a 3D LUT.
     void use_builtins(const OCIO::ConfigRcPtr& config) const;
 
-    /// What takes time of a view transform, on any thread.
+    /// The slow part of a view transform; runs on any thread.
     struct LoweredView;
     [[nodiscard]] LoweredView lower_view(const ConfigModel::View& view, const DisplayedView& shown,
                                          bool is_first) const;
@@ -123,9 +122,9 @@ class ConfigBuilder {
     std::map<std::string, std::vector<DisplayedView>> displayed_;
     LargestErrors largest_errors_;
     std::map<std::string, ViewError> errors_;
-    /// View transforms that are cubes.
+    /// View transforms with 3D LUTs.
     std::set<std::string> cubes_;
-    /// Of each view transform, what its inverse is.
+    /// Description of the inverse of each view transform.
     std::map<std::string, std::string> inverses_;
     /// Colors that errors are measured on; none has a negative channel.
     SampleSet samples_, wide_samples_, few_samples_;

@@ -18,8 +18,8 @@ namespace {
 
 /// Smallest power of two t such that limiting every channel to [0, t] moves no color of a ramp to
 /// 65504 (grays, primaries and secondaries, saturated and not) by more than a quarter of a 10-bit
-/// code: where the operator saturates, a cube's nodes beyond would be wasted.
-/// @param codes  light -> the code values that are stored, limited as behind the cube
+/// code: where the operator saturates, nodes beyond would be wasted.
+/// @param codes  scene-linear -> stored code values, clamped like the stage after the 3D LUT
 double saturation_point(const Pipeline& codes) {
     const ReferenceEngine engine(codes);
     const auto moved = [&](double top) {
@@ -48,19 +48,18 @@ double saturation_point(const Pipeline& codes) {
     return std::min(top, kHalfMax);
 }
 
-/// Smooth and signed: negatives follow the straight part of sRGB's curve.
+/// Smooth and signed: negatives follow the linear segment of sRGB's curve.
 Expr node_code() { return srgb_encode(Expr::input()); }
 
 ClampStage limited_to_halves(const ClampStage& clamp) {
     return {std::max(clamp.lo, -kHalfMax), std::min(clamp.hi, kHalfMax)};
 }
 
-/// Holds the limit at the nodes that are beyond it together with all nodes that they are
-/// interpolated with: the clamp behind the cube makes the same of it, and a file has short numbers
-/// there.
+/// Sets nodes to the limit if they and all nodes that they are interpolated with exceed it. The
+/// clamp after the 3D LUT gives the same result, and the file has shorter numbers.
 void hold_limits(std::vector<float>& nodes, int edge, float lo, float hi) {
     const auto n = static_cast<std::size_t>(edge);
-    // Along one axis after the other, the least and the largest of a node and those beside it.
+    // Minimum and maximum of a node and its neighbors, axis by axis.
     std::vector<float> least = nodes;
     std::vector<float> most = nodes;
     for (const std::size_t step : {3 * n * n, 3 * n, std::size_t{3}}) {
@@ -97,11 +96,11 @@ struct Key {
     }
 };
 
-/// Of fit_cube() and choose_share_of_lights(): another number where they make other nodes of the
-/// same problem.
+/// Version of fit_cube() and choose_share_of_lights(): change it if the nodes of the same problem
+/// change.
 constexpr int kFitVersion = 1;
 
-/// All that a fitted cube depends on.
+/// Cache key of a fitted 3D LUT.
 std::string key_of(const CubeProblem& problem, double top) {
     return fmt::format("cube {}, {} nodes a side: {}, {}, {}", kFitVersion, problem.edge,
                        key_of_numbers({problem.lo, problem.hi, top}),
@@ -113,8 +112,8 @@ std::string key_of(const CubeProblem& problem, double top) {
 double cross_talk_top(const CrossTalkStage& stage, const ClampStage& behind, double largest,
                       bool is_fitted) {
     Pipeline seen = {stage, curve_stage(node_code())};
-    // A fitted cube may hold anything where the display clips; for a sampled one the corners of the
-    // clip would be a fault like any other.
+    // A fitted 3D LUT is free where the display clips; in a sampled one the corners of the clip
+    // would cause errors.
     if (is_fitted) seen.insert(seen.begin() + 1, limited_to_halves(behind));
     return std::min(saturation_point(seen), largest);
 }
@@ -122,7 +121,7 @@ double cross_talk_top(const CrossTalkStage& stage, const ClampStage& behind, dou
 std::shared_ptr<const CrossTalkCube> cross_talk_cube(const CrossTalkStage& stage,
                                                      const ClampStage& behind, double top,
                                                      const CrossTalkCubeOptions& options) {
-    // A cube of 65 nodes a side has 3.3 MB.
+    // A 3D LUT with 65 nodes a side has 3.3 MB.
     static BoundedCache<Key, CrossTalkCube> cache(64);
     const ClampStage limit = limited_to_halves(behind);
     CubeProblem problem;
@@ -169,7 +168,7 @@ std::shared_ptr<const HueCube> hue_cube(const CrossTalkStage& stage, const HueSt
     };
     static BoundedCache<HueKey, HueCube> cache(64);
     // PQ and HLG are steeper near black than SDR codes: of P3-D65 PQ, 65 nodes leave 5.0e-3 at 99.9
-    // % of Rec.709 colors, 81 leave 3.1e-3. All displays are to keep to 4e-3.
+    // % of Rec.709 colors, 81 leave 3.1e-3. The bound for all displays is 4e-3.
     const int edge = structure.peak > 1 ? 81 : 65;
     return cache.get({stage.f, top, primaries}, [&] {
         return fit_hue_cube(structure, top, {.edge = edge, .primaries = primaries});

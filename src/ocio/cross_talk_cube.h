@@ -11,33 +11,34 @@ TONEWRIGHT_NAMESPACE_BEGIN
 
 /// The 3D LUT of a channel-mixing stage, between a shaper and srgb_decode().
 struct CrossTalkCube {
-    /// Light in [0, top] -> place in [0, 1] on each axis; of input 0.
+    /// Scene-linear in [0, top] -> position in [0, 1] on each axis; of input 0.
     Expr shaper;
     std::vector<float> nodes;  // RGB triplets of unclipped sRGB code values, blue fastest
 };
 
 struct CrossTalkCubeOptions {
     int edge = 65;
-    /// The colors that the cube is made for are of these primaries and of Rec.709.
+    /// The 3D LUT is made for colors of these primaries and of Rec.709.
     Primaries primaries = kRec709;
-    /// The nodes are fitted for the least error between them, which takes seconds; else sampled.
+    /// Fits the nodes for the least error between them, which takes seconds; otherwise samples
+    /// them.
     bool is_fitted = false;
 };
 
-/// Where the cube's axes end: the light that the stage saturates at, and at most `largest`.
-/// @param behind  what limits the result of the stage
+/// End of the axes: the value at which the stage saturates, and at most `largest`.
+/// @param behind  the clamp after the stage
 [[nodiscard]] double cross_talk_top(const CrossTalkStage& stage, const ClampStage& behind,
                                     double largest, bool is_fitted);
 
-/// The cube with axes to `top`. Cubes that were asked for last are kept: views of one operator for
-/// several displays have the same.
-/// @param behind  outside of its interval the nodes may hold anything
+/// The 3D LUT with axes to `top`. Caches the last ones, because views of one operator share them
+/// across displays.
+/// @param behind  clamp after the 3D LUT: nodes are free outside its interval
 [[nodiscard]] std::shared_ptr<const CrossTalkCube> cross_talk_cube(
     const CrossTalkStage& stage, const ClampStage& behind, double top,
     const CrossTalkCubeOptions& options);
 
-/// The 3D LUT of a stage that is declared in axes of hues. LUTs that were asked for last are kept.
-/// @param primaries  of the light
+/// The 3D LUT of a stage with a declared hue structure. Caches the last ones.
+/// @param primaries  of the working space
 [[nodiscard]] std::shared_ptr<const HueCube> hue_cube(const CrossTalkStage& stage,
                                                       const HueStructure& structure, double top,
                                                       const Primaries& primaries);

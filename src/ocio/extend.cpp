@@ -20,7 +20,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// A display of somebody's config that shows what one of ours does.
+/// A display of the existing config, and the equivalent display of Tonewright.
 struct HostDisplay {
     std::string name;
     std::string space;
@@ -33,7 +33,7 @@ std::vector<float> run_processor(const OCIO::ConstProcessorRcPtr& processor,
     return rgb;
 }
 
-/// How far the host's display space is from ours, for light that both can show.
+/// Difference between the display space of the config and ours, for colors that both can show.
 double display_difference(const OCIO::ConstConfigRcPtr& config, const std::string& space,
                           const Display& ours) {
     const std::vector<Vector3> light = {{1, 1, 1},          {0.18, 0.18, 0.18}, {0.9, 0.1, 0.02},
@@ -93,7 +93,7 @@ std::vector<HostDisplay> match_displays(const OCIO::ConstConfigRcPtr& config,
     return matched;
 }
 
-/// Every space there and back, every view of every display: what a config makes of some colors.
+/// Results of a config for some colors: every space and its inverse, every view of every display.
 std::map<std::string, std::vector<float>> pictures_of(const OCIO::ConstConfigRcPtr& config) {
     const std::vector<float> colors = {0.18F, 0.18F,  0.18F, 1,    1,    1,     0.8F, 0.1F, 0.02F,
                                        0.1F,  0.7F,   0.1F,  0.1F, 0.1F, 0.9F,  4,    2,    9,
@@ -103,7 +103,7 @@ std::map<std::string, std::vector<float>> pictures_of(const OCIO::ConstConfigRcP
         try {
             pictures[name] = run_processor(make_processor_of(), colors);
         } catch (const OCIO::Exception&) {
-            pictures[name] = {};  // it did not work before either
+            pictures[name] = {};  // it failed before, too
         }
     };
     const int count =
@@ -131,8 +131,8 @@ std::map<std::string, std::vector<float>> pictures_of(const OCIO::ConstConfigRcP
 
 constexpr const char* kFolder = "tonewright";
 
-/// OpenColorIO takes it, and what was there before makes the same numbers.
-/// @param before  pictures that it must make; others may be added or missing
+/// Checks that OpenColorIO accepts the result, and that existing entries give the same values.
+/// @param before  results that must stay the same; others may be added or missing
 OCIO::ConfigRcPtr check_result(const std::string& path, const std::string& written,
                                const std::map<std::string, std::vector<float>>& before) {
     OCIO::ConfigRcPtr made = read_config(written);
@@ -152,7 +152,7 @@ OCIO::ConfigRcPtr check_result(const std::string& path, const std::string& writt
     return made;
 }
 
-/// The items of a list that have these names, in the order of the names.
+/// Items of a list with these names, in the order of the names.
 std::vector<YAML::Node> named(const YAML::Node& list, const std::vector<std::string>& names) {
     std::map<std::string, YAML::Node> items;
     for (const YAML::Node& item : list) {
@@ -195,7 +195,7 @@ void append_names(YamlText& yaml, const std::string& key, const std::string& sep
         yaml.append_text(list, (list.Scalar().empty() ? "" : separator) + name);
 }
 
-/// Tables of the folder that no config beside this one has added.
+/// Tables of the folder that no other config beside this one has added.
 std::vector<std::string> unused(const std::string& config, const std::vector<std::string>& files,
                                 const std::vector<std::string>& used) {
     namespace fs = std::filesystem;
@@ -271,9 +271,8 @@ ExtendedConfig extend_config(const std::string& path, const ConfigOptions& given
     const std::string original_active_views = config->getActiveViews();
     for (const char* role : {"aces_interchange", "cie_xyz_d65_interchange"}) {
         if (!config->hasRole(role)) {
-            throw FileError(
-                "config: " + path + " has no role " + role +
-                "; expected both interchange roles, which say what its color spaces are");
+            throw FileError("config: " + path + " has no role " + role +
+                            "; expected both interchange roles, which define its color spaces");
         }
     }
     const std::map<std::string, std::vector<float>> before = pictures_of(config);
@@ -290,7 +289,7 @@ ExtendedConfig extend_config(const std::string& path, const ConfigOptions& given
         chosen.displays.push_back(host.ours->id);
     const ConfigModel model = make_config_model(chosen);
 
-    // Nothing of theirs is replaced.
+    // Never replace existing entries.
     const auto refuse = [&](const std::string& what, const std::string& name) {
         throw Error("config: " + path + " has " + what + " " + name +
                     " already; expected another name (--operator ID --name NAME)");
@@ -314,7 +313,7 @@ ExtendedConfig extend_config(const std::string& path, const ConfigOptions& given
         }
     }
 
-    // The folder may hold tables of another release, and another config beside it may need them.
+    // The folder may hold tables of another release that another config needs.
     ConfigBuilder builder(model, config, LutFiles(kFolder, LutFiles::Names::hashed));
     builder.set_references(config->getColorSpace("aces_interchange"),
                            config->getColorSpace("cie_xyz_d65_interchange"));
@@ -413,8 +412,8 @@ ExtendedConfig extend_config(const std::string& path, const ConfigOptions& given
                     errors.push_back(channel_error(&truth[3 * i], &codes[3 * i]));
                 const ErrorStats stats = summarise(errors);
                 views.push_back({host.name, name, stats.max, stats.p999});
-                // In all of AP0 cubes and cancelling matrices cost more than where they were
-                // measured: what is refused is another picture, not one that is less exact.
+                // 3D LUTs and matrices with cancellation are less accurate in all of AP0 than on
+                // the measured colors. Refuse another picture, not a less accurate one.
                 constexpr double kAnother = 0.02;
                 if (stats.mean > kAnother + bounds.at(view.name + host.ours->id)) {
                     throw Error(

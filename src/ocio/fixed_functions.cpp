@@ -20,10 +20,10 @@ const std::vector<FixedFunctions>& all_fixed_functions() {
         return std::vector<FixedFunctions>{
             {reference_gamut_compression(), {{"ACES_GamutComp13", compression}}},
             {rrt_glow_and_red_modifier(RrtSaturation::after_glow), glow_and_red},
-            // The saturation of the dark: where all channels are below 0.01.
+            // Differs in the saturation of dark colors, with all channels below 0.01.
             {rrt_glow_and_red_modifier(RrtSaturation::before_glow), glow_and_red, false},
-            // Unreal's and Filament's: also another weight of the hue, at most 0.0074 away from the
-            // functions' B-spline, of a change of red by at most 18 %.
+            // Unreal and Filament also weight the hue differently, by at most 0.0074 from the
+            // B-spline of the functions, in a change of red of at most 18 %.
             {ap1_glow_and_red_modifier(1e-10), glow_and_red, false, rgb_to_rgb(kAP1, kAP0)},
             {ap1_glow_and_red_modifier(1e-5), glow_and_red, false, rgb_to_rgb(kAP1, kAP0)},
         };

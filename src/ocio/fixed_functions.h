@@ -8,25 +8,24 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// OpenColorIO's fixed functions that a channel-mixing stage equals, one behind the other.
+/// Chain of OpenColorIO's fixed functions that equals a channel-mixing stage.
 struct FixedFunctions {
     CrossTalkStage stage;
     std::vector<FixedFunctionOp> functions;
-    /// False where the functions differ from the stage a little.
+    /// False if the functions differ slightly from the stage.
     bool is_exact = true;
-    /// Light -> the space that the functions work in; its inverse stands behind them.
+    /// Working space -> space of the functions; its inverse follows them.
     Matrix3 to_space = kIdentity3;
 };
 
 [[nodiscard]] const std::vector<FixedFunctions>& all_fixed_functions();
 
-/// Those of the stage that has the same expressions; null where there is none.
+/// Fixed functions of the stage with the same expressions; null if there are none.
 [[nodiscard]] const FixedFunctions* find_fixed_functions(const CrossTalkStage& stage);
 
-/// The fixed function that a tone scale of colors without negative channels equals, with a gain
-/// before and behind it: f(n) = c n max(n, floor)^(gamma - 1), of the weights that the function
-/// has. OpenColorIO computes it with the precision of floats in every build. Nothing where there is
-/// none.
+/// Fixed function, with a gain before and after it, that equals a tone scale for colors without
+/// negative channels: f(n) = c n max(n, floor)^(gamma - 1), with the weights of the function.
+/// OpenColorIO computes it in float precision in every build. Nothing if there is none.
 [[nodiscard]] TONEWRIGHT_API std::optional<LoweredOps> find_fixed_function(
     const ToneScaleStage& stage);
 

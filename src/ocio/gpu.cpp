@@ -18,13 +18,13 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// Colours per draw: a texture of kBatchWidth x kBatchHeight texels, 4 MiB each way. Eight times as
-/// many were no faster.
+/// Colors per draw: a texture of kBatchWidth x kBatchHeight texels, 4 MiB each way. Eight times as
+/// many are not faster.
 constexpr GLsizei kBatchWidth = 1024;
 constexpr GLsizei kBatchHeight = 256;
 constexpr std::size_t kBatchPixels = std::size_t{kBatchWidth} * kBatchHeight;
 
-/// What desktop OpenGL and OpenGL ES do not share.
+/// Differences between desktop OpenGL and OpenGL ES.
 struct Api {
     EGLenum api;
     EGLint renderable;
@@ -50,7 +50,7 @@ void main() {
 }
 )";
 
-/// Behind the function: every fragment is the colour of the texel in the same place.
+/// After the function: every fragment is the color of the texel at the same position.
 constexpr const char* kFragmentTail = R"(
 uniform highp sampler2D tonewright_input;
 out vec4 tonewright_output;
@@ -60,8 +60,8 @@ void main() {
 constexpr const char* kFunctionName = "tonewright_convert";
 constexpr const char* kInputName = "tonewright_input";
 
-/// Makes an OpenGL context current on this thread, and in the end what was current before: the
-/// program that we are a part of may draw, too.
+/// Makes an OpenGL context current on this thread and restores the previous one, because the
+/// application may draw, too.
 class Current {
   public:
     Current(EGLenum api, EGLDisplay display, EGLContext context)
@@ -95,8 +95,8 @@ class Current {
     bool ok_ = false;
 };
 
-/// Where a context may come from, best first: the devices in the vendors' order (Mesa lists its
-/// software rasteriser last), Mesa without a device, whatever else the system calls its display.
+/// Sources of a context, best first: the devices in the vendors' order (Mesa lists its software
+/// rasterizer last), Mesa without a device, the default display of the system.
 std::vector<EGLDisplay> candidate_displays() {
     std::vector<EGLDisplay> displays;
     const auto query_devices =
@@ -115,9 +115,9 @@ std::vector<EGLDisplay> candidate_displays() {
     return displays;
 }
 
-/// A display and a context that needs no surface. Destroying the context
-/// frees all that was made in it. The display stays initialised: eglTerminate() would end it for
-/// all its users in the process, and Mesa leaks its driver's tables when it unloads the driver.
+/// A display and a context that needs no surface. Destroying the context frees all of its objects.
+/// The display stays initialized: eglTerminate() would end it for all its users in the process, and
+/// Mesa leaks its driver's tables when it unloads the driver.
 class EglContext {
   public:
     explicit EglContext(const Api& api) : api_(api) {}
@@ -155,7 +155,7 @@ class EglContext {
         EGLint config_count = 0;
         eglChooseConfig(display, config_wanted.data(), &config, 1, &config_count);
         const EGLenum previous_api = eglQueryAPI();
-        // Where OpenGL is not supported, OpenGL ES refuses the attributes.
+        // Without OpenGL support, OpenGL ES refuses the attributes.
         eglBindAPI(api_.api);
         context_ = eglCreateContext(display, config, EGL_NO_CONTEXT, context_wanted.data());
         eglBindAPI(previous_api);
@@ -172,7 +172,7 @@ class EglContext {
     EGLContext context_ = EGL_NO_CONTEXT;
 };
 
-/// Any OpenGL function by name; takes the type of the pointer that it initialises.
+/// Any OpenGL function by name; takes the type of the pointer that it initializes.
 struct Function {
     const char* name;
 
@@ -222,7 +222,7 @@ struct Gl {
     PFNGLUSEPROGRAMPROC use_program = Function{"glUseProgram"};
     PFNGLVIEWPORTPROC viewport = Function{"glViewport"};
 
-    /// One question and no loop: a lost context may answer for ever.
+    /// One query without a loop, because a lost context may return errors forever.
     void check(const char* what) const {
         if (const GLenum error = get_error(); error != GL_NO_ERROR) {
             throw Error("gpu: " + std::string(what) + " fails with OpenGL error " +
@@ -243,8 +243,8 @@ struct Gl {
     }
 };
 
-/// A context of the process, and in it what all processors share: the texels that colours are
-/// read from and drawn into. Texture unit 0 stays with the input.
+/// The context of the process with the shared textures for input and output colors. Texture unit 0
+/// stays with the input.
 class Device {
   public:
     /// @throws Error  (without "gpu: ") when there is none.
@@ -277,7 +277,7 @@ class Device {
     [[nodiscard]] const std::string& renderer() const noexcept { return renderer_; }
     [[nodiscard]] const char* version_line() const noexcept { return egl_.api().version_line; }
 
-    /// While it lives, this thread and no other can use the OpenGL functions.
+    /// During its lifetime only this thread can use the OpenGL functions.
     class Session {
       public:
         explicit Session(Device& device)
@@ -301,7 +301,7 @@ class Device {
         const auto full_rows = static_cast<GLsizei>(pixel_count / kBatchWidth);
         const auto rest = static_cast<GLsizei>(pixel_count % kBatchWidth);
         float* const rest_rgba = &rgba_[4 * (pixel_count - static_cast<std::size_t>(rest))];
-        // OpenGL ES moves no other float texels than RGBA.
+        // OpenGL ES only transfers RGBA float texels.
         for (std::size_t i = 0; i < pixel_count; ++i)
             std::copy_n(in + 3 * i, 3, &rgba_[4 * i]);
 
@@ -410,11 +410,11 @@ struct GpuProgram {
         return Device::Session(*device);
     }
 
-    // Apart from the constructor, so that the destructor frees what a failed build leaves.
+    // Separate from the constructor, so that the destructor frees the objects of a failed build.
     void build(const OCIO::ConstProcessorRcPtr& processor, OCIO::OptimizationFlags flags) {
         const Device::Session session = open(GlslDialect::desktop);
         session.require();
-        // Behind the lock, too: OCIO reads its environment variables into one static string.
+        // Inside the lock, because OCIO reads its environment variables into one static string.
         const OCIO::GpuShaderDescRcPtr desc = describe(processor, flags);
         const Gl& gl = session.gl;
         link(gl, desc->getShaderText(), std::string(kFunctionName) + "(vec4(color.rgb, 1))");
@@ -437,7 +437,7 @@ struct GpuProgram {
         gl.check("uploading the textures");
     }
 
-    /// The functions of `text`, and `result` as what a texel becomes; the program is in use then.
+    /// Builds and uses a program with the functions of `text` that turns a texel into `result`.
     void link(const Gl& gl, const std::string& text, const std::string& result) {
         const std::string vertex_shader = std::string(device->version_line()) + kVertexShader;
         const std::string fragment_shader =
@@ -472,8 +472,8 @@ struct GpuProgram {
     /// Binds a new texture to the next unit and that unit to the sampler.
     void add_texture(const Gl& gl, GLenum target, const char* sampler, OCIO::Interpolation how) {
         const auto unit = static_cast<GLint>(luts.size() + 1);
-        // OCIO's tetrahedral shader fetches lattice points and weights them itself: filtering could
-        // only blur its coordinates' rounding into the values.
+        // OCIO's tetrahedral shader fetches and weights nodes itself; filtering would only add the
+        // rounding of its coordinates to the values.
         const bool is_filtered = how != OCIO::INTERP_NEAREST && how != OCIO::INTERP_TETRAHEDRAL;
         gl.active_texture(GL_TEXTURE0 + static_cast<GLenum>(unit));
         luts.push_back({target, gl.make_texture(target, is_filtered ? GL_LINEAR : GL_NEAREST)});

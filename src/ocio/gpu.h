@@ -20,8 +20,8 @@ struct GpuProgram;
 /// Runs OCIO's GPU path, without a window: the GLSL 4.0 and the textures that OCIO gives to an
 /// application, drawn by OpenGL (reached through EGL) from float texels into float texels.
 ///
-/// A software rasteriser will do, and is the more exact one: texture units of real GPUs filter 1D
-/// LUTs with 8-bit weights, Mesa's llvmpipe with float weights.
+/// A software rasterizer is enough, and more accurate: texture units of real GPUs filter 1D LUTs
+/// with 8-bit weights, Mesa's llvmpipe with float weights.
 ///
 /// All objects of a process that speak one dialect share one OpenGL context; any thread may use any
 /// of them, one at a time. What the calling thread has current in EGL is the same after each call
@@ -40,16 +40,16 @@ class TONEWRIGHT_API OcioGpu {
     ~OcioGpu();
 
     /// Interleaved RGB float, any count; alpha is 1. `out` may be `in`. GLSL leaves open what NaN
-    /// becomes and whether subnormal numbers count as 0; infinities are handed on.
-    /// @throws Error  when the driver fails, with `out` written in part.
+    /// becomes and whether subnormal numbers count as 0; infinities are passed on.
+    /// @throws Error  if the driver fails; `out` is then partly written.
     void run_rgb(const float* in, float* out, std::size_t pixel_count) const;
 
-    /// Empty when a context can be made (on a GPU or a software rasteriser); else why not. The
-    /// first call tries, later ones remember.
+    /// Empty if a context is available (on a GPU or a software rasterizer); otherwise the reason.
+    /// The first call tries, later ones use its result.
     [[nodiscard]] static std::string unavailable_reason();
 
-    /// What draws: the driver's GL_RENDERER, as "llvmpipe (LLVM 15.0.6, 256 bits)"; empty when
-    /// nothing does.
+    /// The driver's GL_RENDERER, such as "llvmpipe (LLVM 15.0.6, 256 bits)"; empty if there is
+    /// none.
     [[nodiscard]] static std::string renderer();
 
   private:

@@ -14,18 +14,18 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-// Works on OCIO's hue, saturation and value. Hue passes through; of the other two channels every
-// step is a table of each or a matrix that adds one to the other, so a product is a sum of
+// Works on OCIO's hue, saturation and value. Hue passes through. Every step is a table for each of
+// the other two channels, or a matrix that adds one to the other, so a product is a sum of
 // logarithms.
 //
-// OCIO's shader finds the place in a half-domain table with a float between 0 and 65536 that grows
-// with the input's exponent and, by half of that, with a negative sign: numbers are kept positive
-// and small where precision counts.
+// OCIO's shader computes the position in a half-domain table as a float between 0 and 65536. It
+// grows with the exponent of the input, and a negative sign adds half of the range. So values stay
+// positive and small where precision matters.
 
-/// What a stop is in a channel.
+/// Size of a stop in a channel.
 constexpr double kStop = 0x1p-8;
 
-/// A number for every half float, in the order of the bit patterns.
+/// A number per half float, in the order of the bit patterns.
 using Column = std::vector<double>;
 
 /// The half floats themselves; NaN as 0, infinities as the largest.
@@ -59,27 +59,27 @@ std::vector<float> to_table(const Column& column) {
     return table;
 }
 
-/// Numbers at the half floats, and which of them may be others, @see Lut1DOp::slack.
+/// Numbers at the half floats, and which of them are free, @see Lut1DOp::slack.
 struct HalfTable {
     std::vector<float> values;
     std::vector<signed char> slack;
 };
 
-/// The table, which is asked for nothing outside [lo, hi].
+/// The table, without lookups outside [lo, hi].
 HalfTable within(std::vector<float> values, double lo, double hi) {
     std::vector<signed char> slack = unused_entries(values, lo, hi);
     return {std::move(values), std::move(slack)};
 }
 
-/// A table of f, which is asked for nothing outside [lo, hi]: there the value at the end is held.
+/// A table of f without lookups outside [lo, hi]: the end values continue there.
 template <class F>
 HalfTable table_of(double lo, double hi, const F& f) {
     return within(to_table(map(halves(), [&](double x) { return f(std::clamp(x, lo, hi)); })), lo,
                   hi);
 }
 
-/// Light in stops below `unit`: positive where it is darker. Below the smallest half float, where a
-/// table is a straight line to black, so is the scale: there and back is the same.
+/// Values in stops below `unit`, positive for darker values. Below the smallest half float a table
+/// is a straight line to black, and so is the scale, so the round trip is exact.
 class Stops {
   public:
     /// @param to_black  stops from the smallest half float to black
@@ -92,12 +92,12 @@ class Stops {
                    : last_ + to_black_ * (1 - std::max(light, 0.0) / kSmallestHalf);
     }
     [[nodiscard]] double light(double stops) const {
-        // Black comes some cells of a table earlier, so that there no light is interpolated in.
+        // Black starts some table cells earlier, so that no brighter value is interpolated in.
         return stops <= last_
                    ? unit_ * std::exp2(-stops)
                    : kSmallestHalf * std::max(0.0, 1 - (stops - last_) / (to_black_ - 0x1p-4));
     }
-    /// Of the smallest half float.
+    /// Stops of the smallest half float.
     [[nodiscard]] double last() const { return last_; }
 
   private:
@@ -131,7 +131,7 @@ struct AddedFunction {
 
 /// @param h       of the half floats.
 /// @param lo, hi  where `value` is; half floats beyond, by one stop, are in the tables, too.
-/// @param margin  least slope of n. The flatter n is somewhere, the coarser is its inverse there;
+/// @param margin  least slope of n. The flatter n is, the coarser is its inverse;
 ///                the larger k is, the coarser is the sum that k value is subtracted from.
 AddedFunction add_function(const Column& h, double lo, double hi, double margin) {
     const Column& value = halves();
@@ -163,7 +163,7 @@ AddedFunction add_function(const Column& h, double lo, double hi, double margin)
     }
     result.forward = within(to_table(n), lo - kStop, hi + kStop);
 
-    // The inverse of what the table holds, its float roundings included.
+    // The inverse of the table itself, including its rounding to float.
     std::vector<std::pair<double, double>> pairs;
     pairs.reserve(ascending.size());
     for (const unsigned bits : ascending)
@@ -181,8 +181,8 @@ AddedFunction add_function(const Column& h, double lo, double hi, double margin)
     return result;
 }
 
-/// Where value or chroma bend most. Half floats are finest around 0, so stops are counted from
-/// there.
+/// Position where value or chroma bends most. Half floats are finest around 0, so stops are counted
+/// from there.
 double sharpest_bend(const HexconeStage& stage) {
     double best = 1;
     double sharpest = -1;
@@ -200,10 +200,10 @@ double sharpest_bend(const HexconeStage& stage) {
     return best;
 }
 
-/// What a hexcone stage does, for every half float of a channel that holds stops of p.
+/// Effect of a hexcone stage, for every half float of a channel with stops of p.
 ///
-/// With m for what the offset leaves of the smallest channel, saturation is (p - m)/p; it becomes
-/// (p - m) chroma/value, so it is multiplied by chroma p/value: in stops, it loses.
+/// With m the smallest channel minus the offset, saturation is (p - m)/p. It becomes (p - m)
+/// chroma/value, so it is multiplied by chroma p/value, which is a loss in stops.
 struct HexconeColumns {
     Stops stops;
     Column p;
@@ -215,16 +215,16 @@ constexpr double kNone = 64;     // stops below 1 of what is 0
 constexpr double kAllLost = 22;  // stops below 1 of a saturation that counts as 0
 
 /// @param hi      largest value of a channel.
-/// @throws Error  when a channel would become negative, which HSV does not show.
+/// @throws Error  if a channel would become negative, which HSV cannot represent.
 HexconeColumns columns_of(const HexconeStage& stage, double hi) {
     const Stops stops(sharpest_bend(stage), 16);
-    // Behind the clamp the functions go on for a cell of the tables, where they can: or the kink of
-    // holding the value at the end would show inside.
+    // The functions continue beyond the clamp for one table cell if possible. A constant end value
+    // would show a kink inside.
     double top = std::min(hi * std::exp2(std::fabs(stops.of(hi)) * 0x1p-9), kHalfMax);
     if (!std::isfinite(evaluate(stage.value, top)) || !std::isfinite(evaluate(stage.chroma, top)))
         top = hi;
     const auto light = [&](double x) { return std::min(stops.light(x / kStop), top); };
-    // Below the smallest half float p is a straight line to 0, where there is no saturation.
+    // Below the smallest half float p is a straight line to 0, which has no saturation.
     const auto seen = [&](double x) { return std::max(light(x), kSmallestHalf); };
     HexconeColumns result = {stops, map(halves(), light), map(map(halves(), light), stage.value),
                              Column(kHalfCount, kAllLost)};
@@ -242,8 +242,8 @@ HexconeColumns columns_of(const HexconeStage& stage, double hi) {
     return result;
 }
 
-/// The loss as a function that can be added.
-/// @throws Error  when it is too steep, up and down: no k gives an n that its table inverts.
+/// The loss as an additive function.
+/// @throws Error  if it rises and falls too steeply: no k gives an n that a table can invert.
 AddedFunction add_loss(const HexconeColumns& columns, const HexconeStage& stage, double at_bend,
                        double hi) {
     const Column h = map(columns.loss, [&](double x) { return kStop * (x - at_bend); });
@@ -256,7 +256,7 @@ AddedFunction add_loss(const HexconeColumns& columns, const HexconeStage& stage,
         const Column value = map(light, stage.value);
         bool is_good = true;
         for (unsigned bits = 0; bits < kHalfCount; ++bits) {
-            // The loss bends where the domain ends; next to it nothing is tested.
+            // The loss bends at the end of the domain, so its neighborhood is not tested.
             const double x = halves()[bits];
             if (x < brightest + kStop / 8 || columns.p[bits] < kSmallestHalf) continue;
             constexpr double kTolerance = 4e-6;
@@ -276,18 +276,18 @@ AddedFunction add_loss(const HexconeColumns& columns, const HexconeStage& stage,
 
 LoweredOps lower_hexcone(const HexconeStage& stage, double hi) {
     const HexconeColumns columns = columns_of(stage, hi);
-    // n is 0 where half floats are finest; unless all is lost at that place.
+    // n is 0 where half floats are finest, unless all saturation is lost there.
     const double at_bend = std::min(columns.loss[0], 1.0);
     const AddedFunction added = add_loss(columns, stage, at_bend, hi);
 
-    // Each table reaches as far as it is used, and some more.
+    // Each table covers its used range and a margin.
     const auto same_number = [](double x) { return x; };
     const HalfTable hue = table_of(0, 1, same_number);
     LoweredOps ops;
     const auto lut = [&](const HalfTable& s, const HalfTable& v) {
         ops.push_back({lut_1d({s.values, v.values, hue.values}, {s.slack, v.slack, hue.slack})});
     };
-    // What saturation and value become of themselves and each other.
+    // Tables from saturation and value to themselves and to each other.
     const auto mix = [&](double ss, double sv, double vs, double vv, double s_offset = 0) {
         ops.push_back({MatrixOp{{{{ss, sv, 0}, {vs, vv, 0}, {0, 0, 1}}}, {s_offset, 0, 0}}});
     };
@@ -299,8 +299,8 @@ LoweredOps lower_hexcone(const HexconeStage& stage, double hi) {
         table_of(0, kHalfMax, [&](double x) { return columns.stops.of(x); });
 
     ops.push_back({FixedFunctionOp{"RGB_TO_HSV"}});
-    // Saturation, value, hue: where OpenColorIO 2.1 inverts a falling half-domain table, it makes 0
-    // of all that is negative in the third channel. Hue is not.
+    // Saturation, value, hue: the inverse of a falling half-domain table in OpenColorIO 2.1 sets
+    // negatives in the third channel to 0. Hue is never negative.
     const Matrix3 hue_last = {{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}}};
     ops.push_back({MatrixOp{hue_last}});
     if (stage.offset.is_constant(0)) {

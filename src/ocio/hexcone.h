@@ -7,9 +7,9 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 
 /// A hexcone stage as HSV, half LUTs of logarithms with matrices that add one channel to the other,
-/// and HSV back.
+/// and inverse HSV.
 /// @param hi      largest value of a channel; the smallest is 0
-/// @throws Error  when a channel would become negative, which HSV does not show, or when the tables
+/// @throws Error  if a channel would become negative, which HSV cannot represent, or if the tables
 ///                cannot be inverted.
 [[nodiscard]] LoweredOps lower_hexcone(const HexconeStage& stage, double hi);
 

@@ -51,8 +51,8 @@ struct OutputId {
 };
 
 constexpr OutputId kOutputs[] = {
-    // Light limited to the gamut of a display, on that display, is what the Academy's transform for
-    // it makes by its clamp.
+    // Limiting to a display's gamut on that display equals the clamp of the Academy's transform for
+    // it.
     {"SDR-VIDEO-REC709lim_1.1", "srgb", "v1.5", "ODT.Academy.RGBmonitor_100nits_dim.a1.0.3"},
     {"SDR-VIDEO-REC709lim_1.1", "rec1886", "v1.5", "ODT.Academy.Rec709_100nits_dim.a1.0.3"},
     {"SDR-VIDEO-P3lim_1.1", "display_p3", "v1.5", "ODT.Academy.DisplayP3_dim.a1.0.0"},

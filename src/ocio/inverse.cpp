@@ -17,9 +17,9 @@ TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 // ---------------------------------------------------------------------------------------------
-// Channels apart
+// Per-channel stages
 
-/// What a run of stages makes of one channel.
+/// Function of a run of stages for one channel.
 class ChannelCurve {
   public:
     ChannelCurve(const Pipeline& run, std::size_t channel) : engine_(run), channel_(channel) {}
@@ -43,9 +43,9 @@ class ChannelCurve {
     std::size_t channel_;
 };
 
-/// Puts the scene of least size that f makes each y of in its place: f rises.
+/// Replaces each y by the smallest x with f(x) = y; f rises.
 void solve(const ChannelCurve& f, std::vector<double>& y, double lo, double hi) {
-    // In the float's own steps: light spans many magnitudes.
+    // Bisects over float bit patterns, because values span many magnitudes.
     const auto to_place = [](double x) { return std::copysign(std::log1p(std::fabs(x) * 1e6), x); };
     const auto to_light = [](double p) {
         return std::copysign(std::expm1(std::fabs(p)) * 1e-6, p);
@@ -64,8 +64,8 @@ void solve(const ChannelCurve& f, std::vector<double>& y, double lo, double hi) 
         y[i] = to_light(b[i]);
 }
 
-/// Tables of the inverses of a run, at equal distances over what it puts out.
-/// @return false where a channel falls somewhere
+/// Tables of the inverses of a run, at equal distances over its output.
+/// @return false if a channel falls somewhere
 bool append_inverse(const Pipeline& run, LoweredOps& ops) {
     std::array<double, 3> first{};
     std::array<double, 3> last{};
@@ -79,7 +79,7 @@ bool append_inverse(const Pipeline& run, LoweredOps& ops) {
             continue;
         }
         const ChannelCurve f(run, c);
-        // Where black is limited to 0, nothing below it is to be brought back.
+        // If black is clamped to 0, values below it have no inverse.
         const double lo = f(-kHalfMax) == f(0) ? 0 : -kHalfMax;
         first[c] = f(lo);
         last[c] = f(kHalfMax);
@@ -143,20 +143,20 @@ std::optional<LoweredOps> invert_stages(const Pipeline& stages) {
     return ops;
 }
 
-/// Every transform inverted by OpenColorIO, of an operator that shows no light as white; else
-/// nothing: it does that by itself.
+/// Inverts every transform with OpenColorIO, for an operator that shows only infinite values as
+/// white. Otherwise nothing, because OpenColorIO inverts the view itself.
 std::optional<LoweredOps> invert_lowered(const Pipeline& forward, double peak) {
     const Vector3 brightest = ReferenceEngine(forward)({kHalfMax, kHalfMax, kHalfMax});
     if (!(*std::max_element(brightest.begin(), brightest.end()) < peak)) return std::nullopt;
-    // Next to white, where light grows without end, tables over half floats have no entries, and
-    // what is interpolated there is far too bright.
+    // Values grow without limit near white. Half-float tables have no entries there, and
+    // interpolation is far too bright.
     const double last = peak * (1 - 0x1p-11);
     LoweredOps ops = lower_to_ocio({ClampStage{0, last}}).ops;
     append(ops, inverse(lower_to_ocio(forward).ops));
     return ops;
 }
 
-/// True where a cube stands for it, or a part of it.
+/// True if the stage, or a part of it, becomes a 3D LUT.
 bool needs_cube(const Pipeline& stages) {
     return std::any_of(stages.begin(), stages.end(), [](const Stage& stage) {
         const auto* map = std::get_if<CrossTalkStage>(&stage);
@@ -164,7 +164,7 @@ bool needs_cube(const Pipeline& stages) {
     });
 }
 
-/// OpenColorIO's own, where it has one that the operator equals.
+/// OpenColorIO's built-in inverse, if the operator equals one.
 std::optional<LoweredOps> invert_builtin(const ResolvedOperator& op, const DisplayLimit& limit) {
     const std::string style = builtin_style(op);
     const auto registry = OCIO::BuiltinTransformRegistry::Get();
@@ -189,7 +189,7 @@ std::optional<LoweredOps> invert_light(const ResolvedOperator& op, const Display
     if (auto ops = invert_stages(forward)) return ops;
     if (op.op->is_diagnostic) return std::nullopt;
     if (!needs_cube(forward)) return invert_lowered(forward, limit.peak);
-    // Of the operator's own gamut, so that displays of other gamuts have the same table.
+    // In the operator's own gamut, so that displays with other gamuts share the table.
     const Primaries primaries = op.output_primaries();
     Pipeline back = {MatrixStage{rgb_to_rgb(limit.primaries, primaries)}};
     const auto append_stages = [](Pipeline& to, const Pipeline& from) {

@@ -8,20 +8,20 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// The inverse from a display's light, of the limit's primaries and [0, peak], to scene-linear in
-/// the operator's working space. The first that there is of
+/// The inverse from display-linear, in the primaries of the limit and [0, peak], to scene-linear in
+/// the operator's working space. The first available one of
 ///
-/// - OpenColorIO's built-in transform, where the operator equals one;
-/// - stage by stage: matrices inverted, and every run of curves and clamps that treats channels
-///   apart as one table of its inverse, whose entries are at equal distances of light (a
-///   half-domain table, inverted, has few of them next to white);
-/// - where the operator is a cube: one that is sampled from the operator's own inverse, or fitted
-///   for the round trip;
-/// - every transform of the view inverted by OpenColorIO, with light limited to the last half float
-///   below white, where only infinite light is white.
+/// - OpenColorIO's built-in transform, if the operator equals one;
+/// - stage by stage: inverts matrices, and turns every run of per-channel curves and clamps into a
+///   table of its inverse, with entries at equal display-linear distances (an inverted half-domain
+///   table has few entries near white);
+/// - if the operator is a 3D LUT: a 3D LUT sampled from the operator's own inverse, or fitted for
+///   the round trip;
+/// - every transform of the view inverted by OpenColorIO. If only infinite values are white, the
+///   input is limited to the last half float below white.
 ///
-/// @return nothing where there is none of these: of a diagnostic view, in which many lights are
-///         shown as one, and where OpenColorIO's inversion of the view needs nothing of ours.
+/// @return nothing for a diagnostic view, which shows many colors as one, and if OpenColorIO
+///         inverts the view without help.
 [[nodiscard]] std::optional<LoweredOps> invert_light(const ResolvedOperator& op,
                                                      const DisplayLimit& limit);
 

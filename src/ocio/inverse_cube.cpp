@@ -21,16 +21,15 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// Scene light that counts as the brightest: 14 stops over middle grey. What is shown as white
-/// comes from all that is brighter.
+/// Brightest scene value, 14 stops above mid gray. All brighter values are shown as white.
 constexpr double kBrightest = 4096;
 
-/// Nodes a side, for a table of 0.9 MB: 25 are twice as far from the inverse in the mean.
+/// Nodes a side, for a table of 0.9 MB; 25 have twice the mean error.
 constexpr int kEdge = 37;
-/// Of a fitted one, for 0.6 MB: 37 are a fifth nearer.
+/// Nodes a side of a fitted one, for 0.6 MB; 37 have a fifth less error.
 constexpr int kFittedEdge = 33;
 
-/// What a node holds of scene light: its logarithm, straight about 0, odd, 1 of the brightest.
+/// Node value of a scene value: its logarithm, linear near 0, odd, 1 for the brightest value.
 constexpr double kStraight = 0.01;
 double largest_code() { return std::log2(kBrightest / kStraight + 1); }
 Expr code_of(const Expr& x) {
@@ -42,7 +41,7 @@ Expr light_of(const Expr& code) {
     return select(less(code, 0), -light, light);
 }
 
-/// Where light stands on the axes: nearly as the eye sees it, for either kind of display.
+/// Position on the axes: nearly perceptual, for SDR and HDR displays.
 Expr place_of(const Expr& light, double peak) {
     if (peak <= 1) return pow(max(light, 0), 1 / 2.4);
     const Expr code = pq_encode_nits(Expr::input() * kReferenceWhite);
@@ -88,7 +87,7 @@ Pipeline sampled_inverse(const Pipeline& back, double peak) {
 }
 
 Pipeline fitted_inverse(const Pipeline& forward, const Primaries& primaries, double peak) {
-    // The same for displays of the same gamut and peak.
+    // Displays with the same gamut and peak share it.
     struct Key {
         std::array<Expr, 3> forward;  // equal expressions are the same node, as long as one lives
         Primaries primaries;
@@ -102,7 +101,7 @@ Pipeline fitted_inverse(const Pipeline& forward, const Primaries& primaries, dou
     static BoundedCache<Key, Lattice> cache(64);  // of 0.9 MB each
     const Expr x = Expr::input();
     const Expr place = place_of(x, peak);
-    // The lattice computes its nodes when they are asked for.
+    // Lattice computes its nodes on demand.
     const auto cube = cache.get({compose(forward), primaries, peak}, [&] {
         const auto make_nodes = [=] {
             InverseCubeProblem problem;
@@ -120,7 +119,7 @@ Pipeline fitted_inverse(const Pipeline& forward, const Primaries& primaries, dou
                             key_of_pipeline(problem.before), key_of_pipeline(problem.forward));
             std::vector<double> nodes =
                 cached_numbers("inverse_cube", key, [&] { return fit_inverse_cube(problem); });
-            // Where no picture leads to: light beyond the brightest is not asked for.
+            // No picture reaches values above the brightest one.
             for (double& code : nodes)
                 code = std::clamp(code, -1.0, 1.0);
             return nodes;

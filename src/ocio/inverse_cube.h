@@ -5,17 +5,17 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-// Inverses that mix channels, as cubes over a display's light: OpenColorIO's own inversion of a
-// forward cube is one of its codes, 48 nodes a side and sampled, and far from the inverse where the
-// forward cube squeezes many colours into few.
+// Channel-mixing inverses as 3D LUTs over display-linear. OpenColorIO's inversion of a 3D LUT
+// samples 48 nodes a side over its codes, and is inaccurate where the 3D LUT compresses many colors
+// into few.
 
 /// Sampled from an exact inverse.
-/// @param back  light of [0, peak] -> scene light
+/// @param back  display-linear in [0, peak] -> scene-linear
 [[nodiscard]] Pipeline sampled_inverse(const Pipeline& back, double peak);
 
-/// Fitted for the round trip. The same for the same chain.
-/// @param forward    scene light -> light of [0, peak]
-/// @param primaries  of the scene: nothing outside of them comes back.
+/// Fitted for the round trip. Deterministic for a chain.
+/// @param forward    scene-linear -> display-linear in [0, peak]
+/// @param primaries  of the scene: the inverse does not reach colors outside them.
 [[nodiscard]] Pipeline fitted_inverse(const Pipeline& forward, const Primaries& primaries,
                                       double peak);
 

@@ -20,7 +20,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// Widest to narrowest of what stages so far let through, per channel.
+/// Range of each channel after the stages so far.
 struct Domain {
     double lo = -kHalfMax;
     double hi = kHalfMax;
@@ -58,14 +58,14 @@ class Lowering {
 
     void lower(const ClampStage& stage) {
         flush_curves(stage);
-        // NaN must not survive the first clamp: Range takes it to its lower end, if it has one.
+        // NaN must not survive the first clamp: Range maps it to its lower end, if it has one.
         emit(RangeOp{stage.lo, stage.hi}, "range");
         domain_.lo = std::max(domain_.lo, stage.lo);
         domain_.hi = std::min(domain_.hi, stage.hi);
     }
 
-    /// Tables of equal distances over [0, 1] that a curve does nothing but look up: between half
-    /// floats their corners would be blunt.
+    /// Equidistant tables over [0, 1] that are the whole curve: a half LUT would round their
+    /// corners.
     static std::array<const Table*, 3> tables_of(const CurveStage& stage) {
         std::array<const Table*, 3> tables{};
         for (std::size_t c = 0; c < 3; ++c) {
@@ -117,8 +117,8 @@ class Lowering {
             return;
         }
         const Expr x = Expr::input();
-        // The norm of what the domain holds is in the domain too (weights of a luminance sum to 1).
-        // Of light, hue and saturation are in [0, 1], and so are x and y.
+        // The norm of colors in the domain is in the domain, too (the weights of a luminance sum to
+        // 1). For channels >= 0, hue and saturation are in [0, 1], and so are x and y.
         const auto identity = domain_.lo >= 0 ? sample_half_domain(x, 0, 1)
                                               : sample_half_domain(x, -kHalfMax, kHalfMax);
         const auto f = sample_half_domain(stage.f, std::max(domain_.lo, 0.0), domain_.hi);
@@ -128,14 +128,14 @@ class Lowering {
                                      {kept, kept, unused_entries(f, domain_.lo, domain_.hi)});
         const bool is_max = stage.norm == ToneScaleStage::Norm::max_rgb;
         if (is_max) {
-            // HSV of a negative channel loses it.
+            // HSV loses negative channels.
             require_clamp_at_0("tone scale on the largest channel");
             emit(FixedFunctionOp{"RGB_TO_HSV"}, "HSV");
             emit(table, "half LUT on V");
             emit(FixedFunctionOp{"RGB_TO_HSV"}, "HSV inverse", true);
         } else {
-            // xyY scales all three by Y'/Y whatever the other two rows are; of the bases tried,
-            // this one cancels least in 1-x-y and in the matrix back.
+            // xyY scales all three channels by Y'/Y for any other two rows. Of the tested bases,
+            // this one has the least cancellation in 1-x-y and in the inverse matrix.
             const Matrix3 basis = {
                 {{0.5, 0, 0}, {stage.weights[0], stage.weights[1], stage.weights[2]}, {0, 0, 1}}};
             emit(MatrixOp{basis}, "matrix to (R/2, L, B)");
@@ -147,8 +147,8 @@ class Lowering {
         domain_ = largest_scaled(stage, static_cast<double>(*std::max_element(f.begin(), f.end())));
     }
 
-    /// The domain behind a tone scale that makes norms up to `largest`: a channel is at most the
-    /// norm divided by its weight.
+    /// Domain after a tone scale with norms up to `largest`: a channel is at most the norm divided
+    /// by its weight.
     [[nodiscard]] Domain largest_scaled(const ToneScaleStage& stage, double largest) const {
         const double weight = stage.norm == ToneScaleStage::Norm::max_rgb
                                   ? 1
@@ -159,13 +159,13 @@ class Lowering {
     void lower(const HuePreservingStage& stage) {
         flush_curves();
         require_clamp_at_0("hue-preserving curve");
-        // OCIO's shader turns the hue around where the curve falls, its CPU path does not.
+        // OCIO's shader inverts the hue where the curve falls; its CPU path does not.
         if (!is_rising(sample_half_domain(stage.f, domain_.lo, domain_.hi), domain_)) {
             emit_cube({apply_stage(stage, {Expr::input(0), Expr::input(1), Expr::input(2)})},
                       kUnlimited, false);
             return;
         }
-        // The place of the middle channel between the others does not change with a gain.
+        // A gain does not change the relative position of the middle channel.
         emit_curve({stage.f, stage.f, stage.f}, true);
     }
 
@@ -182,14 +182,14 @@ class Lowering {
     }
 
     void lower(const LatticeStage& stage) {
-        // OCIO limits what enters a cube to [0, 1] as the lattice does; between half floats such a
-        // corner would be blunt.
+        // OCIO clamps the input of a 3D LUT to [0, 1] like Lattice; a half LUT would round that
+        // corner.
         lower(curve_stage(stage.shaper));
         flush_curves();
         const std::vector<double>& nodes = stage.lattice->nodes();
         emit(Lut3DOp{stage.lattice->edge(), {nodes.begin(), nodes.end()}},
-             std::to_string(stage.lattice->edge()) + "^3 lattice");
-        // Powers of two: lattices of about the same numbers share the tables behind them.
+             std::to_string(stage.lattice->edge()) + "^3 3D LUT");
+        // Powers of two, so that similar 3D LUTs share the tables after them.
         const auto [lo, hi] = std::minmax_element(nodes.begin(), nodes.end());
         const auto outwards = [](double x) {
             return x > 0 ? std::exp2(std::ceil(std::log2(x))) : 0.0;
@@ -219,7 +219,7 @@ class Lowering {
         domain_ = {};
     }
 
-    /// @param behind  what limits the result: outside of it the cube may hold anything
+    /// @param behind  clamp of the result: the 3D LUT is free outside it
     void emit_cube(const CrossTalkStage& stage, const ClampStage& behind, bool is_fitted) {
         result_.loses_negatives = result_.loses_negatives || !(domain_.lo >= 0);
         const double top = cross_talk_top(stage, behind, domain_.hi, is_fitted);
@@ -231,14 +231,14 @@ class Lowering {
         const std::vector<signed char> slack = unused_entries(shaper, 0, top);
         emit(lut_1d({shaper, shaper, shaper}, {slack, slack, slack}), "half LUT shaper");
         emit(Lut3DOp{options_.cube_edge, cube->nodes}, std::to_string(options_.cube_edge) +
-                                                           "^3 cube to " + shortest(top) +
+                                                           "^3 3D LUT to " + shortest(top) +
                                                            (is_fitted ? ", fitted" : ""));
         result_.is_exact = false;
         domain_ = {};
         lower(curve_stage(srgb_decode(Expr::input())));
     }
 
-    /// A 3D LUT over hue, saturation and value of the axes that the stage is declared in.
+    /// A 3D LUT over hue, saturation and value of the declared axes of the stage.
     void emit_hue_cube(const CrossTalkStage& stage, const HueStructure& structure) {
         result_.loses_negatives = result_.loses_negatives || !(domain_.lo >= 0);
         const double top = cross_talk_top(stage, behind_, domain_.hi, true);
@@ -262,9 +262,9 @@ class Lowering {
         emit_affine(cube->less_sum);
         emit_table(cube->back, "LUT of hue");
         emit_affine(cube->plus_hue);
-        emit_table(cube->place, "LUT of places");
+        emit_table(cube->place, "LUT of positions");
         emit(Lut3DOp{cube->edge, cube->nodes, HueCube::kUnit},
-             std::to_string(cube->edge) + "^3 cube of hues to " + shortest(top) + ", fitted");
+             std::to_string(cube->edge) + "^3 3D LUT of hues to " + shortest(top) + ", fitted");
         emit_table(cube->light, "LUT of light");
         emit_affine(cube->ratios);
         emit(FixedFunctionOp{"XYZ_TO_xyY"}, "xyY inverse", true);
@@ -288,7 +288,7 @@ class Lowering {
         result_.summary += (result_.summary.empty() ? "" : ", ") + what;
     }
 
-    /// @param behind  what limits the result
+    /// @param behind  clamp of the result
     void flush_curves(const ClampStage& behind = kUnlimited) {
         if (!pending_) return;
         const std::array<Expr, 3> f = *pending_;
@@ -298,9 +298,9 @@ class Lowering {
 
     void emit_curve(std::array<Expr, 3> f, bool keeps_hue, const ClampStage& behind = kUnlimited) {
         Domain domain = domain_;
-        // Where the slope at black is infinite (the power of a display), the first cells of a table
-        // over half floats are too coarse. Their exponents go much further below 1 than above what
-        // this curve is given, so the curve moves up: a power of two loses nothing.
+        // If the slope at black is infinite (the power of a display), the first cells of a
+        // half-float table are too coarse. Half floats have many exponents below 1 and few above
+        // the range of this curve, so the input is scaled up by a power of two, which is exact.
         const double gain = std::exp2(std::floor(std::log2(kHalfMax / domain.hi)));
         if (domain.lo >= 0 && gain > 1 && is_steep_at_black(f)) {
             emit(MatrixOp{scale(kIdentity3, gain)}, "scale");
@@ -324,15 +324,15 @@ class Lowering {
             clip(tables[c], slack[c], behind);
         Lut1DOp lut = lut_1d(tables, slack);
         lut.keeps_hue = keeps_hue;
-        emit(std::move(lut), keeps_hue ? "half LUT keeping hue" : "half LUT");
+        emit(std::move(lut), keeps_hue ? "half LUT that keeps hue" : "half LUT");
     }
 
-    /// Holds the limit where an entry and those next to it are beyond it.
+    /// Sets entries to the limit if they and their neighbors exceed it.
     static void clip(std::vector<float>& table, std::vector<signed char>& slack,
                      const ClampStage& limit) {
         const auto lo = static_cast<float>(limit.lo);
         const auto hi = static_cast<float>(limit.hi);
-        // Next to -0 is the smallest number below it; entry by entry, next to it is the infinity.
+        // The neighbor of -0 is the smallest negative number, but the adjacent entry is infinity.
         std::vector<signed char> beyond(table.size());
         for (std::size_t i = 0; i < table.size(); ++i)
             beyond[i] = static_cast<signed char>((table[i] >= hi) - (table[i] <= lo));
@@ -344,7 +344,7 @@ class Lowering {
         }
     }
 
-    /// From half float to half float of the domain, but for rounding.
+    /// True from half float to half float of the domain, except for rounding.
     static bool is_rising(const std::vector<float>& table, const Domain& domain) {
         double largest = -kInfinity;
         for (unsigned bits = 0; bits <= 0x7BFF; ++bits) {
@@ -366,7 +366,7 @@ class Lowering {
     LowerOptions options_;
     Lowered result_;
     Domain domain_;
-    ClampStage behind_ = kUnlimited;  // of the stage that is lowered
+    ClampStage behind_ = kUnlimited;  // clamp after the current stage
     std::optional<std::array<Expr, 3>> pending_;
 };
 

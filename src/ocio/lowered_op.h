@@ -10,8 +10,8 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-// Lowering produces these operations. They hold numbers and names only: to_ocio() makes
-// OpenColorIO transforms of them, LutFiles writes their tables as LUT files.
+// Lowering produces these operations. They only hold numbers and names: to_ocio() converts them to
+// OpenColorIO transforms, and LutFiles writes their tables as LUT files.
 
 /// y = m x + offset.
 struct MatrixOp {
@@ -31,8 +31,8 @@ struct Lut1DOp {
     int channels;               // 1: one table for all channels, or 3
     std::vector<float> values;  // entry by entry
     bool is_half_domain = true;
-    /// Only the largest and the smallest channel are looked up; the middle one keeps its place
-    /// between them. OpenColorIO calls this hue adjustment DW3.
+    /// Only looks up the largest and the smallest channel; the middle one keeps its relative
+    /// position. OpenColorIO calls this hue adjustment DW3.
     bool keeps_hue = false;
     /// @see ClfTable::slack
     std::vector<signed char> slack = {};
@@ -40,7 +40,7 @@ struct Lut1DOp {
     [[nodiscard]] int size() const { return static_cast<int>(values.size()) / channels; }
 };
 
-/// A 3D table over [0, 1], interpolated in tetrahedra.
+/// A 3D LUT over [0, 1] with tetrahedral interpolation.
 struct Lut3DOp {
     int edge;
     std::vector<float> values;  // RGB triplets, blue fastest
@@ -69,7 +69,7 @@ using LoweredOps = std::vector<LoweredOp>;
 [[nodiscard]] Lut1DOp lut_1d(const std::array<std::vector<float>, 3>& channels,
                              const std::array<std::vector<signed char>, 3>& slack = {});
 
-/// The operations backwards, each in its other direction.
+/// The operations in reverse order, each inverted.
 [[nodiscard]] TONEWRIGHT_API LoweredOps inverse(LoweredOps ops);
 
 /// Appends `more` to `ops`.

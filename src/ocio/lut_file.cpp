@@ -47,7 +47,7 @@ void check_extension(const std::string& path) {
                                 extension.empty() ? "missing" : extension, join_choices(known)));
 }
 
-/// What OpenColorIO says about the file, without its search for a format; in one line.
+/// OpenColorIO's message about the file in one line, without its search for a format.
 std::string reason_of(const OCIO::Exception& e, const std::string& path) {
     std::string what = e.what();
     constexpr std::string_view kFound = "' failed with: ";
@@ -60,7 +60,7 @@ std::string reason_of(const OCIO::Exception& e, const std::string& path) {
     return printable(what, 400);
 }
 
-/// Whatever the files say.
+/// Default for any file.
 void set_interpolation(const OCIO::GroupTransformRcPtr& group, OCIO::Interpolation interpolation) {
     for (int i = 0; i < group->getNumTransforms(); ++i) {
         const OCIO::TransformRcPtr transform = group->getTransform(i);
@@ -72,7 +72,7 @@ void set_interpolation(const OCIO::GroupTransformRcPtr& group, OCIO::Interpolati
     }
 }
 
-/// A range as [0, 1].
+/// Maps a range to [0, 1].
 OCIO::TransformRcPtr scale_range(const CubeText::Table& table) {
     const OCIO::MatrixTransformRcPtr matrix = OCIO::MatrixTransform::Create();
     std::array<double, 16> m{};
@@ -116,15 +116,14 @@ OCIO::GroupTransformRcPtr group_of(const CubeText& file) {
     return group;
 }
 
-/// Checked bytes under a name of their own, for as long as OpenColorIO reads them.
+/// Temporary file with the validated bytes, while OpenColorIO reads it.
 ///
-/// OpenColorIO remembers for the whole process what it has read under a name, so it would not see
-/// that a file has changed, and clearing its memory would clear that of the application. Therefore
-/// the name is made of the bytes. OpenColorIO remembers equal bytes once, and it parses exactly
-/// those that were checked.
+/// OpenColorIO caches files by name for the whole process. It would not see that a file has
+/// changed, and clearing its cache would clear that of the application. Therefore the name is a
+/// hash of the bytes. OpenColorIO caches equal bytes once, and parses exactly the validated ones.
 class PrivateCopy {
   public:
-    /// @throws FileError  naming `path`, the file that the bytes are of.
+    /// @throws FileError  names `path`, the source of the bytes.
     PrivateCopy(const std::string& path, const std::string& bytes) {
         std::error_code error;
         const fs::path folder = fs::temp_directory_path(error);
@@ -151,7 +150,7 @@ class PrivateCopy {
     [[nodiscard]] const std::string& path() const { return path_; }
 
   private:
-    /// @param unfinished  a pattern, which becomes the name that the file has at first
+    /// @param unfinished  a pattern, replaced by the initial name of the file
     /// @returns  0 or an errno.
     [[nodiscard]] int write(std::string& unfinished, const std::string& bytes) const {
         const int extension = static_cast<int>(fs::path(unfinished).extension().string().size());
@@ -182,7 +181,7 @@ class PrivateCopy {
 OCIO::GroupTransformRcPtr group_of(const std::string& path) {
     const OCIO::FileTransformRcPtr file = OCIO::FileTransform::Create();
     file->setSrc(path.c_str());
-    // Tetrahedral for a cube, linear for a 1D table, and no warning for either.
+    // Tetrahedral for a 3D LUT, linear for a 1D LUT, without a warning for either.
     file->setInterpolation(OCIO::INTERP_BEST);
     OCIO::GroupTransformRcPtr group = OCIO::GroupTransform::Create();
     group->appendTransform(file);

@@ -13,7 +13,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// What the table of an operation is, for its file's name.
+/// Kind of an operation's table, for its file name.
 std::string part_name(const LoweredOps& ops, std::size_t index) {
     if (std::holds_alternative<Lut3DOp>(ops[index].op)) return "cube";
     const bool is_shaper =
@@ -35,9 +35,9 @@ ClfTable table_of(const Lut1DOp& lut, double least_precision = 0) {
 
 ClfTable table_of(const Lut3DOp& lut, bool is_exact, bool is_inverted) {
     ClfTable table = {.dimension = 3, .size = lut.edge, .channels = 3, .values = lut.values};
-    // A lattice has nothing else to be wrong in: 5e-8. Interpolating between the nodes of a sampled
-    // operator costs much more than its numbers: in the mean 30 times the 8e-6 of codes, and 5
-    // times the 5e-5 of whole numbers.
+    // An exact 3D LUT only has the error of its numbers: 5e-8. The interpolation error of a sampled
+    // operator is much larger: on average 30 times the 8e-6 of codes, and 5 times the 5e-5 of
+    // integers.
     using Numbers = ClfTable::Numbers;
     table.numbers = is_exact      ? Numbers::decimals_7
                     : is_inverted ? Numbers::codes
@@ -46,8 +46,8 @@ ClfTable table_of(const Lut3DOp& lut, bool is_exact, bool is_inverted) {
     return table;
 }
 
-/// How far the numbers of a 1D table may be from its values, at least. What is behind a cube that
-/// is not exact, or before it, is seen through its error of 1e-3 and more.
+/// Smallest required precision of the numbers of a 1D table. Before or after an inexact 3D LUT, its
+/// error of 1e-3 and more dominates.
 double least_precision_of(const LoweredOps& ops, std::size_t index, const LutFiles::Use& use) {
     constexpr double kOfCubes = 2e-7;
     constexpr double kOfCodes = 7.5e-9;
@@ -62,7 +62,7 @@ double least_precision_of(const LoweredOps& ops, std::size_t index, const LutFil
     return use.makes_codes && is_last ? kOfCodes : 0;
 }
 
-/// All that tells a table from others.
+/// Key that identifies a table.
 std::string key_of(const std::variant<Lut1DOp, Lut3DOp>& table) {
     const auto bytes = [](const auto& numbers) {
         return std::string(reinterpret_cast<const char*>(numbers.data()),
@@ -96,7 +96,7 @@ std::string word(const std::string& text) {
     return result;
 }
 
-/// The words that are not empty, with an underscore between them.
+/// Joins the words that are not empty with underscores.
 std::string joined(const std::vector<std::string>& words) {
     std::string result;
     for (const std::string& part : words) {
@@ -146,11 +146,11 @@ std::string LutFiles::file_for(File file, const LutStem& stem, const std::string
     const std::string subject = word(stem.subject);
     const std::string purpose = word(stem.purpose);
     const std::string qualified = joined({subject, word(stem.qualifier), purpose, part});
-    // Forms of an operator often share curves and never cubes.
+    // Variants of an operator often share curves, but never 3D LUTs.
     const auto* curve = std::get_if<Lut1DOp>(&file.table);
     std::string name = curve ? joined({subject, purpose, part}) : qualified;
     if (style_ == Names::hashed) {
-        // Another use would change the contents.
+        // A different use would change the contents.
         file.use.is_inverted = true;
         file.least_precision = 0;
         name = joined({name, content_hash(contents_of(file))});
@@ -167,7 +167,7 @@ std::string LutFiles::file_for(File file, const LutStem& stem, const std::string
 
 std::string LutFiles::contents_of(const File& file) {
     const auto* curve = std::get_if<Lut1DOp>(&file.table);
-    const std::string note = curve ? ": one entry for every half float" : ": behind its shaper";
+    const std::string note = curve ? ": one entry for every half float" : ": after its shaper";
     const ClfTable table =
         curve ? table_of(*curve, file.least_precision)
               : table_of(std::get<Lut3DOp>(file.table), file.use.is_exact, file.use.is_inverted);

@@ -14,38 +14,38 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// The parts of a LUT file's name before the word that tells a curve from a cube, in the order of
-/// the name. Any text; only letters, digits and underscores of it are used.
+/// Parts of a LUT file's name before the word "curve" or "cube", in the order of the name. Any
+/// text; only letters, digits and underscores are used.
 struct LutStem {
     std::string subject;         // "agx_blender"
     std::string qualifier = "";  // "Rec.2020, 1000 nit": which of several forms
     std::string purpose = "";    // "inverse"
 };
 
-/// Collects the LUT files that transforms need: OCIO configs cannot hold tables themselves.
+/// Collects the LUT files of transforms, because OCIO configs cannot hold tables.
 class LutFiles {
   public:
     enum class Names : unsigned char {
-        /// The same from release to release, so that a changed digit is a small diff.
+        /// Stable across releases, so that a changed digit is a small diff.
         stable,
         /// With a hash of the contents, for a folder that may hold files of other releases.
         hashed
     };
 
-    /// @param folder  that they are in, beside the config
+    /// @param folder  folder of the files, beside the config
     explicit LutFiles(std::string folder, Names names = Names::stable)
         : folder_(std::move(folder)), style_(names) {}
 
-    /// What the transforms are for.
+    /// Use of the transforms.
     struct Use {
         bool is_exact = true;
-        /// OpenColorIO may have to invert them: there are no transforms of the inverse beside them.
+        /// OpenColorIO may have to invert them, because there are no separate inverse transforms.
         bool is_inverted = true;
         bool is_inverse = false;   // of a view
         bool makes_codes = false;  // of a display or texture: nothing is behind them
     };
 
-    /// The transforms of the operations, with a file for every table.
+    /// The transforms of the operations, with one file per table.
     /// @param title  the name inside the files
     OCIO::GroupTransformRcPtr to_ocio(const LoweredOps& ops, const LutStem& stem,
                                       const std::string& title, const Use& use);

@@ -7,8 +7,8 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// The transforms of a LUT file that OpenColorIO reads, one after the other, with nothing taken
-/// from the file before it has been looked through.
+/// The transforms of a LUT file that OpenColorIO reads, one after the other, after the file has
+/// been validated.
 /// @param contents  gets the bytes of the file
 /// @throws FileError  as LutFile does
 [[nodiscard]] OCIO::ConstGroupTransformRcPtr lut_transforms(const std::string& path,

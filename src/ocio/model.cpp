@@ -27,14 +27,13 @@ constexpr const char* kFilmSpace = "Cineon";
 struct StandardView {
     const char* id;
     const char* look = "";
-    /// The tables of the HDR forms are larger than all others together.
+    /// The tables of the HDR variants are larger than all others together.
     bool is_sdr_only = false;
 };
 
-/// The views that the config has when nobody asks for others. The first is what applications start
-/// with: what artists know by the name of AgX, from Blender, where nothing clips and lights of all
-/// colors fade to white. Then the two standards, a rendering that leaves colors of products alone,
-/// and the curves that games and engines are known for.
+/// Default views of the config. The first one is the default view of applications: Blender's AgX,
+/// which artists know. It does not clip, and highlights of all colors fade to white. Then the two
+/// standards, a view that keeps the colors of products, and well-known curves of games and engines.
 constexpr std::array<StandardView, 12> kStandardViews = {{
     {"agx_blender"},
     {"agx_blender", "punchy"},
@@ -50,7 +49,7 @@ constexpr std::array<StandardView, 12> kStandardViews = {{
     {"false_color"},
 }};
 
-/// What OpenColorIO 2.0 has built-in transforms for; names and aliases as in the ACES configs.
+/// Spaces with built-in transforms in OpenColorIO 2.0; names and aliases as in the ACES configs.
 struct BuiltinSpace {
     const char* name;
     std::vector<std::string> aliases;
@@ -150,7 +149,7 @@ const std::vector<BuiltinSpace>& builtin_spaces() {
     return spaces;
 }
 
-/// Logs that OpenColorIO 2.0 has no built-in transform for.
+/// Log spaces without a built-in transform in OpenColorIO 2.0.
 struct LogSpace {
     const char* name;
     std::vector<std::string> aliases;
@@ -219,7 +218,7 @@ const std::vector<LogSpace>& log_spaces() {
          "DaVinci Intermediate, DaVinci Wide Gamut.",
          &kDaVinciWideGamut,
          davinci_intermediate()},
-        // OpenImageIO says KodakLog of a DPX that calls itself logarithmic, and of every Cineon.
+        // OpenImageIO reports KodakLog for a DPX tagged as logarithmic, and for every Cineon file.
         {kFilmSpace,
          {"cineon_film", "KodakLog", "Cineon Log"},
          "Input/Film",
@@ -231,7 +230,7 @@ const std::vector<LogSpace>& log_spaces() {
     return spaces;
 }
 
-/// Pictures and textures in the code values of a display's curve, for other primaries too.
+/// Pictures and textures in the code values of a display's curve, also for other primaries.
 struct TextureSpace {
     const char* name;
     std::vector<std::string> aliases;
@@ -276,14 +275,14 @@ const std::vector<TextureSpace>& texture_spaces() {
     return spaces;
 }
 
-/// Of the spaces that we have: Color Interop Forum, "Color Space Encodings for Texture Assets and
+/// Ids of the supported spaces: Color Interop Forum, "Color Space Encodings for Texture Assets and
 /// CG Rendering", 2025, and its ids of displays.
 constexpr std::array<std::string_view, 12> kForumIds = {
     "lin_ap0_scene",      "lin_ap1_scene",       "lin_rec709_scene",    "lin_rec2020_scene",
     "lin_p3d65_scene",    "srgb_rec709_display", "srgb_p3d65_display",  "g24_rec709_display",
     "g22_rec709_display", "pq_rec2020_display",  "hlg_rec2020_display", "pq_p3d65_display"};
 
-/// Of a linear space or a display: the one of its names that the forum has.
+/// Id of a linear space or a display: its name in the forum's list.
 template <class Item>
 std::string interop_id(const Item& item) {
     for (const std::string& alias : item.aliases) {
@@ -340,7 +339,7 @@ std::vector<std::pair<std::string, std::string>> role_table(const std::string& w
     };
 }
 
-/// What hosts choke on: Blender cuts names at 63 bytes, OCIO looks names up without case.
+/// Checks limits of applications: Blender cuts names at 63 bytes, OCIO ignores the case of names.
 void check_names(const ConfigModel& model) {
     std::map<std::string, std::string> taken;
     for (const auto& [role, space] : model.roles)
@@ -378,12 +377,12 @@ void check_names(const ConfigModel& model) {
     }
 }
 
-/// Words that a picture's name says its space with. Each is spelled as its maker spells it, with a
-/// space wherever people write nothing, a space, a dot, a dash or an underscore.
+/// Words in file names that identify a color space, in the spelling of its maker. A space stands
+/// for nothing, a space, a dot, a dash or an underscore.
 struct NamedSpace {
     std::string space;
     std::vector<std::string> words;
-    /// Floats are seldom in the code values of a display, and the word means their primaries.
+    /// Float files rarely hold code values of a display; the word then means their primaries.
     bool is_never_exr = false;
 };
 
@@ -398,7 +397,8 @@ std::vector<NamedSpace> named_spaces() {
         {linear("lin_rec2020"), {"Lin Rec 2020", "Linear Rec 2020"}},
         {linear("lin_p3d65"), {"Lin P3 D65", "Linear P3 D65", "Lin Display P3"}},
         {linear("lin_egamut"), {"Lin E Gamut", "Linear E Gamut"}},
-        // Substance Painter, Maya and others write a space's whole name into a texture's.
+        // Substance Painter, Maya and others write the whole name of the space into the file name
+        // of a texture.
         {kTextureSpace, {"sRGB", "sRGB Tx", "sRGB Texture"}},
         {"sRGB Encoded AP1 - Texture", {"sRGB Encoded AP1", "sRGB AP1"}},
         {"sRGB Encoded P3-D65 - Texture", {"sRGB Encoded P3 D65", "sRGB P3 D65", "Display P3"}},
@@ -441,7 +441,7 @@ std::string uppercase(std::string text) {
 }
 
 /// A word as a regular expression: every part in lower case, in capitals and as it is spelled.
-/// OpenColorIO's expressions know no flag for case.
+/// OpenColorIO's expressions have no flag to ignore case.
 std::string pattern_of(const std::string& word) {
     std::string pattern;
     for (std::size_t begin = 0; begin <= word.size();) {
@@ -459,14 +459,15 @@ std::string pattern_of(const std::string& word) {
     return pattern;
 }
 
-/// Between separators in the last part of a path, so that a folder "raw" means nothing. Without
-/// sets of characters: OpenColorIO compiles every expression for every file, and sets take longest.
+/// Matches between separators in the last part of a path, so that a folder "raw" has no effect.
+/// Avoids character sets: OpenColorIO compiles every expression for every file, and sets are
+/// slowest.
 std::string name_pattern(const std::string& words, bool is_never_exr) {
     return fmt::format(R"({}(?:.*(?:/|\\|_|\.|-| |\())?(?:{})(?:(?:_|\.|-| |\))(?!.*(?:/|\\)).*)?)",
                        is_never_exr ? R"((?!.*\.(?:exr|EXR)$))" : "", words);
 }
 
-/// Longer words come first: "slog3_sgamut3cine" is no S-Gamut3 although that is in it.
+/// Longer words come first: "slog3_sgamut3cine" must not match S-Gamut3.
 std::vector<ConfigModel::FileRule> rules_by_word() {
     struct Word {
         std::string text;
@@ -487,7 +488,7 @@ std::vector<ConfigModel::FileRule> rules_by_word() {
     std::vector<ConfigModel::FileRule> rules;
     std::map<std::string, int> counts;
     for (auto word = words.begin(); word != words.end();) {
-        // Words of one space that follow each other are one rule.
+        // Consecutive words of one space form one rule.
         const auto end = std::find_if(
             word, words.end(), [&](const Word& other) { return other.named != word->named; });
         std::vector<std::string> patterns;
@@ -527,7 +528,7 @@ std::vector<ConfigModel::FileRule> make_file_rules(const std::string& working) {
     for (const char* extension : {"png", "jpg", "jpeg", "tif", "tiff", "tga", "bmp", "gif", "webp",
                                   "psd", "heic", "heif", "jxl", "avif", "jp2", "j2k", "tx"})
         rules.push_back({extension, kTextureSpace, extension, ""});
-    // What a film scanner or a log recorder wrote; a DPX in other codes says so in its name.
+    // Files of film scanners and log recorders; other DPX files state their space in the name.
     for (const char* extension : {"dpx", "cin"})
         rules.push_back({extension, kFilmSpace, extension, ""});
     for (const char* extension : {"mov", "mp4", "mxf", "mkv", "avi"})
@@ -542,7 +543,7 @@ bool same_stage(const Stage& a, const Stage& b) {
     return same(x[0], y[0]) && same(x[1], y[1]) && same(x[2], y[2]);
 }
 
-/// The stages that a look puts before the operator's own; empty where it changes the operator.
+/// Stages of a look before those of the operator; empty if the look changes the operator itself.
 Pipeline scene_look(const Operator& op, const Look& look) {
     const Pipeline with = resolve(op, nullptr, {}, look.id).build();
     const Pipeline without = resolve(op, nullptr, {}, "").build();
@@ -708,8 +709,8 @@ ConfigModel make_config_model(const ConfigOptions& options) {
     ConfigModel model;
     model.name = kConfigName;
     model.description =
-        "Tone mapping operators of the field as OpenColorIO views, each measured against a "
-        "double-precision reference. Generated by Tonewright; do not edit.";
+        "Tone mapping operators as OpenColorIO views, each measured against a double-precision "
+        "reference. Generated by Tonewright; do not edit.";
 
     for (const InputSpace& space : all_input_spaces()) {
         if (space.is_camera) continue;
@@ -758,9 +759,9 @@ ConfigModel make_config_model(const ConfigOptions& options) {
                                 space.name,
                                 space.aliases,
                                 "Utility/Texture",
-                                "Pictures and textures of " + std::string(space.primaries->name) +
+                                "Pictures and textures with " + std::string(space.primaries->name) +
                                     " primaries in the code values of " + display.source +
-                                    ", read as scene light.",
+                                    ", decoded to scene-linear.",
                                 "sdr-video",
                                 {"file-io", "texture"},
                                 space.primaries,
@@ -772,7 +773,7 @@ ConfigModel make_config_model(const ConfigOptions& options) {
                             kDataSpace,
                             {"Utility - Raw", "Generic Data", "Non-Colour Data", "Raw"},
                             "Utility",
-                            "Data that is not colour (normals, depth, masks): never converted.",
+                            "Data that is not color (normals, depth, masks): never converted.",
                             "data",
                             {"file-io"},
                             nullptr,
@@ -783,14 +784,15 @@ ConfigModel make_config_model(const ConfigOptions& options) {
                             "CIE-XYZ-D65",
                             {"cie_xyz_d65_display"},
                             "Display",
-                            "The display reference: CIE XYZ, D65, Y = 1 is display white.",
+                            "Display reference: CIE XYZ, D65, Y = 1 is display white.",
                             "display-linear",
                             {"file-io"},
                             nullptr,
                             nullptr,
                             "",
                             "ocio:lin_ciexyzd65_display"});
-    // All of them, whichever displays are chosen: pictures come in their code values.
+    // Adds all display spaces, whatever displays are chosen, because pictures may be in their code
+    // values.
     for (const Display& display : all_displays()) {
         std::vector<std::string> aliases = {display.title + kDisplaySuffix};
         aliases.insert(aliases.end(), display.aliases.begin(), display.aliases.end());
@@ -800,8 +802,8 @@ ConfigModel make_config_model(const ConfigOptions& options) {
              aliases,
              "Display",
              display.source + (display.is_hdr ? "."
-                                              : ". Light above white is not limited here (pure "
-                                                "powers: up to 2); views are."),
+                                              : ". Values above white are not limited (pure "
+                                                "powers: up to 2); views limit them."),
              display.is_hdr ? "hdr-video" : "sdr-video",
              {"file-io"},
              &display.primaries,
@@ -819,7 +821,7 @@ ConfigModel make_config_model(const ConfigOptions& options) {
     model.views = choose_views(options);
     for (auto& view : model.views) {
         if (const std::string constants = stand_ins(view.op); !constants.empty())
-            view.description += " Measures no picture here: takes " + constants + ".";
+            view.description += " Cannot measure pictures here: uses " + constants + ".";
     }
     model.looks = choose_looks(options, model.views);
     model.default_space = find_input_space(options.working).title;

@@ -11,30 +11,29 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// Everything that the config says, once, before any of it becomes an OCIO object: all profiles are
-/// written from this.
+/// Contents of the config, independent of OCIO objects. All profiles are written from this model.
 struct ConfigModel {
     enum class SpaceKind : unsigned char {
         scene_linear,
-        /// What OCIO has a BuiltinTransform to ACES2065-1 for: logs of cameras and of ACES.
+        /// Camera and ACES log spaces with a BuiltinTransform to ACES2065-1 in OCIO.
         builtin,
-        /// A log that OpenColorIO 2.0 has no BuiltinTransform for.
+        /// A log space without a BuiltinTransform in OpenColorIO 2.0.
         log,
-        /// Pictures and textures in a display's code values, read as scene light.
+        /// Pictures and textures in a display's code values, decoded to scene-linear.
         texture,
         data,
         display_reference,
         display
     };
-    /// Light is (base^((code - log_offset) / log_slope) - linear_offset) / linear_slope: the
-    /// numbers of OpenColorIO's LogAffineTransform.
+    /// Scene-linear is (base^((code - log_offset) / log_slope) - linear_offset) / linear_slope:
+    /// parameters of OpenColorIO's LogAffineTransform.
     struct LogCurve {
         double base = 2;
         double log_slope = 1;
         double log_offset = 0;
         double linear_slope = 1;
         double linear_offset = 0;
-        /// Below this light the curve goes on as a straight line.
+        /// Below this value the curve continues as a straight line.
         std::optional<double> linear_break = {};
     };
     struct Space {
@@ -48,8 +47,8 @@ struct ConfigModel {
         const Primaries* primaries = nullptr;  // linear spaces, logs, textures and displays
         const Display* display = nullptr;  // displays, and the display whose curve a texture has
         std::string style = {};            // of a builtin
-        /// Of the Color Interop Forum, "ocio:" before it where OpenColorIO's configs have one that
-        /// the forum does not; empty: neither has. An alias as well, for libraries before 2.5.
+        /// Id of the Color Interop Forum, or with the prefix "ocio:" an id that only OpenColorIO's
+        /// configs have; empty if neither has one. Also an alias, for libraries before 2.5.
         std::string interop_id = {};
         LogCurve curve = {};  // of a log
     };
@@ -64,16 +63,16 @@ struct ConfigModel {
             return !(is_sdr_only && display.is_hdr);
         }
     };
-    /// What is done to a scene before a view of the operator, and is the same as the operator with
-    /// that look: then hosts that know looks can combine it with the view.
+    /// Transform of the scene before a view of the operator, equal to the operator with that look.
+    /// Applications that support looks can combine it with the view.
     struct Look {
         std::string name;  // "AgX - Punchy": Blender shows it for the view AgX
         Pipeline stages;   // in the operator's working space
         const Operator* op = nullptr;
         std::string description;
     };
-    /// Names of pictures -> space; the first that matches counts. Longer words come first, and
-    /// words before extensions.
+    /// File names of pictures -> space; the first match counts. Longer words come first, and words
+    /// before extensions.
     struct FileRule {
         std::string name;
         std::string space;
@@ -93,15 +92,15 @@ struct ConfigModel {
     std::string default_space;
 };
 
-/// @throws Error  for unknown views, looks and displays, and for names that hosts cannot take: over
-///                63 bytes, twice the same, an alias that is a role.
+/// @throws Error  for unknown views, looks and displays, and for names that applications cannot
+///                use: over 63 bytes, duplicates, an alias that is a role.
 [[nodiscard]] TONEWRIGHT_API ConfigModel make_config_model(const ConfigOptions& options = {});
 
 inline constexpr const char* kDataSpace = "Non-Color";
 inline constexpr const char* kUntonemappedView = "Un-tone-mapped";
 inline constexpr const char* kRawView = "Raw";
-/// Display colour spaces have the display's name, as Blender looks for them, and with this behind
-/// it, as the ACES configs have them, for an alias.
+/// Display color spaces have the display's name, which Blender looks for. With this suffix, as in
+/// the ACES configs, it is an alias.
 inline constexpr const char* kDisplaySuffix = " - Display";
 
 TONEWRIGHT_NAMESPACE_END

@@ -24,14 +24,14 @@ inline constexpr const char* kBuiltinPrefix = "ACES-OUTPUT - ACES2065-1_to_CIE-X
 /// The style of the built-in transform that the operator with its parameters equals; empty: none.
 [[nodiscard]] TONEWRIGHT_API std::string builtin_style(const ResolvedOperator& op);
 
-/// Where Blender's view of the same name makes another picture on purpose: a sentence for
-/// descriptions, with a space before it; empty: it does not.
+/// Sentence for descriptions, with a leading space, if Blender's view of the same name
+/// intentionally differs; otherwise empty.
 [[nodiscard]] std::string blender_difference(const ResolvedOperator& op);
 
 /// Ids of the operators whose 3D LUTs are fitted, because they bend in many directions.
 [[nodiscard]] TONEWRIGHT_API const std::vector<std::string_view>& fitted_operators();
 
-/// How the operator's views are lowered.
+/// Options for lowering the operator's views.
 [[nodiscard]] TONEWRIGHT_API LowerOptions lower_options(const Operator& op);
 
 TONEWRIGHT_NAMESPACE_END

@@ -10,17 +10,16 @@ namespace OCIO = OCIO_NAMESPACE;
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// OpenColorIO 2.1's own copy forgets which view transform is the default, and with it what becomes
-/// of scene light that is converted to a display.
+/// OpenColorIO 2.1's own copy loses the default view transform, and with it the conversion from
+/// scene-linear to a display.
 [[nodiscard]] OCIO::ConfigRcPtr editable_copy(const OCIO::Config& config);
 
-/// Without a cache of processors: its keys ignore what is in tables.
-/// @throws FileError  for a file that is missing or no config, with OpenColorIO's reason; for one
-/// with
-///                    thousands of spaces or views; and what check_references() throws
+/// Disables the processor cache, because its keys ignore the contents of tables.
+/// @throws FileError  if the file is missing or no config, with OpenColorIO's reason; if it has
+///                    thousands of spaces or views; and as check_references() throws
 [[nodiscard]] OCIO::ConfigRcPtr read_config(const std::string& path);
 
-/// The same of a text, for a config that would be at the path.
+/// The same for a text, as a config at this path.
 [[nodiscard]] OCIO::ConfigRcPtr read_config(const std::string& path, const std::string& text);
 
 /// The text of a config. @throws FileError

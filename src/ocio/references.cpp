@@ -14,11 +14,11 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// Each level of a reference is several calls in OpenColorIO; real configs have five.
+/// Each level of a reference is several nested calls in OpenColorIO; real configs have five.
 constexpr std::size_t kDeepest = 100;
 
-/// Walks as OpenColorIO does when it collects the variables of a processor: through all transforms
-/// of a space, a look or a view, whichever of them the processor needs.
+/// Walks like OpenColorIO when it collects the variables of a processor: through all transforms of
+/// a space, look or view, needed or not.
 class ReferenceWalk {
   public:
     ReferenceWalk(const OCIO::Config& config, const std::string& path)
@@ -41,7 +41,7 @@ class ReferenceWalk {
     }
 
   private:
-    /// @param key    what is visited once
+    /// @param key    key that is visited once
     /// @param title  for the message
     template <class Children>
     void visit(const std::string& key, const std::string& title, const Children& children) {

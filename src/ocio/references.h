@@ -14,15 +14,14 @@ namespace OCIO = OCIO_NAMESPACE;
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// All color spaces of a config by their names and aliases: OpenColorIO compares a name with all
-/// others, one by one.
+/// All color spaces of a config by their names and aliases: OpenColorIO's lookup is linear.
 class TONEWRIGHT_API SpaceIndex {
   public:
     explicit SpaceIndex(const OCIO::Config& config);
 
     /// In the config's order, inactive ones included.
     [[nodiscard]] const std::vector<OCIO::ConstColorSpaceRcPtr>& all() const { return all_; }
-    /// By name, alias or role, whatever the case of letters; null: there is none.
+    /// By name, alias or role, ignoring case; null if there is none.
     [[nodiscard]] OCIO::ConstColorSpaceRcPtr find(std::string_view name) const;
 
   private:
@@ -35,8 +34,8 @@ TONEWRIGHT_API void for_each_transform(
     const OCIO::ConstTransformRcPtr& transform,
     const std::function<void(const OCIO::ConstTransformRcPtr&)>& visit);
 
-/// What OpenColorIO cannot survive in a config: color spaces, looks and views that lead back to
-/// themselves or through too many others, and LUTs that are pipes or devices.
+/// Refuses contents that crash or hang OpenColorIO: color spaces, looks and views with cyclic or
+/// very deep references, and LUTs that are pipes or devices.
 /// @param path  for messages
 /// @throws FileError
 void check_references(const OCIO::Config& config, const std::string& path);

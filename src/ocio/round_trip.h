@@ -12,22 +12,21 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// An error of a code value, or of its light in units in which sRGB's slope at black turns it into
-/// code values, whichever is less: a display with a pure power has an infinite slope there, where
-/// light too faint to see is many code values.
+/// Error of a code value, or of its display-linear value times sRGB's slope at black, whichever is
+/// less. A display with a pure power has an infinite slope at black, where invisible differences
+/// are many code values.
 [[nodiscard]] double visible_error(double code, double light);
 
-/// How far code values that a view makes are from themselves after an inverse and the view once
-/// more, by the reference.
+/// Measures the round trip: an inverse of a view's code values, then the view by the reference.
 class RoundTrip {
   public:
-    /// @param samples  scene light; what has negative channels is left out
-    /// @param one_of  so many of them, one is taken
+    /// @param samples  scene-linear; colors with negative channels are left out
+    /// @param one_of  uses every one_of-th sample
     RoundTrip(const View& view, const SampleSet& samples, std::size_t one_of = 1);
     /// @param codes  that the view makes
     RoundTrip(const View& view, std::vector<float> codes);
 
-    /// Code values -> scene light in the view's input space, of so many pixels.
+    /// Code values -> scene-linear in the view's input space, for a number of pixels.
     using Inverse = std::function<void(const float* in, float* out, std::size_t count)>;
     struct Result {
         ErrorStats errors;
@@ -36,7 +35,7 @@ class RoundTrip {
     [[nodiscard]] Result measure(const Inverse& back) const;
 
   private:
-    /// A plane for each channel, as the next.
+    /// One plane per channel, as below.
     using Planes = std::array<std::vector<double>, 3>;
     [[nodiscard]] Planes show(const std::vector<float>& scene) const;
     [[nodiscard]] Planes light_of(Planes codes) const;

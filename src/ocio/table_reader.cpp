@@ -70,7 +70,7 @@ class Converter {
             static_cast<int>(transform->getTransformType())));
     }
 
-    /// Three numbers, as OpenColorIO takes them.
+    /// Three numbers as OpenColorIO parses them.
     struct Numbers {
         double v[3];
         [[nodiscard]] Vector3 array() const { return {v[0], v[1], v[2]}; }
@@ -188,7 +188,7 @@ class Converter {
                  const Vector3& log_offset, const Vector3& lin_slope, const Vector3& lin_offset) {
         const bool is_inverse = log.getDirection() == OCIO::TRANSFORM_DIR_INVERSE;
         const Expr x = Expr::input();
-        // What OpenColorIO takes the logarithm of at least.
+        // Lower limit of OpenColorIO's logarithm.
         constexpr auto kLeast = static_cast<double>(std::numeric_limits<float>::min());
         std::array<Expr, 3> f = {x, x, x};
         for (std::size_t c = 0; c < 3; ++c) {
@@ -217,7 +217,7 @@ class Converter {
         std::array<Expr, 3> f = {x, x, x};
         for (std::size_t c = 0; c < 3; ++c) {
             const Expr y = x * slope.v[c] + offset.v[c];
-            // Without a clamp what is negative has no power.
+            // Without a clamp, powers of negatives are undefined.
             f[c] = has_clamp ? pow(clamp(y, 0, 1), power.v[c])
                              : select(less(y, 0), y, pow(max(y, 0), power.v[c]));
         }

@@ -20,8 +20,8 @@ OCIO::TransformRcPtr make(const MatrixOp& op) {
 
 OCIO::TransformRcPtr make(const RangeOp& op) {
     const OCIO::RangeTransformRcPtr t = OCIO::RangeTransform::Create();
-    // OCIO 2.1 writes whole numbers with a point behind them, "1e+18." too, which is no GLSL.
-    // Tables over half floats hold at 65504 in any case.
+    // OCIO 2.1 appends a point to whole numbers, also to "1e+18.", which is invalid GLSL.
+    // Half-float tables are constant above 65504 in any case.
     constexpr double largest = 1e15;
     if (op.lo > -largest) {
         t->setMinInValue(op.lo);

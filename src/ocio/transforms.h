@@ -17,8 +17,8 @@ namespace OCIO = OCIO_NAMESPACE;
 /// Appends the transforms of the operations.
 void append(OCIO::GroupTransformRcPtr& group, const LoweredOps& ops);
 
-/// A processor from a config without caches: OCIO's processor cache tells in-memory LUTs apart by
-/// size alone.
+/// A processor from a config without caches: OCIO's processor cache distinguishes in-memory LUTs
+/// only by size.
 [[nodiscard]] TONEWRIGHT_API OCIO::ConstProcessorRcPtr make_processor(
     const OCIO::ConstTransformRcPtr& transform);
 [[nodiscard]] TONEWRIGHT_API OCIO::ConstProcessorRcPtr make_processor(const LoweredOps& ops);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::string_view kBlanks = " \t\r\n";
 
-/// The caller adds the file's name, as to what yaml-cpp throws.
+/// The caller adds the file name, as for exceptions of yaml-cpp.
 [[noreturn]] void fail() {
     throw YAML::RepresentationException(
         YAML::Mark::null_mark(),
@@ -39,12 +39,12 @@ YAML::Node with_flow(const YAML::Node& node) {
     return copy;
 }
 
-/// One item as a list on one line has it. Texts of several lines are quoted.
+/// One item of a list on one line. Quotes texts with several lines.
 std::string flow_text(const YAML::Node& item) {
     YAML::Emitter out;
     out.SetSeqFormat(YAML::Flow);
     out.SetMapFormat(YAML::Flow);
-    // The emitter breaks lines only where a list is not inside of another.
+    // The emitter breaks lines only in lists that are not nested.
     out << YAML::Flow << YAML::BeginSeq;
     emit_as_config(out, with_flow(item));
     out << YAML::EndSeq;
@@ -54,7 +54,7 @@ std::string flow_text(const YAML::Node& item) {
     return text;
 }
 
-/// One item of a block sequence, without a line end behind it.
+/// One item of a block sequence, without a line end.
 std::vector<std::string> block_lines(const YAML::Node& item) {
     YAML::Emitter out;
     out << YAML::BeginSeq;
@@ -98,7 +98,7 @@ void emit_as_config(YAML::Emitter& out, const YAML::Node& node) {
 }
 
 namespace {
-/// Of UTF-8, which Windows editors write; positions are counted behind it.
+/// Byte order mark of UTF-8, which Windows editors write; positions start after it.
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 }  // namespace
 
@@ -113,8 +113,8 @@ std::size_t YamlText::end_of_line(std::size_t at) const {
     return end > at && end < text_.size() && text_[end - 1] == '\r' ? end - 1 : end;
 }
 
-/// Of the last line that is deeper than the column, comments included. What is deeper belongs to
-/// the last item, or stands behind it.
+/// End of the last line that is indented deeper than the column, including comments. Deeper lines
+/// belong to the last item or follow it.
 std::size_t YamlText::end_of_block(std::size_t last_item, std::size_t column) const {
     std::size_t end = end_of_line(last_item);
     for (std::size_t at = text_.find('\n', last_item);
@@ -185,7 +185,7 @@ void YamlText::add_text(const std::string& key, const std::string& value) {
     append_to_document(line_end_ + line_end_ + margin + text);
 }
 
-/// Before the end of the document, where one is marked.
+/// Position before the end marker of the document, if there is one.
 void YamlText::append_to_document(std::string lines) {
     std::size_t end = text_.size();
     for (const std::string_view mark : {"\n...", "\n---"}) {
@@ -196,10 +196,10 @@ void YamlText::append_to_document(std::string lines) {
     behind_.push_back({last == std::string::npos ? 0 : last + 1, std::move(lines)});
 }
 
-/// Before the bracket that closes it, and before a comment that stands there.
+/// Position before the closing bracket, and before a comment there.
 void YamlText::append_to_flow(const YAML::Node& collection, const std::string& items) {
     std::size_t at = position(collection);
-    // Behind its tag and its anchor.
+    // Position after its tag and its anchor.
     while (at < text_.size() && text_[at] != '[' && text_[at] != '{') {
         at = text_.find_first_of(kBlanks, at);
         at = at == std::string::npos ? text_.size() : text_.find_first_not_of(kBlanks, at);
@@ -220,7 +220,7 @@ void YamlText::append_to_flow(const YAML::Node& collection, const std::string& i
         if ((c == '"' || c == '\'') && begins) {
             for (++at; at < text_.size() && text_[at] != c; ++at)
                 at += c == '"' && text_[at] == '\\' ? 1 : 0;
-            // A doubled quote is one: the text goes on.
+            // A doubled quote is an escaped quote: the text continues.
             while (c == '\'' && text_.compare(at, 2, "''") == 0)
                 at = std::min(text_.find('\'', at + 2), text_.size());
         } else if (c == '[' || c == '{') {
@@ -253,7 +253,7 @@ void YamlText::append_text(const YAML::Node& scalar, std::string_view more) {
 }
 
 std::vector<YamlText::Insertion> YamlText::insertions() const {
-    // The last list of the document may end where the document does: its items come first.
+    // The last list may end at the end of the document: its items come first.
     std::vector<Insertion> sorted = insertions_;
     sorted.insert(sorted.end(), behind_.begin(), behind_.end());
     for (Insertion& insertion : sorted)

@@ -11,12 +11,11 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// As OpenColorIO writes its configs: its tags, lists and short maps on one line, long texts as
-/// blocks.
+/// Writes YAML like OpenColorIO: tags, lists and short maps on one line, long texts as blocks.
 void emit_as_config(YAML::Emitter& out, const YAML::Node& node);
 
-/// A YAML text that gets more items and stays byte for byte what it is otherwise: comments, order,
-/// line ends, styles and quotes. Block and flow styles alike.
+/// A YAML text to which items are added. All other bytes stay the same: comments, order, line ends,
+/// styles and quotes. Supports block and flow styles.
 class TONEWRIGHT_API YamlText {
   public:
     struct Insertion {
@@ -29,13 +28,13 @@ class TONEWRIGHT_API YamlText {
 
     [[nodiscard]] const YAML::Node& root() const { return root_; }
 
-    /// Behind the last item of a sequence of the text.
-    /// @throws YAML::Exception  for one that cannot be found
+    /// Inserts after the last item of a sequence of the text.
+    /// @throws YAML::Exception  if the sequence is not found
     void append(const YAML::Node& sequence, const std::vector<YAML::Node>& items);
-    /// A new key of the whole, behind the others.
+    /// Adds a new top-level key after the others.
     void add(const std::string& key, const std::vector<YAML::Node>& items);
     void add_text(const std::string& key, const std::string& value);
-    /// Behind the last character of a text. @throws YAML::Exception  as append()
+    /// Inserts after the last character of a text. @throws YAML::Exception  as append()
     void append_text(const YAML::Node& scalar, std::string_view more);
 
     /// In the order of the text.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The output transforms of ACES 1.0 to 1.3: RRT and ODT for SDR, the single-stage ones for HDR, and
-// before them, if wanted, the reference gamut compression.
+// The output transforms of ACES 1.0 to 1.3: RRT and ODT for SDR, single-stage transforms for HDR,
+// and optionally the reference gamut compression before them.
 //
 // Source    Academy of Motion Picture Arts and Sciences, aces-dev 1.3 (CTL): RRT 1.0.3 with
 //           ACESlib.RRT_Common, ACESlib.Tonescales and ACESlib.ODT_Common; ODT.Academy.* of 48 and
@@ -11,26 +11,26 @@
 //           ACES_GAMUT_COMP_13.
 // In        scene-linear RGB, working primaries AP0 (ACES2065-1); domain (-inf, inf), limited to
 //           +-65504.
-// Out       SDR: display-linear RGB of the limiting primaries, 1.0 = white (48 cd/m2 in the cinema,
-//           100 else); [0, 1]; with limit=none of AP1 and up to 1.1. HDR: display-linear RGB of
-//           Rec.2020, 1.0 = 100 cd/m2. It is limited to [0, peak] in the limiting primaries, still
-//           under the ACES white, and then adapted to D65: that moves colours at the limit a little
-//           outside of the primaries, and blue to at most 1.09 times the peak, which OpenColorIO
-//           and the CTL show. So the output is of Rec.2020 for all limits.
+// Out       SDR: display-linear RGB of the limiting primaries, 1.0 = white (48 cd/m2 for the
+//           cinema, otherwise 100); [0, 1]. With limit=none: AP1, up to 1.1. HDR: display-linear
+//           RGB of Rec.2020, 1.0 = 100 cd/m2. The limiting primaries clip it to [0, peak] under the
+//           ACES white; then it is adapted to D65. The adaptation moves clipped colors slightly
+//           outside the primaries, and blue to at most 1.09 times the peak. OpenColorIO and the CTL
+//           show the same. The output is Rec.2020 for every limit.
 // Kind      3D (gamut compression, glow and red modifier), then matrix, curve, for video a scale by
-//           luminance (dim surround), matrix. Monotone on the neutral axis: SDR yes; HDR in the
-//           limiting primaries not in the last 5 % below the peak, where the red of greys, which
-//           has arrived at its limit, falls by up to 0.13 % while green and blue still rise.
-// Keeps     0 -> 0 (spline=ocio: 6e-12). In SDR greys up to 0.00199 are at black.
-// Differs   spline=ocio is OpenColorIO's built-in transform, spline=ctl the Academy's. The two
-//           differ in the saturation that the red modifier takes (after the glow, before it), in
-//           the CTL's limit of AP1 at 65504, in a floor of OpenColorIO's under the luminance of the
-//           dim surround, and in the curve: OpenColorIO's stands on knots of eight decimals, and
-//           the tops of three of its curves (RRT, 1000 and 108 cd/m2) are others: ocio_knots().
-//           limit=rec2020 of SDR and rec709 of HDR, and limits of the cinema that OpenColorIO has
-//           no transform for, are made like the others. Left out: the simulations of the D60 and
+//           luminance (dim surround), matrix. Monotone on the neutral axis: SDR yes; HDR not in the
+//           last 5 % below the peak, in the limiting primaries: red has reached its limit and falls
+//           by up to 0.13 % while green and blue still rise.
+// Keeps     0 -> 0 (spline=ocio: 6e-12). SDR shows grays up to 0.00199 as black.
+// Differs   spline=ocio is OpenColorIO's built-in transform, spline=ctl is the Academy's. They
+//           differ in four points: the saturation for the red modifier (after or before the glow);
+//           the CTL's limit of AP1 at 65504; OpenColorIO's floor under the luminance of the dim
+//           surround; and the curve. OpenColorIO's curve has knots with eight decimals, and the
+//           tops of three of its curves (RRT, 1000 and 108 cd/m2) differ: see ocio_knots().
+//           OpenColorIO has no transform for limit=rec2020 of SDR, rec709 of HDR and some limits of
+//           the cinema; these are built like the others. Left out: the simulations of the D60 and
 //           DCI whites.
-// Check     mid grey 0.18 -> 0.104063516219 (ocio), 0.104063518162 (ctl); output=hdr_1000: 0.15
+// Check     mid gray 0.18 -> 0.104063516219 (ocio), 0.104063518162 (ctl); output=hdr_1000: 0.15
 //           (check_values.json).
 #include <algorithm>
 #include <cmath>
@@ -42,7 +42,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// A form of the standard: what `output` chooses.
+/// A variant of the standard, chosen by `output`.
 struct Form {
     const char* id;
     bool is_hdr;
@@ -68,7 +68,7 @@ const Form& form_of(const Params& p) {
 }
 
 // ---------------------------------------------------------------------------------------------
-// Curves, of log10 to log10: quadratics between knots
+// Curves from log10 to log10: quadratics between knots
 
 struct Knot {
     double x, y, slope;
@@ -87,7 +87,7 @@ Knots bspline_knots(const std::array<double, N>& c, double begin, double end) {
     return knots;
 }
 
-/// The CTL's curves: below and above mid grey, where either has a knot.
+/// The CTL's curves, below and above mid gray. Both halves have a knot there.
 struct TwoSplines {
     Knots low, high;
 };
@@ -117,7 +117,7 @@ Quadratics quadratics(const TwoSplines& splines) {
     return pieces;
 }
 
-/// Flat below the first piece; the last one has no end.
+/// Constant below the first piece; the last piece is unbounded.
 Expr spline(const Quadratics& pieces, const Expr& x) {
     const Expr at = named("inside", max(x, pieces.front().x));
     const auto value = [&](const Quadratic& q) {
@@ -134,10 +134,10 @@ constexpr double kMidGrey = 0.18;
 constexpr double kMidLight = 4.8;  // cd/m2 of it
 constexpr double kMidSlope = 1.55;
 
-/// Of scene-linear 0.18, `stops` up.
+/// Scene value of `stops` above scene-linear 0.18.
 double log10_scene(double stops) { return std::log10(kMidGrey) + stops * std::log10(2.0); }
 
-/// ACESlib.Tonescales, segmented_spline_c5, without the last of each six coefficients, which no
+/// ACESlib.Tonescales, segmented_spline_c5, without the last of six coefficients each, which no
 /// interval uses.
 TwoSplines rrt_splines() {
     constexpr std::array low = {-4.0, -4.0, -3.1573765773, -0.4852499958, 1.8477324706};
@@ -177,7 +177,7 @@ TwoSplines ssts_splines(double peak, double mid_light) {
     const double mid = std::log10(kMidLight);
     constexpr double low_stops = -15;  // of 0.0001 cd/m2; 0.02 has -6.5
     const double high_stops = between(top, std::log10(48.0), 4, 6.5, 18);
-    // Half an interval up or down the slope at mid grey, of the outermost coefficients.
+    // The outermost coefficients lie half an interval away, along the slope at mid gray.
     const double half_low = kMidSlope * std::log10(2.0) * -low_stops / 6;
     const double half_high = kMidSlope * std::log10(2.0) * high_stops / 6;
     const std::array low = {bottom, bottom, std::lerp(bottom, mid, 0.18), mid - half_low,
@@ -197,7 +197,8 @@ TwoSplines ssts_splines(double peak, double mid_light) {
     return splines;
 }
 
-/// Two quadratics with the slopes of two knots where one would miss the second: where they meet.
+/// Position where two quadratics meet that have the slopes of two knots. One quadratic would miss
+/// the second knot.
 Knot knot_between(const Knot& a, const Knot& b) {
     const double width = b.x - a.x;
     const double mean = (b.y - a.y) / width;
@@ -212,8 +213,8 @@ Knot knot_between(const Knot& a, const Knot& b) {
 
 /// The knots as OpenColorIO prints them, with eight decimals.
 /// @param has_other_top  OpenColorIO limits slopes so that a curve stays monotone. In the flat last
-///                       interval of this curve a rounding to float makes it take 0.995 of the
-///                       slope at its begin, and divide the two intervals that meet there.
+///                       interval of this curve, rounding to float makes it use 0.995 of the slope
+///                       at the start of the interval, and split both intervals that meet there.
 Knots ocio_knots(const TwoSplines& splines, bool has_other_top) {
     Knots knots = splines.low;
     knots.insert(knots.end(), splines.high.begin() + 1, splines.high.end());
@@ -233,9 +234,9 @@ Knots ocio_knots(const TwoSplines& splines, bool has_other_top) {
 
 Expr power_of_10(const Expr& y) { return exp2(y * std::log2(10.0)); }
 
-/// Light of a channel of AP1 -> light between the black and the peak of the form, [0, 1].
+/// A channel of AP1 -> display-linear value between black and peak, [0, 1].
 Expr tone_curve(const Form& form, bool is_ocio) {
-    constexpr double half_min = 0x1p-24;  // below it all curves are flat
+    constexpr double half_min = 0x1p-24;  // below it all curves are constant
     const Expr x = named("log_scene", log2(max(Expr::input(), half_min)) * std::log10(2.0));
     const auto curve = [&](const TwoSplines& splines, bool has_other_top) {
         return is_ocio ? quadratics(ocio_knots(splines, has_other_top)) : quadratics(splines);
@@ -258,7 +259,7 @@ Expr tone_curve(const Form& form, bool is_ocio) {
 }
 
 // ---------------------------------------------------------------------------------------------
-// Behind it
+// After the curve
 
 /// Limited in the primaries under the ACES white, then adapted to D65, in units of 100 cd/m2.
 Pipeline hdr_light(const Primaries& limit, double peak) {
@@ -268,7 +269,7 @@ Pipeline hdr_light(const Primaries& limit, double peak) {
             MatrixStage{scale(multiply(inverse(rgb_to_xyz(kRec2020)), adapted), peak / 100)}};
 }
 
-/// From a dark to a dim surround: Y^0.9811 with the chromaticity kept.
+/// From a dark to a dim surround: Y^0.9811, same chromaticity.
 ToneScaleStage dim_surround(bool is_ocio) {
     const Expr x = Expr::input();
     constexpr double gamma = 0.9811;
@@ -318,60 +319,63 @@ std::vector<Operator> define_aces_13() {
     op.title = "ACES 1.3";
     op.view = "ACES 1.3";
     op.character =
-        "the film look of ACES 1: strong contrast, mid grey at 0.104; bright saturated colors turn "
-        "to yellow, cyan and magenta";
+        "film look of ACES 1: strong contrast, mid gray at 0.104; bright saturated colors shift to "
+        "yellow, cyan and magenta";
     op.source =
         "Academy of Motion Picture Arts and Sciences, aces-dev 1.3: RRT 1.0.3, ODT and RRTODT, "
         "LMT.Academy.ReferenceGamutCompress; OpenColorIO 2.1, built-in transforms ACES-OUTPUT";
     op.licence =
-        "Academy (free to use with its notice), BSD-3-Clause; formulas and constants, no code of "
-        "them is used";
+        "Academy (free to use with its notice), BSD-3-Clause; formulas and constants only; none of "
+        "their code is used";
     op.negatives =
-        "pass through glow and red modifier, in AP0, then clamped at 0 there and again in AP1; "
-        "gamut_compression=yes first brings in those of AP1";
+        "kept by the glow and the red modifier in AP0, then clamped at 0 there and again in AP1; "
+        "gamut_compression=yes first moves colors outside AP1 into it";
     op.dialects = "ACES";
     op.working = kAP0;
     // simd: AVX2 at 1000 cd/m2 for light of -25, 49, 38: 3.1e-5; AVX-512 keeps to 2e-5.
-    op.bounds = {.simd = 4e-5,
-                 .simd_goal = 8e-6,
-                 .ocio_cpu = 3e-5,
-                 .ocio_gpu = 6e-5,
-                 .cube = 2e-3,
-                 .reason =
-                     "simd: twice as fast as with 1e-6; hdr: light of 10, of which a float's unit "
-                     "is 1e-6; ctl: OpenColorIO's red "
-                     "modifier takes another saturation in the dark"};
+    op.bounds = {
+        .simd = 4e-5,
+        .simd_goal = 8e-6,
+        .ocio_cpu = 3e-5,
+        .ocio_gpu = 6e-5,
+        .cube = 2e-3,
+        .reason =
+            "simd: twice as fast as with 1e-6; hdr: output up to 10, where a float has steps of "
+            "1e-6; ctl: OpenColorIO's red modifier uses another saturation in dark colors"};
     ParameterSpec output = choice_parameter(
         "output", {"sdr_video", "sdr_cinema", "hdr_1000", "hdr_2000", "hdr_4000", "hdr_cinema"},
         "sdr_video",
-        "sdr: 1 is white, in a dim surround (video) or a dark one; hdr: 1 is 100 cd/m2, the number "
-        "the peak; hdr_cinema: of 108 cd/m2");
+        "sdr: 1 is display white, in a dim (video) or dark (cinema) surround; hdr: 1 is 100 cd/m2, "
+        "and the number is the peak (hdr_cinema: 108 cd/m2)");
     output = display_parameter(std::move(output), [](const DisplayFacts& display) -> std::string {
         if (!display.is_hdr) return "sdr_video";
         if (display.peak >= 4000) return "hdr_4000";
         return display.peak >= 2000 ? "hdr_2000" : "hdr_1000";
     });
     ParameterSpec limit = limit_parameter({"none", "rec709", "p3d65", "rec2020"}, "rec709");
-    limit.help +=
-        "; none, of an sdr output: the display limits them; Blender: p3d65 on Rec.2020 displays";
+    limit.help += "; none: no limit, sdr output only; Blender uses p3d65 on Rec.2020 displays";
     op.parameters = {
         output,
         limit,
-        choice_parameter("gamut_compression", {"no", "yes"}, "no",
-                         "the reference gamut compression of ACES 1.3 first, for colors outside "
-                         "AP1"),
-        choice_parameter("spline", {"ocio", "ctl"}, "ocio",
-                         "ocio: as OpenColorIO and its hosts show it; ctl: as the Academy's CTL"),
+        choice_parameter(
+            "gamut_compression", {"no", "yes"}, "no",
+            "apply the reference gamut compression of ACES 1.3 first, for colors outside AP1"),
+        choice_parameter(
+            "spline", {"ocio", "ctl"}, "ocio",
+            "ocio: the curve of OpenColorIO and its applications; ctl: the Academy's CTL"),
     };
     op.presets = {
-        {"sdr_cinema", "for a cinema: white 48 cd/m2, dark surround", {{"output", "sdr_cinema"}}},
-        {"hdr_1000", "for an HDR display of 1000 cd/m2", {{"output", "hdr_1000"}}},
-        {"ctl", "the curve of the Academy's CTL", {{"spline", "ctl"}}},
+        {"sdr_cinema",
+         "cinema projector: white at 48 cd/m2, dark surround",
+         {{"output", "sdr_cinema"}}},
+        {"hdr_1000", "HDR display of 1000 cd/m2", {{"output", "hdr_1000"}}},
+        {"ctl", "tone curve of the Academy's CTL", {{"spline", "ctl"}}},
         {"gamut_compressed",
-         "with the reference gamut compression before it",
+         "reference gamut compression before the transform",
          {{"gamut_compression", "yes"}}},
     };
-    op.warnings = {"of hdr outputs greys near the peak are a little blue: red is limited first"};
+    op.warnings = {
+        "hdr outputs tint grays near the peak slightly blue, because red reaches its limit first"};
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, 10, "hdr_1000"},
                      {DocumentedDifference::Kind::crushes_black, 0.00199, "ctl"}};
     op.build = build;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// ACES 2.0: the Academy's output transform, for any peak and any primaries of a display.
+// ACES 2.0: the Academy's output transform, for displays with any peak and any primaries.
 //
 // Source    Academy of Motion Picture Arts and Sciences, ACES 2: aces-core, Lib.Academy.Tonescale
 //           and Lib.Academy.OutputTransform; as OpenColorIO 2.4.2 and later have it,
@@ -9,21 +9,21 @@
 //           Hellwig and Fairchild, "Brightness, lightness, colorfulness, and chroma in CIECAM02 and
 //           CAM16", Color Research and Application 47, 2022.
 // In        scene-linear RGB, working primaries AP1 (ACEScg); domain [0, 8r], r = 128 + 768
-//           log100(peak/100): outside, the ends of it (the standard's own clamp). The standard's
-//           input is ACES2065-1, which it converts to AP1 for the clamp.
+//           log100(peak/100). The standard clamps to this domain. Its input is ACES2065-1, which it
+//           converts to AP1 for the clamp.
 // Out       display-linear RGB in the limiting primaries, 1.0 = 100 cd/m2; [0, peak/100].
-// Kind      3D. The color's J, M, h (lightness, colorfulness, hue) of the model; a tone scale on J;
-//           chroma compressed with J, within what AP1 reaches; colors outside the display's hull
-//           moved along lines towards an anchor on the J axis; back to RGB. Monotone on the neutral
-//           axis: yes; invertible where nothing is clamped.
-// Keeps     0 -> 0, r -> peak/100; hue h; greys have R = G = B in the limiting primaries.
-// Differs   nowhere, down to the tables: 360 entries and the coarse tolerances of their searches
-//           are part of what a picture looks like. h itself is only needed to look up tables: the
-//           sines and cosines of its multiples are polynomials of a/M and b/M, and powers that meet
-//           their own inverse are left out, which is equal but for rounding. J and M are in units
-//           of the peak's J. Left out: the variants with a D60 white inside D65 primaries and for
-//           cinemas, which only scale or convert the output.
-// Check     AP0 mid grey 0.18 -> 0.09999932511 (100 cd/m2), AP0 (4, 0.5, 0.1) -> (1, 0.2329307895,
+// Kind      3D. Converts the color to J, M, h (lightness, colorfulness, hue) of the model; applies
+//           a tone scale to J; compresses chroma with J, within the reach of AP1; moves colors
+//           outside the display's hull along lines towards an anchor on the J axis; converts to
+//           RGB. Monotone on the neutral axis: yes; invertible where nothing is clamped.
+// Keeps     0 -> 0, r -> peak/100; hue h; grays have R = G = B in the limiting primaries.
+// Differs   nowhere, not even in the tables: their 360 entries and the coarse tolerances of their
+//           searches are visible in pictures. h itself is only needed for table lookups: the sines
+//           and cosines of its multiples are polynomials of a/M and b/M. Powers that meet their own
+//           inverse are left out, which only changes rounding. J and M are in units of the peak's
+//           J. Left out: the variants with a D60 white inside D65 primaries and for cinemas, which
+//           only scale or convert the output.
+// Check     AP0 mid gray 0.18 -> 0.09999932511 (100 cd/m2), AP0 (4, 0.5, 0.1) -> (1, 0.2329307895,
 //           0.1916180599) (check_values.json).
 #include <algorithm>
 #include <charconv>
@@ -42,8 +42,8 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-// The formulas that both the tables (double) and the pixels (Expr) need are templates of the scalar
-// type. These give double the words of Expr.
+// Tables (double) and pixels (Expr) share formulas, which are templates of the scalar type. These
+// overloads give double the functions of Expr.
 double pow(double base, double exponent) { return std::pow(base, exponent); }
 double sqrt(double x) { return std::sqrt(x); }
 double log2(double x) { return std::log2(x); }
@@ -53,7 +53,7 @@ double max(double a, double b) { return std::max(a, b); }
 double less(double a, double b) { return a < b ? 1 : 0; }
 double select(double condition, double a, double b) { return condition != 0 ? a : b; }
 
-/// Below this a length or a divisor is as good as 0.
+/// A length or divisor below this counts as 0.
 constexpr double kTiny = 1e-12;
 
 template <class T>
@@ -71,7 +71,7 @@ std::array<T, 3> transform(const Matrix3& m, const std::array<T, 3>& v) {
 
 // ---------------------------------------------------------------------------------------------
 // The color appearance model: adapting luminance L_A 100, background Y_b 20, surround factor 0.59,
-// N_c 0.9, full adaptation to the white of whatever RGB is at hand.
+// N_c 0.9, full adaptation to the white of the given RGB.
 
 constexpr double kLuminanceLevel = 0.7937005275461673;  // F_L of L_A, CIECAM02
 constexpr double kConePower = 0.42;
@@ -109,7 +109,7 @@ T cone_of_response(const T& response) {
     return pow(kConeHalf * y / (1 - y), 1 / kConePower);
 }
 
-/// The same for negatives too: odd functions.
+/// Extended to negatives as odd functions.
 template <class T>
 T signed_cone_response(const T& x) {
     const T y = cone_response<T>(abs(x));
@@ -183,7 +183,7 @@ double degrees_of(const Vector3& aab) {
 }
 
 // ---------------------------------------------------------------------------------------------
-// What follows from the peak
+// Constants of a peak
 
 /// Lib.Academy.Tonescale: scene to display luminance, both in units of 100 cd/m2.
 struct ToneScale {
@@ -263,8 +263,8 @@ struct Constants {
 // ---------------------------------------------------------------------------------------------
 // Gamut compression
 
-/// Of one hue: the display's most colorful color, M a little enlarged, and 1/power of the hull
-/// above it.
+/// Per hue: the most colorful color of the display, with M slightly enlarged, and 1/power of the
+/// hull above it.
 template <class T>
 struct Cusp {
     T j, m, inverse_gamma;
@@ -276,7 +276,7 @@ struct Line {
     T axis, slope, cusp_axis;  // cusp_axis: where the line of the cusp meets the J axis
 };
 
-/// @param gain_j  J that decides how steep the lines are; going forward, that of the color.
+/// @param gain_j  J that sets the slope of the lines; for the forward direction, J of the color.
 template <class T>
 Line<T> line_through(const Constants& k, const T& j, const T& m, const T& gain_j,
                      const Cusp<T>& cusp) {
@@ -285,8 +285,8 @@ Line<T> line_through(const Constants& k, const T& j, const T& m, const T& gain_j
     const T stretch = log2((1 - threshold) / max(k.smallest_rest, 1 - gain_j)) *
                       (std::numbers::ln2 / std::numbers::ln10);
     const T gain = k.focus * select(less(threshold, gain_j), 1 + square(stretch), 1);
-    // The smaller root of a quadratic equation for the J axis, of one kind below the focus and of
-    // another above.
+    // The smaller root of a quadratic equation for the J axis, which differs below and above the
+    // focus.
     const auto axis = [&](const T& at_j, const T& at_m) -> T {
         const T x = at_m / gain;
         const T a = x / focus_j;
@@ -325,7 +325,7 @@ T boundary(const Constants& k, const Line<T>& line, const Cusp<T>& cusp) {
 
 constexpr std::size_t kTableSize = 360;
 
-/// Corners of the RGB cube in the order of their hue: R Y G C B M.
+/// Corners of the RGB gamut in the order of their hue: R Y G C B M.
 constexpr std::array<Vector3, 6> kCorners = {
     {{1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}, {1, 0, 1}}};
 
@@ -341,7 +341,7 @@ std::array<double, 6> corner_hues(const Cones& display, double peak) {
     return hues;
 }
 
-/// Which of them is the smallest.
+/// Index of the smallest hue.
 std::size_t first_corner(const std::array<double, 6>& hues) {
     return static_cast<std::size_t>(std::min_element(hues.begin(), hues.end()) - hues.begin());
 }
@@ -350,7 +350,7 @@ struct Interval {
     double lo, hi;
 };
 
-/// Halves the interval until it is not longer than `tolerance`; is_low says where lo moves up.
+/// Halves the interval until it is at most `tolerance` long; is_low tells where lo moves up.
 template <class Predicate>
 Interval bisect(Interval in, double tolerance, const Predicate& is_low) {
     while (in.hi - in.lo > tolerance) {
@@ -483,8 +483,8 @@ class Tables {
 
     void make_cusps() {
         for (const double hue : hues_) {
-            // The segment of the cube's edges around this hue; the circle of corners is extended
-            // by one on either side.
+            // The edge of the RGB gamut around this hue; the circle of corners is extended by one
+            // on each side.
             const auto next = static_cast<std::size_t>(
                 std::upper_bound(corner_hues_.begin(), corner_hues_.end(), hue) -
                 corner_hues_.begin());
@@ -508,7 +508,7 @@ class Tables {
                 t = (found.lo + found.hi) / 2;
             }
             const Vector3 aab = at(t);
-            constexpr double kRounding = 1 + 0.27 * 0.12;  // what smoothing will take off
+            constexpr double kRounding = 1 + 0.27 * 0.12;  // compensates for the smoothing
             cusps_.push_back({j_of(aab), kRounding * std::hypot(aab[1], aab[2]) / k_.unit, 1});
         }
     }
@@ -548,7 +548,7 @@ class Tables {
 // ---------------------------------------------------------------------------------------------
 // Pixels
 
-/// A hue as the pixels use it.
+/// A hue as pixels use it.
 struct Hue {
     Expr m;  // of the color: what cosine and sine were divided by
     Expr cosine;
@@ -569,7 +569,7 @@ Expr toe(const Expr& x, const Expr& limit, const Expr& slope, const Expr& knee) 
     return select(less(limit, x), x, root);
 }
 
-/// Its inverse. toe() does not go down to -knee: there is nothing for what is below that.
+/// Inverse of toe(), which does not reach -knee: values below have no inverse.
 Expr toe_inverse(const Expr& y, const Expr& limit, const Expr& slope, const Expr& knee) {
     const Expr scale = (limit + slope) / (limit + knee);
     return select(less(limit, y), y, y * (y + slope) / (scale * max(y + knee, 1e-9)));
@@ -593,10 +593,10 @@ class OutputTransform {
 
     [[nodiscard]] const Constants& constants() const { return k_; }
 
-    /// AP1, limited to the input's range, to the display's RGB, not limited.
+    /// AP1 limited to the input's range -> the display's RGB, not limited.
     [[nodiscard]] CrossTalkStage forward() const {
-        // The first step of the standard is AP0's model, behind a matrix from AP1: the model of
-        // AP1 itself, as both have the same white.
+        // The standard starts with the model of AP0, after a matrix from AP1. That equals the model
+        // of AP1, because both have the same white.
         std::array<Expr, 3> cones = transform<Expr>(ap1_.from_rgb, inputs());
         for (Expr& x : cones)
             x = cone_response(x);
@@ -632,8 +632,8 @@ class OutputTransform {
         const Expr shown_j =
             named("shown_j", pow(shown.achromatic / k_.achromatic, kLightnessPower));
 
-        // The lines were those of a J that is not known yet: the standard takes that which it
-        // gets with the one that is.
+        // The lines depend on a J that is not known yet. The standard estimates it with the J that
+        // is known.
         const Expr threshold = named("threshold", hue.cusp.j + 0.3 * (1 - hue.cusp.j));
         const Expr first_j =
             named("first_j", std::get<0>(move_along_line(shown_j, hue.m, shown_j, hue, true)));
@@ -679,8 +679,8 @@ class OutputTransform {
     /// Cone responses -> the axes of structure(): rows of sum 1.
     [[nodiscard]] Matrix3 hue_axes() const {
         constexpr double kShare = 0.05;
-        // Axes along the responses to AP1's primaries, whose sum is gray: a response grows nearly
-        // with a power of light, so the directions hardly depend on the light.
+        // The axes lie along the responses to AP1's primaries, whose sum is gray. A response is
+        // nearly a power of the channel, so the directions hardly depend on brightness.
         Matrix3 primaries{};
         for (std::size_t c = 0; c < 3; ++c) {
             const Vector3 response = responses_of(ap1_, scaled(kCorners[2 * c], 0.1));
@@ -737,7 +737,7 @@ class OutputTransform {
              named("inverse_gamma", lookup(cusps_[2], turns))}};
     }
 
-    /// What chroma's compression depends on.
+    /// Inputs of the chroma compression.
     struct ChromaToes {
         Expr limit;
         Expr expand_slope, expand_knee;
@@ -775,9 +775,9 @@ class OutputTransform {
         return compressed * hue.norm;
     }
 
-    /// J and M moved into the display's hull along a line, or back. Beyond a part of the hull's M
-    /// this is start + room o/(room + o), with o how far M is beyond the start; the room is such
-    /// that AP1's largest M comes to lie on the hull.
+    /// J and M moved into the display's hull along a line, or the inverse. Above a fraction of the
+    /// hull's M the result is start + room o/(room + o), where o is M minus the start. The room is
+    /// chosen so that AP1's largest M lies on the hull.
     [[nodiscard]] std::tuple<Expr, Expr> move_along_line(const Expr& j, const Expr& m,
                                                          const Expr& gain_j, const Hue& hue,
                                                          bool is_inverse) const {
@@ -792,14 +792,14 @@ class OutputTransform {
         const Expr d = (reach - edge) * over;
         Expr beyond = 0;
         if (is_inverse) {
-            // Without end where over is the room; 10 is far beyond AP1.
+            // Infinite where over equals the room; 10 is far outside AP1.
             const Expr before =
                 select(less(d, n), n * over / max(n - d, 1e-30), n * over / max(d, 1e-30));
             beyond = min(before, 10);
         } else {
             beyond = named("beyond", n * over / max(n + d, 1e-30));
         }
-        // A hull that is larger than AP1 moves nothing.
+        // A hull larger than AP1 moves no color.
         const Expr moved = named("moved", select(less(edge, reach), min(m, start) + beyond, m));
         const Expr is_chromatic = named("is_chromatic", less(0, edge) * less_equal(j, 1));
         return {select(is_chromatic, line.axis + line.slope * moved, j),
@@ -836,7 +836,7 @@ std::optional<std::array<double, 8>> read_chromaticities(std::string_view text) 
     return values;
 }
 
-/// Counterclockwise in xy, above the line y = 0, and white inside.
+/// True if the triangle is counterclockwise in xy, above y = 0, and contains white.
 bool is_triangle_around_white(const Primaries& p) {
     const auto area = [](Chromaticity a, Chromaticity b, Chromaticity c) {
         return (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
@@ -848,7 +848,7 @@ bool is_triangle_around_white(const Primaries& p) {
            area(p.blue, p.red, p.whitepoint) > kSmallest;
 }
 
-/// R Y G C B M is once around the circle of hues.
+/// True if R Y G C B M go around the circle of hues once.
 bool has_hues_in_order(const Primaries& p, double peak) {
     std::array<double, 6> hues = corner_hues(Cones(p), peak);
     std::rotate(hues.begin(), hues.begin() + static_cast<std::ptrdiff_t>(first_corner(hues)),
@@ -875,8 +875,9 @@ Primaries primaries_of(const Params& params) {
     return p;
 }
 
-/// Finding the numbers of the tables takes ten milliseconds: once for a display. The tables are new
-/// ones each time: expressions of the same table would be one, and two displays' views as well.
+/// Computing the tables takes ten milliseconds, so it is done once per display. The tables are new
+/// objects each time, because expressions of one table would count as the same view for two
+/// displays.
 OutputTransform transform_of(const Params& params) {
     using Key = std::pair<double, Primaries>;
     static BoundedCache<Key, OutputTransform> cache(16);
@@ -896,31 +897,32 @@ std::vector<Operator> define_aces_20() {
     op.title = "ACES 2.0";
     op.view = "ACES 2.0";
     op.character =
-        "the Academy's rendering of 2024: film-like contrast, lights fade to white and keep their "
-        "hue, one look on displays of all peaks; mid grey 0.18 is shown at 0.10";
+        "the Academy's rendering of 2024: film-like contrast, highlights fade to white and keep "
+        "their hue, the same look on displays of any peak; shows mid gray 0.18 at 0.10";
     op.source =
         "Academy of Motion Picture Arts and Sciences, ACES 2: aces-core, "
         "Lib.Academy.OutputTransform, Lib.Academy.Tonescale; OpenColorIO 2.4.2, ACES2";
-    op.licence = "Academy licence (aces-core); BSD-3-Clause (OpenColorIO); no code of them is used";
+    op.licence =
+        "Academy license (aces-core), BSD-3-Clause (OpenColorIO); none of their code is used";
     op.negatives = "clamped at 0 in AP1, before the first non-linear step";
     op.dialects = "ACES";
     op.working = kAP1;
-    op.bounds = {.simd = 3e-5,
-                 .simd_goal = 2.4e-5,
-                 .cube = 0.2,
-                 .cube_hdr = 0.4,
-                 .reason =
-                     "simd: twice as fast as with 1e-6, which takes doubles throughout; a "
-                     "cube: the gamut compression bends in every direction, and jumps near the "
-                     "edge of AP1"};
+    op.bounds = {
+        .simd = 3e-5,
+        .simd_goal = 2.4e-5,
+        .cube = 0.2,
+        .cube_hdr = 0.4,
+        .reason =
+            "simd: twice as fast as with 1e-6, which needs double precision throughout; 3D LUT: "
+            "the gamut compression bends in every direction, and jumps near the edge of AP1"};
     op.parameters = fixed_parameters({
-        // The tone scale is made for 100 cd/m2 and up; below 49.8 its compression turns around.
-        display_parameter(
-            number_parameter("peak", "cd/m2", 100, kLowestPeak, kHighestPeak, "of the display"),
-            [](const DisplayFacts& display) {
-                return shortest(std::clamp(display.peak, kLowestPeak, kHighestPeak));
-            }),
-        // For SDR displays the standard has forms of Rec.709 and P3 only.
+        // The tone scale is designed for 100 cd/m2 and above; below 49.8 its compression reverses.
+        display_parameter(number_parameter("peak", "cd/m2", 100, kLowestPeak, kHighestPeak,
+                                           "peak luminance of the display"),
+                          [](const DisplayFacts& display) {
+                              return shortest(std::clamp(display.peak, kLowestPeak, kHighestPeak));
+                          }),
+        // For SDR displays the standard only has Rec.709 and P3 variants.
         display_parameter(limit_parameter({"rec709", "p3d65", "rec2020"}, "rec709"),
                           [](const DisplayFacts& display) -> std::string {
                               if (display.primaries == kRec709) return "rec709";
@@ -928,13 +930,12 @@ std::vector<Operator> define_aces_20() {
                               return is_p3 ? "p3d65" : "rec2020";
                           }),
         text_parameter("primaries",
-                       "x and y of red, green, blue and white of any other display, eight numbers; "
-                       "empty: those of limit"),
+                       "any other display: eight numbers, x and y of red, green, blue and white "
+                       "(empty: limit decides)"),
     });
-    op.warnings = {
-        "a peak above the display's clips: an SDR display shows light up to 100 cd/m2",
-        "primaries with another white than D65 are adapted to the display's: the standard's "
-        "D60 variants, which are not, are left out"};
+    op.warnings = {"a display clips a peak above its own: SDR displays show up to 100 cd/m2",
+                   "primaries with a white other than D65 are adapted to the display's white; the "
+                   "standard's D60 variants, which are not adapted, are not included"};
     op.output_primaries = primaries_of;
     op.peak = [](const Params& p) { return p.number("peak") / 100; };
     op.build = [](const Params& p) -> Pipeline {

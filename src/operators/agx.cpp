@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// AgX, six of its dialects: Troy Sobotka's configuration, Benjamin Wrensch's minimal form, and what
-// three.js, Filament and Godot (4.4, and since 4.6) made of them.
+// AgX, six dialects: Troy Sobotka's configuration, Benjamin Wrensch's minimal version, and the
+// versions of three.js, Filament and Godot (4.4, and since 4.6).
 //
 // Source    T. Sobotka, AgX OpenColorIO configuration (github.com/sobotka/AgX), 2022, and the
 //           SB2383 sigmoid that its lookup table samples. B. Wrensch, "Minimal AgX Implementation",
@@ -9,31 +9,31 @@
 //           Google Filament, ToneMapper.cpp, AgxToneMapper. Godot Engine, tonemap.glsl of 4.4 and
 //           of 4.6 (curve by allenwp). Insets and outsets of three.js, Filament and Godot are those
 //           of Blender: E. Chow, AgX_LUT_Gen.
-// In        scene-linear RGB; working primaries Rec.709 (agx_filament Rec.2020), D65; domain
-//           [0, inf), negatives: clamped at 0, but agx_threejs lets them into its matrices and
-//           limits what comes out: domain (-inf, inf). All but agx_godot end at 16.29, 6.5 stops
-//           above mid grey, and begin 10 stops below it: what is outside is as its ends.
-// Out       agx_sobotka, agx_minimal: CODE VALUES of a 2.2 power, [0, 1], except agx_minimal's
+// In        scene-linear RGB; working primaries Rec.709 (agx_filament Rec.2020), D65; domain [0,
+//           inf), negatives clamped at 0. agx_threejs passes negatives to its matrices and clamps
+//           their result: domain (-inf, inf). All except agx_godot are constant above 16.29, 6.5
+//           stops above mid gray, and below 10 stops under it.
+// Out       agx_sobotka, agx_minimal: CODE VALUES of a 2.2 power, [0, 1], except for agx_minimal's
 //           polynomial ends of -0.0023 and 0.9986 (order 6), 0.0029 and 0.982 (order 7), and looks
-//           that saturate past 1. The others: display-linear RGB, 1.0 = display peak; agx_threejs
-//           before the source's last clamp, agx_godot44 and agx_godot as the source has them: the
-//           matrices at the end put saturated colours below 0 or above 1.
-// Kind      clamp, matrix, log and sigmoid, (matrix); the looks of agx_filament are 3D, as their
-//           luma is of the value before the power. Monotone on the neutral axis: yes, but order 7
-//           (agx_minimal:order7, agx_filament) dips within the lowest 2.5 % of its range, and where
-//           the shaper ends the channels of greys in agx_threejs and agx_godot44 arrive one after
-//           another, so that the last matrix takes 5e-6 of the light away.
-// Keeps     mid grey 0.18 -> code value 0.5 (agx_sobotka), 0.18 of the light (agx_godot, and
+//           that saturate above 1. The others: display-linear RGB, 1.0 = display peak; agx_threejs
+//           without the source's last clamp, agx_godot44 and agx_godot like the source: their last
+//           matrices put saturated colors below 0 or above 1.
+// Kind      clamp, matrix, log and sigmoid, (matrix). The looks of agx_filament are 3D, because
+//           their luma is taken before the power. Monotone on the neutral axis: yes, with two
+//           exceptions. Order 7 (agx_minimal:order7, agx_filament) dips in the lowest 2.5 % of its
+//           range. In agx_threejs and agx_godot44, the channels of grays reach the end of the
+//           shaper one after another, so the last matrix subtracts 5e-6.
+// Keeps     mid gray 0.18 -> code value 0.5 (agx_sobotka), display-linear 0.18 (agx_godot, and
 //           agx_godot44 within 0.5 %).
-// Differs   agx_sobotka uses the sigmoid in closed form where the configuration has its 4096-entry
-//           table: 5e-8 apart, the table's own rounding. The floors of 1e-10 before log2 are not
-//           there where the shaper's lower end, 1.76e-4, is one already; Godot's of 2e-10 on the
-//           input is. agx_filament's looks have the luma weights of Rec.709 although its primaries
-//           are Rec.2020: that is in the source.
-//           The defects: agx_minimal_clamped has no floor in the source; below the shaper, whose
-//           end is the floor here, the polynomial leaves its range and shows light of 1e-6 as
-//           white.
-// Check     mid grey 0.18 -> (0.500023782, 0.499993460, 0.499991575) (agx_sobotka), red 0.214548629
+// Differs   agx_sobotka computes the sigmoid in closed form; the configuration has a 4096-entry
+//           table: 5e-8 apart, the rounding of the table. The sources floor log2 at 1e-10; here the
+//           lower end of the shaper, 1.76e-4, is the floor. Godot's floor of 2e-10 on the input
+//           stays. agx_filament's looks use the luma weights of Rec.709 although its primaries are
+//           Rec.2020; the source does the same.
+//           Defects: the source of agx_minimal_clamped has no floor. Below the shaper its
+//           polynomial leaves its range and shows 1e-6 as white; here the end of the shaper is the
+//           floor.
+// Check     mid gray 0.18 -> (0.500023782, 0.499993460, 0.499991575) (agx_sobotka), red 0.214548629
 //           (agx_threejs), 0.214848193 (agx_filament, Rec.2020), red 0.179190952 (agx_godot44),
 //           0.18 (agx_godot) (check_values.json).
 #include <cmath>
@@ -57,17 +57,17 @@ constexpr Matrix3 kOutset = {{
     {-0.0529716355144438, -0.0980434501171241,  1.15107367264116}}};
 // clang-format on
 
-/// The shaper: log2 from 10 stops below to 6.5 stops above mid grey. Both sources print its ends
+/// The shaper: log2 from 10 stops below to 6.5 stops above mid gray. Both sources print its ends
 /// with seven digits (log2(0.18) - 10 = -12.4739312, log2(0.18) + 6.5 = 4.0260688), so those are
 /// the ends.
 constexpr double kLowest = -12.47393;
 constexpr double kHighest = 4.026069;
 
-/// The clamp of the normalised log value, in scene-linear: a stage of its own, not a part of the
-/// curve.
+/// Clamp of the normalized log value, in scene-linear. It is a separate stage, so that the curve
+/// has no corners.
 Stage limit_to_shaper() { return ClampStage{std::exp2(kLowest), std::exp2(kHighest)}; }
 
-/// Scene-linear in the shaper's range -> [0, 1]; mid grey -> 10/16.5.
+/// Scene-linear in the shaper's range -> [0, 1]; mid gray -> 10/16.5.
 Expr normalised_log(const Expr& x) {
     return named("n", (log2(x) - kLowest) / (kHighest - kLowest));
 }
@@ -104,17 +104,17 @@ Operator sobotka() {
     op.title = "AgX (Sobotka)";
     op.view = "AgX Sobotka";
     op.character =
-        "low contrast, colours fade to white with light; holds blues and neon where others clip";
+        "low contrast, bright colors fade to white; keeps detail in saturated blues and neon "
+        "colors where others clip";
     op.source = "T. Sobotka, AgX configuration for OpenColorIO (SB2383), 2022";
-    op.licence = "formula and constants; no file of it is used";
+    op.licence = "formula and constants only; none of its files is used";
     op.dialects = "AgX";
     op.negatives = kNegativesClampAtZero;
     op.output = OutputKind::code_value;
     op.code_power = 2.2;
     op.looks = {{"golden", "Golden", "warm: ASC CDL slope 1 0.9 0.5, power 0.8, saturation 1.3"},
                 {"punchy", "Punchy", "darker and stronger: ASC CDL power 1.35, saturation 1.4"}};
-    op.warnings = {
-        "this is not the AgX of Blender: mid grey is shown at code value 0.5, Blender's at 0.46"};
+    op.warnings = {"not Blender's AgX: it shows mid gray at code value 0.5, Blender at 0.46"};
     op.deviations = {{DocumentedDifference::Kind::never_reaches_white, 0.193, "golden"},
                      {DocumentedDifference::Kind::exceeds_white, 1.06, "golden"},
                      {DocumentedDifference::Kind::tints_gray, 0.54, "golden"}};
@@ -137,8 +137,8 @@ Operator minimal() {
     op.title = "AgX (minimal, Wrensch)";
     op.view = "AgX Minimal";
     op.character =
-        "AgX of shaders: a polynomial for the sigmoid and the inset undone; more saturated than "
-        "Sobotka's";
+        "AgX for shaders: polynomial sigmoid, and the inverse of the inset after it; more "
+        "saturated than Sobotka's";
     op.source = "B. Wrensch, Minimal AgX Implementation, 2023; order 7: Filament ToneMapper.cpp";
     op.licence = "MIT";
     op.dialects = "AgX";
@@ -146,7 +146,7 @@ Operator minimal() {
     op.output = OutputKind::code_value;
     op.code_power = 2.2;
     op.parameters = {choice_parameter("order", {"6", "7"}, "6", "order of the polynomial")};
-    op.presets = {{"order7", "with Filament's polynomial", {{"order", "7"}}}};
+    op.presets = {{"order7", "Filament's polynomial of order 7", {{"order", "7"}}}};
     op.deviations = {{DocumentedDifference::Kind::black, -0.0023, ""},
                      {DocumentedDifference::Kind::black, 0.0029, "order7"},
                      {DocumentedDifference::Kind::never_reaches_white, 0.997, ""},
@@ -161,12 +161,12 @@ Operator minimal() {
     return op;
 }
 
-/// log2 never gets more than 0, so 4 of the 16.5 stops of the curve are never used.
+/// The input of log2 is at most 1, so the upper 4 of the curve's 16.5 stops are never used.
 Operator minimal_clamped() {
     Operator op =
         defect_of("agx_minimal", "agx_minimal_clamped",
                   "ByroRedux (matiaszanolli/ByroRedux c5663fe39, presentation.frag; issue 4578)",
-                  "it limits scene-linear light to 1 before the logarithm, so everything above 1 "
+                  "it limits scene-linear values to 1 before the logarithm, so everything above 1 "
                   "is shown at 0.59 of white");
     op.output = OutputKind::code_value;
     op.code_power = 2.2;
@@ -186,8 +186,8 @@ Operator matrix_and_power() {
     Operator op = defect_of(
         "agx_blender", "agx_matrix_and_power",
         "QtMeshEditor (fernandotonon/QtMeshEditor 251f723f, HdrTonemap.cpp; pull request 782)",
-        "it has no logarithm and no sigmoid, but limits light to 1, applies a matrix that turns "
-        "grays green, and raises the result to the power 1.35");
+        "it has no logarithm and no sigmoid: it limits scene values to 1, applies a matrix that "
+        "turns grays green, and raises the result to the power 1.35");
     op.deviations = {{DocumentedDifference::Kind::never_reaches_white, 0.29, ""},
                      {DocumentedDifference::Kind::tints_gray, 0.42, ""}};
     op.build = [](const Params&) -> Pipeline {
@@ -202,7 +202,8 @@ Operator matrix_and_power() {
     return op;
 }
 
-/// Outset, and code values to light: what is below 0 has no power.
+/// Outset, then code values to display-linear. Values below 0 are clamped, because the power is
+/// undefined there.
 Pipeline outset_to_light() {
     return {MatrixStage{kAgxOutsetRec2020, "outset"}, ClampStage{0, kInfinity},
             named("to_light", curve_stage(pow(Expr::input(), 2.2)))};
@@ -214,20 +215,21 @@ Operator threejs() {
     op.title = "AgX (three.js)";
     op.view = "AgX three.js";
     op.character =
-        "Blender's matrices with Sobotka's curve: soft and pale; mid grey at 0.21 of the light, "
+        "Blender's matrices with Sobotka's curve: soft and pale; mid gray at display-linear 0.21, "
         "brighter than Blender's AgX";
     op.source = "three.js, tonemapping_pars_fragment: AgXToneMapping; after Filament";
     op.licence = "MIT";
     op.dialects = "AgX";
     op.negatives =
-        "pass through the matrices to Rec.2020 and of the inset; what is below the shaper's range "
-        "there is its lower end";
-    op.warnings = {"where the shaper ends, at scene-linear 16.3, greys fall by 5e-6 of the light"};
+        "kept by the matrix to Rec.2020 and the inset; then limited to the lower end of the "
+        "shaper's range";
+    op.warnings = {"grays get darker by 5e-6 at scene-linear 16.3, where the shaper ends"};
     op.deviations = {{DocumentedDifference::Kind::never_reaches_white, 0.997, ""},
                      {DocumentedDifference::Kind::not_monotone, 16, ""}};
     op.build = [](const Params&) -> Pipeline {
+        // Rec.709 to Rec.2020 and its inverse, as the source prints them: 0.0113 is not the rounded
+        // value.
         // clang-format off
-        // Rec.709 to Rec.2020 and back, as the source prints them: 0.0113 is not the rounded value.
         constexpr Matrix3 to_rec2020 = {{{0.6274, 0.3293, 0.0433},
                                          {0.0691, 0.9195, 0.0113},
                                          {0.0164, 0.0880, 0.8956}}};
@@ -244,8 +246,8 @@ Operator threejs() {
     return op;
 }
 
-/// Filament's look on code values: a CDL whose saturation is about the luma from before slope and
-/// power, so that no chain of curves and matrices makes it.
+/// Filament's look on code values: a CDL that saturates about the luma from before slope and power,
+/// which no chain of curves and matrices can express.
 CrossTalkStage filament_look(const Vector3& slope, double power, double saturation) {
     const std::array<Expr, 3> v = {Expr::input(0), Expr::input(1), Expr::input(2)};
     const Expr luma =
@@ -262,24 +264,24 @@ Operator filament() {
     op.title = "AgX (Filament)";
     op.view = "AgX Filament";
     op.character =
-        "as three.js, in Rec.2020 and with the polynomial of order 7: white at 0.96 of the light";
+        "three.js's AgX in Rec.2020 with the polynomial of order 7: white at display-linear 0.96";
     op.source = "Google Filament, ToneMapper.cpp: AgxToneMapper";
-    op.licence = "Apache-2.0; formula and constants, no code of it is used";
+    op.licence = "Apache-2.0; formula and constants only; none of its code is used";
     op.dialects = "AgX";
     op.negatives = kNegativesClampAtZero;
     op.working = kRec2020;
     op.looks = {{"golden", "Golden", "warm: slope 1 0.9 0.5, power 0.8, saturation 1.3"},
                 {"punchy", "Punchy", "darker and stronger: power 1.35, saturation 1.4"}};
-    // Measured with AP1, not derived: red of 0.156 0.938 0.094 is 0.370 - 0.334 - 0.011 of light,
-    // and off by 1.65e-6 of the code. Rounding of what enters the matrices explains 1.34e-6. The
-    // rest is of the tables (the curve's entries, 2.7e-7; straight lines for the power 2.2, 3.3e-7)
-    // and of the matrices' own sums; were all of these as large as they can be, it would be 3.0e-6.
+    // Measured with AP1, not derived: red of 0.156 0.938 0.094 is 0.370 - 0.334 - 0.011, with an
+    // error of 1.65e-6 in the code value. Rounding before the matrices explains 1.34e-6. The tables
+    // (curve entries, 2.7e-7; straight lines for the power 2.2, 3.3e-7) and the sums in the
+    // matrices explain the rest. The worst case of all of them is 3.0e-6.
     op.bounds = {.ocio_cpu = 4e-7,
                  .cube = 2.4e-2,
                  .reason =
-                     "matrices that cancel enlarge roundings of the tables; looks saturate about a "
-                     "luma taken before their power: a cube"};
-    // Punchy takes black below 0 before it is light: there the lifted black is gone.
+                     "matrices with cancellation amplify the rounding of the tables; the looks "
+                     "need a 3D LUT, because they saturate about a luma from before their power"};
+    // Punchy moves black below 0 before it is decoded, which removes the lifted black.
     op.deviations = {{DocumentedDifference::Kind::black, 2.5e-6, ""},
                      {DocumentedDifference::Kind::black, 5.2e-5, "golden"},
                      {DocumentedDifference::Kind::black, 0, "punchy"},
@@ -295,7 +297,7 @@ Operator filament() {
             limit_to_positive(), MatrixStage{kAgxInsetRec2020, "inset"}, limit_to_shaper(),
             named("contrast", curve_stage(polynomial7(normalised_log(Expr::input()))))};
         if (!p.look().empty()) {
-            stages.push_back(ClampStage{0, 1});  // finds nothing: the polynomial stays inside
+            stages.push_back(ClampStage{0, 1});  // no effect: the polynomial stays inside
             stages.push_back(p.look() == "golden" ? filament_look({1, 0.9, 0.5}, 0.8, 1.3)
                                                   : filament_look({1, 1, 1}, 1.35, 1.4));
         }
@@ -310,12 +312,13 @@ Operator godot44() {
     op.title = "AgX (Godot 4.4)";
     op.view = "AgX Godot 4.4";
     op.character =
-        "a polynomial for Blender's sigmoid, decoded with 2.4: mid grey kept, soft lights";
+        "polynomial for Blender's sigmoid, decoded with the power 2.4: mid gray kept, soft "
+        "highlights";
     op.source = "Godot Engine 4.4, tonemap.glsl: tonemap_agx";
     op.licence = "MIT";
     op.dialects = "AgX";
-    op.negatives = "2e-10, before the first matrix";
-    op.warnings = {"where the shaper ends, at scene-linear 16.3, greys fall by 4e-6 of the light"};
+    op.negatives = "set to 2e-10, before the first matrix";
+    op.warnings = {"grays get darker by 4e-6 at scene-linear 16.3, where the shaper ends"};
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, 1.0003, ""},
                      {DocumentedDifference::Kind::not_monotone, 16, ""}};
     op.build = [](const Params&) -> Pipeline {
@@ -328,7 +331,8 @@ Operator godot44() {
                                   {-0.299322433909111,  1.326451074150236, -0.027084020983875},
                                   {-0.164368338060804, -0.238224640688606,  1.402665347143272}}};
         // clang-format on
-        // The shaper's ends with all digits, not those that the other dialects print.
+
+        // Ends of the shaper with all digits; the other dialects print fewer.
         const double lowest = std::log2(0.18) - 10;
         const double highest = std::log2(0.18) + 6.5;
         const Expr n = named("n", (log2(Expr::input()) - lowest) / (highest - lowest));
@@ -336,7 +340,7 @@ Operator godot44() {
         const Expr n4 = named("n4", n2 * n2);
         const Expr code = named("code", 0.021 * n + 4.0111 * n2 - 25.682 * n2 * n + 70.359 * n4 -
                                             74.778 * n4 * n + 27.069 * n4 * n2);
-        // n, and the code with it, may be rounded to below 0 at the lower end.
+        // Rounding may move n, and with it the code, below 0 at the lower end.
         return {ClampStage{2e-10, kHalfMax}, MatrixStage{in, "inset"},
                 ClampStage{std::exp2(lowest), std::exp2(highest)},
                 curve_stage(pow(max(code, 0), 2.4)), MatrixStage{out, "outset"}};
@@ -350,7 +354,8 @@ Operator godot() {
     op.title = "AgX (Godot 4.6)";
     op.view = "AgX Godot";
     op.character =
-        "AgX without logarithm: contrast, white and peak to choose, mid grey kept; fit for HDR";
+        "AgX without a logarithm: keeps mid gray; adjustable contrast, white and peak, suitable "
+        "for HDR";
     op.source = "Godot Engine 4.6, tonemap.glsl: tonemap_agx; curve by allenwp";
     op.licence = "MIT";
     op.dialects = "AgX";
@@ -358,9 +363,9 @@ Operator godot() {
     op.parameters = {
         number_parameter("contrast", "", 1.25, 0.1, 4, "power of the toe"),
         number_parameter("white", "scene-linear", 16.29, 2, 65504,
-                         "smallest scene value that is shown at output_max"),
+                         "lowest scene value shown at output_max"),
         number_parameter("output_max", "display-linear", 1, 0.2, 100,
-                         "display peak over paper white"),
+                         "display peak divided by paper white"),
     };
     op.build = [](const Params& p) -> Pipeline {
         // clang-format off
@@ -371,7 +376,7 @@ Operator godot() {
                                   {-0.299313364904742,  1.3263979646198,   -0.0270845997150571},
                                   {-0.164352742528393, -0.238183969428088,  1.40253671195648}}};
         // clang-format on
-        constexpr double cross = 0.18;  // where toe and shoulder meet: in and out
+        constexpr double cross = 0.18;  // input and output where toe and shoulder meet
         const Expr contrast = p.expr("contrast");
         const Expr output_max = p.expr("output_max");
         const Expr a = named("a", (1 / cross - 1) * pow(cross, contrast));

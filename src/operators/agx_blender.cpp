@@ -1,38 +1,40 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// AgX as Blender shows it: the cubes of its configuration, computed; and the formula that they
-// sample. For SDR displays of three gamuts, and for HDR displays of 1000 cd/m2.
+// Blender's AgX: the 3D LUTs of its configuration, computed, and the formula that they sample. For
+// SDR displays of three gamuts, and for HDR displays of 1000 cd/m2.
 //
 // Source    E. Chow, AgX and AgX_LUT_Gen (github.com/EaryChow), 2023 to 2025; Blender 5.2,
 //           release/datafiles/colormanagement: config.ocio, its views AgX and AgX - HDR 1000 nits
-//           and its looks. Sigmoid: T. Sobotka, SB2383. Axes of the cubes: FilmLight E-Gamut.
-// In        scene-linear RGB, working primaries Rec.2020, D65; domain (-inf, inf). Formula: colours
-//           outside Rec.2020 are lifted until no channel is below 0 and scaled for the light that
-//           this adds. Lattice: limited to its axes, 10 stops below to 15 above mid grey in
-//           E-Gamut.
+//           and its looks. Sigmoid: T. Sobotka, SB2383. Axes of the 3D LUTs: FilmLight E-Gamut.
+// In        scene-linear RGB, working primaries Rec.2020, D65; domain (-inf, inf). Formula: colors
+//           outside Rec.2020 are lifted until no channel is below 0, then scaled to compensate for
+//           the added light. 3D LUT: limited to its axes, 10 stops below to 15 stops above mid gray
+//           in E-Gamut.
 // Out       display-linear RGB. range=sdr: primaries of `limit`, 1.0 = display peak; [0, 1]. The
-//           source stores codes of a 2.4 power, which are decoded. range=hdr: Rec.2020 light of
-//           colours within P3, 1.0 = 100 cd/m2; [0, 10].
-// Kind      lattice: 57^3, behind it a power, or the inverse of an HLG display. Formula: 3D, with
-//           c the scene in the inset and f(c) its light through log, sigmoid and 2.4 power:
+//           source stores codes of a 2.4 power, which are decoded. range=hdr: Rec.2020, colors
+//           within P3, 1.0 = 100 cd/m2; [0, 10].
+// Kind      method=lattice: 57^3 nodes, then a power, or the inverse of an HLG display. Formula:
+//           3D, with c the scene color in the inset and f(c) its log, sigmoid and 2.4 power:
 //             0.4 f(c) + 0.6 (f(min) + (f(max) - f(min)) (c - min)/(max - min)).
-//           The source turns the hue of HSV back by 60 % of what f has turned it. f is monotone, so
-//           the channels keep their order and the hue its sixth of the circle, within which it is
-//           the place of the middle channel between the others: that is the formula above. The HDR
-//           form has a second curve after f, of which hue and saturation count half.
-//           Guard rails: with off = max(-min, 0), r = c + off and Y the luminance, the source
-//           compares the luminances of c and r, each plus what the largest channel of the
-//           complement has above the complement's luminance: 2 Y - min, since the weights sum to 1.
-//           For r that is never less than for c; so r is multiplied by 1 - off/(2 Y(r)), or black.
-//           Monotone on the neutral axis: yes.
-// Keeps     formula: 0 -> 0, mid grey 0.18 -> 0.18, greys neutral. Lattice: mid grey within 3e-5
-//           (hdr: 0.181), greys within 4e-5 of the sRGB code (hdr: 7e-5).
-// Differs   Where Y(r) of a colour outside Rec.2020 is below off/2, the source multiplies by a
-//           negative number; the next step makes it black: here it is black at once. The cubes are
-//           computed in double: 5e-8 from the files, which have seven decimals; only that of the
-//           looks' guard rail is rounded to them as well. The formula has exact matrices where the
-//           generator's have a white of (0.31271, 0.32902). The light of HLG codes is by the exact
-//           inverse of OpenColorIO's DISPLAY - CIE-XYZ-D65_to_REC.2100-HLG-1000nit.
+//           The source rotates the HSV hue of f(c) towards the hue of c by 60 % of their
+//           difference. f is monotone, so the channels keep their order, and the hue keeps its
+//           sextant. Within a sextant the hue is the relative position of the middle channel
+//           between the others, which gives the formula above. The HDR version applies a second
+//           curve after f, which contributes half of hue and saturation.
+//           Guard rails: with off = max(-min, 0), r = c + off and luminance Y, the source compares
+//           the luminances of c and r. To each it adds the complement's largest channel minus the
+//           complement's luminance: 2 Y - min, because the weights sum to 1. The sum for r is never
+//           less than that for c, so r is multiplied by 1 - off/(2 Y(r)), or set to black. Monotone
+//           on the neutral axis: yes.
+// Keeps     formula: 0 -> 0, mid gray 0.18 -> 0.18, neutral grays. 3D LUT: mid gray within 3e-5
+//           (hdr: 0.181), grays within 4e-5 of the sRGB code (hdr: 7e-5).
+// Differs   Where Y(r) of a color outside Rec.2020 is below off/2, the source multiplies by a
+//           negative number, and its next step makes the color black; here it is black at once. The
+//           3D LUTs are computed in double precision: 5e-8 from the files, which have seven
+//           decimals. Only the 3D LUT of the looks' guard rail is rounded like its file. The
+//           formula uses exact matrices; the generator's have a white of (0.31271, 0.32902). HLG
+//           codes are decoded with the exact inverse of OpenColorIO's DISPLAY -
+//           CIE-XYZ-D65_to_REC.2100-HLG-1000nit.
 // Check     (0.8, 0.1, 0.05) in Rec.709 -> red 0.597988220 (formula), 0.595668176 (lattice)
 //           (check_values.json).
 #include <cmath>
@@ -53,7 +55,7 @@ constexpr Matrix3 kEGamutToXyz = {{
     { 0.2801307241,  0.8202066415,  -0.1003373656},
     {-0.1037815116, -0.07290725703,  1.265746519}}};
 
-/// What the generator of the cubes converts with.
+/// Matrices of the generator of the 3D LUTs.
 constexpr Matrix3 kXyzToRec2020 = {{
     { 1.7166634277958805, -0.3556733197301399, -0.2533680878902478},
     {-0.6666738361988869,  1.6164557398246981,  0.0157682970961337},
@@ -72,19 +74,19 @@ constexpr Matrix3 kXyzToP3 = {{
     { 0.0358512644339181, -0.0761839369220759,  0.9570295866943110}}};
 // clang-format on
 
-/// Rec.2020 weights of the luminance in the guard rails, each for its cubes: those of the SDR cubes
-/// and of the looks, and those of the generator since 2025, which made the HDR cube.
+/// Rec.2020 weights of the luminance in the guard rails, one set for the 3D LUTs for SDR and for
+/// the looks, and one for the generator since 2025, which made the 3D LUT for HDR.
 constexpr Vector3 kRailWeights = {0.2658180370250449, 0.59846986045365, 0.1357121025213052};
 constexpr Vector3 kRailWeights2025 = {0.2589235355689848, 0.6104985346066525, 0.13057792982436284};
 
 constexpr double kMidGrey = 0.18;
-/// Light of the HDR view's peak over that of its reference white: 1000 and 100 cd/m2.
+/// Peak of the HDR view divided by its reference white: 1000 and 100 cd/m2.
 constexpr double kHdrPeak = 10;
-/// Nothing is divided by less, and no logarithm is of less.
+/// Smallest divisor and smallest argument of a logarithm.
 constexpr double kTiny = 1e-30;
 
 // ---------------------------------------------------------------------------------------------
-// The formula, of expressions or, for the nodes of the cubes, of numbers.
+// The formula, for expressions (Expr) and for the nodes of the 3D LUTs (double)
 
 template <class T>
 using Color = std::array<T, 3>;
@@ -102,8 +104,8 @@ T luminance(const Color<T>& c, const Vector3& weights) {
     return weights[0] * c[0] + weights[1] * c[1] + weights[2] * c[2];
 }
 
-/// Colors outside the gamut, with Rec.2020 channels below 0, are lifted and scaled into it. Of a
-/// color without light black is left.
+/// Lifts and scales colors outside the gamut, with Rec.2020 channels below 0, into it. A color of
+/// luminance 0 becomes black.
 template <class T>
 Color<T> scene_rail(const Color<T>& c, const Vector3& weights) {
     const T off = max(-smallest(c), 0);
@@ -115,8 +117,8 @@ Color<T> scene_rail(const Color<T>& c, const Vector3& weights) {
     return out;
 }
 
-/// The same with light, in the gamut of a display: what the complement adds counts the less the
-/// more light a color has, by y^0.08.
+/// The same for display-linear colors, in the gamut of a display. The weight of the complement
+/// falls with the luminance, by y^0.08.
 /// @param weights  of the gamut's channels; they sum to 1.
 template <class T>
 Color<T> display_rail(const Color<T>& c, const Vector3& weights) {
@@ -132,12 +134,12 @@ Color<T> display_rail(const Color<T>& c, const Vector3& weights) {
     return out;
 }
 
-/// Blender's: mid grey stays where it is behind the 2.4 power.
+/// Blender's sigmoid: mid gray is unchanged after the 2.4 power.
 AgxSigmoid sigmoid(double shoulder_power) {
     return {10 / 16.5, std::pow(kMidGrey, 1 / 2.4), 2.4, 1.5, shoulder_power};
 }
 
-/// Stops from 10 below to 6.5 above mid grey as [0, 1], which goes on above.
+/// Maps stops from 10 below to 6.5 above mid gray to [0, 1], and continues above 1.
 template <class T>
 T stops_of(const T& x) {
     constexpr double lowest = kMidGrey / 1024;
@@ -150,16 +152,16 @@ T sdr_light(const T& x) {
     return pow(max(curve(stops_of(x)), 0), 2.4);
 }
 
-/// Light on the way to an HDR display, of which 1 is its peak: with the larger shoulder power.
+/// First curve for an HDR display, whose peak is 1: with the larger shoulder power.
 template <class T>
 T first_hdr_light(const T& x) {
     static const AgxSigmoid curve = sigmoid(1.5 * std::pow(kHdrPeak, std::log10(2.0)));
     return pow(max(curve(T(min(stops_of(x), 1))), 0), 2.4);
 }
 
-/// That light, mid grey where the peak has it: over the stops from 20 below mid grey to 1, a
-/// sigmoid of slope 1.000001 whose shoulder is a plain hyperbola. Black stays black.
-/// @param x  the scene's, `light` its first light.
+/// Moves mid gray to its value for the peak: a sigmoid of slope 1.000001 over the stops from 20
+/// below mid gray to 1, whose shoulder is a plain hyperbola. Black stays black.
+/// @param x  scene value; `light` is the result of the first curve.
 template <class T>
 T second_hdr_light(const T& x, const T& light) {
     static const double height = 20 + std::log2(1 / kMidGrey);
@@ -186,7 +188,7 @@ T second_hdr_light(const T& x, const T& light) {
         []() -> T { return 0; });
 }
 
-/// (c - min)/(max - min): the place of each channel between the others. Greys: 0.
+/// (c - min)/(max - min): the position of each channel between the others. Grays: 0.
 template <class T>
 Color<T> places(const Color<T>& c) {
     const T lo = smallest(c);
@@ -199,7 +201,8 @@ Color<T> places(const Color<T>& c) {
     return out;
 }
 
-/// The inset's scene >= 0 -> light, of which the hue is 40 % the curve's and 60 % the scene's.
+/// Scene color in the inset, >= 0 -> display-linear. Its hue is 40 % the curve's and 60 % the
+/// scene's.
 template <class T>
 Color<T> sdr_map(const Color<T>& scene) {
     Color<T> out = {sdr_light(scene[0]), sdr_light(scene[1]), sdr_light(scene[2])};
@@ -211,8 +214,8 @@ Color<T> sdr_map(const Color<T>& scene) {
     return out;
 }
 
-/// The same for HDR: value of the second light, saturation half of the first, half of the second
-/// light, and so the hue that is mixed 40 % with the scene's.
+/// The same for HDR. The second curve gives the value; both curves give half of the saturation and
+/// half of the hue, which counts 40 %.
 template <class T>
 Color<T> hdr_map(const Color<T>& scene) {
     const Color<T> first = {first_hdr_light(scene[0]), first_hdr_light(scene[1]),
@@ -249,8 +252,8 @@ Vector3 weights_of(const Primaries& gamut, const Vector3& weights) {
     return out;
 }
 
-/// The formula up to the guard rail of the limit, behind a look's stages: one stage of cross-talk,
-/// so that where it has to be sampled it is sampled once. It takes channels below 0.
+/// The formula up to the guard rail of the limit, behind a look's stages: one channel-mixing stage,
+/// so that a 3D LUT samples it once. It accepts channels below 0.
 Pipeline sdr_formula(const Pipeline& look, const Primaries& limit) {
     Pipeline chain =
         look + Pipeline{CrossTalkStage{scene_rail(inputs(), kRailWeights)},
@@ -277,11 +280,10 @@ Pipeline hdr_formula(const Pipeline& look) {
 }
 
 // ---------------------------------------------------------------------------------------------
-// The cubes
+// The 3D LUTs
 
-/// Axes of the cubes where pictures are looked up: log2 of E-Gamut light, as the configuration
-/// prints the ends; the generator places its nodes from exactly 10 stops below mid grey on, over
-/// exactly 25.
+/// Axes for lookups in the 3D LUTs: log2 of E-Gamut, with the ends that the configuration prints.
+/// The generator places its nodes from exactly 10 stops below mid gray over exactly 25 stops.
 constexpr double kLowest = -12.47393;
 constexpr double kHighest = 12.5260688117;
 
@@ -295,14 +297,14 @@ Color<T> times(const Matrix3& m, const Color<T>& c) {
     return out;
 }
 
-/// Light of a node, from its place on an axis.
+/// Scene value of a node, from its position on an axis.
 template <class T>
 T light_at(const T& place) {
     return kMidGrey * exp2(25 * place - 10);
 }
 
-/// A cube, computed when it is first looked into, and kept; and the formula of its nodes.
-/// @param node  a functor: Rec.2020 light -> what the cube has, of numbers and of expressions
+/// A 3D LUT, computed and cached at the first lookup; and the formula of its nodes.
+/// @param node  a functor: Rec.2020 -> color of the 3D LUT, for double and for Expr
 template <class Node>
 std::shared_ptr<const Lattice> make_cube(int edge, const Node& node) {
     const auto nodes = [edge, node] {
@@ -335,14 +337,14 @@ std::shared_ptr<const Lattice> make_cube(int edge, const Node& node) {
 constexpr int kEdge = 57;
 constexpr int kRailEdge = 37;
 
-/// Codes of a 2.4 power.
+/// Code values of a 2.4 power.
 struct SdrNode {
     Matrix3 to_limit;
     Vector3 weights;
     bool has_rail;
 
-    /// @param from_xyz  to the limit, the generator's; null: the limit is Rec.2020, which has no
-    ///                  rail.
+    /// @param from_xyz  the generator's matrix to the limit; null if the limit is Rec.2020, which
+    ///                  has no guard rail.
     SdrNode(const Primaries& limit, const Matrix3* from_xyz)
         : to_limit(from_xyz ? multiply(multiply(*from_xyz, kRec2020ToXyz), kAgxOutsetRec2020)
                             : kAgxOutsetRec2020),
@@ -360,8 +362,8 @@ struct SdrNode {
     }
 };
 
-/// ITU-R BT.2100-2, table 5: Rec.2020 light of [0, 1], 1 = 1000 cd/m2, to HLG codes. The file ends
-/// at 1, which the scene light of a saturated blue passes.
+/// ITU-R BT.2100-2, table 5: Rec.2020 light of [0, 1], 1 = 1000 cd/m2, to HLG codes. The file clips
+/// at 1, which saturated blues exceed.
 template <class T>
 Color<T> hlg_codes(const Color<T>& light) {
     using std::log;
@@ -400,7 +402,7 @@ struct HdrNode {
     }
 };
 
-/// The first guard rail alone, before looks: log values, of the axes' own kind.
+/// Only the first guard rail, for looks: log values like those of the axes.
 struct RailNode {
     Matrix3 to_e_gamut = multiply(inverse(kEGamutToXyz), kRec2020ToXyz);
 
@@ -410,7 +412,7 @@ struct RailNode {
         Color<T> out = times(to_e_gamut, scene_rail(c, kRailWeights));
         for (T& v : out) {
             v = max((log2(max(v, kTiny) / kMidGrey) + 10) / 25, 0);
-            v = floor(T(v * 1e7 + 0.5)) / 1e7;  // as the file has it
+            v = floor(T(v * 1e7 + 0.5)) / 1e7;  // rounded like the file
         }
         return out;
     }
@@ -437,18 +439,18 @@ std::shared_ptr<const Lattice> rail_lattice() {
     return lattice;
 }
 
-/// log2 of light as places on the axes: mid grey is at 0.4.
+/// log2 of scene values as positions on the axes: mid gray is at 0.4.
 Expr log_encode(const Expr& x) { return (log2(x) - kLowest) / (kHighest - kLowest); }
 Expr log_decode(const Expr& v) { return exp2(kLowest + (kHighest - kLowest) * v); }
 
-/// Rec.2020 -> what the cube has.
+/// Rec.2020 -> color of the 3D LUT.
 Pipeline through(const std::shared_ptr<const Lattice>& lattice) {
     return {MatrixStage{rec2020_to_e_gamut(), "to_e_gamut"},
             ClampStage{std::exp2(kLowest), std::exp2(kHighest)},
             LatticeStage{log_encode(Expr::input()), lattice}};
 }
 
-/// HLG codes -> Rec.2020 light, 1 = 100 cd/m2, on a display of 1000 cd/m2.
+/// HLG codes -> display-linear Rec.2020, 1 = 100 cd/m2, on a display of 1000 cd/m2.
 Pipeline hlg_display() {
     return {curve_stage(hlg_inverse_oetf(Expr::input())),
             ToneScaleStage{ToneScaleStage::Norm::luminance, kRec2020Weights,
@@ -457,14 +459,14 @@ Pipeline hlg_display() {
 }
 
 // ---------------------------------------------------------------------------------------------
-// Looks: between the first guard rail and the whole chain, in the inset, on log values
+// Looks, on log values in the inset, between the first guard rail and the rest of the chain
 
-/// Below which OpenColorIO takes no logarithm: the smallest normal float.
+/// Lower limit of OpenColorIO's logarithm: the smallest normal float.
 constexpr double kSmallestLog = 0x1p-126;
-/// Above which nothing is: with more, the largest contrast would leave the floats.
+/// Upper limit: above it the largest contrast would overflow floats.
 constexpr double kLargestLog = 0x1p60;
 
-/// Slope and saturation of the looks that are a contrast about mid grey.
+/// Slope and saturation of the looks that are a contrast about mid gray.
 struct Contrast {
     const char* id;
     const char* title;
@@ -481,8 +483,8 @@ constexpr std::array<Contrast, 7> kContrasts = {{
     {"very_low_contrast", "Very Low Contrast", 0.7, 1.15},
 }};
 
-/// The shadow curve of OpenColorIO's GradingTone below 1: slope `m0` up to the pivot, and from
-/// there two parabolas that reach the identity at 0.4.
+/// The shadow curve of OpenColorIO's GradingTone below 1: slope `m0` up to the pivot, then two
+/// parabolas that reach the identity at 0.4.
 Expr lowered_shadows(const Expr& t, double m0) {
     constexpr double x0 = 0.1;
     constexpr double x2 = 0.4;
@@ -499,7 +501,7 @@ Expr lowered_shadows(const Expr& t, double m0) {
                   select(less(t, x1), lower, select(less(t, x2), upper, t)));
 }
 
-/// The inset's light, to be limited to what has a logarithm -> the look's.
+/// Scene color in the inset, limited to the range of the logarithm -> with the look.
 Pipeline look_stages(const std::string& look) {
     const Expr v = named("v", log_encode(Expr::input()));
     if (look == "punchy") {
@@ -508,13 +510,13 @@ Pipeline look_stages(const std::string& look) {
             named("darkened", select(less(0, lowered), pow(max(lowered, 0), 1.0912), lowered));
         return {curve_stage(log_decode(darkened))};
     }
-    // Its log values are decoded for the sum and encoded again.
+    // The look decodes its log values for the sum and encodes them again.
     if (look == "greyscale")
         return {MatrixStage{{kRailWeights2025, kRailWeights2025, kRailWeights2025}}};
     for (const Contrast& contrast : kContrasts) {
         if (look != contrast.id) continue;
-        // pivot + slope (v - pivot): what is added does not change saturation, and is a factor of
-        // light. So all of these looks have the same curves.
+        // pivot + slope (v - pivot): the added constant does not change saturation, because it is a
+        // factor in linear. So all of these looks share their curves.
         constexpr double pivot = 0.4;
         const double gain = std::exp2((kHighest - kLowest) * pivot * (1 - contrast.slope));
         const Matrix3 saturate = saturation_matrix(contrast.saturation, kRec709Weights);
@@ -541,10 +543,10 @@ Pipeline apply_look(const std::string& look, bool is_lattice) {
 std::vector<Look> looks() {
     std::vector<Look> all = {
         {"punchy", "Punchy", "darker shadows: GradingTone 0.2 and 0.35, log power 1.0912"},
-        {"greyscale", "Greyscale", "without colors, of equal luminance"}};
+        {"greyscale", "Greyscale", "black and white, with the luminance of the colors"}};
     for (const Contrast& c : kContrasts) {
         all.push_back({c.id, c.title,
-                       "log contrast " + shortest(c.slope) + " about mid grey, saturation " +
+                       "log contrast " + shortest(c.slope) + " about mid gray, saturation " +
                            shortest(c.saturation)});
     }
     return all;
@@ -560,36 +562,40 @@ std::vector<Operator> define_agx_blender() {
     op.title = "AgX (Blender)";
     op.view = "AgX";
     op.character =
-        "soft: bright colors fade to white and keep most of their hue, mid grey stays; low in "
-        "contrast until a look is chosen";
+        "soft: bright colors fade to white and keep most of their hue, mid gray stays; low "
+        "contrast unless a look is chosen";
     op.source =
         "E. Chow, AgX and AgX_LUT_Gen, github.com/EaryChow; Blender 5.2, config.ocio: AgX, AgX - "
         "HDR 1000 nits and their looks";
-    op.licence = "formula and constants; no file or code of it is used";
+    op.licence = "formula and constants only; none of its files or code is used";
     op.dialects = "AgX";
     op.negatives =
-        "colors outside Rec.2020 are lifted until no channel is below 0, and scaled for the light "
-        "that this adds; the lattice limits to E-Gamut first";
+        "colors outside Rec.2020 are lifted until no channel is below 0, then scaled to compensate "
+        "for the added light; Blender's 3D LUT limits them to E-Gamut first";
     op.working = kRec2020;
     op.parameters = {
         limit_parameter({"rec709", "p3d65", "rec2020"}, "rec709"),
-        choice_parameter("method", {"lattice", "formula"}, "lattice",
-                         "lattice: the cube that Blender has; formula: what the cube samples"),
+        choice_parameter(
+            "method", {"lattice", "formula"}, "lattice",
+            "lattice: Blender's own 3D LUT; formula: the formula that the LUT samples"),
         display_parameter(choice_parameter("range", {"sdr", "hdr"}, "sdr",
-                                           "hdr: for displays of 1000 cd/m2, within P3"),
+                                           "hdr: displays of 1000 cd/m2, colors within P3"),
                           [](const DisplayFacts& display) -> std::string {
                               return display.is_hdr ? "hdr" : "sdr";
                           }),
     };
-    op.presets = {{"formula", "without the cube's interpolation", {{"method", "formula"}}},
-                  {"hdr", "for an HDR display of 1000 cd/m2", {{"range", "hdr"}}}};
+    op.presets = {{"formula",
+                   "exact formula, without the interpolation of the 3D LUT",
+                   {{"method", "formula"}}},
+                  {"hdr", "HDR display of 1000 cd/m2", {{"range", "hdr"}}}};
     op.looks = looks();
     op.warnings = {
-        "the lattice is what Blender shows: its interpolation moves saturated colors by up to 0.1 "
-        "of the sRGB code from the formula",
-        "with range=hdr an SDR display clips at 100 cd/m2",
-        "Blender multiplies the light of its HDR view by 2.03 where it shows or saves it"};
-    // The cube of the looks' guard rail ends 10 stops below mid grey, where these looks lift.
+        "Blender shows the 3D LUT, whose interpolation moves saturated colors by up to 0.1 of the "
+        "sRGB code value from the formula",
+        "SDR displays clip range=hdr at 100 cd/m2",
+        "Blender multiplies its HDR view by 2.03 when it shows or saves it"};
+    // The 3D LUT of the looks' guard rail ends 10 stops below mid gray, and these looks lift that
+    // value.
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, 10, "hdr"},
                      {DocumentedDifference::Kind::black, 0.000105, "punchy"},
                      {DocumentedDifference::Kind::black, 1.85e-5, "medium_low_contrast"},
@@ -601,9 +607,9 @@ std::vector<Operator> define_agx_blender() {
                  .ocio_gpu = 2e-4,
                  .cube = 0.11,
                  .reason =
-                     "simd: twice as fast as with 1e-6; hdr: HLG codes as light of 10; colors far "
-                     "outside of Rec.709 cancel; "
-                     "formula: its guard rails have corners that no cube holds"};
+                     "simd: twice as fast as with 1e-6; hdr: HLG codes decode to values up to 10; "
+                     "colors far outside Rec.709 suffer from cancellation; formula: a 3D LUT "
+                     "smooths the corners of the guard rails"};
     op.build = [](const Params& p) -> Pipeline {
         const bool is_lattice = p.choice("method") == "lattice";
         const Pipeline look = apply_look(p.look(), is_lattice);

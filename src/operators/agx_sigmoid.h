@@ -5,12 +5,12 @@
 
 #include "tonewright/pipeline.h"
 
-/// What the dialects of AgX share: Blender's matrices and the curve, for expressions and, where the
-/// nodes of cubes are computed, for numbers.
+/// Shared by the dialects of AgX: Blender's matrices and the curve, for expressions and, to compute
+/// the nodes of 3D LUTs, for double.
 TONEWRIGHT_NAMESPACE_BEGIN
 
 // clang-format off
-/// Blender's inset and outset, for Rec.2020. The outset is the inverse of another inset than this.
+/// Blender's inset and outset, for Rec.2020. The outset is the inverse of a different inset.
 inline constexpr Matrix3 kAgxInsetRec2020 = {{
     {0.856627153315983, 0.0951212405381588, 0.0482516061458583},
     {0.137318972929847, 0.761241990602591,  0.101439036467562},
@@ -21,7 +21,7 @@ inline constexpr Matrix3 kAgxOutsetRec2020 = {{
     {-0.1413297634984383, -0.1106066430966029,  1.2519364065950402}}};
 // clang-format on
 
-// Words of expressions, for numbers: a formula written once for either.
+// Functions of Expr for double, so that one formula serves both.
 inline double min(double a, double b) { return b < a ? b : a; }
 inline double max(double a, double b) { return a < b ? b : a; }
 inline double pow(double base, double exponent) { return std::pow(base, exponent); }
@@ -51,16 +51,16 @@ class AgxSigmoid {
           toe_(-arm_scale(px, py, slope, toe_power)),
           shoulder_(arm_scale(1 - px, 1 - py, slope, shoulder_power)) {}
 
-    /// What scales an arm, from the pivot over lx and ly, to its end.
+    /// Scale of an arm that ends lx and ly from the pivot.
     [[nodiscard]] static double arm_scale(double lx, double ly, double k, double p) {
         return std::pow(std::pow(k * lx, -p) * (std::pow(k * lx / ly, p) - 1), -1 / p);
     }
 
-    /// Of a normalised log value: 0 -> 0, px -> py, 1 -> 1.
+    /// Maps a normalized log value: 0 -> 0, px -> py, 1 -> 1.
     template <class T>
     [[nodiscard]] T operator()(const T& n) const {
         const auto arm = [&](double s, double p) -> T {
-            // The other side of the pivot is not this arm's.
+            // This arm does not apply on the other side of the pivot.
             const T u = named("u", max(slope_ * (n - px_) / s, 0));
             return s * (u / pow(1 + pow(u, p), 1 / p)) + py_;
         };

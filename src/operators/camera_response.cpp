@@ -1,27 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Camera response: the measured answer of a film or a camera to light, from a file.
+// Camera response: the measured response of a film or a camera to light, from a file.
 //
 // Source    M. D. Grossberg, S. K. Nayar, "What is the Space of Camera Response Functions?",
 //           CVPR 2003, and its database of response functions (DoRF), Columbia University; used as
 //           a tone curve by 64, "Tone Mapping", 64.github.io ("ISO").
-// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, inf), negatives: clamped
-//           at 0. `iso` is the light that irradiance 1 of the curve stands for; above it the last
-//           value holds.
-// Out       code values in [0, 1]: a response is the pixel value that the camera writes. Nothing is
-//           encoded after it; other displays get its light by the power 2.2.
+// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, inf), negatives clamped at
+//           0. `iso` is the scene value of irradiance 1 of the curve; the curve is constant above
+//           it.
+// Out       code values in [0, 1]: a response is the pixel value that the camera writes. It is not
+//           encoded again; other displays decode it with the power 2.2.
 // Kind      per channel, straight lines between the measured points; monotone (the reader refuses
 //           curves that fall).
 // Keeps     the first and the last value of the file; of the built-in curve 0 -> 0, iso -> 1.
-// Built in  no measured curve, because the database says nothing of passing it on. Without a file
-//           the curve is synthetic, ours: I(B) = (1 - exp(-3 B^0.7)) / (1 - exp(-3)) at the 1024
-//           irradiances i/1023, with straight lines between.
-// Differs   from the program of 64.github.io in its mistakes. It takes the end of an interval for
-//           its beginning (the result of upper_bound) and so extrapolates from the next one, which
-//           is off by up to 1.04e-4; it divides 0 by 0 in the last interval; at iso itself it reads
-//           behind the table. And it encodes the pixel values once more with the sRGB curve. Its
-//           table is the red curve of dscs315-1 for all channels: curve=red of a four-column file.
-// Check     mid grey 0.18 -> 0.239063797 (python_check/operators/camera_response.py).
+// Built in  no measured curve, because the database does not state terms of redistribution. Without
+//           a file the curve is synthetic: I(B) = (1 - exp(-3 B^0.7)) / (1 - exp(-3)) at the 1024
+//           irradiances i/1023, with straight lines between them.
+// Differs   from the program of 64.github.io, which has four errors. It uses the end of an interval
+//           as its start (the result of upper_bound) and extrapolates from the next interval, an
+//           error of up to 1.04e-4. It divides 0 by 0 in the last interval. At iso it reads past
+//           the table. It encodes the pixel values again with the sRGB curve. Its table is the red
+//           curve of dscs315-1 for all channels: curve=red of a four-column file.
+// Check     mid gray 0.18 -> 0.239063797 (python_check/operators/camera_response.py).
 #include <cmath>
 
 #include "operators/camera_response/response_curve.h"
@@ -65,32 +65,31 @@ std::vector<Operator> define_camera_response() {
     op.title = "Camera response (DoRF)";
     op.view = "Camera Response";
     op.character =
-        "a film's or camera's own curve from a file, hard white at iso; the built-in one is bright "
-        "and flat";
+        "measured curve of a film or camera from a file, hard white at iso; the built-in curve is "
+        "bright and flat";
     op.source =
         "M. Grossberg, S. Nayar, What is the Space of Camera Response Functions?, CVPR 2003; 64, "
         "Tone Mapping, 64.github.io";
-    op.licence = "published method; measured curves are not part of it";
+    op.licence = "published method; no measured curves are included";
     op.bounds = {.ocio_cpu = 1e-6,
                  .ocio_gpu = 3e-6,
-                 .reason = "straight lines between the samples: an edge at each"};
+                 .reason = "straight lines between the samples, so the slope jumps at each sample"};
     op.negatives = kNegativesClampAtZero;
     op.output = OutputKind::code_value;
     op.code_power = 2.2;
     op.parameters = fixed_parameters({
-        text_parameter("file",
-                       "response curves: .rf, CSV or DoRF's text; none: a synthetic curve, built "
-                       "in"),
+        text_parameter(
+            "file", "response curves: .rf, CSV or DoRF's text (empty: a built-in synthetic curve)"),
         text_parameter("curve",
-                       "of DoRF: a name, or what the names of three channels begin with; of four "
-                       "columns: red, green or blue for all channels"),
+                       "curve of a DoRF file: its name, or the common start of three channels' "
+                       "names; of a file with four columns: red, green or blue for all channels"),
         number_parameter("iso", "scene-linear", 6, 1e-5, 65504,
-                         "light that irradiance 1 stands for: it is shown as the curve's end"),
+                         "scene value of irradiance 1, shown at the end of the curve"),
     });
     op.warnings = {
-        "the response is the encoding: nothing is encoded after it, and for other "
-        "displays its light is decoded with 2.2",
-        "without a file the curve is synthetic, of no film or camera"};
+        "the response already encodes: its code values are not encoded again; for other displays "
+        "they are decoded with the power 2.2",
+        "the built-in curve is synthetic: no film or camera has it"};
     op.build = [](const Params& p) -> Pipeline {
         const double iso = p.number("iso");
         const ResponseCurves curves = curves_of(p);

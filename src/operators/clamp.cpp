@@ -2,8 +2,9 @@
 //
 // Clamp: no tone mapping at all.
 //
-// Source    Common practice; the first operator of every survey.
-// In        scene-linear RGB, working primaries Rec.709, D65; domain (-inf, inf), negatives: 0.
+// Source    common practice; the first operator of every survey.
+// In        scene-linear RGB, working primaries Rec.709, D65; domain (-inf, inf), negatives clamped
+//           at 0.
 // Out       display-linear RGB, 1.0 = display peak; range [0, 1].
 // Kind      per channel; monotone on the neutral axis: yes; inverse: within [0, 1].
 // Keeps     everything inside [0, 1].
@@ -18,10 +19,10 @@ std::vector<Operator> define_clamp() {
     op.id = "clamp";
     op.title = "Clamp";
     op.view = "Standard";
-    op.character = "hard clip at 1: exact below, flat and hue-shifting above";
+    op.character = "hard clip at 1: exact below, flat with shifted hues above";
     op.source = "common practice";
     op.licence = "public domain";
-    op.negatives = "0";
+    op.negatives = "clamped at 0";
     op.build = [](const Params&) -> Pipeline { return {ClampStage{0, 1}}; };
     return {op};
 }

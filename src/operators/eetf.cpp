@@ -1,26 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// EETFs: from the light of one display to that of a smaller one. Report BT.2390, Report BT.2446
-// method A, and libplacebo's spline.
+// EETFs: map the luminance of one display to that of a display with a lower peak. Report BT.2390,
+// Report BT.2446 method A, and libplacebo's spline.
 //
 // Source    Report ITU-R BT.2390, "High dynamic range television for production and international
 //           programme exchange", EETF. Report ITU-R BT.2446, "Methods for conversion of high
 //           dynamic range content to standard dynamic range content and vice-versa", method A, its
 //           curve. libplacebo, tone_mapping.c: spline, and its variant of bt2390.
-// In        RGB light, working primaries Rec.2020, D65; 1.0 = reference_white cd/m2; domain
-//           [source_black, source_peak], what is outside is as its ends (negatives: 0).
+// In        display-linear RGB of the master, working primaries Rec.2020, D65; 1.0 =
+//           reference_white cd/m2; domain [source_black, source_peak], constant outside (negatives:
+//           0).
 // Out       display-linear RGB; output=sdr: 1.0 = target_peak, [target_black/target_peak, 1];
-//           output=hdr: the same in units of 100 cd/m2. But bt2390 with
-//           target_black above source_black ends a little above 1, as its black is added there too.
+//           output=hdr: the same in units of 100 cd/m2. bt2390 with target_black above source_black
+//           ends slightly above 1, because it adds the black lift there, too.
 // Kind      per channel, luminance, max or hue-preserving (parameter `apply`). Monotone on the
-//           neutral axis: yes with the defaults; bt2446a jumps up where its parts meet, by 0.0006
-//           and 0.00001 of Yc, as printed.
-// Keeps     source_black -> target_black, source_peak -> target_peak (but see Out).
+//           neutral axis: yes with the defaults; bt2446a as printed jumps up where its segments
+//           meet, by 0.0006 and 0.00001 of Yc.
+// Keeps     source_black -> target_black, source_peak -> target_peak (except as under Out).
 // Differs   bt2446a is the Report's curve without its color correction: method A works on Y' of
-//           gamma-encoded Y'CbCr; here `apply` says what the curve works on. The result is not
-//           below target_black, which a knee below 0 (large knee_offset) would take it to. Where
-//           the source's peak is not above the target's there is nothing to compress: only the
-//           source's limits remain. The exponent 1/mn of libplacebo's black is 4 for mn <= 0.
+//           gamma-encoded Y'CbCr; here `apply` chooses what the curve works on. The result is
+//           limited to target_black, which a knee below 0 (large knee_offset) would undercut.
+//           Without compression (source peak at or below target peak) only the source's limits
+//           apply. The exponent 1/mn of libplacebo's black is 4 for mn <= 0.
 // Check     18 cd/m2 of 1000 to 100 cd/m2: 18 (bt2390), 16.540679 (preset libplacebo), 5.25011361
 //           (bt2446a), 10.5269722 (spline) (check_values.json).
 #include <algorithm>
@@ -33,7 +34,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// What the curves are between, in cd/m2.
+/// Limits of source and target, in cd/m2.
 struct Limits {
     double source_black, source_peak, target_black, target_peak, reference_white;
 
@@ -54,7 +55,7 @@ struct Limits {
         }
     }
     [[nodiscard]] bool is_compressed() const { return source_peak > target_peak; }
-    /// The source's limits as scene values.
+    /// Limits of the source as scene values.
     [[nodiscard]] double lowest() const { return source_black / reference_white; }
     [[nodiscard]] double highest() const { return source_peak / reference_white; }
 };
@@ -66,13 +67,15 @@ double output_unit(const Params& p) {
 
 std::vector<ParameterSpec> with_limits(std::vector<ParameterSpec> own) {
     std::vector<ParameterSpec> all = {
-        number_parameter("source_peak", "cd/m2", 1000, 1, 10000, "of what the source was made for"),
-        display_parameter(number_parameter("target_peak", "cd/m2", 100, 1, 10000, "of the display"),
+        number_parameter("source_peak", "cd/m2", 1000, 1, 10000,
+                         "peak luminance that the source was mastered for"),
+        display_parameter(number_parameter("target_peak", "cd/m2", 100, 1, 10000,
+                                           "peak luminance of the display"),
                           [](const DisplayFacts& display) { return shortest(display.peak); }),
-        number_parameter("source_black", "cd/m2", 0, 0, 10000, "of what the source was made for"),
-        number_parameter("target_black", "cd/m2", 0, 0, 10000, "of the display"),
-        number_parameter("reference_white", "cd/m2", 100, 1, 1000,
-                         "what scene-linear 1 stands for"),
+        number_parameter("source_black", "cd/m2", 0, 0, 10000,
+                         "black level that the source was mastered for"),
+        number_parameter("target_black", "cd/m2", 0, 0, 10000, "black level of the display"),
+        number_parameter("reference_white", "cd/m2", 100, 1, 1000, "luminance of scene-linear 1"),
         sdr_or_hdr_parameter("sdr: 1 is target_peak; hdr: 1 is 100 cd/m2"),
     };
     all.insert(all.end(), own.begin(), own.end());
@@ -85,21 +88,23 @@ Operator eetf_operator() {
     op.working = kRec2020;
     op.dialects = "EETF";
     op.bounds = {
-        // With 1e-6 for its goal a color far outside of the gamut was found just beyond it.
+        // With a goal of 1e-6, one color far outside the gamut exceeded the bound slightly.
         .simd_goal = 7e-7,
         .ocio_cpu = 3e-5,
         .ocio_gpu = 5e-5,
-        .reason = "hdr: light of 10 in PQ, beside which a channel near 0 keeps float's rounding"};
+        .reason =
+            "hdr: values up to 10 in PQ; a channel near 0 keeps the float rounding of the larger "
+            "ones"};
     op.peak = [](const Params& p) { return p.number("target_peak") / output_unit(p); };
     return op;
 }
 
-/// @param nits  light of the target in cd/m2, of the scene value between the source's limits.
+/// @param nits  luminance on the target in cd/m2, for a scene value between the source's limits.
 Pipeline eetf(const Expr& nits, const Limits& limits, const Params& params) {
     const double unit = output_unit(params);
     const double target_lo = limits.is_compressed() ? limits.target_black / unit : 0;
     const Expr f = nits / unit;
-    // Channel by channel the limits are stages of their own: their corners stay out of the tables.
+    // Per channel, the limits are separate stages, so that the tables have no corners.
     if (params.choice("apply") == "channels") {
         return Pipeline{ClampStage{limits.lowest(), limits.highest()}} +
                apply_tone_curve({.f = f, .weights = kRec2020Weights}, params) +
@@ -115,7 +120,7 @@ Expr source_nits(const Limits& limits) { return Expr::input() * limits.reference
 double pq(double nits) { return pq_encode_nits(nits).value(); }
 double lerp(double a, double b, double t) { return a + t * (b - a); }
 
-/// Code values of PQ with the source's range as [0, 1]: `E` of the Report.
+/// PQ code values with the source's range scaled to [0, 1]: `E` of the Report.
 Expr bt2390_curve(const Limits& limits, double knee_offset, bool is_libplacebo) {
     const double lo = pq(limits.source_black);
     const double range = pq(limits.source_peak) - lo;
@@ -153,19 +158,19 @@ Operator bt2390() {
     op.title = "BT.2390 EETF";
     op.view = "BT.2390 EETF";
     op.character =
-        "HDR masters on a smaller display: untouched below a knee, then a spline in PQ; darker "
-        "than scene operators";
+        "HDR masters on a display with a lower peak: unchanged below a knee, then a spline in PQ; "
+        "darker than scene operators";
     op.source = "Report ITU-R BT.2390, EETF; knee and black of libplacebo, tone_mapping.c: bt2390";
-    op.licence = "published formula; libplacebo LGPL-2.1+: formula only, no code of it is used";
+    op.licence = "published formula; libplacebo: LGPL-2.1+, formula only, none of its code is used";
     op.parameters = with_limits({
         number_parameter("knee_offset", "", 0.5, 0.5, 2,
                          "o of the knee (1 + o) mx - o: 0.5 in the Report, 1 in libplacebo"),
         choice_parameter("black_lift", {"report", "libplacebo"}, "report",
-                         "how target_black is reached: mn (1 - E)^4 added; or that with a power of "
-                         "its own, and a gain that keeps the peak"),
+                         "black lift to target_black; report: adds mn (1 - E)^4; libplacebo: "
+                         "another power, and a gain that keeps the peak"),
     });
     op.presets = {{"libplacebo",
-                   "as libplacebo has it",
+                   "libplacebo's variant",
                    {{"knee_offset", "1"}, {"black_lift", "libplacebo"}}}};
     op.build = [](const Params& p) -> Pipeline {
         const Limits limits(p);
@@ -201,16 +206,16 @@ Operator bt2446a() {
     op.view = "BT.2446 A";
     op.character =
         "HDR masters of 1000 cd/m2 for SDR television: one smooth curve over the whole range, low "
-        "in contrast";
+        "contrast";
     op.source = "Report ITU-R BT.2446, method A, its tone mapping curve";
     op.licence = "published formula";
     op.parameters = with_limits({});
     // 1.0770 Y and -1.1510 Y^2 + 2.7811 Y - 0.6302 differ at Y = 0.7399.
     op.deviations = {{DocumentedDifference::Kind::jumps, 0.00104, ""}};
-    // 0.001 of the light, which a matrix and sRGB's slope at black enlarge.
+    // 0.001 display-linear, amplified by a matrix and by sRGB's slope at black.
     op.bounds = {.ocio_cpu = 5e-3,
                  .ocio_gpu = 5e-3,
-                 .reason = "the Report's curve jumps where its parts meet"};
+                 .reason = "the Report's curve jumps where its segments meet"};
     op.build = [](const Params& p) -> Pipeline {
         const Limits limits(p);
         return eetf(limits.is_compressed() ? bt2446a_curve(limits) : source_nits(limits), limits,
@@ -219,8 +224,8 @@ Operator bt2446a() {
     return op;
 }
 
-/// Two polynomials that meet in a pivot with one slope, all in code values of PQ.
-/// @param average  of the scene, cd/m2; 0: not known.
+/// Two polynomials that meet at a pivot with equal slope, in PQ code values.
+/// @param average  of the scene, in cd/m2; 0 if unknown.
 Expr spline_curve(const Limits& limits, double contrast, double average) {
     const double smin = pq(limits.source_black);
     const double smax = pq(limits.source_peak);
@@ -257,13 +262,15 @@ Operator spline() {
     op.title = "Spline (libplacebo)";
     op.view = "Spline libplacebo";
     op.character =
-        "HDR masters on a smaller display around a pivot that a scene average can move; contrast "
-        "to choose";
+        "HDR masters on a display with a lower peak, about a pivot that follows the scene average; "
+        "adjustable contrast";
     op.source = "libplacebo, tone_mapping.c: spline, its default";
-    op.licence = "LGPL-2.1+; formula only, no code of it is used";
+    op.licence = "LGPL-2.1+; formula only, none of its code is used";
     op.parameters = with_limits({
-        number_parameter("contrast", "", 0.5, 0, 1.5, "1 keeps the slope of the pivot at 1"),
-        number_parameter("average", "cd/m2", 0, 0, 10000, "of the scene; 0: not known"),
+        number_parameter("contrast", "", 0.5, 0, 1.5,
+                         "contrast about the pivot; 1 keeps its slope at 1"),
+        number_parameter("average", "cd/m2", 0, 0, 10000,
+                         "average luminance of the scene (0: unknown)"),
     });
     op.build = [](const Params& p) -> Pipeline {
         const Limits limits(p);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The plainest curves: a division, an exponential, two logarithms, a power. Each needs one number
+// Elementary curves: a division, an exponential, two logarithms, a power. Each uses one statistic
 // of the picture: its mean or its maximum.
 //
 // Source    linear: common practice, "maximum division" where the divisor is the picture's maximum.
@@ -10,17 +10,17 @@
 // In        scene-linear RGB, working primaries Rec.709, D65; domain [0, 65504], negatives: clamped
 //           at 0.
 // Out       display-linear RGB, 1.0 = display peak. linear [0, 1]; exponential [0, 1); the others
-//           are 1 at `maximum` or `limit` and go on rising above it.
+//           are 1 at `maximum` or `limit` and keep rising above it.
 // Kind      per channel (linear) or luminance, as `apply` says; monotone on the neutral axis: yes.
 //           linear has an inverse within [0, divisor].
 // Keeps     f(0) = 0; linear f(divisor) = 1; logarithmic and exponentiation f(maximum) = 1;
 //           log_tonemap f(limit) = 1.
-// Differs   luminance forms are 0/0 at black in every source: here black stays black. ln(1 + x) is
-//           computed so that it keeps its digits for small x. exponentiation is black up to 2^-100:
-//           its slope at 0 has no end. log_tonemap's S-curve ("hacky contrast") falls again above 1
-//           and is negative from 1.5 on, so the light is limited to [0, 1] before it; the post has
-//           a dash for its minus and no closing braces.
-// Check     mid grey 0.18 -> 0.045 (linear), 0.164729789 (exponential), 0.0358635138 (logarithmic),
+// Differs   luminance variants are 0/0 at black in every source; here black stays black. ln(1 + x)
+//           keeps its digits for small x. exponentiation is black up to 2^-100, because its slope
+//           at 0 is infinite. log_tonemap's S-curve ("hacky contrast") falls above 1 and is
+//           negative from 1.5, so its input is limited to [0, 1]; the post has a dash instead of
+//           the minus sign and no closing braces.
+// Check     mid gray 0.18 -> 0.045 (linear), 0.164729789 (exponential), 0.0358635138 (logarithmic),
 //           0.0584193346 (log_tonemap), 0.0424264069 (exponentiation)
 //           (python_check/operators/exposure.py).
 #include <cmath>
@@ -35,7 +35,7 @@ constexpr const char* kZeltner =
 constexpr const char* kChannelsMayClip =
     "apply=luminance keeps chromaticity, so a saturated channel may exceed 1 and clip";
 
-/// A scene value that every picture has one of its own for: its maximum.
+/// A parameter that the maximum of the picture sets.
 ParameterSpec maximum_luminance(std::string name, double value, double min, std::string help) {
     return statistic_parameter(
         number_parameter(std::move(name), "scene-linear", value, min, kHalfMax, std::move(help)),
@@ -48,14 +48,12 @@ Operator linear() {
     op.title = "Linear (division by the maximum)";
     op.view = "Linear";
     op.character =
-        "contrast and colours exactly as in the scene, then clipped; dark where a picture has "
-        "bright lights";
+        "contrast and colors of the scene, then a clip; dark if the picture has bright highlights";
     op.source = "common practice; division by the maximum in 64, Tone Mapping, 64.github.io";
     op.licence = "common practice";
     op.negatives = kNegativesClampAtZero;
     op.parameters = with_apply(
-        "channels",
-        {maximum_luminance("divisor", 4, 1e-6, "scene value that is shown as display white")});
+        "channels", {maximum_luminance("divisor", 4, 1e-6, "scene value shown as display white")});
     op.build = [](const Params& p) -> Pipeline {
         const Expr x = Expr::input();
         const Expr divisor = p.expr("divisor");
@@ -71,16 +69,17 @@ Operator exponential() {
     op.title = "Exponential";
     op.view = "Exponential";
     op.character =
-        "steep in the dark, soft above the average, never clips a grey; bright, with flat lights";
+        "steep in the shadows, soft above the average, never clips a gray; bright, with flat "
+        "highlights";
     op.source = std::string("1 - exp(-L/Lavg) as in ") + kZeltner;
     op.licence = "published formula (program: MIT)";
     op.negatives = kNegativesClampAtZero;
     op.parameters = with_apply(
         "luminance",
-        {statistic_parameter(
-            number_parameter("average", "scene-linear", 1, 1e-6, kHalfMax,
-                             "scene value that is shown at 1 - 1/e = 0.63 of the display's light"),
-            "mean luminance", [](const SceneStatistics& s) { return s.mean_luminance; })});
+        {statistic_parameter(number_parameter("average", "scene-linear", 1, 1e-6, kHalfMax,
+                                              "scene value shown at display-linear 1 - 1/e = 0.63"),
+                             "mean luminance",
+                             [](const SceneStatistics& s) { return s.mean_luminance; })});
     op.warnings = {kChannelsMayClip};
     op.build = [](const Params& p) -> Pipeline {
         return tone_curve_pipeline({.f = 1 - exp(-(Expr::input() / p.expr("average")))}, p);
@@ -93,15 +92,16 @@ Operator logarithmic() {
     op.id = "logarithmic";
     op.title = "Logarithmic";
     op.view = "Logarithmic";
-    op.character = "equal steps for equal ratios: opens shadows, greys everything, dark mid tones";
+    op.character =
+        "equal steps for equal ratios: opens shadows, low contrast everywhere, dark midtones";
     op.source = std::string("log10(1 + p L)/log10(1 + p Lmax) as in ") + kZeltner;
     op.licence = "published formula (program: MIT)";
     op.negatives = kNegativesClampAtZero;
     op.parameters = with_apply(
         "luminance",
         {number_parameter("p", "", 1, 0.001, 1000,
-                          "factor on the scene value inside the logarithm: larger is flatter"),
-         maximum_luminance("maximum", 100, 1e-6, "scene value that is shown as display white")});
+                          "factor on the scene value in the logarithm; larger is flatter"),
+         maximum_luminance("maximum", 100, 1e-6, "scene value shown as display white")});
     op.warnings = {kChannelsMayClip};
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, 2.4, ""}};
     op.build = [](const Params& p) -> Pipeline {
@@ -118,18 +118,17 @@ Operator log_tonemap() {
     op.title = "Log tone map (Madams)";
     op.view = "Log Tone Map";
     op.character =
-        "a logarithm that is white at `limit`; flat, but for the optional S-curve behind it";
+        "a logarithm that reaches white at `limit`; flat, unless the optional S-curve follows it";
     op.source =
         "T. Madams, Why Reinhard desaturates my blacks, imdoingitwrong.wordpress.com, 2010-08-19, "
         "comment 9";
     op.licence = "published formula";
     op.negatives = kNegativesClampAtZero;
     op.parameters = with_apply(
-        "luminance",
-        {maximum_luminance("limit", 16, 0.001, "scene value that is shown as display white"),
-         number_parameter("contrast", "", 0, 0, 1,
-                          "share of the S-curve x^2 (3 - 2x), of each channel, after a limit to "
-                          "[0, 1]; 0: neither")});
+        "luminance", {maximum_luminance("limit", 16, 0.001, "scene value shown as display white"),
+                      number_parameter("contrast", "", 0, 0, 1,
+                                       "share of the S-curve x^2 (3 - 2x), per channel, after a "
+                                       "limit to [0, 1] (0: no curve and no limit)")});
     op.warnings = {kChannelsMayClip};
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, 3.9, ""}};
     op.build = [](const Params& p) -> Pipeline {
@@ -152,18 +151,19 @@ Operator exponentiation() {
     op.id = "exponentiation";
     op.title = "Exponentiation";
     op.view = "Exponentiation";
-    op.character = "a power of the scene: every ratio shrinks alike; lifts shadows, grey and flat";
+    op.character =
+        "a power of the scene: reduces every contrast by the same factor; lifts shadows, flat";
     op.source = std::string("(L/Lmax)^p as in ") + kZeltner;
     op.licence = "published formula (program: MIT)";
     op.negatives = kNegativesClampAtZero;
     op.parameters = with_apply(
         "luminance",
-        {number_parameter("p", "", 0.5, 0.01, 1, "the power: smaller is flatter, 1 is linear"),
-         maximum_luminance("maximum", 100, 1e-6, "scene value that is shown as display white")});
+        {number_parameter("p", "", 0.5, 0.01, 1, "exponent; smaller is flatter, 1 is linear"),
+         maximum_luminance("maximum", 100, 1e-6, "scene value shown as display white")});
     op.warnings = {kChannelsMayClip};
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
     op.bounds.ocio_cpu = op.bounds.ocio_gpu = 2e-3;
-    op.bounds.reason = "infinitely steep at black, where half floats end at 6e-8";
+    op.bounds.reason = "infinite slope at black, and half floats end at 6e-8";
     op.build = [](const Params& p) -> Pipeline {
         const Expr x = Expr::input();
         const Expr power = named("power", pow(x / p.expr("maximum"), p.expr("p")));

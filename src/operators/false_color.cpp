@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// False color: one color for every stop of luminance about mid grey. Shows exposure, not a picture.
+// False color: one color for every stop of luminance about mid gray. Shows exposure, not a picture.
 //
-// Source    Ours.
+// Source    Tonewright.
 // In        scene-linear RGB, working primaries Rec.709, D65; domain [0, inf), negatives: clamped
 //           at 0.
 // Out       display-linear RGB, 1.0 = display peak; [0, 1].
 // Kind      a matrix of three equal rows, then one curve for each channel; not monotone.
-// Keeps     mid grey -> code value 0x80 of sRGB. Black and all below -6.63 stops is black, all
-//           above +6.63 stops white.
+// Keeps     mid gray -> code value 0x80 of sRGB. Everything below -6.63 stops is black, everything
+//           above +6.63 stops is white.
 // Differs   nowhere.
-// Check     mid grey 0.18 -> 0.215860500 (code value 128 of 255, decoded).
+// Check     mid gray 0.18 -> 0.215860500 (code value 128 of 255, decoded).
 #include <cmath>
 
 #include "operators/family.h"
@@ -23,8 +23,8 @@ constexpr std::array<unsigned, 15> kColors = {0x000000, 0x16003B, 0x3B0A6B, 0x2A
                                               0x1E97B5, 0x1FA36B, 0x808080, 0x7FB13A, 0xC9C22A,
                                               0xE8982A, 0xE2602C, 0xD62839, 0xF27BB5, 0xFFFFFF};
 constexpr double kLowestStop = -7;
-/// Of the way from one color to the next, in stops: wide enough for tables over half floats, which
-/// have 1024 entries to the stop, to show every picture within a step of 16 bits.
+/// Half the width of a transition between two colors, in stops. It is wide enough that half-float
+/// tables, with 1024 entries per stop, show every picture within a 16-bit step.
 constexpr double kHalfWidth = 1.0 / 8;
 
 double light(unsigned color, unsigned channel) {
@@ -40,8 +40,8 @@ std::vector<Operator> define_false_color() {
     op.title = "False color";
     op.view = "False Color";
     op.character =
-        "a color for every stop: grey is mid grey, blue to purple below, yellow to red above, "
-        "white from 7 stops";
+        "one color per stop: gray at mid gray, blue to purple below, yellow to red above, white "
+        "from 7 stops";
     op.source = "Tonewright";
     op.licence = "Apache-2.0";
     op.negatives = kNegativesClampAtZero;
@@ -51,7 +51,7 @@ std::vector<Operator> define_false_color() {
                      {DocumentedDifference::Kind::tints_gray, 0.75, ""}};
     op.bounds = {.ocio_cpu = 2e-5,
                  .ocio_gpu = 2e-5,
-                 .reason = "a color goes over into the next within a quarter of a stop"};
+                 .reason = "one color blends into the next within a quarter of a stop"};
     op.build = [](const Params&) -> Pipeline {
         const Expr stops = named("stops", log2(Expr::input() / 0.18));
         CurveStage colors = curve_stage(0);
@@ -65,7 +65,8 @@ std::vector<Operator> define_false_color() {
                 f = f + (light(kColors[i + 1], channel) - light(kColors[i], channel)) * weight;
             }
         }
-        // Eight stops to either side everything is as at seven, and black has a logarithm.
+        // The colors are constant beyond seven stops. The limit of eight stops gives black a
+        // logarithm.
         return {limit_to_positive(), MatrixStage{{kRec709Weights, kRec709Weights, kRec709Weights}},
                 ClampStage{0.18 * std::exp2(-8), 0.18 * std::exp2(8)}, colors};
     };

@@ -6,12 +6,12 @@
 #include "pipeline/tone_curve.h"
 #include "tonewright/pipeline.h"
 
-/// Words that several operator files share. An operator file `<family>.cpp` defines
-/// `std::vector<Operator> define_<family>()`; CMake puts the call into the registry.
+/// Functions that operator files share. An operator file `<family>.cpp` defines
+/// `std::vector<Operator> define_<family>()`; CMake adds the call to the registry.
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// What nearly all operators do first: negatives of the working primaries are 0, and the half-float
-/// range ends at 65504.
+/// First stage of nearly all operators: clamps channels in the working primaries to [0, 65504], the
+/// half-float range.
 inline Stage limit_to_positive() { return ClampStage{0, kHalfMax}; }
 
 inline constexpr const char* kNegativesClampAtZero =
@@ -20,16 +20,16 @@ inline constexpr const char* kNegativesClampAtZero =
 /// Weights of relative luminance of ITU-R BT.2020-2, table 4.
 inline constexpr Vector3 kRec2020Weights = {0.2627, 0.6780, 0.0593};
 
-/// One chain behind another.
+/// Concatenates two chains.
 inline Pipeline operator+(Pipeline a, const Pipeline& b) {
     a.insert(a.end(), b.begin(), b.end());
     return a;
 }
 
-/// A condition on parameters that does not hold. Of live parameters that is not known.
+/// True if a condition on parameters is known to be false. With live parameters it is not known.
 inline bool fails(const Expr& condition) { return condition.is_constant(0); }
 
-/// All channels times a number.
+/// Scales all channels.
 inline Stage scale_stage(const Expr& factor) {
     if (factor.is_constant()) return MatrixStage{scale(kIdentity3, factor.value())};
     return named("scale", curve_stage(factor * Expr::input()));
@@ -41,51 +41,52 @@ inline Stage clamp_stage(const Expr& hi) {
     return named("limit", curve_stage(clamp(Expr::input(), 0, hi)));
 }
 
-/// A known defect: what `meant` is in `source`, the commit or page that the operator reproduces.
+/// A known defect: the operator `meant` as implemented in `source`, the commit or page that this
+/// operator reproduces.
 inline Operator defect_of(std::string meant, std::string id, std::string source,
                           std::string defect) {
     Operator op;
     op.id = std::move(id);
     op.source = std::move(source);
-    op.licence = "formula and constants; no code of it is used";
+    op.licence = "formula and constants only; none of its code is used";
     op.negatives = kNegativesClampAtZero;
     op.defect = std::move(defect);
     op.meant = std::move(meant);
     return op;
 }
 
-/// ln(1 + x) for x >= 0. What 1 + x rounds away is missing in both parts of the quotient.
+/// ln(1 + x) for x >= 0. The rounding error of 1 + x cancels in the quotient.
 inline Expr log_of_1_plus(const Expr& x) {
     if (x.is_constant()) return std::log1p(x.value());
     const Expr u = 1 + x;
     return select(equal(u, 1), x, x * (log(u) / (u - 1)));
 }
 
-/// limit_to_positive(), then the curve as the parameters of with_apply() say.
+/// limit_to_positive(), then the curve, applied as the parameters of with_apply() choose.
 inline Pipeline tone_curve_pipeline(const ToneCurve& curve, const Params& params) {
     return Pipeline{limit_to_positive()} + apply_tone_curve(curve, params);
 }
 
-/// Of an operator that makes pictures for SDR and HDR displays: "output", sdr or hdr.
+/// Parameter "output" (sdr or hdr) of operators for SDR and HDR displays.
 inline ParameterSpec sdr_or_hdr_parameter(std::string help) {
     return display_parameter(
         choice_parameter("output", {"sdr", "hdr"}, "sdr", std::move(help)),
         [](const DisplayFacts& display) -> std::string { return display.is_hdr ? "hdr" : "sdr"; });
 }
 
-/// Of an operator that keeps its colors inside the primaries of a display: "limit", which of them
-/// the display decides.
-/// @param choices  of none, rec709, p3d65, rec2020
+/// Parameter "limit" of operators that limit colors to the gamut of a display. The display chooses
+/// its default.
+/// @param choices  a subset of none, rec709, p3d65, rec2020
 inline ParameterSpec limit_parameter(std::vector<std::string> choices, std::string value) {
     ParameterSpec spec = choice_parameter("limit", std::move(choices), std::move(value),
-                                          "primaries that its colors are kept inside");
+                                          "gamut that limits the colors");
     return display_parameter(std::move(spec), [](const DisplayFacts& display) -> std::string {
         if (display.primaries == kRec709) return "rec709";
         return display.primaries == kP3D65 ? "p3d65" : "rec2020";
     });
 }
 
-/// What the parameter "limit" says; `none` stands for none.
+/// Primaries of the parameter "limit"; `none` for the choice none.
 inline Primaries limiting_primaries(const Params& params, const Primaries& none) {
     const std::string& limit = params.choice("limit");
     if (limit == "none") return none;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Filmic curves: toe, straight part, shoulder, each in its author's few numbers.
+// Filmic curves: toe, linear segment and shoulder, with few parameters each.
 //
 // Source    hejl_burgess_dawson: J. Hejl, R. Burgess-Dawson, in J. Hable, "Filmic Tonemapping
 //           Operators", filmicworlds.com, 2010-05-05. hejl_2015: J. Hejl,
@@ -18,27 +18,27 @@
 // In        scene-linear RGB, working primaries Rec.709, D65; domain [0, 65504], negatives: clamped
 //           at 0.
 // Out       CODE VALUES of a 2.2 power: hejl_burgess_dawson and aldridge [0, 1), ue3 [0, 1]. The
-//           others display-linear RGB, 1.0 = display peak, and none has its end there: hejl_2015
-//           [-0.00072, 1.038), filament_generic below its output scale, schlick below p/(p-1), day
-//           below its shoulder's end, lottes and toe without end.
-// Kind      per channel; schlick luminance. Monotone on the neutral axis: yes, but lottes with a
-//           shoulder above 1 falls again.
+//           others: display-linear RGB, 1.0 = display peak, and all may exceed it: hejl_2015
+//           [-0.00072, 1.038), filament_generic up to its output scale, schlick up to p/(p-1), day
+//           up to the end of its shoulder, lottes and toe without an upper bound.
+// Kind      per channel; schlick luminance. Monotone on the neutral axis: yes, except that lottes
+//           falls again with a shoulder above 1.
 // Keeps     hejl_2015, day f(white) = 1; lottes, filament_generic f(mid_in) = mid_out and
 //           f(hdr_max) = 1; schlick f(maximum) = 1; toe: values above its width.
-// Differs   hejl_burgess_dawson, schlick: nowhere (T. Zeltner's schlick ignores p). ue3: its code
-//           values go up to 1.019 in most ports; here they end at 1, where the display does.
-//           hejl_2015: the first factor is BakingLab's 1.435; the author's post is quoted with
-//           1.425 elsewhere, which is up to 0.0017 darker.
-//           aldridge: below twice the cutoff v + (2q - v)^2/(4q) - q is written v^2/(4q), the same
-//           without the difference, so that 0 stays 0. With a cutoff above 0.5 the source is
-//           negative below, down to the pole of the rational: 0 here.
+// Differs   hejl_burgess_dawson, schlick: nowhere (T. Zeltner's schlick ignores p). ue3: most ports
+//           reach code values of 1.019; here they end at 1, like the display.
+//           hejl_2015: the first factor is BakingLab's 1.435; others quote the author's post with
+//           1.425, which is up to 0.0017 darker.
+//           aldridge: below twice the cutoff, v + (2q - v)^2/(4q) - q is written as v^2/(4q). It is
+//           equal without the difference, so 0 stays 0. With a cutoff above 0.5 the source is
+//           negative for low values, down to the pole of the rational; here it is 0.
 //           lottes: the power in the denominator ends at 2^-100, because the slope of a power below
-//           1 has no end at 0. The talk's crosstalk between the channels is not in it, as in all
-//           ports.
+//           1 is infinite at 0. Like all ports, it leaves out the talk's crosstalk between the
+//           channels.
 //           filament_generic: Filament applies it in Rec.2020.
-//           day: both denominators are written so that they keep their digits where the crossover
-//           comes near black or white.
-// Check     mid grey 0.18 -> 0.508028282 (hejl_burgess_dawson), 0.237508884 (hejl_2015),
+//           day: both denominators are written so that they keep their digits if the crossover is
+//           close to black or white.
+// Check     mid gray 0.18 -> 0.508028282 (hejl_burgess_dawson), 0.237508884 (hejl_2015),
 //           0.479315490 (aldridge), 0.267 (lottes), 0.215 (filament_generic), 0.547522388 (ue3),
 //           0.00341873507 (day), 0.0348095146 (schlick), 0.18 (toe)
 //           (python_check/operators/filmic.py).
@@ -50,10 +50,10 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// Its light is code values: a 2.2 power is in the constants.
+/// Its output is code values: the constants include a 2.2 power.
 constexpr double kBakedPower = 2.2;
 
-/// The rational that approximates Kodak's film with its print and gamma; of x >= 0.
+/// Rational that approximates Kodak's film, print and gamma, for x >= 0.
 Expr hejl_rational(const Expr& x) { return x * (6.2 * x + 0.5) / (x * (6.2 * x + 1.7) + 0.06); }
 
 Operator hejl_burgess_dawson() {
@@ -62,8 +62,8 @@ Operator hejl_burgess_dawson() {
     op.title = "Hejl/Burgess-Dawson";
     op.view = "Hejl Burgess-Dawson";
     op.character =
-        "film print in four constants: crisp blacks, strong contrast, long shoulder; crushes the "
-        "last shadows";
+        "film print in four constants: crisp blacks, high contrast, long shoulder; crushes the "
+        "deepest shadows";
     op.source =
         "J. Hejl, R. Burgess-Dawson, in J. Hable, Filmic Tonemapping Operators, filmicworlds.com, "
         "2010-05-05";
@@ -87,17 +87,18 @@ Operator hejl_2015() {
     op.title = "Hejl 2015";
     op.view = "Hejl 2015";
     op.character =
-        "Hejl's film curve as light, with a white of your choice: softer toe, very long shoulder";
+        "Hejl's film curve with display-linear output and an adjustable white: softer toe, very "
+        "long shoulder";
     op.source =
         "J. Hejl, twitter.com/jimhejl/status/633777619998130176, 2015, as in M. Pettineo's "
         "BakingLab, ToneMapping.hlsl";
     op.licence = "published formula (BakingLab: MIT)";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Hejl";
-    op.parameters = with_apply(
-        "channels", {number_parameter("white", "scene-linear", 11.2, 0.1, kHalfMax,
-                                      "smallest scene value that is shown as display white")});
-    op.warnings = {"quoted elsewhere with 1.425 where this, as BakingLab, has 1.435"};
+    op.parameters =
+        with_apply("channels", {number_parameter("white", "scene-linear", 11.2, 0.1, kHalfMax,
+                                                 "lowest scene value shown as display white")});
+    op.warnings = {"other sources quote 1.425 where BakingLab and this operator use 1.435"};
     op.deviations = {{DocumentedDifference::Kind::black, -0.00072, ""},
                      {DocumentedDifference::Kind::crushes_black, 0.0046, ""},
                      {DocumentedDifference::Kind::exceeds_white, 1.0, ""}};
@@ -116,7 +117,7 @@ Operator aldridge() {
     op.id = "aldridge";
     op.title = "Aldridge";
     op.view = "Aldridge";
-    op.character = "Hejl/Burgess-Dawson with a soft start instead of crushed blacks";
+    op.character = "Hejl/Burgess-Dawson with a soft toe instead of crushed blacks";
     op.source =
         "G. Aldridge, Approximating Film with Tonemapping, iwasbeingirony.blogspot.com, "
         "2010-04-19, as in T. Zeltner, Tone Mapper, github.com/tizian/tonemapper";
@@ -127,14 +128,15 @@ Operator aldridge() {
     op.dialects = "Hejl";
     op.parameters = with_apply(
         "channels",
-        {number_parameter("cutoff", "scene-linear", 0.025, 0.001, 1,
-                          "what is taken from the lights; the start is soft up to twice this")});
+        {number_parameter(
+            "cutoff", "scene-linear", 0.025, 0.001, 1,
+            "value subtracted from the highlights; the toe reaches up to twice this value")});
     op.build = [](const Params& p) -> Pipeline {
         const Expr q = p.expr("cutoff");
         const Expr v = Expr::input();
         // v + (2q - v) clamp(2q - v, 0, 1) (0.25/q) - q
         Expr x = select(less(v, 2 * q), v * v / (4 * q), v - q);
-        // Nothing below 2q - 1 where that is 0.
+        // No value below 2q - 1 reaches the curve, where the clamp is 0.
         if (!fails(less(0.5, q)))
             x = select(less(v, 2 * q - 1), max(v + (2 * q - v) * (0.25 / q) - q, 0), x);
         return tone_curve_pipeline({.f = hejl_rational(x), .code_power = kBakedPower}, p);
@@ -179,7 +181,7 @@ Operator lottes() {
     op.title = "Lottes";
     op.view = "Lottes";
     op.character =
-        "contrast and shoulder set apart, mid grey and white pinned: bright mid tones, firm blacks";
+        "separate contrast and shoulder, fixed mid gray and white: bright midtones, deep blacks";
     op.source = "T. Lottes, Advanced Techniques and Optimization of HDR Color Pipelines, GDC 2016";
     op.licence = "published formula";
     op.negatives = kNegativesClampAtZero;
@@ -187,25 +189,26 @@ Operator lottes() {
     op.parameters = with_apply(
         "channels",
         {number_parameter("contrast", "", 1.6, 1, 2, "a: power of the toe"),
-         number_parameter("shoulder", "", 0.977, 0.01, 2, "d: 1 has an end, smaller is softer"),
+         number_parameter("shoulder", "", 0.977, 0.01, 2,
+                          "d: smaller is softer; with 1 the curve has an upper bound"),
          number_parameter("hdr_max", "scene-linear", 8, 1, kHalfMax,
-                          "scene value that is shown as display white"),
-         number_parameter("mid_in", "scene-linear", 0.18, 0.01, 1, "mid grey of the scene"),
+                          "scene value shown as display white"),
+         number_parameter("mid_in", "scene-linear", 0.18, 0.01, 1, "mid gray of the scene"),
          number_parameter("mid_out", "display-linear", 0.267, 0.01, 0.99,
-                          "light that mid grey is shown with")});
-    op.warnings = {"with a shoulder above 1 lights get darker again above some scene value"};
+                          "display-linear value of mid gray")});
+    op.warnings = {"with a shoulder above 1, highlights above some scene value get darker again"};
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, 1.4, ""}};
     op.bounds = {.simd = 1e-5,
                  .reason =
-                     "with a shoulder above 1 the curve may pass far above white and come "
-                     "back, and apply=hue_preserving takes the difference"};
+                     "with a shoulder above 1 the curve may rise far above white and fall again, "
+                     "and apply=hue_preserving subtracts such values"};
     op.build = [](const Params& p) -> Pipeline {
         return tone_curve_pipeline({.f = lottes_curve(p)}, p);
     };
     return op;
 }
 
-/// The same with d = 1, in Filament's letters.
+/// The same with d = 1, with Filament's names.
 Expr filament_curve(const Params& p) {
     const Expr contrast = p.expr("contrast");
     const Expr mid_out = p.expr("mid_out");
@@ -232,7 +235,7 @@ Operator filament_generic() {
     op.id = "filament_generic";
     op.title = "Generic (Filament)";
     op.view = "Filament Generic";
-    op.character = "Lottes without its shoulder's parameter: has an end a little above white";
+    op.character = "Lottes without the shoulder parameter: its upper bound is a little above white";
     op.source =
         "Filament, filament/src/ToneMapper.cpp, GenericToneMapper, github.com/google/filament";
     op.licence = "Apache-2.0";
@@ -241,11 +244,11 @@ Operator filament_generic() {
     op.parameters = with_apply(
         "channels",
         {number_parameter("contrast", "", 1.55, 1, 3, "power of the toe"),
-         number_parameter("mid_in", "scene-linear", 0.18, 0.01, 1, "mid grey of the scene"),
+         number_parameter("mid_in", "scene-linear", 0.18, 0.01, 1, "mid gray of the scene"),
          number_parameter("mid_out", "display-linear", 0.215, 0.01, 1,
-                          "light that mid grey is shown with"),
+                          "display-linear value of mid gray"),
          number_parameter("hdr_max", "scene-linear", 10, 1, kHalfMax,
-                          "scene value that is shown as display white")});
+                          "scene value shown as display white")});
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, 1.0, ""}};
     op.build = [](const Params& p) -> Pipeline {
         return tone_curve_pipeline({.f = filament_curve(p)}, p);
@@ -258,7 +261,7 @@ Operator ue3() {
     op.id = "ue3";
     op.title = "Unreal Engine 3";
     op.view = "Unreal 3";
-    op.character = "Reinhard's shape on code values: bright, low contrast, no toe; white at 8.2";
+    op.character = "Reinhard's shape in code values: bright, low contrast, no toe; white at 8.2";
     op.source = "Unreal Engine 3 documentation, Color Grading; R. Guy, shadertoy llXyWr";
     op.licence = "published formula";
     op.negatives = kNegativesClampAtZero;
@@ -274,7 +277,8 @@ Operator ue3() {
     return op;
 }
 
-/// Two hyperbolas that meet in (c, k) with one slope: a toe from black b, a shoulder to white w.
+/// Two hyperbolas that meet at (c, k) with equal slope: a toe from black b and a shoulder to white
+/// w.
 Expr day_curve(const Params& p) {
     const Expr w = p.expr("white");
     const Expr b = p.expr("black");
@@ -303,27 +307,27 @@ Operator day() {
     op.title = "Day (Insomniac)";
     op.view = "Day";
     op.character =
-        "black, white, crossover and two strengths by hand; as it comes, dark with hard blacks";
+        "manual black, white, crossover and two strengths; dark with hard blacks by default";
     op.source =
         "M. Day, An efficient and user-friendly tone mapping operator, Insomniac Games, 2012";
     op.licence = "published formula";
-    op.bounds = {.ocio_gpu = 3e-6, .reason = "steep where its black ends"};
+    op.bounds = {.ocio_gpu = 3e-6, .reason = "steep slope just above black"};
     op.negatives = kNegativesClampAtZero;
     op.parameters = with_apply(
         "channels",
         {number_parameter("white", "times the average", 10, 0.1, kHalfMax,
-                          "value that is shown as display white"),
+                          "value shown as display white"),
          number_parameter("black", "times the average", 0.1, 0, 1,
-                          "value that is shown as black; below it the curve is negative"),
-         number_parameter("toe", "", 0.7, 0, 0.99, "strength of the toe: 0 is a straight line"),
+                          "value shown as black; the curve is negative below it"),
+         number_parameter("toe", "", 0.7, 0, 0.99, "strength of the toe (0: straight line)"),
          number_parameter("shoulder", "", 0.8, 0, 0.99,
-                          "strength of the shoulder: 0 is a straight line"),
+                          "strength of the shoulder (0: straight line)"),
          number_parameter("crossover", "times the average", 2, 0.01, 1000,
                           "value where the toe meets the shoulder"),
-         statistic_parameter(number_parameter("average", "scene-linear", 1, 1e-6, kHalfMax,
-                                              "scene value that the others are multiples of"),
-                             "mean luminance",
-                             [](const SceneStatistics& s) { return s.mean_luminance; })});
+         statistic_parameter(
+             number_parameter("average", "scene-linear", 1, 1e-6, kHalfMax,
+                              "scene value that is the unit of white, black and crossover"),
+             "mean luminance", [](const SceneStatistics& s) { return s.mean_luminance; })});
     op.deviations = {{DocumentedDifference::Kind::black, -0.0040, ""},
                      {DocumentedDifference::Kind::crushes_black, 0.099, ""},
                      {DocumentedDifference::Kind::exceeds_white, 1.2, ""}};
@@ -338,7 +342,8 @@ Operator schlick() {
     op.id = "schlick";
     op.title = "Schlick";
     op.view = "Schlick";
-    op.character = "Reinhard's shape with white pinned at the maximum: opens shadows, soft lights";
+    op.character =
+        "Reinhard's shape with white fixed at the maximum: opens shadows, soft highlights";
     op.source =
         "C. Schlick, Quantization Techniques for Visualization of High Dynamic Range Pictures, "
         "Eurographics Workshop on Rendering, 1994";
@@ -346,9 +351,9 @@ Operator schlick() {
     op.negatives = kNegativesClampAtZero;
     op.parameters = with_apply(
         "luminance",
-        {number_parameter("p", "", 20, 1, 1000, "slope at black times the maximum; 1 is linear"),
+        {number_parameter("p", "", 20, 1, 1000, "slope at black times the maximum (1: linear)"),
          statistic_parameter(number_parameter("maximum", "scene-linear", 100, 1e-6, kHalfMax,
-                                              "scene value that is shown as display white"),
+                                              "scene value shown as display white"),
                              "maximum luminance",
                              [](const SceneStatistics& s) { return s.maximum_luminance; })});
     op.warnings = {
@@ -369,30 +374,32 @@ Operator toe() {
     op.title = "Toe";
     op.view = "Toe";
     op.character =
-        "darkens only the deepest shadows, as games of 2009 did: on a plain picture, or (ramp) on "
-        "Reinhard Extended";
+        "darkens only the deepest shadows, as in games of 2009: on the unchanged scene, or (ramp) "
+        "on Reinhard Extended";
     op.source =
-        "ours, after T. Madams, Why Reinhard desaturates my blacks, imdoingitwrong.wordpress.com, "
-        "2010-08-19, which describes two games' toes without a formula";
-    op.licence = "ours";
+        "Tonewright, after T. Madams, Why Reinhard desaturates my blacks, "
+        "imdoingitwrong.wordpress.com, 2010-08-19, which describes the toes of two games without a "
+        "formula";
+    op.licence = "Apache-2.0";
     op.negatives = kNegativesClampAtZero;
     op.parameters = with_apply(
         "channels",
         {choice_parameter("form", {"quadratic", "ramp"}, "quadratic",
-                          "quadratic: a smooth toe on the scene value; ramp: two multiply-adds "
-                          "behind Reinhard Extended"),
-         number_parameter("width", "", 0.05, 0.001, 1, "value where the toe ends"),
-         number_parameter("strength", "", 1, 0, 1, "0: no toe; 1: no slope at black"),
-         number_parameter("brightness", "", 0, -1, 1, "added behind the toe"),
-         number_parameter("contrast", "", 1, 0.01, 4, "slope behind the toe, about 0.5"),
+                          "quadratic: a smooth toe on the scene value; ramp: two "
+                          "multiply-adds after Reinhard Extended"),
+         number_parameter("width", "", 0.05, 0.001, 1, "value at the end of the toe"),
+         number_parameter("strength", "", 1, 0, 1,
+                          "strength of the toe (0: no toe, 1: zero slope at black)"),
+         number_parameter("brightness", "", 0, -1, 1, "offset added after the toe"),
+         number_parameter("contrast", "", 1, 0.01, 4, "contrast about 0.5, after the toe"),
          number_parameter("white", "scene-linear", 4, 0.01, kHalfMax,
-                          "white of Reinhard Extended; read with form=ramp")});
+                          "white of Reinhard Extended; only with form=ramp")});
     op.presets = {{"ramp",
-                   "Reinhard Extended with its shadows ramped down",
+                   "Reinhard Extended with darker shadows",
                    {{"form", "ramp"}, {"width", "0.25"}, {"strength", "0.5"}}}};
-    op.warnings = {"a definition of ours: neither game's formula was published"};
+    op.warnings = {"Tonewright defines this formula, because neither game published its own"};
     op.bounds.ocio_cpu = op.bounds.ocio_gpu = 5e-5;
-    op.bounds.reason = "the ramp ends with an edge, between two half floats";
+    op.bounds.reason = "the slope jumps at the end of the ramp, between two half floats";
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const Expr x = Expr::input();

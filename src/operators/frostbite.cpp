@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Frostbite: hue-preserving range compression with a little of the per-channel look.
+// Frostbite: hue-preserving range compression with some of the per-channel look.
 //
-// Source    A. Fry, "High Dynamic Range Color Grading and Display in Frostbite", GDC 2017; the
-//           numbers of T. Stachowiak's shadertoy after it.
+// Source    A. Fry, "High Dynamic Range Color Grading and Display in Frostbite", GDC 2017;
+//           constants of T. Stachowiak's shadertoy after it.
 // In        scene-linear RGB, working primaries Rec.709, D65; 1.0 = 100 cd/m2; domain [0, inf),
-//           negatives: clamped at 0 (PQ has powers).
-// Out       display-linear RGB, 1.0 = display peak; not clamped: saturated colours come out up to
-//           about 1.1, and a little below 0.
-// Kind      3D. Monotone on the neutral axis: yes, but for the tint of greys (the printed matrices
-//           do not take white to Ct = Cp = 0), which grows to 4e-4 near white and takes red down by
-//           up to 1e-6 each 1/64 stop.
-// Keeps     0 -> 0; greys up to linear_end, but for that tint.
-// Differs   Of the largest channel 0 the source divides by it: here the ratio there is 1, as
-//           everywhere below linear_end. smoothstep with falling edges, which GLSL leaves
-//           undefined, is its formula. The inverses of the matrices are computed: the published
-//           ones are rounded.
-// Check     mid grey 0.18 -> red 0.179998742, (0.8, 0.1, 0.05) -> red 0.636523412
+//           negatives clamped at 0 (PQ has powers).
+// Out       display-linear RGB, 1.0 = display peak; not clamped: saturated colors reach about 1.1,
+//           and slightly below 0.
+// Kind      3D. Monotone on the neutral axis: yes, except for the tint of grays (the printed
+//           matrices do not map white to Ct = Cp = 0). It grows to 4e-4 near white and lowers red
+//           by up to 1e-6 per 1/64 stop.
+// Keeps     0 -> 0; grays up to linear_end, except for that tint.
+// Differs   The source divides by the largest channel, also if it is 0; here the ratio is 1 there,
+//           as everywhere below linear_end. smoothstep with falling edges, undefined in GLSL, uses
+//           its formula. The inverses of the matrices are computed, because the published ones are
+//           rounded.
+// Check     mid gray 0.18 -> red 0.179998742, (0.8, 0.1, 0.05) -> red 0.636523412
 //           (check_values.json).
 #include "operators/family.h"
 
@@ -65,7 +65,7 @@ CrossTalkStage frostbite_mapping(const Expr& linear_end) {
                                           linear_end + rest * (1 - exp(-(above / rest)))));
     };
 
-    // Chroma falls with intensity: lights fade to white before anything is compressed.
+    // Chroma falls with intensity, so highlights fade to white before the compression.
     const std::array<Expr, 3> in = to_ictcp(compose({}));
     const Expr intensity = named("intensity", in[0]);
     const Expr saturation = named("saturation", pow(smoothstep(1, 0.3, intensity), 1.3));
@@ -82,7 +82,7 @@ CrossTalkStage frostbite_mapping(const Expr& linear_end) {
     for (Expr& v : compressed)
         v = named("mixed", mix(compress(v), v * ratio, 0.6));
 
-    // What compression took from the chroma is given back in part, where the input was not bright.
+    // Restores part of the chroma that the compression removed, unless the input was bright.
     const std::array<Expr, 3> m = to_ictcp(compressed);
     const Expr boost = named("boost", 0.3 * smoothstep(1, 0.5, intensity));
     const Expr dimmed = named("dimmed", m[0] / max(intensity, 1e-3));
@@ -99,15 +99,16 @@ std::vector<Operator> define_frostbite() {
     op.title = "Frostbite (hue preserving)";
     op.view = "Frostbite";
     op.character =
-        "flat by design, a base for grading: hues kept, lights fade to white, shadows untouched";
+        "flat by design, a base for grading: keeps hues, highlights fade to white, shadows "
+        "unchanged";
     op.source =
-        "A. Fry, High Dynamic Range Color Grading and Display in Frostbite, GDC 2017; numbers of "
+        "A. Fry, High Dynamic Range Color Grading and Display in Frostbite, GDC 2017; constants of "
         "T. Stachowiak's shadertoy";
-    op.licence = "published formula; no code of it is used";
+    op.licence = "published formula; none of its code is used";
     op.negatives = kNegativesClampAtZero;
-    op.bounds = {.cube = 1.2e-2, .reason = "a cube: chroma goes within a stop about white"};
+    op.bounds = {.cube = 1.2e-2, .reason = "3D LUT: chroma falls to 0 within a stop about white"};
     op.parameters = {number_parameter("linear_end", "scene-linear", 0.25, 0.01, 0.99,
-                                      "end of the straight part of the compression")};
+                                      "end of the linear segment of the compression")};
     op.build = [](const Params& p) -> Pipeline {
         return {limit_to_positive(), frostbite_mapping(p.expr("linear_end"))};
     };

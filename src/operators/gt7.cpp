@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Gran Turismo 7: the curve of 2017 with a new shoulder, per channel, blended with a form that
+// Gran Turismo 7: the curve of 2017 with a new shoulder, per channel, blended with a version that
 // keeps the chroma of ICtCp.
 //
 // Source    K. Yasutomi, K. Suzuki, H. Uchimura, "Driving Toward Reality: Physically Based Tone
 //           Mapping and Perceptual Fidelity in Gran Turismo 7", SIGGRAPH 2025 course; sample code
-//           gt7_tone_mapping.cpp 1.0, Polyphony Digital 2025 (its ICtCp form).
+//           gt7_tone_mapping.cpp 1.0, Polyphony Digital 2025 (its ICtCp variant).
 // In        scene-linear RGB, working primaries Rec.2020, D65; 1.0 = 100 cd/m2; domain [0, inf),
-//           negatives: clamped at 0 (the toe has a power).
-// Out       output=sdr: display-linear RGB, 1.0 = display peak, which is taken as 250 cd/m2;
-//           [0, 1]. output=hdr: units of 100 cd/m2; [0, peak/100].
-// Kind      3D. Monotone on the neutral axis: yes; at 1.4717 of the peak it meets the peak with a
-//           corner, and above that it is flat.
-// Keeps     0 -> 0; greys from 0.538 up to 0.444 of the peak.
-// Differs   nowhere. As in the source the code of PQ is limited to [0, 1] before it is decoded:
-//           dark saturated colours come below 0 there, bright ones of a large peak above 1. The
-//           matrices back from ICtCp are the source's six digits and no exact inverses: greys are
-//           tinted by some 1e-6.
-// Check     mid grey 0.18 in Rec.2020 -> red 0.0579497689 (sdr), 0.144874422 (hdr)
+//           negatives clamped at 0 (the toe has a power).
+// Out       output=sdr: display-linear RGB, 1.0 = display peak, assumed to be 250 cd/m2; [0, 1].
+//           output=hdr: units of 100 cd/m2; [0, peak/100].
+// Kind      3D. Monotone on the neutral axis: yes; it reaches the peak with a corner at 1.4717
+//           times the peak, and is constant above.
+// Keeps     0 -> 0; grays from 0.538 up to 0.444 of the peak.
+// Differs   nowhere. Like the source, it limits the PQ code to [0, 1] before decoding: dark
+//           saturated colors are below 0 there, bright ones of a high peak above 1. The matrices
+//           from ICtCp have the source's six digits and are not exact inverses: they tint grays by
+//           about 1e-6.
+// Check     mid gray 0.18 in Rec.2020 -> red 0.0579497689 (sdr), 0.144874422 (hdr)
 //           (check_values.json).
 #include <algorithm>
 #include <cmath>
@@ -36,7 +36,7 @@ constexpr Matrix3 kRgbToLms = {{{1688.0 / 4096, 2146.0 / 4096,  262.0 / 4096},
 constexpr Matrix3 kLmsToIctcp = {{{ 2048.0 / 4096,   2048.0 / 4096,    0.0},
                                   { 6610.0 / 4096, -13613.0 / 4096, 7003.0 / 4096},
                                   {17933.0 / 4096, -17390.0 / 4096, -543.0 / 4096}}};
-/// Their inverses as the sample code prints them.
+/// The inverses that the sample code prints.
 constexpr Matrix3 kIctcpToLms = {{{1.0,  0.00860904,  0.11103},
                                   {1.0, -0.00860904, -0.11103},
                                   {1.0,  0.560031,   -0.320627}}};
@@ -103,29 +103,29 @@ std::vector<Operator> define_gt7() {
     op.title = "Gran Turismo 7";
     op.view = "Gran Turismo 7";
     op.character =
-        "filmic and clean, lights keep their hue and lose chroma only near the peak; dark unless "
-        "the scene is exposed in units of 100 cd/m2";
+        "filmic and clean, highlights keep their hue and lose chroma only near the peak; dark "
+        "unless scene-linear 1 stands for 100 cd/m2";
     op.source =
         "Yasutomi, Suzuki, Uchimura, Driving Toward Reality: Physically Based Tone Mapping and "
         "Perceptual Fidelity in Gran Turismo 7, SIGGRAPH 2025; gt7_tone_mapping.cpp 1.0";
     op.licence = "MIT";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Gran Turismo";
-    op.bounds = {.cube = 0.26, .reason = "a cube: lights lose their chroma within 1.4 stops"};
+    op.bounds = {.cube = 0.26, .reason = "3D LUT: highlights lose their chroma within 1.4 stops"};
     op.working = kRec2020;
     op.parameters = fixed_parameters({
         sdr_or_hdr_parameter("sdr: 1 is the peak of a display of 250 cd/m2; hdr: 1 is 100 cd/m2"),
         display_parameter(number_parameter("peak", "cd/m2", 1000, 250, 10000,
-                                           "of the display; read with output=hdr"),
+                                           "peak luminance of the display; only with output=hdr"),
                           [](const DisplayFacts& display) -> std::string {
                               return display.is_hdr ? shortest(std::max(display.peak, 250.0)) : "";
                           }),
     });
-    op.presets = {{"hdr", "for an HDR display, in units of 100 cd/m2", {{"output", "hdr"}}}};
+    op.presets = {{"hdr", "HDR display, in units of 100 cd/m2", {{"output", "hdr"}}}};
     op.warnings = {
         "scene-linear 1 stands for 100 cd/m2: expose about 1.3 stops more than for "
         "operators that show 1 near white",
-        "with output=hdr an SDR display clips at 100 cd/m2"};
+        "SDR displays clip output=hdr at 100 cd/m2"};
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, 10, "hdr"}};
     op.peak = [](const Params& p) {
         return p.choice("output") == "hdr" ? p.number("peak") / kReferenceLuminance : 1;

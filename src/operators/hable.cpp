@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// John Hable's curves: the rational one of Uncharted 2 with two sets of constants, and the
-// piecewise one of 2017.
+// John Hable's curves: the rational curve of Uncharted 2 with two sets of constants, and the
+// piecewise curve of 2017.
 //
 // Source    J. Hable, "Filmic Tonemapping Operators", filmicworlds.com, 2010-05-05, with the
 //           constants of that page (A .15 ... W 11.2, exposure bias 2): hable. J. Hable, "Uncharted
@@ -9,23 +9,23 @@
 //           tonemap.glsl. J. Hable, "Filmic Tonemapping with Piecewise Power Curves",
 //           filmicworlds.com, 2017-03-26, and github.com/johnhable/fw-public (CC0):
 //           hable_piecewise.
-// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, 65504], negatives: clamped
+// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, 65504], negatives clamped
 //           at 0.
 // Out       display-linear RGB, 1.0 = display peak; hable [0, 1.287) with the defaults,
 //           hable_piecewise up to (1 + overshoot)/(value at white).
 // Kind      per channel; monotone on the neutral axis: yes.
-// Keeps     f(0) = 0. hable: f(white/exposure_bias) = 1; hable_piecewise: 1 at the white that
-//           shoulder_strength says, and with the defaults the identity up to it.
-// Differs   hable: nowhere. As on the page, the white W is not scaled by the bias: with the bias of
-//           2, white is reached at scene-linear 5.6. (Godot scales both, so its preset has white 2
-//           for a scene white of 1; some ports put the bias on the output.)
-//           hable_piecewise: a toe that ends below 2^-100 is no toe (the source takes the logarithm
-//           of 0), and the slopes where the segments meet are limited to [2^-24, 2^24], where the
-//           source has 0 and infinity: a joint at black with a gamma that is not 1. A shoulder that
-//           aims a million times above white is an error: no digits of the curve are left. The
-//           source's floors of 1e-5 on the light of a joint, and its slope of 1 where the straight
-//           part has no length, are kept.
-// Check     mid grey 0.18 -> 0.128338449 (hable), 0.305855436 (hable:godot), 0.0664512855
+// Keeps     f(0) = 0. hable: f(white/exposure_bias) = 1; hable_piecewise: 1 at the white given by
+//           shoulder_strength, and the identity up to it with the defaults.
+// Differs   hable: nowhere. As on the page, the bias does not scale the white W: with the bias of
+//           2, scene-linear 5.6 is white. (Godot scales both, so its preset has white 2 for a scene
+//           white of 1; some ports apply the bias to the output.)
+//           hable_piecewise: a toe that ends below 2^-100 counts as no toe (the source takes the
+//           logarithm of 0). The slopes at the joints of the segments are limited to [2^-24, 2^24];
+//           the source has 0 and infinity for a joint at black with a gamma other than 1. A
+//           shoulder that aims a million times above white is an error, because no digits of the
+//           curve remain. The source's floors of 1e-5 on the output at a joint, and its slope of 1
+//           for a linear segment without length, are kept.
+// Check     mid gray 0.18 -> 0.128338449 (hable), 0.305855436 (hable:godot), 0.0664512855
 //           (hable_piecewise:film) (python_check/operators/hable.py).
 #include <algorithm>
 #include <cmath>
@@ -55,8 +55,9 @@ Pipeline hable_pipeline(const Hable& h, const Params& p) {
 }
 
 ParameterSpec white() {
-    return number_parameter("white", "scene-linear, after the bias", 11.2, 0.1, kHalfMax,
-                            "W of the formula: biased scene value that is shown as display white");
+    return number_parameter(
+        "white", "scene-linear, after the bias", 11.2, 0.1, kHalfMax,
+        "W of the formula: scene value after the bias that is shown as display white");
 }
 ParameterSpec exposure_bias(double value) {
     return number_parameter("exposure_bias", "", value, 0.01, 100, "factor on the scene value");
@@ -67,12 +68,13 @@ Operator uncharted() {
     op.id = "hable";
     op.title = "Hable (Uncharted 2)";
     op.view = "Hable";
-    op.character = "strong toe, long soft shoulder: contrasty and dark, the game look of 2010";
+    op.character =
+        "strong toe, long soft shoulder: high contrast and dark, the look of games in 2010";
     op.source = "J. Hable, Filmic Tonemapping Operators, filmicworlds.com, 2010-05-05";
-    op.licence = "published formula (page: public domain code)";
+    op.licence = "published formula (code on the page: public domain)";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Hable";
-    // D and F bounded away from 0: their product is the curve's denominator at black.
+    // D and F stay away from 0, because their product is the curve's denominator at black.
     op.parameters = with_apply(
         "channels",
         {number_parameter("shoulder_strength", "", 0.15, 0.01, 1, "A of the formula"),
@@ -83,13 +85,13 @@ Operator uncharted() {
          number_parameter("toe_denominator", "", 0.30, 0.01, 1, "F of the formula"), white(),
          exposure_bias(2)});
     op.presets = {{"gdc",
-                   "the constants of the GDC 2010 slides, without a bias",
+                   "constants of the GDC 2010 slides, without a bias",
                    {{"shoulder_strength", "0.22"},
                     {"linear_strength", "0.3"},
                     {"toe_numerator", "0.01"},
                     {"exposure_bias", "1"}}},
                   {"godot",
-                   "as Godot's Filmic with its white at 1",
+                   "Godot's Filmic with its white at 1",
                    {{"shoulder_strength", "0.22"},
                     {"linear_strength", "0.3"},
                     {"toe_numerator", "0.01"},
@@ -110,11 +112,10 @@ Operator uncharted() {
 }
 
 Operator bias_on_result() {
-    Operator op = defect_of(
-        "hable", "hable_bias_on_result",
-        "Tonemapper (tizian/tonemapper 5215acc3, HableFilmicOperator.cpp)",
-        "the exposure bias of 2 is a factor on the result, not on the scene value, so light above "
-        "2.05 is clipped");
+    Operator op = defect_of("hable", "hable_bias_on_result",
+                            "Tonemapper (tizian/tonemapper 5215acc3, HableFilmicOperator.cpp)",
+                            "it applies the exposure bias of 2 to the result instead of the scene "
+                            "value, so it clips scene values above 2.05");
     op.build = [](const Params&) -> Pipeline {
         const Hable curve{.A = 0.15, .B = 0.50, .C = 0.10, .D = 0.20, .E = 0.02, .F = 0.30};
         return {limit_to_positive(), curve_stage(2.0 * curve(Expr::input()) / curve(11.2)),
@@ -142,27 +143,27 @@ Operator gdc() {
     return op;
 }
 
-/// base^exponent, 0 for a base up to 2^-100: at 0 the slope of a power below 1 has no end.
+/// base^exponent, 0 for a base up to 2^-100, because the slope of a power below 1 is infinite at 0.
 Expr power(const Expr& base, double exponent) {
     return select(less(0x1p-100, base), pow(base, exponent), 0);
 }
 
-/// (1 - t)^exponent for an exponent of 1 or more, 0 below e^-69 = 1e-30. What 1 - t rounds away,
-/// and a large exponent would show, is missing in both parts of the quotient.
+/// (1 - t)^exponent for an exponent of 1 or more, 0 below e^-69 = 1e-30. The rounding error of 1 -
+/// t, which a large exponent would amplify, cancels in the quotient.
 Expr power_of_1_minus(const Expr& t, double exponent) {
     const Expr u = named("u", 1 - t);
     const Expr log_u = named("log_u", select(equal(u, 1), -t, t * (log(u) / (1 - u))));
     return select(less(-69, exponent * log_u), exp(exponent * log_u), 0);
 }
 
-/// Three powers of the scene value x: a toe through black up to x0, then the straight part to the
-/// power of gamma, from x1 on a shoulder. Letters are those of the source.
+/// Three powers of the scene value x: a toe from black up to x0, then the linear segment to the
+/// power of gamma, and a shoulder from x1. The names are those of the source.
 Expr piecewise_curve(const Params& p) {
     const double shoulder_strength = p.number("shoulder_strength");
     const double angle = p.number("shoulder_angle");
     const double gamma = p.number("gamma");
 
-    // The user's parameters as points of the curve, before gamma. The straight part has slope 1.
+    // Points of the curve from the user's parameters, before gamma. The linear segment has slope 1.
     const double x0 = std::pow(p.number("toe_length"), 2.2) / 2;
     const double y0 = (1 - p.number("toe_strength")) * x0;
     const double remaining = 1 - y0;
@@ -173,7 +174,8 @@ Expr piecewise_curve(const Params& p) {
     const double overshoot_x = 2 * angle * shoulder_strength;  // in units of white
     const double overshoot_y = std::pow(1 + 0.5 * angle * shoulder_strength, gamma) - 1;
 
-    // Of normalised x/white: slope m of the straight part, and of the curve at its two ends.
+    // In normalized x/white: slope m of the linear segment, and slope of the curve at both of its
+    // ends.
     const double m = straight == 0 ? 1 : white;
     const auto slope = [&](double y) {
         return std::clamp(gamma * m * std::pow(y, gamma - 1), 0x1p-24, 0x1p24);
@@ -181,7 +183,7 @@ Expr piecewise_curve(const Params& p) {
     const double toe_y = std::max(1e-5, std::pow(y0, gamma));
     const double shoulder_y = std::max(1e-5, std::pow(y1, gamma));
 
-    const double X = (white - x1) / white + overshoot_x;  // from the shoulder's start to its end
+    const double X = (white - x1) / white + overshoot_x;  // from start to end of the shoulder
     const double Y = 1 + overshoot_y - shoulder_y;
     const double shoulder_exponent = slope(y1) * X / Y;
     const auto shoulder = [&](const Expr& x) {
@@ -219,8 +221,7 @@ Operator piecewise() {
     op.id = "hable_piecewise";
     op.title = "Hable piecewise power curve";
     op.view = "Hable Piecewise";
-    op.character =
-        "toe, straight part and shoulder by the artist's numbers; as it comes, a clip at 1";
+    op.character = "manual toe, linear segment and shoulder; a clip at 1 by default";
     op.source =
         "J. Hable, Filmic Tonemapping with Piecewise Power Curves, filmicworlds.com, 2017-03-26; "
         "github.com/johnhable/fw-public";
@@ -230,32 +231,33 @@ Operator piecewise() {
     op.parameters = with_apply(
         "channels",
         fixed_parameters(
-            {number_parameter("toe_strength", "", 0, 0, 1, "0: no toe; 1: black to the toe's end"),
+            {number_parameter("toe_strength", "", 0, 0, 1,
+                              "strength of the toe (0: no toe, 1: black up to the end of the toe)"),
              number_parameter(
                  "toe_length", "", 0.5, 0, 1,
-                 "of the toe; its 2.2 power is twice the scene value where the toe ends"),
+                 "length of the toe: its 2.2 power is twice the scene value at the end of the toe"),
              number_parameter("shoulder_strength", "stops", 0, 0, 16,
-                              "by how much the white of the scene is moved up"),
+                              "stops by which the scene value of white increases"),
              number_parameter("shoulder_length", "", 0.5, 1e-5, 1,
-                              "share of what is above the toe that the shoulder takes"),
+                              "share of the range above the toe that the shoulder covers"),
              number_parameter("shoulder_angle", "", 0, 0, 1,
-                              "how far the shoulder aims above white, which it then passes"),
-             number_parameter("gamma", "", 1, 0.1, 10,
-                              "power of the light that the curve puts out"),
+                              "how far above white the shoulder aims; values above 0 exceed white"),
+             number_parameter("gamma", "", 1, 0.1, 10, "power on the output of the curve"),
              display_parameter(
-                 number_parameter("max_brightness", "display-linear", 1, 1, 100,
-                                  "P: display peak over paper white; the curve f becomes P f(x/P)"),
+                 number_parameter(
+                     "max_brightness", "display-linear", 1, 1, 100,
+                     "P: display peak divided by paper white; the curve f becomes P f(x/P)"),
                  [](const DisplayFacts& display) { return shortest(display.peak / 100); })}));
     op.peak = [](const Params& params) { return params.number("max_brightness"); };
     op.presets = {{"film",
-                   "a toe, two stops of highlights and a shoulder that goes on",
+                   "toe, two stops of highlights and a shoulder that exceeds white",
                    {{"toe_strength", "0.5"},
                     {"toe_length", "0.5"},
                     {"shoulder_strength", "2"},
                     {"shoulder_length", "0.5"},
                     {"shoulder_angle", "1"}}},
                   {"soft",
-                   "a short toe, four stops of highlights",
+                   "short toe, four stops of highlights",
                    {{"toe_strength", "0.2"},
                     {"toe_length", "0.3"},
                     {"shoulder_strength", "4"},

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Khronos PBR Neutral: base colours of materials as they are, lights compressed and whitened; and
-// Filament's variant.
+// Khronos PBR Neutral: keeps the base colors of materials, compresses highlights and fades them to
+// white; and Filament's variant.
 //
 // Source    Khronos Group, "Khronos PBR Neutral Tone Mapper", 2024: KhronosGroup/ToneMapping,
 //           PBR_Neutral, pbrNeutral.glsl. Google Filament, ToneMapper.cpp, PBRNeutralToneMapper.
-// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, inf), negatives: clamped
-//           at 0 (the toe's parabola takes them further down).
+// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, inf), negatives clamped at
+//           0 (the toe's parabola would lower them further).
 // Out       display-linear RGB, 1.0 = display peak; range [0, 1).
 // Kind      3D, of the largest and the smallest channel: a hexcone stage. With x = min, p = max -
 //           offset(x), Ks = start_compression - 0.04 and d = 1 - Ks, the source subtracts the
@@ -15,13 +15,13 @@
 //           g = 1 - 1/(desaturation (p - n) + 1):
 //             n/p (p - (max - in)) (1 - g) + g n = n - (1 - g) n/p (max - in).
 //           So value(p) is p, then n; chroma(p) is 1, then (1 - g) n/p. Filament mixes towards 1:
-//           its value(p) is (1 - g) n + g. Both go over at Ks with one slope. Monotone on the
+//           its value(p) is (1 - g) n + g. Both have a continuous slope at Ks. Monotone on the
 //           neutral axis: yes; invertible.
-// Keeps     0 -> 0; the hue of HSV; colours whose smallest channel is 0.08 or more come out less
+// Keeps     0 -> 0; the hue of HSV; colors whose smallest channel is at least 0.08 are lowered by
 //           0.04, up to Ks.
 // Differs   nowhere. The constants 0.04 and 6.25 (a Fresnel reflectance F90 of 0.04, and 1/(4 F90))
-//           stay what they are when start_compression moves.
-// Check     mid grey 0.18 -> 0.14, 1 -> 0.869090909 (check_values.json).
+//           do not change with start_compression.
+// Check     mid gray 0.18 -> 0.14, 1 -> 0.869090909 (check_values.json).
 #include "operators/family.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -30,9 +30,9 @@ namespace {
 std::vector<ParameterSpec> neutral_parameters() {
     return {
         number_parameter("start_compression", "scene-linear", 0.8, 0.1, 0.99,
-                         "scene value of a grey from which on lights are compressed"),
+                         "scene value of a gray above which highlights are compressed"),
         number_parameter("desaturation", "", 0.15, 0, 1,
-                         "how fast compressed lights fade to white"),
+                         "how fast compressed highlights fade to white"),
     };
 }
 
@@ -41,7 +41,7 @@ Pipeline neutral(const Params& params, bool towards_white) {
     const Expr start = named("start", params.expr("start_compression") - 0.04);
     const Expr d = named("d", 1 - start);
     const Expr x = Expr::input();
-    // Below the start q is constant, so nothing is divided by 0 there.
+    // q is constant below the start, so no division by 0 occurs there.
     const Expr q = named("peak", max(x, start));
     const Expr n = named("n", 1 - d * d / (q + d - start));
     const Expr rest =
@@ -53,14 +53,14 @@ Pipeline neutral(const Params& params, bool towards_white) {
                          .chroma = select(is_base, 1, rest * (n / q))}};
 }
 
-/// Back: light of the largest channel from value(p), the others by chroma(p), then the offset from
-/// the smallest: 6.25 x^2 = m below 0.04.
+/// Inverse: the largest channel from value(p), the others from chroma(p), then the offset from the
+/// smallest: 6.25 x^2 = m below 0.04.
 Pipeline neutral_inverse(const Params& params) {
     const Expr start = named("start", params.expr("start_compression") - 0.04);
     const Expr d = named("d", 1 - start);
     const Expr x = Expr::input();
     const Expr n = named("n", max(x, start));
-    // White is infinite light: the largest that half floats hold.
+    // White is infinite in the scene: use the largest half float.
     const Expr p = named("p", d * d / max(1 - n, d * d / 65504) - d + start);
     const Expr is_base = named("is_base", less(x, start));
     const Expr to_light = named("to_light", (params.expr("desaturation") * (p - n) + 1) * (p / n));
@@ -68,7 +68,7 @@ Pipeline neutral_inverse(const Params& params) {
             HexconeStage{.offset = Expr(0),
                          .value = select(is_base, x, p),
                          .chroma = select(is_base, 1, to_light)},
-            // A color that the operator never puts out may have a channel below 0 here.
+            // Colors that the operator never produces may have a channel below 0 here.
             HexconeStage{.offset = select(less(x, 0.04), x - sqrt(max(x, 0) / 6.25), -0.04),
                          .value = x,
                          .chroma = Expr(1)}};
@@ -80,8 +80,8 @@ Operator khronos() {
     op.title = "Khronos PBR Neutral";
     op.view = "Khronos PBR Neutral";
     op.character =
-        "colors of products as their materials have them, less a reflection of 0.04; only lights "
-        "are compressed and fade to white";
+        "product colors match their materials, minus a reflection of 0.04; compresses only "
+        "highlights, which fade to white";
     op.source = "Khronos Group, Khronos PBR Neutral Tone Mapper, 2024: pbrNeutral.glsl";
     op.licence = "Apache-2.0 (code), CC-BY-4.0 (text)";
     op.dialects = "PBR Neutral";
@@ -97,9 +97,11 @@ Operator filament() {
     op.id = "khronos_neutral_filament";
     op.title = "PBR Neutral (Filament)";
     op.view = "PBR Neutral Filament";
-    op.character = "Khronos PBR Neutral with lights mixed towards 1: brighter above the start";
+    op.character =
+        "Khronos PBR Neutral with highlights mixed towards 1: brighter above the start of the "
+        "compression";
     op.source = "Google Filament, ToneMapper.cpp: PBRNeutralToneMapper";
-    op.licence = "Apache-2.0; formula and constants, no code of it is used";
+    op.licence = "Apache-2.0; formula and constants only; none of its code is used";
     op.dialects = "PBR Neutral";
     op.negatives = kNegativesClampAtZero;
     op.parameters = neutral_parameters();

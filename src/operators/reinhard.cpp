@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Reinhard's global operator and its relatives: with a white point, with a key and an average,
-// blended, with constant luminance; and Reinhard and Devlin's photoreceptor.
+// Reinhard's global operator and its variants: with a white point, with a key and an average,
+// blended, with constant luminance; and the photoreceptor model of Reinhard and Devlin.
 //
 // Source    E. Reinhard, M. Stark, P. Shirley, J. Ferwerda, "Photographic Tone Reproduction for
 //           Digital Images", ACM Transactions on Graphics 21(3), SIGGRAPH 2002: equation 3
@@ -10,26 +10,26 @@
 //           4dBcD1, 2017. reinhard_constant_luminance: 64, code/tonemapping of 64.github.io.
 //           E. Reinhard, K. Devlin, "Dynamic Range Reduction Inspired by Photoreceptor Physiology",
 //           IEEE Transactions on Visualization and Computer Graphics 11(1), 2005.
-// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, 65504], negatives: clamped
+// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, 65504], negatives clamped
 //           at 0 (f has a pole at -1).
 // Out       display-linear RGB, 1.0 = display peak; reinhard and reinhard_devlin [0, 1),
-//           reinhard_extended and nebula unbounded above their white, reinhard_jodie up to 1.36 and
-//           reinhard_constant_luminance up to 13.9, both for pure blue.
+//           reinhard_extended and nebula unbounded above their white. Pure blue reaches 1.36 with
+//           reinhard_jodie and 13.9 with reinhard_constant_luminance.
 // Kind      per channel, luminance or max (parameter `apply`); jodie and constant_luminance 3D,
 //           devlin a curve and 3D. Monotone on the neutral axis: yes; analytic inverse of reinhard:
 //           yes.
 // Keeps     f(0) = 0; reinhard f'(0) = 1; reinhard_extended f(white) = 1; nebula
 //           f(average maximum/middle_grey) = 1.
-// Differs   the paper scales by key/log-average first: here that is the exposure (nebula has both
-//           as parameters). Luminance forms are 0/0 at black in every source: here black stays
+// Differs   the paper first scales by key/log-average; here that is the exposure (nebula has both
+//           as parameters). Luminance variants are 0/0 at black in every source; here black stays
 //           black, the limit.
-//           nebula: the post's code forgets to divide by the luminance, so its picture is quadratic
-//           near black and has no end, and copies of it have that too; it limits the average to
-//           [0.3, 1]. Neither here.
-//           reinhard_devlin: the adaptation is at least 2^-100; where it is 0 the paper has 0/0.
-//           The 3D part is a function of a power of the channels, for the sake of cubes: the same
-//           values.
-// Check     mid grey 0.18 -> 0.152542373 (reinhard), 0.154258475 (reinhard_extended), 0.177781456
+//           nebula: the post's code does not divide by the luminance, so its picture is quadratic
+//           near black and has no upper bound; copies of the code do the same. The post limits the
+//           average to [0.3, 1]. Neither applies here.
+//           reinhard_devlin: the adaptation is at least 2^-100; the paper has 0/0 where it is 0.
+//           The 3D part is a function of a power of the channels, so that 3D LUTs fit it better;
+//           the values are the same.
+// Check     mid gray 0.18 -> 0.152542373 (reinhard), 0.154258475 (reinhard_extended), 0.177781456
 //           (nebula), 0.334941443 (reinhard_devlin) (python_check/operators/reinhard.py).
 #include <algorithm>
 #include <cmath>
@@ -52,7 +52,7 @@ Operator simple() {
     op.id = "reinhard";
     op.title = "Reinhard";
     op.view = "Reinhard";
-    op.character = "soft everywhere, never reaches white; flat and grey with bright scenes";
+    op.character = "soft everywhere, never reaches white; flat and gray in bright scenes";
     op.source =
         "Reinhard, Stark, Shirley, Ferwerda, Photographic Tone Reproduction for Digital Images, "
         "SIGGRAPH 2002, eq. 3";
@@ -78,16 +78,16 @@ Operator extended() {
     op.id = "reinhard_extended";
     op.title = "Reinhard Extended";
     op.view = "Reinhard Extended";
-    op.character = "Reinhard that reaches white at a scene value of your choice";
+    op.character = "Reinhard with an adjustable white";
     op.source =
         "Reinhard, Stark, Shirley, Ferwerda, Photographic Tone Reproduction for Digital Images, "
         "SIGGRAPH 2002, eq. 4";
     op.licence = "published formula";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Reinhard";
-    op.parameters = with_apply(
-        "channels", {number_parameter("white", "scene-linear", 4, 0.01, kHalfMax,
-                                      "smallest scene value that is shown as display white")});
+    op.parameters =
+        with_apply("channels", {number_parameter("white", "scene-linear", 4, 0.01, kHalfMax,
+                                                 "lowest scene value shown as display white")});
     op.presets = {{"luminance", "Reinhard Extended on luminance", {{"apply", "luminance"}}},
                   {"max", "Reinhard Extended on the largest channel", {{"apply", "max"}}}};
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
@@ -106,25 +106,26 @@ Operator nebula() {
     op.title = "Reinhard with key (Nebula)";
     op.view = "Nebula";
     op.character =
-        "Reinhard Extended behind an automatic exposure: the picture's mean is shown at "
+        "Reinhard Extended after an automatic exposure, which shows the mean of the picture at "
         "middle_grey/(1 + middle_grey)";
     op.source =
-        "post on HDR of the Nebula engine, after Reinhard, Stark, Shirley, Ferwerda, Photographic "
-        "Tone Reproduction for Digital Images, SIGGRAPH 2002, eq. 2 and 4";
+        "Nebula engine, post on HDR, after Reinhard, Stark, Shirley, Ferwerda, Photographic Tone "
+        "Reproduction for Digital Images, SIGGRAPH 2002, eq. 2 and 4";
     op.licence = "published formula";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Reinhard";
     op.parameters = with_apply(
         "luminance",
-        {number_parameter("middle_grey", "", 0.6, 0.01, 1, "key that the average is scaled to"),
+        {number_parameter("middle_grey", "", 0.6, 0.01, 1, "key: scaled value of the average"),
          number_parameter("maximum", "scene-linear, after the key", 16, 0.01, kHalfMax,
-                          "smallest scaled value that is shown as display white"),
-         statistic_parameter(
-             number_parameter("average", "scene-linear", 0.5, 0.001, kHalfMax, "mean of the scene"),
-             "mean luminance", [](const SceneStatistics& s) { return s.mean_luminance; })});
+                          "lowest scaled value shown as display white"),
+         statistic_parameter(number_parameter("average", "scene-linear", 0.5, 0.001, kHalfMax,
+                                              "mean luminance of the scene"),
+                             "mean luminance",
+                             [](const SceneStatistics& s) { return s.mean_luminance; })});
     op.warnings = {
-        "programs with the code as it was printed show another picture, quadratic near "
-        "black: they do not divide by the luminance"};
+        "programs that use the printed code show another picture, quadratic near black, because "
+        "they do not divide by the luminance"};
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
     op.build = [](const Params& p) -> Pipeline {
         const Expr white = p.expr("maximum");
@@ -136,12 +137,11 @@ Operator nebula() {
     return op;
 }
 
-/// The light of equation 4 times the color, which is not divided by its luminance.
+/// Equation 4 times the color, without the division by its luminance.
 Operator nebula_as_printed() {
-    Operator op = defect_of(
-        "nebula", "nebula_as_printed", "the post on HDR of the Nebula engine",
-        "it does not divide by the luminance, so the picture is quadratic near black and has no "
-        "end");
+    Operator op = defect_of("nebula", "nebula_as_printed", "the post on HDR of the Nebula engine",
+                            "it does not divide by the luminance, so the picture is quadratic near "
+                            "black and has no upper bound");
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
     op.build = [](const Params&) -> Pipeline {
         const Expr luminance = Expr::input();
@@ -160,7 +160,7 @@ Operator jodie() {
     op.title = "Reinhard-Jodie";
     op.view = "Reinhard Jodie";
     op.character =
-        "luminance Reinhard in the shadows, per channel in the lights: bright colours fade to "
+        "luminance Reinhard in the shadows, per channel in the highlights: bright colors fade to "
         "white";
     op.source = "Jodie, shadertoy 4dBcD1, 2017: blend of eq. 3 on luminance and on channels";
     op.licence = "published formula";
@@ -184,27 +184,29 @@ Operator constant_luminance() {
     op.title = "Reinhard (constant luminance)";
     op.view = "Reinhard Constant Luminance";
     op.character =
-        "luminance Reinhard whose too bright channels hand their excess to the other two: bright "
-        "colours pale instead of darkening";
+        "luminance Reinhard that moves the excess of a channel to the other two: bright colors get "
+        "paler instead of darker";
     op.source = "64, code/tonemapping of github.com/64/64.github.io (not in the article)";
     op.licence = "MIT";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Reinhard";
-    op.warnings = {"two channels above 1 lose what they hand to each other, and its luminance"};
-    op.bounds = {
-        .cube = 0.25,
-        .reason = "what a channel hands on starts with an edge, where no node of a cube is"};
+    op.warnings = {
+        "two channels above 1 lose the excess that they pass to each other, and its luminance"};
+    op.bounds = {.cube = 0.25,
+                 .reason =
+                     "the slope jumps where a channel starts to pass on its excess, and no node of "
+                     "a 3D LUT is there"};
     op.build = [](const Params&) -> Pipeline {
         const Channels c = inputs();  // scaled by 1/(1 + L)
-        Channels handed_on = c;       // by channel i to each of the others: of the same luminance
+        Channels handed_on = c;       // passed by channel i to each other one, at equal luminance
         for (std::size_t i = 0; i < 3; ++i) {
             const double w = kRec709Weights[i];
             handed_on[i] = max(c[i] - 1, 0) * (w / (1 - w));
         }
         const Expr x = Expr::input();
         const ToneScaleStage scale{ToneScaleStage::Norm::luminance, kRec709Weights, x / (1 + x)};
-        // No channel is above 1/w, of blue 13.9. Of the 65 nodes of a cube that ends at 16 one is
-        // at 1.00, where what is handed on starts with an edge.
+        // No channel exceeds 1/w, 13.9 for blue. One of the 65 nodes of a 3D LUT that ends at 16 is
+        // at 1.00, where channels start to pass on their excess and the slope jumps.
         return {
             limit_to_positive(), scale, ClampStage{0, 16},
             CrossTalkStage{{c[0] + handed_on[1] + handed_on[2], c[1] + handed_on[2] + handed_on[0],
@@ -213,8 +215,8 @@ Operator constant_luminance() {
     return op;
 }
 
-/// The paper's m from the key k of the picture: 0.3 + 0.7 k^1.4. A picture of one luminance has no
-/// key; it gets the parameter's default.
+/// The paper's m from the key k of the picture: 0.3 + 0.7 k^1.4. A picture with a single luminance
+/// has no key and gets the parameter's default.
 double devlin_contrast(const SceneStatistics& s) {
     if (!(s.minimum_luminance > 0 && s.maximum_luminance > s.minimum_luminance)) return 0.6;
     const double k = (std::log(s.maximum_luminance) - std::log(s.log_average)) /
@@ -228,8 +230,8 @@ Operator devlin() {
     op.title = "Reinhard-Devlin";
     op.view = "Reinhard Devlin";
     op.character =
-        "the eye's receptors: very flat and bright, black lifted steeply; colours hold, or fade "
-        "with chromatic_adaptation";
+        "model of the eye's receptors: very flat and bright, lifts black steeply; colors stay, or "
+        "fade with chromatic_adaptation";
     op.source =
         "E. Reinhard, K. Devlin, Dynamic Range Reduction Inspired by Photoreceptor Physiology, "
         "IEEE Transactions on Visualization and Computer Graphics 11(1), 2005";
@@ -243,31 +245,35 @@ Operator devlin() {
             std::move(statistic), from_picture);
     };
     op.parameters = {
-        number_parameter("intensity", "", 0, -8, 8, "f: brightness; the adaptation by exp(-f)"),
-        statistic_parameter(number_parameter("contrast", "", 0.6, 0.3, 1,
-                                             "m: power of the adaptation, larger is more contrast"),
-                            "0.3 + 0.7 k^1.4 of the key k", devlin_contrast),
-        number_parameter("chromatic_adaptation", "", 0, 0, 1,
-                         "c: 0 adapts all channels to the luminance, 1 each to itself"),
+        number_parameter("intensity", "", 0, -8, 8,
+                         "f: brightness; scales the adaptation by exp(-f)"),
+        statistic_parameter(
+            number_parameter("contrast", "", 0.6, 0.3, 1,
+                             "m: power of the adaptation; larger has more contrast"),
+            "0.3 + 0.7 k^1.4 of the key k", devlin_contrast),
+        number_parameter(
+            "chromatic_adaptation", "", 0, 0, 1,
+            "c: 0 adapts all channels to the luminance, 1 adapts each channel to itself"),
         number_parameter("light_adaptation", "", 1, 0, 1,
-                         "a: 0 adapts to the picture's means, 1 to the pixel"),
-        mean("mean_red", "mean red", "of the picture; read with light_adaptation below 1",
+                         "a: 0 adapts to the means of the picture, 1 to the pixel"),
+        mean("mean_red", "mean red", "mean of the picture; only with light_adaptation below 1",
              [](const SceneStatistics& s) { return s.mean_rgb[0]; }),
-        mean("mean_green", "mean green", "of the picture; read with light_adaptation below 1",
+        mean("mean_green", "mean green", "mean of the picture; only with light_adaptation below 1",
              [](const SceneStatistics& s) { return s.mean_rgb[1]; }),
-        mean("mean_blue", "mean blue", "of the picture; read with light_adaptation below 1",
+        mean("mean_blue", "mean blue", "mean of the picture; only with light_adaptation below 1",
              [](const SceneStatistics& s) { return s.mean_rgb[2]; }),
         mean("mean_luminance", "mean luminance",
-             "of the picture; read with light_adaptation below 1",
+             "mean of the picture; only with light_adaptation below 1",
              [](const SceneStatistics& s) { return s.mean_luminance; })};
-    op.warnings = {"contrast=1 with light_adaptation=1 gives every grey but black the same light"};
+    op.warnings = {"contrast=1 with light_adaptation=1 shows all grays except black alike"};
     op.deviations = {{DocumentedDifference::Kind::never_reaches_white, 0.99, ""}};
     op.bounds.cube = 0.05;
-    op.bounds.reason = "infinitely steep at black, where half floats end at 6e-8; else a cube's";
+    op.bounds.reason =
+        "infinite slope at black, and half floats end at 6e-8; elsewhere the error of a 3D LUT";
     op.build = [](const Params& p) -> Pipeline {
         const Expr m = p.expr("contrast");
-        // Of greys the formula makes x^(1-m)/(x^(1-m) + exp(-f m)), whose slope at black has no
-        // end. That of this power has none either, and no cube has to hold it.
+        // For grays the formula is x^(1-m)/(x^(1-m) + exp(-f m)), whose slope at black is infinite.
+        // This power takes the infinite slope out of the 3D LUT.
         const Expr steepness = named("steepness", max(1 - m, 0.25));
         Channels in = inputs();
         for (Expr& channel : in)

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Somewhat Boring Display Transform, Tomasz Stachowiak: exponential, between luminance and channels
-// by how colourful the light is.
+// Somewhat Boring Display Transform, Tomasz Stachowiak: an exponential on luminance for dull colors
+// and on channels for colorful ones.
 //
 // Source    T. Stachowiak, "Somewhat boring display transform", in Bevy's tonemapping_shared.wgsl.
-// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, inf), negatives: clamped
-//           at 0.
-// Out       display-linear RGB, 1.0 = display peak; white at 0.97; saturated colours up to a little
-//           above 1. Not clamped.
+// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, inf), negatives clamped at
+//           0.
+// Out       display-linear RGB, 1.0 = display peak; white at 0.97; saturated colors slightly above
+//           1. Not clamped.
 // Kind      3D. Monotone on the neutral axis: yes, 0.97 (1 - exp(-x)).
 // Keeps     0 -> 0.
 // Differs   nowhere.
-// Check     mid grey 0.18 -> 0.159787895, (0.05, 0.1, 2) -> blue 1.003109218 (check_values.json).
+// Check     mid gray 0.18 -> 0.159787895, (0.05, 0.1, 2) -> blue 1.003109218 (check_values.json).
 #include "operators/family.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -45,12 +45,13 @@ std::vector<Operator> define_somewhat_boring() {
     op.title = "Somewhat Boring Display Transform";
     op.view = "Somewhat Boring";
     op.character =
-        "hues of dull colors kept, of bright lights bent to white; soft, little contrast";
+        "keeps the hues of dull colors and bends those of bright highlights to white; soft, low "
+        "contrast";
     op.source =
         "T. Stachowiak, Somewhat boring display transform, in Bevy: tonemapping_shared.wgsl";
     op.licence = "MIT or Apache-2.0";
     op.negatives = kNegativesClampAtZero;
-    op.bounds = {.cube = 1.4e-2, .reason = "a cube: the desaturation starts with an edge"};
+    op.bounds = {.cube = 1.4e-2, .reason = "3D LUT: the slope jumps where the desaturation starts"};
     op.deviations = {{DocumentedDifference::Kind::never_reaches_white, 0.97, ""}};
     op.build = [](const Params&) -> Pipeline { return {limit_to_positive(), boring_mapping()}; };
     return {op};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Operators of the 1990s and 2000s that measure a picture first: by its log mean, its maximum, and
-// the eye's adaptation to it.
+// Operators of the 1990s and 2000s that measure the picture: its log mean, its maximum, and the
+// eye's adaptation to it.
 //
 // Source    drago: F. Drago, K. Myszkowski, T. Annen, N. Chiba, "Adaptive Logarithmic Mapping for
 //           Displaying High Contrast Scenes", Computer Graphics Forum 22(3), Eurographics 2003.
@@ -12,22 +12,24 @@
 //           Adaptation for Realistic Image Synthesis", SIGGRAPH 1996.
 //           durand_dorsey_rods: F. Durand, J. Dorsey, "Interactive Tone Mapping", Eurographics
 //           Workshop on Rendering, 2000.
-// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, 65504], negatives: clamped
-//           at 0. ward, tumblin_rushmeier, ferwerda and durand_dorsey_rods take scene values for
+// In        scene-linear RGB, working primaries Rec.709, D65; domain [0, 65504], negatives clamped
+//           at 0. ward, tumblin_rushmeier, ferwerda and durand_dorsey_rods read scene values as
 //           cd/m2.
-// Out       display-linear RGB, 1.0 = display peak, all without end above it: none clamps.
-// Kind      luminance, as `apply` says; the two with rods mix the channels (matrix, curve, matrix).
-//           Monotone on the neutral axis: yes.
-// Keeps     0 -> 0, but tumblin_rushmeier f(0) = -1/contrast_max; drago maximum -> display_max/100.
-// Differs   luminance forms are 0/0 at black in every source: here black stays black.
-//           drago: without the paper's changed gamma, which a display's encoding takes the place
-//           of. ln(1 + x) is computed so that it keeps its digits for small x, and the bias power
-//           ends at 2^-100 of the maximum, because its slope has no end at 0.
-//           tumblin_rushmeier: luminance and max forms show negative light as black.
+// Out       display-linear RGB, 1.0 = display peak. No operator clamps, and all are unbounded above
+//           it.
+// Kind      luminance, or as `apply` chooses; the two with rods mix the channels (matrix, curve,
+//           matrix). Monotone on the neutral axis: yes.
+// Keeps     0 -> 0, except tumblin_rushmeier f(0) = -1/contrast_max; drago maximum ->
+//           display_max/100.
+// Differs   luminance variants are 0/0 at black in every source; here black stays black.
+//           drago: the display's encoding replaces the paper's changed gamma. ln(1 + x) keeps its
+//           digits for small x, and the bias power ends at 2^-100 of the maximum, because its slope
+//           is infinite at 0.
+//           tumblin_rushmeier: luminance and max variants show negative output as black.
 //           ferwerda, durand_dorsey_rods: the rods' signal -0.702 X + 1.039 Y + 0.433 Z is negative
-//           for saturated reds: no signal here. k is limited to [0, 1] before it is squared
-//           (T. Zeltner's "Tone Mapper" squares first, so bright scenes get night vision).
-// Check     mid grey 0.18 -> 0.0616409117 (drago), 0.0302864674 (ward), 0.0424389891
+//           for saturated reds; here it is 0 there. k is limited to [0, 1] before it is squared (T.
+//           Zeltner's "Tone Mapper" squares first, so bright scenes get night vision).
+// Check     mid gray 0.18 -> 0.0616409117 (drago), 0.0302864674 (ward), 0.0424389891
 //           (tumblin_rushmeier); (0.05, 0.1, 2) -> (0.0241295151, 0.0273945785, 0.151466987)
 //           (ferwerda, rod_weight 0.5), (0.0251727377, 0.0267686450, 0.157100389)
 //           (durand_dorsey_rods, rod_weight 0.5) (python_check/operators/statistics.py).
@@ -42,12 +44,12 @@ namespace {
 constexpr const char* kChannelsMayClip =
     "apply=luminance keeps chromaticity, so a saturated channel may exceed 1 and clip";
 constexpr const char* kScenesAreLuminances =
-    "takes scene values for cd/m2: the picture's absolute level changes its contrast or colours";
+    "reads scene values as cd/m2: the absolute level of the picture changes its contrast or colors";
 
 ParameterSpec log_average(double value) {
     return statistic_parameter(
         number_parameter("log_average", "scene-linear", value, 1e-6, kHalfMax,
-                         "geometric mean of the scene's luminances: what the eye has adapted to"),
+                         "geometric mean luminance of the scene, to which the eye has adapted"),
         "log mean luminance", [](const SceneStatistics& s) { return s.log_average; });
 }
 
@@ -62,8 +64,8 @@ Operator drago() {
     op.title = "Drago";
     op.view = "Drago";
     op.character =
-        "a logarithm whose base grows with the light: opens shadows, keeps lights apart, grey mid "
-        "tones";
+        "logarithm whose base grows with luminance: opens shadows, keeps highlights distinct, gray "
+        "midtones";
     op.source =
         "F. Drago, K. Myszkowski, T. Annen, N. Chiba, Adaptive Logarithmic Mapping for Displaying "
         "High Contrast Scenes, Computer Graphics Forum 22(3), Eurographics 2003, eq. 4";
@@ -75,10 +77,10 @@ Operator drago() {
                           "b: smaller is brighter and flatter; also scales the log average, by "
                           "(1 + b - 0.85)^-5"),
          number_parameter("display_max", "cd/m2", 100, 1, 10000,
-                          "luminance that the maximum is shown with, where 100 is display white"),
+                          "luminance at which the maximum is shown; display white is 100"),
          log_average(1),
          statistic_parameter(number_parameter("maximum", "scene-linear", 100, 1e-6, kHalfMax,
-                                              "brightest scene value"),
+                                              "highest scene luminance"),
                              "maximum luminance",
                              [](const SceneStatistics& s) { return s.maximum_luminance; })});
     op.warnings = {kChannelsMayClip};
@@ -106,8 +108,8 @@ Operator ward() {
     op.title = "Ward (contrast-based scale factor)";
     op.view = "Ward";
     op.character =
-        "one factor for the whole picture, so that what is just visible in the scene is just "
-        "visible on the display; clips lights";
+        "one factor for the whole picture: just visible differences of the scene stay just visible "
+        "on the display; clips highlights";
     op.source =
         "G. Ward, A Contrast-Based Scalefactor for Luminance Display, Graphics Gems IV, 1994, "
         "pp. 415-421";
@@ -144,18 +146,18 @@ Operator tumblin_rushmeier() {
     op.title = "Tumblin-Rushmeier";
     op.view = "Tumblin-Rushmeier";
     op.character =
-        "the same brightness for the eye before scene and display: night scenes get darker and "
-        "flatter; crushes black, clips lights";
+        "matches the perceived brightness of display and scene: night scenes get darker and "
+        "flatter; crushes black, clips highlights";
     op.source =
         "J. Tumblin, H. Rushmeier, Tone Reproduction for Realistic Images, IEEE Computer Graphics "
         "and Applications 13(6), 1993, pp. 42-48";
     op.licence = "published formula";
     op.negatives = kNegativesClampAtZero;
-    op.parameters = with_apply(
-        "luminance", {display_max(80),
-                      number_parameter("contrast_max", "", 36, 2, 10000,
-                                       "contrast of the display: white over its darkest black"),
-                      log_average(0.5)});
+    op.parameters = with_apply("luminance",
+                               {display_max(80),
+                                number_parameter("contrast_max", "", 36, 2, 10000,
+                                                 "contrast of the display: white divided by black"),
+                                log_average(0.5)});
     op.warnings = {kScenesAreLuminances};
     op.deviations = {{DocumentedDifference::Kind::crushes_black, 0.060, ""},
                      {DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
@@ -175,14 +177,15 @@ Operator tumblin_rushmeier() {
 // ---------------------------------------------------------------------------------------------
 // Cones and rods
 
-/// What the rods see of red, green and blue: -0.702 X + 1.039 Y + 0.433 Z, with the XYZ of Rec.709.
+/// Response of the rods to red, green and blue: -0.702 X + 1.039 Y + 0.433 Z, with the XYZ of
+/// Rec.709.
 constexpr Vector3 kRods = {-0.702 * 0.412453 + 1.039 * 0.212671 + 0.433 * 0.019334,
                            -0.702 * 0.357580 + 1.039 * 0.715160 + 0.433 * 0.119193,
                            -0.702 * 0.180423 + 1.039 * 0.072169 + 0.433 * 0.950227};
 
 double dot(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/// Smallest luminance difference that cones see when adapted to La cd/m2.
+/// Smallest luminance difference visible to cones adapted to La cd/m2.
 double cone_threshold(double La) {
     const double l = std::log10(La);
     if (l <= -2.6) return std::pow(10, -0.72);
@@ -190,7 +193,7 @@ double cone_threshold(double La) {
     return std::pow(10, std::pow(0.249 * l + 0.65, 2.7) - 0.72);
 }
 
-/// The same of rods.
+/// The same for rods.
 double rod_threshold(double La) {
     const double l = std::log10(La);
     if (l <= -3.94) return std::pow(10, -2.86);
@@ -201,8 +204,8 @@ double rod_threshold(double La) {
 /// C' = cones C + rods tint max(dot(kRods, C), 0).
 Pipeline cones_and_rods(double cones, double rods, const Vector3& tint) {
     const Expr x = Expr::input();
-    // In coordinates of which one is the rods' signal and the others do not change along the tint,
-    // only that one bends: exact as matrix, curve, matrix.
+    // Choose coordinates in which one is the rods' signal and the others do not change along the
+    // tint. Only the signal has a nonlinear curve, so matrix, curve, matrix is exact.
     const auto p =
         static_cast<std::size_t>(std::max_element(tint.begin(), tint.end()) - tint.begin());
     const double along_tint = dot(kRods, tint);
@@ -215,7 +218,7 @@ Pipeline cones_and_rods(double cones, double rods, const Vector3& tint) {
         response.f[p] = cones * x + rods * along_tint * max(x, 0);
         return {limit_to_positive(), MatrixStage{basis}, response, MatrixStage{inverse(basis)}};
     }
-    // The rods hardly see their own tint: no such coordinates.
+    // The rods hardly respond to their own tint, so these coordinates do not exist.
     const std::array<Expr, 3> c = {Expr::input(0), Expr::input(1), Expr::input(2)};
     const Expr signal =
         named("signal", max(kRods[0] * c[0] + kRods[1] * c[1] + kRods[2] * c[2], 0));
@@ -227,17 +230,17 @@ std::vector<ParameterSpec> rod_parameters() {
     return {
         display_max(80),
         statistic_parameter(number_parameter("photopic_adaptation", "cd/m2", 2, 1e-6, kHalfMax,
-                                             "luminance that the cones have adapted to"),
+                                             "luminance to which the cones have adapted"),
                             "half the maximum luminance",
                             [](const SceneStatistics& s) { return s.maximum_luminance / 2; }),
         statistic_parameter(number_parameter("scotopic_adaptation", "scotopic cd/m2", 1.5, 1e-6,
-                                             kHalfMax, "signal that the rods have adapted to"),
-                            "half the rods' signal of the channels' maxima",
+                                             kHalfMax, "rod signal to which the rods have adapted"),
+                            "half the rod signal of the channel maxima",
                             [](const SceneStatistics& s) { return dot(kRods, s.maximum_rgb) / 2; }),
         choice_parameter("rod_weight_from", {"adaptation", "fixed"}, "adaptation",
-                         "share of the rods: by what the eye has adapted to, or rod_weight"),
+                         "source of the rods' share: the adaptation of the eye, or rod_weight"),
         number_parameter("rod_weight", "", 0.5, 0, 1,
-                         "k, share of the rods; read with rod_weight_from=fixed")};
+                         "k: share of the rods; only with rod_weight_from=fixed")};
 }
 
 /// C' = (mp C + k ms tint Ls)/Ldmax.
@@ -256,7 +259,7 @@ DeclaredBounds rod_bounds() {
             .ocio_cpu = 1.5e-4,
             .ocio_gpu = 6e-3,
             .cube = 0.3,
-            .reason = "the matrix back from the rods' coordinates cancels near black"};
+            .reason = "the matrix from the rods' coordinates to RGB cancels near black"};
 }
 
 Operator ferwerda() {
@@ -265,8 +268,8 @@ Operator ferwerda() {
     op.title = "Ferwerda";
     op.view = "Ferwerda";
     op.character =
-        "what is just visible in the scene is just visible on the display; in the dark the rods' "
-        "grey takes over. Clips lights";
+        "just visible differences of the scene stay just visible on the display; dark scenes turn "
+        "to the gray of the rods; clips highlights";
     op.source =
         "J. Ferwerda, S. Pattanaik, P. Shirley, D. Greenberg, A Model of Visual Adaptation for "
         "Realistic Image Synthesis, SIGGRAPH 1996";
@@ -290,7 +293,8 @@ Operator durand_dorsey_rods() {
     op.id = "durand_dorsey_rods";
     op.title = "Ferwerda with blue shift (Durand-Dorsey)";
     op.view = "Durand-Dorsey Rods";
-    op.character = "Ferwerda whose night is bluish; rods fade more slowly with the light";
+    op.character =
+        "Ferwerda with bluish night scenes; the share of the rods falls more slowly with luminance";
     op.source =
         "F. Durand, J. Dorsey, Interactive Tone Mapping, Eurographics Workshop on "
         "Rendering, 2000";
@@ -301,7 +305,7 @@ Operator durand_dorsey_rods() {
     op.bounds = rod_bounds();
     const auto shift = [&](const std::string& color, double value) {
         op.parameters.push_back(
-            number_parameter("blue_shift_" + color, "", value, 0, 2, color + " of the rods' grey"));
+            number_parameter("blue_shift_" + color, "", value, 0, 2, color + " of the rods' gray"));
     };
     shift("red", 1.05);
     shift("green", 0.97);

@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Unreal Engine 4.15 and later: the filmic curve on log10, between the RRT's modifiers.
+// Unreal Engine 4.15 and later: the filmic curve in log10, between the RRT's modifiers.
 //
 // Source    Epic Games, FilmToneMap of TonemapCommon.ush, Unreal Engine 4.15 and later, as facts:
-//           its text is under the Epic licence and nothing of it is here.
-// In        scene-linear RGB, working primaries AP1 (ACEScg); domain [0, inf), negatives: clamped
-//           at 0.
+//           its text is under the Epic license, and none of it is here.
+// In        scene-linear RGB, working primaries AP1 (ACEScg); domain [0, inf), negatives clamped at
+//           0.
 // Out       display-linear RGB in AP1, 1.0 = display peak; range [0, 1 + white_clip).
-// Kind      matrix, curve, matrix; with glow_and_red=on 3D before them. Monotone on the neutral
-//           axis: yes with the defaults.
-// Keeps     mid grey 0.18 -> 0.18 for every slope and toe, where the shoulder begins above it; 0 ->
-//           0 (with black_clip above 0 more than black is shown as 0).
-// Differs   The source takes log10 of its input and blends toe, straight line and shoulder with
-//           weights of 0 beyond their parts; at black that is 0 times infinity. Here each part is a
-//           rational in a power of x, u/(1 + u), and is taken only where it has weight, so black is
-//           the toe's own limit, -black_clip, clamped to 0. BlueCorrection, ExpandGamut and
-//           ToneCurveAmount, which come before and after it in the engine, are not in it. Toe 1
-//           without black_clip and shoulder 1 without white_clip leave no toe or shoulder: an
-//           error. The preset legacy has the numbers of the documentation, from memory.
-// Check     mid grey 0.18 -> 0.18, (0.8, 0.1, 0.05) in AP1 -> red 0.582348314 (check_values.json).
+// Kind      matrix, curve, matrix; with glow_and_red=on a 3D stage before them. Monotone on the
+//           neutral axis: yes with the defaults.
+// Keeps     mid gray 0.18 -> 0.18 for every slope and toe, if the shoulder begins above it; 0 -> 0
+//           (with black_clip above 0, more than black is shown as 0).
+// Differs   The source takes log10 of its input and blends toe, line and shoulder with weights of 0
+//           outside their segments; at black that is 0 times infinity. Here each segment is a
+//           rational in a power of x, u/(1 + u), and is evaluated only where it has weight, so
+//           black is the limit of the toe, -black_clip, clamped to 0. BlueCorrection, ExpandGamut
+//           and ToneCurveAmount, which the engine applies before and after it, are not included.
+//           Toe 1 without black_clip and shoulder 1 without white_clip leave no toe or shoulder,
+//           which is an error. The preset legacy has the numbers of the documentation, from memory.
+// Check     mid gray 0.18 -> 0.18, (0.8, 0.1, 0.05) in AP1 -> red 0.582348314 (check_values.json).
 #include <algorithm>
 #include <cmath>
 
@@ -29,12 +29,12 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// One s-shaped arm, level * 2u/(1 + u) with u = (x/x0)^power: a logistic function of log x. At x0
-/// it is at `level`, half its height.
+/// One s-shaped arm, level * 2u/(1 + u) with u = (x/x0)^power: a logistic function of log x. Its
+/// value at x0 is `level`, half its height.
 Expr arm(double level, const Expr& u) { return 2 * level * (u / (1 + u)); }
 
-/// The source's names: ts, ss are half the heights of toe and shoulder; tm, sm the log10 of where
-/// they are half done; st the offset of the straight line.
+/// The source's names: ts, ss are half the heights of toe and shoulder; tm, sm the log10 of the
+/// inputs at half height; st the offset of the line.
 Expr film_curve(double slope, double toe, double shoulder, double black_clip, double white_clip) {
     const double ts = 1 + black_clip - toe;
     const double ss = 1 + white_clip - shoulder;
@@ -49,7 +49,7 @@ Expr film_curve(double slope, double toe, double shoulder, double black_clip, do
     constexpr double kMidGrey = 0.18;  // in and out
     const double mid = std::log10(kMidGrey);
     const bool is_long_toe = toe > 0.8;
-    // Height of mid grey in the toe, of its whole height 2 ts.
+    // Height of mid gray as a fraction of the toe's height 2 ts.
     const double grey_in_toe = (kMidGrey + black_clip) / ts / 2;
     const double tm = is_long_toe
                           ? (1 - toe - kMidGrey) / slope + mid
@@ -58,11 +58,11 @@ Expr film_curve(double slope, double toe, double shoulder, double black_clip, do
     const double sm = shoulder / slope - st;
 
     const Expr x = Expr::input();
-    constexpr double top = 6;  // no input comes to 10^6
+    constexpr double top = 6;  // no input reaches 10^6
     const double toe_power = 2 * slope / ts / std::log(10.0);
     const double shoulder_power = 2 * slope / ss / std::log(10.0);
-    // Both arms are written from a point that is a float: of the short toe mid grey (tm may be
-    // 10^230), of the long one tm, which is below mid grey.
+    // Both arms start from a point that fits a float: mid gray for a short toe (tm may be 10^230),
+    // tm for a long toe, where it is below mid gray.
     const Expr u =
         named("u", is_long_toe ? pow(min(x, std::pow(10, tm)) / std::pow(10, tm), toe_power)
                                : grey_in_toe / (1 - grey_in_toe) * pow(x / kMidGrey, toe_power));
@@ -74,7 +74,7 @@ Expr film_curve(double slope, double toe, double shoulder, double black_clip, do
         named("shoulder_part",
               1 + white_clip - arm(ss, pow(x_shoulder / max(x, x_shoulder), shoulder_power)));
     if (sm < tm) {
-        // No straight part: toe and shoulder go over into each other.
+        // No linear segment: toe and shoulder blend into each other.
         const Expr l = named("log_light", log2(max(x, x_shoulder)) * std::log10(2.0));
         return mix(toe_part, shoulder_part, smoothstep(sm, tm, l));
     }
@@ -93,29 +93,29 @@ std::vector<Operator> define_unreal() {
     op.title = "Unreal Engine (filmic)";
     op.view = "Unreal Filmic";
     op.character =
-        "ACES look with adjustable toe and shoulder, anchored at mid grey; white a little above "
-        "the display's";
+        "ACES look with adjustable toe and shoulder, fixed mid gray; its white is a little above "
+        "display white";
     op.source = "Epic Games, FilmToneMap of TonemapCommon.ush, Unreal Engine 4.15 and later";
-    op.licence = "Epic EULA; formula and constants as facts, no code of it is used";
+    op.licence = "Epic EULA; formula and constants as facts; none of its code is used";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Unreal";
     op.bounds = {.cube = 7e-3,
-                 .reason = "fixed functions of OpenColorIO: another weight of hues about red"};
+                 .reason = "OpenColorIO's fixed functions weight hues near red differently"};
     op.working = kAP1;
     op.parameters = fixed_parameters({
-        number_parameter("slope", "", 0.88, 0.01, 1, "slope of the straight part, per log10"),
-        number_parameter("toe", "", 0.55, 0.01, 1, "how much of the range is toe"),
-        number_parameter("shoulder", "", 0.26, 0.01, 1, "how much of the range is shoulder"),
+        number_parameter("slope", "", 0.88, 0.01, 1, "slope of the linear segment, per log10"),
+        number_parameter("toe", "", 0.55, 0.01, 1, "share of the range that is toe"),
+        number_parameter("shoulder", "", 0.26, 0.01, 1, "share of the range that is shoulder"),
         number_parameter("black_clip", "display-linear", 0, 0, 1,
-                         "how far below black the toe ends"),
+                         "distance from black down to the end of the toe"),
         number_parameter("white_clip", "display-linear", 0.04, 0, 1,
-                         "how far above white the shoulder ends"),
+                         "distance from white up to the end of the shoulder"),
         choice_parameter("glow_and_red", {"on", "off"}, "on",
-                         "glow of dark colors and modifier of reds of the ACES rendering "
-                         "transform, in AP0, before the curve"),
+                         "apply the glow and the red modifier of the ACES rendering transform in "
+                         "AP0, before the curve"),
     });
     op.presets = {{"legacy",
-                   "settings near the tone mapper of Unreal Engine 4 before 4.15",
+                   "close to the tone mapper of Unreal Engine 4 before 4.15",
                    {{"slope", "0.98"},
                     {"toe", "0.3"},
                     {"shoulder", "0.22"},

@@ -11,7 +11,7 @@ const std::vector<std::string>& difference_names() {
     return names;
 }
 
-/// Differences are declared with two significant digits, what is near 1 with three.
+/// Differences have two significant digits, values near 1 have three.
 std::string to_string(const DocumentedDifference& d) {
     using Kind = DocumentedDifference::Kind;
     const std::string prefix = d.when.empty() ? "" : d.when + ": ";
@@ -22,15 +22,15 @@ std::string to_string(const DocumentedDifference& d) {
                                          : "takes black to " + rounded(d.value, 2) +
                                                ", which displays clip");
         case Kind::crushes_black:
-            return prefix + "shows greys up to " + rounded(d.value, 2) + " as black";
+            return prefix + "shows grays up to " + rounded(d.value, 2) + " as black";
         case Kind::never_reaches_white:
             return prefix + "never reaches white: at most " + rounded(d.value, 3) +
-                   " of the display's light";
+                   " of display white";
         case Kind::exceeds_white:
             return prefix +
-                   (d.value == kInfinity ? "exceeds white without end"
+                   (d.value == kInfinity ? "exceeds white without limit"
                                          : "exceeds white, up to " + rounded(d.value, 3)) +
-                   ": SDR displays clip it";
+                   "; SDR displays clip it";
         case Kind::not_monotone:
             return prefix + "non-monotone" +
                    (d.value == kInfinity ? "" : " below " + rounded(d.value, 2));

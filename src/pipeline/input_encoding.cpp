@@ -11,7 +11,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// An encoding without parameters, and the primaries of the light that it is of.
+/// An encoding without parameters, and its primaries.
 struct FixedEncoding {
     const char* id;
     const char* title;
@@ -21,7 +21,7 @@ struct FixedEncoding {
 };
 
 Expr reinhard_encode(const Expr& x) { return max(x, 0) / (max(x, 0) + 1); }
-/// Its end, 1, is the largest light.
+/// Code 1 is the largest value.
 Expr reinhard_decode(const Expr& code) { return code / max(1 - code, 1 / kHalfMax); }
 
 constexpr std::array<FixedEncoding, 9> kFixedEncodings = {{

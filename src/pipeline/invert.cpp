@@ -22,8 +22,8 @@ struct Node {
     double x, y;
 };
 
-/// Nodes of a curve, so close that it is nearly straight between them, except in steps as narrow
-/// as float's.
+/// Nodes of a curve, so close that it is nearly straight between them, except in jumps as narrow as
+/// a float step.
 class Sampling {
   public:
     Sampling(const Expr& f, Range domain) : f_(f) {
@@ -31,7 +31,7 @@ class Sampling {
         constexpr int kEven = 64;
         for (int i = 0; i <= kEven; ++i)
             x.push_back(domain.lo + (domain.hi - domain.lo) * i / kEven);
-        // Light spans many magnitudes.
+        // Values span many magnitudes.
         constexpr int kLowestOctave = -64;
         for (int i = 4 * kLowestOctave; i <= 4 * 20; ++i) {
             x.push_back(std::exp2(i / 4.0));
@@ -51,7 +51,7 @@ class Sampling {
   private:
     [[nodiscard]] Node at(double x) const { return {x, evaluate(f_, x)}; }
 
-    /// The nodes behind `a`, up to `b`.
+    /// Nodes after `a`, up to `b`.
     void add(Node a, Node b) {
         std::array<Node, 5> part = {a, {}, {}, {}, b};
         for (std::size_t i = 1; i < 4; ++i)
@@ -63,10 +63,10 @@ class Sampling {
             steepest = std::max(steepest, std::fabs(rise));
             flattest = std::min(flattest, std::fabs(rise));
         }
-        // With slopes that differ by so little, a straight line errs by a hundredth of the
-        // distance, and each step of Newton's method squares that.
+        // With slopes this close, a straight line has an error of a hundredth of the distance, and
+        // each step of Newton's method squares it.
         constexpr double kNearlyStraight = 1.06;
-        // Single precision tells nodes apart that are so far from each other.
+        // Single precision distinguishes nodes at this distance.
         constexpr double kNarrow = 0x1p-22;
         constexpr double kDark = 1e-30;
         constexpr std::size_t kMostNodes = 1 << 15;
@@ -85,11 +85,11 @@ class Sampling {
     std::vector<Node> nodes_;
 };
 
-/// The nodes with outputs that ascend, each by something: of a plateau its ends, and between them
-/// its place of the smallest input.
+/// Nodes with strictly ascending outputs: the ends of each plateau, and between them the position
+/// of its smallest input.
 std::vector<Node> ascending(std::vector<Node> nodes) {
     if (nodes.back().y < nodes.front().y) std::reverse(nodes.begin(), nodes.end());
-    constexpr double kStep = 0x1p-22;  // as narrow as the nodes of a kink
+    constexpr double kStep = 0x1p-22;  // distance of the nodes at a kink
     std::vector<Node> result;
     const auto push = [&](Node node) {
         if (result.empty() || node.y > result.back().y) result.push_back(node);
@@ -108,8 +108,8 @@ std::vector<Node> ascending(std::vector<Node> nodes) {
     return result;
 }
 
-/// The x of which f makes input 0.
-/// @throws Error  it falls and rises
+/// The x for which f(x) equals input 0.
+/// @throws Error  f falls and rises
 Expr numeric_inverse(const Expr& f, Range domain, const std::string& name) {
     std::vector<Node> nodes = Sampling(f, domain).nodes();
     std::vector<double> x;
@@ -128,7 +128,7 @@ Expr numeric_inverse(const Expr& f, Range domain, const std::string& name) {
             y.push_back(evaluate(f, v) * (falls ? -1 : 1));
         return y;
     };
-    // The rounding of formulas whose terms cancel.
+    // Rounding of formulas with cancellation.
     const double noise = 1e-9 * std::max(largest, 1e-9);
     if (std::optional<Fall> fall = find_fall(values, x, noise)) {
         if (!falls) throw Error(name + " falls " + to_string(*fall));
@@ -159,11 +159,11 @@ Expr numeric_inverse(const Expr& f, Range domain, const std::string& name) {
     const Expr hi = of(upper, y);
     Expr result = of(near, y);
     const Expr slope = derivative(f);
-    // From a hundredth of the distance between nodes to 1e-4, and to the rounding of double.
+    // Converges from a hundredth of the node distance to 1e-4, and then to the rounding of double.
     for (int step = 0; step < 2; ++step) {
         const Expr rise = substitute(slope, std::span(&result, 1));
         const Expr error = substitute(f, std::span(&result, 1)) - y;
-        // Where it is flat, or no number says how steep it is, the table has to do.
+        // If the curve is flat, or its slope is no number, uses the table.
         const Expr moved = falls ? select(less(rise, 0), result - error / rise, result)
                                  : select(less(0, rise), result - error / rise, result);
         result = clamp(moved, lo, hi);
@@ -171,7 +171,7 @@ Expr numeric_inverse(const Expr& f, Range domain, const std::string& name) {
     return result;
 }
 
-/// From the last stage to the first. Each stage's domain is what those before it put out.
+/// From the last stage to the first. The domain of each stage is the output of the previous ones.
 class Inversion {
   public:
     Pipeline run(const Pipeline& pipeline) {
@@ -225,7 +225,7 @@ class Inversion {
             back[c] = s.inverse  ? clamp((*s.inverse)[c], d.lo, d.hi)
                       : is_known ? back[0]
                                  : numeric_inverse(s.f[c], d, name(s));
-            // A formula holds for what the curve puts out.
+            // A stated inverse holds for the outputs of the curve.
             const Expr y = clamp(Expr::input(), range[c].lo, range[c].hi);
             if (s.inverse) back[c] = substitute(back[c], std::span(&y, 1));
         }
@@ -240,7 +240,7 @@ class Inversion {
             hi = s.norm == ToneScaleStage::Norm::max_rgb ? std::max(hi, most)
                                                          : hi + std::max(s.weights[c], 0.0) * most;
         }
-        // The norm of what it puts out is f of the norm.
+        // The norm of the output is f of the norm.
         inverse_.emplace_back(ToneScaleStage{
             s.norm, s.weights, numeric_inverse(s.f, {0, std::min(hi, kHalfMax)}, name(s))});
         domain_.fill(kAnything);
@@ -277,7 +277,7 @@ std::optional<Fall> find_fall(const Curve& f, const std::vector<double>& x, doub
         if (!has_fallen && y[i] >= y[top]) top = low = i;
     }
     if (!(y[low] < y[top] - noise)) return std::nullopt;
-    // The turning points are between the places.
+    // The turning points are between the positions.
     const auto refine = [&](std::size_t i, double sign) {
         const double from = x[i == 0 ? 0 : i - 1];
         const double to = x[std::min(i + 1, x.size() - 1)];
@@ -299,7 +299,7 @@ std::optional<Fall> find_fall(const Curve& f, const std::vector<double>& x, doub
 }
 
 std::string to_string(const Fall& fall) {
-    // As many digits as tell the values apart, and three at least.
+    // Enough digits to distinguish the values, and at least three.
     int digits = 3;
     while (digits < 9 && rounded(fall.y_from, digits) == rounded(fall.y_to, digits))
         ++digits;

@@ -10,7 +10,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// What is expected where a name is none of these.
+/// Expected names for an error message.
 std::string one_of(const Operator& op, const char* what, const std::vector<std::string>& names) {
     return names.empty() ? "none: " + op.id + " has no " + what : join_choices(names);
 }
@@ -36,7 +36,7 @@ double parse_number(const Operator& op, const ParameterSpec& spec, const std::st
     return value;
 }
 
-/// @throws Error  with the nearest name
+/// @throws Error  that suggests the nearest name
 const ParameterSpec& find_parameter(const Operator& op, std::string_view name) {
     for (const ParameterSpec& spec : op.parameters) {
         if (is_same_name(spec.name, name)) return spec;
@@ -46,7 +46,7 @@ const ParameterSpec& find_parameter(const Operator& op, std::string_view name) {
                 one_of(op, "parameters", ids) + did_you_mean(name, ids));
 }
 
-/// The settings under the names of the parameters, choices as the parameter has them.
+/// Settings with the names and choices spelled like the parameters.
 /// @throws Error  for an unknown parameter or choice, and for one parameter with two values
 Settings in_own_words(const Operator& op, const Settings& settings) {
     Settings result;
@@ -221,7 +221,7 @@ ResolvedOperator resolve(const Operator& op, const Preset* preset, const Setting
 
     for (const auto& [key, text] : merged) {
         const ParameterSpec& spec = find_parameter(op, key);
-        // What is there without the setting.
+        // The choices without the setting.
         const bool is_in_preset = preset && preset->settings.contains(key);
         bool is_default = text == (is_in_preset ? preset->settings.at(key) : spec.default_choice);
         if (spec.kind == Kind::number) {
@@ -264,8 +264,8 @@ ResolvedOperator resolve(const Operator& op, const Preset* preset, const Setting
         resolved.params.look_ = found->id;
         resolved.label += " look=" + found->id;
     }
-    // Parameters that are each in range can still contradict each other: the operator says so here,
-    // not in the middle of a picture.
+    // Parameters in range can still contradict each other. Build the operator once, so that it
+    // reports this here and not in the middle of a picture.
     try {
         (void)op.build(resolved.params);
     } catch (const FileError&) {

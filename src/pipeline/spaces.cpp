@@ -10,7 +10,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// Null: there is none of that name.
+/// Null if there is no such name.
 template <class Item>
 const Item* look_up(const std::vector<Item>& items, std::string_view name) {
     for (const Item& item : items) {
@@ -54,7 +54,7 @@ Display sdr_display(std::string id, std::string title, std::vector<std::string> 
             .source = std::move(source)};
 }
 
-constexpr double kHdrPeak = 1000;     // cd/m2: what grading displays and OCIO's HLG display have
+constexpr double kHdrPeak = 1000;     // cd/m2, of grading displays and of OCIO's HLG display
 constexpr double kPqLargest = 10000;  // SMPTE ST 2084
 
 Display pq_display(std::string id, std::string title, std::vector<std::string> aliases,
@@ -88,8 +88,8 @@ Display hlg_display() {
             .encode = {MatrixStage{scale(kIdentity3, 1 / unit)},
                        luminance(hlg_inverse_ootf_luminance(x)),
                        named("encode", curve_stage(hlg_oetf(x), hlg_inverse_oetf(x))),
-                       // A color of one bright channel has a luminance below 1, so a channel's
-                       // scene light may be above 1 where its display light is the largest.
+                       // A color with one bright channel has a luminance below 1, so its scene
+                       // value may exceed 1 at the largest display value.
                        ClampStage{0, 1}},
             .decode = {named("decode", curve_stage(hlg_inverse_oetf(x), hlg_oetf(x))),
                        luminance(hlg_ootf_luminance(x)), MatrixStage{scale(kIdentity3, unit)}},
@@ -99,7 +99,7 @@ Display hlg_display() {
             .largest_light = unit};
 }
 
-/// Light is limited as every engine limits what it takes.
+/// Clamps like the input of every engine.
 SourceColor encoded(std::string name, Pipeline decode, const Primaries& primaries) {
     decode.push_back(ClampStage{-kHalfMax, kHalfMax});
     return {std::move(name), primaries, std::move(decode)};
@@ -146,8 +146,8 @@ std::optional<SourceColor> by_interop_pattern(std::string_view text) {
 }  // namespace
 
 const std::vector<InputSpace>& all_input_spaces() {
-    // Aliases: what Blender 3 and 4, OIIO, the ACES configs and the interop forum call the same
-    // space.
+    // Aliases: names of the same space in Blender 3 and 4, OIIO, the ACES configs and the interop
+    // forum.
     static const std::vector<InputSpace> spaces = {
         {"lin_rec709",
          "Linear Rec.709",
@@ -198,10 +198,10 @@ const std::vector<Display>& all_displays() {
             [](const Expr& x) { return power_encode(x, 2.2); },
             [](const Expr& x) { return power_decode(x, 2.2); }, "2.2 power, BT.709-6 primaries"),
         pq_display("rec2100_pq", "Rec.2100-PQ", {"rec2100_pq_display", "pq_rec2020_display"},
-                   kRec2020, "ITU-R BT.2100-2 PQ (SMPTE ST 2084); light 1 is 100 cd/m2"),
+                   kRec2020, "ITU-R BT.2100-2 PQ (SMPTE ST 2084); linear 1 is 100 cd/m2"),
         hlg_display(),
         pq_display("p3d65_pq", "P3-D65 PQ", {"st2084_p3d65_display", "pq_p3d65_display"}, kP3D65,
-                   "SMPTE EG 432-1 primaries, D65, SMPTE ST 2084; light 1 is 100 cd/m2"),
+                   "SMPTE EG 432-1 primaries, D65, SMPTE ST 2084; linear 1 is 100 cd/m2"),
     };
     return displays;
 }
@@ -226,7 +226,7 @@ SourceColor find_source_color(std::string_view name) {
     if (is_same_name(name, "lin_ciexyzd65_scene"))
         return {"lin_ciexyzd65_scene", {"CIE XYZ", {1, 0}, {0, 1}, {0, 0}, kD65}};
     if (std::optional<SourceColor> color = by_interop_pattern(name)) return *color;
-    // The message of the input spaces, with the others.
+    // Throws the message of the input spaces, with all names.
     return {find_named(all_input_spaces(), name, "input space",
                        {"sRGB", "Rec709", "Gamma2.2", "a display"})
                 .id,

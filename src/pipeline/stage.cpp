@@ -55,7 +55,7 @@ bool is_identity(const Stage& stage) {
     return std::visit(
         Overloaded{[](const MatrixStage& s) { return s.m == kIdentity3; },
                    [](const CurveStage& s) { return s.is_uniform() && same(s.f[0], input0()); },
-                   // Even with f(n) = n, colours of norm 0 or below become black.
+                   // Even with f(n) = n, colors of norm 0 or below become black.
                    [](const ToneScaleStage&) { return false; },
                    [](const HuePreservingStage& s) { return same(s.f, input0()); },
                    [](const HexconeStage&) { return false; },
@@ -129,8 +129,7 @@ std::array<Expr, 3> apply_stage(const Stage& stage, const std::array<Expr, 3>& r
                     s.norm == ToneScaleStage::Norm::max_rgb
                         ? max(max(rgb[0], rgb[1]), rgb[2])
                         : s.weights[0] * rgb[0] + s.weights[1] * rgb[1] + s.weights[2] * rgb[2];
-                // At n = 0 the ratio has a limit, but every channel that it would scale is
-                // 0.
+                // At n = 0 the ratio has a limit, but all channels that it scales are 0.
                 const Expr ratio = select(less(0, n), substitute(s.f, std::span(&n, 1)) / n, 0);
                 return std::array<Expr, 3>{rgb[0] * ratio, rgb[1] * ratio, rgb[2] * ratio};
             },
@@ -140,8 +139,8 @@ std::array<Expr, 3> apply_stage(const Stage& stage, const std::array<Expr, 3>& r
                 const Expr f_lo = substitute(s.f, std::span(&lo, 1));
                 const Expr range = substitute(s.f, std::span(&hi, 1)) - f_lo;
                 std::array<Expr, 3> out = rgb;
-                // Greys: 0/0, but the range that it would scale is 0. The condition is on
-                // what is divided by: in float a difference may be 0 where its terms differ.
+                // Grays are 0/0, but the range that it scales is 0. Tests the divisor itself,
+                // because in float a difference may be 0 although its terms differ.
                 const Expr spread = hi - lo;
                 for (Expr& c : out)
                     c = f_lo + range * select(less(0, spread), (c - lo) / spread, 0);

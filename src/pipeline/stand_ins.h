@@ -9,12 +9,13 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// The constants that stand in for numbers that `apply` takes from the picture: "maximum 100 for
-/// the maximum luminance of the picture". Empty: the operator measures nothing.
-/// @param arguments  parameters that get their values later
+/// Constants instead of the statistics that `apply` measures: "maximum 100 for the maximum
+/// luminance". Empty if the operator measures nothing.
+/// @param arguments  parameters that are set later
 [[nodiscard]] TONEWRIGHT_API std::string stand_ins(const ResolvedOperator& op,
                                                    const std::vector<std::string>& arguments = {});
-/// Says so of a `form` ("LUT") of the operator, in one line. Empty: nothing stands in.
+/// One-line warning about them for a representation (`form`, such as "LUT") of the operator. Empty
+/// if there are none.
 [[nodiscard]] TONEWRIGHT_API std::string stand_in_warning(
     const ResolvedOperator& op, std::string_view form,
     const std::vector<std::string>& arguments = {});

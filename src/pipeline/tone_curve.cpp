@@ -37,21 +37,21 @@ Stage saturation_stage(const Expr& s, const Vector3& weights) {
     return stage;
 }
 
-/// The curve as norms need it: light, and 0 at 0.
+/// The curve for norms: display-linear, and 0 at 0.
 Expr norm_curve(const ToneCurve& curve, const std::string& apply) {
-    // A tenth of a millionth of white: the rounding of a formula that is 0 at 0.
+    // Rounding error of formulas that are 0 at 0.
     constexpr double kZero = 1e-7;
     const Expr black = 0;
     const Expr at_black = substitute(curve.f, std::span(&black, 1));
     if (at_black.is_constant() && at_black.value() > kZero) {
         throw Error("apply is " + apply + "; expected channels or hue_preserving: the curve is " +
-                    shortest(at_black.value()) + " at black, which no ratio of colors makes of 0");
+                    shortest(at_black.value()) + " at black, and a factor cannot lift 0");
     }
     const Expr f = select(equal(at_black, 0), curve.f, max(curve.f, 0));
     return curve.code_power == 0 ? f : pow(f, curve.code_power);
 }
 
-/// The corrections that no norm and matrix express.
+/// Corrections that a norm and a matrix cannot express.
 CrossTalkStage corrected(const Expr& f, const Params& params, const Vector3& w) {
     const std::array<Expr, 3> c = {Expr::input(0), Expr::input(1), Expr::input(2)};
     const Expr L = named("L", w[0] * c[0] + w[1] * c[1] + w[2] * c[2]);
@@ -71,7 +71,7 @@ CrossTalkStage corrected(const Expr& f, const Params& params, const Vector3& w) 
     const auto channel = [&](const Expr& v) {
         const Expr ratio = named("ratio", v / L);
         if (s.is_constant(0)) return select(less(0, L), Lo, 0);
-        // 0^s is 0 for every s above 0, also where the curve is so flat that s is 0 but for that.
+        // 0^s is 0 for every s above 0, also if the curve is so flat that s rounds to 0.
         const Expr at_0 = is_live ? equal(params.expr("saturation"), 0) : 0;
         const Expr power =
             s.is_constant() ? pow(ratio, s) : select(less(0, v), pow(ratio, s), at_0);
@@ -88,7 +88,7 @@ Pipeline apply_norm(const ToneCurve& curve, const Params& params) {
     const ToneScaleStage scale{ToneScaleStage::Norm::luminance, curve.weights, f};
     const std::string& correction = params.choice("color_correction");
     if (correction == "ratio") return {scale};
-    // ((C/L - 1) s + 1) f(L) with one s for all is linear in what the norm makes.
+    // ((C/L - 1) s + 1) f(L) with a constant s is linear in the result of the norm.
     if (correction == "luminance_preserving" && params.choice("saturation_from") == "fixed")
         return {scale, saturation_stage(params.expr("saturation"), curve.weights)};
     return {corrected(f, params, curve.weights)};
@@ -116,18 +116,18 @@ void check(const Params& params) {
 std::vector<ParameterSpec> with_apply(std::string default_apply, std::vector<ParameterSpec> own) {
     own.push_back(choice_parameter(
         "apply", {"channels", "luminance", "max", "hue_preserving"}, std::move(default_apply),
-        "how the curve f meets color: f of each channel; or all three scaled by f(n)/n, where n is "
-        "the relative luminance or the largest channel; or f of the largest and the smallest, with "
-        "the middle one in its place between them"));
+        "how the curve f is applied; channels: f of each channel; luminance, max: all channels "
+        "times f(n)/n, where n is the relative luminance or the largest channel; hue_preserving: f "
+        "of the largest and smallest channels, between which the middle one keeps its place"));
     own.push_back(choice_parameter(
         "color_correction", {"ratio", "nonlinear", "luminance_preserving"}, "ratio",
-        "with apply=luminance, L -> f(L): color is C/L f(L); or (C/L)^s f(L); or "
-        "((C/L - 1) s + 1) f(L) (Mantiuk et al. 2009)"));
+        "with apply=luminance, where L becomes f(L); ratio: C/L f(L); nonlinear: (C/L)^s f(L); "
+        "luminance_preserving: ((C/L - 1) s + 1) f(L) (Mantiuk et al. 2009)"));
     own.push_back(number_parameter("saturation", "", 1, 0, 2,
-                                   "s of the color correction: 1 as in the scene, 0 grey"));
-    own.push_back(choice_parameter(
-        "saturation_from", {"fixed", "contrast"}, "fixed",
-        "s as it is; or times the paper's fit to the curve's contrast at the pixel's luminance"));
+                                   "s of the color correction (1: as in the scene, 0: gray)"));
+    own.push_back(choice_parameter("saturation_from", {"fixed", "contrast"}, "fixed",
+                                   "fixed: s as given; contrast: s times the paper's fit to the "
+                                   "curve's contrast at the pixel's luminance"));
     return own;
 }
 

@@ -6,33 +6,33 @@
 
 #include "tonewright/pipeline.h"
 
-/// How a pure tone curve meets colour: one mechanism for every operator that has one.
+/// Application of a tone curve to color, shared by all operators with a tone curve.
 TONEWRIGHT_NAMESPACE_BEGIN
 
 struct ToneCurve {
-    /// Of input 0; defined for [0, kHalfMax].
+    /// A function of input 0; defined for [0, kHalfMax].
     Expr f;
-    /// Analytic inverse, where the source has one.
+    /// Analytic inverse, if the source has one.
     std::optional<Expr> inverse = std::nullopt;
-    /// 0: f puts out light. Else code values of this power: norms then scale the light f^power.
+    /// 0: f is display-linear. Otherwise f is in code values of this power, and norms scale
+    /// f^power.
     double code_power = 0;
-    /// Of the luminance, in the operator's working primaries.
+    /// Weights of the luminance, in the operator's working primaries.
     Vector3 weights = kRec709Weights;
 };
 
-/// The operator's own parameters, and behind them what apply_tone_curve() reads: `apply`
-/// (`default_apply` is how the source does it), `color_correction`, `saturation`,
-/// `saturation_from`.
+/// The operator's own parameters, followed by those of apply_tone_curve(): `apply` (`default_apply`
+/// is the method of the source), `color_correction`, `saturation`, `saturation_from`.
 [[nodiscard]] std::vector<ParameterSpec> with_apply(std::string default_apply,
                                                     std::vector<ParameterSpec> own = {});
 
-/// The curve as `params` want it applied. Input: limited to [0, kHalfMax].
+/// Applies the curve as `params` choose. Input: limited to [0, kHalfMax].
 ///
-/// channels: f of each. luminance, max: all three scaled by f(n)/n, n = luminance or the largest
-/// channel; a curve that starts below 0 starts at 0 there. hue_preserving: f of the largest and the
-/// smallest, the middle one keeps its place.
+/// channels: f of each channel. luminance, max: all channels times f(n)/n, where n is the luminance
+/// or the largest channel; values of f below 0 become 0. hue_preserving: f of the largest and the
+/// smallest channel; the middle one keeps its relative position.
 ///
-/// Colour corrections, with L the luminance and s the saturation (R. Mantiuk, R. Mantiuk,
+/// Color corrections, with L the luminance and s the saturation (R. Mantiuk, R. Mantiuk,
 /// A. Tomaszewska, W. Heidrich, "Color correction for tone mapping", Computer Graphics Forum 28(2),
 /// Eurographics 2009): nonlinear (C/L)^s f(L), equation 2; luminance_preserving
 /// ((C/L - 1) s + 1) f(L), equation 3. s may come from the curve's own contrast c = d ln f/d ln L

@@ -10,7 +10,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// Operator output -> display light, not limited above.
+/// Operator output -> display-linear, not limited above.
 Pipeline decode_stages(const ResolvedOperator& resolved) {
     const Operator& op = *resolved.op;
     if (resolved.output() == OutputKind::display_linear) return {};
@@ -21,7 +21,7 @@ Pipeline decode_stages(const ResolvedOperator& resolved) {
         return stages;
     }
     const Expr x = Expr::input(0);
-    // A curve may undershoot 0 (AgX's polynomials do); a power of a negative is no number.
+    // A curve may undershoot 0 (AgX's polynomials do), and powers of negatives are NaN.
     return {ClampStage{0, kInfinity},
             named("decode", curve_stage(pow(x, op.code_power), pow(x, 1 / op.code_power)))};
 }
@@ -67,7 +67,7 @@ View make_view(ResolvedOperator op, SourceColor input, double exposure_stops,
 }
 
 bool is_inside(const Primaries& gamut, const Primaries& display) {
-    // Rec.709 and P3 share their blue: a coefficient that is 0 but for rounding.
+    // Rec.709 and P3 share their blue: this coefficient is 0 except for rounding.
     constexpr double kRounding = -1e-9;
     for (const auto& row : rgb_to_rgb(gamut, display)) {
         for (const double x : row) {
@@ -116,7 +116,7 @@ Pipeline build_live_view(const View& view, const std::vector<std::string>& unifo
     const Display& display = find_display(view.display);
     const bool is_same_white = view.reference_white == kReferenceWhite;
     if (view.op.output_display() == display.id && is_same_white) {
-        // Its own display: its code values are shown as they are.
+        // The operator's own display: no conversion of its code values.
         stages.push_back(ClampStage{0, 1});
         return stages;
     }

@@ -15,7 +15,7 @@ namespace {
 // Binding strength, weakest first.
 enum Precedence { kAny = 0, kComparison = 1, kSum = 2, kProduct = 3, kUnary = 4, kAtom = 5 };
 
-/// An expression that is longer becomes a variable before it is part of another one.
+/// Longer expressions become a variable before they are part of another one.
 constexpr std::size_t kLongest = 72;
 
 bool is_leaf(const Expr& e) { return e.operand_count() == 0; }
@@ -85,9 +85,9 @@ const char* word_for(const Expr& e) {
 
 constexpr std::array kChannels = {"_r", "_g", "_b"};
 
-/// A name of a formula as one that every language takes.
+/// Converts a name of a formula to one that every language accepts.
 std::string as_variable(const std::string& name) {
-    // Words that a formula's author may choose, and that one of the languages keeps to itself.
+    // Likely names that are reserved in one of the languages.
     static const std::set<std::string, std::less<>> reserved = {
         "active",    "auto",     "bool",      "break",     "buffer",    "case",    "cast",
         "centroid",  "char",     "class",     "closure",   "coherent",  "color",   "common",
@@ -164,7 +164,7 @@ void FunctionBody::add_input(const std::string& name, const std::string& value) 
 FunctionBody::Text FunctionBody::print(const Expr& e) {
     if (const auto known = known_.find(e.node()); known != known_.end()) return known->second;
     Text text = compose(e);
-    // What the source names is a variable here, too.
+    // Names of the source become variables.
     if (is_leaf(e) || (uses_[e.node()] < 2 && !PartNames::of(e))) return text;
     const std::string name = name_for(e);
     add_line(text.is_condition ? language_.boolean : language_.number, name, text.text);
@@ -191,7 +191,7 @@ FunctionBody::Text FunctionBody::compose(const Expr& e) {
         std::string a = operand(part(0), kSum);
         return {a + sign + operand(part(1), kSum), kComparison, true};
     };
-    /// Of two conditions; else a call.
+    /// Operator of two conditions; otherwise a call.
     const auto both = [&](const char* sign) -> Text {
         const Text a = print(part(0));
         const Text b = print(part(1));
@@ -335,7 +335,7 @@ std::string FunctionBody::choose(const Expr& e) {
 
 std::string FunctionBody::name_for(const Expr& e) {
     if (const std::string* name = PartNames::of(e)) {
-        // What a source does to each channel in turn has three parts of one name.
+        // Per-channel expressions of a source have the same name three times.
         const std::vector<const ExprNode*>& alike = named_[*name];
         const auto place = std::find(alike.begin(), alike.end(), e.node()) - alike.begin();
         const bool is_channel = inputs_.size() >= 3 && alike.size() == 3;

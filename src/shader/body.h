@@ -12,32 +12,32 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// How the text reads a table or a lattice.
+/// Functions that read a table or a Lattice in the text.
 struct TableText {
     std::string function;  // of the number, or of the color
-    /// Of a table in steps: the function of the number that gives its cell, which tables with the
-    /// same positions share; `function` is then a pattern with {cell}.
+    /// For a table of cells: the function that finds the cell of a number. Tables with the same
+    /// positions share it, and `function` is a pattern with {cell}.
     std::string cell_function = {};
 };
 
-/// Prints expressions as the body of a function: what is read twice, or is too long for a line,
-/// becomes a local variable.
+/// Prints expressions as the body of a function. Expressions that are read twice, or are too long
+/// for a line, become local variables.
 class FunctionBody {
   public:
     /// @param inputs  the text of input 0, 1, ...
-    /// @param taken   names that no variable may have
+    /// @param taken   names that variables must not have
     /// @param names   numbers that become variables of these names
-    /// @param tables  how tables and lattices are read
+    /// @param tables  functions for tables and Lattices
     FunctionBody(const LanguageFacts& language, std::vector<std::string> inputs,
                  std::set<std::string> taken, std::map<double, std::string> names,
                  std::map<const void*, TableText> tables);
 
-    /// What is going to be printed, all of it, before the first value(). Numbers that have a name
-    /// become variables here.
+    /// Declares all expressions to print; call it before the first value(). Numbers that have a
+    /// name become variables here.
     void count(const Expr& e);
-    /// The text of the expression; what it needs has been added to lines().
+    /// Text of the expression; adds its statements to lines().
     [[nodiscard]] std::string value(const Expr& e);
-    /// The same as a variable of this name, which becomes the next input.
+    /// Assigns it to a variable of this name, which becomes the next input.
     void add_input(const std::string& name, const std::string& value);
     [[nodiscard]] const std::string& lines() const { return lines_; }
 
@@ -71,11 +71,11 @@ class FunctionBody {
     std::unordered_map<const ExprNode*, Text> known_;
     /// Parts by their name.
     std::map<std::string, std::vector<const ExprNode*>> named_;
-    /// Of a power of a variable by multiplication: the variable, and the exponent.
+    /// For powers of a variable by multiplication: the variable and the exponent.
     std::unordered_map<const ExprNode*, std::pair<std::string, int>> powers_;
-    /// Colors that lattices gave, by the call.
+    /// Colors read from Lattices, by the call.
     std::map<std::string, std::string> lattice_colors_;
-    /// Cells of tables, by the call.
+    /// Cells found in tables, by the call.
     std::map<std::string, std::string> cells_;
     std::string lines_;
 };

@@ -10,17 +10,17 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// Below 2^kLowest everything is one piece; nothing lies above 2^kHighest.
+/// One piece below 2^kLowest; no values above 2^kHighest.
 constexpr int kLowest = -101;
 constexpr int kHighest = 100;
 Bounded exactly(const Interval& x) { return {x, x, 0}; }
 
-/// The functions that f is one after another: it is cut at every value that all that follows reads
-/// the argument through.
+/// Splits f into a composition: at every value through which all later operations read the
+/// argument.
 std::vector<Expr> links_of(const Expr& f) {
     const std::vector<Expr> nodes = nodes_of(Span<const Expr>(&f, 1));
     std::unordered_map<const ExprNode*, std::size_t> index;
-    // Of each node: the last one that reads it.
+    // Last reader of each node.
     std::vector<std::size_t> last_use(nodes.size());
     std::vector<bool> depends(nodes.size());
     for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -83,7 +83,7 @@ Bounded ErrorCurve::operator()(const Bounded& x) {
     Bounded y = x;
     for (Link& link : links_)
         y = link.is_one_operation ? link.f({y})[0] : link.over(y, is_rounded_);
-    // Both hold.
+    // Both bounds hold.
     const auto common = [](const Interval& s, const Interval& t) {
         return Interval{std::max(s.lo, t.lo), std::min(s.hi, t.hi)};
     };
@@ -103,14 +103,14 @@ ErrorCurve::Piece ErrorCurve::Link::piece_of(const Interval& x) const {
     if (has_choice) {
         piece.jump = piece.value.hi - piece.value.lo;
     } else {
-        // From the middle no value is further than the slope takes it.
+        // The slope limits the distance of each value from the middle.
         const double reach = piece.slope * width / 2;
         piece.value = {std::max(piece.value.lo, center.exact.lo - reach),
                        std::min(piece.value.hi, center.exact.hi + reach)};
     }
     const double size = std::max(magnitude(x), std::ldexp(1, kLowest));
     const double secant = std::fabs(at(x.hi).exact.hi - at(x.lo).exact.lo) / width;
-    // Arguments come with errors of about this, relative.
+    // Typical relative error of an argument.
     constexpr double kArgument = 1e-6;
     double too_much = std::max(piece.rounding - 2 * center.error, piece.jump);
     if (width > size * 0x1p-7 && piece.slope > 1.5 * secant)
@@ -123,7 +123,7 @@ std::vector<ErrorCurve::Piece> ErrorCurve::Link::pieces_of(const Interval& all) 
     constexpr std::size_t kMost = 1024;
     // Operations of all octaves together: 0.1 s.
     constexpr std::size_t kEffort = 150'000;
-    // What is not worth two pieces.
+    // Excess that does not justify two pieces.
     constexpr double kFine = 1e-9;
     const auto is_better = [](const Piece& a, const Piece& b) { return a.too_much < b.too_much; };
     std::vector<Piece> pieces = {piece_of(all)};
@@ -166,7 +166,7 @@ void ErrorCurve::Link::visit(const Interval& x, const Visit& visit_piece) {
         return t < least ? kLowest : std::min(std::ilogb(t), kHighest);
     };
     if (x.lo <= least && x.hi >= -least) visit_octave(0, kLowest);
-    // An octave's upper end belongs to the next one, too.
+    // The upper end of an octave also belongs to the next one.
     if (x.hi >= least) {
         for (int i = exponent_of(x.lo) - (x.lo > least ? 1 : 0); i <= exponent_of(x.hi); ++i)
             if (i >= kLowest) visit_octave(1, i);
@@ -202,8 +202,8 @@ Bounded ErrorCurve::Link::over(const Bounded& x, bool is_rounded) {
         jump += piece.jump;
     });
     if (!is_rounded) rounding = 0;
-    // Between two arguments the function changes with its slope and its jumps, and stays where it
-    // lies.
+    // Between two arguments the function changes by at most its slope and its jumps, and stays in
+    // its range.
     const double moved = x.error == 0 ? 0 : std::min(steepest * x.error + jump, both.hi - both.lo);
     return {exact, {computed.lo - rounding, computed.hi + rounding}, moved + rounding};
 }

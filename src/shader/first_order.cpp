@@ -11,7 +11,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// What measure_influence() gives where a derivative has no end.
+/// Result of measure_influence() for infinite derivatives.
 constexpr double kPole = 1e12;
 
 }  // namespace
@@ -35,7 +35,7 @@ FirstOrderError first_order_error(const std::array<Expr, 3>& outputs) {
                 continue;
             const bool is_place = code[i].op == ExprOp::lookup || code[i].op == ExprOp::lattice;
             const std::array<std::uint32_t, 3> operands = {code[i].a, code[i].b, code[i].c};
-            // The place in a table is a product: another rounding of what it is read with.
+            // The position in a table is a product, which adds a rounding of the argument.
             for (int k = 0; is_place && k < operand_count(code[i].op); ++k) {
                 const std::uint32_t operand = operands[static_cast<std::size_t>(k)];
                 const double of_place =
@@ -47,7 +47,7 @@ FirstOrderError first_order_error(const std::array<Expr, 3>& outputs) {
             sum.rounded_once += error.once * probes.sensitivity[p][i];
             sum.vulkan += error.vulkan * probes.sensitivity[p][i];
         }
-        // At a pole, such as a root of 0, first order says nothing.
+        // At a pole, such as a root of 0, first order gives no estimate.
         if (has_pole) continue;
         worst.rounded_once = std::max(worst.rounded_once, sum.rounded_once);
         worst.vulkan = std::max(worst.vulkan, sum.vulkan);

@@ -22,10 +22,10 @@ Expr limited(const Expr& x, const ClampStage& s) {
     return result;
 }
 
-/// The curve as tables of coefficients with the same positions, and a polynomial of them.
+/// The curve as coefficient tables with the same positions, and their polynomial.
 Expr expr_of(const CompiledCurve& curve, const Expr& x) {
     const std::vector<float> begins = curve.segment_begins();
-    // The search takes a power of two; nothing lies behind the positions that fill up.
+    // The search needs a power of two; no value lies after the padding positions.
     const std::size_t count = std::bit_ceil(begins.size());
     std::vector<double> positions(begins.begin(), begins.end());
     while (positions.size() < count)
@@ -47,7 +47,7 @@ Expr expr_of(const CompiledCurve& curve, const Expr& x) {
     return select(less(static_cast<double>(curve.lo), x), y, curve.at_lo);
 }
 
-/// With the engine's curves wherever it finds some.
+/// Replaces formulas by the engine's curves where it finds some.
 Expr fitted(const Expr& f) {
     const Tape tape({f, f, f});
     std::vector<TapeInstruction> code = tape.code();
@@ -119,7 +119,7 @@ class Fitter {
         return std::holds_alternative<ScaleStep>(step) || std::holds_alternative<ClampStage>(step);
     }
 
-    /// What the steps since the last one that mixes channels do, as one function.
+    /// The steps since the last channel-mixing step, as one function.
     void finish_run() {
         Expr f = Expr::input();
         std::string name;

@@ -9,17 +9,17 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// The smallest float that no processor takes for 0.
+/// The smallest float that no processor flushes to 0.
 constexpr double kSmallest = static_cast<double>(std::numeric_limits<float>::min());
-/// What a denominator is at least: what is divided by it stays finite, up to 65504 and far beyond.
+/// Lower limit of denominators: quotients stay finite for numerators up to 65504 and far beyond.
 constexpr double kSmallestDivisor = 1e-30;
-/// Beyond it a power is limited, so that what is multiplied with it stays finite.
+/// Upper limit of powers, so that products with them stay finite.
 constexpr double kLargest = 1e30;
-/// A power of kSmallest that is less is as good as 0.
+/// Smaller powers of kSmallest count as 0.
 constexpr double kNothing = 1e-9;
 
-/// 1 - 2^a. Near 0, where 2^a rounds away what is left, by the series of 1 - e^t: beyond a quarter
-/// its seventh term is 1e-8 of the sum.
+/// 1 - 2^a. Near 0, where 1 - 2^a cancels, uses the series of 1 - e^t; above a quarter its seventh
+/// term is 1e-8 of the sum.
 Expr one_minus_exp2(const Expr& a) {
     constexpr double kNear = 0.25;
     const Expr t = named("t", a * std::numbers::ln2);
@@ -55,7 +55,7 @@ Interval FloatForm::range(const Expr& e) {
     if (const auto known = range_.find(e.node()); known != range_.end()) return known->second;
     const auto of = [&](int i) { return i < e.operand_count() ? range(e.operand(i)) : Interval{}; };
     Interval a = of(0);
-    // Of a base below 0 no power is taken.
+    // Powers of a negative base are not computed.
     if (e.op() == ExprOp::power) a = {std::max(a.lo, 0.0), std::max(a.hi, 0.0)};
     Interval r =
         interval_of(e.op(), a, of(1), of(2), e.op() == ExprOp::lookup ? e.table().get() : nullptr,
@@ -128,7 +128,7 @@ Expr FloatForm::power(const Expr& base, const Expr& exponent) {
     }
     const Interval x = range(base);
     const Interval y = range(exponent);
-    // Ends of the base: no denormal, and no power beyond kLargest.
+    // Limits of the base: no denormals, and no power above kLargest.
     double lo = kSmallest;
     double hi = 3e38;
     if (y.lo < 0) lo = std::max(lo, std::pow(kLargest, 1 / y.lo));
@@ -153,7 +153,7 @@ Expr FloatForm::quotient(const Expr& a, const Expr& b) {
 
 Interval range_over(const Expr& f, const Interval& input, const UniformRanges& uniforms) {
     constexpr int kPieces = 64;
-    // Places evenly on an axis that is linear near 0 and logarithmic further out.
+    // Positions at equal distances on an axis that is linear near 0 and logarithmic beyond.
     constexpr double kToe = 1e-3;
     const auto over = [&](const Interval& piece) {
         FloatForm form({piece}, uniforms);

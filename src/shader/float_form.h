@@ -16,17 +16,17 @@ using UniformRanges = std::map<std::string, Interval, std::less<>>;
 
 /// Expressions rewritten so that float, as shaders compute it, gives a finite number wherever the
 /// double reference does: denormals are 0, `pow`, `log2` and `sqrt` know no negatives, a
-/// denominator may have been rounded to 0, and what a `select` does not take may be computed.
+/// denominator may round to 0, and the unused branch of a `select` may be computed.
 ///
-/// Where an operand's interval says that nothing can go wrong, nothing is added.
+/// Adds nothing if the operand's interval excludes the problem.
 class FloatForm {
   public:
     /// @param inputs    intervals of inputs 0, 1, ...
-    /// @param uniforms  of every uniform that the expressions read
+    /// @param uniforms  for every uniform that the expressions read
     FloatForm(std::vector<Interval> inputs, UniformRanges uniforms);
 
     [[nodiscard]] Expr operator()(const Expr& e);
-    /// Where the expression, as it is written, lies.
+    /// Interval of the expression as written.
     [[nodiscard]] Interval range(const Expr& e);
 
   private:
@@ -41,8 +41,8 @@ class FloatForm {
     std::vector<Expr> keep_;  // the nodes of the maps' keys
 };
 
-/// Where a function of one input lies over an interval of it: the interval in pieces, so that
-/// operands that depend on each other count less.
+/// Interval of a function of one input over an interval: evaluated in pieces, which reduces the
+/// effect of dependent operands.
 [[nodiscard]] Interval range_over(const Expr& f, const Interval& input,
                                   const UniformRanges& uniforms);
 

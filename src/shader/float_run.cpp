@@ -10,7 +10,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// As the printed functions do it.
+/// Like the printed functions.
 float look_up(const Table& table, float x) {
     const auto at = [&](std::size_t i) { return static_cast<float>(table.samples[i]); };
     const std::size_t n = table.samples.size();
@@ -98,7 +98,7 @@ FloatRun::FloatRun(const ShaderProgram& program) : tape_(compose(program)) {}
 
 void FloatRun::run_rgb(const float* in, float* out, std::size_t pixel_count) const {
     const std::vector<TapeInstruction>& code = tape_.code();
-    // A step for all colors of a block at once: the switch is taken once for them.
+    // Runs each step for all colors of a block, so that the switch is evaluated once.
     constexpr std::size_t kBlock = 256;
     std::vector<std::array<float, kBlock>> value(code.size());
     for (std::size_t done = 0; done < pixel_count; done += kBlock) {

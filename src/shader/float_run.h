@@ -10,15 +10,14 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// A program in float: every operation rounded once, with the mathematical functions of the C
-/// library, which are good to a unit in the last place. What a shader's text means; a GPU's
-/// functions are less exact.
+/// Runs a program in float: every operation is rounded once, with the math functions of the C
+/// library, which are accurate to a unit in the last place. GPUs are less accurate.
 class FloatRun {
   public:
-    /// @pre no uniform is left in the program
+    /// @pre the program has no uniforms
     explicit FloatRun(const ShaderProgram& program);
 
-    /// Interleaved RGB; in and out may be the same.
+    /// Interleaved RGB; in and out may be equal.
     void run_rgb(const float* in, float* out, std::size_t pixel_count) const;
 
   private:

@@ -36,17 +36,17 @@ class BoundedProgram {
             size_ += function.f.size();
             colors_.push_back(std::move(function));
         }
-        // A curve that is read costs about as much as this.
+        // Cost of reading a curve.
         constexpr std::size_t kCurve = 100;
         for (const ProgramStep& step : program.steps)
             size_ += std::holds_alternative<ScalarStep>(step) ? 3 * kCurve : 20;
     }
 
-    /// @param worst_step  becomes the function behind which the bound has grown most
+    /// @param worst_step  set to the function after which the bound has grown most
     [[nodiscard]] double over(const Box& box, std::size_t* worst_step = nullptr) {
         Color c;
         for (std::size_t i = 0; i < 3; ++i) {
-            // Denormals may be 0.
+            // Denormals may be flushed to 0.
             const bool may_vanish = box[i].lo < kSmallestFloat;
             c[i] = {box[i], box[i], may_vanish ? kSmallestFloat : 0};
             if (may_vanish) c[i].computed.lo = 0;
@@ -68,12 +68,12 @@ class BoundedProgram {
         return worst_of(c);
     }
 
-    /// No channel of the result depends on another one.
+    /// True if no channel of the result depends on another one.
     [[nodiscard]] bool is_of_each_channel() const {
         return program_.matrices.empty() && program_.colors.empty();
     }
     [[nodiscard]] std::size_t size() const { return size_; }
-    /// Empty of a step that is no function.
+    /// Empty for a step that is no function.
     [[nodiscard]] std::string name_of(std::size_t step) const {
         const ProgramStep& s = program_.steps[step];
         if (const auto* matrix = std::get_if<MatrixStep>(&s))
@@ -125,13 +125,13 @@ class BoundedProgram {
                 sum.error += std::fabs(m[i][k]) * in[k].error;
                 size += std::fabs(m[i][k]) * magnitude(in[k].computed);
             }
-            // Of the coefficient, the product and two sums, in whatever order, with or without
+            // Rounding of the coefficient, the product and two sums, in any order, with or without
             // fused products.
             const double rounding = 4.001 * kHalfUlp * size + 6 * kSmallestFloat;
             sum.error += rounding;
             const bool is_above = sum.computed.lo >= 0;
             sum.computed = {sum.computed.lo - rounding, sum.computed.hi + rounding};
-            // Sums of what is not negative are not negative.
+            // Sums of non-negative terms are not negative.
             if (is_above && *std::min_element(m[i].begin(), m[i].end()) >= 0)
                 sum.computed.lo = std::max(sum.computed.lo, 0.0);
             c[i] = sum;
@@ -175,8 +175,7 @@ class BoundedProgram {
     std::size_t size_ = 0;
 };
 
-/// Where a box is halved: the channel that is widest, where channels that are much smaller than
-/// the largest one count less.
+/// Channel to halve: the widest one; channels much smaller than the largest one count less.
 struct Cut {
     std::size_t channel = 0;
     double at = 0;
@@ -205,7 +204,7 @@ Cut cut_of(const Box& box) {
 GuaranteedBound guaranteed_bound(const ShaderProgram& program, const Expr& metric, double useful) {
     // Operations that may be computed: 50 ms.
     constexpr std::size_t kEffort = 2'000'000;
-    // After so many halvings a bound that is far from useful will not become so.
+    // After this many halvings a bound far from useful will not become useful.
     constexpr std::size_t kTrial = 200;
     constexpr double kHopeless = 1000;
     struct Candidate {
@@ -224,7 +223,7 @@ GuaranteedBound guaranteed_bound(const ShaderProgram& program, const Expr& metri
         const Box worst = queue.top().box;
         const Cut cut = cut_of(worst);
         const Interval& x = worst[cut.channel];
-        // A float has been reached.
+        // The box is a single float.
         if (!(cut.at > x.lo && cut.at < x.hi) || x.hi < kSmallestFloat ||
             x.hi - x.lo < x.hi * kHalfUlp)
             break;

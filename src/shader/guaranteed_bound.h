@@ -7,20 +7,19 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// How far a program's result may be from what its formulas say, with the errors that the Vulkan
-/// specification allows each operation; for all colors whose channels lie from 0 to kHalfMax.
+/// Largest difference of a program's result from its exact formulas, with the errors that the
+/// Vulkan specification allows each operation, for all colors with channels from 0 to kHalfMax.
 struct GuaranteedBound {
-    /// Absolute up to 1, relative above; infinite where none was found that is useful.
+    /// Absolute up to 1, relative above; infinite if there is no useful bound.
     double error = 0;
-    /// The function of the program in which most of it arises, at the worst place.
+    /// Function of the program with the largest part of the error, at the worst position.
     std::string arises_in;
 };
 
-/// By interval arithmetic with running errors over a domain that is halved where the bound is
-/// largest.
-/// @pre no uniform is left in the program
-/// @param metric  of each channel of the result, without error: what the bound is of
-/// @param useful  how large it may be
+/// Uses interval arithmetic with running errors, and halves the domain where the bound is largest.
+/// @pre the program has no uniforms
+/// @param metric  error-free function of each channel of the result, to which the bound applies
+/// @param useful  largest useful bound
 [[nodiscard]] GuaranteedBound guaranteed_bound(const ShaderProgram& program, const Expr& metric,
                                                double useful);
 

@@ -107,7 +107,7 @@ constexpr LanguageFacts wgsl() {
     f.choose = "select({no}, {yes}, {condition})";
     f.to_integer = "i32({value})";
     f.to_number = "f32({value})";
-    // Not `const`: older compilers refuse an index into one that is no constant.
+    // Not `const`, because older compilers refuse a variable index into a constant array.
     f.array = "var<private> {name}: array<f32, {count}> = array<f32, {count}>(\n{values});";
     f.texture = "@group(0) @binding({binding}) var {name}: texture_3d<f32>;";
     f.fetch = "textureLoad({name}, vec3<i32>({x}, {y}, {z}), 0)";
@@ -137,7 +137,7 @@ constexpr LanguageFacts msl() {
     return f;
 }
 
-/// C, and what has its functions under other names.
+/// C, and languages with its functions under other names.
 constexpr LanguageFacts c() {
     LanguageFacts f = kGlsl;
     f.language = ShaderLanguage::c;
@@ -249,7 +249,7 @@ constexpr LanguageFacts osl() {
     return f;
 }
 
-/// The double reference for pages: numbers have 64 bits there. A color is an array.
+/// The double reference for web pages, with 64-bit numbers. A color is an array.
 constexpr LanguageFacts javascript() {
     LanguageFacts f = kGlsl;
     f.language = ShaderLanguage::javascript;

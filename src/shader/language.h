@@ -8,7 +8,7 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// What the printer has to know of a language. Patterns are those of fmt, with named fields.
+/// Facts about a language for the printer. Patterns use fmt with named fields.
 struct LanguageFacts {
     ShaderLanguage language;
     const char* number;  // the type of a number, of a color, ...
@@ -30,15 +30,16 @@ struct LanguageFacts {
     const char* to_number;   // {value}
     const char* half;        // of a whole {value}, rounded down
     const char* array;       // {name}, {count}, {values}
-    /// Of 3D, its {name} and {binding}; empty: none can be read without being an argument.
+    /// Declaration of a 3D texture with {name} and {binding}; empty if textures must be arguments.
     const char* texture;
     const char* fetch;  // of a texture's {name} at {x}, {y}, {z}: a color, or more than that
     const char* color_of_fetch;  // behind it
-    /// Comments: how the texture is made of its file. {name}, {width}, {height}, {depth}, {pitch}.
+    /// Comments on how to create the texture from its file. {name}, {width}, {height}, {depth},
+    /// {pitch}.
     const char* loader;
-    /// The largest array that a text of the language should hold.
+    /// Largest array for a text of the language.
     std::size_t largest_array;
-    /// Arrays stand in the function that reads them.
+    /// Arrays are local to the function that reads them.
     bool has_local_arrays;
     /// min, max and clamp take colors, `*` takes a color and a number.
     bool has_color_math;
@@ -55,7 +56,7 @@ struct LanguageFacts {
     const char* cosine;
     const char* atan2;
     const char* floor;
-    /// Before everything else.
+    /// First lines of the text.
     const char* prologue;
     enum class Entry : unsigned char { function, pointers, shader } entry;
 };

@@ -59,7 +59,7 @@ class ProgramPrinter {
     [[nodiscard]] std::string made(const std::array<std::string, 3>& c) const {
         return fmt::format("{}({}, {}, {})", language_.make_color, c[0], c[1], c[2]);
     }
-    /// The same on lines of their own.
+    /// The same on separate lines.
     [[nodiscard]] std::string made_on_lines(const std::array<std::string, 3>& c) const {
         return fmt::format("{}(\n        {},\n        {},\n        {})", language_.make_color, c[0],
                            c[1], c[2]);
@@ -79,7 +79,7 @@ class ProgramPrinter {
     }
     void end() { text_ += "}\n"; }
 
-    /// Those of the program's uniforms that the expressions read, in the program's order.
+    /// Uniforms that the expressions read, in the order of the program.
     [[nodiscard]] std::vector<std::string> read_uniforms(std::span<const Expr> exprs) const {
         const std::vector<std::string> read = uniforms_of(exprs);
         std::vector<std::string> result;
@@ -127,7 +127,7 @@ class ProgramPrinter {
         }
     }
 
-    /// Those that no earlier function reads.
+    /// Tables that no earlier function reads.
     void print_tables_of(const std::string& function, const std::vector<Expr>& exprs) {
         int tables = 0;
         int lattices = 0;
@@ -187,7 +187,7 @@ class ProgramPrinter {
         return fmt::format("{}({}({}, {}), {})", language_.minimum, language_.maximum, x, lo, hi);
     }
 
-    /// @throws Error  neither an array nor a texture can hold that many
+    /// @throws Error  if neither an array nor a texture can hold that many
     [[nodiscard]] bool is_texture(const std::string& what, std::size_t numbers) const {
         const bool has_texture = *language_.texture != 0;
         const bool is_small = numbers <= language_.largest_array;
@@ -210,7 +210,7 @@ class ProgramPrinter {
                               id, language_.largest_array, numbers)));
     }
 
-    /// Declares a texture; its texels are still to be filled in.
+    /// Declares a texture; the caller fills in its texels.
     ShaderTexture& declare_texture(const std::string& name, const std::array<int, 3>& size) {
         const auto filled = [&](const char* pattern) {
             return fmt::format(fmt::runtime(pattern), fmt::arg("name", name),
@@ -225,7 +225,7 @@ class ProgramPrinter {
         return textures_.emplace_back(ShaderTexture{name, size, {}});
     }
 
-    static constexpr int kTableWidth = 256;  // 3D textures of GLSL ES may have no more
+    static constexpr int kTableWidth = 256;  // limit of 3D textures in GLSL ES
 
     /// A function that gives channel `channel` of texel i of a table's texture.
     void print_texel(const std::string& name, const std::string& texture, std::size_t channel) {
@@ -238,8 +238,8 @@ class ProgramPrinter {
         end();
     }
 
-    /// How a function reads the numbers of a table: patterns with {i}, and arrays that have to
-    /// stand in the function.
+    /// Access to the numbers of a table: patterns with {i}, and arrays that are local to the
+    /// function.
     struct StoredTable {
         std::string value;
         std::string position;
@@ -360,7 +360,7 @@ class ProgramPrinter {
         end();
     }
 
-    /// A function of a color with this name, as the expressions say it.
+    /// Prints a function of a color with this name from the expressions.
     void print_formula(const std::string& name, const std::vector<Expr>& f) {
         const std::array<std::string, 3> c = channels_of("c");
         FunctionBody body(language_, {c.begin(), c.end()}, {"c"}, {}, {});
@@ -377,11 +377,11 @@ class ProgramPrinter {
         end();
     }
 
-    /// How the text of a node of the lattice is had: from an array, or from a texture.
+    /// Text that reads a node of the Lattice: from an array, or from a texture.
     std::string print_nodes(const std::string& name, const Lattice& lattice) {
         const std::vector<double>& numbers = lattice.nodes();
         const std::string nodes = name + "_nodes";
-        if (!is_texture(fmt::format("a lattice of {}^3 colors", lattice.edge()), numbers.size())) {
+        if (!is_texture(fmt::format("a 3D LUT of {}^3 colors", lattice.edge()), numbers.size())) {
             const std::string values = array(nodes, numbers);
             if (!language_.has_local_arrays) text_ += "\n" + values;
             const std::string node = name + "_node";
@@ -525,7 +525,7 @@ class ProgramPrinter {
         end();
     }
 
-    /// The color, each channel through what `f` makes of its text.
+    /// Applies `f` to the text of each channel of the color.
     template <class F>
     [[nodiscard]] std::string of_each(const std::string& color, const F& f) const {
         std::array<std::string, 3> c = channels_of(color);
@@ -640,7 +640,8 @@ PrintedProgram print_program(const ShaderProgram& program, const LanguageFacts& 
 }
 
 std::string float_literal(double value, const LanguageFacts& language) {
-    // Not the largest float: its shortest digits lie above it, and WGSL takes no such literal.
+    // Not the largest float, because its shortest digits lie above it, and WGSL refuses such a
+    // literal.
     constexpr double kMost = 3e38;
     value = std::clamp(value, -kMost, kMost);
     const auto digits_of = [](auto number) {

@@ -14,9 +14,9 @@ struct PrintedProgram {
     std::vector<ShaderTexture> textures;
 };
 /// The functions of a program, each before the ones that call it.
-/// @param name      of the last function, with which the names of all others begin
-/// @param uniforms  its arguments behind the color
-/// @throws Error    tables or a lattice that the language cannot hold so
+/// @param name      name of the last function, which prefixes the names of all others
+/// @param uniforms  its arguments after the color
+/// @throws Error    if the language cannot hold the tables or a Lattice this way
 [[nodiscard]] PrintedProgram print_program(const ShaderProgram& program,
                                            const LanguageFacts& language, const std::string& name,
                                            const std::vector<std::string>& uniforms,

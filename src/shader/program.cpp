@@ -25,7 +25,7 @@ struct NamedStage {
     std::string name;
 };
 
-/// simplify(), with the names of all stages that have become one.
+/// simplify() with the names of all merged stages.
 std::vector<NamedStage> simplify_named(const Pipeline& pipeline) {
     std::vector<NamedStage> result;
     for (const Stage& stage : pipeline) {

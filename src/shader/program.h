@@ -36,7 +36,7 @@ struct MatrixFunction {
     Matrix3 m;
 };
 
-/// What the function does with its color c, one after another.
+/// Steps of the function on its color c.
 struct ScaleStep {
     double factor;
 };
@@ -51,18 +51,18 @@ struct ColorStep {
 };
 using ProgramStep = std::variant<ScaleStep, MatrixStep, ClampStage, ScalarStep, ColorStep>;
 
-/// A pipeline as functions that call each other, in float: what is the same in all languages.
+/// A pipeline as float functions that call each other, independent of the language.
 struct ShaderProgram {
     std::vector<ScalarFunction> scalars;
     std::vector<ColorFunction> colors;
     std::vector<MatrixFunction> matrices;
     std::vector<ProgramStep> steps;
-    /// Numbers that texts call by a name. What the functions compute does not depend on it.
+    /// Names of numbers in texts. The results of the functions do not depend on them.
     std::map<double, std::string> names = {};
 };
 
 /// The first step limits the color to +-kHalfMax, as every engine does.
-/// @param uniforms  of every uniform that the pipeline reads
+/// @param uniforms  for every uniform that the pipeline reads
 [[nodiscard]] ShaderProgram make_program(const Pipeline& pipeline, const UniformRanges& uniforms);
 
 /// The program as three expressions of the color.

@@ -7,7 +7,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 
 /// Half a unit in the last place of 1 in float.
 inline constexpr double kHalfUlp = 0x1p-24;
-/// The smallest number above 0 that no processor takes for 0.
+/// The smallest positive number that no processor flushes to 0.
 inline constexpr double kSmallestFloat = 0x1p-126;
 
 /// Errors of single operations, absolute.
@@ -16,11 +16,11 @@ struct Rounding {
     double vulkan = 0;  // as the Vulkan specification allows it
 };
 
-/// Vulkan 1.3 specification, "Precision and Operation of SPIR-V Instructions", and WGSL
-/// (W3C, 2024), 15.7.4.1 "Floating Point Accuracy", which takes the same bounds. Of tables and
-/// lattices: of what is done with their samples, which are at most as large as the value.
-/// @param value  of the result; its largest
-/// @param a, b   where the operands lie
+/// Vulkan 1.3 specification, "Precision and Operation of SPIR-V Instructions", and WGSL (W3C,
+/// 2024), 15.7.4.1 "Floating Point Accuracy", which takes the same bounds. For tables and Lattices:
+/// the operations on their samples, which are at most as large as the value.
+/// @param value  largest value of the result
+/// @param a, b   intervals of the operands
 [[nodiscard]] Rounding rounding_of(ExprOp op, double value, const Interval& a, const Interval& b);
 
 TONEWRIGHT_NAMESPACE_END

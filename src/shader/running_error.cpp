@@ -12,13 +12,13 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// 0 times anything is 0: a factor that vanishes does so for every number below infinity.
+/// 0 times infinity is 0, because infinite ends stand for finite numbers.
 double times(double a, double b) { return a == 0 || b == 0 ? 0 : a * b; }
 
-/// Samples and nodes that are read one by one.
+/// Number of samples and nodes that are read one by one.
 constexpr std::size_t kMostSamples = 500;
 
-/// @param whole  of all samples: for more of them than are worth reading
+/// @param whole  interval of all samples, used if there are too many to read
 TableReading read(const Table& table, const Interval& a, const TableReading& whole) {
     const std::vector<double>& samples = table.samples;
     const std::size_t n = samples.size();
@@ -26,7 +26,7 @@ TableReading read(const Table& table, const Interval& a, const TableReading& who
     TableReading reading;
     std::size_t begin = 0;
     std::size_t end;
-    // One sample more on both sides: a place that is rounded may lie beyond it.
+    // One more sample on both sides, because a rounded position may lie beyond.
     if (table.positions.empty()) {
         const auto place = [&](double x) {
             const double t = std::clamp(x, 0.0, 1.0) * static_cast<double>(is_step ? n : n - 1);
@@ -72,7 +72,7 @@ TableReading read(const Table& table, const Interval& a, const TableReading& who
 }
 
 /// Values of the nodes that the three read, and of their neighbors.
-/// @param whole  of all nodes: for more of them than are worth reading
+/// @param whole  interval of all nodes, used if there are too many to read
 Interval read(const Lattice& lattice, int channel, const std::array<Interval, 3>& at,
               const Interval& whole) {
     const auto n = static_cast<std::size_t>(lattice.edge());
@@ -108,7 +108,7 @@ double steepest_power(const Interval& x, double y) {
     return std::fabs(y) * std::max(std::pow(x.lo, y - 1), std::pow(x.hi, y - 1));
 }
 
-/// True, false, or not known of `a < b` and its like.
+/// True, false or unknown result of a comparison.
 Interval compared(ExprOp op, const Interval& a, const Interval& b) {
     switch (op) {
         case ExprOp::less:
@@ -122,7 +122,7 @@ Interval compared(ExprOp op, const Interval& a, const Interval& b) {
     }
 }
 
-/// What jumps.
+/// True for operations that jump.
 bool is_choice(ExprOp op) {
     return op == ExprOp::less || op == ExprOp::less_equal || op == ExprOp::equal ||
            op == ExprOp::floor;
@@ -131,10 +131,10 @@ bool is_choice(ExprOp op) {
 bool is_point(const Interval& x) { return x.lo == x.hi; }
 bool is_float(double x) { return static_cast<double>(static_cast<float>(x)) == x; }
 
-/// How far apart a member of x and one of y are at most.
+/// Largest distance of a member of x from one of y.
 double apart(const Interval& x, const Interval& y) { return std::max(y.hi - x.lo, x.hi - y.lo); }
 
-/// What errors of the operands make of an operation without rounding.
+/// Propagates the errors of the operands through an operation without rounding.
 double propagated(const Expr& e, const Bounded& a, const Bounded& b, const Bounded& c,
                   const Interval& quotient) {
     const Interval x = hull(a.exact, a.computed);
@@ -158,7 +158,7 @@ double propagated(const Expr& e, const Bounded& a, const Bounded& b, const Bound
             return is_a ? a.error : is_b ? b.error : std::max(a.error, b.error);
         }
         case ExprOp::sine:
-        case ExprOp::cosine:  // Vulkan says nothing beyond
+        case ExprOp::cosine:  // Vulkan gives no bound beyond
             if (!(magnitude(a.computed) <= std::numbers::pi)) return kInfinity;
             return a.error;
         case ExprOp::negate:
@@ -175,7 +175,8 @@ double propagated(const Expr& e, const Bounded& a, const Bounded& b, const Bound
             if (x.lo < 0) return kInfinity;
             const Interval y = hull(b.exact, b.computed);
             double sum = times(std::max(steepest_power(x, y.lo), steepest_power(x, y.hi)), a.error);
-            // Below an exponent of 1 a power is no further from another than their bases' power.
+            // For exponents below 1, two powers differ by at most the power of the difference of
+            // their bases.
             if (y.lo > 0 && y.hi <= 1) sum = std::min(sum, std::pow(a.error, y.lo));
             if (b.error > 0) {
                 const double largest = std::max({std::pow(x.lo, y.lo), std::pow(x.lo, y.hi),
@@ -269,7 +270,8 @@ std::vector<Bounded> RunningError::operator()(const std::vector<Bounded>& inputs
     Choices choices;
     std::vector<Bounded> result = run(inputs, {}, &choices);
     if (has_choice) *has_choice = choices.others || !choices.open.empty();
-    // Every combination of answers on its own: what reads one answer twice reads the same twice.
+    // Evaluates every combination of comparison results separately, so that all readers of a
+    // comparison see the same result.
     constexpr std::size_t kMost = 3;
     const std::size_t n = choices.open.size();
     if (n == 0 || n > kMost) return result;
@@ -287,7 +289,7 @@ std::vector<Bounded> RunningError::operator()(const std::vector<Bounded>& inputs
             all.computed = hull(all.computed, one[i].computed);
             all.error = std::max(all.error, one[i].error);
         }
-        // What is computed may have another answer than what is exact.
+        // The computed comparison may differ from the exact one.
         double between = 0;
         for (const std::vector<Bounded>& one : cases) {
             for (const std::vector<Bounded>& other : cases)
@@ -367,7 +369,7 @@ std::vector<Bounded> RunningError::run(const std::vector<Bounded>& inputs, const
             }
         }
         double rounding = rounding_of(e.op(), magnitude(computed), a.computed, b.computed).vulkan;
-        // What is rounded correctly and need not be rounded.
+        // Operations that are exact or correctly rounded.
         const bool is_exact =
             is_point(computed) && is_float(computed.lo) &&
             (e.op() == ExprOp::add || e.op() == ExprOp::subtract || e.op() == ExprOp::multiply);

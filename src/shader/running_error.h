@@ -9,15 +9,15 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// A number of which it is known where it lies, where what a GPU computes for it lies, and how far
-/// the two are apart at most.
+/// A number with its exact interval, the interval of a GPU's result, and the largest difference of
+/// both.
 struct Bounded {
     Interval exact;
     Interval computed;
     double error = 0;
 };
 
-/// Samples that a reads, and the steepest slope between them.
+/// Samples that a lookup with `a` reads, and their steepest slope.
 struct TableReading {
     Interval values{kInfinity, -kInfinity};
     double slope = 0;        // per unit of a
@@ -25,32 +25,32 @@ struct TableReading {
     double jump = 0;         // between neighbors, of a table of steps
 };
 
-/// Expressions over intervals, with the errors that Vulkan allows each operation. Nothing is
-/// neglected: terms of any order count, and a comparison that may go either way counts with the
-/// difference of what it chooses from.
+/// Evaluates expressions over intervals, with the errors that Vulkan allows each operation. It
+/// includes terms of any order. A comparison with an uncertain result counts with the difference of
+/// its branches.
 class RunningError {
   public:
     explicit RunningError(const std::vector<Expr>& outputs);
 
-    /// @param inputs      of input 0, 1, ...
-    /// @param has_choice  becomes true where the expressions may jump: a comparison may go either
-    ///                    way
+    /// @param inputs      for input 0, 1, ...
+    /// @param has_choice  set to true if the expressions may jump: a comparison has an uncertain
+    ///                    result
     [[nodiscard]] std::vector<Bounded> operator()(const std::vector<Bounded>& inputs,
                                                   bool* has_choice = nullptr) const;
 
-    /// How many operations that is.
+    /// Number of operations.
     [[nodiscard]] std::size_t size() const noexcept { return nodes_.size(); }
 
   private:
     struct Step {
         Expr e;
         std::size_t a = 0, b = 0, c = 0;
-        /// Of a lattice: the largest difference of neighbors along each axis.
+        /// For a Lattice: the largest difference of neighbors along each axis.
         double slope[3] = {};
         Interval whole;      // of a lattice's nodes
         TableReading table;  // of all samples
     };
-    /// Comparisons that may go either way.
+    /// Comparisons with an uncertain result.
     struct Choices {
         std::vector<std::size_t> open;
         bool may_differ = false;  // between what is exact and what is computed
@@ -64,7 +64,7 @@ class RunningError {
     std::vector<std::size_t> outputs_;
 };
 
-/// The interval, a little wider: what double itself rounds.
+/// Slightly wider interval, for the rounding of double itself.
 [[nodiscard]] Interval widened(const Interval& x);
 /// Largest absolute value.
 [[nodiscard]] double magnitude(const Interval& x);

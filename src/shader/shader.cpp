@@ -95,7 +95,7 @@ UniformRanges ranges_of(const ShaderRequest& request) {
     return ranges;
 }
 
-/// What the uniforms are in the view as it is.
+/// Values of the uniforms in the view.
 UniformValues values_of(const ShaderRequest& request) {
     UniformValues values;
     for (const std::string& uniform : request.uniforms) {
@@ -132,11 +132,11 @@ ShaderProgram bound(ShaderProgram program, const UniformValues& values) {
     return program;
 }
 
-/// False for numbers that may mean something else where a formula has them again: quarters.
+/// False for multiples of 1/4, which may have another meaning elsewhere in a formula.
 bool is_telling(double value) { return value > 0 && 4 * value != std::floor(4 * value); }
 
-/// Settings that stand in the text as numbers, by their parameters. A number that two parameters
-/// have stays one.
+/// Names for settings in the text, by their parameters. A number shared by two parameters stays a
+/// number.
 std::map<double, std::string> names_of_settings(const ShaderRequest& request) {
     std::map<double, std::string> names;
     std::set<double> ambiguous;
@@ -152,8 +152,8 @@ std::map<double, std::string> names_of_settings(const ShaderRequest& request) {
     return names;
 }
 
-/// Numbers that the source has a name for. A part that is a number only for some colors, as the
-/// curve at black, gives none.
+/// Adds names of the source for numbers. A named expression that is constant only for some colors,
+/// such as the curve at black, gives no name.
 void add_names_of_numbers(const PartNames& names, std::map<double, std::string>& numbers) {
     std::set<std::string> of_others;
     for (const PartNames::Entry& entry : names.all()) {
@@ -173,22 +173,22 @@ ShaderProgram program_of(const ShaderRequest& request) {
     return program;
 }
 
-/// True when the result is light, whose errors are those of its sRGB code values.
+/// True if the result is display-linear; its errors are then measured in sRGB code values.
 bool is_light(const ShaderRequest& request) {
     const View& view = request.view;
     if (is_of_a_display(view)) return false;
     return view.display == kLinearOutput || view.op.output() == OutputKind::display_linear;
 }
 
-/// Light as sRGB code values, without an upper end: what is above 1 counts relatively.
+/// Display-linear as unlimited sRGB code values; differences above 1 count relatively.
 Expr code_value(const Expr& light) {
     const Expr x = max(light, 0);
     return select(less_equal(x, 0.0031308), 12.92 * x,
                   1.055 * pow(max(x, 0.0031308), 1 / 2.4) - 0.055);
 }
 
-/// What the view shows of what the inverse makes of display colors, against those colors, where
-/// the view can show them at all.
+/// Round trip error: display colors through the inverse and the view, for colors that the view can
+/// show.
 double measure_inverse(const ShaderRequest& request, const ShaderProgram& program) {
     constexpr int kEdge = 17;
     constexpr double kShown = 1e-6;
@@ -224,7 +224,7 @@ double measure_in_float(const ShaderRequest& request, const ShaderProgram& progr
     const UniformValues values = values_of(request);
     const FloatRun in_float(bound(program, values));
     const ReferenceEngine reference(bind_uniforms(pipeline_of(request), values));
-    // A source that is no input space has its samples in Rec.709: numbers are numbers.
+    // Sources that are no input space use the samples of Rec.709.
     const InputSpace* space = &find_input_space("lin_rec709");
     for (const InputSpace& candidate : all_input_spaces()) {
         if (candidate.id == request.view.input) space = &candidate;
@@ -253,8 +253,8 @@ double measure_in_float(const ShaderRequest& request, const ShaderProgram& progr
     return worst;
 }
 
-/// Of every operation and every number, of tables and lattices, too. Numbers as floats: what a
-/// mathematical library rounds differently is the same definition.
+/// Hash of all operations and numbers, including tables and Lattices. Numbers are hashed as floats,
+/// so that different rounding of math libraries gives the same definition.
 std::string definition_hash(const Pipeline& pipeline) {
     const std::array<Expr, 3> rgb = compose(pipeline);
     std::string text;
@@ -313,10 +313,10 @@ std::string output_text(const ShaderRequest& request) {
     return "code values for " + display.title + " (" + display.source + ")";
 }
 
-/// What measure_shader() gives, from the cache folder if it is there.
+/// Result of measure_shader(), from the cache folder if present.
 ShaderErrors known_errors(const ShaderRequest& request, const ShaderProgram& program,
                           const std::string& definition) {
-    // Another one where errors are measured otherwise, or formulas become others in float.
+    // Change it if the measurement of errors or the float formulas change.
     constexpr int kVersion = 1;
     std::vector<std::string> functions;
     const auto add = [&](const auto& some) {
@@ -342,7 +342,7 @@ ShaderErrors known_errors(const ShaderRequest& request, const ShaderProgram& pro
     return {numbers[0], numbers[1], place < functions.size() ? functions[place] : "", numbers[2]};
 }
 
-/// Words that fit on lines of comments behind a label.
+/// Wraps text into comment lines after a label.
 std::string comment(const std::string& label, const std::string& words) {
     constexpr std::size_t kWidth = 100;
     std::string text;
@@ -364,7 +364,7 @@ std::string comment(const std::string& label, const std::string& words) {
     return text + row + "\n";
 }
 
-/// Text for sources that may be ASCII only.
+/// Replaces non-ASCII bytes, for languages with ASCII sources.
 std::string ascii(std::string text) {
     for (char& c : text) {
         if (static_cast<unsigned char>(c) >= 0x80) c = '?';
@@ -396,7 +396,7 @@ std::string header(const ShaderRequest& request, const Shader& shader,
     add("Settings", settings_text(view.op, request.uniforms));
     const bool has_exposure = std::find(request.uniforms.begin(), request.uniforms.end(),
                                         kExposureUniform) != request.uniforms.end();
-    add("Exposure", has_exposure ? "the argument, in stops: scene values times 2^exposure"
+    add("Exposure", has_exposure ? "argument in stops: scene values times 2^exposure"
                                  : shortest(view.exposure_stops) + " stops");
     for (const std::string& uniform : request.uniforms) {
         for (const ParameterSpec& spec : op.parameters) {
@@ -413,15 +413,15 @@ std::string header(const ShaderRequest& request, const Shader& shader,
         add("Precision",
             "64-bit float: the formulas of the double reference, with the mathematical functions "
             "of the JavaScript engine.");
-        add("NaN", "make it 0 first, as every engine of Tonewright does");
+        add("NaN", "replace it by 0 first, as every engine of Tonewright does");
         return text;
     }
-    const char* const unit = request.is_inverse      ? "what the view shows of it"
+    const char* const unit = request.is_inverse      ? "the view's code values of the result"
                              : is_of_a_display(view) ? "code values from 0 to 1"
                                                      : "sRGB code values from 0 to 1";
     std::string precision = fmt::format(
-        "32-bit float throughout. Each operation rounded once: within {} of the double reference, "
-        "in {} (measured).",
+        "32-bit float. Each operation rounded once: within {} of the double reference, in {} "
+        "(measured).",
         rounded_up(shader.errors.in_float), unit);
     if (std::isfinite(shader.errors.guaranteed)) {
         precision += fmt::format(
@@ -432,8 +432,9 @@ std::string header(const ShaderRequest& request, const Shader& shader,
         precision +=
             " Curves are polynomials of segments, fitted and measured; no guaranteed bound.";
     } else if (!request.is_inverse) {
-        precision += fmt::format(" No useful guaranteed bound: too much may arise in {}_{}.",
-                                 shader.function, shader.errors.arises_in);
+        precision +=
+            fmt::format(" No useful guaranteed bound: the error of {}_{} may be too large.",
+                        shader.function, shader.errors.arises_in);
         if (std::isfinite(shader.errors.vulkan_estimate)) {
             precision += fmt::format(
                 " With the errors that Vulkan and WGSL allow each operation: about {} (first "
@@ -456,7 +457,7 @@ std::string header(const ShaderRequest& request, const Shader& shader,
                 ? "not with these settings; `tonewright verify` measures GLSL on a machine's GPU"
                 : "in code values of sRGB, negatives included: " + measured);
     }
-    add("NaN", "whatever the compiler makes of it; all other inputs give finite results");
+    add("NaN", "undefined, depends on the compiler; all other inputs give finite results");
     return text;
 }
 
@@ -483,7 +484,7 @@ ShaderErrors measure_shader(const ShaderRequest& request) {
     if (request.is_inverse) return errors;
     const ShaderProgram constant = bound(program, values_of(request));
     const Expr metric = is_light(request) ? code_value(Expr::input()) : Expr::input();
-    // Of a function that measures as exact: half a unit in the last place of white.
+    // Lower limit of the measured error: half a unit in the last place of white.
     constexpr double kUseful = 300;
     if (request.curves == ShaderCurves::formula) {
         const GuaranteedBound guaranteed =

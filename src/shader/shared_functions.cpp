@@ -13,9 +13,9 @@ TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
-/// Fewer operations read better where they are.
+/// Fewer operations are more readable inline.
 constexpr std::size_t kFewestOperations = 6;
-/// A channel each.
+/// One root per channel.
 constexpr std::size_t kFewestUses = 3;
 
 class Sharer {
@@ -35,7 +35,7 @@ class Sharer {
     }
 
     SharedFunctions share(const std::array<Expr, 3>& f) {
-        // By what they compute: the values that a function of an earlier value gives.
+        // Groups values by the function of an earlier value that they compute.
         std::map<std::string, std::vector<std::size_t>> alike;
         std::map<std::string, std::size_t> size;
         for (std::size_t i = 0; i < nodes_.size(); ++i) {
@@ -93,7 +93,8 @@ class Sharer {
         return e.op() == ExprOp::constant || e.op() == ExprOp::uniform;
     }
 
-    /// Something else reads what is between the root and value i, and would compute it again.
+    /// True if other expressions read values between the root and value i, and would recompute
+    /// them.
     [[nodiscard]] bool is_read_outside(std::size_t i, std::size_t root,
                                        const std::map<std::size_t, std::size_t>& seen) const {
         return std::any_of(seen.begin(), seen.end(), [&](const auto& value) {
@@ -104,7 +105,7 @@ class Sharer {
         });
     }
 
-    /// The last value that all inputs pass through on their way to value i.
+    /// Immediate dominator: the last value through which all inputs reach value i.
     [[nodiscard]] std::size_t dominator_of(std::size_t i) const {
         std::size_t common = kNone;
         for (int k = 0; k < nodes_[i].operand_count(); ++k) {
@@ -119,7 +120,7 @@ class Sharer {
         }
         return common;
     }
-    /// The first of them.
+    /// The first dominator.
     [[nodiscard]] std::size_t root_of(std::size_t i) const {
         std::size_t root = dominator_[i];
         while (root != kNone && dominator_[root] != kNone)
@@ -127,7 +128,7 @@ class Sharer {
         return root;
     }
 
-    /// What value i is of the root that has place 0.
+    /// Key of value i relative to the root at index 0.
     [[nodiscard]] std::string text_of(std::size_t i,
                                       std::map<std::size_t, std::size_t>& seen) const {
         const Expr& e = nodes_[i];

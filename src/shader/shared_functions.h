@@ -9,13 +9,13 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// Three expressions of a color in which what is done alike to several values has become functions:
-/// a curve of each channel is written once.
+/// Three expressions of a color with repeated operations turned into functions, so that a
+/// per-channel curve is written once.
 struct SharedFunctions {
     struct Call {
         std::size_t function;
-        Expr argument;     // of inputs 0, 1, 2, and of 3 + i for what call i gave
-        std::string name;  // of what it gives; empty: none
+        Expr argument;     // of inputs 0, 1, 2, and 3 + i: the result of call i
+        std::string name;  // of the result; empty: none
     };
     std::vector<Expr> functions;  // of input 0
     std::vector<Call> calls;

@@ -11,20 +11,20 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// What stands around the functions. In the patterns `@function` is the last one, `@call` are the
-/// arguments behind its color, each with a comma before it, `@arguments` the lines of `argument`
-/// and `@declarations` those of `declaration`. What stands between `@[` and `@]` is left out when
-/// there are no arguments. Where there is a `@header`, the comments of the text stand there.
+/// Text around the functions. In the patterns `@function` is the last function, `@call` are the
+/// arguments after its color, each with a comma before it, `@arguments` the lines of `argument` and
+/// `@declarations` those of `declaration`. Text between `@[` and `@]` is left out if there are no
+/// arguments. `@header` is replaced by the comments of the text.
 struct Wrapper {
     const char* id;
     const char* before;
     const char* after;
-    /// One for each argument: @name, @help, @value, @min, @max.
+    /// One per argument: @name, @help, @value, @min, @max.
     const char* argument;
-    /// What an argument is called where the function is called.
+    /// Name of an argument in the call of the function.
     const char* argument_in_call = "@name";
     const char* declaration = "";
-    /// Before each line of the functions.
+    /// Prefix of each line of the functions.
     const char* indent = "";
 };
 
@@ -239,14 +239,14 @@ const std::vector<ShaderApplication>& shader_applications() {
          "A Full Screen Pass Renderer Feature after post-processing, with Tonemapping None and HDR "
          "on."},
         {"unreal", "Unreal Engine", ".ush", ShaderLanguage::hlsl, "srgb",
-         "A post-process material at `Replacing the Tonemapper` with a Custom node; what it "
-         "returns is not encoded again, and bloom and vignette are left out there."},
+         "A post-process material at `Replacing the Tonemapper` with a Custom node; its result is "
+         "not encoded again, and bloom and vignette are left out there."},
         {"mpv", "mpv", ".glsl", ShaderLanguage::glsl, "srgb",
          "mpv --vo=gpu --vf=format=gamma=srgb --glsl-shader=FILE on scene-linear pictures (EXR); "
          "sliders need mpv 0.36."},
         {"reshade", "ReShade", ".fx", ShaderLanguage::hlsl, "linear",
-         "For games that hand scRGB (linear light) to ReShade; elsewhere the picture is tone "
-         "mapped already."},
+         "For games that pass scRGB (scene-linear) to ReShade; in other games the picture is "
+         "already tone mapped."},
         {"resolve", "DaVinci Resolve (DCTL)", ".dctl", ShaderLanguage::dctl, "rec1886",
          "Copy it into the LUT folder; a DCTL effect on a node whose input is scene-linear."},
         {"nuke", "Nuke (BlinkScript)", ".rpp", ShaderLanguage::blink, "linear",
@@ -254,7 +254,7 @@ const std::vector<ShaderApplication>& shader_applications() {
          "node "
          "encode what it returns, with sRGB."},
         {"shadertoy", "Shadertoy", ".glsl", ShaderLanguage::glsl_es, "srgb",
-         "Paste it into Image; iChannel0 holds scene-linear light."},
+         "Paste it into Image; iChannel0 holds the scene-linear picture."},
         {"gstreamer", "GStreamer glshader", ".frag", ShaderLanguage::glsl_es, "srgb",
          "glshader fragment=\"$(cat FILE)\" on scene-linear frames; uniforms by its property "
          "`uniforms`."},
@@ -299,8 +299,8 @@ std::string wrap(const ShaderApplication& application, const Shader& shader,
         text = replaced(text, "@declarations", declarations);
         return replaced(text, "@arguments", lines);
     };
-    // Applications have a word for the start of the file: what the text says of itself comes
-    // after. Their shaders begin with a language's own lines already.
+    // Applications require certain first lines, so the header comes after them. Their shaders
+    // already begin with the lines of the language.
     if (*language.prologue && application.id != "threejs")
         functions = replaced(functions, std::string("\n") + language.prologue, "");
     if (*wrapper.indent) {

@@ -8,7 +8,7 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// An argument of a shader's function behind the color.
+/// An argument of a shader's function after the color.
 struct ShaderArgument {
     std::string name;
     std::string help;
@@ -17,7 +17,7 @@ struct ShaderArgument {
     double max;
 };
 
-/// The file that the application takes.
+/// File contents for the application.
 [[nodiscard]] std::string wrap(const ShaderApplication& application, const Shader& shader,
                                const std::vector<ShaderArgument>& arguments);
 

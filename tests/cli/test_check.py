@@ -39,7 +39,7 @@ BROKEN = {
     "flat": (f'{CLAMP}[[stage]]\ncurve = "x < 0.02 ? 25*x : x < 2 ? 0.5 : 1 - 1/x"\n', "monotone", 0.0225, "do not get"),
     # 1.5 x/(x + 1) is 1 at 2.
     "bright": ('[[stage]]\ncurve = "1.5*max(x, 0)/(max(x, 0) + 1)"\n', "bounded", 2, "and go up to 1.5;"),
-    "dim": ('[[stage]]\ncurve = "0.9*max(x, 0)/(max(x, 0) + 1)"\n', "white", 65504, "0.9 of the display's light"),
+    "dim": ('[[stage]]\ncurve = "0.9*max(x, 0)/(max(x, 0) + 1)"\n', "white", 65504, "0.9 of display white"),
     "lifted": (f'[[stage]]\n{REINHARD}[[stage]]\ncurve = "0.01 + 0.99*x"\n', "black", 0, "black becomes 0.01"),
     "crushed": ('[[stage]]\ncurve = "clamp(x - 0.01, 0, 1)"\n', "black", 0.01, "grays up to"),
     # 1.055 (x/(x + 1))^(1/2.4) (1 - 0.9^(1/2.4)) in the sRGB code; half a code of 10 bits is in its straight part:

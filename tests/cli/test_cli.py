@@ -109,14 +109,14 @@ def check_list(report, command):
     report.check("list --json: a statistic",
                  [p.get("statistic") for p in ops["exponential"]["parameters"]][:2] == ["mean luminance", None])
     report.check("list --json: a deviation without end has no number", ops["reinhard_extended"]["deviations"] == [
-        {"kind": "exceeds_white", "value": None, "when": "", "text": "exceeds white without end: SDR displays clip it"}])
+        {"kind": "exceeds_white", "value": None, "when": "", "text": "exceeds white without limit; SDR displays clip it"}])
     report.check("list --json: dialects and diagnostics",
                  ops["agx_sobotka"]["dialects"] == ops["agx_minimal"]["dialects"] == "AgX"
                  and [name for name, op in ops.items() if op["is_diagnostic"]] == ["false_color"])
     for form in ([], ["--markdown"]):
         report.check(f"list OPERATOR {' '.join(form)}: statistics, deviations, dialects, diagnostics",
                      "takes it from the picture: mean luminance" in run(command, "list", "exponential", *form)
-                     and "exceeds white without end" in run(command, "list", "reinhard_extended", *form)
+                     and "exceeds white without limit" in run(command, "list", "reinhard_extended", *form)
                      and "agx_minimal" in run(command, "list", "agx_sobotka", *form)
                      and "not a picture" in run(command, "list", "false_color", *form))
     text = run(command, "list", "hable")
@@ -670,7 +670,7 @@ def check_archive(report, command, scratch):
     code, _, err = call(command, ["config", "-o", scratch / "measuring", "--views", "drago", "--displays", "srgb"])
     text = (scratch / "measuring/config.ocio").read_text()
     report.check("config: constants that stand in for measured numbers", code == OK and err.count("\n") == 1
-                 and "warning" in err and "Drago takes " in err and "Measures no picture here" in text, err)
+                 and "warning" in err and "Drago uses " in err and "Cannot measure pictures here" in text, err)
     code, _, err = call(command, ["config", "-o", scratch / "strict", "--views", "drago", "--strict"])
     report.check("config --strict: they are an error", code == 1 and not (scratch / "strict").exists(), err)
     with zipfile.ZipFile(path) as archive:

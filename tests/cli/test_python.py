@@ -271,7 +271,7 @@ def check_luts(report, tw, command, scratch):
     ringing.unlink()
     warned(report, "bake of an operator that measures", ["drago measures each picture, which a LUT cannot do",
                                                          "settings={\"log_average\": ...} changes it",
-                                                         "does not follow drago in saturated lights", "size=65"],
+                                                         "does not follow drago in saturated highlights", "size=65"],
            lambda: tw.bake("drago", scratch / "drago.cube", size=17, input="lin_rec709"), 2)
     warned(report, "bake of one that does not", [], lambda: tw.bake("clamp", ringing, size=17, input="lin_rec709"), 0)
     raises(report, "bake into no folder", FileNotFoundError, "/nonexistent/a.cube",

@@ -140,7 +140,7 @@ def check_formats(report, command, folder):
     report.compare("resolve_cube: LogC3, from mid grey on", shown[bright],
                    expected_of(command, codes[bright], "logc3", "srgb"), 2e-5)
     report.compare("resolve_cube: all light", shown, expected_of(command, codes, "logc3", "srgb"), 2e-3)
-    # What the header says of it has the table before the cube in it: colors between the nodes, by OpenColorIO.
+    # What the header says of it has the 1D LUT before the 3D LUT in it: colors between the nodes, by OpenColorIO.
     light = np.random.default_rng(4).uniform(-0.017, 1, (20000, 3)).astype(np.float32).astype(float) ** 3
     error = np.abs(through_ocio(path, light) - evaluate(command, light, *OPERATOR, "--input", "lin_awg3")).max()
     stated = float(re.search(r"tetrahedral.* max ([-0-9.e]+),", path.read_text(errors="replace")[:4000]).group(1))

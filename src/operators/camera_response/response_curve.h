@@ -10,19 +10,20 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// How film or a camera answers light: normalised irradiance in [0, 1] -> pixel value in [0, 1],
-/// rising, straight lines between the measured points. Of red, green and blue; equal curves are one
-/// table.
+/// Response of film or a camera to light: normalized irradiance in [0, 1] -> pixel value in [0, 1],
+/// rising, with straight lines between the measured points. One curve each for red, green and blue;
+/// equal curves share one table.
 using ResponseCurves = std::array<std::shared_ptr<const Table>, 3>;
 
-/// Reads response curves of a text file. What is in it tells the layout, not its name:
+/// Reads response curves from a text file. The contents determine the layout, not the file name:
 ///
 /// * the database of response functions (DoRF): six lines a curve, its name, the kind of graph,
 ///   `I =`, the irradiances, `B =`, the pixel values. Every channel is a curve of its own;
 /// * `.rf`: columns with blanks between, irradiance and one or three pixel values;
 /// * CSV: the same with commas, and perhaps a first line of names.
 ///
-/// A line that begins with # is a comment. Of equal neighbouring irradiances the last counts.
+/// A line that begins with # is a comment. If neighboring irradiances are equal, the last one
+/// counts.
 ///
 /// @param curve  of DoRF: a curve's name, which then serves all channels, or what three names have
 ///               before Red, Green, Blue (or R, G, B); may be empty when nothing else could be
@@ -34,7 +35,7 @@ using ResponseCurves = std::array<std::shared_ptr<const Table>, 3>;
 [[nodiscard]] ResponseCurves read_response_curves(const std::string& file,
                                                   std::string_view curve = {});
 
-/// The same of the text of a file; `file` is what messages call it.
+/// Reads the text of a file; messages call the file `file`.
 [[nodiscard]] ResponseCurves parse_response_curves(std::string_view text, const std::string& file,
                                                    std::string_view curve = {});
 

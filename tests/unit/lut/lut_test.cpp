@@ -893,7 +893,7 @@ TEST(WriteLut, CubeReadsBackBitForBit) {
          {"AgX (Sobotka)", "Source: ", "ACEScct", "ACEScg", "sRGB", "max 1.23e-02",
           "99.9 % 4.56e-03", "mean 7.89e-04", "dE_ITP (ITU-R BT.2124), tetrahedral", "max 3.21e+00",
           "222.861", "trilinear interpolation, inside the input range: max 2.34e-02",
-          "Clips nothing", "Cube, size 17, numbers "}) {
+          "Clips nothing", "3D LUT, size 17, numbers "}) {
         EXPECT_NE(header.find(what), std::string::npos) << what << " is not in\n" << header;
     }
 }

@@ -781,11 +781,10 @@ Params apply_params(const std::string& apply) {
 TEST(Apply, NormsNeedACurveThatStartsAtBlack) {
     const ToneCurve lifted{.f = kX / (1 + kX) + 0.125};
     for (const char* apply : {"luminance", "max"}) {
-        EXPECT_EQ(
-            error_of([&] { (void)apply_tone_curve(lifted, apply_params(apply)); }),
-            std::string("apply is ") + apply +
-                "; expected channels or hue_preserving: the curve is 0.125 at black, which no "
-                "ratio of colors makes of 0");
+        EXPECT_EQ(error_of([&] { (void)apply_tone_curve(lifted, apply_params(apply)); }),
+                  std::string("apply is ") + apply +
+                      "; expected channels or hue_preserving: the curve is 0.125 at black, and a "
+                      "factor cannot lift 0");
     }
     for (const char* apply : {"channels", "hue_preserving"}) {
         expect_rgb(shown(apply_tone_curve(lifted, apply_params(apply)), {0, 0, 0}),
@@ -831,18 +830,18 @@ TEST(DocumentedDifferences, SayWhatTheUserSees) {
     EXPECT_EQ(text(Kind::black, 0.00287), "lifts black to 0.0029");
     EXPECT_EQ(text(Kind::black, -0.0023), "takes black to -0.0023, which displays clip");
     EXPECT_EQ(text(Kind::black, 0, "soft"), "soft: black is 0");
-    EXPECT_EQ(text(Kind::crushes_black, 0.004), "shows greys up to 0.004 as black");
+    EXPECT_EQ(text(Kind::crushes_black, 0.004), "shows grays up to 0.004 as black");
     EXPECT_EQ(text(Kind::never_reaches_white, 0.9826),
-              "never reaches white: at most 0.983 of the display's light");
-    EXPECT_EQ(text(Kind::exceeds_white, 1.287), "exceeds white, up to 1.29: SDR displays clip it");
+              "never reaches white: at most 0.983 of display white");
+    EXPECT_EQ(text(Kind::exceeds_white, 1.287), "exceeds white, up to 1.29; SDR displays clip it");
     EXPECT_EQ(text(Kind::exceeds_white, kInfinity),
-              "exceeds white without end: SDR displays clip it");
+              "exceeds white without limit; SDR displays clip it");
     EXPECT_EQ(text(Kind::not_monotone, 0.0044), "non-monotone below 0.0044");
     EXPECT_EQ(text(Kind::not_monotone, kInfinity), "non-monotone");
     EXPECT_EQ(text(Kind::tints_gray, 0.0574), "tints gray: its channels differ by up to 0.057");
     EXPECT_EQ(text(Kind::jumps, 0.00104), "jumps by 0.001 from one gray to the next");
     EXPECT_EQ(text(Kind::exceeds_white, 10, "hdr"),
-              "hdr: exceeds white, up to 10: SDR displays clip it");
+              "hdr: exceeds white, up to 10; SDR displays clip it");
 }
 
 // ---------------------------------------------------------------------------------------------

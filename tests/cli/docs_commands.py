@@ -12,6 +12,7 @@ In an output, `...` stands for any text, or as a line of its own for any lines.
 """
 
 import argparse
+import importlib.util
 import os
 import re
 import shutil
@@ -74,7 +75,9 @@ def says(*command):
 
 
 def missing(name, build):
-    """None, or why commands that need NAME cannot run."""
+    """None, or why commands that need NAME cannot run. Without a build, packages have the module and the libraries."""
+    if name == "python" and not build:
+        return None if importlib.util.find_spec("tonewright") else "python3-tonewright is not installed"
     if name == "python":
         return None if (build / "python" / "tonewright").is_dir() else "the build has no Python module"
     if not shutil.which(name):
@@ -82,20 +85,23 @@ def missing(name, build):
     if name == "ffmpeg" and ("libx265" not in says(name, "-v", "error", "-encoders")
                              or "zscale" not in says(name, "-v", "error", "-filters")):
         return "ffmpeg has no libx265 or no zscale"
+    if name == "g++" and not build:
+        return None if says("pkg-config", "--libs", "tonewright-core") else "libtonewright-dev is not installed"
     if name == "g++" and ("-fsanitize" in (build / "CMakeCache.txt").read_text() or not shutil.which("pkg-config")
                           or not (build / "lib" / "libtonewright_core.so").exists()):
         return "needs pkg-config and shared libraries without sanitizers"
     return None
 
 
-def follow(report, page, command, folder):
+def follow(report, page, command, folder, is_installed=False):
     """Returns (commands, what they print) of each block that ran, and the names that are missing."""
-    build = command.parents[1]
-    library = installed(build, folder / ".installed")
+    build = None if is_installed else command.parents[1]
     environment = {**os.environ, "LC_ALL": "C.UTF-8", "EXAMPLES": str(DOCS / "examples"),
-                   "PATH": f"{command.parent}:{Path(sys.executable).parent}:{os.environ['PATH']}",
-                   "PYTHONPATH": str(build / "python"), "PKG_CONFIG_PATH": str(library / "pkgconfig"),
-                   "LD_LIBRARY_PATH": str(library)}
+                   "PATH": f"{command.parent}:{Path(sys.executable).parent}:{os.environ['PATH']}"}
+    if build:
+        library = installed(build, folder / ".installed")
+        environment |= {"PYTHONPATH": str(build / "python"), "PKG_CONFIG_PATH": str(library / "pkgconfig"),
+                        "LD_LIBRARY_PATH": str(library)}
     said, lacking, ran = [], set(), None
     for kind, text in blocks(page):
         name = kind[3:] if kind.startswith("sh ") else None
@@ -136,12 +142,13 @@ def main(name, check):
     parser = argparse.ArgumentParser()
     parser.add_argument("command", type=Path)
     parser.add_argument("--record", action="store_true", help="write the pictures of the page")
+    parser.add_argument("--installed", action="store_true", help="packages are installed; there is no build")
     arguments = parser.parse_args()
     report = Report()
     page = (DOCS / f"{name}.md").read_text()
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch)
-        said, lacking = follow(report, page, arguments.command.resolve(), folder)
+        said, lacking = follow(report, page, arguments.command.resolve(), folder, arguments.installed)
         if report.failed:
             return report.finish()
         for path in re.findall(r"!\[.*?\]\((images/.*?)\)", page):

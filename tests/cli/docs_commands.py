@@ -92,6 +92,8 @@ def follow(report, page, command, folder):
     """Returns (commands, what they print) of each block that ran, and the names that are missing."""
     build = command.parents[1]
     library = installed(build, folder / ".installed")
+    for name in ("src", "tests"):  # pages for developers show files
+        (folder / name).symlink_to(PROJECT / name)
     environment = {**os.environ, "LC_ALL": "C.UTF-8", "EXAMPLES": str(DOCS / "examples"),
                    "PATH": f"{command.parent}:{Path(sys.executable).parent}:{os.environ['PATH']}",
                    "PYTHONPATH": str(build / "python"), "PKG_CONFIG_PATH": str(library / "pkgconfig"),

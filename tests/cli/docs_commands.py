@@ -96,6 +96,8 @@ def missing(name, build):
 def follow(report, page, command, folder, is_installed=False):
     """Returns (commands, what they print) of each block that ran, and the names that are missing."""
     build = None if is_installed else command.parents[1]
+    for name in ("src", "tests"):  # pages for developers show files
+        (folder / name).symlink_to(PROJECT / name)
     environment = {**os.environ, "LC_ALL": "C.UTF-8", "EXAMPLES": str(DOCS / "examples"),
                    "PATH": f"{command.parent}:{Path(sys.executable).parent}:{os.environ['PATH']}"}
     if build:

@@ -244,7 +244,7 @@ def check_config(report, tw, command, scratch):
             for p in (scratch / "theirs").rglob("*") if p.is_file()]
     report.check(f"make_config(): the {len(same)} files of `config`", len(same) > 3 and all(same))
     warned(report, "make_config of an operator that measures",
-           ["Drago takes log_average 1", 'custom={VIEW: "ID:PARAMETER=VALUE"}'],
+           ["Drago uses log_average 1", 'custom={VIEW: "ID:PARAMETER=VALUE"}'],
            lambda: tw.make_config(scratch / "drago", views=["drago"], displays=["srgb"], profiles=["2.1"]))
     raises(report, "make_config of no view", ValueError, "hablex", lambda: tw.make_config(scratch / "x", views=["hablex"]))
 

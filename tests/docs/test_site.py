@@ -1,0 +1,195 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The documentation site: it builds without a warning, all links and anchors lead somewhere, and no page asks another server.
+
+    /usr/bin/python3 tests/docs/test_site.py build/release/bin/tonewright [--site FOLDER] [--screenshots FOLDER]
+
+Without --site, it builds the site first (two minutes). Chromium opens some pages on a screen of a desk and on one of a phone,
+and searches. The spelling of the pages is checked with codespell.
+"""
+import argparse
+import functools
+import html.parser
+import http.server
+import json
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import urllib.parse
+from pathlib import Path
+
+TESTS = Path(__file__).resolve().parents[1]
+ROOT = TESTS.parent
+sys.path[:0] = [str(TESTS / folder) for folder in ("parity/clients", "report", "shader")]
+from chromium import Page  # noqa: E402
+from executed import skip  # noqa: E402
+from pictures import Report  # noqa: E402
+
+# Elements and attributes that a browser loads without a click.
+LOADED = {("link", "href"), ("script", "src"), ("img", "src"), ("source", "src"), ("iframe", "src"), ("video", "src"), ("object", "data")}
+# Links that a browser only follows.
+NOT_LOADED = {"canonical", "next", "prev"}
+# A format of pictures, and the name of a variable in a formula.
+CORRECT_WORDS = "hald,fo"
+SCREENS = {"desk": (1440, 900), "phone": (390, 844)}
+SHOWN = ["index.html", "choosing.html", "operators/index.html", "operators/hable.html", "operators/agx_blender.html", "operators/dialects.html",
+         "config.html", "shipped_luts.html", "cookbook.html", "shaders.html", "developing.html"]
+
+
+class Reader(html.parser.HTMLParser):
+    """Ids, links and loaded files of a page."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.ids, self.links, self.loaded = set(), [], []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        attributes = dict(attributes)
+        self.ids.update(attributes[name] for name in ("id", "name") if attributes.get(name))
+        for name, value in attributes.items():
+            if not value:
+                continue
+            if (tag, name) in LOADED and not NOT_LOADED & set(attributes.get("rel", "").split()):
+                self.loaded.append(value)
+            elif name == "srcset":
+                self.loaded += [part.split()[0] for part in value.split(",")]
+            elif (tag, name) == ("a", "href"):
+                self.links.append(value)
+            elif name == "style":
+                self.loaded += re.findall(r"url\(['\"]?([^'\")]+)", value)
+
+
+def is_remote(address):
+    return bool(urllib.parse.urlsplit(address).netloc)
+
+
+def check_links(report, site):
+    pages = {path: Reader(path.read_text()) for path in sorted(site.rglob("*.html"))}
+    broken, remote, links = [], [], 0
+    for path, page in pages.items():
+        if path.name == "404.html":  # its addresses begin at the root of the server
+            continue
+        remote += [f"{path.relative_to(site)}: {address}" for address in page.loaded if is_remote(address)]
+        for address in page.links + page.loaded:
+            if urllib.parse.urlsplit(address).scheme or is_remote(address):
+                continue
+            links += 1
+            name, _, anchor = urllib.parse.unquote(address).partition("#")
+            target = (path.parent / name).resolve() if name else path
+            if target.is_dir():
+                target /= "index.html"
+            if not target.is_file():
+                broken.append(f"{path.relative_to(site)}: {address}: no such file")
+            elif anchor and target in pages and anchor not in pages[target].ids:
+                broken.append(f"{path.relative_to(site)}: {address}: no such anchor")
+    for path in site.rglob("*.css"):
+        remote += [f"{path.relative_to(site)}: {address}" for address in re.findall(r"(?:url\(|@import )['\"]?([^'\");]+)", path.read_text())
+                   if is_remote(address)]
+    report.check(f"{len(pages)} pages: {links} links and anchors lead somewhere", links > len(pages) and not broken, "\n     ".join(broken[:40]))
+    report.check("no page loads anything from another server", not remote, "\n     ".join(remote[:40]))
+    return pages
+
+
+def check_contents(report, site, command):
+    """Every page of docs/ and every operator has a page, which the search finds."""
+    listed = json.loads(subprocess.run([command, "list", "--json"], check=True, capture_output=True, text=True).stdout)
+    found = {entry["location"].partition("#")[0] for entry in json.loads((site / "search/search_index.json").read_text())["docs"]}
+    wanted = {str(path.relative_to(ROOT / "docs").with_suffix(".html")) for path in (ROOT / "docs").rglob("*.md")}
+    wanted = {{"README.html": "guide.html", "operators.html": "operators/index.html",
+               "applications/README.html": "applications/index.html"}.get(name, name) for name in wanted}
+    report.check("every page of docs/ can be searched", wanted <= found, sorted(wanted - found))
+    poor = []
+    for op in listed["operators"] + listed["local_operators"]:
+        name = f"operators/{op['id']}.html"
+        text = (site / name).read_text() if name in found else ""
+        needed = [f'src="{op["id"]}.png"', f"../curves/{op['id']}.svg", *(f"<code>{p['name']}</code>" for p in op["parameters"])]
+        if op["is_local"]:  # its result depends on the picture: it has no curve
+            needed.pop(1)
+        poor += [f"{name} lacks {what}" for what in needed if what not in text]
+    report.check("every operator has a page with picture, curve and parameters", not poor, "\n     ".join(poor[:20]))
+
+
+class Quiet(http.server.SimpleHTTPRequestHandler):
+    def log_message(self, *_):
+        pass
+
+
+def go(page, address):
+    before = page.loads
+    page.call("Page.navigate", url=address)
+    end = time.monotonic() + 60
+    while page.loads == before and time.monotonic() < end:
+        page.receive(1)
+
+
+def check_browser(report, site, folder):
+    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Quiet, directory=site))
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    root = f"http://127.0.0.1:{server.server_port}/"
+    with Page() as page:
+        for screen, (width, height) in SCREENS.items():
+            page.resize(width, height, is_mobile=screen == "phone")
+            wide = []
+            for name in SHOWN:
+                go(page, root + name)
+                # Tables and code may scroll on their own, when the theme's script has wrapped them.
+                page.wait("!document.querySelector('article table:not([class])') || document.querySelector('.md-typeset__scrollwrap')")
+                is_width = page.run("document.documentElement.scrollWidth")
+                if is_width > width:
+                    wide.append(f"{name}: {is_width} pixels")
+                if folder:
+                    time.sleep(0.5)
+                    page.screenshot(folder / f"{screen}_{name.replace('/', '_').removesuffix('.html')}.png")
+            report.check(f"{len(SHOWN)} pages fit a {screen}'s screen, {width} pixels wide", not wide, "\n     ".join(wide))
+        page.resize(*SCREENS["desk"])
+        go(page, root + "index.html")
+        page.run("""(() => { document.querySelector('#__search').checked = true;
+            const query = document.querySelector('.md-search__input'); query.focus(); query.value = 'uncharted';
+            query.dispatchEvent(new Event('keyup', { bubbles: true })); query.dispatchEvent(new Event('input', { bubbles: true })); })()""")
+        found = "[...document.querySelectorAll('.md-search-result__link')].some((link) => link.href.includes('operators/hable.html'))"
+        end = time.monotonic() + 30
+        while not page.run(found) and time.monotonic() < end:
+            page.receive(0.2)
+        report.check("a search for a word of Hable's title finds its page", page.run(found))
+        others = sorted({address for address in page.requests if not address.startswith((root, "about:", "data:", "blob:"))})
+        report.check(f"{len(page.requests)} requests of the browser, all of them to this server", page.requests and not others, others)
+        report.check("the console of the browser has no error", not page.errors, page.errors[:10])
+    server.shutdown()
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("command", type=Path)
+    parser.add_argument("--site", type=Path)
+    parser.add_argument("--screenshots", type=Path)
+    arguments = parser.parse_args()
+    if arguments.screenshots:
+        arguments.screenshots.mkdir(parents=True, exist_ok=True)
+    for tool, package in (("mkdocs", "mkdocs"), ("codespell", "codespell"), ("chromium", "chromium")):
+        if not shutil.which(tool):
+            skip(f"{tool} is missing (Debian: {package})")
+    if subprocess.run(["/usr/bin/python3", "-c", "import material"], stderr=subprocess.DEVNULL, check=False).returncode:
+        skip("the theme is missing (Debian: mkdocs-material)")
+    report = Report()
+    with tempfile.TemporaryDirectory() as scratch:
+        site = arguments.site or Path(scratch) / "site"
+        if not arguments.site:
+            done = subprocess.run([sys.executable, ROOT / "tools/site/build.py", arguments.command, site], capture_output=True, text=True,
+                                  check=False)
+            if not report.check("mkdocs build --strict", done.returncode == 0, done.stdout + done.stderr):
+                return report.finish()
+        check_links(report, site)
+        check_contents(report, site, arguments.command)
+        check_browser(report, site, arguments.screenshots)
+    pages = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+    spelling = subprocess.run(["codespell", "--ignore-words-list", CORRECT_WORDS, *pages], capture_output=True, text=True, check=False)
+    report.check(f"spelling of {len(pages)} pages", spelling.returncode == 0 and not spelling.stdout, spelling.stdout)
+    return report.finish()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -53,7 +53,7 @@ THIRD_PARTY = {
     "nlohmann": ["cli/json.cpp"],
     "toml++": ["definition/toml_text.cpp"],
     "pybind11": ["python"],
-    "fmt": ["base", "measure", "lut", "shader", "definition", "ocio", "image", "verify", "cli", "cli/pictures", "plugin", "python"],
+    "fmt": ["base", "engine", "measure", "lut", "shader", "definition", "ocio", "image", "verify", "cli", "cli/pictures", "plugin", "python"],
 }
 
 

@@ -63,6 +63,7 @@ Interval interval_of(const TapeInstruction& step, const Interval& a, const Inter
                      const Interval& c) {
     if (step.op == ExprOp::constant) return {step.value, step.value};
     if (step.op == ExprOp::input) return {-kHalfMax, kHalfMax};
+    if (step.op == ExprOp::uniform) return {step.least, step.most};
     return tonewright::interval_of(step.op, a, b, c, step.table, step.lattice);
 }
 

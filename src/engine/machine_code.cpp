@@ -49,8 +49,8 @@ class Generator : public Xbyak::CodeGenerator {
 
     /// Where the function begins.
     /// @param place  of the part among the parts of a program with tiles of `tile` pixels
-    std::size_t write(const VectorCode& code, const unsigned char* pool, PixelLayout layout,
-                      Place place, std::size_t tile, int interleaved_blocks) {
+    std::size_t write(const VectorCode& code, PixelLayout layout, Place place, std::size_t tile,
+                      int interleaved_blocks) {
         layout_ = layout;
         const int tile_bytes = static_cast<int>(tile) / machine_.lanes * pixel_bytes();
         const bool has_pixels = layout != PixelLayout::planes;
@@ -73,7 +73,7 @@ class Generator : public Xbyak::CodeGenerator {
         mov(r9d, std::numeric_limits<std::int32_t>::max());
         const std::size_t frame = getSize() - sizeof(std::int32_t);
         sub(rsp, r9);
-        mov(rax, reinterpret_cast<std::size_t>(pool));
+        mov(rax, r8);  // the pool
         if (machine_.has_avx512) {
             mov(r9d, 0x7777);
             kmovw(k7, r9d);
@@ -806,14 +806,11 @@ class Generator : public Xbyak::CodeGenerator {
     int row_index_ = kNone;              // in r9 and r11, of AVX2
 };
 
-/// The code and what it reads.
+/// The code.
 class Assembled final : public MachineCode {
   public:
     Assembled(VectorProgram program, const VectorMachine& machine, int interleaved_blocks)
         : MachineCode(std::move(program)), generator_(machine) {
-        pool_.resize(program_.pool.size() / kVectorBytes + 2);
-        std::memcpy(pool_.data(), program_.pool.data(), program_.pool.size());
-        const auto* pool = reinterpret_cast<const unsigned char*>(pool_.data());
         std::array<std::vector<std::size_t>, 3> entry;
         for (std::size_t layout = 0; layout < 3; ++layout) {
             std::vector<VectorCode>& parts = program_.parts[layout];
@@ -825,8 +822,9 @@ class Assembled final : public MachineCode {
                 // hold little of two blocks (Hable side by side: 8 % slower).
                 const bool is_alone = place == Place::only && !machine.has_avx512;
                 entry[layout].push_back(
-                    generator_.write(parts[part], pool, static_cast<PixelLayout>(layout), place,
+                    generator_.write(parts[part], static_cast<PixelLayout>(layout), place,
                                      program_.tile, is_alone ? 1 : interleaved_blocks));
+                bytes_[layout].push_back(generator_.getSize() - entry[layout].back());
             }
             parts.clear();  // they are machine code now
         }
@@ -839,7 +837,6 @@ class Assembled final : public MachineCode {
     }
 
   private:
-    std::vector<ConstantVector> pool_;
     Generator generator_;
 };
 
@@ -847,9 +844,13 @@ class Assembled final : public MachineCode {
 
 bool MachineCode::is_built_in() noexcept { return true; }
 
-std::shared_ptr<const MachineCode> MachineCode::make(const Code& code) {
-    const std::optional<VectorProgram> program = translate(code);
+std::shared_ptr<const MachineCode> MachineCode::make(Code& code) {
+    std::optional<VectorProgram> program = translate(code);
     if (!program) return nullptr;
+    // Gathers may read some bytes behind the last table.
+    code.numbers.pool.resize(program->pool.size() / kVectorBytes + 2);
+    std::memcpy(code.numbers.pool.data(), program->pool.data(), program->pool.size());
+    program->pool.clear();
     // Side by side, blocks need more mask registers than there are when each needs three.
     const VectorMachine& machine = *code.target->machine;
     for (int blocks = kInterleaved; blocks > 0; --blocks) {
@@ -874,7 +875,7 @@ namespace simd {
 
 bool MachineCode::is_built_in() noexcept { return false; }
 
-std::shared_ptr<const MachineCode> MachineCode::make(const Code& /*code*/) { return nullptr; }
+std::shared_ptr<const MachineCode> MachineCode::make(Code& /*code*/) { return nullptr; }
 
 }  // namespace simd
 TONEWRIGHT_NAMESPACE_END

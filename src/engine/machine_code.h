@@ -18,7 +18,8 @@ class MachineCode {
     /// than five comparisons open at once (no operator of the catalogue has): then the interpreter
     /// runs, slower.
     /// @pre the code's target has machine code
-    [[nodiscard]] static std::shared_ptr<const MachineCode> make(const Code& code);
+    /// @param code  gets the numbers that it reads
+    [[nodiscard]] static std::shared_ptr<const MachineCode> make(Code& code);
 
     /// False where the build had no assembler.
     [[nodiscard]] static bool is_built_in() noexcept;
@@ -28,21 +29,28 @@ class MachineCode {
     virtual ~MachineCode() = default;
 
     [[nodiscard]] const VectorProgram& program() const noexcept { return program_; }
+    /// Of code.
+    [[nodiscard]] std::size_t bytes(std::size_t part, PixelLayout layout) const noexcept {
+        return bytes_[static_cast<std::size_t>(layout)][part];
+    }
 
     /// Runs one part over blocks of as many pixels as the target's vectors have lanes.
     /// @param tile     values that come from other parts or go there, and pixels in planes
     /// @param in, out  of the first and the last part with interleaved pixels. May be the same.
-    void run(std::size_t part, PixelLayout layout, unsigned char* tile, const float* in, float* out,
-             std::size_t blocks) const noexcept {
-        function_[static_cast<std::size_t>(layout)][part](tile, in, out, blocks);
+    void run(std::size_t part, PixelLayout layout, const Numbers& numbers, unsigned char* tile,
+             const float* in, float* out, std::size_t blocks) const noexcept {
+        function_[static_cast<std::size_t>(layout)][part](tile, in, out, blocks,
+                                                          numbers.pool.data());
     }
 
   protected:
     explicit MachineCode(VectorProgram program) : program_(std::move(program)) {}
 
-    using Function = void (*)(unsigned char*, const float*, float*, std::size_t);
+    using Function = void (*)(unsigned char*, const float*, float*, std::size_t,
+                              const ConstantVector* pool);
     VectorProgram program_;
     std::array<std::vector<Function>, 3> function_;  // by layout, by part
+    std::array<std::vector<std::size_t>, 3> bytes_;
 };
 
 }  // namespace simd

@@ -235,7 +235,7 @@ class PrecisionChooser {
                               static_cast<std::size_t>(operand_count(step.op)),
                               is_exact(step.op),
                               half_ulps(step.op)});
-            if (step.op == ExprOp::constant) {
+            if (is_number(step.op)) {
                 value_[i] = step.value;
             } else {
                 computed_.push_back(i);
@@ -289,6 +289,7 @@ class PrecisionChooser {
         for (std::size_t i = 0; i < code_.size(); ++i) {
             if (is_branch(code_[i].op)) branches_.push_back({i, {}});
         }
+        keep_large_in_double(probes);
         // Most curves that are too coarse are so for many colours: those few are enough to say so.
         for (std::size_t p = 0; p < probes.size(); p += 7)
             visit(probes[p]);
@@ -398,14 +399,38 @@ class PrecisionChooser {
         }
     }
 
-    /// Keeps the errors of this colour within what they may be.
-    /// @return  how near the worst output is to it
-    double visit(const Vector3& rgb) {
-        evaluate(rgb, code_.size());
+    /// What has no place in a float at an end of the uniforms.
+    void keep_large_in_double(const std::vector<Vector3>& probes) {
+        for (const auto end : {&TapeInstruction::least, &TapeInstruction::most}) {
+            bool has_uniforms = false;
+            const auto set = [&](auto from) {
+                for (std::size_t i = 0; i < code_.size(); ++i) {
+                    if (code_[i].op != ExprOp::uniform) continue;
+                    value_[i] = code_[i].*from;
+                    has_uniforms = true;
+                }
+            };
+            set(end);
+            if (!has_uniforms) return;
+            for (const Vector3& rgb : probes) {
+                evaluate(rgb, code_.size());
+                keep_large_in_double();
+            }
+            set(&TapeInstruction::value);
+        }
+    }
+    void keep_large_in_double() {
         constexpr double kTooLarge = 0.5 * static_cast<double>(std::numeric_limits<float>::max());
         for (std::size_t i = 0; i < code_.size(); ++i) {
             if (std::isfinite(value_[i]) && std::fabs(value_[i]) > kTooLarge) keep_in_double(i);
         }
+    }
+
+    /// Keeps the errors of this colour within what they may be.
+    /// @return  how near the worst output is to it
+    double visit(const Vector3& rgb) {
+        evaluate(rgb, code_.size());
+        keep_large_in_double();
         double worst = 0;
         for (const std::uint32_t output : outputs_)
             worst = std::max(worst, keep_within_budget(output));
@@ -515,6 +540,7 @@ class PrecisionChooser {
         if (step.op == ExprOp::constant) {
             return std::fabs(v - static_cast<double>(static_cast<float>(v)));
         }
+        if (step.op == ExprOp::uniform) return kHalfUlp * std::fabs(v);  // of any value
         if (step.curve) {
             const double x = value_[step.a];
             double error = step.curve->tolerance.at(x, v);
@@ -613,7 +639,7 @@ class PrecisionChooser {
     std::vector<std::size_t> partials_are_of_;  // the evaluation, counted from 1
     std::size_t evaluation_ = 0;
     std::vector<Node> nodes_;
-    std::vector<std::size_t> computed_;  // all values but constants
+    std::vector<std::size_t> computed_;  // all values but constants and uniforms
     std::vector<Share> shares_, curves_;
     std::vector<Branch> branches_;
     SampleRandom random_{11};

@@ -1163,21 +1163,22 @@ HWY_NOINLINE void store_tile(const TilePorts& ports, const Frame& frame,
 #if HWY_TARGET <= HWY_AVX2
 
 /// One part after the other over each tile, with what runs over the whole tile between them.
-void run_parts(const Code& code, PixelLayout layout, unsigned char* tile, const float* in,
-               float* out, std::size_t count) {
+void run_parts(const Code& code, const Numbers& numbers, PixelLayout layout, unsigned char* tile,
+               const float* in, float* out, std::size_t count) {
     const VectorProgram& program = code.machine->program();
-    const Frame frame{tile, reinterpret_cast<const unsigned char*>(code.constants.data()), count};
+    const Frame frame{tile, reinterpret_cast<const unsigned char*>(numbers.constants.data()),
+                      count};
     for (std::size_t part = 0; part <= program.tile_steps.size(); ++part) {
-        code.machine->run(part, layout, tile, in, out, count / hn::Lanes(DF()));
+        code.machine->run(part, layout, numbers, tile, in, out, count / hn::Lanes(DF()));
         if (part == program.tile_steps.size()) return;
         for (const Instruction& step : program.tile_steps[part])
             run_instruction(frame, code, step);
     }
 }
 
-void run_machine(const Code& code, unsigned char* tile, const std::array<const float*, 3>& in,
-                 std::ptrdiff_t in_stride, const std::array<float*, 3>& out,
-                 std::ptrdiff_t out_stride, std::size_t count) {
+void run_machine(const Code& code, const Numbers& numbers, unsigned char* tile,
+                 const std::array<const float*, 3>& in, std::ptrdiff_t in_stride,
+                 const std::array<float*, 3>& out, std::ptrdiff_t out_stride, std::size_t count) {
     const VectorProgram& program = code.machine->program();
     if (in_stride == out_stride && are_interleaved(in, in_stride) &&
         are_interleaved(out, out_stride)) {
@@ -1190,14 +1191,14 @@ void run_machine(const Code& code, unsigned char* tile, const std::array<const f
         // Without a step over a tile nothing is kept in it.
         const std::size_t step = program.tile_steps.empty() ? HWY_MAX(whole, 1) : program.tile;
         for (std::size_t begin = 0; begin < whole; begin += step) {
-            run_parts(code, layout, tile, in[0] + begin * stride, out[0] + begin * stride,
+            run_parts(code, numbers, layout, tile, in[0] + begin * stride, out[0] + begin * stride,
                       HWY_MIN(step, whole - begin));
         }
         if (whole == count) return;
         alignas(kVectorBytes) float pixels[4 * kLaneMultiple] = {};
         const std::size_t rest = (count - whole) * stride - (stride - 3);
         std::memcpy(pixels, in[0] + whole * stride, rest * sizeof(float));
-        run_parts(code, layout, tile, pixels, pixels, kLaneMultiple);
+        run_parts(code, numbers, layout, tile, pixels, pixels, kLaneMultiple);
         for (std::size_t i = 0; i < (count - whole) * stride; i += stride)
             std::memcpy(out[0] + whole * stride + i, pixels + i, 3 * sizeof(float));
         return;
@@ -1209,8 +1210,8 @@ void run_machine(const Code& code, unsigned char* tile, const std::array<const f
         load_tile(program, tile,
                   {in[0] + at * in_stride, in[1] + at * in_stride, in[2] + at * in_stride},
                   in_stride, n, padded);
-        run_parts(code, PixelLayout::planes, tile, nullptr, nullptr, padded);
-        const Frame frame{tile, reinterpret_cast<const unsigned char*>(code.constants.data()),
+        run_parts(code, numbers, PixelLayout::planes, tile, nullptr, nullptr, padded);
+        const Frame frame{tile, reinterpret_cast<const unsigned char*>(numbers.constants.data()),
                           padded};
         store_tile(program, frame,
                    {out[0] + at * out_stride, out[1] + at * out_stride, out[2] + at * out_stride},
@@ -1245,8 +1246,9 @@ bool run_without_tiles(const Code& code, const std::array<const float*, 3>& in,
 
 #endif
 
-void run(const Code& code, const std::array<const float*, 3>& in, std::ptrdiff_t in_stride,
-         const std::array<float*, 3>& out, std::ptrdiff_t out_stride, std::size_t count) noexcept {
+void run(const Code& code, const Numbers& numbers, const std::array<const float*, 3>& in,
+         std::ptrdiff_t in_stride, const std::array<float*, 3>& out, std::ptrdiff_t out_stride,
+         std::size_t count) noexcept {
 #if HWY_TARGET > HWY_AVX3 && HWY_TARGET <= HWY_SSE4
     // Machine code has a tile for planes, but none for pixels.
     if ((!code.machine || in_stride == 1) &&
@@ -1256,9 +1258,10 @@ void run(const Code& code, const std::array<const float*, 3>& in, std::ptrdiff_t
 #endif
     alignas(kVectorBytes) unsigned char registers[kRegisterFileBytes];
 #if HWY_TARGET <= HWY_AVX2
-    if (code.machine) return run_machine(code, registers, in, in_stride, out, out_stride, count);
+    if (code.machine)
+        return run_machine(code, numbers, registers, in, in_stride, out, out_stride, count);
 #endif
-    const auto* constants = reinterpret_cast<const unsigned char*>(code.constants.data());
+    const auto* constants = reinterpret_cast<const unsigned char*>(numbers.constants.data());
     for (std::size_t begin = 0; begin < count; begin += code.tile) {
         const std::size_t n = HWY_MIN(code.tile, count - begin);
         const std::size_t padded = (n + kLaneMultiple - 1) / kLaneMultiple * kLaneMultiple;

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -125,6 +126,31 @@ struct alignas(kVectorBytes) ConstantVector {
     std::array<unsigned char, kVectorBytes> bytes;
 };
 
+/// All numbers that a program reads and that uniforms may change.
+struct Numbers {
+    /// One vector full of each, for the interpreter.
+    std::vector<ConstantVector> constants;
+    /// Numbers and tables of machine code.
+    std::vector<ConstantVector> pool;
+};
+
+/// Where the value of a uniform belongs in one of them.
+struct UniformPlace {
+    std::uint32_t source = 0;  // the instruction of the tape that computes it
+    std::uint32_t offset = 0;  // in bytes
+    std::uint32_t bytes = 0;   // to fill with it
+    bool wide = false;         // as double
+    bool is_rounded = false;   // to float before
+};
+
+/// @param bytes  to fill with floats, or with doubles where `wide`
+inline void fill(unsigned char* to, std::size_t bytes, double value, bool wide) {
+    const auto narrow = static_cast<float>(value);
+    const std::size_t size = wide ? sizeof value : sizeof narrow;
+    for (std::size_t at = 0; at < bytes; at += size)
+        std::memcpy(to + at, wide ? static_cast<const void*>(&value) : &narrow, size);
+}
+
 /// Where a program's tile has the pixels.
 struct TilePorts {
     /// Float registers of the three input channels; a channel that is not read has none.
@@ -136,6 +162,9 @@ struct TilePorts {
 
 class MachineCode;
 struct Code;
+}  // namespace simd
+class Tape;
+namespace simd {
 
 /// What the vectors of an instruction set are, for machine code.
 struct VectorMachine {
@@ -159,9 +188,9 @@ struct Target {
     CurveForm curve_form = CurveForm::none;
     /// Of an instruction set that machine code is made for.
     std::optional<VectorMachine> machine;
-    void (*run)(const Code& code, const std::array<const float*, 3>& in, std::ptrdiff_t in_stride,
-                const std::array<float*, 3>& out, std::ptrdiff_t out_stride,
-                std::size_t count) noexcept = nullptr;
+    void (*run)(const Code& code, const Numbers& numbers, const std::array<const float*, 3>& in,
+                std::ptrdiff_t in_stride, const std::array<float*, 3>& out,
+                std::ptrdiff_t out_stride, std::size_t count) noexcept = nullptr;
 };
 /// Instruction sets that are compiled in and that this machine has, best first.
 [[nodiscard]] const std::vector<Target>& targets();
@@ -173,7 +202,10 @@ struct Code : TilePorts {
     /// The one that it is compiled for, and that runs it.
     const Target* target = nullptr;
     std::vector<Instruction> instructions;
-    std::vector<ConstantVector> constants;
+    /// With typical values of the uniforms.
+    Numbers numbers;
+    std::vector<UniformPlace> uniforms;  // among the constants
+    std::shared_ptr<const Tape> source;  // computes them
     std::vector<SampledTable> tables;
     std::vector<NonuniformTables> positioned;
     std::vector<SampledLattice> lattices;
@@ -181,6 +213,9 @@ struct Code : TilePorts {
     /// Where the program is this curve of every channel by itself, in float, and limits numbers as
     /// the engine does before it.
     std::optional<std::uint32_t> only_curve;
+    /// Each channel of the result is the same function of that channel alone: the floats of RGB
+    /// pixels need not be sorted by channel.
+    bool is_one_function = false;
     /// Pixels per tile: a multiple of kLaneMultiple, such that the registers fit into the file.
     std::size_t tile = 0;
     /// The same as machine code, where it could be made. Refers to the lattices: a
@@ -193,10 +228,16 @@ struct Code : TilePorts {
 };
 
 /// Runs the code over `count` pixels.
+/// @param numbers  those of the code, where uniforms have other values
+inline void run(const Code& code, const Numbers& numbers, const std::array<const float*, 3>& in,
+                std::ptrdiff_t in_stride, const std::array<float*, 3>& out,
+                std::ptrdiff_t out_stride, std::size_t count) noexcept {
+    code.target->run(code, numbers, in, in_stride, out, out_stride, count);
+}
 inline void run(const Code& code, const std::array<const float*, 3>& in, std::ptrdiff_t in_stride,
                 const std::array<float*, 3>& out, std::ptrdiff_t out_stride,
                 std::size_t count) noexcept {
-    code.target->run(code, in, in_stride, out, out_stride, count);
+    run(code, code.numbers, in, in_stride, out, out_stride, count);
 }
 
 }  // namespace simd

@@ -8,10 +8,10 @@
 #include <map>
 
 #include "base/strings.h"
-#include "engine/curve_fitting.h"
 #include "engine/machine_code.h"
 #include "engine/precision.h"
-#include "engine/tape.h"
+#include "expr/interval.h"
+#include "expr/scalar_ops.h"
 #include "tonewright/engine.h"
 #include "tonewright/error.h"
 
@@ -23,6 +23,8 @@ namespace {
 /// constants and the pixels on their way in and out.
 constexpr std::size_t kCacheBytes = 24UL * 1024;
 
+constexpr std::int64_t kNone = -1;
+
 // ---------------------------------------------------------------------------------------------
 // Pass 1: rewrites on the tape
 
@@ -30,17 +32,24 @@ constexpr std::size_t kCacheBytes = 24UL * 1024;
 class FloatTape {
   public:
     explicit FloatTape(const Tape& tape) {
-        std::vector<std::uint32_t> moved;  // old index -> new one
-        for (TapeInstruction step : tape.code()) {
-            if (step.op != ExprOp::constant && step.op != ExprOp::input) {
-                step.a = moved[step.a];
-                step.b = moved[step.b];
-                step.c = moved[step.c];
+        const std::vector<TapeInstruction> code = with_merged_uniforms(tape);
+        std::vector<std::int64_t> moved(code.size(), kNone);  // old index -> new one
+        const auto find = [&](std::uint32_t i) {
+            if (moved[i] == kNone) moved[i] = add(code[i]);  // a uniform, where it is first read
+            return static_cast<std::uint32_t>(moved[i]);
+        };
+        for (std::uint32_t i = 0; i < code.size(); ++i) {
+            TapeInstruction step = code[i];
+            if (step.op == ExprOp::uniform) continue;
+            const std::array<std::uint32_t*, 3> operands = {&step.a, &step.b, &step.c};
+            for (int k = 0; k < operand_count(step.op); ++k) {
+                std::uint32_t& operand = *operands[static_cast<std::size_t>(k)];
+                operand = find(operand);
             }
-            moved.push_back(add(step));
+            moved[i] = add(step);
         }
         for (std::size_t i = 0; i < 3; ++i)
-            outputs_[i] = moved[tape.outputs()[i]];
+            outputs_[i] = find(tape.outputs()[i]);
     }
 
     /// @param cache  owns the curves
@@ -52,6 +61,36 @@ class FloatTape {
     [[nodiscard]] const std::array<std::uint32_t, 3>& outputs() const { return outputs_; }
 
   private:
+    /// The tape's code where each number that uniforms decide on is a uniform of its own.
+    static std::vector<TapeInstruction> with_merged_uniforms(const Tape& tape) {
+        std::vector<TapeInstruction> code = tape.code();
+        const auto range = [&](std::uint32_t i) {
+            const TapeInstruction& step = code[i];
+            return step.op == ExprOp::uniform ? Interval{step.least, step.most}
+                                              : Interval{step.value, step.value};
+        };
+        for (std::uint32_t i = 0; i < code.size(); ++i) {
+            TapeInstruction& step = code[i];
+            step.source = i;
+            const int operands = operand_count(step.op);
+            if (!tape.is_number(i) || operands == 0) continue;
+            step.value = scalar_op(step.op, code[step.a].value, code[step.b].value,
+                                   code[step.c].value, step.table);
+            const std::array<std::uint32_t, 3> read = {step.a, step.b, step.c};
+            if (std::none_of(read.begin(), read.begin() + operands, [&](std::uint32_t operand) {
+                    return code[operand].op == ExprOp::uniform;
+                })) {
+                continue;
+            }
+            const Interval values = interval_of(step.op, range(step.a), range(step.b),
+                                                range(step.c), step.table, nullptr);
+            step.op = ExprOp::uniform;
+            step.least = values.lo;
+            step.most = values.hi;
+        }
+        return code;
+    }
+
     std::uint32_t add(const TapeInstruction& step) {
         if (step.op == ExprOp::constant) return constant(step.value);
         if (step.op == ExprOp::divide && is_constant(step.b)) {
@@ -114,8 +153,6 @@ class FloatTape {
 // ---------------------------------------------------------------------------------------------
 // Pass 3: instructions selected
 
-constexpr std::int64_t kNone = -1;
-
 /// An instruction before it has registers: operands are indices of tape values.
 struct Selected {
     Op op = Op::copy;
@@ -165,7 +202,7 @@ class Selector {
         std::vector<Selected> result;
         for (std::size_t i = code_.size(); i-- > 0;) {
             const ExprOp op = code_[i].op;
-            if (!is_needed_[i] || op == ExprOp::constant || op == ExprOp::input) continue;
+            if (!is_needed_[i] || is_number(op) || op == ExprOp::input) continue;
             current_ = Selected{};
             current_.value = static_cast<std::uint32_t>(i);
             current_.wide = in_double_[i];
@@ -377,7 +414,7 @@ class Assembler {
         for (std::size_t c = 0; c < 3; ++c) {
             const std::uint32_t value = tape.outputs()[c];
             outputs_[c] = value;
-            if (tape_[value].op == ExprOp::constant) continue;
+            if (is_number(tape_[value].op)) continue;
             auto slot = static_cast<std::size_t>(slot_of_[value]);
             if (is_wide_[slot]) {
                 steps_.push_back(Selected{
@@ -429,21 +466,61 @@ class Assembler {
             code.instructions.push_back(step);
         }
         for (std::size_t c = 0; c < 3; ++c) {
-            code.output[c] = tape_[outputs_[c]].op == ExprOp::constant
-                                 ? constant(tape_[outputs_[c]].value, false)
-                                 : place(output_slot_[c]);
+            code.output[c] = is_number(tape_[outputs_[c]].op) ? number(outputs_[c], false)
+                                                              : place(output_slot_[c]);
         }
-        code.constants = std::move(constants_);
+        code.numbers.constants = std::move(constants_);
+        code.uniforms = std::move(uniforms_);
         code.tables = std::move(tables_);
         code.positioned = std::move(positioned_);
         code.lattices = std::move(lattices_);
         code.curves = std::move(curves_);
+        code.is_one_function = is_one_function();
         code.only_curve = only_curve(code);
         if (target.machine) code.machine = MachineCode::make(code);
         return code;
     }
 
+    [[nodiscard]] const CurveIndex& curve_index() const { return curve_index_; }
+
   private:
+    /// True when each channel of the result is the same function of that channel alone.
+    [[nodiscard]] bool is_one_function() const {
+        for (const int channel : {1, 2}) {
+            std::map<std::uint32_t, std::uint32_t> counterpart;
+            if (!is_same(outputs_[0], outputs_[static_cast<std::size_t>(channel)], channel,
+                         counterpart))
+                return false;
+        }
+        return true;
+    }
+    /// True when value b makes of the channel what value a makes of the first one.
+    [[nodiscard]] bool is_same(std::uint32_t a, std::uint32_t b, int channel,
+                               std::map<std::uint32_t, std::uint32_t>& counterpart) const {
+        const TapeInstruction& x = tape_[a];
+        const TapeInstruction& y = tape_[b];
+        if (is_number(x.op) || is_number(y.op)) return a == b;
+        if (x.op == ExprOp::input || y.op == ExprOp::input)
+            return x.op == y.op && x.input == 0 && y.input == channel;
+        if (const auto [it, is_new] = counterpart.emplace(a, b); !is_new) return it->second == b;
+        const auto slot_a = static_cast<std::size_t>(slot_of_[a]);
+        const auto slot_b = static_cast<std::size_t>(slot_of_[b]);
+        const Selected& s = steps_[slot_a];
+        const Selected& t = steps_[slot_b];
+        if (s.op != t.op || s.k != t.k || s.table != t.table || s.curve != t.curve ||
+            s.wide != t.wide || is_wide_[slot_a] != is_wide_[slot_b] || has_channels(s.op)) {
+            return false;
+        }
+        for (std::size_t i = 0; i < s.operands.size(); ++i) {
+            if ((s.operands[i] == kNone) != (t.operands[i] == kNone)) return false;
+            if (s.operands[i] != kNone &&
+                !is_same(static_cast<std::uint32_t>(s.operands[i]),
+                         static_cast<std::uint32_t>(t.operands[i]), channel, counterpart))
+                return false;
+        }
+        return true;
+    }
+
     static std::optional<std::uint32_t> only_curve(const Code& code) {
         if (code.instructions.size() != 3) return std::nullopt;
         const std::uint32_t table = code.instructions.front().table;
@@ -482,7 +559,7 @@ class Assembler {
         }
         std::vector<std::uint32_t> pinned;
         for (std::size_t c = 0; c < 3; ++c) {
-            if (tape_[outputs_[c]].op != ExprOp::constant) {
+            if (!is_number(tape_[outputs_[c]].op)) {
                 pinned.push_back(static_cast<std::uint32_t>(output_slot_[c]));
             }
         }
@@ -516,26 +593,24 @@ class Assembler {
     }
 
     Operand operand(std::uint32_t value, bool user_is_wide) {
-        if (tape_[value].op == ExprOp::constant) return constant(tape_[value].value, user_is_wide);
+        if (is_number(tape_[value].op)) return number(value, user_is_wide);
         return place(static_cast<std::size_t>(slot_of_[value]));
     }
 
-    /// One vector full of the constant.
-    Operand constant(double value, bool wide) {
-        const auto key = std::pair(std::bit_cast<std::uint64_t>(value), wide);
+    /// One vector full of the constant or the uniform.
+    Operand number(std::uint32_t i, bool wide) {
+        const TapeInstruction& step = tape_[i];
+        const bool is_uniform = step.op == ExprOp::uniform;
+        const auto key =
+            std::tuple(is_uniform, is_uniform ? i : std::bit_cast<std::uint64_t>(step.value), wide);
         auto [it, is_new] = constant_index_.try_emplace(key, constants_.size());
         if (is_new) {
-            ConstantVector vector;
-            if (wide) {
-                std::array<double, kVectorBytes / sizeof(double)> lanes;
-                lanes.fill(value);
-                std::memcpy(vector.bytes.data(), lanes.data(), kVectorBytes);
-            } else {
-                std::array<float, kVectorBytes / sizeof(float)> lanes;
-                lanes.fill(static_cast<float>(value));
-                std::memcpy(vector.bytes.data(), lanes.data(), kVectorBytes);
-            }
-            constants_.push_back(vector);
+            const std::size_t offset = it->second * kVectorBytes;
+            constants_.emplace_back();
+            if (is_uniform)
+                uniforms_.push_back(
+                    {step.source, static_cast<std::uint32_t>(offset), kVectorBytes, wide, false});
+            fill(constants_.back().bytes.data(), kVectorBytes, step.value, wide);
         }
         Operand result;
         result.constant = true;
@@ -648,33 +723,43 @@ class Assembler {
     RegisterAllocation narrow_, wide_;
     std::size_t tile_ = 0;
     std::vector<ConstantVector> constants_;
-    std::map<std::pair<std::uint64_t, bool>, std::size_t> constant_index_;
+    std::vector<UniformPlace> uniforms_;
+    std::map<std::tuple<bool, std::uint64_t, bool>, std::size_t> constant_index_;
     std::vector<SampledTable> tables_;
     std::map<const Table*, std::uint32_t> table_index_;
     std::vector<NonuniformTables> positioned_;
     std::vector<SampledLattice> lattices_;
     std::map<const Lattice*, std::uint32_t> lattice_index_;
     std::vector<CompiledCurve> curves_;
-    std::map<const CompiledCurve*, std::uint32_t> curve_index_;
+    CurveIndex curve_index_;
 };
 
 /// What a pipeline's programs for the targets of one curve form share.
 struct Form {
-    Tape source;
+    std::shared_ptr<const Tape> source;
     FloatTape tape;
     CurveCache curves;  // owns what the tape refers to
     std::vector<bool> in_double;
     std::vector<Selected> selected;
 
     [[nodiscard]] Code assemble(const Target& target) const {
-        return Assembler(tape, in_double, selected).assemble(target);
+        CurveIndex curve_index;
+        return assemble(target, curve_index);
+    }
+    Code assemble(const Target& target, CurveIndex& curve_index) const {
+        Assembler assembler(tape, in_double, selected);
+        Code code = assembler.assemble(target);
+        code.source = source;
+        curve_index = assembler.curve_index();
+        return code;
     }
 };
 
-Form make_form(const Pipeline& pipeline, double max_error, CurveForm curve_form) {
+Form make_form(const Pipeline& pipeline, const LiveUniforms& uniforms, double max_error,
+               CurveForm curve_form) {
     const bool has_curves = curve_form != CurveForm::none;
-    const Tape source(compose(simplify(pipeline)));
-    const FloatTape plain(source);
+    const auto source = std::make_shared<const Tape>(compose(simplify(pipeline)), uniforms);
+    const FloatTape plain(*source);
     Sensitivity sensitivity;
     if (has_curves) sensitivity = measure_influence(plain.code(), plain.outputs());
     CurveCache curves;
@@ -698,9 +783,10 @@ std::vector<Code> compile_for_all_targets(const Pipeline& pipeline, double max_e
     for (const Target& target : targets()) {
         auto form = forms.find(target.curve_form);
         if (form == forms.end()) {
-            form =
-                forms.emplace(target.curve_form, make_form(pipeline, max_error, target.curve_form))
-                    .first;
+            form = forms
+                       .emplace(target.curve_form,
+                                make_form(pipeline, {}, max_error, target.curve_form))
+                       .first;
         }
         codes.push_back(form->second.assemble(target));
     }
@@ -709,22 +795,56 @@ std::vector<Code> compile_for_all_targets(const Pipeline& pipeline, double max_e
 
 }  // namespace
 
-Code compile(const Pipeline& pipeline, double max_error, const Target& target, bool has_curves) {
-    return make_form(pipeline, max_error, has_curves ? target.curve_form : CurveForm::none)
+Code compile(const Pipeline& pipeline, double max_error, const Target& target, bool has_curves,
+             const LiveUniforms& uniforms) {
+    return make_form(pipeline, uniforms, max_error,
+                     has_curves ? target.curve_form : CurveForm::none)
         .assemble(target);
+}
+
+Steps compile_in_steps(const Pipeline& pipeline, const LiveUniforms& uniforms, double max_error,
+                       const Target& target) {
+    Form form = make_form(pipeline, uniforms, max_error, target.curve_form);
+    Steps steps;
+    steps.code = form.assemble(target, steps.curve_index);
+    steps.tape = form.tape.code();
+    steps.outputs = form.tape.outputs();
+    steps.in_double = std::move(form.in_double);
+    steps.curves = std::move(form.curves);
+    return steps;
+}
+
+void set_uniforms(const Code& code, const std::vector<double>& values, Numbers& numbers) {
+    const auto set = [&](const std::vector<UniformPlace>& places, std::vector<ConstantVector>& to) {
+        for (const UniformPlace& place : places) {
+            const double value = values[place.source];
+            fill(reinterpret_cast<unsigned char*>(to.data()) + place.offset, place.bytes,
+                 place.is_rounded ? static_cast<double>(static_cast<float>(value)) : value,
+                 place.wide);
+        }
+    };
+    set(code.uniforms, numbers.constants);
+    if (code.machine) set(code.machine->program().uniforms, numbers.pool);
 }
 
 }  // namespace simd
 
 struct SimdEngine::Program {
-    simd::Code code;
+    std::shared_ptr<const simd::Code> code;
+    /// Those of the code, or the code's own where this is empty.
+    std::optional<simd::Numbers> numbers;
+
+    explicit Program(simd::Code c) : code(std::make_shared<const simd::Code>(std::move(c))) {}
 };
 
 SimdEngine::SimdEngine(std::unique_ptr<const Program> program) : program_(std::move(program)) {}
 
 SimdEngine::SimdEngine(const Pipeline& pipeline, double max_error, std::string_view target)
+    : SimdEngine(pipeline, LiveUniforms{}, max_error, target) {}
+SimdEngine::SimdEngine(const Pipeline& pipeline, const LiveUniforms& uniforms, double max_error,
+                       std::string_view target)
     : program_(std::make_unique<const Program>(
-          Program{simd::compile(pipeline, max_error, simd::find_target(target))})) {}
+          simd::compile(pipeline, max_error, simd::find_target(target), true, uniforms))) {}
 SimdEngine::~SimdEngine() = default;
 SimdEngine::SimdEngine(SimdEngine&&) noexcept = default;
 SimdEngine& SimdEngine::operator=(SimdEngine&&) noexcept = default;
@@ -732,11 +852,21 @@ SimdEngine& SimdEngine::operator=(SimdEngine&&) noexcept = default;
 void SimdEngine::run(const std::array<const float*, 3>& in, std::ptrdiff_t in_stride,
                      const std::array<float*, 3>& out, std::ptrdiff_t out_stride,
                      std::size_t count) const noexcept {
-    simd::run(program_->code, in, in_stride, out, out_stride, count);
+    const Program& program = *program_;
+    simd::run(*program.code, program.numbers ? *program.numbers : program.code->numbers, in,
+              in_stride, out, out_stride, count);
 }
 
 void SimdEngine::run_rgb(const float* in, float* out, std::size_t pixel_count) const noexcept {
     run({in, in + 1, in + 2}, 3, {out, out + 1, out + 2}, 3, pixel_count);
+}
+
+SimdEngine SimdEngine::with_uniforms(const UniformValues& values) const {
+    const simd::Code& code = *program_->code;
+    auto program = std::make_unique<Program>(*program_);
+    program->numbers = code.numbers;
+    simd::set_uniforms(code, code.source->evaluate_numbers(values), *program->numbers);
+    return SimdEngine(std::unique_ptr<const Program>(std::move(program)));
 }
 
 std::vector<std::string> SimdEngine::targets() {
@@ -749,7 +879,7 @@ std::vector<std::string> SimdEngine::targets() {
 std::vector<SimdEngine> SimdEngine::of_all_targets(const Pipeline& pipeline, double max_error) {
     std::vector<SimdEngine> engines;
     for (simd::Code& code : simd::compile_for_all_targets(pipeline, max_error)) {
-        engines.push_back(SimdEngine(std::make_unique<const Program>(Program{std::move(code)})));
+        engines.push_back(SimdEngine(std::make_unique<const Program>(std::move(code))));
     }
     return engines;
 }

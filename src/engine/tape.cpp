@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/tape.h"
 
+#include "base/format_number.h"
+#include "expr/node.h"
+#include "expr/scalar_ops.h"
 #include "tonewright/error.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-Tape::Tape(const std::array<Expr, 3>& outputs) : keep_(outputs.begin(), outputs.end()) {
+Tape::Tape(const std::array<Expr, 3>& outputs, const LiveUniforms& uniforms)
+    : uniforms_(uniforms), keep_(outputs.begin(), outputs.end()) {
     std::unordered_map<const ExprNode*, std::uint32_t> seen;
     for (std::size_t i = 0; i < 3; ++i)
         outputs_[i] = add(outputs[i], seen);
@@ -18,8 +22,14 @@ std::uint32_t Tape::add(const Expr& expr,
     step.op = expr.op();
     step.node = expr.node();
     if (expr.op() == ExprOp::uniform) {
-        throw Error("engine: " + expr.uniform_name() +
-                    " has no value; expected bind_uniforms() before");
+        const auto range = uniforms_.find(expr.uniform_name());
+        if (range == uniforms_.end()) {
+            throw Error("engine: " + expr.uniform_name() +
+                        " has no value; expected bind_uniforms() before");
+        }
+        step.value = range->second.typical;
+        step.least = range->second.least;
+        step.most = range->second.most;
     }
     if (expr.is_constant()) step.value = expr.value();
     if (expr.op() == ExprOp::input) step.input = expr.input_index();
@@ -28,14 +38,38 @@ std::uint32_t Tape::add(const Expr& expr,
         step.lattice = expr.lattice().get();
         step.input = expr.channel();
     }
+    bool is_number = expr.op() != ExprOp::input && expr.op() != ExprOp::lattice;
     std::array<std::uint32_t*, 3> slots = {&step.a, &step.b, &step.c};
     for (int i = 0; i < expr.operand_count(); ++i) {
-        *slots[static_cast<std::size_t>(i)] = add(expr.operand(i), seen);
+        const std::uint32_t operand = add(expr.operand(i), seen);
+        *slots[static_cast<std::size_t>(i)] = operand;
+        is_number = is_number && is_number_[operand];
     }
     code_.push_back(step);
+    is_number_.push_back(is_number);
     const auto index = static_cast<std::uint32_t>(code_.size() - 1);
     seen.emplace(expr.node(), index);
     return index;
+}
+
+std::vector<double> Tape::evaluate_numbers(const UniformValues& uniforms) const {
+    for (const auto& [name, range] : uniforms_) {
+        const auto found = uniforms.find(name);
+        if (found != uniforms.end() && found->second >= range.least && found->second <= range.most)
+            continue;
+        throw Error("engine: " + name + " is " +
+                    (found == uniforms.end() ? "missing" : shortest(found->second)) +
+                    "; expected [" + shortest(range.least) + ", " + shortest(range.most) + "]");
+    }
+    std::vector<double> value(code_.size());
+    for (std::size_t i = 0; i < code_.size(); ++i) {
+        const TapeInstruction& step = code_[i];
+        if (step.op == ExprOp::constant) value[i] = step.value;
+        if (step.op == ExprOp::uniform) value[i] = uniforms.at(step.node->name);
+        if (operand_count(step.op) == 0 || !is_number_[i]) continue;
+        value[i] = scalar_op(step.op, value[step.a], value[step.b], value[step.c], step.table);
+    }
+    return value;
 }
 
 RegisterAllocation allocate_registers(const std::vector<std::array<std::int64_t, 4>>& operands,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/compiled_curve.h"
+#include "tonewright/engine.h"
 #include "tonewright/expr.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -16,8 +17,10 @@ TONEWRIGHT_NAMESPACE_BEGIN
 struct TapeInstruction {
     ExprOp op = ExprOp::constant;
     std::uint32_t a = 0, b = 0, c = 0;
-    double value = 0;                      // of a constant
+    double value = 0;                      // of a constant; typical, of a uniform
+    double least = 0, most = 0;            // of a uniform: its range
     int input = 0;                         // of an input; channel of a lattice
+    std::uint32_t source = 0;              // of a uniform: see simd::UniformPlace
     const Table* table = nullptr;          // of a lookup; owned by the tape
     const Lattice* lattice = nullptr;      // owned by the tape
     const CompiledCurve* curve = nullptr;  // of a lookup, instead of a table: see fit_curves()
@@ -49,18 +52,32 @@ struct TapeInstruction {
     }
 }
 
+/// The same number for every pixel.
+[[nodiscard]] constexpr bool is_number(ExprOp op) noexcept {
+    return op == ExprOp::constant || op == ExprOp::uniform;
+}
+
 /// Expressions as straight-line code in single-assignment form: every node once, operands first.
 /// No pass has touched it: running it in double is evaluate(), bit for bit.
 class Tape {
   public:
-    explicit Tape(const std::array<Expr, 3>& outputs);
+    /// @param uniforms  those that the expressions may have
+    explicit Tape(const std::array<Expr, 3>& outputs, const LiveUniforms& uniforms = {});
 
     [[nodiscard]] const std::vector<TapeInstruction>& code() const noexcept { return code_; }
     [[nodiscard]] const std::array<std::uint32_t, 3>& outputs() const noexcept { return outputs_; }
 
+    /// Depends on no input: the same for every pixel.
+    [[nodiscard]] bool is_number(std::uint32_t i) const { return is_number_[i]; }
+    /// Of every such instruction, with these uniforms; of all others 0.
+    /// @throws Error  a uniform has no value, or one out of its range
+    [[nodiscard]] std::vector<double> evaluate_numbers(const UniformValues& uniforms) const;
+
   private:
     std::uint32_t add(const Expr& expr, std::unordered_map<const ExprNode*, std::uint32_t>& seen);
     std::vector<TapeInstruction> code_;
+    std::vector<bool> is_number_;
+    LiveUniforms uniforms_;
     std::array<std::uint32_t, 3> outputs_{};
     std::vector<Expr> keep_;  // keeps nodes (and their tables) alive
 };

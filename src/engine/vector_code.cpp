@@ -35,11 +35,27 @@ class Pool {
         const std::size_t size = copies.size() * sizeof value;
         return {kNone, place(copies.data(), size, size)};
     }
+    /// A number that may become another.
+    /// @param is_rounded  to float before it is taken as double
+    Number uniform(std::uint32_t source, double value, bool wide, bool is_rounded) {
+        for (const UniformPlace& place : uniforms_) {
+            if (place.source == source && place.wide == wide && place.is_rounded == is_rounded)
+                return {kNone, static_cast<std::int32_t>(place.offset)};
+        }
+        const std::size_t size = std::max(copies_, wide ? sizeof(double) : sizeof(float));
+        bytes_.resize((bytes_.size() + size - 1) / size * size);
+        const auto offset = static_cast<std::uint32_t>(bytes_.size());
+        bytes_.resize(bytes_.size() + size);
+        fill(bytes_.data() + offset, size, value, wide);
+        uniforms_.push_back({source, offset, static_cast<std::uint32_t>(size), wide, is_rounded});
+        return {kNone, static_cast<std::int32_t>(offset)};
+    }
     template <class T>
     std::uint32_t table(const T* numbers, std::size_t count) {
         return static_cast<std::uint32_t>(place(numbers, count * sizeof(T), kVectorBytes));
     }
     std::vector<unsigned char> take() { return std::move(bytes_); }
+    std::vector<UniformPlace> take_uniforms() { return std::move(uniforms_); }
 
   private:
     std::int32_t place(const void* data, std::size_t size, std::size_t alignment) {
@@ -55,6 +71,7 @@ class Pool {
 
     std::size_t copies_;
     std::vector<unsigned char> bytes_;
+    std::vector<UniformPlace> uniforms_;
     std::map<std::string, std::int32_t> offset_;  // by the bytes themselves
 };
 
@@ -824,6 +841,8 @@ bool is_tile_step(const Instruction& step) {
     }
 }
 
+}  // namespace
+
 bool has_channels(Op op) {
     return op == Op::dot3 || op == Op::lookup_nonuniform || op == Op::lattice;
 }
@@ -860,6 +879,8 @@ int operand_count(Op op) {
             return 2;
     }
 }
+
+namespace {
 
 /// The program with every value defined once, divided into parts.
 class Translator {
@@ -917,6 +938,7 @@ class Translator {
                 parts.push_back(write(part, layout));
         }
         program.pool = pool_.take();
+        program.uniforms = pool_.take_uniforms();
         return program;
     }
 
@@ -1124,7 +1146,7 @@ class Translator {
     void read_inputs(PixelLayout layout) {
         std::array<Number, 3> given;
         if (layout == PixelLayout::rgb)
-            given = code_.only_curve ? writer_->load_floats() : writer_->load_rgb();
+            given = code_.is_one_function ? writer_->load_floats() : writer_->load_rgb();
         if (layout == PixelLayout::rgba) given = writer_->load_rgba();
         for (std::size_t c = 0; c < 3; ++c) {
             if (input_[c] == kNone) continue;
@@ -1142,16 +1164,14 @@ class Translator {
         std::array<Number, 3> result;
         for (std::size_t c = 0; c < 3; ++c) {
             if (output_[c] == kNone) {
-                float number = 0;
-                std::memcpy(&number, constant_bytes(code_.output[c]), sizeof number);
-                result[c] =
-                    writer_->value_of(false, pool_.number(static_cast<double>(number), false));
+                result[c] = writer_->value_of(false, number(code_.output[c]).narrow);
             } else {
                 result[c] = writer_->narrow(given(output_[c]));
             }
         }
         if (layout == PixelLayout::rgb)
-            return code_.only_curve ? writer_->store_floats(result) : writer_->store_rgb(result);
+            return code_.is_one_function ? writer_->store_floats(result)
+                                         : writer_->store_rgb(result);
         if (layout == PixelLayout::rgba) return writer_->store_rgba(result);
         for (std::size_t c = 0; c < 3; ++c) {
             if (output_[c] != kNone) store(output_offset_[c], false, 0, result[c]);
@@ -1198,25 +1218,32 @@ class Translator {
         writer_->emit_store(step);
     }
 
-    [[nodiscard]] const unsigned char* constant_bytes(const Operand& operand) const {
-        return code_.constants[operand.offset / kVectorBytes].bytes.data();
+    Lanes operand(const Step& s, std::size_t i) {
+        return s.in[i] != kNone ? given(s.in[i]) : number(s.step->in[i]);
     }
 
-    Lanes operand(const Step& s, std::size_t i) {
-        if (s.in[i] != kNone) return given(s.in[i]);
-        const Operand& source = s.step->in[i];
-        Lanes result;
+    /// A constant or a uniform.
+    Lanes number(const Operand& source) {
+        const unsigned char* const bytes =
+            code_.numbers.constants[source.offset / kVectorBytes].bytes.data();
+        double value = 0;
         if (source.wide) {
-            double number = 0;
-            std::memcpy(&number, constant_bytes(source), sizeof number);
-            result.wide[0] = result.wide[1] = pool_.number(number, true);
+            std::memcpy(&value, bytes, sizeof value);
         } else {
-            float number = 0;
-            std::memcpy(&number, constant_bytes(source), sizeof number);
-            result.narrow = pool_.number(static_cast<double>(number), false);
-            // Promoted here, not there.
-            result.wide[0] = result.wide[1] = pool_.number(static_cast<double>(number), true);
+            float narrow = 0;
+            std::memcpy(&narrow, bytes, sizeof narrow);
+            value = static_cast<double>(narrow);  // promoted here, not there
         }
+        const auto place = [&](bool wide) {
+            for (const UniformPlace& uniform : code_.uniforms) {
+                if (uniform.offset == source.offset)
+                    return pool_.uniform(uniform.source, value, wide, wide && !source.wide);
+            }
+            return pool_.number(value, wide);
+        };
+        Lanes result;
+        if (!source.wide) result.narrow = place(false);
+        result.wide[0] = result.wide[1] = place(true);
         return result;
     }
 

@@ -123,6 +123,10 @@ struct VectorCode {
 /// processor that waits for a result has the next block's instruction to begin with.
 [[nodiscard]] VectorCode interleaved(const VectorCode& code, int blocks);
 
+/// Of its operands, how many the operation reads; whether it has up to three results.
+[[nodiscard]] int operand_count(Op op);
+[[nodiscard]] bool has_channels(Op op);
+
 /// The program as such parts and, between them, what runs over a whole tile: lattices, positioned
 /// tables, sines.
 struct VectorProgram : TilePorts {
@@ -131,6 +135,7 @@ struct VectorProgram : TilePorts {
     std::array<std::vector<VectorCode>, 3> parts;
     std::vector<std::vector<Instruction>> tile_steps;  // behind each part but the last
     std::vector<unsigned char> pool;                   // constants and tables; to be aligned to 64
+    std::vector<UniformPlace> uniforms;                // in the pool
     std::size_t tile = 0;                              // in pixels
 };
 

@@ -7,7 +7,7 @@
 // destination. No pixel type is known to the kernel.
 //
 // Operators with parameters that a picture has are prepared anew for each picture, from its
-// statistics; all others once.
+// statistics; all others once, whatever the exposure.
 #include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imagebufalgo_util.h>
 #include <fmt/format.h>
@@ -27,6 +27,7 @@
 #include <vector>
 
 #include "base/bounded_cache.h"
+#include "base/format_number.h"
 #include "base/strings.h"
 #include "image/color_tags.h"
 #include "image/scene_planes.h"
@@ -175,8 +176,18 @@ Pipeline light_stages(const View& view) {
     return stages;
 }
 
+/// Exposures that a program takes as a number, up and down, in stops: what light they make of a
+/// picture is the domain of its curves. Beyond, and without exposure, a program has its own.
+constexpr double kMostLiveStops = 16;
+
+bool is_exposure_live(const View& view) {
+    return view.exposure_stops != 0 && std::fabs(view.exposure_stops) <= kMostLiveStops &&
+           !view.op.op->is_local();
+}
+
 /// What the engine has to do: behind a local operator, the display.
 Pipeline engine_stages(View view) {
+    if (is_exposure_live(view)) return build_live_view(view, {std::string(kExposureUniform)});
     if (view.op.op->is_local()) {
         view.input_primaries = kRec709;
         view.input_decode = {};
@@ -185,13 +196,30 @@ Pipeline engine_stages(View view) {
     return build_view(view);
 }
 
+LiveUniforms engine_uniforms(const View& view) {
+    if (!is_exposure_live(view)) return {};
+    return {{std::string(kExposureUniform), {0, -kMostLiveStops, kMostLiveStops}}};
+}
+
+bool keeps_greys_at_any_exposure(View view) {
+    if (is_exposure_live(view)) view.exposure_stops = 0;
+    return keeps_greys(engine_stages(view));
+}
+
 /// What a picture is run through.
 struct Prepared {
+    /// With a program for all exposures that are live, if the view's own is.
     explicit Prepared(View v)
         : view(std::move(v)),
-          engine(engine_stages(view), view.op.op->bounds.simd_goal),
-          keeps_grey(keeps_greys(engine_stages(view))) {
+          engine(engine_stages(view), engine_uniforms(view), view.op.op->bounds.simd_goal),
+          keeps_grey(keeps_greys_at_any_exposure(view)) {
         if (view.op.op->is_local()) to_light.emplace(light_stages(view));
+    }
+    /// The same program at another exposure that it is for.
+    Prepared(const Prepared& other, double stops)
+        : view(other.view), engine(other.at(stops)), keeps_grey(other.keeps_grey) {
+        view.exposure_stops = stops;
+        if (other.to_light) to_light.emplace(other.to_light->with_uniforms({}));
     }
 
     View view;
@@ -199,16 +227,41 @@ struct Prepared {
     bool keeps_grey;
     /// Of a local operator: what comes before it. `engine` comes behind it.
     std::optional<SimdEngine> to_light;
+
+    /// Names the program among those for the same options but for the exposure.
+    static std::string name(const View& view) {
+        const bool is_for_many = is_exposure_live(view) || view.op.op->is_local();
+        return view.input + (is_for_many ? "" : " " + shortest(view.exposure_stops));
+    }
+
+  private:
+    [[nodiscard]] SimdEngine at(double stops) const {
+        UniformValues values;
+        if (is_exposure_live(view)) values.emplace(kExposureUniform, stops);
+        return engine.with_uniforms(values);
+    }
 };
 
 }  // namespace
 
 struct Tonemapper::State {
     explicit State(const TonemapOptions& o)
-        : options(in_places(o)), depends_on_picture(tonewright::depends_on_picture(options)) {
+        : options(in_places(o)),
+          depends_on_picture(tonewright::depends_on_picture(options)),
+          programs_(std::make_shared<Programs>(kMostPrepared)) {
         // Tells what is wrong with the options before there is a picture.
         is_local =
             view_of(options, options.settings, source_color({}, options.input)).op.op->is_local();
+    }
+
+    /// At another exposure, with the same programs.
+    State(const State& other, double stops)
+        : options(other.options),
+          depends_on_picture(other.depends_on_picture),
+          is_local(other.is_local),
+          programs_(other.programs_) {
+        check_exposure(stops);
+        options.exposure_stops = stops;
     }
 
     TonemapOptions options;
@@ -225,7 +278,9 @@ struct Tonemapper::State {
 
     /// Pictures of one shot are of one kind.
     static constexpr std::size_t kMostPrepared = 8;
-    mutable BoundedCache<std::string, Prepared> prepared_{kMostPrepared};  // by input space
+    using Programs = BoundedCache<std::string, Prepared>;
+    std::shared_ptr<Programs> programs_;        // by Prepared::name()
+    mutable Programs prepared_{kMostPrepared};  // by input space
 };
 
 namespace {
@@ -528,12 +583,16 @@ void Tonemapper::State::run(ImageBuf& dst, const ImageBuf& src, ROI roi, int nth
     const SceneStatistics statistics =
         measure_scene(src, options.input, options.unpremult, {}, nthreads);
     const Settings settings = settings_for_picture(operator_of(options), statistics);
-    run(Prepared(view_of(options, settings, source)), dst, src, roi, nthreads, progress);
+    run(Prepared(Prepared(view_of(options, settings, source)), options.exposure_stops), dst, src,
+        roi, nthreads, progress);
 }
 
 std::shared_ptr<const Prepared> Tonemapper::State::prepared_for(const SourceColor& source) const {
-    return prepared_.get(source.name,
-                         [&] { return Prepared(view_of(options, options.settings, source)); });
+    return prepared_.get(source.name, [&] {
+        const View view = view_of(options, options.settings, source);
+        const auto program = programs_->get(Prepared::name(view), [&] { return Prepared(view); });
+        return Prepared(*program, options.exposure_stops);
+    });
 }
 
 void Tonemapper::State::run(const Prepared& with, ImageBuf& dst, const ImageBuf& src, ROI roi,
@@ -566,10 +625,10 @@ Tonemapper Tonemapper::with_statistics(const SceneStatistics& statistics) const 
     return Tonemapper(options);
 }
 
+Tonemapper::Tonemapper(std::unique_ptr<const State> state) : state_(std::move(state)) {}
+
 Tonemapper Tonemapper::with_exposure(double stops) const {
-    TonemapOptions options = state_->options;
-    options.exposure_stops = stops;
-    return Tonemapper(options);
+    return Tonemapper(std::make_unique<const State>(*state_, stops));
 }
 
 bool Tonemapper::operator()(ImageBuf& dst, const ImageBuf& src, ROI roi, int nthreads,

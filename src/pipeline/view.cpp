@@ -30,6 +30,11 @@ void append(Pipeline& to, const Pipeline& from) { to.insert(to.end(), from.begin
 
 }  // namespace
 
+void check_exposure(double stops) {
+    if (!(std::fabs(stops) <= 64))
+        throw Error("exposure is " + shortest(stops) + "; expected [-64, 64] stops");
+}
+
 View make_view(ResolvedOperator op, std::string_view input, double exposure_stops,
                std::string_view display, double reference_white) {
     const InputSpace& space = find_input_space(input);
@@ -39,9 +44,7 @@ View make_view(ResolvedOperator op, std::string_view input, double exposure_stop
 
 View make_view(ResolvedOperator op, SourceColor input, double exposure_stops,
                std::string_view display, double reference_white) {
-    if (!(std::fabs(exposure_stops) <= 64)) {
-        throw Error("exposure is " + shortest(exposure_stops) + "; expected [-64, 64] stops");
-    }
+    check_exposure(exposure_stops);
     if (!(reference_white >= 50 && reference_white <= 1000)) {
         throw Error("reference white is " + shortest(reference_white) +
                     "; expected [50, 1000] cd/m2");

@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -41,6 +43,16 @@ class TONEWRIGHT_API ReferenceEngine {
     std::unique_ptr<const Program> program_;
 };
 
+/// A number that stays open while a pipeline is compiled: see SimdEngine::with_uniforms().
+struct LiveUniform {
+    /// What precision is chosen for, and the value until another is given.
+    double typical = 0;
+    double least = 0;
+    double most = 0;
+};
+/// By the names of the uniforms.
+using LiveUniforms = std::map<std::string, LiveUniform, std::less<>>;
+
 /// Single-precision SIMD evaluation of a pipeline.
 ///
 /// Passes that change the last bits (matrices multiplied together, division by a constant as
@@ -56,6 +68,10 @@ class TONEWRIGHT_API SimdEngine {
     ///                a time than a tile holds; Lattice::nodes() as well
     explicit SimdEngine(const Pipeline& pipeline, double max_error = kSimdError,
                         std::string_view target = {});
+    /// An engine for all values of the pipeline's uniforms. What uniforms alone decide on is
+    /// computed once, in double, not for each pixel.
+    explicit SimdEngine(const Pipeline& pipeline, const LiveUniforms& uniforms,
+                        double max_error = kSimdError, std::string_view target = {});
     ~SimdEngine();
     SimdEngine(SimdEngine&&) noexcept;
     SimdEngine& operator=(SimdEngine&&) noexcept;
@@ -68,6 +84,11 @@ class TONEWRIGHT_API SimdEngine {
              std::size_t count) const noexcept;
     /// Interleaved RGB, packed.
     void run_rgb(const float* in, float* out, std::size_t pixel_count) const noexcept;
+
+    /// The same program with other values of its uniforms. Takes microseconds: the code is shared,
+    /// and only the numbers that it reads are copied.
+    /// @throws Error  when a uniform has no value, or one out of its range
+    [[nodiscard]] SimdEngine with_uniforms(const UniformValues& values) const;
 
     /// Names of the instruction sets compiled in that this machine has, best first ("AVX3", ...).
     [[nodiscard]] static std::vector<std::string> targets();
@@ -82,5 +103,12 @@ class TONEWRIGHT_API SimdEngine {
     explicit SimdEngine(std::unique_ptr<const Program> program);
     std::unique_ptr<const Program> program_;
 };
+
+/// What SimdEngine makes of a pipeline, step by step, for developers: expressions, precision,
+/// curves, program and machine code. The text has no fixed form.
+[[nodiscard]] TONEWRIGHT_API std::string explain(const Pipeline& pipeline,
+                                                 const LiveUniforms& uniforms = {},
+                                                 double max_error = kSimdError,
+                                                 std::string_view target = {});
 
 TONEWRIGHT_NAMESPACE_END

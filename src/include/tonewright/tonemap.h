@@ -118,7 +118,11 @@ class TONEWRIGHT_API Tonemapper {
     /// The same for all pictures that have these statistics: prepared once.
     /// @throws Error  statistics that are no values of the operator's parameters
     [[nodiscard]] Tonemapper with_statistics(const SceneStatistics& statistics) const;
-    /// The same at another exposure, in stops, [-64, 64]: prepared anew.
+    /// The same at another exposure, in stops, [-64, 64]. Takes microseconds, and so does the
+    /// first picture: within 16 stops up or down, a view is compiled once for all exposures but 0,
+    /// and once without exposure. Beyond, and where an operator takes statistics from each picture,
+    /// it is compiled anew at the first picture. The pixels are those of a Tonemapper that was made
+    /// with this exposure.
     /// @throws Error  out of that interval
     [[nodiscard]] Tonemapper with_exposure(double stops) const;
 
@@ -129,6 +133,7 @@ class TONEWRIGHT_API Tonemapper {
 
   private:
     struct State;
+    explicit Tonemapper(std::unique_ptr<const State> state);
     std::unique_ptr<const State> state_;
 };
 

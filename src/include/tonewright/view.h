@@ -85,6 +85,9 @@ struct View {
     Pipeline input_decode = {};
 };
 
+/// @throws Error  the exposure is out of range
+TONEWRIGHT_API void check_exposure(double stops);
+
 /// @param op        as resolve_operator() gives it. On a display, what the display decides of its
 ///                  parameters is decided here.
 /// @param exposure  stops, finite, within [-64, 64].

@@ -6,16 +6,29 @@
 
 #include <gtest/gtest.h>
 #include <sys/mman.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#ifdef __linux__
+#include <linux/filter.h>
+#include <linux/seccomp.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
+#endif
+
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
+#include <functional>
+#include <iterator>
 #include <string>
 #include <vector>
 
 #include "base/random.h"
 #include "engine/simd_program.h"
+#include "engine/tape.h"
 #include "tonewright/engine.h"
 #include "tonewright/registry.h"
 #include "tonewright/view.h"
@@ -36,8 +49,9 @@ class MachineCode : public testing::TestWithParam<const char*> {
         ASSERT_TRUE(target_->machine);
     }
     [[nodiscard]] simd::Code compile(const Pipeline& pipeline, double max_error = kSimdError,
-                                     bool has_curves = true) const {
-        return simd::compile(pipeline, max_error, *target_, has_curves);
+                                     bool has_curves = true,
+                                     const LiveUniforms& uniforms = {}) const {
+        return simd::compile(pipeline, max_error, *target_, has_curves, uniforms);
     }
 
   private:
@@ -103,6 +117,21 @@ TEST_P(MachineCode, ComputesTheInterpretersBits) {
     }
 }
 
+TEST_P(MachineCode, ComputesTheInterpretersBitsAtAnyExposure) {
+    const std::string exposure(kExposureUniform);
+    for (const Operator& op : all_operators()) {
+        if (op.is_local()) continue;
+        simd::Code code = compile(
+            build_live_view(make_view(resolve_operator(op.id), "lin_ap1", 0, "srgb"), {exposure}),
+            op.bounds.simd_goal, true, {{exposure, {0, -16, 16}}});
+        ASSERT_TRUE(code.machine) << op.id;
+        ASSERT_FALSE(code.uniforms.empty()) << op.id;
+        simd::set_uniforms(code, code.source->evaluate_numbers({{exposure, -3.3}}), code.numbers);
+        expect_same_bits(code, op.id);
+        if (HasFatalFailure()) return;
+    }
+}
+
 /// A processor with Intel's CET stops a call through a pointer that leads anywhere else than to an
 /// ENDBR64 (Intel SDM, volume 1, chapter 17).
 TEST_P(MachineCode, BeginsWhereIndirectCallsMayGo) {
@@ -121,6 +150,83 @@ TEST_P(MachineCode, BeginsWhereIndirectCallsMayGo) {
             EXPECT_EQ(std::memcmp(reinterpret_cast<const void*>(function), kEndbr64, 4), 0);
     }
 }
+
+#ifdef __linux__
+
+/// From here on the system refuses memory that has all of these PROT_ bits.
+bool refuse_memory(std::uint32_t protection) {
+    constexpr auto kProtection = offsetof(seccomp_data, args) + 2 * sizeof(std::uint64_t);
+    sock_filter filter[] = {
+        BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
+        BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_mprotect, 1, 0),
+        BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_mmap, 0, 4),
+        BPF_STMT(BPF_LD | BPF_W | BPF_ABS, kProtection),
+        BPF_STMT(BPF_ALU | BPF_AND | BPF_K, protection),
+        BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, protection, 0, 1),
+        BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | EACCES),
+        BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW),
+    };
+    const sock_fprog program = {std::size(filter), filter};
+    return prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 &&
+           prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) == 0;
+}
+
+/// What a process with fewer rights says.
+enum Answer : int { kAsExpected = 40, kOtherwise, kNotSupported };
+
+/// Runs `body` in a process of its own: what it gives up is given up for good.
+int answer_of(const std::function<Answer()>& body) {
+    const pid_t child = fork();
+    if (child == 0) _exit(body());
+    int status = 0;
+    if (child < 0 || waitpid(child, &status, 0) != child) return -1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+}
+
+class MachineCodeMemory : public MachineCode {
+  protected:
+    /// Compiled in a process that has given up rights, an operator has machine code or not, and its
+    /// pixels are the same.
+    [[nodiscard]] int has_machine_code(bool expected,
+                                       const std::function<bool()>& give_up_rights) const {
+        const Pipeline view =
+            build_view(make_view(resolve_operator("agx_blender"), "lin_rec709", 0, "srgb"));
+        const std::vector<float> in = floats(3 * 100);
+        const std::vector<float> pixels = run(compile(view), in, 3, 100);
+        return answer_of([&] {
+            if (!give_up_rights()) return kNotSupported;
+            const simd::Code code = compile(view);
+            const bool is_same = std::memcmp(run(code, in, 3, 100).data(), pixels.data(),
+                                             pixels.size() * sizeof(float)) == 0;
+            return (code.machine != nullptr) == expected && is_same ? kAsExpected : kOtherwise;
+        });
+    }
+};
+INSTANTIATE_TEST_SUITE_P(All, MachineCodeMemory, testing::Values("AVX2", "AVX3"));
+
+TEST_P(MachineCodeMemory, IsNeverWritableAndExecutable) {
+    const int answer = has_machine_code(true, [] { return refuse_memory(PROT_WRITE | PROT_EXEC); });
+    if (answer == kNotSupported) GTEST_SKIP() << "no system call filters here";
+    EXPECT_EQ(answer, kAsExpected);
+}
+
+TEST_P(MachineCodeMemory, IsDoneWithoutWhereNoneMayBeExecuted) {
+    const int answer = has_machine_code(false, [] { return refuse_memory(PROT_EXEC); });
+    if (answer == kNotSupported) GTEST_SKIP() << "no system call filters here";
+    EXPECT_EQ(answer, kAsExpected);
+}
+
+/// systemd's MemoryDenyWriteExecute=yes, with the kernel's own means.
+TEST_P(MachineCodeMemory, IsDoneWithoutWhereTheKernelRefusesIt) {
+    constexpr int kSetMdwe = 65;              // PR_SET_MDWE, since Linux 6.3
+    constexpr unsigned long kNoExecGain = 1;  // PR_MDWE_REFUSE_EXEC_GAIN
+    const int answer =
+        has_machine_code(false, [] { return prctl(kSetMdwe, kNoExecGain, 0UL, 0UL, 0UL) == 0; });
+    if (answer == kNotSupported) GTEST_SKIP() << "the kernel has no PR_SET_MDWE";
+    EXPECT_EQ(answer, kAsExpected);
+}
+
+#endif
 
 /// What no operator of the catalogue makes of its own.
 TEST_P(MachineCode, ComputesEveryOperation) {

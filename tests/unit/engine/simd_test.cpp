@@ -517,6 +517,33 @@ TEST_P(SimdOperator, IsTotal) {
     }
 }
 
+/// One program for all exposures. Its own error may be as large as that of a program for one.
+TEST_P(SimdOperator, IsWithinBoundAtEachExposure) {
+    const ResolvedOperator op = resolve_operator(GetParam());
+    const std::string exposure(kExposureUniform);
+    View view = make_view(op, "lin_rec709", 0, "srgb");
+    const SimdEngine live(build_live_view(view, {exposure}), {{exposure, {0, -16, 16}}},
+                          op.op->bounds.simd_goal);
+    for (const double stops : {-15.9, -3.3, 0.7, 16.0}) {
+        SampleRandom random(23);
+        std::vector<float> in(3 * count_of(30000U, 3000U));
+        for (float& x : in) {  // what the exposure makes light of all brightness, and any float
+            x = static_cast<float>(std::exp2(random.uniform(-14, 12) - stops) *
+                                   (random.uniform(0, 1) < 0.1 ? -1 : 1));
+            if (random.uniform(0, 1) < 0.02)
+                x = std::bit_cast<float>(static_cast<std::uint32_t>(random.bits() >> 32));
+        }
+        view.exposure_stops = stops;
+        const std::vector<double> truth = run(ReferenceEngine(build_view(view)), in);
+        const std::vector<float> out = run(live.with_uniforms({{exposure, stops}}), in);
+        for (std::size_t i = 0; i < out.size(); ++i) {
+            ASSERT_NEAR(out[i], truth[i], op.op->bounds.simd)
+                << stops << " stops, (" << in[i / 3 * 3] << ", " << in[i / 3 * 3 + 1] << ", "
+                << in[i / 3 * 3 + 2] << ")";
+        }
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Operators, SimdOperator, ::testing::ValuesIn(all_operator_names()),
                          [](const auto& test) {
                              std::string name = test.param;
@@ -681,6 +708,67 @@ TEST(Simd, EnginesOfAllTargetsAreTheOnesMadeOneByOne) {
                 << op << " on " << targets[t];
         }
     }
+}
+
+/// A uniform in every place where an instruction may have it, and what uniforms alone decide on.
+TEST(Simd, UniformsMeanWhatTheirValuesMean) {
+    const Expr u = Expr::uniform("u");
+    const Expr v = Expr::uniform("v");
+    const Expr r = Expr::input(0);
+    const Expr g = Expr::input(1);
+    const Expr b = Expr::input(2);
+    const std::vector<std::array<Expr, 3>> programs = {
+        {{r * u, g / v, u / (abs(b) + 1)}},
+        {{r + g * u, u - b * r, r * g - v}},
+        {{u, log2(v) + u, exp2(u * 0.25) * sin(v)}},
+        {{pow(abs(r), u), pow(v, r * 0.01), min(max(g, u), v)}},
+        {{select(less(u, v), r, g), select(less(r, u), g, v), select(equal(u, u), v, r)}},
+        {{r * 0.3 + g * 0.6 + b * u, sqrt(u * u) * r, floor(u) + less(g, v)}},
+        {{cos(u) * r, atan2(g, u), abs(-u) * b}},
+    };
+    const LiveUniforms ranges = {{"u", {1, -4, 4}}, {"v", {2, 0.5, 8}}};
+    SampleRandom random(5);
+    std::vector<float> rgb(3 * 500);
+    for (float& x : rgb)
+        x = static_cast<float>(random.uniform(-3, 12));
+    for (const std::string& target : SimdEngine::targets()) {
+        for (const double max_error : {1e-6, 1e-12}) {  // the second computes in double
+            for (std::size_t i = 0; i < programs.size(); ++i) {
+                const SimdEngine engine({CrossTalkStage{.f = programs[i]}}, ranges, max_error,
+                                        target);
+                // All at a time: none changes what another one has.
+                const std::vector<UniformValues> all = {
+                    {{"u", 2.3}, {"v", 0.7}}, {{"u", 3.9}, {"v", 7}}, {{"u", 0.1}, {"v", 0.5}}};
+                std::vector<SimdEngine> with;
+                for (const UniformValues& values : all)
+                    with.push_back(engine.with_uniforms(values));
+                for (std::size_t k = 0; k < all.size(); ++k) {
+                    CrossTalkStage bound{.f = programs[i]};
+                    for (Expr& channel : bound.f)
+                        channel = bind_uniforms(channel, all[k]);
+                    const std::vector<double> truth = run(ReferenceEngine({bound}), rgb);
+                    const std::vector<float> out = run(with[k], rgb);
+                    for (std::size_t j = 0; j < out.size(); ++j) {
+                        // Rounding of the uniform and of operands that cancel: the largest are 100.
+                        EXPECT_NEAR(static_cast<double>(out[j]), truth[j],
+                                    2e-6 * std::max(10.0, std::fabs(truth[j])))
+                            << target << ", program " << i << ", values " << k << ", float " << j;
+                    }
+                }
+            }
+        }
+    }
+}
+
+TEST(Simd, UniformsOutOfTheirRangeAreRefused) {
+    const Pipeline twice = {curve_stage(Expr::input() * Expr::uniform("u"))};
+    const SimdEngine engine(twice, {{"u", {1, 0, 4}}});
+    EXPECT_THROW((void)engine.with_uniforms({{"u", 4.5}}), Error);
+    EXPECT_THROW((void)engine.with_uniforms({{"u", -0.1}}), Error);
+    EXPECT_THROW((void)engine.with_uniforms({}), Error);
+    EXPECT_THROW(SimdEngine{twice}, Error);
+    EXPECT_EQ(run(engine, {2, 3, 4}), (std::vector<float>{2, 3, 4})) << "its typical value";
+    EXPECT_EQ(run(engine.with_uniforms({{"u", 4}}), {2, 3, 4}), (std::vector<float>{8, 12, 16}));
 }
 
 TEST(Simd, EnginesOfTwoTargetsWorkSideBySide) {

@@ -82,7 +82,7 @@ expect "apt install again" inside bash -c 'apt-get -q -y install --reinstall /tm
 # shellcheck disable=SC2086 # one package a word
 expect "apt remove" apt remove $names
 # shellcheck disable=SC2086
-expect "apt purge" apt purge $names
+expect "dpkg --purge" inside dpkg --purge $names
 files >"$work/after"
 expect "no trace is left" diff "$work/before" "$work/after"
 exit $failed

@@ -93,4 +93,8 @@ import tonewright
 assert tonewright.__file__.startswith("'"$site"'"), tonewright.__file__
 assert abs(tonewright.evaluate("clamp", [0.5, 0.5, 0.5], display="linear")[0] - 0.5) < 1e-12'
 fi
+plugin=$(find "$prefix" -name tonewright.imageio.so)
+if [ -n "$plugin" ] && [ -x "$(command -v iinfo)" ]; then
+    expect "the plugin" env -u LD_LIBRARY_PATH OIIO_LIBRARY_PATH="${plugin%/*}" iinfo "$work/chart.exr.tonewright?op=hable"
+fi
 exit $failed

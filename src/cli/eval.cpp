@@ -28,6 +28,7 @@ struct Options : ViewOptions {
     std::string engine = "reference";
     int digits = 9;
     bool inverse = false;
+    bool explain = false;
     LutOptions lut;
 };
 
@@ -187,18 +188,26 @@ ColorMap map_of_lut(const Options& options) {
     });
 }
 
-ColorMap map_of_operator(const Options& given) {
-    Options options = given;
+Pipeline pipeline_of(const Options& options, const View& view) {
+    return options.inverse ? build_inverse_view(view) : build_view(view);
+}
+
+void check_has_operator(const Options& options) {
     if (options.op.empty()) {
         throw Error(
             "eval: OPERATOR is missing; expected an id from `tonewright list`, or --lut FILE");
     }
+}
+
+ColorMap map_of_operator(const Options& given) {
+    Options options = given;
+    check_has_operator(options);
     enum Engine : std::size_t { kReference, kSimd, kOcio, kOcioGpu };
     const std::size_t kind =
         find_choice("eval: engine", options.engine, {"reference", "simd", "ocio", "ocio-gpu"});
     take_lut_options("eval", options.lut, options, true);
     const View view = options.view();
-    const Pipeline pipeline = options.inverse ? build_inverse_view(view) : build_view(view);
+    const Pipeline pipeline = pipeline_of(options, view);
     if (kind == kReference) {
         const auto engine = std::make_shared<const ReferenceEngine>(pipeline);
         return [engine](const double* in, double* out, std::size_t count) {
@@ -224,7 +233,17 @@ ColorMap map_of_operator(const Options& given) {
     return of(std::make_shared<OcioGpu>(processor));
 }
 
+int run_explain(Options options) {
+    check_has_operator(options);
+    take_lut_options("eval", options.lut, options, true);
+    const View view = options.view();
+    const Pipeline pipeline = pipeline_of(options, view);
+    fmt::print("{}", explain(pipeline, {}, view.op.op->bounds.simd_goal));
+    return kOk;
+}
+
 int run_eval(const Options& options) {
+    if (options.explain) return run_explain(options);
     const ColorMap map = options.lut.file.empty() ? map_of_operator(options) : map_of_lut(options);
     LineEvaluator(map, options.digits).run();
     return kOk;
@@ -257,8 +276,13 @@ void add_eval(CommandLine& program) {
         .add_flag("--inverse", options->inverse,
                   "map display colors to scene-linear, where the operator can be inverted")
         .group("Computation");
+    command
+        .add_flag("--explain", options->explain,
+                  "print how the simd engine computes the operator, step by step, and stop")
+        .group("Computation");
     add_lut_options(command, options->lut, op,
-                    {"--set", "--look", "--display", "--reference-white", "--engine", "--inverse"});
+                    {"--set", "--look", "--display", "--reference-white", "--engine", "--inverse",
+                     "--explain"});
     command.footer(
         "A line is `r g b` or `r,g,b`. Values may be nan and inf; # begins a comment. Each line is "
         "answered when it arrives, so a program can keep eval running. Parameters that `apply` "

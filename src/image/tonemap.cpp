@@ -180,9 +180,10 @@ Pipeline light_stages(const View& view) {
 /// picture is the domain of its curves. Beyond, and without exposure, a program has its own.
 constexpr double kMostLiveStops = 16;
 
+bool is_live_exposure(double stops) { return stops != 0 && std::fabs(stops) <= kMostLiveStops; }
+
 bool is_exposure_live(const View& view) {
-    return view.exposure_stops != 0 && std::fabs(view.exposure_stops) <= kMostLiveStops &&
-           !view.op.op->is_local();
+    return is_live_exposure(view.exposure_stops) && !view.op.op->is_local();
 }
 
 /// What the engine has to do: behind a local operator, the display.
@@ -227,12 +228,6 @@ struct Prepared {
     bool keeps_grey;
     /// Of a local operator: what comes before it. `engine` comes behind it.
     std::optional<SimdEngine> to_light;
-
-    /// Names the program among those for the same options but for the exposure.
-    static std::string name(const View& view) {
-        const bool is_for_many = is_exposure_live(view) || view.op.op->is_local();
-        return view.input + (is_for_many ? "" : " " + shortest(view.exposure_stops));
-    }
 
   private:
     [[nodiscard]] SimdEngine at(double stops) const {
@@ -279,7 +274,7 @@ struct Tonemapper::State {
     /// Pictures of one shot are of one kind.
     static constexpr std::size_t kMostPrepared = 8;
     using Programs = BoundedCache<std::string, Prepared>;
-    std::shared_ptr<Programs> programs_;        // by Prepared::name()
+    std::shared_ptr<Programs> programs_;        // by input space, and exposure if not live
     mutable Programs prepared_{kMostPrepared};  // by input space
 };
 
@@ -588,10 +583,14 @@ void Tonemapper::State::run(ImageBuf& dst, const ImageBuf& src, ROI roi, int nth
 }
 
 std::shared_ptr<const Prepared> Tonemapper::State::prepared_for(const SourceColor& source) const {
+    const double stops = options.exposure_stops;
+    const bool is_for_many = is_live_exposure(stops) || is_local;
     return prepared_.get(source.name, [&] {
-        const View view = view_of(options, options.settings, source);
-        const auto program = programs_->get(Prepared::name(view), [&] { return Prepared(view); });
-        return Prepared(*program, options.exposure_stops);
+        const std::string program = source.name + (is_for_many ? "" : " " + shortest(stops));
+        return Prepared(
+            *programs_->get(program,
+                            [&] { return Prepared(view_of(options, options.settings, source)); }),
+            stops);
     });
 }
 

@@ -367,6 +367,15 @@ def check_engines(report, command):
                 continue
             is_cube = operator == "reinhard_jodie" and engine != "simd"
             report.compare(what, shown, truth, CUBE_BOUND if is_cube else ENGINE_BOUND[engine])
+    # Reads no colors. Two stops are a factor 4; a tape without it does not compute them.
+    text = run(command, "eval", "reinhard_jodie", "--exposure", 2, "--explain")
+    parts = re.split(r"\n(?=\S)", text)
+    tape = next((part for part in parts if part.startswith("Tape: ")), "")
+    report.check("eval --explain: tape", re.search(r"^  %\d+ = 4$", tape, re.M) and "outputs %" in tape, text[:2000])
+    report.check("eval --explain: a line for each value",
+                 tape.count(" = ") == int(re.search(r"Tape: (\d+)", tape)[1]), tape)
+    for word in ("After rewriting", "Curves: ", "Program: ", "Machine code: "):
+        report.check(f"eval --explain: {word}", any(part.lstrip().startswith(word) for part in parts), text[-2000:])
 
 
 def check_apply(report, command, scratch):

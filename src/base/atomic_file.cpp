@@ -13,6 +13,7 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <ctime>
 #include <fstream>
 #include <map>
 #include <memory>
@@ -81,6 +82,10 @@ static_assert(std::atomic<const char*>::is_always_lock_free);
 
 /// The signal handler is removing them: a file that is created after this would stay behind.
 std::atomic<bool> is_ending = false;
+/// FileCreations of all threads, and of this one.
+std::atomic<int> creations = 0;
+thread_local int own_creations = 0;
+static_assert(std::atomic<int>::is_always_lock_free);
 
 /// Null where so many files are unfinished at once that this one would stay after a signal.
 std::atomic<const char*>* register_unfinished(const std::string& path) {
@@ -132,6 +137,11 @@ std::vector<std::string> parts_of_temporary(const std::string& name) {
 
 void remove_unfinished_files() noexcept {
     is_ending = true;
+    // This thread may have been stopped while it created a file, and goes on no more.
+    for (int i = 0; i < 1000 && creations > own_creations; ++i) {
+        constexpr timespec kMillisecond = {0, 1'000'000};
+        (void)::nanosleep(&kMillisecond, nullptr);
+    }
     for (std::atomic<const char*>& place : unfinished_names) {
         // Folders stay where something is in them.
         if (const char* name = place.exchange(nullptr); name && ::unlink(name) != 0) ::rmdir(name);
@@ -171,6 +181,20 @@ void remove_leftovers(const std::vector<std::string>& paths) {
     }
 }
 
+FileCreation::FileCreation() noexcept {
+    ++own_creations;
+    ++creations;
+    if (!is_ending) return;
+    --creations;
+    while (true)
+        ::pause();
+}
+
+FileCreation::~FileCreation() {
+    --creations;
+    --own_creations;
+}
+
 AtomicFile::AtomicFile(const std::string& path) {
     target_ = resolve_target(path, refusal_);
     const auto [stem, extension] = name_parts(target_);
@@ -192,12 +216,8 @@ int AtomicFile::check_target() const {
 }
 
 int AtomicFile::create() {
-    const int file =
-        ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
-    if (file < 0 || !is_ending) return file;
-    ::unlink(path_.c_str());
-    while (true)
-        ::pause();
+    const FileCreation creation;
+    return ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
 }
 
 int AtomicFile::keep() {

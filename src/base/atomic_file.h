@@ -17,6 +17,17 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// A file that is written under a temporary name beside its target and gets the target's name when
 /// it is complete. A failed or killed run leaves the old file whole.
 ///
+/// Lives while a thread creates a file, or opens one by its name: what removes unfinished files
+/// waits for its end (a second at most). Once they are being removed, a thread that begins waits
+/// here for the end of the process.
+class TONEWRIGHT_API FileCreation {
+  public:
+    FileCreation() noexcept;
+    ~FileCreation();
+    FileCreation(const FileCreation&) = delete;
+    FileCreation& operator=(const FileCreation&) = delete;
+};
+
 /// The temporary name is `.<stem>.<machine>.<pid>.<random>.tmp.<extension>`. The extension comes
 /// last because it selects the format. Nobody can guess the name and put a link there.
 class TONEWRIGHT_API AtomicFile {
@@ -38,9 +49,8 @@ class TONEWRIGHT_API AtomicFile {
     /// Renaming asks only the folder for permission, and would replace a write-protected file.
     /// @returns  0 or an errno.
     [[nodiscard]] int check_target() const;
-    /// Creates the temporary file, which nothing else may have made, and opens it for writing. If a
-    /// signal is removing unfinished files at this moment, removes it and waits for the end of the
-    /// process.
+    /// Creates the temporary file, which nothing else may have made, and opens it for writing, as a
+    /// FileCreation.
     /// @returns  a descriptor, which the caller closes; or -1, and an errno in `errno`.
     [[nodiscard]] int create();
     /// Gives the temporary file the permissions of the old one, syncs it and renames it.

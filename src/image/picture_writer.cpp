@@ -370,7 +370,10 @@ void PictureWriter::open(const ImageSpec& picture) {
         if (file < 0) fail(reason_of(errno));
         ::close(file);
     }
-    const bool is_open = out_->open(name, spec);
+    const bool is_open = [&] {
+        const FileCreation creation;  // the writer may open the file by its name
+        return out_->open(name, spec);
+    }();
     if (!is_open) fail(first_line(out_->geterror()));
     warn_of_limits(spec, color.missing);
 }

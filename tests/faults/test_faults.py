@@ -4,11 +4,9 @@
     python3 tests/faults/test_faults.py build/release/bin/tonewright build/release/tests/tonewright_faults.so [JOB...]
         [--points N] [--only FAULT]
 
-For each job the shim counts the allocations and the calls on files, then one run for each of them makes it fail. With
-`./run test --all`, `eval` and `bake` take every distinct call stack of an allocation, and the other jobs, whose runs are
-longer, 500 of them; without, each takes 60. --points takes N. A run may end well
-where the program goes on without the memory, as a cache does: then its output is that of an unbroken run. The last line is
-`N passed, M failed`.
+For each job the shim counts the distinct call stacks of allocations and the calls on files, then one run for each of them makes
+it fail: for all calls on files, and for N call stacks (default 60). A run may end well where the program goes on without the
+memory, as a cache does: then its output is that of an unbroken run. The last line is `N passed, M failed`.
 """
 
 import argparse
@@ -23,7 +21,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import ALL, Report  # noqa: E402
+from pictures import Report  # noqa: E402
 
 OK, NO_FILE = 0, 3
 OLD = b"the old file"
@@ -36,9 +34,7 @@ JOBS = {
     "apply_png": (["apply", "in.exr", "out.png", "--operator", "hable", "--threads", "1"], "out.png"),
     "apply_exr": (["apply", "in.exr", "out.exr", "--operator", "hable", "--display", "linear", "--threads", "1"], "out.exr"),
 }
-EVERY = 1_000_000
-POINTS = {"eval": EVERY, "bake": EVERY} if ALL else {}
-DEFAULT_POINTS = 500 if ALL else 60
+POINTS = 60
 SECONDS = 120  # a run takes less than one second
 
 
@@ -119,7 +115,7 @@ def faults_of(job, points):
     total = max(memory)
     return {
         "memory": [f"memory:{number}" for number in spread(memory, points)],
-        "memory from there on": [f"memory-from:{number}" for number in spread(memory, min(points, DEFAULT_POINTS) // 4)],
+        "memory from there on": [f"memory-from:{number}" for number in spread(memory, min(points, 500) // 4)],
         "disk full": [f"file:{number}:{errno.ENOSPC}" for number, _ in files],
         "quota": [f"file:{number}:{errno.EDQUOT}" for number, _ in spread(files, 10)],
         "I/O error": [f"file:{number}:{errno.EIO}" for number, _ in spread(files, 40)],
@@ -132,7 +128,7 @@ def main():
     parser.add_argument("command", type=Path)
     parser.add_argument("shim", type=Path)
     parser.add_argument("jobs", nargs="*", default=list(JOBS), metavar="JOB")
-    parser.add_argument("--points", type=int, metavar="N", help="allocations of each job that fail")
+    parser.add_argument("--points", type=int, metavar="N", default=POINTS, help="call stacks of allocations (default %(default)s)")
     parser.add_argument("--only", metavar="FAULT", help="run this one and show it, such as memory:120")
     arguments = parser.parse_args()
     report = Report()
@@ -147,7 +143,7 @@ def main():
                 code, lines, output, left = job.run(arguments.only)
                 print(f"{job_name} {arguments.only}: exit {code}, {len(output or b'')} bytes, left {left}", *lines, sep="\n")
                 continue
-            faults, whole, total = faults_of(job, arguments.points or POINTS.get(job_name, DEFAULT_POINTS))
+            faults, whole, total = faults_of(job, arguments.points)
             for kind, runs in faults.items():
                 if not runs:
                     continue

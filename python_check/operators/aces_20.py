@@ -174,6 +174,7 @@ class Transform:
         self.focus = self.jmax * (1.35 + 2.3625 * lp)
         self.lower_power = 1 / (1.14 + 0.07 * lp)
         self.reach_table = self.make_reach()
+        self.corners = self.display_corners()
         self.hues, self.counts = self.make_hues()
         self.cusps = self.make_cusps()
         self.inverse_gammas = 1 / self.make_gammas()
@@ -227,7 +228,11 @@ class Transform:
         return self.reach_table[i] + (h - i) * (self.reach_table[i + 1] - self.reach_table[i])
 
     def display_corners(self):
-        """RGB and hue of the display's corners, from the smallest hue on."""
+        """RGB and hue of the display's corners, from the smallest hue on.
+
+        Computed once: the tables compare these hues for equality, and NumPy may round the same sum differently at another
+        address.
+        """
         rgb = CORNERS * self.peak / 100
         h = self.limiting.jmh(rgb)[:, 2]
         first = h.argmin()
@@ -241,7 +246,7 @@ class Transform:
 
     def make_hues(self):
         """Hues of the cusp table, whose samples fall on the corners' hues, and at which entries those are."""
-        corners = np.unique(np.concatenate([self.display_corners()[1], self.reach_hues()]))
+        corners = np.unique(np.concatenate([self.corners[1], self.reach_hues()]))
         counts = []
         for k, hue in enumerate(corners):
             low = counts[-1] if counts else int(hue != 0)
@@ -261,7 +266,7 @@ class Transform:
 
     def make_cusps(self):
         """J and M of the display's cusp for every hue of the table; M enlarged for the smoothed corner."""
-        rgb, h = self.display_corners()
+        rgb, h = self.corners
         rgb = np.concatenate([rgb[-1:], rgb, rgb[:1]])
         h = np.concatenate([[h[-1] - 360], h, [h[0] + 360]])
         k = np.searchsorted(h, self.hues, side="right") - 1

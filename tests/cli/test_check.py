@@ -167,7 +167,7 @@ def check_output(report, command, folder):
 def check_page(report, command, folder):
     """The example of docs/tone_files.md, and what the page says that it prints."""
     page = (PROJECT / "docs" / "tone_files.md").read_text()
-    definition, shown = re.search(r"cat >jump.tone <<'END'\n(.*?)END\n.*?```\n\n```\n(.*?)```\n", page, re.S).groups()
+    definition, shown = re.search(r"cat >jump.tone <<'END'\n(.*?)END\n.*?```\n\n```text\n(.*?)```\n", page, re.S).groups()
     (folder / "jump.tone").write_text(definition)
     done = [subprocess.run([command, *arguments, "jump.tone"], cwd=folder, env={**os.environ, "LC_ALL": "C.UTF-8"},
                            stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)

@@ -519,12 +519,17 @@ std::string dialect_section(DialectGroup& group, const std::vector<float>& sampl
                               distances.size(), pair_table(group, distances));
 }
 
-std::string introduction() {
+constexpr const char* kIntroduction =
+    "# Operators\n\n"
+    "[Dialects](#dialects) compares operators that share a name, and [How to read the "
+    "plots](#how-to-read-the-plots) explains the\nfigures. `./run artifacts` generates this "
+    "page.\n\n";
+
+/// Between the index and the operators.
+std::string legend() {
     return fmt::format(
-        "# Operators\n\n"
-        "`./run artifacts` generates this page from the registry (`tonewright list --catalogue "
-        "docs`); do not edit. [Dialects](#dialects)\ncompares operators that share a name.\n\n"
-        "**The plots** show an operator with its default parameters on an sRGB display, from the "
+        "## How to read the plots\n\n"
+        "The plots show an operator with its default parameters on an sRGB display, from the "
         "double-precision reference.\n\n"
         "* *Upper graph*: code value of a scene-linear gray, over stops from mid gray. The right "
         "axis shows the display-linear value\n  of the code value; the numbers below the stops "
@@ -540,7 +545,7 @@ std::string introduction() {
         "lines.\n\n"
         "The plots clip at display white, as every SDR view does. Presets for brighter displays "
         "also clip.\n\n"
-        "**Measured** values are code values from 0 to 1. *Contrast at mid gray* is the slope of "
+        "Measured values are code values from 0 to 1. *Contrast at mid gray* is the slope of "
         "log output over log scene value: 1 without\ntone mapping. *Black* and *white* are the "
         "scene values at 8-bit codes 0 and 255. An operator that adapts to the picture is\nshown "
         "with its default parameters; `tonewright apply` measures the picture.\n\n",
@@ -572,7 +577,7 @@ std::vector<GeneratedFile> make_catalogue() {
         manifest += fmt::format("{},{}\n", name, shows);
     };
     std::vector<DialectGroup> groups = dialect_groups();
-    std::string page = introduction() + index_section(groups);
+    std::string page = kIntroduction + index_section(groups) + legend();
     for (const Operator& op : all_operators()) {
         add(op.id + ".svg", op.id, to_svg(plot_of(op)));
         const std::string plot_and_figures =

@@ -105,8 +105,8 @@ void add_check(CommandLine& program) {
     command.footer(
         "The laws: numbers are finite; brighter scenes are shown brighter; grays stay below the "
         "output peak, reach white, begin at black and stay gray; there are no jumps; the inverse "
-        "leads back. What the operator declares is no warning. A law that breaks is a warning, "
-        "and with --strict the exit code is 1.\n"
+        "leads back. A broken law is a warning, unless the operator declares it. With --strict, a "
+        "warning gives exit code 1.\n"
         "Examples:\n"
         "  tonewright check my.tone\n"
         "  tonewright check hable:white=4 -o hable.svg");

@@ -202,11 +202,11 @@ void add_config(CommandLine& program) {
                     "existing config that gets the views; their LUTs go to tonewright/ beside it");
     into.value("CONFIG").group(output);
     out.excludes(into);
-    const Option update =
-        command.add_flag("--update", options->is_updated,
-                         "with --into: replace what it added before; without views, the same ones");
+    const Option update = command.add_flag(
+        "--update", options->is_updated,
+        "with --into: replace the added views, by those of --views or the same ones");
     update.group(output).needs(into);
-    command.add_flag("--remove", options->is_removed, "with --into: take out what it added before")
+    command.add_flag("--remove", options->is_removed, "with --into: remove the added views")
         .group(output)
         .needs(into)
         .excludes(update);
@@ -232,8 +232,8 @@ void add_config(CommandLine& program) {
         .excludes(into);
     command
         .add("--views", config.views,
-             "views (\"AgX Punchy\") or operators, in order; `none`, `all`, or `standard` "
-             "(default), which are a dozen")
+             "views (\"AgX Punchy\") or operators, in order; `none`, `all`, or "
+             "`standard`, a dozen (default)")
         .value("LIST")
         .suggest(suggest_views)
         .separated_by(',')
@@ -275,9 +275,8 @@ void add_config(CommandLine& program) {
         .range(-16.0, 16.0)
         .group(own);
     command.footer(
-        "LIST is separated by commas. The standard config takes some 20 seconds the first time, "
-        "for "
-        "the fits of 3D LUTs that it keeps in ~/.cache/tonewright, and 7 seconds afterwards.\n"
+        "LIST is separated by commas. The first standard config takes 20 seconds, because 3D LUTs "
+        "are fitted and kept in ~/.cache/tonewright. The next ones take 7 seconds.\n"
         "Examples:\n"
         "  tonewright config -o ocio_config\n"
         "  tonewright config -o everything --views all\n"
@@ -286,7 +285,7 @@ void add_config(CommandLine& program) {
         "  tonewright config --archive tonewright.ocioz\n"
         "  tonewright config --into studio.ocio --views AgX,hable --backup\n"
         "  tonewright config --into studio.ocio --remove\n"
-        "  OCIO=ocio_config/config-2.5.ocio blender     # has OpenColorIO 2.5\n"
+        "  OCIO=ocio_config/config-2.5.ocio blender     # Blender 5.2 or newer\n"
         "  tonewright config --archive tonewright.ocioz --profile 2.5\n"
         "  oiiotool --colorconfig ocio_config/config.ocio in.exr \\\n"
         "    --ociodisplay sRGB Hable --iscolorspace sRGB -o out.png");

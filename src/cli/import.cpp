@@ -105,7 +105,7 @@ void add_import(CommandLine& program) {
     const char* const function = "Function";
     command
         .add("--function", options->function,
-             "function to take (default: the last one that no other calls)")
+             "function to import (default: the last one that no other function calls)")
         .value("NAME")
         .group(function);
     command
@@ -117,7 +117,7 @@ void add_import(CommandLine& program) {
     const char* const color = "Color";
     command
         .add("--encoded", options->encoded,
-             "what the function returns: linear (default), srgb, gamma22 or gamma24")
+             "encoding of the result: linear (default), srgb, gamma22 or gamma24")
         .value("NAME")
         .suggest({"linear", "srgb", "gamma22", "gamma24"})
         .group(color);
@@ -131,9 +131,8 @@ void add_import(CommandLine& program) {
         .value("FILE")
         .group("Output");
     command.footer(
-        "The shader is straight-line code: no loops, textures, arrays or recursion. Negatives "
-        "count "
-        "as 0. Functions that the one taken does not call may hold anything.\n"
+        "The imported function and those that it calls are straight-line code: no loops, textures, "
+        "arrays or recursion. Negatives count as 0.\n"
         "Examples:\n"
         "  tonewright import tonemap.glsl -o my.tone\n"
         "  tonewright import aces.hlsl --function ACESFilm --parameter gain=1 -o my.tone\n"

@@ -381,16 +381,15 @@ void add_list(CommandLine& program) {
     markdown.group(format);
     const Option views =
         command
-            .add_flag(
-                "--views", options->views,
-                "each operator's id and the name of its view in the config, with a tab between")
+            .add_flag("--views", options->views,
+                      "print each operator's id, a tab, and the name of its view in the config")
             .excludes(json)
             .excludes(markdown);
     views.group(contents);
     const Option definition =
         command
             .add_flag("--definition", options->definition,
-                      "print the operator as a .tone file, with these settings: agx:punchy")
+                      "print the operator as a .tone file, with its settings (agx_blender:hdr)")
             .excludes(json)
             .excludes(markdown)
             .excludes(views);

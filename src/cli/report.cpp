@@ -411,8 +411,8 @@ void add_report(CommandLine& program) {
     command.add_flag("--no-parity", options->no_parity, "leave out the parity table")
         .group(contents);
     command.footer(
-        "The page is one file, opens without a server, and sends nothing anywhere. It runs the "
-        "exported GLSL ES on the embedded pictures and on pictures that are dropped on it.\n"
+        "The page is one file. It opens without a server and sends no data. It runs the exported "
+        "GLSL ES on the embedded pictures, and on pictures that you drop on it.\n"
         "Examples:\n"
         "  tonewright report -o page.html\n"
         "  tonewright report -o page.html render.exr --operators agx_blender,hable");

@@ -286,7 +286,7 @@ void add_shader(CommandLine& program) {
         .suggest(suggest_operators);
     command
         .add("--language", options->language,
-             "language of the text; see --list (default: by the extension)")
+             "shader language; see --list (default: by the extension)")
         .value("NAME")
         .suggest(suggest_languages)
         .group(output);
@@ -310,7 +310,7 @@ void add_shader(CommandLine& program) {
         .group(output);
     command
         .add("--uniforms", options->uniforms,
-             "arguments behind the color: exposure, and live parameters (see `tonewright list "
+             "arguments after the color: exposure, and live parameters (see `tonewright list "
              "OPERATOR`)")
         .value("NAME,...")
         .suggest(suggest_uniforms)
@@ -319,13 +319,14 @@ void add_shader(CommandLine& program) {
         .group(output);
     command
         .add("--tables", options->tables,
-             "where to store tables and 3D LUTs (default: by their size)")
+             "store tables and 3D LUTs as `array` in the text or `texture` in a file (default: by "
+             "size)")
         .choices(std::vector<std::string>{"texture", "array"})
         .value("KIND")
         .group(output);
     command
         .add("--curves", options->curves,
-             "curves of one number as formulas, or as fitted polynomials where these are faster")
+             "curves of one number as `formula`, or `fitted` polynomials where these are faster")
         .choices(std::vector<std::string>{"formula", "fitted"})
         .value("KIND")
         .show_default()
@@ -337,9 +338,8 @@ void add_shader(CommandLine& program) {
     command.common({"--language", "--for", "-o", "--uniforms", "--list", "--set", "--look",
                     "--exposure", "--input", "--display"});
     command.footer(
-        "The function is tw_<operator>, with _<preset>, _<look>, _inverse or _encoded behind it. "
-        "It "
-        "takes scene-linear light and returns display-linear light (--display linear, the default: "
+        "The function is tw_<operator>, followed by _<preset>, _<look>, _inverse or _encoded. It "
+        "takes scene-linear light. It returns display-linear light (--display linear, the default: "
         "for renderers that encode their pictures themselves) or code values (--display srgb).\n"
         "Examples:\n"
         "  tonewright shader agx_threejs --language glsl -o agx.glsl\n"

@@ -159,12 +159,19 @@ std::string overview(const std::vector<ShippedLut>& luts) {
     return text;
 }
 
+/// The steps for a page: a command at their beginning is code.
+std::string markdown_steps(const std::string& steps) {
+    if (!steps.starts_with("ffmpeg ") && !steps.starts_with("convert ")) return steps;
+    const std::string command = steps.substr(0, steps.find(": "));
+    return "`" + command + "`" + steps.substr(command.size());
+}
+
 std::string section(const LutPresetSet& set, const std::vector<ShippedLut>& luts) {
     const LutApplication& host = *set.host;
     std::string text = fmt::format("\n<a id=\"{}\"></a>\n## {}\n\n", host.id, host.title);
     if (!set.also.empty()) text += "Also for " + set.also + ".\n\n";
     text +=
-        fmt::format("{}. {}\n\n", host.steps,
+        fmt::format("{}. {}\n\n", markdown_steps(host.steps),
                     host.tested.empty() ? "(Tests check the format; the application was not run.)"
                                         : "(Tested with " + host.tested + ".)");
     bool is_first = true;
@@ -197,7 +204,7 @@ std::string readme(const std::vector<ShippedLut>& luts) {
     std::string text =
         "# LUTs\n\nClick the picture in your application's column. `tonewright bake` makes LUTs of "
         "any other operator, look,\nparameter, size, input or display "
-        "([docs/luts.md](../docs/luts.md), `tonewright list --hosts`).\n\n";
+        "([LUTs](../docs/luts.md), `tonewright list --hosts`).\n\n";
     text += overview(luts);
     text +=
         "\nThe pictures show the test chart (`tonewright chart`) through that file, with the "

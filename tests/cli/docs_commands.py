@@ -80,6 +80,8 @@ def missing(name, build):
         return None if importlib.util.find_spec("tonewright") else "python3-tonewright is not installed"
     if name == "python":
         return None if (build / "python" / "tonewright").is_dir() else "the build has no Python module"
+    if name == "photographs":
+        return None if os.environ.get("TONEWRIGHT_SHARED") else "TONEWRIGHT_SHARED is not set"
     if not shutil.which(name):
         return f"{name} is not installed; `./run packages --all`"
     if name == "ffmpeg" and ("libx265" not in says(name, "-v", "error", "-encoders")
@@ -99,6 +101,7 @@ def follow(report, page, command, folder, is_installed=False):
     for name in ("src", "tests"):  # pages for developers show files
         (folder / name).symlink_to(PROJECT / name)
     environment = {**os.environ, "LC_ALL": "C.UTF-8", "EXAMPLES": str(DOCS / "examples"),
+                   "PHOTOGRAPHS": f"{os.environ.get('TONEWRIGHT_SHARED')}/data/hdr",
                    "PATH": f"{command.parent}:{Path(sys.executable).parent}:{os.environ['PATH']}"}
     if build:
         library = installed(build, folder / ".installed")

@@ -137,7 +137,7 @@ def check_browser(report, site, folder):
             for name in SHOWN:
                 go(page, root + name)
                 # Tables and code may scroll on their own, when the theme's script has wrapped them.
-                page.wait("!document.querySelector('article table:not([class])') || document.querySelector('.md-typeset__scrollwrap')")
+                page.wait("!document.querySelector('article table:not([class])') || !!document.querySelector('.md-typeset__scrollwrap')")
                 is_width = page.run("document.documentElement.scrollWidth")
                 if is_width > width:
                     wide.append(f"{name}: {is_width} pixels")
@@ -172,7 +172,9 @@ def main():
     for tool, package in (("mkdocs", "mkdocs"), ("codespell", "codespell"), ("chromium", "chromium")):
         if not shutil.which(tool):
             skip(f"{tool} is missing (Debian: {package})")
-    if subprocess.run(["/usr/bin/python3", "-c", "import material"], stderr=subprocess.DEVNULL, check=False).returncode:
+    # Debian's package is a folder of mkdocs, not a Python module.
+    if subprocess.run(["/usr/bin/python3", "-c", "from mkdocs.utils import get_theme_dir; get_theme_dir('material')"],
+                      stderr=subprocess.DEVNULL, check=False).returncode:
         skip("the theme is missing (Debian: mkdocs-material)")
     report = Report()
     with tempfile.TemporaryDirectory() as scratch:

@@ -49,7 +49,7 @@ HWY_INLINE Vec<D> limited(D d, Vec<D> x, double limit) {
 
 /// NaN -> 0, then limited to +-65504.
 template <class D>
-HWY_INLINE Vec<D> sanitised(D d, Vec<D> x) {
+HWY_INLINE Vec<D> sanitized(D d, Vec<D> x) {
     return limited(d, hn::IfThenElseZero(hn::Eq(x, x), x), static_cast<double>(kLargestInput));
 }
 

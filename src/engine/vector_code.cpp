@@ -92,7 +92,7 @@ class Translator {
         std::size_t part = 0;  // that defines it, or behind which a step over the tile does
         bool wide = false;
         bool crosses = false;       // into another part, or to or from a tile step
-        bool is_sanitised = false;  // by the curves that are all that reads it
+        bool is_sanitized = false;  // by the curves that are all that reads it
         std::uint32_t offset = 0;
     };
     struct Step {
@@ -185,13 +185,13 @@ class Translator {
 
     void find_crossings() {
         for (const std::int32_t i : input_) {
-            if (i != kNone) value(i).is_sanitised = true;
+            if (i != kNone) value(i).is_sanitized = true;
         }
         for (const Step& s : steps_) {
             for (const std::int32_t i : s.in) {
                 if (i == kNone) continue;
                 if (is_tile_step(*s.step) || s.part != value(i).part) value(i).crosses = true;
-                if (!limits_input(*s.step)) value(i).is_sanitised = false;
+                if (!limits_input(*s.step)) value(i).is_sanitized = false;
             }
             if (!is_tile_step(*s.step)) continue;
             for (const std::int32_t i : s.out) {
@@ -201,7 +201,7 @@ class Translator {
         for (const std::int32_t i : output_) {
             if (i == kNone) continue;
             if (value(i).part != part_count_ - 1) value(i).crosses = true;
-            value(i).is_sanitised = false;
+            value(i).is_sanitized = false;
         }
     }
 
@@ -279,11 +279,11 @@ class Translator {
         for (std::size_t c = 0; c < 3; ++c) {
             if (input_[c] == kNone) continue;
             if (layout == PixelLayout::planes) given[c] = load(input_offset_[c], false, 0);
-            // In the tile they are sanitised already.
-            const bool is_sanitised =
-                value(input_[c]).is_sanitised || layout == PixelLayout::planes;
+            // In the tile they are sanitized already.
+            const bool is_sanitized =
+                value(input_[c]).is_sanitized || layout == PixelLayout::planes;
             const VF x = {writer_, given[c]};
-            set(input_[c], is_sanitised ? x : sanitised(float_tag(), x));
+            set(input_[c], is_sanitized ? x : sanitized(float_tag(), x));
         }
     }
 

@@ -25,42 +25,6 @@ constexpr const char* kTapeNames[] = {
     "select",   "lookup",      "lattice", "uniform"};
 static_assert(std::size(kTapeNames) == static_cast<std::size_t>(ExprOp::uniform) + 1);
 
-constexpr const char* kProgramNames[] = {"copy",
-                                         "add",
-                                         "subtract",
-                                         "multiply",
-                                         "divide",
-                                         "multiply_add",
-                                         "multiply_subtract",
-                                         "subtract_product",
-                                         "dot3",
-                                         "minimum",
-                                         "maximum",
-                                         "clamp",
-                                         "negate",
-                                         "absolute",
-                                         "square_root",
-                                         "floor",
-                                         "exp2",
-                                         "log2",
-                                         "power",
-                                         "power_constant",
-                                         "sine",
-                                         "cosine",
-                                         "atan2",
-                                         "less",
-                                         "less_equal",
-                                         "equal",
-                                         "select",
-                                         "select_less",
-                                         "select_less_equal",
-                                         "select_equal",
-                                         "lookup",
-                                         "lookup_nonuniform",
-                                         "curve",
-                                         "lattice"};
-static_assert(std::size(kProgramNames) == static_cast<std::size_t>(simd::Op::lattice) + 1);
-
 constexpr const char* kVectorNames[] = {"add",
                                         "subtract",
                                         "multiply",
@@ -80,7 +44,6 @@ constexpr const char* kVectorNames[] = {"add",
                                         "exponent",
                                         "mantissa",
                                         "scale",
-                                        "constant",
                                         "promote_low",
                                         "promote_high",
                                         "demote",
@@ -193,16 +156,16 @@ class Explanation {
 
     void write_instruction(const simd::Instruction& step) {
         std::string text;
-        if (simd::has_channels(step.op)) {
+        if (simd::operation(step.op).has_channels) {
             for (const simd::Operand& out : step.channel) {
                 if (!out.constant) text += (text.empty() ? "" : ", ") + text_of(out);
             }
         } else {
             text = text_of(step.out);
         }
-        text += fmt::format(" = {}{}", name_of(kProgramNames, step.op), step.wide ? ".f64" : "");
+        text += fmt::format(" = {}{}", simd::operation(step.op).name, step.wide ? ".f64" : "");
         if (step.op == simd::Op::curve) text += fmt::format(" {}", step.table);
-        for (int k = 0; k < simd::operand_count(step.op); ++k)
+        for (int k = 0; k < simd::operation(step.op).operands; ++k)
             text += (k == 0 ? " " : ", ") + text_of(step.in[static_cast<std::size_t>(k)]);
         line("  {}", text);
     }

@@ -527,8 +527,6 @@ class Generator : public Xbyak::CodeGenerator {
             case VectorOp::integer_subtract:
                 return binary(
                     step, [&](Z r, Z a, const O& b) { wide ? vpsubq(r, a, b) : vpsubd(r, a, b); });
-            case VectorOp::constant:
-                return (void)result_over(step, step.in[0], in_register(step.in[0], wide));
             case VectorOp::to_float:
                 return unary(step, [&](Z r, const O& a) { vcvtdq2ps(r, a); });
             case VectorOp::multiply_add:
@@ -707,19 +705,17 @@ class Generator : public Xbyak::CodeGenerator {
             }
             case VectorOp::gather: {
                 const Z index = in_register(step.in[0], false);
-                if (!machine_.has_avx512) {
-                    const Z all = vector(take());
-                    const Z r = result_apart(step);
-                    vpcmpeqd(all, all, all);
-                    vxorpd(r, r, r);
-                    return vgatherdpd(r, ptr[rax + half(index) * 8 + static_cast<int>(step.offset)],
-                                      all);
-                }
+                const Z all = machine_.has_avx512 ? index : vector(take());
                 const Z r = result_apart(step);
-                kxnorw(k6, k6, k6);
+                const Xbyak::Address number =
+                    ptr[rax + (wide ? half(index) * 8 : index * 4) + static_cast<int>(step.offset)];
                 vxorpd(r, r, r);
-                return vgatherdpd(r | k6,
-                                  ptr[rax + half(index) * 8 + static_cast<int>(step.offset)]);
+                if (machine_.has_avx512) {
+                    kxnorw(k6, k6, k6);
+                    return wide ? vgatherdpd(r | k6, number) : vgatherdps(r | k6, number);
+                }
+                vpcmpeqd(all, all, all);
+                return wide ? vgatherdpd(r, number, all) : vgatherdps(r, number, all);
             }
             case VectorOp::spill_index: {
                 const Z a = in_register(step.in[0], false);

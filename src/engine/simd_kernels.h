@@ -8,9 +8,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <iterator>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "engine/compiled_curve.h"
@@ -41,6 +44,7 @@ enum class Op : std::uint8_t {
     log2,
     power,           // a^b
     power_constant,  // a^k0, k0 not whole
+    power_near,      // the same in float, for a small k0: see computed_by()
     sine,
     cosine,
     atan2,
@@ -57,6 +61,58 @@ enum class Op : std::uint8_t {
     lattice,            // of coordinates a, b, c: all three channels
 };
 
+struct Operation {
+    const char* name;
+    int operands;
+    /// About how many vector instructions compute it; a curve's depend on the curve.
+    int vectors = 1;
+    /// Has up to three results.
+    bool has_channels = false;
+};
+/// In the order of Op.
+inline constexpr Operation kOperations[] = {
+    {"copy", 1},
+    {"add", 2},
+    {"subtract", 2},
+    {"multiply", 2},
+    {"divide", 2},
+    {"multiply_add", 3},
+    {"multiply_subtract", 3},
+    {"subtract_product", 3},
+    {"dot3", 3, 9, true},
+    {"minimum", 2},
+    {"maximum", 2},
+    {"clamp", 3},
+    {"negate", 1},
+    {"absolute", 1},
+    {"square_root", 1},
+    {"floor", 1},
+    {"exp2", 1, 16},
+    {"log2", 1, 16},
+    {"power", 2, 40},
+    {"power_constant", 1, 30},
+    {"power_near", 1, 30},
+    {"sine", 1, 30},
+    {"cosine", 1, 30},
+    {"atan2", 2, 40},
+    {"less", 2},
+    {"less_equal", 2},
+    {"equal", 2},
+    {"select", 3},
+    {"select_less", 4},
+    {"select_less_equal", 4},
+    {"select_equal", 4},
+    {"lookup", 1, 15},
+    {"lookup_nonuniform", 1, 1, true},
+    {"curve", 1},
+    {"lattice", 3, 80, true},
+};
+static_assert(std::size(kOperations) == static_cast<std::size_t>(Op::lattice) + 1);
+
+[[nodiscard]] constexpr const Operation& operation(Op op) {
+    return kOperations[static_cast<std::size_t>(op)];
+}
+
 /// Where a value is: in the tile's register file, or among the constants, which stand there as one
 /// vector each and are read again and again.
 struct Operand {
@@ -70,6 +126,14 @@ struct SampledTable {
     std::vector<float> narrow;
     std::vector<double> wide;
     Table::Interpolation interpolation = Table::Interpolation::linear;
+
+    template <class T>
+    [[nodiscard]] std::span<const T> samples() const {
+        if constexpr (std::is_same_v<T, float>)
+            return narrow;
+        else
+            return wide;
+    }
 };
 
 /// Up to three tables with the same positions.

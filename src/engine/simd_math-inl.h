@@ -1,170 +1,188 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Elementary functions over Highway vectors, compiled once for each instruction set. Coefficients
-// are minimax polynomials (Remez exchange, 50 digits); the error beside each is that of the
-// polynomial alone. tests/unit/engine/simd_test.cpp holds the functions to the bounds stated.
+// The mathematics of the SIMD engine, the only text of it. Two files include it into a namespace of
+// their own: simd_kernels.cpp, where it runs on Highway's vectors, once for each instruction set,
+// and vector_code.cpp, where the same functions write machine code. Therefore both compute the same
+// bits. The file that includes it provides
+//   - `hn`: the functions of Highway that the text calls;
+//   - HWY_INLINE and HWY_ATTR, and kHasFma: products and sums can be rounded once;
+//   - Doubles: as many doubles as a vector has floats, in kHalves vectors; promote(), demote();
+//   - double_tag(), bits_tag(): Highway's tags for doubles and for the bits of a number;
+//   - has_minus(): numbers with a sign, -0 too;
+//   - kMayHaveExponents, and where it is true has_exponents(), exponent(), mantissa(), scale_by();
+//   - what depends on the processor most: where the numbers of a table are (see there).
+//
+// Coefficients are minimax polynomials (Remez exchange, 50 digits); the error beside each is that
+// of the polynomial alone. tests/unit/engine/simd_test.cpp holds the functions to the bounds
+// stated.
 
-#if defined(TONEWRIGHT_ENGINE_SIMD_MATH_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef TONEWRIGHT_ENGINE_SIMD_MATH_INL_H
-#undef TONEWRIGHT_ENGINE_SIMD_MATH_INL_H
-#else
-#define TONEWRIGHT_ENGINE_SIMD_MATH_INL_H
-#endif
-
-#include <cstdint>
-#include <limits>
-
-#include "hwy/highway.h"
-
-HWY_BEFORE_NAMESPACE();
-TONEWRIGHT_NAMESPACE_BEGIN
-namespace simd {
-namespace HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
-using hn::TFromD;  // for Highway's macros
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 template <class D>
 using Vec = hn::Vec<D>;
+template <class D>
+using Number = hn::TFromD<D>;
+template <class D>
+inline constexpr bool kIsDouble = sizeof(Number<D>) == sizeof(double);
+
+/// A vector full of a number, rounded.
+template <class D>
+HWY_INLINE Vec<D> set(D d, double value) {
+    return hn::Set(d, static_cast<Number<D>>(value));
+}
 
 /// c0 + x (c1 + x (c2 + ...)).
 template <class D>
 HWY_INLINE Vec<D> horner(D d, Vec<D> /*x*/, double c0) {
-    return hn::Set(d, static_cast<hn::TFromD<D>>(c0));
+    return set(d, c0);
 }
 template <class D, class... C>
 HWY_INLINE Vec<D> horner(D d, Vec<D> x, double c0, C... c) {
-    return hn::MulAdd(horner(d, x, c...), x, hn::Set(d, static_cast<hn::TFromD<D>>(c0)));
+    return hn::MulAdd(horner(d, x, c...), x, set(d, c0));
+}
+
+/// NaN gives -limit.
+template <class D>
+HWY_INLINE Vec<D> limited(D d, Vec<D> x, double limit) {
+    return hn::Min(hn::Max(x, set(d, -limit)), set(d, limit));
+}
+
+/// NaN -> 0, then limited to +-65504.
+template <class D>
+HWY_INLINE Vec<D> sanitized(D d, Vec<D> x) {
+    return limited(d, hn::IfThenElseZero(hn::Eq(x, x), x), static_cast<double>(kLargestInput));
+}
+
+// Min and Max of the processor return their second operand when equal or not ordered; with the
+// operands in this order that is what expressions mean: b < a ? b : a.
+template <class V>
+HWY_INLINE V minimum(V a, V b) {
+    return hn::Min(b, a);
+}
+template <class V>
+HWY_INLINE V maximum(V a, V b) {
+    return hn::Max(b, a);
+}
+
+/// One for true, as the comparisons of expressions are.
+template <class D, class M>
+HWY_INLINE Vec<D> one_where(D d, M mask) {
+    return hn::IfThenElseZero(mask, set(d, 1));
+}
+
+/// k0 a + k1 b + k2 c.
+template <class D>
+HWY_INLINE Vec<D> dot3(D d, const double* k, Vec<D> a, Vec<D> b, Vec<D> c) {
+    return hn::MulAdd(set(d, k[2]), c, hn::MulAdd(set(d, k[1]), b, hn::Mul(set(d, k[0]), a)));
 }
 
 // ---------------------------------------------------------------------------------------------
 // Exponents: x = 2^e (1 + f) with 1 + f in [3/4, 3/2) for finite x > 0, and x * 2^n for whole n;
 // with denormals.
 
-#if HWY_TARGET <= HWY_AVX3  // AVX-512 has instructions for both
-
-// As many floats as doubles. Highway's tag for them is another type from one version to the next.
-using HalfOfFloats = hn::Rebind<float, hn::Full512<double>>;
-
-// 4/3 x has the next exponent exactly where the fraction of x is 3/2 or more, also when rounded:
-// with 4/3 rounded up to float (by 1/3 of a last place) and down to double (by 1/3), 3/2 gives 2
-// and the number before it gives less. Rounded up to double (by 2/3), that one would give 2 as
-// well.
-HWY_INLINE void split(hn::Full512<float> d, Vec<hn::Full512<float>> x, Vec<hn::Full512<float>>& e,
-                      Vec<hn::Full512<float>>& f) {
-    e.raw = _mm512_getexp_ps(hn::Mul(x, hn::Set(d, 1.33333337F)).raw);
-    f.raw = _mm512_getmant_ps(x.raw, _MM_MANT_NORM_p75_1p5, _MM_MANT_SIGN_zero);
-    f = hn::Sub(f, hn::Set(d, 1.0F));
-}
-HWY_INLINE void split(HalfOfFloats d, Vec<HalfOfFloats> x, Vec<HalfOfFloats>& e,
-                      Vec<HalfOfFloats>& f) {
-    e.raw = _mm256_getexp_ps(hn::Mul(x, hn::Set(d, 1.33333337F)).raw);
-    f.raw = _mm256_getmant_ps(x.raw, _MM_MANT_NORM_p75_1p5, _MM_MANT_SIGN_zero);
-    f = hn::Sub(f, hn::Set(d, 1.0F));
-}
-HWY_INLINE void split(hn::Full512<double> d, Vec<hn::Full512<double>> x,
-                      Vec<hn::Full512<double>>& e, Vec<hn::Full512<double>>& f) {
-    e.raw = _mm512_getexp_pd(hn::Mul(x, hn::Set(d, 0x1.5555555555555p+0)).raw);
-    f.raw = _mm512_getmant_pd(x.raw, _MM_MANT_NORM_p75_1p5, _MM_MANT_SIGN_zero);
-    f = hn::Sub(f, hn::Set(d, 1.0));
-}
-HWY_INLINE Vec<hn::Full512<float>> scale(hn::Full512<float> /*d*/, Vec<hn::Full512<float>> x,
-                                         Vec<hn::Full512<float>> n) {
-    return Vec<hn::Full512<float>>{_mm512_scalef_ps(x.raw, n.raw)};
-}
-HWY_INLINE Vec<HalfOfFloats> scale(HalfOfFloats /*d*/, Vec<HalfOfFloats> x, Vec<HalfOfFloats> n) {
-    return Vec<HalfOfFloats>{_mm256_scalef_ps(x.raw, n.raw)};
-}
-HWY_INLINE Vec<hn::Full512<double>> scale(hn::Full512<double> /*d*/, Vec<hn::Full512<double>> x,
-                                          Vec<hn::Full512<double>> n) {
-    return Vec<hn::Full512<double>>{_mm512_scalef_pd(x.raw, n.raw)};
-}
-
-#else
-
-template <class D, HWY_IF_LANE_SIZE_D(D, 4)>
+template <class D>
 HWY_INLINE void split(D d, Vec<D> x, Vec<D>& e, Vec<D>& f) {
-    const hn::Rebind<std::int32_t, D> di;
-    const auto denormal = hn::Lt(x, hn::Set(d, std::numeric_limits<float>::min()));
-    const auto scaled = hn::IfThenElse(denormal, hn::Mul(x, hn::Set(d, 0x1p24F)), x);
-    const auto three_quarters = hn::Set(di, 0x3F400000);
-    const auto bits = hn::Sub(hn::BitCast(di, scaled), three_quarters);
-    const auto fraction = hn::Add(hn::And(bits, hn::Set(di, 0x007FFFFF)), three_quarters);
-    f = hn::Sub(hn::BitCast(d, fraction), hn::Set(d, 1.0F));
-    e = hn::ConvertTo(d, hn::ShiftRight<23>(bits));
-    e = hn::Sub(e, hn::IfThenElseZero(denormal, hn::Set(d, 24.0F)));
+    if constexpr (kMayHaveExponents) {
+        if (has_exponents(d)) {
+            // 4/3 x has the next exponent exactly where the fraction of x is 3/2 or more, also when
+            // rounded: with 4/3 rounded up to float (by 1/3 of a last place) and down to double (by
+            // 1/3), 3/2 gives 2 and the number before it gives less. Rounded up to double (by 2/3),
+            // that one would give 2 as well.
+            const double up = kIsDouble<D> ? 0x1.5555555555555p+0 : double{1.33333337F};
+            e = exponent(hn::Mul(x, set(d, up)));
+            f = hn::Sub(mantissa(x), set(d, 1));
+            return;
+        }
+    }
+    const auto tag = bits_tag(d);
+    const auto denormal = hn::Lt(x, hn::Set(d, std::numeric_limits<Number<D>>::min()));
+    const auto normal =
+        hn::IfThenElse(denormal, hn::Mul(x, set(d, kIsDouble<D> ? 0x1p53 : 0x1p24)), x);
+    const auto lost = hn::IfThenElseZero(denormal, set(d, kIsDouble<D> ? 53 : 24));
+    if constexpr (kIsDouble<D>) {
+        constexpr std::uint64_t kThreeQuarters = 0x3FE8000000000000;
+        constexpr std::uint64_t kBias = 0x3FF0000000000000;  // keeps the difference positive
+        const auto bits = hn::Add(hn::BitCast(tag, normal), hn::Set(tag, kBias - kThreeQuarters));
+        const auto fraction = hn::And(bits, hn::Set(tag, std::uint64_t{0x000FFFFFFFFFFFFF}));
+        // 64-bit integers are converted by way of the low bits of 2^52 + n: below AVX-512 there is
+        // no instruction.
+        const auto whole =
+            hn::Or(hn::ShiftRight<52>(bits), hn::Set(tag, std::uint64_t{0x4330000000000000}));
+        e = hn::Sub(hn::Sub(hn::BitCast(d, whole), set(d, 0x1p52 + 1023)), lost);
+        f = hn::Sub(hn::BitCast(d, hn::Add(fraction, hn::Set(tag, kThreeQuarters))), set(d, 1));
+    } else {
+        constexpr std::int32_t kThreeQuarters = 0x3F400000;
+        const auto bits = hn::Sub(hn::BitCast(tag, normal), hn::Set(tag, kThreeQuarters));
+        const auto fraction = hn::And(bits, hn::Set(tag, std::int32_t{0x007FFFFF}));
+        e = hn::Sub(hn::ConvertTo(d, hn::ShiftRight<23>(bits)), lost);
+        f = hn::Sub(hn::BitCast(d, hn::Add(fraction, hn::Set(tag, kThreeQuarters))), set(d, 1));
+    }
 }
 
-// 64-bit integers are converted by way of the low bits of 2^52 + n: below AVX-512 there is no
-// instruction.
-template <class D, HWY_IF_LANE_SIZE_D(D, 8)>
-HWY_INLINE void split(D d, Vec<D> x, Vec<D>& e, Vec<D>& f) {
-    const hn::Rebind<std::uint64_t, D> du;
-    const auto denormal = hn::Lt(x, hn::Set(d, std::numeric_limits<double>::min()));
-    const auto scaled = hn::IfThenElse(denormal, hn::Mul(x, hn::Set(d, 0x1p53)), x);
-    const auto three_quarters = hn::Set(du, 0x3FE8000000000000);
-    const auto bias = hn::Set(du, 0x3FF0000000000000);  // keeps the difference positive
-    const auto bits = hn::Add(hn::Sub(hn::BitCast(du, scaled), three_quarters), bias);
-    const auto fraction = hn::Add(hn::And(bits, hn::Set(du, 0x000FFFFFFFFFFFFF)), three_quarters);
-    f = hn::Sub(hn::BitCast(d, fraction), hn::Set(d, 1.0));
-    const auto whole = hn::Or(hn::ShiftRight<52>(bits), hn::Set(du, 0x4330000000000000));
-    e = hn::Sub(hn::BitCast(d, whole), hn::Set(d, 0x1p52 + 1023));
-    e = hn::Sub(e, hn::IfThenElseZero(denormal, hn::Set(d, 53.0)));
-}
+/// Beyond these powers of two every number is 0 or infinity.
+template <class D>
+inline constexpr double kLargestExponent = kIsDouble<D> ? 2000 : 250;
 
-// In two factors, so that results outside the normal numbers are rounded once, or reach 0 or
-// infinity.
-template <class D, HWY_IF_LANE_SIZE_D(D, 4)>
-HWY_INLINE Vec<D> scale(D d, Vec<D> x, Vec<D> n) {
-    const hn::Rebind<std::int32_t, D> di;
-    const auto limit = hn::Set(d, 250.0F);
-    const auto whole = hn::ConvertTo(di, hn::Min(hn::Max(n, hn::Neg(limit)), limit));
-    const auto half = hn::ShiftRight<1>(whole);
-    const auto power_of_two = [d, di](auto k) HWY_ATTR {
-        return hn::BitCast(d, hn::ShiftLeft<23>(hn::Add(k, hn::Set(di, 127))));
-    };
-    return hn::Mul(hn::Mul(x, power_of_two(half)), power_of_two(hn::Sub(whole, half)));
+/// @param is_limited  n is within +-kLargestExponent
+template <class D>
+HWY_INLINE Vec<D> scale(D d, Vec<D> x, Vec<D> n, bool is_limited) {
+    if constexpr (kMayHaveExponents) {
+        if (has_exponents(d)) return scale_by(x, n);
+    }
+    if (!is_limited) n = limited(d, n, kLargestExponent<D>);
+    // In two factors, so that results outside the normal numbers are rounded once, or reach 0 or
+    // infinity.
+    const auto tag = bits_tag(d);
+    if constexpr (kIsDouble<D>) {
+        const auto half = hn::Floor(hn::Mul(n, set(d, 0.5)));
+        const auto power_of_two = [d, tag](auto k) HWY_ATTR {
+            const auto whole = hn::BitCast(tag, hn::Add(k, set(d, 0x1p52 + 1023)));
+            return hn::BitCast(d, hn::ShiftLeft<52>(whole));
+        };
+        return hn::Mul(hn::Mul(x, power_of_two(half)), power_of_two(hn::Sub(n, half)));
+    } else {
+        const auto whole = hn::ConvertTo(tag, n);
+        const auto half = hn::ShiftRight<1>(whole);
+        const auto power_of_two = [d, tag](auto k) HWY_ATTR {
+            const auto biased = hn::Add(k, hn::Set(tag, std::int32_t{127}));
+            return hn::BitCast(d, hn::ShiftLeft<23>(biased));
+        };
+        return hn::Mul(hn::Mul(x, power_of_two(half)), power_of_two(hn::Sub(whole, half)));
+    }
 }
-
-template <class D, HWY_IF_LANE_SIZE_D(D, 8)>
-HWY_INLINE Vec<D> scale(D d, Vec<D> x, Vec<D> n) {
-    const hn::Rebind<std::uint64_t, D> du;
-    const auto limit = hn::Set(d, 2000.0);
-    const auto whole = hn::Min(hn::Max(n, hn::Neg(limit)), limit);
-    const auto half = hn::Floor(hn::Mul(whole, hn::Set(d, 0.5)));
-    const auto power_of_two = [d, du](auto k) HWY_ATTR {
-        return hn::BitCast(
-            d, hn::ShiftLeft<52>(hn::BitCast(du, hn::Add(k, hn::Set(d, 0x1p52 + 1023)))));
-    };
-    return hn::Mul(hn::Mul(x, power_of_two(half)), power_of_two(hn::Sub(whole, half)));
-}
-
-#endif
 
 // ---------------------------------------------------------------------------------------------
-// Float
+// Exponential, logarithm
 
-/// 2^r for r in [-1/2, 1/2]; 2^-28.9.
+/// 2^r for r in [-1/2, 1/2]; 2^-28.9 in float, 2^-58 in double.
 template <class D>
 HWY_INLINE Vec<D> exp2_fraction(D d, Vec<D> r) {
-    const auto p = horner(d, r, 0.6931471824645996, 0.24022647738456726, 0.055503327399492264,
-                          0.00961843691766262, 0.001339884358458221, 0.00015353347407653928);
-    return hn::MulAdd(p, r, hn::Set(d, 1.0F));
+    if constexpr (kIsDouble<D>) {
+        const auto p =
+            horner(d, r, 0.6931471805599453, 0.2402265069591013, 0.05550410866482009,
+                   0.009618129107594187, 0.0013333558146773998, 0.00015403530457037794,
+                   1.5252733493437096e-05, 1.3215435315483844e-06, 1.0178199518826279e-07,
+                   7.073778059560721e-09, 4.4347715552879237e-10);
+        return hn::MulAdd(p, r, set(d, 1));
+    } else {
+        const auto p = horner(d, r, 0.6931471824645996, 0.24022647738456726, 0.055503327399492264,
+                              0.00961843691766262, 0.001339884358458221, 0.00015353347407653928);
+        return hn::MulAdd(p, r, set(d, 1));
+    }
 }
 
 /// 2^x.
 template <class D>
-HWY_INLINE Vec<D> exp2_float(D d, Vec<D> x) {
-    const auto limit = hn::Set(d, 250.0F);
-    x = hn::Min(hn::Max(x, hn::Neg(limit)), limit);
+HWY_INLINE Vec<D> exp2(D d, Vec<D> x) {
+    x = limited(d, x, kLargestExponent<D>);
     const auto n = hn::Round(x);
-    return scale(d, exp2_fraction(d, hn::Sub(x, n)), n);
+    return scale(d, exp2_fraction(d, hn::Sub(x, n)), n, true);
 }
 
 /// 1/ln 2, rounded to float.
-inline constexpr float kLog2e = 1.4426950216293335F;
+inline constexpr double kLog2e = 1.4426950216293335;
 
-/// log2(1 + f) - kLog2e f for 1 + f in [3/4, 3/2); 2^-27.8 of the logarithm.
+/// log2(1 + f) - kLog2e f for 1 + f in [3/4, 3/2), in float; 2^-27.8 of the logarithm.
 template <class D>
 HWY_INLINE Vec<D> log2_curvature(D d, Vec<D> f) {
     // Even and odd powers apart: a shorter chain. The first coefficient is the rest of 1/ln 2.
@@ -176,198 +194,190 @@ HWY_INLINE Vec<D> log2_curvature(D d, Vec<D> f) {
     return hn::Mul(f, hn::MulAdd(odd, f, even));
 }
 
-/// log2(x); -inf for x <= 0.
+/// log2(1 + f) in double by s = f/(2+f): log2((1+s)/(1-s)); 2^-62.
 template <class D>
-HWY_INLINE Vec<D> log2_float(D d, Vec<D> x) {
-    auto e = hn::Undefined(d);
-    auto f = hn::Undefined(d);
-    split(d, x, e, f);
-    // The exponent first: below 3/4 it is -1, and most of it cancels.
-    const auto result = hn::Add(hn::MulAdd(f, hn::Set(d, kLog2e), e), log2_curvature(d, f));
-    return hn::IfThenElse(hn::Gt(x, hn::Zero(d)), result,
-                          hn::Set(d, -std::numeric_limits<float>::infinity()));
-}
-
-/// Largest exponent of power_near that keeps to 2 ulp; the rounding of its products tells.
-inline constexpr double kNearPower = HWY_NATIVE_FMA ? 4 : 1;
-
-/// x^y for one y with |y| <= kNearPower and x > 0. The product of y and the exponent of x is exact
-/// (y in two parts, the first of 11 bits); what is left is small, and so is its float error.
-template <class D>
-HWY_INLINE Vec<D> power_near(D d, Vec<D> x, double y) {
-    const float y_hi = static_cast<float>(static_cast<std::int32_t>(y * 512)) / 512.0F;
-    const auto y_lo = hn::Set(d, static_cast<float>(y - static_cast<double>(y_hi)));
-    const auto vy = hn::Set(d, static_cast<float>(y));
-    const double slope = y * static_cast<double>(kLog2e);
-    const auto slope_hi = static_cast<float>(slope);
-    const auto slope_lo = hn::Set(d, static_cast<float>(slope - static_cast<double>(slope_hi)));
-    auto e = hn::Undefined(d);
-    auto f = hn::Undefined(d);
-    split(d, x, e, f);
-    const auto curvature = log2_curvature(d, f);
-    const auto log2_x = hn::Add(e, hn::MulAdd(f, hn::Set(d, kLog2e), curvature));
-    const auto n = hn::Round(hn::Mul(log2_x, vy));
-    auto r = hn::MulSub(hn::Set(d, y_hi), e, n);
-    r = hn::MulAdd(hn::Set(d, slope_hi), f, r);
-    r = hn::MulAdd(vy, curvature, r);
-    r = hn::Add(r, hn::MulAdd(slope_lo, f, hn::Mul(y_lo, e)));
-    return scale(d, exp2_fraction(d, r), n);
-}
-
-// ---------------------------------------------------------------------------------------------
-// Double
-
-/// 2^x; 2^-58.
-template <class D>
-HWY_INLINE Vec<D> exp2_double(D d, Vec<D> x) {
-    const auto limit = hn::Set(d, 2000.0);
-    x = hn::Min(hn::Max(x, hn::Neg(limit)), limit);
-    const auto n = hn::Round(x);
-    const auto r = hn::Sub(x, n);
-    const auto p = horner(d, r, 0.6931471805599453, 0.2402265069591013, 0.05550410866482009,
-                          0.009618129107594187, 0.0013333558146773998, 0.00015403530457037794,
-                          1.5252733493437096e-05, 1.3215435315483844e-06, 1.0178199518826279e-07,
-                          7.073778059560721e-09, 4.4347715552879237e-10);
-    return scale(d, hn::MulAdd(p, r, hn::Set(d, 1.0)), n);
-}
-
-/// log2(1 + f) by s = f/(2+f): log2((1+s)/(1-s)); 2^-62.
-template <class D>
-HWY_INLINE Vec<D> log2_fraction_double(D d, Vec<D> f) {
-    const auto s = hn::Div(f, hn::Add(f, hn::Set(d, 2.0)));
+HWY_INLINE Vec<D> log2_fraction(D d, Vec<D> f) {
+    const auto s = hn::Div(f, hn::Add(f, set(d, 2)));
     const auto z = hn::Mul(s, s);
     const auto p = horner(d, z, 0.9617966939259746, 0.5770780163563926, 0.4121985828886401,
                           0.32059892760850184, 0.26230600942494436, 0.222046238639155,
                           0.19006442778763416, 0.19964825707152564);
-    return hn::MulAdd(hn::Mul(s, z), p, hn::Mul(s, hn::Set(d, 2.8853900817779268)));
+    return hn::MulAdd(hn::Mul(s, z), p, hn::Mul(s, set(d, 2.8853900817779268)));
 }
 
-/// log2(x); -inf for x <= 0.
+/// log2(x); -inf for x <= 0. In float only where sums and products are rounded once: below 3/4 the
+/// exponent is -1, and most of it cancels.
 template <class D>
-HWY_INLINE Vec<D> log2_double(D d, Vec<D> x) {
-    auto e = hn::Undefined(d);
-    auto f = hn::Undefined(d);
+HWY_INLINE Vec<D> log2(D d, Vec<D> x) {
+    Vec<D> e, f;
     split(d, x, e, f);
-    const auto result = hn::Add(e, log2_fraction_double(d, f));
-    return hn::IfThenElse(hn::Gt(x, hn::Zero(d)), result,
-                          hn::Set(d, -std::numeric_limits<double>::infinity()));
+    Vec<D> result;
+    if constexpr (kIsDouble<D>) {
+        result = hn::Add(e, log2_fraction(d, f));
+    } else {
+        result = hn::Add(hn::MulAdd(f, set(d, kLog2e), e), log2_curvature(d, f));
+    }
+    return hn::IfThenElse(hn::Gt(x, hn::Zero(d)), result, set(d, -kInfinity));
 }
 
-/// a^b for a > 0.
+// ---------------------------------------------------------------------------------------------
+// Powers
+
+/// a^b in double for a > 0.
 template <class D>
 HWY_INLINE Vec<D> power_double(D d, Vec<D> a, Vec<D> b) {
-    auto e = hn::Undefined(d);
-    auto f = hn::Undefined(d);
+    Vec<D> e, f;
     split(d, a, e, f);
-    return exp2_double(d, hn::Mul(b, hn::Add(e, log2_fraction_double(d, f))));
+    return exp2(d, hn::Mul(b, hn::Add(e, log2_fraction(d, f))));
 }
 
-/// Float a^b for a > 0, with the logarithm in double: for exponents of any size. DF has as many
-/// lanes as D.
-template <class D, class DF = hn::Rebind<float, D>>
-HWY_INLINE Vec<DF> power_float(D d, Vec<DF> a, Vec<D> b) {
-    const DF df;
-    auto e = hn::Undefined(df);
-    auto f = hn::Undefined(df);
-    split(df, a, e, f);
-    const auto wide = hn::PromoteTo(d, f);
-    // log2(1+f)/f; 2^-33.
-    const auto q = horner(d, wide, 1.4426950409945543, -0.7213475168566406, 0.48089828222624775,
-                          -0.360674359271077, 0.28854602343192026, -0.24042822178704773,
-                          0.20582040034720844, -0.18031455716572908, 0.1646569515665286,
-                          -0.15287069733099928, 0.1155046890543786, -0.044955420614352516);
-    auto p = hn::Mul(hn::MulAdd(q, wide, hn::PromoteTo(d, e)), b);
-    const auto limit = hn::Set(d, 250.0);
-    p = hn::Min(hn::Max(p, hn::Neg(limit)), limit);
-    const auto n = hn::Round(p);
-    const auto r = hn::DemoteTo(df, hn::Sub(p, n));
-    return scale(df, exp2_fraction(df, r), hn::DemoteTo(df, n));
+/// Float a^b for a > 0, with the logarithm in double: for exponents of any size.
+template <class D>
+HWY_INLINE Vec<D> power_float(D d, Vec<D> a, const Doubles& b) {
+    const auto dd = double_tag(d);
+    Vec<D> e, f;
+    split(d, a, e, f);
+    Doubles whole, rest;
+    for (int h = 0; h < kHalves; ++h) {
+        const auto wide = promote(f, h);
+        // log2(1+f)/f; 2^-33.
+        const auto q =
+            horner(dd, wide, 1.4426950409945543, -0.7213475168566406, 0.48089828222624775,
+                   -0.360674359271077, 0.28854602343192026, -0.24042822178704773,
+                   0.20582040034720844, -0.18031455716572908, 0.1646569515665286,
+                   -0.15287069733099928, 0.1155046890543786, -0.044955420614352516);
+        const auto p = limited(dd, hn::Mul(hn::MulAdd(q, wide, promote(e, h)), b.half[h]),
+                               kLargestExponent<D>);
+        whole.half[h] = hn::Round(p);
+        rest.half[h] = hn::Sub(p, whole.half[h]);
+    }
+    return scale(d, exp2_fraction(d, demote(rest)), demote(whole), true);
 }
 
 /// What a^b is where a is not positive, given |a|^b.
 template <class D>
 HWY_INLINE Vec<D> power_of_any(D d, Vec<D> a, Vec<D> b, Vec<D> magnitude) {
-    using T = hn::TFromD<D>;
     const auto zero = hn::Zero(d);
-    const auto inf = hn::Set(d, std::numeric_limits<T>::infinity());
-    const auto nan = hn::Set(d, std::numeric_limits<T>::quiet_NaN());
-    const auto half = hn::Mul(b, hn::Set(d, static_cast<T>(0.5)));
-    const auto is_whole = hn::Eq(hn::Floor(b), b);
+    const auto half = hn::Mul(b, set(d, 0.5));
     const auto is_even = hn::Eq(hn::Floor(half), half);
-    const auto of_zero = hn::IfThenElse(hn::Gt(b, zero), zero, inf);
-    const auto of_negative =
-        hn::IfThenElse(is_whole, hn::IfThenElse(is_even, magnitude, hn::Neg(magnitude)), nan);
+    const auto of_whole = hn::IfThenElse(is_even, magnitude, hn::Neg(magnitude));
+    const auto nan = set(d, std::numeric_limits<double>::quiet_NaN());
+    const auto of_negative = hn::IfThenElse(hn::Eq(hn::Floor(b), b), of_whole, nan);
+    const auto of_zero = hn::IfThenElse(hn::Gt(b, zero), zero, set(d, kInfinity));
     const auto not_positive = hn::IfThenElse(hn::Eq(a, zero), of_zero, of_negative);
     const auto result = hn::IfThenElse(hn::Gt(a, zero), magnitude, not_positive);
-    return hn::IfThenElse(hn::Eq(b, zero), hn::Set(d, static_cast<T>(1)), result);
+    return hn::IfThenElse(hn::Eq(b, zero), set(d, 1), result);
 }
 
 /// The same for one b that is not whole. Below 0 there is no value: 0 for b > 0, infinity for b <
 /// 0.
 template <class D>
-HWY_INLINE Vec<D> power_of_any(D d, Vec<D> a, hn::TFromD<D> b, Vec<D> magnitude) {
+HWY_INLINE Vec<D> power_of_any(D d, Vec<D> a, double b, Vec<D> magnitude) {
     const auto is_positive = hn::Gt(a, hn::Zero(d));
     if (b > 0) return hn::IfThenElseZero(is_positive, magnitude);
-    const auto inf = hn::Set(d, std::numeric_limits<hn::TFromD<D>>::infinity());
-    return hn::IfThenElse(is_positive, magnitude, inf);
+    return hn::IfThenElse(is_positive, magnitude, set(d, kInfinity));
 }
+
+/// Largest exponent of power_near that keeps to 2 ulp; the rounding of its products tells.
+inline constexpr double kNearPower = kHasFma ? 4 : 1;
+
+/// x^y in float for one y that is not whole, |y| <= kNearPower. The product of y and the exponent
+/// of x is exact (y in two parts, the first of 11 bits); what is left is small, and so is its float
+/// error.
+template <class D>
+HWY_INLINE Vec<D> power_near(D d, Vec<D> x, double y) {
+    const double y_hi = static_cast<double>(static_cast<std::int32_t>(y * 512)) / 512;
+    const double slope = y * kLog2e;
+    const auto slope_hi = static_cast<double>(static_cast<float>(slope));
+    const auto vy = set(d, y);
+    Vec<D> e, f;
+    split(d, x, e, f);
+    const auto curvature = log2_curvature(d, f);
+    const auto log2_x = hn::Add(e, hn::MulAdd(f, set(d, kLog2e), curvature));
+    const auto n = hn::Round(hn::Mul(log2_x, vy));
+    auto r = hn::MulSub(set(d, y_hi), e, n);
+    r = hn::MulAdd(set(d, slope_hi), f, r);
+    r = hn::MulAdd(vy, curvature, r);
+    r = hn::Add(r, hn::MulAdd(set(d, slope - slope_hi), f, hn::Mul(set(d, y - y_hi), e)));
+    return power_of_any(d, x, y, scale(d, exp2_fraction(d, r), n, false));
+}
+
+/// a^b.
+template <class D>
+HWY_INLINE Vec<D> power(D d, Vec<D> a, Vec<D> b) {
+    if constexpr (kIsDouble<D>) {
+        return power_of_any(d, a, b, power_double(d, hn::Abs(a), b));
+    } else {
+        Doubles wide;
+        for (int h = 0; h < kHalves; ++h)
+            wide.half[h] = promote(b, h);
+        return power_of_any(d, a, b, power_float(d, hn::Abs(a), wide));
+    }
+}
+
+/// The same for one b that is not whole; in float beyond kNearPower.
+template <class D>
+HWY_INLINE Vec<D> power(D d, Vec<D> a, double b) {
+    if constexpr (kIsDouble<D>) {
+        return power_of_any(d, a, b, power_double(d, a, set(d, b)));
+    } else {
+        Doubles wide;
+        for (int h = 0; h < kHalves; ++h)
+            wide.half[h] = set(double_tag(d), b);
+        return power_of_any(d, a, b, power_float(d, a, wide));
+    }
+}
+
+// ---------------------------------------------------------------------------------------------
+// Angles, in double
 
 /// x - q pi/2 in [-pi/4, pi/4]. The products with the first two parts of pi/2 (33 bits each) are
 /// exact without fused multiply-add, too, for |x| up to 1e6.
 template <class D>
 HWY_INLINE Vec<D> reduce_quarter_turns(D d, Vec<D> x, Vec<D>& q) {
-    q = hn::Round(hn::Mul(x, hn::Set(d, 0.63661977236758134)));
-    auto r = hn::NegMulAdd(q, hn::Set(d, 0x1.921fb54400000p+0), x);
-    r = hn::NegMulAdd(q, hn::Set(d, 0x1.0b4611a600000p-34), r);
-    return hn::NegMulAdd(q, hn::Set(d, 0x1.3198a2e037073p-69), r);
+    q = hn::Round(hn::Mul(x, set(d, 0.63661977236758134)));
+    auto r = hn::NegMulAdd(q, set(d, 0x1.921fb54400000p+0), x);
+    r = hn::NegMulAdd(q, set(d, 0x1.0b4611a600000p-34), r);
+    return hn::NegMulAdd(q, set(d, 0x1.3198a2e037073p-69), r);
 }
 
 /// sin(r + q pi/2); sine 2^-58, cosine 2^-64.
 template <class D>
 HWY_INLINE Vec<D> sine_of_quarters(D d, Vec<D> r, Vec<D> q) {
     const auto z = hn::Mul(r, r);
-    const auto one = hn::Set(d, 1.0);
     const auto s = horner(d, z, -0.16666666666666632, 0.008333333333322424, -0.000198412698298164,
                           2.755731369505473e-06, -2.5050758628425347e-08, 1.5896826572922353e-10);
     const auto c = horner(d, z, 0.041666666666666595, -0.0013888888888873056, 2.480158728885139e-05,
                           -2.7557314179215933e-07, 2.0875700831894906e-09, -1.1358536030488525e-11);
     const auto sine = hn::MulAdd(hn::Mul(r, z), s, r);
-    const auto cosine = hn::MulAdd(hn::Mul(z, z), c, hn::NegMulAdd(z, hn::Set(d, 0.5), one));
-    const auto half = hn::Mul(q, hn::Set(d, 0.5));
+    const auto cosine = hn::MulAdd(hn::Mul(z, z), c, hn::NegMulAdd(z, set(d, 0.5), set(d, 1)));
+    const auto half = hn::Mul(q, set(d, 0.5));
     const auto even = hn::Eq(hn::Floor(half), half);
     const auto value = hn::IfThenElse(even, sine, cosine);
     // Quarters 2 and 3 (of 0..3) are upside down.
-    const auto quarter = hn::NegMulAdd(hn::Floor(hn::Mul(q, hn::Set(d, 0.25))), hn::Set(d, 4.0), q);
-    return hn::IfThenElse(hn::Lt(quarter, hn::Set(d, 2.0)), value, hn::Neg(value));
+    const auto quarter = hn::NegMulAdd(hn::Floor(hn::Mul(q, set(d, 0.25))), set(d, 4), q);
+    return hn::IfThenElse(hn::Lt(quarter, set(d, 2)), value, hn::Neg(value));
 }
 
+/// sin(x + q pi/2) for whole q.
 template <class D>
-HWY_INLINE Vec<D> sine_double(D d, Vec<D> x) {
-    auto q = hn::Undefined(d);
+HWY_INLINE Vec<D> sine(D d, Vec<D> x, double quarters) {
+    Vec<D> q;
     const auto r = reduce_quarter_turns(d, x, q);
-    return sine_of_quarters(d, r, q);
+    return sine_of_quarters(d, r, hn::Add(q, set(d, quarters)));
 }
 
 template <class D>
-HWY_INLINE Vec<D> cosine_double(D d, Vec<D> x) {
-    auto q = hn::Undefined(d);
-    const auto r = reduce_quarter_turns(d, x, q);
-    return sine_of_quarters(d, r, hn::Add(q, hn::Set(d, 1.0)));
-}
-
-template <class D>
-HWY_INLINE Vec<D> atan2_double(D d, Vec<D> y, Vec<D> x) {
-    const auto zero = hn::Zero(d);
-    const auto one = hn::Set(d, 1.0);
+HWY_INLINE Vec<D> atan2(D d, Vec<D> y, Vec<D> x) {
     const auto ax = hn::Abs(x);
     const auto ay = hn::Abs(y);
     const auto small = hn::Min(ax, ay);
     const auto large = hn::Max(ax, ay);
     // atan of small/large in [0, 1]; above tan(pi/8) by atan(t) = pi/4 + atan((t-1)/(t+1)).
-    const auto far = hn::Gt(small, hn::Mul(large, hn::Set(d, 0.41421356237309503)));
+    const auto far = hn::Gt(small, hn::Mul(large, set(d, 0.41421356237309503)));
     const auto top = hn::IfThenElse(far, hn::Sub(small, large), small);
     const auto bottom = hn::IfThenElse(far, hn::Add(small, large), large);
-    const auto t = hn::IfThenElseZero(hn::Gt(large, zero), hn::Div(top, bottom));
+    const auto t = hn::IfThenElseZero(hn::Gt(large, hn::Zero(d)), hn::Div(top, bottom));
     const auto z = hn::Mul(t, t);
     // 2^-64
     const auto p = horner(d, z, -0.33333333333333326, 0.19999999999997692, -0.14285714285390944,
@@ -375,48 +385,313 @@ HWY_INLINE Vec<D> atan2_double(D d, Vec<D> y, Vec<D> x) {
                           -0.06666229031771803, 0.058770441703819475, -0.05218548969052191,
                           0.045041393781768635, -0.033488235462723365, 0.015209188612267548);
     auto angle = hn::MulAdd(hn::Mul(t, z), p, t);
-    angle = hn::Add(angle, hn::IfThenElseZero(far, hn::Set(d, 0.78539816339744831)));
-    angle = hn::IfThenElse(hn::Gt(ay, ax), hn::Sub(hn::Set(d, 1.5707963267948966), angle), angle);
-    const auto left = hn::Lt(hn::CopySign(one, x), zero);  // -0 is left, too
-    angle = hn::IfThenElse(left, hn::Sub(hn::Set(d, 3.1415926535897931), angle), angle);
+    angle = hn::Add(angle, hn::IfThenElseZero(far, set(d, 0.78539816339744831)));
+    angle = hn::IfThenElse(hn::Gt(ay, ax), hn::Sub(set(d, 1.5707963267948966), angle), angle);
+    angle = hn::IfThenElse(has_minus(d, x), hn::Sub(set(d, 3.1415926535897931), angle), angle);
     return hn::CopySign(angle, y);
 }
 
 // ---------------------------------------------------------------------------------------------
-// Tables
+// Tables and 3D LUTs. places(cell): whole numbers as gather() takes them.
+// gather(d, samples, first, places): samples[first + place].
 
-/// Samples of a table at x; what Table::operator() does.
+/// Samples at equal distances over [0, 1]; what Table::operator() does.
 template <class D>
-HWY_INLINE Vec<D> lookup_linear(D d, Vec<D> x, const hn::TFromD<D>* samples, std::size_t count) {
-    using T = hn::TFromD<D>;
-    const hn::RebindToSigned<D> di;
-    const auto zero = hn::Zero(d);
+HWY_INLINE Vec<D> lookup(D d, Vec<D> x, const SampledTable& table) {
+    const auto samples = table.samples<Number<D>>();
+    const auto count = static_cast<double>(samples.size());
     // NaN -> 0: the comparison fails.
-    const auto t = hn::Min(hn::IfThenElseZero(hn::Gt(x, zero), x), hn::Set(d, static_cast<T>(1)));
-    const auto last = static_cast<T>(count > 1 ? count - 2 : 0);
-    const auto position = hn::Mul(t, hn::Set(d, static_cast<T>(count - 1)));
-    const auto cell = hn::Min(hn::Floor(position), hn::Set(d, last));
-    const auto index = hn::ConvertTo(di, cell);
-    const auto a = hn::GatherIndex(d, samples, index);
-    const auto b = hn::GatherIndex(d, samples + (count > 1 ? 1 : 0), index);
+    const auto t = hn::Min(hn::IfThenElseZero(hn::Gt(x, hn::Zero(d)), x), set(d, 1));
+    if (table.interpolation != Table::Interpolation::linear) {
+        const auto cell = hn::Min(hn::Floor(hn::Mul(t, set(d, count))), set(d, count - 1));
+        return gather(d, samples, 0, places(cell));
+    }
+    const auto position = hn::Mul(t, set(d, count - 1));
+    const auto cell = hn::Min(hn::Floor(position), set(d, count > 1 ? count - 2 : 0));
+    const auto place = places(cell);
+    const auto a = gather(d, samples, 0, place);
+    const auto b = gather(d, samples, count > 1 ? 1 : 0, place);
     return hn::MulAdd(hn::Sub(position, cell), hn::Sub(b, a), a);
 }
 
+/// The four nodes of a 3D LUT about a place, by their numbers, and their weights.
 template <class D>
-HWY_INLINE Vec<D> lookup_step(D d, Vec<D> x, const hn::TFromD<D>* samples, std::size_t count) {
-    using T = hn::TFromD<D>;
-    const hn::RebindToSigned<D> di;
-    const auto zero = hn::Zero(d);
-    const auto t = hn::Min(hn::IfThenElseZero(hn::Gt(x, zero), x), hn::Set(d, static_cast<T>(1)));
-    const auto cell = hn::Min(hn::Floor(hn::Mul(t, hn::Set(d, static_cast<T>(count)))),
-                              hn::Set(d, static_cast<T>(count - 1)));
-    return hn::GatherIndex(d, samples, hn::ConvertTo(di, cell));
+struct Nodes {
+    Vec<D> number[4], weight[4];
+};
+template <class D>
+HWY_INLINE Nodes<D> nodes_about(D d, Vec<D> red, Vec<D> green, Vec<D> blue, double edge) {
+    const auto one = set(d, 1);
+    const Vec<D> given[3] = {red, green, blue};
+    Vec<D> cell[3], f[3];
+    for (int c = 0; c < 3; ++c) {
+        const auto t = hn::Min(hn::Max(given[c], hn::Zero(d)), one);
+        const auto place = hn::Mul(t, set(d, edge - 1));
+        cell[c] = hn::Min(hn::Floor(place), set(d, edge - 2));
+        f[c] = hn::Sub(place, cell[c]);
+    }
+    // Whole numbers below 2^24 are exact in float, and so is their sum.
+    const auto n1 = set(d, edge);
+    const auto n2 = set(d, edge * edge);
+    const auto corner = hn::MulAdd(cell[0], n2, hn::MulAdd(cell[1], n1, cell[2]));
+    // Steps of the axes with the largest and the smallest fraction.
+    const auto red_below_green = hn::Lt(f[0], f[1]);
+    const auto upper = hn::Max(f[0], f[1]);
+    const auto lower = hn::Min(f[0], f[1]);
+    const auto step_upper = hn::IfThenElse(red_below_green, n1, n2);
+    const auto step_lower = hn::IfThenElse(red_below_green, n2, n1);
+    const auto step_highest = hn::IfThenElse(hn::Lt(upper, f[2]), one, step_upper);
+    const auto step_lowest = hn::IfThenElse(hn::Lt(lower, f[2]), step_lower, one);
+    const auto highest = hn::Max(upper, f[2]);
+    const auto lowest = hn::Min(lower, f[2]);
+    const auto middle = hn::Max(lower, hn::Min(upper, f[2]));
+    const auto far = hn::Add(corner, set(d, edge * edge + edge + 1));
+    return {{corner, hn::Add(corner, step_highest), hn::Sub(far, step_lowest), far},
+            {hn::Sub(one, highest), hn::Sub(highest, middle), hn::Sub(middle, lowest), lowest}};
 }
 
-// NOLINTNEXTLINE(google-readability-namespace-comments)
-}  // namespace HWY_NAMESPACE
-}  // namespace simd
-TONEWRIGHT_NAMESPACE_END
-HWY_AFTER_NAMESPACE();
+/// @param weight, node  functions of k: the numbers of 0 to 3
+template <class Weight, class Node>
+HWY_INLINE auto weighted_sum(Weight weight, Node node) {
+    auto sum = hn::Mul(weight(0), node(0));
+    for (int k = 1; k < 4; ++k)
+        sum = hn::MulAdd(weight(k), node(k), sum);
+    return sum;
+}
 
-#endif  // per-target include guard
+// ---------------------------------------------------------------------------------------------
+// Compiled curves (compiled_curve.h)
+
+/// Ends of a curve as numbers of their own: what a kernel writes may not be them.
+struct CurveEnds {
+    double lo, hi, least, most, at_lo;
+
+    explicit CurveEnds(const CompiledCurve& curve)
+        : lo(static_cast<double>(curve.lo)),
+          hi(static_cast<double>(curve.hi)),
+          least(static_cast<double>(curve.least)),
+          most(static_cast<double>(curve.most)),
+          at_lo(curve.at_lo) {}
+
+    template <class D>
+    HWY_INLINE Vec<D> limit(D d, Vec<D> x) const {
+        return hn::Min(hn::Max(x, set(d, lo)), set(d, hi));
+    }
+    template <class D>
+    HWY_INLINE Vec<D> finish(D d, Vec<D> x, Vec<D> y) const {
+        const auto limited = hn::Min(hn::Max(y, set(d, least)), set(d, most));
+        // NaN is not above lo.
+        return hn::IfThenElse(hn::Gt(x, set(d, lo)), limited, set(d, at_lo));
+    }
+};
+
+/// A curve's result is y t + first; of a precise curve y + first, added in double.
+template <class D>
+struct Polynomial {
+    Vec<D> y, t, first;
+};
+
+/// How many numbers of `threshold` there are.
+HWY_INLINE int threshold_count(const CompiledCurve& curve) {
+    return curve.cells == 0 ? curve.segments : curve.cells;
+}
+
+/// In segments.
+/// @tparam Cells, Segments  of their counts, numbers or constants
+template <class D, class Cells, class Segments>
+class SegmentPolynomial {
+  public:
+    /// @param cells  threshold_count(curve)
+    HWY_INLINE SegmentPolynomial(D d, const CompiledCurve& curve, Cells cells, Segments segments)
+        : curve_(curve),
+          segments_(segments),
+          threshold_(table(d, curve.threshold.data(), cells)),
+          segment_(table(d, reinterpret_cast<const float*>(curve.segment.data()), cells)),
+          scale_(table(d, curve.scale.data(), segments)),
+          offset_(table(d, curve.offset.data(), segments)) {}
+
+    /// @param rest  what x leaves out of the number given; null where it is that number
+    HWY_INLINE Polynomial<D> operator()(D d, Vec<D> x, const Vec<D>* rest) const {
+        const auto index = segment_of(d, x);
+        const auto number = [&](const std::array<float, CompiledCurve::kMaxSegments>& numbers)
+                                HWY_ATTR { return table(d, numbers.data(), segments_).at(index); };
+        const auto scale = scale_.at(index);
+        auto t = hn::MulAdd(x, scale, offset_.at(index));
+        if (rest) t = hn::MulAdd(*rest, scale, t);
+        auto k = static_cast<std::size_t>(curve_.degree);
+        auto y = number(curve_.coefficient[k]);
+        while (--k > 0)
+            y = hn::MulAdd(y, t, number(curve_.coefficient[k]));
+        if (curve_.is_precise) y = hn::MulAdd(y, t, number(curve_.rest));
+        return {y, t, number(curve_.coefficient[0])};
+    }
+
+  private:
+    HWY_INLINE auto segment_of(D d, Vec<D> x) const {
+        const auto tag = bits_tag(d);
+        if (curve_.cells == 0) {
+            // A bit of the index at a time, the highest first.
+            auto index = hn::Zero(tag);
+            for (int bit = segments_ / 2; bit > 0; bit /= 2) {
+                const auto next = hn::Or(index, hn::Set(tag, bit));
+                const auto is_there = hn::RebindMask(tag, hn::Ge(x, threshold_.at(next)));
+                index = hn::IfThenElse(is_there, next, index);
+            }
+            return index;
+        }
+        const auto bits = hn::BitCast(tag, hn::Max(x, hn::Set(d, curve_.cell_floor)));
+        const auto first = hn::Set(tag, static_cast<std::int32_t>(curve_.first_cell));
+        const auto cell = hn::Sub(hn::ShiftRightSame(bits, curve_.shift), first);
+        const auto is_behind = hn::Ge(x, threshold_.at(cell));
+        return add_one_where(is_behind, hn::BitCast(tag, segment_.at(cell)));
+    }
+
+    const CompiledCurve& curve_;
+    Segments segments_;
+    decltype(table(D(), nullptr, Cells())) threshold_, segment_;
+    decltype(table(D(), nullptr, Segments())) scale_, offset_;
+};
+
+/// In rows.
+/// @tparam Length  of the length of a row, a number or a constant
+template <class D, class Length>
+class RowPolynomial {
+  public:
+    HWY_INLINE RowPolynomial(const CurveRows& rows, Length length)
+        : numbers_(rows.numbers),
+          restarts_(rows.restarts),
+          base_(rows.base),
+          shift_(rows.shift),
+          length_(length) {}
+
+    /// @param x  not below 0
+    /// @param rest  see SegmentPolynomial
+    HWY_INLINE Polynomial<D> operator()(D d, Vec<D> x, const Vec<D>* rest) const {
+        const auto tag = bits_tag(d);
+        const auto float_of = [&](std::uint32_t bits) HWY_ATTR {
+            return hn::BitCast(d, hn::Set(tag, static_cast<std::int32_t>(bits)));
+        };
+        auto base = float_of(base_);
+        const auto above = hn::Max(x, base);
+        for (const CurveRows::Restart& restart : restarts_) {
+            const auto is_behind = hn::Ge(above, float_of(restart.from));
+            base = hn::IfThenElse(is_behind, float_of(restart.base), base);
+        }
+        const auto distance_in_bits = hn::Sub(hn::BitCast(tag, above), hn::BitCast(tag, base));
+        const auto cell = hn::ShiftRightSame(distance_in_bits, shift_);
+        const auto rows = rows_at(d, numbers_, cell, length_);
+        const std::uint32_t in_cell = (std::uint32_t{1} << static_cast<unsigned>(shift_)) - 1;
+        const auto x0 =
+            restarts_.empty() && (base_ & in_cell) == 0
+                ? hn::And(above, float_of(~in_cell))
+                : hn::BitCast(d, hn::Add(hn::ShiftLeftSame(cell, shift_), hn::BitCast(tag, base)));
+        // 0x7F000000 less the exponent.
+        const auto complement = hn::AndNot(x0, float_of(0x7F800000));
+        const auto scale = hn::BitCast(
+            d, hn::Add(hn::BitCast(tag, complement), hn::Set(tag, std::int32_t{-0x00800000})));
+        auto distance = hn::Sub(x, x0);
+        if (rest) distance = hn::Add(distance, *rest);
+        const auto t = hn::Mul(distance, scale);
+        Vec<D> number[4];
+        auto y = hn::Zero(d);
+        if (length_ == 8) {
+            rows.columns(1, number);
+            y = number[3];
+            for (int k = 2; k >= 0; --k)
+                y = hn::MulAdd(y, t, number[k]);
+        }
+        rows.columns(0, number);
+        y = length_ == 8 ? hn::MulAdd(y, t, number[3]) : number[3];
+        y = hn::MulAdd(hn::MulAdd(y, t, number[2]), t, number[1]);
+        return {y, t, number[0]};
+    }
+
+  private:
+    std::span<const float> numbers_;
+    std::span<const CurveRows::Restart> restarts_;
+    std::uint32_t base_;
+    int shift_;
+    Length length_;
+};
+
+template <class D, class P>
+HWY_INLINE Vec<D> curve_value(D d, const CurveEnds& ends, const P& polynomial, Vec<D> given) {
+    const auto x = ends.limit(d, given);
+    const Polynomial<D> p = polynomial(d, x, nullptr);
+    return ends.finish(d, x, hn::MulAdd(p.y, p.t, p.first));
+}
+
+/// Of a precise curve.
+/// @param exact  what was rounded to `given`; null where nothing was
+template <class D, class P>
+HWY_INLINE Doubles precise_curve_value(D d, const CurveEnds& ends, const P& polynomial,
+                                       Vec<D> given, const Doubles* exact) {
+    const auto x = ends.limit(d, given);
+    auto rest = hn::Zero(d);
+    if (exact) {
+        Doubles lost;
+        for (int h = 0; h < kHalves; ++h)
+            lost.half[h] = hn::Sub(exact->half[h], promote(given, h));
+        rest = hn::IfThenElseZero(hn::Eq(given, x), demote(lost));
+    }
+    const Polynomial<D> p = polynomial(d, x, exact ? &rest : nullptr);
+    Doubles result;
+    for (int h = 0; h < kHalves; ++h) {
+        const auto y = hn::Add(promote(p.first, h), promote(p.y, h));
+        result.half[h] = ends.finish(double_tag(d), promote(x, h), y);
+    }
+    return result;
+}
+
+// ---------------------------------------------------------------------------------------------
+// Operations
+
+/// The operation that computes an instruction.
+HWY_INLINE Op computed_by(const Instruction& step) {
+    const bool is_near = -kNearPower <= step.k[0] && step.k[0] <= kNearPower;
+    return step.op == Op::power_constant && !step.wide && is_near ? Op::power_near : step.op;
+}
+
+/// In double, whatever the instruction says.
+constexpr bool is_always_wide(Op op) {
+    return op == Op::sine || op == Op::cosine || op == Op::atan2 || (op == Op::log2 && !kHasFma);
+}
+
+/// What an instruction computes of the numbers of one pixel.
+/// @tparam op  computed_by(step)
+/// @param x    x(i): operand i
+template <Op op, class D, class X>
+HWY_INLINE Vec<D> compute(D d, const Code& code, const Instruction& step, const X& x) {
+    if constexpr (op == Op::add) return hn::Add(x(0), x(1));
+    if constexpr (op == Op::subtract) return hn::Sub(x(0), x(1));
+    if constexpr (op == Op::multiply) return hn::Mul(x(0), x(1));
+    if constexpr (op == Op::divide) return hn::Div(x(0), x(1));
+    if constexpr (op == Op::multiply_add) return hn::MulAdd(x(0), x(1), x(2));
+    if constexpr (op == Op::multiply_subtract) return hn::MulSub(x(0), x(1), x(2));
+    if constexpr (op == Op::subtract_product) return hn::NegMulAdd(x(0), x(1), x(2));
+    if constexpr (op == Op::minimum) return minimum(x(0), x(1));
+    if constexpr (op == Op::maximum) return maximum(x(0), x(1));
+    if constexpr (op == Op::clamp) return minimum(maximum(x(0), x(1)), x(2));
+    if constexpr (op == Op::negate) return hn::Neg(x(0));
+    if constexpr (op == Op::absolute) return hn::Abs(x(0));
+    if constexpr (op == Op::square_root) return hn::Sqrt(x(0));
+    if constexpr (op == Op::floor) return hn::Floor(x(0));
+    if constexpr (op == Op::exp2) return exp2(d, x(0));
+    if constexpr (op == Op::log2) return log2(d, x(0));
+    if constexpr (op == Op::power) return power(d, x(0), x(1));
+    if constexpr (op == Op::power_constant) return power(d, x(0), step.k[0]);
+    if constexpr (op == Op::power_near) return power_near(d, x(0), step.k[0]);
+    if constexpr (op == Op::sine) return sine(d, x(0), 0);
+    if constexpr (op == Op::cosine) return sine(d, x(0), 1);
+    if constexpr (op == Op::atan2) return atan2(d, x(0), x(1));
+    if constexpr (op == Op::less) return one_where(d, hn::Lt(x(0), x(1)));
+    if constexpr (op == Op::less_equal) return one_where(d, hn::Le(x(0), x(1)));
+    if constexpr (op == Op::equal) return one_where(d, hn::Eq(x(0), x(1)));
+    if constexpr (op == Op::select) return hn::IfThenElse(hn::Eq(x(0), hn::Zero(d)), x(2), x(1));
+    if constexpr (op == Op::select_less) return hn::IfThenElse(hn::Lt(x(0), x(1)), x(2), x(3));
+    if constexpr (op == Op::select_less_equal)
+        return hn::IfThenElse(hn::Le(x(0), x(1)), x(2), x(3));
+    if constexpr (op == Op::select_equal) return hn::IfThenElse(hn::Eq(x(0), x(1)), x(2), x(3));
+    if constexpr (op == Op::lookup) return lookup(d, x(0), code.tables[step.table]);
+    return x(0);  // copy
+}

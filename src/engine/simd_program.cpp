@@ -508,7 +508,8 @@ class Assembler {
         const Selected& s = steps_[slot_a];
         const Selected& t = steps_[slot_b];
         if (s.op != t.op || s.k != t.k || s.table != t.table || s.curve != t.curve ||
-            s.wide != t.wide || is_wide_[slot_a] != is_wide_[slot_b] || has_channels(s.op)) {
+            s.wide != t.wide || is_wide_[slot_a] != is_wide_[slot_b] ||
+            operation(s.op).has_channels) {
             return false;
         }
         for (std::size_t i = 0; i < s.operands.size(); ++i) {

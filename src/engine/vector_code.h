@@ -35,7 +35,6 @@ enum class VectorOp : std::uint8_t {
     exponent,     // floor(log2 |a|); AVX-512
     mantissa,     // a / 2^exponent, in [3/4, 3/2); AVX-512
     scale,        // a * 2^b; AVX-512
-    constant,     // a, from the pool to a register
     // Between floats and pairs of vectors of doubles
     promote_low,
     promote_high,
@@ -61,7 +60,7 @@ enum class VectorOp : std::uint8_t {
     // Tables
     permute_16,   // the element of 16 floats at `offset` that a says; AVX-512
     permute_32,   // AVX-512
-    gather,       // of the doubles at `offset`, that of number a
+    gather,       // of the numbers at `offset`, that of index a
     spill_index,  // the whole numbers a, on the stack, number `immediate`
     rows,  // four floats each for a quarter of the pixels, at `address`, or without one in the
            // pool, + `offset` + the bytes that spill_index kept: `immediate` says which
@@ -99,7 +98,7 @@ struct VectorInstruction {
     const void* address = nullptr;               // of a lattice's nodes
     std::int32_t result = VectorOperand::kNone;  // a mask, of a comparison
     std::int32_t mask = VectorOperand::kNone;
-    std::array<VectorOperand, 3> in;
+    std::array<VectorOperand, 3> in{};
 };
 
 [[nodiscard]] constexpr bool makes_mask(VectorOp op) {
@@ -123,12 +122,8 @@ struct VectorCode {
 /// processor that waits for a result has the next block's instruction to begin with.
 [[nodiscard]] VectorCode interleaved(const VectorCode& code, int blocks);
 
-/// Of its operands, how many the operation reads; whether it has up to three results.
-[[nodiscard]] int operand_count(Op op);
-[[nodiscard]] bool has_channels(Op op);
-
 /// The program as such parts and, between them, what runs over a whole tile: lattices, positioned
-/// tables, sines.
+/// tables.
 struct VectorProgram : TilePorts {
     /// By the layout of the pixels: part k runs before tile step k. Only the first and the last
     /// differ.

@@ -1,0 +1,530 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Writes the instructions of vector_code.h: Writer one by one, and `recorded` by the names of
+// Highway's functions, for simd_math-inl.h.
+#pragma once
+
+#include <concepts>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <span>
+#include <string>
+
+#include "engine/vector_code.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace simd {
+
+/// Constants and tables, each once.
+class Pool {
+  public:
+    /// @param copies  bytes that a number fills with copies of itself; 0 for one copy
+    explicit Pool(std::size_t copies) : copies_(copies) {}
+    /// @param value  of 32 or 64 bits
+    template <class T>
+    VectorOperand bits(T value) {
+        const std::vector<T> copies(std::max<std::size_t>(copies_ / sizeof value, 1), value);
+        const std::size_t size = copies.size() * sizeof value;
+        return {VectorOperand::kNone, place(copies.data(), size, size)};
+    }
+    /// A number that may become another.
+    /// @param is_rounded  to float before it is taken as double
+    VectorOperand uniform(std::uint32_t source, double value, bool wide, bool is_rounded) {
+        for (const UniformPlace& place : uniforms_) {
+            if (place.source == source && place.wide == wide && place.is_rounded == is_rounded)
+                return {VectorOperand::kNone, static_cast<std::int32_t>(place.offset)};
+        }
+        const std::size_t size = std::max(copies_, wide ? sizeof(double) : sizeof(float));
+        bytes_.resize((bytes_.size() + size - 1) / size * size);
+        const auto offset = static_cast<std::uint32_t>(bytes_.size());
+        bytes_.resize(bytes_.size() + size);
+        fill(bytes_.data() + offset, size, value, wide);
+        uniforms_.push_back({source, offset, static_cast<std::uint32_t>(size), wide, is_rounded});
+        return {VectorOperand::kNone, static_cast<std::int32_t>(offset)};
+    }
+    template <class T>
+    std::uint32_t table(const T* numbers, std::size_t count) {
+        return static_cast<std::uint32_t>(place(numbers, count * sizeof(T), kVectorBytes));
+    }
+    std::vector<unsigned char> take() { return std::move(bytes_); }
+    std::vector<UniformPlace> take_uniforms() { return std::move(uniforms_); }
+
+  private:
+    std::int32_t place(const void* data, std::size_t size, std::size_t alignment) {
+        const auto [it, is_new] =
+            offset_.try_emplace(std::string(static_cast<const char*>(data), size), 0);
+        if (is_new) {
+            bytes_.resize((bytes_.size() + alignment - 1) / alignment * alignment);
+            it->second = static_cast<std::int32_t>(bytes_.size());
+            bytes_.insert(bytes_.end(), it->first.begin(), it->first.end());
+        }
+        return it->second;
+    }
+
+    std::size_t copies_;
+    std::vector<unsigned char> bytes_;
+    std::vector<UniformPlace> uniforms_;
+    std::map<std::string, std::int32_t> offset_;  // by the bytes themselves
+};
+
+/// Writes vector instructions for one part.
+class Writer {
+  public:
+    using Number = VectorOperand;  // of a vector: a value or a constant
+
+    Writer(Pool& pool, const VectorMachine& machine) : pool_(pool), machine_(machine) {}
+
+    VectorCode take() { return std::move(code_); }
+    [[nodiscard]] Pool& pool() { return pool_; }
+    [[nodiscard]] bool has_avx512() const { return machine_.has_avx512; }
+
+    Number emit(VectorInstruction step) {
+        step.result = code_.value_count++;
+        code_.instructions.push_back(step);
+        return {step.result};
+    }
+    void emit_store(const VectorInstruction& step) { code_.instructions.push_back(step); }
+
+    // --- numbers that lie in rows ------------------------------------------------------------
+
+    /// Keeps whole numbers, by which rows() finds its numbers.
+    /// @param bytes  from the first row on
+    void spill_index(int number, Number bytes) {
+        emit_store({.op = VectorOp::spill_index,
+                    .immediate = static_cast<std::uint8_t>(number),
+                    .in = {bytes}});
+    }
+    /// A number for spill_index() that the rows before the last do not need any more.
+    int next_index() {
+        spilled_ = (spilled_ + 1) % 4;
+        return spilled_;
+    }
+    /// @param address  null: in the pool
+    Number rows(int index, int quarter, const void* address, std::uint32_t offset) {
+        return emit({.op = VectorOp::rows,
+                     .immediate = static_cast<std::uint8_t>(index + 4 * quarter),
+                     .offset = offset,
+                     .address = address});
+    }
+    /// The floats of a quarter of the pixels, four times each.
+    Number expand(Number x, int quarter) {
+        if (!machine_.has_avx512) return shuffle_4(x, x, quarter * 0x55);
+        std::array<std::int32_t, 16> of_pixel{};
+        for (std::int32_t i = 0; i < 16; ++i)
+            of_pixel[static_cast<std::size_t>(i)] = 4 * quarter + i / 4;
+        return emit({.op = VectorOp::expand,
+                     .offset = pool_.table(of_pixel.data(), of_pixel.size()),
+                     .in = {x}});
+    }
+
+    // --- pixels --------------------------------------------------------------------------------
+
+    Number shuffle(Number a, Number b, const std::array<std::int32_t, 16>& from) {
+        return emit({.op = VectorOp::shuffle,
+                     .offset = pool_.table(from.data(), from.size()),
+                     .in = {a, b}});
+    }
+    Number load(VectorOp o, int number) {
+        return emit({.op = o, .immediate = static_cast<std::uint8_t>(number)});
+    }
+    Number load_pixels(int number) { return load(VectorOp::load_pixels, number); }
+    /// RGB as it lies in memory, for what computes the same of each channel.
+    std::array<Number, 3> load_floats() { return {load_pixels(0), load_pixels(1), load_pixels(2)}; }
+    void store_floats(const std::array<Number, 3>& floats) {
+        for (std::size_t i = 0; i < 3; ++i)
+            store(VectorOp::store_pixels, static_cast<int>(i), floats[i]);
+    }
+    Number load_halves(int number) { return load(VectorOp::load_halves, number); }
+    std::array<Number, 3> load_rgb() {
+        if (!machine_.has_avx512) {
+            // The first four pixels in the low half of each vector, the others in the high half.
+            const std::array<Number, 3> v = {load_halves(0), load_halves(1), load_halves(2)};
+            const Number red_green = shuffle_4(v[1], v[2], shuffle_code(2, 3, 1, 2));
+            const Number green_blue = shuffle_4(v[0], v[1], shuffle_code(1, 2, 0, 1));
+            return {shuffle_4(v[0], red_green, shuffle_code(0, 3, 0, 2)),
+                    shuffle_4(green_blue, red_green, shuffle_code(0, 2, 1, 3)),
+                    shuffle_4(green_blue, v[2], shuffle_code(1, 3, 0, 3))};
+        }
+        const std::array<Number, 3> v = {load_pixels(0), load_pixels(1), load_pixels(2)};
+        std::array<Number, 3> result;
+        for (std::int32_t c = 0; c < 3; ++c) {
+            // From the first two vectors what is there, then the rest from the third.
+            std::array<std::int32_t, 16> first{}, second{};
+            for (std::int32_t i = 0; i < 16; ++i) {
+                const std::int32_t at = 3 * i + c;
+                first[static_cast<std::size_t>(i)] = at < 32 ? at : 0;
+                second[static_cast<std::size_t>(i)] = at < 32 ? i : at - 32 + 16;
+            }
+            result[static_cast<std::size_t>(c)] = shuffle(shuffle(v[0], v[1], first), v[2], second);
+        }
+        return result;
+    }
+    Number shuffle_128(Number a, Number b, std::uint8_t which) {
+        return shuffle_by(VectorOp::shuffle_128, a, b, which);
+    }
+    Number shuffle_4(Number a, Number b, int which) {
+        return shuffle_by(VectorOp::shuffle_4, a, b, which);
+    }
+    Number shuffle_by(VectorOp o, Number a, Number b, int which) {
+        return emit({.op = o, .immediate = static_cast<std::uint8_t>(which), .in = {a, b}});
+    }
+    /// For shuffle_4: floats i, j of a, then k, l of b.
+    static constexpr int shuffle_code(int i, int j, int k, int l) {
+        return i + 4 * j + 16 * k + 64 * l;
+    }
+    /// Of four vectors, the first floats of each four, the second and so on.
+    std::array<Number, 4> columns(const std::array<Number, 4>& v) {
+        const Number first01 = shuffle_4(v[0], v[1], 0x44);
+        const Number first23 = shuffle_4(v[2], v[3], 0x44);
+        const Number last01 = shuffle_4(v[0], v[1], 0xEE);
+        const Number last23 = shuffle_4(v[2], v[3], 0xEE);
+        return {shuffle_4(first01, first23, 0x88), shuffle_4(first01, first23, 0xDD),
+                shuffle_4(last01, last23, 0x88), shuffle_4(last01, last23, 0xDD)};
+    }
+    std::array<Number, 3> load_rgba() {
+        return channels({load_pixels(0), load_pixels(1), load_pixels(2), load_pixels(3)});
+    }
+    /// Of a block's pixels of four floats.
+    std::array<Number, 3> channels(const std::array<Number, 4>& v) {
+        if (!machine_.has_avx512) {
+            const std::array<Number, 4> rgba = columns(v);
+            return {rgba[0], rgba[1], rgba[2]};
+        }
+        std::array<std::int32_t, 16> red_green{}, blue{};
+        for (std::int32_t i = 0; i < 8; ++i) {
+            red_green[static_cast<std::size_t>(i)] = 4 * i;
+            red_green[static_cast<std::size_t>(i) + 8] = 4 * i + 1;
+            blue[static_cast<std::size_t>(i)] = 4 * i + 2;
+        }
+        const Number low = shuffle(v[0], v[1], red_green);
+        const Number high = shuffle(v[2], v[3], red_green);
+        const Number blue_low = shuffle(v[0], v[1], blue);
+        const Number blue_high = shuffle(v[2], v[3], blue);
+        return {shuffle_128(low, high, 0x44), shuffle_128(low, high, 0xEE),
+                shuffle_128(blue_low, blue_high, 0x44)};
+    }
+    void store(VectorOp o, int number, Number value) {
+        emit_store({.op = o, .immediate = static_cast<std::uint8_t>(number), .in = {value}});
+    }
+    void store_rgb(const std::array<Number, 3>& c) {
+        if (!machine_.has_avx512) {
+            const Number red_green = shuffle_4(c[0], c[1], 0x88);
+            const Number green_blue = shuffle_4(c[1], c[2], 0xDD);
+            const Number blue_red = shuffle_4(c[2], c[0], shuffle_code(0, 2, 1, 3));
+            store(VectorOp::store_halves, 0, shuffle_4(red_green, blue_red, 0x88));
+            store(VectorOp::store_halves, 1,
+                  shuffle_4(green_blue, red_green, shuffle_code(0, 2, 1, 3)));
+            return store(VectorOp::store_halves, 2, shuffle_4(blue_red, green_blue, 0xDD));
+        }
+        for (std::int32_t v = 0; v < 3; ++v) {
+            std::array<std::int32_t, 16> first{}, second{};
+            for (std::int32_t i = 0; i < 16; ++i) {
+                const std::int32_t at = 16 * v + i;
+                const std::int32_t pixel = at / 3;
+                const std::int32_t channel = at % 3;
+                first[static_cast<std::size_t>(i)] = channel == 0   ? pixel
+                                                     : channel == 1 ? 16 + pixel
+                                                                    : 0;
+                second[static_cast<std::size_t>(i)] = channel == 2 ? 16 + pixel : i;
+            }
+            store(VectorOp::store_pixels, v, shuffle(shuffle(c[0], c[1], first), c[2], second));
+        }
+    }
+    void store_rgba(const std::array<Number, 3>& c) {
+        if (!machine_.has_avx512) {
+            for (int v = 0; v < 4; v += 2) {
+                const Number red_green = shuffle_4(c[0], c[1], v == 0 ? 0x44 : 0xEE);
+                for (int i = 0; i < 2; ++i)
+                    store(VectorOp::store_colors, v + i,
+                          shuffle_4(red_green, c[2], shuffle_code(i, i + 2, v + i, v + i)));
+            }
+            return;
+        }
+        for (std::int32_t v = 0; v < 4; ++v) {
+            std::array<std::int32_t, 16> first{}, second{};
+            for (std::int32_t i = 0; i < 16; ++i) {
+                const std::int32_t pixel = 4 * v + i / 4;
+                const std::int32_t channel = i % 4;
+                first[static_cast<std::size_t>(i)] = channel == 1 ? 16 + pixel : pixel;
+                second[static_cast<std::size_t>(i)] = channel == 2 ? 16 + pixel : i;
+            }
+            store(VectorOp::store_colors, v, shuffle(shuffle(c[0], c[1], first), c[2], second));
+        }
+    }
+
+  private:
+    Pool& pool_;
+    VectorMachine machine_;
+    VectorCode code_;
+    int spilled_ = 0;  // of spill_index, the last one
+};
+
+/// Highway's functions, as far as simd_math-inl.h calls them, with vectors that are values of
+/// instructions: what they would compute, they write. Highway's documentation is theirs.
+namespace recorded {
+
+/// Of floats, doubles, or whole numbers of as many bits.
+template <class T>
+struct Tag {
+    using Type = T;
+    Writer* writer = nullptr;
+};
+template <class T>
+struct Vector {
+    Writer* writer = nullptr;
+    VectorOperand operand;
+};
+template <class T>
+struct Mask {
+    Writer* writer = nullptr;
+    std::int32_t value = VectorOperand::kNone;
+};
+template <class D>
+using TFromD = typename D::Type;
+template <class D>
+using Vec = Vector<TFromD<D>>;
+template <class T>
+inline constexpr bool kIsWide = sizeof(T) == sizeof(double);
+
+template <class T>
+Vector<T> Set(Tag<T> d, std::type_identity_t<T> value) {
+    return {d.writer, d.writer->pool().bits(value)};
+}
+template <class T>
+Vector<T> Zero(Tag<T> d) {
+    return Set(d, 0);
+}
+
+/// One instruction; another one for whole numbers.
+template <VectorOp op, VectorOp integer_op = op>
+struct Operation {
+    template <class T, std::same_as<Vector<T>>... V>
+    Vector<T> operator()(Vector<T> a, V... others) const {
+        return {a.writer, a.writer->emit({.op = std::integral<T> ? integer_op : op,
+                                          .wide = kIsWide<T>,
+                                          .in = {a.operand, others.operand...}})};
+    }
+};
+inline constexpr Operation<VectorOp::add, VectorOp::integer_add> Add;
+inline constexpr Operation<VectorOp::subtract, VectorOp::integer_subtract> Sub;
+inline constexpr Operation<VectorOp::multiply> Mul;
+inline constexpr Operation<VectorOp::divide> Div;
+inline constexpr Operation<VectorOp::multiply_add> MulAdd;
+inline constexpr Operation<VectorOp::multiply_subtract> MulSub;
+inline constexpr Operation<VectorOp::subtract_product> NegMulAdd;
+inline constexpr Operation<VectorOp::minimum> Min;
+inline constexpr Operation<VectorOp::maximum> Max;
+inline constexpr Operation<VectorOp::square_root> Sqrt;
+inline constexpr Operation<VectorOp::round> Round;
+inline constexpr Operation<VectorOp::floor> Floor;
+inline constexpr Operation<VectorOp::bit_and> And;
+inline constexpr Operation<VectorOp::bit_or> Or;
+inline constexpr Operation<VectorOp::bit_xor> Xor;
+inline constexpr Operation<VectorOp::bit_and_not> AndNot;
+
+template <class T>
+Vector<T> sign_bit(Vector<T> x) {
+    return Set(Tag<T>{x.writer}, T{-0.0});
+}
+template <class T>
+Vector<T> Neg(Vector<T> x) {
+    return Xor(x, sign_bit(x));
+}
+template <class T>
+Vector<T> Abs(Vector<T> x) {
+    using Bits = std::conditional_t<kIsWide<T>, std::int64_t, std::int32_t>;
+    const VectorOperand mask = x.writer->pool().bits(std::numeric_limits<Bits>::max());
+    return And(x, Vector<T>{x.writer, mask});
+}
+template <class T>
+Vector<T> CopySign(Vector<T> magnitude, Vector<T> from) {
+    return Or(Abs(magnitude), And(from, sign_bit(from)));
+}
+
+template <class T>
+Vector<T> shift(VectorOp op, Vector<T> x, int bits) {
+    return {x.writer, x.writer->emit({.op = op,
+                                      .wide = kIsWide<T>,
+                                      .immediate = static_cast<std::uint8_t>(bits),
+                                      .in = {x.operand}})};
+}
+template <class T>
+Vector<T> ShiftLeftSame(Vector<T> x, int bits) {
+    return shift(VectorOp::shift_left, x, bits);
+}
+template <class T>
+Vector<T> ShiftRightSame(Vector<T> x, int bits) {
+    return shift(VectorOp::shift_right, x, bits);
+}
+template <int kBits, class T>
+Vector<T> ShiftLeft(Vector<T> x) {
+    return ShiftLeftSame(x, kBits);
+}
+template <int kBits, class T>
+Vector<T> ShiftRight(Vector<T> x) {
+    return ShiftRightSame(x, kBits);
+}
+
+template <class T, class U>
+Vector<T> BitCast(Tag<T> /*d*/, Vector<U> x) {
+    static_assert(sizeof(T) == sizeof(U));
+    return {x.writer, x.operand};
+}
+inline Vector<float> ConvertTo(Tag<float> /*d*/, Vector<std::int32_t> x) {
+    return {x.writer, x.writer->emit({.op = VectorOp::to_float, .in = {x.operand}})};
+}
+inline Vector<std::int32_t> ConvertTo(Tag<std::int32_t> /*d*/, Vector<float> x) {
+    return {x.writer, x.writer->emit({.op = VectorOp::to_index, .in = {x.operand}})};
+}
+
+template <VectorOp op>
+struct Comparison {
+    template <class T>
+    Mask<T> operator()(Vector<T> a, Vector<T> b) const {
+        return {a.writer, Operation<op>()(a, b).operand.value};
+    }
+};
+inline constexpr Comparison<VectorOp::equal> Eq;
+inline constexpr Comparison<VectorOp::less> Lt;
+inline constexpr Comparison<VectorOp::less_equal> Le;
+inline constexpr Comparison<VectorOp::greater> Gt;
+inline constexpr Comparison<VectorOp::greater_equal> Ge;
+
+template <class T, class U>
+Mask<T> RebindMask(Tag<T> /*d*/, Mask<U> mask) {
+    static_assert(sizeof(T) == sizeof(U));
+    return {mask.writer, mask.value};
+}
+template <class T>
+Vector<T> IfThenElse(Mask<T> mask, Vector<T> yes, Vector<T> no) {
+    return {yes.writer, yes.writer->emit({.op = VectorOp::blend,
+                                          .wide = kIsWide<T>,
+                                          .mask = mask.value,
+                                          .in = {yes.operand, no.operand}})};
+}
+template <class T>
+Vector<T> IfThenElseZero(Mask<T> mask, Vector<T> yes) {
+    return {yes.writer, yes.writer->emit({.op = VectorOp::zero_unless,
+                                          .wide = kIsWide<T>,
+                                          .mask = mask.value,
+                                          .in = {yes.operand}})};
+}
+}  // namespace recorded
+
+// ---------------------------------------------------------------------------------------------
+// What else simd_math-inl.h asks for
+
+namespace hn = recorded;
+
+#define HWY_INLINE inline
+#define HWY_ATTR
+
+constexpr bool kHasFma = true;
+constexpr bool kMayHaveExponents = true;
+
+using VF = hn::Vector<float>;
+using VD = hn::Vector<double>;
+using VI = hn::Vector<std::int32_t>;
+
+constexpr int kHalves = 2;
+struct Doubles {
+    VD half[kHalves];
+};
+inline VD promote(VF x, int half) {
+    const VectorOp op = half == 0 ? VectorOp::promote_low : VectorOp::promote_high;
+    return {x.writer, x.writer->emit({.op = op, .wide = true, .in = {x.operand}})};
+}
+inline VF demote(const Doubles& x) {
+    Writer* const writer = x.half[0].writer;
+    return {writer, writer->emit({.op = VectorOp::demote,
+                                  .wide = true,
+                                  .in = {x.half[0].operand, x.half[1].operand}})};
+}
+
+inline hn::Tag<double> double_tag(hn::Tag<float> d) { return {d.writer}; }
+inline hn::Tag<std::int32_t> bits_tag(hn::Tag<float> d) { return {d.writer}; }
+inline hn::Tag<std::uint64_t> bits_tag(hn::Tag<double> d) { return {d.writer}; }
+
+template <class T>
+hn::Mask<T> has_minus(hn::Tag<T> /*d*/, hn::Vector<T> x) {
+    return {x.writer, hn::Operation<VectorOp::is_minus>()(x).operand.value};
+}
+
+template <class T>
+bool has_exponents(hn::Tag<T> d) {
+    return d.writer->has_avx512();
+}
+inline constexpr hn::Operation<VectorOp::exponent> exponent;
+inline constexpr hn::Operation<VectorOp::mantissa> mantissa;
+inline constexpr hn::Operation<VectorOp::scale> scale_by;
+
+template <class T>
+VI places(hn::Vector<T> x) {
+    return {x.writer,
+            x.writer->emit({.op = VectorOp::to_index, .wide = hn::kIsWide<T>, .in = {x.operand}})};
+}
+template <class T>
+hn::Vector<T> gather(hn::Tag<T> d, std::span<const T> samples, std::size_t first, VI place) {
+    const std::uint32_t table = d.writer->pool().table(samples.data(), samples.size());
+    return {d.writer,
+            d.writer->emit({.op = VectorOp::gather,
+                            .wide = hn::kIsWide<T>,
+                            .offset = table + static_cast<std::uint32_t>(first * sizeof(T)),
+                            .in = {place.operand}})};
+}
+
+/// Numbers that permutes of AVX-512 pick from.
+struct PermutedTable {
+    std::uint32_t offset;
+    int size;
+
+    [[nodiscard]] VF at(VI index) const {
+        Writer* const w = index.writer;
+        const VectorOp op = size == 16 ? VectorOp::permute_16 : VectorOp::permute_32;
+        const VF low = {w, w->emit({.op = op, .offset = offset, .in = {index.operand}})};
+        if (size <= 32) return low;
+        const auto second = static_cast<std::uint32_t>(offset + 32 * sizeof(float));
+        const VF high = {w, w->emit({.op = op, .offset = second, .in = {index.operand}})};
+        const VectorOperand is_high = w->emit(
+            {.op = VectorOp::has_bit, .in = {index.operand, w->pool().bits(std::int32_t{32})}});
+        return hn::IfThenElse(hn::Mask<float>{w, is_high.value}, high, low);
+    }
+};
+inline PermutedTable table(hn::Tag<float> d, const float* numbers, int size) {
+    return {d.writer->pool().table(numbers, static_cast<std::size_t>(size)), size};
+}
+inline VI add_one_where(hn::Mask<float> mask, VI x) {
+    return {x.writer, x.writer->emit({.op = VectorOp::integer_add_where,
+                                      .mask = mask.value,
+                                      .in = {x.operand, x.writer->pool().bits(std::int32_t{1})}})};
+}
+
+/// Four or eight floats in a row for each pixel, as they are loaded: one row after the other.
+struct Rows {
+    Writer* writer;
+    std::array<std::array<VectorOperand, 4>, 2> group;
+
+    void columns(std::size_t which, VF* result) const {
+        const std::array<VectorOperand, 4> columns = writer->columns(group[which]);
+        for (std::size_t i = 0; i < 4; ++i)
+            result[i] = {writer, columns[i]};
+    }
+};
+inline Rows rows_at(hn::Tag<float> d, std::span<const float> numbers, VI cell, int length) {
+    Rows result{d.writer, {}};
+    const int index = d.writer->next_index();
+    d.writer->spill_index(index, hn::ShiftLeftSame(cell, length == 8 ? 5 : 4).operand);
+    const std::uint32_t offset = d.writer->pool().table(numbers.data(), numbers.size());
+    for (std::uint32_t quarter = 0; quarter < 4; ++quarter) {
+        for (std::uint32_t g = 0; g < (length == 8 ? 2 : 1); ++g)
+            result.group[g][quarter] =
+                d.writer->rows(index, static_cast<int>(quarter), nullptr, offset + 16 * g);
+    }
+    return result;
+}
+
+#include "engine/simd_math-inl.h"
+
+}  // namespace simd
+TONEWRIGHT_NAMESPACE_END

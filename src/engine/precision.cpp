@@ -16,8 +16,8 @@ namespace {
 constexpr double kHalfUlp = ProbeBlock::kHalfUlp;
 constexpr double kSmallestStep = ProbeBlock::kSmallestStep;
 
-/// Colours where roundings show: greys, colours of all saturations and signs, and the extremes.
-std::vector<Vector3> probe_colours() {
+/// Colors where roundings show: grays, colors of all saturations and signs, and the extremes.
+std::vector<Vector3> probe_colors() {
     std::vector<Vector3> probes;
     SampleRandom random(7);
     const auto add = [&](double r, double g, double b) {
@@ -31,8 +31,8 @@ std::vector<Vector3> probe_colours() {
     };
 
     for (double stops = -20; stops <= 16; stops += 0.5) {
-        const double grey = std::exp2(stops);
-        add(grey, grey, grey);
+        const double gray = std::exp2(stops);
+        add(gray, gray, gray);
     }
     for (int i = 0; i < 700; ++i) {  // a brightness, and channels up to 8 stops below it
         const double peak = log_uniform(-10, 14);
@@ -160,7 +160,7 @@ class PrecisionChooser {
     }
 
     Precision choose() {
-        const std::vector<Vector3> probes = probe_colours();
+        const std::vector<Vector3> probes = probe_colors();
         for (std::size_t i = 0; i < code_.size(); ++i)
             in_double_[i] = code_[i].curve && code_[i].curve->is_precise;
         // Where the rows of a matrix cancel, the loss has no bound, and no set of probes comes near
@@ -188,7 +188,7 @@ class PrecisionChooser {
             if (is_branch(code_[i].op)) branches_.push_back({static_cast<std::uint32_t>(i), {}});
         }
         keep_large_in_double(probes);
-        // Most curves that are too coarse are so for many colours: those few are enough to say so.
+        // Most curves that are too coarse are so for many colors: those few are enough to say so.
         std::vector<Vector3> few;
         for (std::size_t p = 0; p < probes.size(); p += 7)
             few.push_back(probes[p]);
@@ -358,7 +358,7 @@ class PrecisionChooser {
         return worst;
     }
 
-    /// Keeps the errors of this colour within what they may be.
+    /// Keeps the errors of this color within what they may be.
     /// @return  how near the worst output is to it
     double visit_lane(std::size_t lane) {
         if (largest_.lane[lane] > kTooLarge) keep_large_in_double(lane);
@@ -409,7 +409,7 @@ class PrecisionChooser {
         }
     };
 
-    /// From the worst probes on to worse colours: where rows of matrices nearly cancel, or a curve
+    /// From the worst probes on to worse colors: where rows of matrices nearly cancel, or a curve
     /// is steep, there may be few of them, and no probe among them.
     void climb(std::vector<Probe>& probes) {
         constexpr std::size_t kStarts = 24;
@@ -498,7 +498,7 @@ class PrecisionChooser {
     }
 
     /// Probes ever nearer to where branches turn over, from both sides: a power display has no end
-    /// of slope at black, and random colours do not come near enough to show it.
+    /// of slope at black, and random colors do not come near enough to show it.
     std::vector<Vector3> approach_branches() {
         constexpr std::size_t kSteps = 50;
         struct Pair {
@@ -718,7 +718,7 @@ Sensitivity measure_influence(const std::vector<TapeInstruction>& code,
     constexpr double kPole = 1e12;
     constexpr std::size_t kStride = 3;
     std::vector<Vector3> probes;
-    const std::vector<Vector3> all = probe_colours();
+    const std::vector<Vector3> all = probe_colors();
     for (std::size_t p = 0; p < all.size(); p += kStride)
         probes.push_back(all[p]);
     Sensitivity result;

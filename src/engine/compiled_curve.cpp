@@ -39,7 +39,7 @@ std::vector<double> half_octaves(double from, double to) {
 struct Segment {
     double begin, end;
     float scale, offset;
-    std::vector<float> coefficients;
+    std::array<float, CompiledCurve::kMaxDegree + 1> coefficients;
     float rest;
 };
 
@@ -58,35 +58,61 @@ double evaluate(double x, float scale, float offset, int degree, const C& coeffi
     return static_cast<double>(coefficient(0)) + static_cast<double>(std::fma(y, t, rest));
 }
 
-/// Monomial coefficients of the polynomial through f at the Chebyshev nodes of [-1, 1].
-std::vector<double> interpolate(const std::function<double(double)>& f, int degree) {
-    const int n = degree + 1;
-    std::vector<double> value(static_cast<std::size_t>(n));
-    for (int i = 0; i < n; ++i) {
-        value[static_cast<std::size_t>(i)] = f(std::cos(std::numbers::pi * (i + 0.5) / n));
+constexpr std::size_t kMostNodes = CompiledCurve::kMaxDegree + 1;
+using Coefficients = std::array<double, kMostNodes>;
+
+/// Numbers of the polynomials through n places.
+struct ChebyshevNumbers {
+    Coefficients node{};                              // the Chebyshev nodes of [-1, 1]
+    std::array<Coefficients, kMostNodes> cosine{};    // of T_k at the nodes
+    std::array<Coefficients, kMostNodes> monomial{};  // coefficients of T_k
+
+    ChebyshevNumbers() = default;
+    explicit ChebyshevNumbers(int n) {
+        monomial[0][0] = 1;
+        monomial[1][1] = 1;
+        for (int k = 0; k < n; ++k) {
+            const auto row = static_cast<std::size_t>(k);
+            for (int i = 0; i < n; ++i) {
+                const auto column = static_cast<std::size_t>(i);
+                if (k == 0) node[column] = std::cos(std::numbers::pi * (i + 0.5) / n);
+                cosine[row][column] = std::cos(std::numbers::pi * k * (i + 0.5) / n);
+            }
+            if (k < 2) continue;  // T_k = 2 t T_k-1 - T_k-2
+            for (std::size_t j = 0; j < static_cast<std::size_t>(n); ++j) {
+                monomial[row][j] =
+                    (j > 0 ? 2 * monomial[row - 1][j - 1] : 0) - monomial[row - 2][j];
+            }
+        }
     }
-    // Chebyshev coefficients, then the recurrence T_k+1 = 2 t T_k - T_k-1.
-    std::vector<double> sum(static_cast<std::size_t>(n));
-    std::vector<double> before(static_cast<std::size_t>(n)), current(static_cast<std::size_t>(n));
-    before[0] = 1;
-    if (n > 1) current[1] = 1;
-    for (int k = 0; k < n; ++k) {
+
+    static const ChebyshevNumbers& of(int n) {
+        static const auto all = [] {
+            std::array<ChebyshevNumbers, kMostNodes + 1> numbers;
+            for (int i = 1; i <= static_cast<int>(kMostNodes); ++i)
+                numbers[static_cast<std::size_t>(i)] = ChebyshevNumbers(i);
+            return numbers;
+        }();
+        return all[static_cast<std::size_t>(n)];
+    }
+};
+
+/// Monomial coefficients of the polynomial through f at the Chebyshev nodes of [-1, 1].
+template <class F>
+Coefficients interpolate(const F& f, int degree) {
+    const ChebyshevNumbers& numbers = ChebyshevNumbers::of(degree + 1);
+    const auto n = static_cast<std::size_t>(degree + 1);
+    Coefficients value{};
+    for (std::size_t i = 0; i < n; ++i)
+        value[i] = f(numbers.node[i]);
+    Coefficients sum{};
+    for (std::size_t k = 0; k < n; ++k) {
         double c = 0;
-        for (int i = 0; i < n; ++i)
-            c +=
-                value[static_cast<std::size_t>(i)] * std::cos(std::numbers::pi * k * (i + 0.5) / n);
-        c *= (k == 0 ? 1.0 : 2.0) / n;
-        const std::vector<double>& basis = k == 0 ? before : current;
-        for (std::size_t j = 0; j < sum.size(); ++j)
-            sum[j] += c * basis[j];
-        if (k == 0) continue;
-        std::vector<double> next(static_cast<std::size_t>(n));
-        for (std::size_t j = 0; j + 1 < next.size(); ++j)
-            next[j + 1] = 2 * current[j];
-        for (std::size_t j = 0; j < next.size(); ++j)
-            next[j] -= before[j];
-        before = current;
-        current = next;
+        for (std::size_t i = 0; i < n; ++i)
+            c += value[i] * numbers.cosine[k][i];
+        c *= (k == 0 ? 1.0 : 2.0) / (degree + 1);
+        for (std::size_t j = 0; j < n; ++j)
+            sum[j] += c * numbers.monomial[k][j];
     }
     return sum;
 }
@@ -230,7 +256,7 @@ class CurveFit {
 
     /// The polynomial over [begin, end] into tried_; whether it keeps to the tolerance.
     bool try_segment(double begin, double end) {
-        Segment s;
+        Segment s{};
         s.begin = begin;
         s.end = end;
         const double middle = 0.5 * (begin + end);
@@ -241,11 +267,12 @@ class CurveFit {
         const auto x_of = [&](double t) {
             return (t - static_cast<double>(s.offset)) / static_cast<double>(s.scale);
         };
-        const std::vector<double> c =
+        const Coefficients c =
             interpolate([&](double t) { return f_(std::clamp(x_of(t), begin, end)); }, degree_);
-        for (const double k : c) {
-            if (!(std::fabs(k) < kFloatMax)) return false;
-            s.coefficients.push_back(to_float(k));
+        for (int k = 0; k <= degree_; ++k) {
+            const double coefficient = c[static_cast<std::size_t>(k)];
+            if (!(std::fabs(coefficient) < kFloatMax)) return false;
+            s.coefficients[static_cast<std::size_t>(k)] = to_float(coefficient);
         }
         s.rest = to_float(c[0] - static_cast<double>(s.coefficients[0]));
         tried_ = s;
@@ -509,20 +536,22 @@ class RowFit {
         const double middle = (0.5 * (begin + end) - x0) * scale;
         const double half = std::max(0.5 * (end - begin) * scale, 1e-6);
         const int degree = rows_.length - (is_precise_ ? 2 : 1);
-        const std::vector<double> c = interpolate(
+        const Coefficients c = interpolate(
             [&](double u) { return f_(std::clamp(x0 + (middle + u * half) / scale, begin, end)); },
             degree);
         // Powers of u = (t - middle) / half as powers of t, by Horner's rule.
-        std::vector<double> in_t = {c.back()};
+        Coefficients in_t{c[static_cast<std::size_t>(degree)]};
+        std::size_t powers = 1;
         for (auto k = static_cast<std::size_t>(degree); k-- > 0;) {
-            in_t.push_back(0);
-            for (std::size_t j = in_t.size(); j-- > 0;)
+            ++powers;
+            for (std::size_t j = powers; j-- > 0;)
                 in_t[j] = ((j > 0 ? in_t[j - 1] : 0) - in_t[j] * middle) / half;
             in_t[0] += c[k];
         }
         tried_ = {};
         std::size_t next = 0;
-        for (const double k : in_t) {
+        for (std::size_t power = 0; power < powers; ++power) {
+            const double k = in_t[power];
             if (!(std::fabs(k) < static_cast<double>(kMost))) return false;
             tried_[next++] = to_float(k);
             if (is_precise_ && next == 1)

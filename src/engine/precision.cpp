@@ -4,18 +4,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "base/random.h"
-#include "expr/scalar_ops.h"
+#include "engine/probe_block.h"
 #include "tonewright/pipeline.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// Half a unit in the last place of 1 in float.
-constexpr double kHalfUlp = 0x1p-24;
-/// Half the smallest denormal.
-constexpr double kSmallestStep = 0x1p-150;
+constexpr double kHalfUlp = ProbeBlock::kHalfUlp;
+constexpr double kSmallestStep = ProbeBlock::kSmallestStep;
 
 /// Colors where roundings show: grays, colors of all saturations and signs, and the extremes.
 std::vector<Vector3> probe_colors() {
@@ -74,30 +73,6 @@ std::vector<Vector3> probe_colors() {
     return probes;
 }
 
-/// Where cell i of a table with two samples or more begins.
-double cell_begin(const Table& table, std::size_t i) {
-    return table.positions.empty()
-               ? static_cast<double>(i) / static_cast<double>(table.samples.size() - 1)
-               : table.positions[i];
-}
-
-double cell_slope(const Table& table, std::size_t i) {
-    return (table.samples[i + 1] - table.samples[i]) /
-           (cell_begin(table, i + 1) - cell_begin(table, i));
-}
-
-double slope(const Table& table, double x) {
-    if (table.interpolation == Table::Interpolation::step || table.samples.size() < 2) return 0;
-    const std::size_t cells = table.samples.size() - 1;
-    if (!(x > cell_begin(table, 0) && x < cell_begin(table, cells))) return 0;
-    if (table.positions.empty()) {
-        return cell_slope(
-            table, std::min(static_cast<std::size_t>(x * static_cast<double>(cells)), cells - 1));
-    }
-    const auto next = std::upper_bound(table.positions.begin(), table.positions.end(), x);
-    return cell_slope(table, static_cast<std::size_t>(next - table.positions.begin()) - 1);
-}
-
 /// A cell of it is so steep that a float's half unit in the last place of the index is a good part
 /// of the budget.
 bool is_steep(const Table& table, double max_error) {
@@ -108,58 +83,6 @@ bool is_steep(const Table& table, double max_error) {
         if (!(std::fabs(cell_slope(table, i)) * reach * kHalfUlp < max_error / 8)) return true;
     }
     return false;
-}
-
-/// Nearer to a kink than this, either side may be taken.
-constexpr double kNearKink = 1e-5;
-
-/// Derivatives of one instruction by its operands, at the side of a kink that is taken.
-std::array<double, 3> partials(const TapeInstruction& step, double value, double a, double b,
-                               double c) {
-    constexpr double kLn2 = 0.69314718055994531;
-    switch (step.op) {
-        case ExprOp::add:
-            return {1, 1, 0};
-        case ExprOp::subtract:
-            return {1, -1, 0};
-        case ExprOp::multiply:
-            return {b, a, 0};
-        case ExprOp::divide:
-            return {1 / b, -value / b, 0};
-        case ExprOp::minimum:
-            // So near to the kink either side may be taken, and what rounding adds shows.
-            if (std::fabs(a - b) < kNearKink) return {1, 1, 0};
-            return b < a ? std::array{0.0, 1.0, 0.0} : std::array{1.0, 0.0, 0.0};
-        case ExprOp::maximum:
-            if (std::fabs(a - b) < kNearKink) return {1, 1, 0};
-            return a < b ? std::array{0.0, 1.0, 0.0} : std::array{1.0, 0.0, 0.0};
-        case ExprOp::power:
-            return {b * std::pow(a, b - 1), a > 0 ? value * std::log(a) : 0, 0};
-        case ExprOp::atan2:
-            return {b / (a * a + b * b), -a / (a * a + b * b), 0};
-        case ExprOp::negate:
-            return {-1, 0, 0};
-        case ExprOp::absolute:
-            return {a < 0 ? -1.0 : 1.0, 0, 0};
-        case ExprOp::square_root:
-            return {0.5 / value, 0, 0};
-        case ExprOp::exp2:
-            return {value * kLn2, 0, 0};
-        case ExprOp::log2:
-            return {1 / (a * kLn2), 0, 0};
-        case ExprOp::sine:
-            return {std::cos(a), 0, 0};
-        case ExprOp::cosine:
-            return {-std::sin(a), 0, 0};
-        case ExprOp::select:
-            return a != 0 ? std::array{0.0, 1.0, 0.0} : std::array{0.0, 0.0, 1.0};
-        case ExprOp::lookup:
-            return {step.curve ? step.curve->slope(a) : slope(*step.table, a), 0, 0};
-        case ExprOp::lattice:
-            return step.lattice->gradient(step.input, a, b, c);
-        default:
-            return {0, 0, 0};
-    }
 }
 
 /// The result is one of the operands, exactly, or a whole number.
@@ -223,42 +146,17 @@ class PrecisionChooser {
         : code_(code),
           outputs_(outputs),
           max_error_(max_error),
+          largest_sum_(0.25 * 0.25 * max_error * max_error),
           in_double_(code.size()),
-          value_(code.size()),
-          adjoint_(code.size()),
-          has_pole_(code.size()),
-          partials_(code.size()),
-          partials_are_of_(code.size()) {
-        for (std::size_t i = 0; i < code.size(); ++i) {
-            const TapeInstruction& step = code[i];
+          block_(code, outputs, false) {
+        for (const TapeInstruction& step : code) {
             nodes_.push_back({{step.a, step.b, step.c},
                               static_cast<std::size_t>(operand_count(step.op)),
                               is_exact(step.op),
                               half_ulps(step.op)});
-            if (is_number(step.op)) {
-                value_[i] = step.value;
-            } else {
-                computed_.push_back(i);
-            }
         }
-    }
-
-    Sensitivity sensitivity() {
-        Sensitivity result;
-        const std::vector<Vector3> probes = probe_colors();
-        for (std::size_t p = 0; p < probes.size(); p += 3) {
-            evaluate(probes[p], code_.size());
-            std::vector<double> largest(code_.size());
-            for (const std::uint32_t output : outputs_) {
-                accumulate(output);
-                for (std::size_t i = 0; i < code_.size(); ++i)
-                    largest[i] =
-                        std::max(largest[i], has_pole_[i] ? kPole : std::fabs(adjoint_[i]));
-            }
-            result.value.push_back(value_);
-            result.sensitivity.push_back(std::move(largest));
-        }
-        return result;
+        for (const std::uint32_t output : outputs)
+            nodes_[output].is_output = true;
     }
 
     Precision choose() {
@@ -287,38 +185,45 @@ class PrecisionChooser {
             }
         }
         for (std::size_t i = 0; i < code_.size(); ++i) {
-            if (is_branch(code_[i].op)) branches_.push_back({i, {}});
+            if (is_branch(code_[i].op)) branches_.push_back({static_cast<std::uint32_t>(i), {}});
         }
         keep_large_in_double(probes);
         // Most curves that are too coarse are so for many colors: those few are enough to say so.
+        std::vector<Vector3> few;
         for (std::size_t p = 0; p < probes.size(); p += 7)
-            visit(probes[p]);
+            few.push_back(probes[p]);
+        visit(few);
         if (!too_coarse_.empty()) return {in_double_, too_coarse_};
         // A copy (min, select, ...) of a float is exact, one of a double is not: what was decided
         // may have to be looked at again.
+        std::vector<Vector3> near_branches;
         for (int pass = 0; pass < 4; ++pass) {
             const std::vector<bool> before = in_double_;
             std::vector<Probe> visited;
-            for (const Vector3& rgb : probes) {
-                visited.push_back({rgb, visit(rgb)});
-                if (pass == 0) collect_sides(rgb);
-            }
+            visit(probes, [&](std::size_t p, std::size_t lane, double worst) {
+                visited.push_back({probes[p], worst});
+                if (pass == 0) collect_sides(probes[p], lane);
+            });
             climb(visited);
             if (!too_coarse_.empty()) break;
-            for (const Branch& branch : branches_)
-                approach(branch);
+            if (pass == 0) near_branches = approach_branches();
+            visit(near_branches);
             if (in_double_ == before) break;
         }
         return {in_double_, too_coarse_};
     }
 
   private:
+    static constexpr std::size_t kLanes = ProbeBlock::kLanes;
+    using Row = ProbeBlock::Row;
+
     /// What is asked of an instruction again and again.
     struct Node {
         std::array<std::uint32_t, 3> operand;
         std::size_t operands;
         bool is_exact;
         double half_ulps;
+        bool is_output = false;
     };
     struct Share {
         double error;
@@ -326,16 +231,14 @@ class PrecisionChooser {
     };
     struct Probe {
         Vector3 rgb;
-        double worst;  // see visit()
+        double worst;  // see visit_lane()
     };
     /// Where the program takes one side or the other, and probes of either.
     struct Branch {
-        std::size_t index;
+        std::uint32_t index;
         std::array<std::vector<Vector3>, 2> sides;
     };
     static constexpr std::size_t kPairs = 4;
-    /// Sensitivity where the derivative has no end.
-    static constexpr double kPole = 1e12;
 
     /// A sum of constant multiples of values, with a negative constant among them.
     [[nodiscard]] bool is_cancelling_row(std::size_t i) const {
@@ -372,102 +275,210 @@ class PrecisionChooser {
             if (step.curve) {
                 reject(step.curve);
             } else {
-                in_double_[i] = true;
+                put_in_double(i);
             }
             const std::array<std::uint32_t, 3> operand = {step.a, step.b, step.c};
             rest.insert(rest.end(), operand.begin(), operand.begin() + operands);
         }
     }
 
-    /// The first `count` values.
-    void evaluate(const Vector3& rgb, std::size_t count) {
-        ++evaluation_;
-        for (const std::size_t i : computed_) {
-            if (i >= count) break;
-            const TapeInstruction& step = code_[i];
-            if (step.op == ExprOp::input) {
-                value_[i] = rgb[static_cast<std::size_t>(step.input)];
-            } else if (step.op == ExprOp::lattice) {
-                value_[i] =
-                    (*step.lattice)(step.input, value_[step.a], value_[step.b], value_[step.c]);
-            } else if (step.curve) {
-                value_[i] = (*step.curve)(value_[step.a]);
-            } else {
-                value_[i] =
-                    scalar_op(step.op, value_[step.a], value_[step.b], value_[step.c], step.table);
+    /// What has no place in a float at an end of the uniforms.
+    void keep_large_in_double(const std::vector<Vector3>& probes) {
+        for (const auto end : {&TapeInstruction::least, &TapeInstruction::most}) {
+            if (!block_.set_uniforms(end)) return;
+            for (std::size_t p = 0; p < probes.size(); p += kLanes) {
+                block_.evaluate(&probes[p], std::min(kLanes, probes.size() - p));
+                const Row largest = block_.largest_values();
+                for (std::size_t lane = 0; lane < block_.size(); ++lane) {
+                    if (largest.lane[lane] > kTooLarge) keep_large_in_double(lane);
+                }
+            }
+            block_.set_uniforms(&TapeInstruction::value);
+        }
+    }
+    void keep_large_in_double(std::size_t lane) {
+        for (std::size_t i = 0; i < code_.size(); ++i) {
+            if (is_too_large(i, lane)) keep_in_double(i);
+        }
+    }
+    [[nodiscard]] bool is_too_large(std::size_t i, std::size_t lane) const {
+        const double size = std::fabs(block_.value(i, lane));
+        return std::isfinite(size) && size > kTooLarge;
+    }
+
+    /// Evaluates a block, and what its roundings add to the outputs.
+    void look_at(const Vector3* colors, std::size_t n) {
+        block_.evaluate(colors, n);
+        block_.differentiate();
+        largest_ = block_.largest_values();
+        sum_squares();
+    }
+
+    /// Of what each output's roundings add to it, where all is as precise as it was decided.
+    void sum_squares() {
+        sums_ = {};
+        summed_after_ = changes_;
+        Row error;
+        for (std::size_t i = 0; i < code_.size(); ++i) {
+            if (in_double_[i] && !code_[i].curve) continue;
+            if (nodes_[i].is_output) {
+                for (std::size_t o = 0; o < 3; ++o) {
+                    for (std::size_t lane = 0; lane < block_.size(); ++lane) {
+                        const double share =
+                            std::fabs(block_.adjoint(o, i, lane)) * rounding(i, lane, outputs_[o]);
+                        if (share > 0) sums_[o].lane[lane] += share * share;
+                    }
+                }
+            } else if (is_number(code_[i].op)) {
+                error.lane.fill(rounding(i, 0, kNoOutput));
+                block_.add_squares(i, error, sums_);
+            } else if (code_[i].op == ExprOp::lookup || code_[i].op == ExprOp::lattice) {
+                for (std::size_t lane = 0; lane < block_.size(); ++lane)
+                    error.lane[lane] = rounding(i, lane, kNoOutput);
+                block_.add_squares(i, error, sums_);
+            } else if (const double units = units_of(i); units > 0) {
+                block_.add_squares(i, units, sums_);
             }
         }
     }
 
-    /// What has no place in a float at an end of the uniforms.
-    void keep_large_in_double(const std::vector<Vector3>& probes) {
-        for (const auto end : {&TapeInstruction::least, &TapeInstruction::most}) {
-            bool has_uniforms = false;
-            const auto set = [&](auto from) {
-                for (std::size_t i = 0; i < code_.size(); ++i) {
-                    if (code_[i].op != ExprOp::uniform) continue;
-                    value_[i] = code_[i].*from;
-                    has_uniforms = true;
-                }
-            };
-            set(end);
-            if (!has_uniforms) return;
-            for (const Vector3& rgb : probes) {
-                evaluate(rgb, code_.size());
-                keep_large_in_double();
+    /// What visit_lane() returns where it changes nothing.
+    std::optional<double> look_at_lane(std::size_t lane) {
+        if (largest_.lane[lane] > kTooLarge) {
+            for (std::size_t i = 0; i < code_.size(); ++i) {
+                if (is_too_large(i, lane) && !is_kept_in_double(i)) return std::nullopt;
             }
-            set(&TapeInstruction::value);
         }
-    }
-    void keep_large_in_double() {
-        constexpr double kTooLarge = 0.5 * static_cast<double>(std::numeric_limits<float>::max());
-        for (std::size_t i = 0; i < code_.size(); ++i) {
-            if (std::isfinite(value_[i]) && std::fabs(value_[i]) > kTooLarge) keep_in_double(i);
+        double worst = 0;
+        for (std::size_t o = 0; o < 3; ++o) {
+            const std::optional<double> found = within_budget(o, lane);
+            if (!found) return std::nullopt;
+            worst = std::max(worst, *found);
         }
+        return worst;
     }
 
     /// Keeps the errors of this color within what they may be.
     /// @return  how near the worst output is to it
-    double visit(const Vector3& rgb) {
-        evaluate(rgb, code_.size());
-        keep_large_in_double();
+    double visit_lane(std::size_t lane) {
+        if (largest_.lane[lane] > kTooLarge) keep_large_in_double(lane);
+        if (summed_after_ != changes_) sum_squares();
+        if (const std::optional<double> found = look_at_lane(lane)) return *found;
         double worst = 0;
-        for (const std::uint32_t output : outputs_)
-            worst = std::max(worst, keep_within_budget(output));
+        for (std::size_t o = 0; o < 3; ++o)
+            worst = std::max(worst, keep_within_budget(o, lane));
         return worst;
     }
+
+    /// One color after the other.
+    /// @param each  called behind each with its number, its lane and visit_lane()
+    template <class F>
+    void visit(const std::vector<Vector3>& colors, const F& each) {
+        for (std::size_t p = 0; p < colors.size(); p += kLanes) {
+            look_at(&colors[p], std::min(kLanes, colors.size() - p));
+            for (std::size_t lane = 0; lane < block_.size(); ++lane) {
+                const double worst = visit_lane(lane);
+                each(p + lane, lane, worst);
+            }
+        }
+    }
+    void visit(const std::vector<Vector3>& colors) {
+        visit(colors, [](std::size_t, std::size_t, double) {});
+    }
+
+    /// A color that climbs to worse ones, by the steps that it has been given.
+    struct Climber {
+        static constexpr std::size_t kSteps = 40;
+
+        Probe here;
+        std::array<Vector3, kSteps> change{};
+        std::size_t step = 0;
+
+        [[nodiscard]] bool is_done() const { return step == kSteps; }
+        [[nodiscard]] Vector3 next() const {
+            Vector3 rgb = here.rgb;
+            for (std::size_t c = 0; c < 3; ++c) {
+                const double x = std::clamp(rgb[c] * (1 + change[step][c]), -kHalfMax, kHalfMax);
+                rgb[c] = static_cast<double>(static_cast<float>(x));
+            }
+            return rgb;
+        }
+        void move(const Vector3& rgb, double worst) {
+            if (worst > here.worst) here = {rgb, worst};
+            ++step;
+        }
+    };
 
     /// From the worst probes on to worse colors: where rows of matrices nearly cancel, or a curve
     /// is steep, there may be few of them, and no probe among them.
     void climb(std::vector<Probe>& probes) {
         constexpr std::size_t kStarts = 24;
-        constexpr int kSteps = 40;
         const std::size_t starts = std::min(kStarts, probes.size());
         std::partial_sort(probes.begin(), probes.begin() + static_cast<std::ptrdiff_t>(starts),
                           probes.end(),
                           [](const Probe& x, const Probe& y) { return x.worst > y.worst; });
+        std::vector<Climber> climbers;
         for (std::size_t p = 0; p < starts; ++p) {
-            Probe here = probes[p];
-            for (int step = 0; step < kSteps; ++step) {
-                const double reach = step < kSteps / 2 ? 0.3 : 0.03;
-                Probe next = here;
-                for (double& x : next.rgb) {
-                    x = std::clamp(x * (1 + random_.uniform(-reach, reach)), -kHalfMax, kHalfMax);
-                    x = static_cast<double>(static_cast<float>(x));
+            Climber climber{probes[p]};
+            for (std::size_t step = 0; step < Climber::kSteps; ++step) {
+                const double reach = step < Climber::kSteps / 2 ? 0.3 : 0.03;
+                for (double& x : climber.change[step])
+                    x = random_.uniform(-reach, reach);
+            }
+            climbers.push_back(climber);
+        }
+        for (std::size_t first = 0; first < starts;) {
+            const std::vector<Climber> before(
+                climbers.begin() + static_cast<std::ptrdiff_t>(first),
+                climbers.begin() + static_cast<std::ptrdiff_t>(std::min(first + kLanes, starts)));
+            const std::size_t done = climb_together(&climbers[first], before.size());
+            if (done == before.size()) {
+                first += done;
+                continue;
+            }
+            // This one changes what is in double, and those behind it have to know.
+            std::copy(before.begin() + static_cast<std::ptrdiff_t>(done) + 1, before.end(),
+                      climbers.begin() + static_cast<std::ptrdiff_t>(first + done) + 1);
+            first += done;
+            const Vector3 rgb = climbers[first].next();
+            look_at(&rgb, 1);
+            climbers[first].move(rgb, visit_lane(0));
+        }
+    }
+
+    /// As if one climbed after the other, as long as they change nothing.
+    /// @return  how many of the first have come to their end; the next one's step changes something
+    std::size_t climb_together(Climber* climbers, std::size_t count) {
+        std::vector<Vector3> colors;
+        std::vector<std::size_t> who;
+        while (true) {
+            colors.clear();
+            who.clear();
+            for (std::size_t k = 0; k < count; ++k) {
+                if (climbers[k].is_done()) continue;
+                colors.push_back(climbers[k].next());
+                who.push_back(k);
+            }
+            if (who.empty()) return count;
+            look_at(colors.data(), colors.size());
+            for (std::size_t lane = 0; lane < who.size(); ++lane) {
+                const std::optional<double> worst = look_at_lane(lane);
+                if (!worst) {
+                    count = who[lane];
+                    break;
                 }
-                next.worst = visit(next.rgb);
-                if (next.worst > here.worst) here = next;
+                climbers[who[lane]].move(colors[lane], *worst);
             }
         }
     }
 
-    [[nodiscard]] bool takes_first(std::size_t i) const {
+    [[nodiscard]] bool takes_first(std::size_t i, std::size_t lane) const {
         const TapeInstruction& step = code_[i];
-        const double a = value_[step.a];
+        const double a = block_.value(step.a, lane);
         switch (step.op) {
             case ExprOp::minimum:
             case ExprOp::maximum:
-                return a < value_[step.b];
+                return a < block_.value(step.b, lane);
             case ExprOp::select:
                 return a != 0;
             default:
@@ -475,9 +486,9 @@ class PrecisionChooser {
         }
     }
 
-    void collect_sides(const Vector3& rgb) {
+    void collect_sides(const Vector3& rgb, std::size_t lane) {
         for (Branch& branch : branches_) {
-            auto& side = branch.sides[takes_first(branch.index) ? 0 : 1];
+            auto& side = branch.sides[takes_first(branch.index, lane) ? 0 : 1];
             if (side.size() < kPairs) {
                 side.push_back(rgb);
             } else if (random_.uniform(0, 1) < 0.02) {
@@ -486,92 +497,110 @@ class PrecisionChooser {
         }
     }
 
-    /// Probes ever nearer to where the branch turns over, from both sides: a power display has no
-    /// end of slope at black, and random colors do not come near enough to show it.
-    void approach(const Branch& branch) {
-        const std::size_t pairs = std::min(branch.sides[0].size(), branch.sides[1].size());
-        for (std::size_t p = 0; p < pairs; ++p) {
-            Vector3 first = branch.sides[0][p];
-            Vector3 second = branch.sides[1][p];
-            for (int step = 0; step < 50; ++step) {
-                Vector3 middle;
-                for (std::size_t c = 0; c < 3; ++c)
-                    middle[c] = 0.5 * (first[c] + second[c]);
-                evaluate(middle, branch.index);
-                if (step % 4 == 3) visit(middle);
-                (takes_first(branch.index) ? first : second) = middle;
-            }
+    /// Probes ever nearer to where branches turn over, from both sides: a power display has no end
+    /// of slope at black, and random colors do not come near enough to show it.
+    std::vector<Vector3> approach_branches() {
+        constexpr std::size_t kSteps = 50;
+        struct Pair {
+            std::uint32_t branch;
+            Vector3 first, second;
+        };
+        std::vector<Pair> pairs;
+        for (const Branch& branch : branches_) {
+            const std::size_t n = std::min(branch.sides[0].size(), branch.sides[1].size());
+            for (std::size_t p = 0; p < n; ++p)
+                pairs.push_back({branch.index, branch.sides[0][p], branch.sides[1][p]});
         }
-    }
-
-    /// Adjoints of all values for one output, relative to its size above 1.
-    void accumulate(std::uint32_t output) {
-        std::fill(adjoint_.begin(), adjoint_.end(), 0.0);
-        std::fill(has_pole_.begin(), has_pole_.end(), '\0');
-        adjoint_[output] = 1 / std::max(1.0, std::fabs(value_[output]));
-        for (auto it = computed_.rbegin(); it != computed_.rend(); ++it) {
-            const std::size_t i = *it;
-            const Node& node = nodes_[i];
-            if (adjoint_[i] == 0 || node.operands == 0) continue;
-            const TapeInstruction& step = code_[i];
-            // The outputs share most of the program.
-            std::array<double, 3>& partial = partials_[i];
-            if (partials_are_of_[i] != evaluation_) {
-                partials_are_of_[i] = evaluation_;
-                partial = partials(step, value_[i], value_[step.a], value_[step.b], value_[step.c]);
-            }
-            for (std::size_t k = 0; k < node.operands; ++k) {
-                // Kernels take a constant exponent in double.
-                if (k == 1 && step.op == ExprOp::power && code_[step.b].op == ExprOp::constant)
-                    continue;
-                const double added = adjoint_[i] * partial[k];
-                if (std::isfinite(added)) {  // not at a pole
-                    adjoint_[node.operand[k]] += added;
-                } else {
-                    has_pole_[node.operand[k]] = 1;
+        std::vector<Vector3> result;
+        for (std::size_t begin = 0; begin < pairs.size(); begin += kLanes) {
+            const std::size_t n = std::min(kLanes, pairs.size() - begin);
+            std::vector<std::uint32_t> branches;
+            for (std::size_t lane = 0; lane < n; ++lane)
+                branches.push_back(pairs[begin + lane].branch);
+            const std::vector<std::uint32_t> steps = computed_for(branches);
+            std::array<std::vector<Vector3>, kLanes> kept;
+            std::array<Vector3, kLanes> middle{};
+            for (std::size_t step = 0; step < kSteps; ++step) {
+                for (std::size_t lane = 0; lane < n; ++lane) {
+                    const Pair& pair = pairs[begin + lane];
+                    for (std::size_t c = 0; c < 3; ++c)
+                        middle[lane][c] = 0.5 * (pair.first[c] + pair.second[c]);
+                    if (step % 4 == 3) kept[lane].push_back(middle[lane]);
+                }
+                block_.evaluate(middle.data(), n, steps);
+                for (std::size_t lane = 0; lane < n; ++lane) {
+                    Pair& pair = pairs[begin + lane];
+                    (takes_first(pair.branch, lane) ? pair.first : pair.second) = middle[lane];
                 }
             }
+            for (std::size_t lane = 0; lane < n; ++lane)
+                result.insert(result.end(), kept[lane].begin(), kept[lane].end());
         }
+        return result;
     }
 
-    [[nodiscard]] double rounding(std::size_t i, std::uint32_t output) const {
+    /// What decides which sides these branches take.
+    [[nodiscard]] std::vector<std::uint32_t> computed_for(
+        const std::vector<std::uint32_t>& branches) const {
+        std::vector<bool> is_read(code_.size());
+        const auto read = [&](std::size_t i) {
+            for (std::size_t k = 0; k < nodes_[i].operands; ++k)
+                is_read[nodes_[i].operand[k]] = true;
+        };
+        for (const std::uint32_t branch : branches)
+            read(branch);
+        std::vector<std::uint32_t> result;
+        for (std::size_t i = code_.size(); i-- > 0;) {
+            if (!is_read[i] || is_number(code_[i].op)) continue;
+            result.push_back(static_cast<std::uint32_t>(i));
+            read(i);
+        }
+        std::reverse(result.begin(), result.end());
+        return result;
+    }
+
+    /// What rounding a value may be wrong by, in half units in the last place.
+    [[nodiscard]] double units_of(std::size_t i) const {
+        const Node& node = nodes_[i];
+        if (!node.is_exact) return node.half_ulps;
+        for (std::size_t k = 0; k < node.operands; ++k) {
+            if (in_double_[node.operand[k]]) return 1;
+        }
+        return 0;
+    }
+
+    [[nodiscard]] double rounding(std::size_t i, std::size_t lane, std::size_t output) const {
         const TapeInstruction& step = code_[i];
-        const double v = value_[i];
+        const double v = block_.value(i, lane);
         if (step.op == ExprOp::constant) {
             return std::fabs(v - static_cast<double>(static_cast<float>(v)));
         }
         if (step.op == ExprOp::uniform) return kHalfUlp * std::fabs(v);  // of any value
         if (step.curve) {
-            const double x = value_[step.a];
+            const double x = block_.value(step.a, lane);
             double error = step.curve->tolerance.at(x, v);
             // A curve in float is exact to that for x in float.
             if (!step.curve->is_precise && in_double_[step.a])
                 error += std::fabs(step.curve->slope(x) * x) * kHalfUlp;
             return i == output ? std::max(0.0, error - kHalfUlp * std::fabs(v)) : error;
         }
-        const Node& node = nodes_[i];
-        double units = node.half_ulps;
-        if (node.is_exact) {
-            units = 0;
-            for (std::size_t k = 0; k < node.operands; ++k) {
-                if (in_double_[node.operand[k]]) units = 1;
-            }
-        }
+        double units = units_of(i);
         double of_position = 0;
         if (step.op == ExprOp::lookup) {
             if (step.table->positions.empty()) {
-                const double x = value_[step.a];
-                of_position = std::fabs(slope(*step.table, x) * x) * kHalfUlp;
+                const double x = block_.value(step.a, lane);
+                of_position = std::fabs(table_slope(*step.table, x) * x) * kHalfUlp;
             } else {
                 units = 1;  // computed in double
             }
         }
         if (step.op == ExprOp::lattice) {
-            const std::array<double, 3> at = {value_[step.a], value_[step.b], value_[step.c]};
+            const std::array<double, 3> at = {
+                block_.value(step.a, lane), block_.value(step.b, lane), block_.value(step.c, lane)};
             const std::array<double, 3> slope =
                 step.lattice->gradient(step.input, at[0], at[1], at[2]);
             for (std::size_t k = 0; k < 3; ++k) {
-                if (!in_double_[node.operand[k]])
+                if (!in_double_[nodes_[i].operand[k]])
                     of_position += std::fabs(slope[k] * at[k]) * kHalfUlp;
             }
         }
@@ -579,33 +608,41 @@ class PrecisionChooser {
         return units * std::max(kHalfUlp * std::fabs(v), kSmallestStep) + of_position;
     }
 
-    double keep_within_budget(std::uint32_t output) {
-        accumulate(output);
+    /// What each rounding adds to an output at one color: the shares of curves, and all others.
+    /// @return  the sum of their squares
+    double collect_shares(std::size_t number, std::size_t lane) {
+        const std::uint32_t output = outputs_[number];
         shares_.clear();
         curves_.clear();
-        const double most = 0.25 * 0.25 * max_error_ * max_error_;
-        double sum = 0;  // of squares
+        double sum = 0;
         for (std::size_t i = 0; i <= output; ++i) {
             const bool is_curve = code_[i].curve != nullptr;
-            if (adjoint_[i] == 0 || (in_double_[i] && !is_curve)) continue;
-            const double error = std::fabs(adjoint_[i]) * rounding(i, output);
+            const double adjoint = block_.adjoint(number, i, lane);
+            if (adjoint == 0 || (in_double_[i] && !is_curve)) continue;
+            const double error = std::fabs(adjoint) * rounding(i, lane, output);
             if (!(error > 0)) continue;
             sum += error * error;
             (is_curve ? curves_ : shares_).push_back({error, i});
         }
-        if (sum <= most) return sum / most;
+        std::sort(curves_.begin(), curves_.end(),
+                  [](const Share& x, const Share& y) { return x.error > y.error; });
+        return sum;
+    }
+
+    /// Of one output at one color.
+    double keep_within_budget(std::size_t number, std::size_t lane) {
+        const double most = largest_sum_;
+        double sum = collect_shares(number, lane);
         const auto double_has_more_merit = [&](const Share& x, const Share& y) {
             return x.error / cost_of_double(code_[x.index].op) >
                    y.error / cost_of_double(code_[y.index].op);
         };
-        std::sort(shares_.begin(), shares_.end(), double_has_more_merit);
+        if (!(sum <= most)) std::sort(shares_.begin(), shares_.end(), double_has_more_merit);
         for (const Share& share : shares_) {
             if (sum <= most) return sum / most;
-            in_double_[share.index] = true;
+            put_in_double(share.index);
             sum -= share.error * share.error;
         }
-        std::sort(curves_.begin(), curves_.end(),
-                  [](const Share& x, const Share& y) { return x.error > y.error; });
         for (const Share& share : curves_) {
             if (sum <= most) return sum / most;
             reject(code_[share.index].curve);
@@ -614,32 +651,60 @@ class PrecisionChooser {
         return sum / most;
     }
 
+    /// What keep_within_budget() returns where it changes nothing.
+    std::optional<double> within_budget(std::size_t number, std::size_t lane) {
+        double sum = sums_[number].lane[lane];
+        if (sum <= largest_sum_) return sum / largest_sum_;
+        sum = collect_shares(number, lane);
+        if (!shares_.empty()) return std::nullopt;
+        for (const Share& share : curves_) {
+            if (sum <= largest_sum_) break;
+            if (!is_rejected(code_[share.index].curve)) return std::nullopt;
+            sum -= share.error * share.error;
+        }
+        return sum / largest_sum_;
+    }
+
+    [[nodiscard]] bool is_rejected(const CompiledCurve* curve) const {
+        return std::find(too_coarse_.begin(), too_coarse_.end(), curve) != too_coarse_.end();
+    }
     void reject(const CompiledCurve* curve) {
-        if (std::find(too_coarse_.begin(), too_coarse_.end(), curve) == too_coarse_.end())
-            too_coarse_.push_back(curve);
+        if (!is_rejected(curve)) too_coarse_.push_back(curve);
     }
 
     void keep_in_double(std::size_t i) {
         if (code_[i].curve && !code_[i].curve->is_precise) {
             reject(code_[i].curve);
         } else {
-            in_double_[i] = true;
+            put_in_double(i);
         }
     }
+    [[nodiscard]] bool is_kept_in_double(std::size_t i) const {
+        return code_[i].curve && !code_[i].curve->is_precise ? is_rejected(code_[i].curve)
+                                                             : in_double_[i];
+    }
+    void put_in_double(std::size_t i) {
+        if (!in_double_[i]) ++changes_;
+        in_double_[i] = true;
+    }
+
+    static constexpr double kTooLarge =
+        0.5 * static_cast<double>(std::numeric_limits<float>::max());
+    static constexpr std::size_t kNoOutput = ~std::size_t{0};
 
     const std::vector<TapeInstruction>& code_;
     const std::array<std::uint32_t, 3>& outputs_;
     double max_error_;
+    double largest_sum_;  // of the squares of what roundings add to an output
     std::vector<bool> in_double_;
+    std::size_t changes_ = 0;  // of in_double_
     std::vector<const CompiledCurve*> too_coarse_;
-    std::vector<double> value_;
-    std::vector<double> adjoint_;
-    std::vector<char> has_pole_;
-    std::vector<std::array<double, 3>> partials_;
-    std::vector<std::size_t> partials_are_of_;  // the evaluation, counted from 1
-    std::size_t evaluation_ = 0;
+    ProbeBlock block_;
+    // Of the block's colors:
+    Row largest_;
+    ProbeBlock::OutputRows sums_;
+    std::size_t summed_after_ = 0;  // how many changes
     std::vector<Node> nodes_;
-    std::vector<std::size_t> computed_;  // all values but constants and uniforms
     std::vector<Share> shares_, curves_;
     std::vector<Branch> branches_;
     SampleRandom random_{11};
@@ -649,7 +714,33 @@ class PrecisionChooser {
 
 Sensitivity measure_influence(const std::vector<TapeInstruction>& code,
                               const std::array<std::uint32_t, 3>& outputs) {
-    return PrecisionChooser(code, outputs, 0).sensitivity();
+    /// Where the derivative has no end.
+    constexpr double kPole = 1e12;
+    constexpr std::size_t kStride = 3;
+    std::vector<Vector3> probes;
+    const std::vector<Vector3> all = probe_colors();
+    for (std::size_t p = 0; p < all.size(); p += kStride)
+        probes.push_back(all[p]);
+    Sensitivity result;
+    ProbeBlock block(code, outputs, true);
+    for (std::size_t p = 0; p < probes.size(); p += ProbeBlock::kLanes) {
+        block.evaluate(&probes[p], std::min(ProbeBlock::kLanes, probes.size() - p));
+        block.differentiate();
+        result.value.resize(p + block.size(), std::vector<double>(code.size()));
+        result.sensitivity.resize(p + block.size(), std::vector<double>(code.size()));
+        for (std::size_t i = 0; i < code.size(); ++i) {
+            for (std::size_t lane = 0; lane < block.size(); ++lane) {
+                result.value[p + lane][i] = block.value(i, lane);
+                double& largest = result.sensitivity[p + lane][i];
+                for (std::size_t o = 0; o < 3; ++o) {
+                    largest = std::max(largest, block.has_pole(o, i, lane)
+                                                    ? kPole
+                                                    : std::fabs(block.adjoint(o, i, lane)));
+                }
+            }
+        }
+    }
+    return result;
 }
 
 Precision choose_precision(const std::vector<TapeInstruction>& code,

@@ -11,7 +11,7 @@ file from the script editor, or
     import check_config; check_config.main(["path/to/config.ocio"])
 
 Prints one line per display and view: the largest difference of code values between probe.csv, which is the operator
-in double precision, and OpenColorIO's CPU path, with the optimisations that applications use and without. Exit
+in double precision, and OpenColorIO's CPU path, with the optimizations that applications use and without. Exit
 status 1 when a view is beyond its bound, 2 when there is nothing to compare.
 
 The bounds stand in probe.csv: 1e-6 for a view of matrices, limits and tables with an entry for every half float, three
@@ -25,7 +25,7 @@ import sys
 
 
 def read_probes(path):
-    """{(display, view, space): [(colour, expected, how near), ...]} in the order of the file."""
+    """{(display, view, space): [(color, expected, how near), ...]} in the order of the file."""
     probes = {}
     with open(path, newline="") as file:
         for row in csv.DictReader(file):
@@ -106,13 +106,13 @@ def main(arguments=()):
         print("check_config: " + path + " is empty")
         return 2
     print("OpenColorIO {}, config {}".format(ocio.GetVersion(), config.getName() or folder))
-    print("Largest error of code values, {} colours each; `x bound`: of the error allowed"
+    print("Largest error of code values, {} colors each; `x bound`: of the error allowed"
           .format(max(len(p) for p in probes.values())))
     print("{:<12} {:<24} {:>8} {:>8} {:>9}  {:<5} {:>5}".format(
         "display", "view", "default", "lossless", "10-bit", "form", "x bound"))
     failed = 0
-    for key, colours in probes.items():
-        line, ok = compare(ocio, config, key, colours)
+    for key, colors in probes.items():
+        line, ok = compare(ocio, config, key, colors)
         failed += not ok
         print(line)
     print("{} passed, {} failed".format(len(probes) - failed, failed))

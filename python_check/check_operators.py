@@ -3,7 +3,7 @@
 
     python3 check_operators.py build/release/bin/tonewright [OPERATOR ...]
 
-Prints one line per run; exits 1 when a colour is outside the tolerance. The last line is `N passed, M failed`.
+Prints one line per run; exits 1 when a color is outside the tolerance. The last line is `N passed, M failed`.
 """
 
 import os
@@ -20,7 +20,7 @@ from operators.pq import pq_decode
 # arithmetic: 1e-16 a step, times the condition of the curves (powers of up to 80 in PQ, logarithms near 1).
 RELATIVE = 1e-9
 # Where the result is a difference (Hable's E/F, saturation, matrices, S(0)), 1e-16 of the terms is left beside 0; the
-# terms are of the size of the colour's largest channel, or of 1. The looks' power of 0.8 raises that to 2e-13.
+# terms are of the size of the color's largest channel, or of 1. The looks' power of 0.8 raises that to 2e-13.
 ABSOLUTE = 1e-12
 # Displays with an infinite slope at black, where 1e-16 of light is 2e-7 in code, are compared as light. HLG: its root.
 DISPLAY_LIGHT = {"rec1886": lambda code: code**2.4, "g22": lambda code: code**2.2, "rec2020": lambda code: code**2.4,
@@ -218,13 +218,13 @@ VIEWS = [
 
 
 def samples(count=2000):
-    """Colours as (count, 3): greys, hues, out of gamut, beyond every limit, random."""
-    grey = 0.18 * 2.0 ** np.arange(-12, 12.01, 0.5)
+    """Colors as (count, 3): grays, hues, out of gamut, beyond every limit, random."""
+    gray = 0.18 * 2.0 ** np.arange(-12, 12.01, 0.5)
     hues = [(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 0), (0, 1, 1), (1, 0, 1), (0.8, 0.1, 0.05), (0.05, 0.1, 2)]
     limits = [0.0, -0.0, 1e-7, 1e-10,
                -0.1, -5.0, 1.0, 4.0, 11.2, 65504.0, 70000.0, 1e30, np.inf, -np.inf, np.nan]
     special = np.concatenate([
-        np.repeat(grey[:, None], 3, axis=1),
+        np.repeat(gray[:, None], 3, axis=1),
         *(np.array(hues) * gain for gain in (0.01, 0.18, 1, 8, 1000)),
         np.repeat(np.array(limits)[:, None], 3, axis=1),
         np.stack([limits, np.roll(limits, 5), np.roll(limits, 7)], axis=1),
@@ -254,7 +254,7 @@ def runs():
         for preset, settings in PRESETS.get(operator, {}).items():
             yield {"operator": operator, "preset": preset, "settings": settings, "display": "native"}
         # A view is the same code for every operator, but for its working primaries and kind of output: so only
-        # some of the displays and inputs, others for the next operator. (A process takes 0.2 s, whatever the colours.)
+        # some of the displays and inputs, others for the next operator. (A process takes 0.2 s, whatever the colors.)
         full = operator in FULL_VIEWS
         for space in inputs if full else [inputs[number % len(inputs)]]:
             yield {"operator": operator, "input": space, "display": "linear", "exposure": 2}
@@ -278,7 +278,7 @@ def command(binary, view):
 
 
 def evaluate(arguments, rgb):
-    """Colours through the program; raises ValueError when it does not answer with as many."""
+    """Colors through the program; raises ValueError when it does not answer with as many."""
     text = "".join(f"{r!r} {g!r} {b!r}\n" for r, g, b in rgb.tolist())
     result = subprocess.run(arguments, input=text, capture_output=True, text=True, check=False)
     if result.returncode:

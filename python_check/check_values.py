@@ -258,11 +258,11 @@ REASONS = {
     "aces13_reference_gamut_compression": "a step of aces_13; test_operators.py holds aces_13.compress_gamut to it",
     "aces2_inverse_": "the inverse of aces_20; test_operators.py holds aces_20.aces_20_inverse to it",
     "agx_sigmoid_SB2383": "the inner curve of agx_blender; test_operators.py holds agx_sigmoid to it",
-    "agx_sobotka_curve": "the inner curve of agx_sobotka: behind the inset these values need negative colours, which "
+    "agx_sobotka_curve": "the inner curve of agx_sobotka: behind the inset these values need negative colors, which "
                          "the operator limits; sobotka_table is held to it in test_operators.py",
-    "reinhard_local": "a local operator, which reads its neighbours; the _64_repo_ figures also have a kernel bug",
+    "reinhard_local": "a local operator, which reads its neighbors; the _64_repo_ figures also have a kernel bug",
     "exposure_fusion": "a local operator, which reads a pyramid of the picture",
-    "auto_exposure": "a statistic of a picture, not of a colour",
+    "auto_exposure": "a statistic of a picture, not of a color",
     "display_rec2100": "a display encoding, tested in tests/unit/color and test_check_values.py",
     "srgb_encode": "a display encoding, tested in tests/unit/color and test_check_values.py",
     "pq_encode_nits": "a display encoding, tested in tests/unit/color and test_check_values.py",

@@ -28,7 +28,7 @@ LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 
 def gaussian_matrix(size, reach):
-    """Row i holds the weights of exp(-d^2/reach^2) about pixel i, renormalised inside the picture."""
+    """Row i holds the weights of exp(-d^2/reach^2) about pixel i, renormalized inside the picture."""
     radius = int(np.ceil(3 * reach / np.sqrt(2)))
     d = np.arange(size)[:, None] - np.arange(size)
     weights = np.where(abs(d) <= radius, np.exp(-(d / reach) ** 2), 0)
@@ -218,7 +218,7 @@ BOUND = {"reinhard_local": 2e-6, "exposure_fusion": 2e-4, "local_laplacian": 5e-
 
 
 def scene(height, width, seed=1):
-    """Log-uniform blobs and noise over 14 stops, saturated colours, black."""
+    """Log-uniform blobs and noise over 14 stops, saturated colors, black."""
     rng = np.random.default_rng(seed)
     y, x = np.mgrid[:height, :width]
     stops = 5 * np.sin(x / 7 + seed) * np.cos(y / 5) + rng.normal(0, 0.3, (height, width)) + 2 * (x > width // 2)

@@ -4,7 +4,7 @@
     TONEWRIGHT_SHARED=<folder> python3 make_operator_rows.py
 
 Published figures come from reference/check_values.json in that folder, through check_values.py. The operators add
-what they lack: other settings, negatives, near-black, colours beyond the half-float range. Rows of other operators
+what they lack: other settings, negatives, near-black, colors beyond the half-float range. Rows of other operators
 are kept as they are.
 """
 
@@ -20,18 +20,18 @@ COLUMNS = "operator settings look output input in_r in_g in_b out_r out_g out_b 
 # Names of check_values.json whose source says nothing outside of it.
 SOURCES = {"aces_narkowicz": "formula of Narkowicz 2016", "exposure_ev": "rgb * 2^EV"}
 
-GREY, SATURATED, BRIGHT = (0.18, 0.18, 0.18), (0.8, 0.1, 0.05), (4, 2, 0.5)
+GRAY, SATURATED, BRIGHT = (0.18, 0.18, 0.18), (0.8, 0.1, 0.05), (4, 2, 0.5)
 BLACK, NEAR_BLACK = (0, 0, 0), (0.0003, 0.0002, 0.0001)
 MIXED, NEGATIVE = (-0.1, 0.2, 0.5), (-3, -2, -1)
 # Above 65504, the largest half float, every value counts as 65504.
 LARGE, BEYOND = (60000, 20000, 500), (1e6, 65504, 70000)
 EVERYWHERE = (NEAR_BLACK, MIXED, NEGATIVE, LARGE, BEYOND)
-COLOURS = (BLACK, GREY, SATURATED, BRIGHT, *EVERYWHERE)
-FEW = (GREY, SATURATED, BRIGHT, MIXED, BEYOND)
+COLORS = (BLACK, GRAY, SATURATED, BRIGHT, *EVERYWHERE)
+FEW = (GRAY, SATURATED, BRIGHT, MIXED, BEYOND)
 BLUE, RED, DARK_RED = (0.05, 0.1, 2), (6, 0.4, 0.3), (0.06, 0.004, 0.003)  # where glow and red modifier act
-HUES = (*COLOURS, BLUE, RED, DARK_RED)
-# What picture formations move: saturated colours of every brightness, at their limits.
-FORMED = (BLACK, GREY, BLUE, RED, (0.02, 0.4, 0.05), (3, 0.2, 2.5), MIXED, BEYOND)
+HUES = (*COLORS, BLUE, RED, DARK_RED)
+# What picture formations move: saturated colors of every brightness, at their limits.
+FORMED = (BLACK, GRAY, BLUE, RED, (0.02, 0.4, 0.05), (3, 0.2, 2.5), MIXED, BEYOND)
 STOPS = tuple((0.18 * 2.0**s,) * 3
               for s in (-8, -6.52, -5.48, -3, -2.5, -1.46, -0.4, 0.5, 1.53, 2.49, 4, 5.51, 6.55, 9))
 
@@ -163,7 +163,7 @@ def published_rows(shared):
 
 
 def derived_cases():
-    """(operator, settings, look, output, input, colours) of every row that the operators compute."""
+    """(operator, settings, look, output, input, colors) of every row that the operators compute."""
     for operator in (*CURVES, *OTHERS):
         working = "lin_" + operators.WORKING[operator]
         forms = []
@@ -171,30 +171,30 @@ def derived_cases():
             first = "luminance" if operator in LUMINANCE_FIRST else "channels"
             forms = [f"apply={a}" for a in ("channels", "luminance", "max", "hue_preserving") if a != first]
         code = operator in operators.CODE_POWER
-        hues = HUES if operator in ("aces_filament", "unreal", "gt7", "frostbite", "agx_threejs") else COLOURS
-        hues = (*COLOURS, *STOPS) if operator == "false_color" else hues
-        colours = COLOURS
+        hues = HUES if operator in ("aces_filament", "unreal", "gt7", "frostbite", "agx_threejs") else COLORS
+        hues = (*COLORS, *STOPS) if operator == "false_color" else hues
+        colors = COLORS
         if operator in FORMATIONS:
-            hues, colours = HUES, FORMED
+            hues, colors = HUES, FORMED
         yield operator, "", "", "native", working, hues
         for settings in (*CURVES.get(operator, ()), *OTHERS.get(operator, ())):
-            yield operator, settings, "", "native", working, colours
+            yield operator, settings, "", "native", working, colors
         for settings in forms:
             yield operator, settings, "", "native", working, FEW
             if code and settings == "apply=luminance":
                 yield operator, settings, "", "linear", working, FEW
         for look in LOOKS.get(operator, ()):
-            yield operator, "", look, "native", working, colours
+            yield operator, "", look, "native", working, colors
         if code or working != "lin_rec709":
-            yield operator, "", "", "linear", "lin_rec709", COLOURS
+            yield operator, "", "", "linear", "lin_rec709", COLORS
     for space in operators.INPUTS:
         yield "reinhard", "", "", "native", space, FEW
 
 
 def derived_rows():
     """Rows that the operators compute."""
-    for operator, settings, look, output, space, colours in derived_cases():
-        for rgb in colours:
+    for operator, settings, look, output, space, colors in derived_cases():
+        for rgb in colors:
             out = operators.view(operator, rgb, parse_settings(settings), look, input=space, display=output)
             yield row_of(operator, settings, look, output, space, rgb, out, EXACT, "python_check/operators")
 

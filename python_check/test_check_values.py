@@ -103,8 +103,8 @@ def check_statements():
                              [0.11142098895748, 0.875575586156966, 0.0130034248855548],
                              [0.11142098895748, 0.0871996192028349, 0.801379391839686]])
     report("AgX Rec.2020 outset: inverse of the printed inverse", np.abs(inverse - agx.OUTSET_2020).max(), 1e-14)
-    grey = [operators.OPERATORS["agx_godot"]([g] * 3, 1.25, 8.0, 2.0)[0] for g in (0.18, 8.0)]
-    report("agx_godot: 0.18 stays, white becomes output_max", np.abs(np.subtract(grey, (0.18, 2))).max(), 1e-13)
+    gray = [operators.OPERATORS["agx_godot"]([g] * 3, 1.25, 8.0, 2.0)[0] for g in (0.18, 8.0)]
+    report("agx_godot: 0.18 stays, white becomes output_max", np.abs(np.subtract(gray, (0.18, 2))).max(), 1e-13)
     report("unreal: 0.18 stays, legacy preset",
            abs(unreal.unreal_curve(np.array(0.18), 0.98, 0.3, 0.22, 0, 0.025) - 0.18), 1e-15)
     # k_A = 1.18533 target; the curve passes the target at (linear + k ln 4) target = 1.47170 target.
@@ -114,11 +114,11 @@ def check_statements():
     report("eetf: the peak of the source becomes that of the target", max(
         abs(f(np.full(3, 40.0), source_peak=4000, target_peak=300)[0] - 1)
         for f in (eetf.bt2390, eetf.bt2446a, eetf.spline)), 1e-12)
-    # Neighbouring colours meet half-way at +-0.5 stop, and each holds on its whole stop.
+    # Neighboring colors meet half-way at +-0.5 stop, and each holds on its whole stop.
     stops = np.array([-9, -7, -3, 0, 2.37, 2.5, 7, 12])
     shown = operators.OPERATORS["false_color"](np.repeat(0.18 * 2.0 ** stops[:, None], 3, axis=1))
     light = false_color.srgb_decode(np.array([[int(c[k:k + 2], 16) for k in (0, 2, 4)]
-                                              for c in false_color.COLOURS]) / 255)
+                                              for c in false_color.COLORS]) / 255)
     expected = [light[0], light[0], light[4], light[7], light[9], (light[9] + light[10]) / 2, light[14], light[14]]
     report("false_color at whole and half stops", np.abs(shown - expected).max(), 1e-12)
 
@@ -129,16 +129,16 @@ def check_contrast():
     curves = {name: lambda v, f=f: f(v[..., None].repeat(3, -1))[..., 0]
               for name, f in operators.OPERATORS.items() if name in ("aces_narkowicz", "bt2390", "bt2446a", "spline")}
     for name, f in curves.items():
-        colour = np.stack([x, x, x], -1) * (1, 0.5, 2)
+        color = np.stack([x, x, x], -1) * (1, 0.5, 2)
         weights = operators.REC709_WEIGHTS if name == "aces_narkowicz" else operators.REC2020_WEIGHTS
-        norm = operators.luminance(colour, weights)
+        norm = operators.luminance(color, weights)
         how = {"apply": "luminance", "color_correction": "nonlinear"}
-        from_contrast = operators.OPERATORS[name](colour, **how, saturation_from="contrast")
+        from_contrast = operators.OPERATORS[name](color, **how, saturation_from="contrast")
         at = [np.log(f(norm[..., 0] * np.exp(k * h))) for k in (-2, -1, 1, 2)]
         slope = (at[0] - 8 * at[1] + 8 * at[2] - at[3]) / (12 * h)
         power = np.maximum(slope, 0) ** 0.9925
         saturation = ((1 + 1.6774) * power / (1 + 1.6774 * power))[..., None]
-        expected = (colour / norm) ** saturation * f(norm[..., 0])[..., None]
+        expected = (color / norm) ** saturation * f(norm[..., 0])[..., None]
         expected = np.clip(expected, 0, 1) if name == "aces_narkowicz" else expected
         report(f"{name}: saturation from contrast", np.abs(from_contrast / expected - 1).max(), 1e-8)
 

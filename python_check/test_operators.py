@@ -114,7 +114,7 @@ def lights(operator, rgb, settings):
 
 
 def hue(rgb):
-    return np.array([colorsys.rgb_to_hsv(*colour)[0] for colour in rgb])
+    return np.array([colorsys.rgb_to_hsv(*color)[0] for color in rgb])
 
 
 def check_apply():
@@ -152,8 +152,8 @@ def check_apply():
     for correction in ("nonlinear", "luminance_preserving"):
         how = {**luminance, "color_correction": correction}
         report(f"{correction}, saturation 1: as ratio", relative_error(curve(how), curve(luminance)), 1e-12)
-        grey = np.broadcast_to(wanted, rgb.shape)
-        report(f"{correction}, saturation 0: grey", relative_error(curve({**how, "saturation": 0}), grey), 1e-12)
+        gray = np.broadcast_to(wanted, rgb.shape)
+        report(f"{correction}, saturation 0: gray", relative_error(curve({**how, "saturation": 0}), gray), 1e-12)
     for saturation in (0.4, 1.7):
         for source in ("fixed", "contrast"):
             out = curve({**luminance, "color_correction": "luminance_preserving", "saturation": saturation,
@@ -249,7 +249,7 @@ def check_shared(shared):
         return tuple(value for column, value in row.items() if column not in figures)
 
     def off(row, others):
-        """Largest relative difference of a row to the one of the same colour, settings and origin, of its tolerance."""
+        """Largest relative difference of a row to the one of the same color, settings and origin, of its tolerance."""
         wanted = np.array([float(row[c]) for c in figures])
         return min((relative_error([float(other[c]) for c in figures], wanted) / float(row["tolerance"])
                     for other in others.get(identity(row), ())), default=np.inf)

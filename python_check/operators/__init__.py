@@ -26,7 +26,7 @@ from .aces import HILL_IN, HILL_OUT, hill_curve
 from .agx import AGX_INSET, AGX_LOG2, AGX_LOOKS, agx_shape, agx_sigmoid, cdl
 from .base import (HALF_MAX, MANTIUK, REC709_WEIGHTS, REC2020_WEIGHTS, apply_curve, curve_contrast, limit_scene, log1p,
                    luminance, mantiuk_saturation)
-from .spaces import (DISPLAYS, INPUTS, PRIMARIES, UNIT, power_encode, rgb_to_rgb, rgb_to_xyz, sanitise, srgb_encode,
+from .spaces import (DISPLAYS, INPUTS, PRIMARIES, UNIT, power_encode, rgb_to_rgb, rgb_to_xyz, sanitize, srgb_encode,
                      xyz)
 
 FAMILIES = (exposure, reinhard, hable, filmic, uchimura, statistics, aces, aces_13, aces_20, unreal, agx, agx_blender,
@@ -75,7 +75,7 @@ def view(operator, rgb, settings=None, look="", exposure=0.0, input="lin_rec709"
         facts = shown_on._replace(peak=shown_on.peak * UNIT / reference_white) if shown_on.is_hdr else shown_on
         settings = {**{name: decide(facts) for name, decide in FROM_DISPLAY.get(operator, {}).items()}, **settings}
     working = WORKING[operator]
-    scene = sanitise(rgb) @ rgb_to_rgb(INPUTS[input], working).T * 2.0**exposure
+    scene = sanitize(rgb) @ rgb_to_rgb(INPUTS[input], working).T * 2.0**exposure
     out = OPERATORS[operator](scene, **settings, **({"look": look} if look else {}))
     if display == "native":
         return out
@@ -86,7 +86,7 @@ def view(operator, rgb, settings=None, look="", exposure=0.0, input="lin_rec709"
         return out @ rgb_to_rgb(primaries, "rec709").T
     peak = min(PEAK[operator](**settings) if operator in PEAK else 1.0, shown_on.largest)
     to_display = rgb_to_rgb(primaries, shown_on.primaries)
-    if (to_display > -1e-9).all():  # none of its colours needs negative light of the display
+    if (to_display > -1e-9).all():  # none of its colors needs negative light of the display
         out = np.clip(out, 0, peak)
     out = np.clip(out @ to_display.T, 0, peak)
     if shown_on.is_hdr:

@@ -84,7 +84,7 @@ def saturation_of(ap0, tiny):
 
 
 def glow(ap0, saturation):
-    """ACES glow: saturated dark colours times up to 1.05.
+    """ACES glow: saturated dark colors times up to 1.05.
 
     References
     ----------
@@ -115,20 +115,20 @@ def red_modifier(ap0, saturation):
     [0.6614, 0.0, 0.0]
     """
     r, g, b = np.moveaxis(ap0, -1, 0)[..., None]
-    hue = np.degrees(np.arctan2(np.sqrt(3) * (g - b), 2 * r - g - b))  # already centred on red, (-180, 180]
+    hue = np.degrees(np.arctan2(np.sqrt(3) * (g - b), 2 * r - g - b))  # already centered on red, (-180, 180]
     weight = smoothstep(0, 1, 1 - np.abs(2 * hue / 135)) ** 2
     red = r + weight * saturation * (0.03 - r) * (1 - 0.82)
     return np.concatenate([red, g, b], axis=-1)
 
 
 def saturate(ap1, factor):
-    """AP1 towards its luminance: factor 1 keeps the colour, 0 is grey.
+    """AP1 towards its luminance: factor 1 keeps the color, 0 is gray.
 
     >>> saturate(np.array([1.0, 1.0, 1.0]), 0.5).round(12).tolist()
     [1.0, 1.0, 1.0]
     """
-    grey = (ap1 * AP1_WEIGHTS).sum(-1, keepdims=True)
-    return grey + factor * (ap1 - grey)
+    gray = (ap1 * AP1_WEIGHTS).sum(-1, keepdims=True)
+    return gray + factor * (ap1 - gray)
 
 
 def aces_filament(rgb, brightness=1.0):

@@ -63,7 +63,7 @@ def saturation_of(ap0):
 
 
 def glow(ap0, saturation):
-    """Saturated dark colours times up to 1.05.
+    """Saturated dark colors times up to 1.05.
 
     >>> glow(np.array([0.02, 0.0, 0.0]), 1.0).round(12).tolist()
     [0.021, 0.0, 0.0]
@@ -114,12 +114,12 @@ def saturate(ap1, factor):
     >>> saturate(np.array([1.0, 1.0, 1.0]), 0.5).round(12).tolist()
     [1.0, 1.0, 1.0]
     """
-    grey = (ap1 * AP1_WEIGHTS).sum(-1, keepdims=True)
-    return grey + factor * (ap1 - grey)
+    gray = (ap1 * AP1_WEIGHTS).sum(-1, keepdims=True)
+    return gray + factor * (ap1 - gray)
 
 
 # --------------------------------------------------------------------------------------------------
-# Curves of the CTL: quadratic B-splines of log10, two of them joined at mid grey
+# Curves of the CTL: quadratic B-splines of log10, two of them joined at mid gray
 
 BASIS = np.array([[0.5, -1, 0.5], [-1, 1, 0], [0.5, 0.5, 0]])  # of t^2, t, 1
 
@@ -193,7 +193,7 @@ def ssts_parameters(peak, middle):
     step = (x_max - x_mid) / 3
     high = [y_mid - slope * step / 2, y_mid + slope * step / 2,
             y_mid + np.interp(stops_max, [6.5, 18], [0.89, 0.90]) * (log_max - y_mid), log_max, log_max]
-    # inv_ssts(middle): the middle of either form lies in the first interval above mid grey.
+    # inv_ssts(middle): the middle of either form lies in the first interval above mid gray.
     a, b, c = BASIS @ high[:3]
     c -= np.log10(middle)
     t = 2 * c / (-np.sqrt(b * b - 4 * a * c) - b)
@@ -242,7 +242,7 @@ def refit(x0, x1, y0, y1, s0, s1):
 
 
 def quadratics(x, knots):
-    """One quadratic between neighbouring knots (x, y, slope), straight lines with the end slopes outside.
+    """One quadratic between neighboring knots (x, y, slope), straight lines with the end slopes outside.
 
     >>> quadratics(np.array([-1.0, 0.5, 1.0, 2.0]), [(0, 0, 0), (1, 1, 2)]).tolist()
     [0.0, 0.25, 1.0, 3.0]
@@ -325,7 +325,7 @@ def aces_13(rgb, output="sdr_video", limit="rec709", gamut_compression="no", spl
     """AP0 to display light. SDR: in the limiting primaries (limit=none: AP1, not limited), 1 = white. HDR: in Rec.2020,
     1 = 100 cd/m2.
 
-    HDR forms are limited before they are adapted from the ACES white to D65, which moves colours at the limit a little
+    HDR forms are limited before they are adapted from the ACES white to D65, which moves colors at the limit a little
     beyond the limiting primaries and blue up to 1.09 of the peak.
 
     >>> aces_13([0.18, 0.18, 0.18]).round(9).tolist()

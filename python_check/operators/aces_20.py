@@ -17,7 +17,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from .spaces import PRIMARIES, chromaticities, rgb_to_rgb, sanitise, xyz
+from .spaces import PRIMARIES, chromaticities, rgb_to_rgb, sanitize, xyz
 
 # The model's constants: adapting luminance 100, background 20, surround c = 0.59, N_c = 0.9.
 CZ = 0.59 * (1.48 + np.sqrt(0.2))
@@ -455,7 +455,7 @@ def aces_20(rgb, peak=100.0, limit="rec709", primaries=""):
     [0.099999325, 0.099999325, 0.099999325]
     """
     t = transform(float(peak), limit, primaries)
-    return np.clip(t.forward(sanitise(rgb)), 0, t.peak / 100)
+    return np.clip(t.forward(sanitize(rgb)), 0, t.peak / 100)
 
 
 def aces_20_inverse(rgb, peak=100.0, limit="rec709", primaries=""):
@@ -471,7 +471,7 @@ def aces_20_inverse(rgb, peak=100.0, limit="rec709", primaries=""):
     >>> (aces_20_inverse([9, 1, 0.5], 1000, "p3d65") @ to_ap0).round(9).tolist()
     [5.961081326, 1.144685038, 0.176056312]
     """
-    return transform(float(peak), limit, primaries).inverse(sanitise(rgb))
+    return transform(float(peak), limit, primaries).inverse(sanitize(rgb))
 
 
 OPERATORS = {"aces_20": aces_20}

@@ -16,7 +16,7 @@ AGX_LOG2 = (-12.47393, 4.026069)
 
 
 def agx_shape(rgb):
-    """log2 of scene-linear, normalised so that AGX_LOG2 becomes [0, 1], clamped.
+    """log2 of scene-linear, normalized so that AGX_LOG2 becomes [0, 1], clamped.
 
     >>> agx_shape(np.array([0.0, 0.18, 99.0])).round(6).tolist()
     [0.0, 0.606061, 1.0]
@@ -196,16 +196,16 @@ def agx_godot(rgb, contrast=1.25, white=16.29, output_max=1.0):
     >>> agx_godot([1.0, 1, 1]).round(9).tolist()
     [0.596110849, 0.596110849, 0.596110849]
     """
-    grey = 0.18
-    a = (1 / grey - 1) * grey**contrast
-    slope = contrast * grey ** (contrast - 1) * a / (grey**contrast + a) ** 2
-    room = output_max - grey
-    w = (white - grey) ** 2 / room * slope
+    gray = 0.18
+    a = (1 / gray - 1) * gray**contrast
+    slope = contrast * gray ** (contrast - 1) * a / (gray**contrast + a) ** 2
+    room = output_max - gray
+    w = (white - gray) ** 2 / room * slope
     x = limit_scene(rgb) @ GODOT_IN.T
     power = x**contrast
-    s = np.maximum(x - grey, 0)
-    shoulder = slope * s * (1 + s / w) / (1 + slope * s / room) + grey
-    return np.minimum(np.where(x < grey, power / (power + a), shoulder), output_max) @ GODOT_OUT.T
+    s = np.maximum(x - gray, 0)
+    shoulder = slope * s * (1 + s / w) / (1 + slope * s / room) + gray
+    return np.minimum(np.where(x < gray, power / (power + a), shoulder), output_max) @ GODOT_OUT.T
 
 
 OPERATORS = {f.__name__: f for f in (agx_sobotka, agx_minimal, agx_threejs, agx_filament, agx_godot44, agx_godot)}

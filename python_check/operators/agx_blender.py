@@ -2,7 +2,7 @@
 """AgX as Blender has it: E. Chow's formation as a formula, and as the cubes that Blender shows it through.
 
 A cube is sampled from the formula with the constants of its generator, and interpolated; the two differ visibly where
-the guard rails have their kinks. SDR views limit colours to the gamut of a display, the HDR view to P3 at 1000 cd/m2.
+the guard rails have their kinks. SDR views limit colors to the gamut of a display, the HDR view to P3 at 1000 cd/m2.
 """
 
 import functools
@@ -13,7 +13,7 @@ from .agx import INSET_2020, OUTSET_2020, agx_sigmoid
 from .base import REC709_WEIGHTS, REC2020_WEIGHTS, luminance
 from .spaces import HLG_A, HLG_B, HLG_C, HLG_FLOOR, HLG_GAMMA, hlg_oetf, rgb_to_rgb, rgb_to_xyz
 
-GREY = 0.18
+GRAY = 0.18
 # Luminance weights of the rails: those of the SDR cubes, and those of the script of 2025, which made the HDR cube.
 RAIL_SDR = np.array([0.2658180370250449, 0.59846986045365, 0.1357121025213052])
 RAIL_2025 = np.array([0.2589235355689848, 0.6104985346066525, 0.13057792982436284])
@@ -21,7 +21,7 @@ RAIL_2025 = np.array([0.2589235355689848, 0.6104985346066525, 0.1305779298243628
 # FilmLight, "T-CAM ... / E-Gamut" white paper: E-Gamut to XYZ under D65.
 E_GAMUT_TO_XYZ = np.array([[0.7053968501, 0.1640413283, 0.08101774865], [0.2801307241, 0.8202066415, -0.1003373656],
                            [-0.1037815116, -0.07290725703, 1.265746519]])
-# The generator's own conversions: their white is (0.31271, 0.32902), so cubes tint greys by up to 3.5e-5.
+# The generator's own conversions: their white is (0.31271, 0.32902), so cubes tint grays by up to 3.5e-5.
 XYZ_TO = {
     "rec2020": np.array([[1.7166634277958805, -0.3556733197301399, -0.2533680878902478],
                          [-0.6666738361988869, 1.6164557398246981, 0.0157682970961337],
@@ -41,7 +41,7 @@ LG2 = (-12.47393, 12.5260688117)
 
 
 def lg2_encode(x):
-    """log2 over 25 stops, 10 of them below mid grey: 0.18 -> 0.4. Not limited, but for the floor before the logarithm.
+    """log2 over 25 stops, 10 of them below mid gray: 0.18 -> 0.4. Not limited, but for the floor before the logarithm.
 
     >>> lg2_encode(np.array([0.18, 0])).round(6).tolist()
     [0.4, -4.541043]
@@ -65,8 +65,8 @@ def highest(v):
 def rail(c, to_rec2020, weights, fades):
     """Low-side guard rail: what is below 0 is lifted to 0, and the luminance that this adds is scaled away.
 
-    Luminances are compensated by the brightness that a colour's complement has above its own; for `fades`, the less
-    the brighter the colour.
+    Luminances are compensated by the brightness that a color's complement has above its own; for `fades`, the less
+    the brighter the color.
 
     >>> rail(np.array([-0.1, 0.2, 0.5]), np.eye(3), RAIL_SDR, False).round(6).tolist()
     [0.0, 0.242522, 0.485043]
@@ -120,31 +120,31 @@ def turn(hue, towards, share):
 
 
 def agx_light(x, shoulder=1.5, ends=False):
-    """Log of -10..+6.5 stops, sigmoid through mid grey, decoded with 2.4: mid grey stays.
+    """Log of -10..+6.5 stops, sigmoid through mid gray, decoded with 2.4: mid gray stays.
 
     >>> agx_light(np.array([0.0, 0.18, 1.0])).round(9).tolist()
     [0.0, 0.18, 0.555999065]
     """
-    n = np.maximum(np.log2(np.maximum(x, GREY * 2.0**-11) / GREY) + 10, 0) / 16.5
+    n = np.maximum(np.log2(np.maximum(x, GRAY * 2.0**-11) / GRAY) + 10, 0) / 16.5
     n = np.minimum(n, 1) if ends else n
-    return np.where(n > 0, agx_sigmoid(n, (10 / 16.5, GREY ** (1 / 2.4)), 2.4, (1.5, shoulder)) ** 2.4, 0)
+    return np.where(n > 0, agx_sigmoid(n, (10 / 16.5, GRAY ** (1 / 2.4)), 2.4, (1.5, shoulder)) ** 2.4, 0)
 
 
 def hdr_light(x, peak):
-    """The HDR view's second curve: mid grey stays, 1 goes down to 1/peak of the display's light.
+    """The HDR view's second curve: mid gray stays, 1 goes down to 1/peak of the display's light.
 
     >>> hdr_light(np.array([0.0, 0.18, 1.0]), 10).round(9).tolist()
     [0.0, 0.018, 1.0]
     """
-    height = 20 + np.log2(1 / GREY)
+    height = 20 + np.log2(1 / GRAY)
     px, py, k = 20 / height, (20 - np.log2(peak)) / height, 1.000001
-    e = (np.log2(np.where(x > 0, x, 1) / GREY) + 20) / height
+    e = (np.log2(np.where(x > 0, x, 1) / GRAY) + 20) / height
     toe = -(((k * px) ** -3 * ((k * px / py) ** 3 - 1)) ** (-1 / 3))
     u = k * (np.minimum(e, px) - px) / toe
     shoulder = k * (1 - px) / (k * (1 - px) / (1 - py) - 1)
     w = k * (np.maximum(e, px) - px) / shoulder
     out = np.where(e < px, toe * u / (1 + u**3) ** (1 / 3) + py, shoulder * w / (1 + w) + py)
-    return np.where(x > 0, GREY * 2 ** (height * out - 20), 0)
+    return np.where(x > 0, GRAY * 2 ** (height * out - 20), 0)
 
 
 def formation(c, weights, to_display, display_to_rec2020, peak=0):
@@ -153,7 +153,7 @@ def formation(c, weights, to_display, display_to_rec2020, peak=0):
     With a peak, in units of the reference white, the HDR view: 1 is the peak.
     """
     scene = rail(c, np.eye(3), weights, False) @ INSET_2020.T
-    scene = np.maximum(scene, 0)  # a rail of a colour without light may leave it below: black
+    scene = np.maximum(scene, 0)  # a rail of a color without light may leave it below: black
     hsv0 = rgb_to_hsv(scene)
     light = agx_light(scene, 1.5 * peak ** np.log10(2), True) if peak else agx_light(scene)
     hsv = rgb_to_hsv(light)
@@ -177,7 +177,7 @@ def sdr_formula(c, limit):
 
 
 def hdr_formula(c):
-    """The HDR chain: Rec.2020 -> Rec.2020 light, P3 colours only, 1 = 100 cd/m2."""
+    """The HDR chain: Rec.2020 -> Rec.2020 light, P3 colors only, 1 = 100 cd/m2."""
     to_p3, back = rgb_to_rgb("rec2020", "p3d65"), rgb_to_rgb("p3d65", "rec2020")
     return HDR_PEAK * np.clip(formation(c, RAIL_2025, to_p3, back, HDR_PEAK) @ back.T, 0, 1)
 
@@ -229,7 +229,7 @@ def tetrahedral(nodes, q):
 def lattice_scene(edge):
     """Linear Rec.2020 of the nodes, by the generator's conversion."""
     q = np.arange(edge) / (edge - 1)
-    e = GREY * 2 ** (25 * q - 10)
+    e = GRAY * 2 ** (25 * q - 10)
     nodes = np.stack(np.meshgrid(e, e, e, indexing="ij"), axis=-1)
     return nodes @ E_GAMUT_TO_XYZ.T @ XYZ_TO["rec2020"].T
 
@@ -239,7 +239,7 @@ def rail_lattice():
     """37^3 nodes: the first rail alone, log code of E-Gamut, floored at 0; the seven decimals of the shipped file."""
     c = rail(lattice_scene(37), np.eye(3), RAIL_SDR, False)
     e_gamut = c @ REC2020_TO_XYZ.T @ np.linalg.inv(E_GAMUT_TO_XYZ).T
-    return np.round(np.maximum(np.log2(np.maximum(e_gamut, TINY) / GREY) + 10, 0) / 25, 7)
+    return np.round(np.maximum(np.log2(np.maximum(e_gamut, TINY) / GRAY) + 10, 0) / 25, 7)
 
 
 @functools.lru_cache

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the operators share: the limit of scene-linear, luminance, and the ways a curve meets a colour."""
+"""What the operators share: the limit of scene-linear, luminance, and the ways a curve meets a color."""
 
 import numpy as np
 
@@ -92,12 +92,12 @@ def hue_preserving(f, rgb):
 
 def apply_curve(f, rgb, apply="channels", color_correction="ratio", saturation=1.0, saturation_from="fixed",
                 weights=REC709_WEIGHTS, contrast=None, code_power=None):
-    """Tone-map a colour with a curve.
+    """Tone-map a color with a curve.
 
-    ``channels``: f of each. ``luminance``, ``max``: with n the weighted sum or the largest channel, the colour
+    ``channels``: f of each. ``luminance``, ``max``: with n the weighted sum or the largest channel, the color
     times f(n)/n, black where n is 0; negative f counts as 0, and f(0) > 0 is an error. ``hue_preserving``: see there.
 
-    Colour corrections of ``luminance``, with L = n, Lo = f(L), s = saturation: ``ratio`` (C/L) Lo; ``nonlinear``
+    Color corrections of ``luminance``, with L = n, Lo = f(L), s = saturation: ``ratio`` (C/L) Lo; ``nonlinear``
     (C/L)^s Lo; ``luminance_preserving`` ((C/L - 1) s + 1) Lo. Saturation from ``contrast`` multiplies s by
     mantiuk_saturation of the curve's contrast at L.
 

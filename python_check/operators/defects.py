@@ -102,11 +102,11 @@ def uchimura_misprinted(rgb):
 
 
 def nebula_as_printed(rgb):
-    """Reinhard's equation 4 of the scaled luminance times the colour, without the division by the luminance.
+    """Reinhard's equation 4 of the scaled luminance times the color, without the division by the luminance.
 
     References
     ----------
-    The post on tone mapping in the Nebula engine, with its parameters: middle grey 0.6, average 0.5, white 16.
+    The post on tone mapping in the Nebula engine, with its parameters: middle gray 0.6, average 0.5, white 16.
 
     >>> nebula_as_printed([0.8, 0.1, 0.05]).round(9).tolist()
     [0.182091413, 0.022761427, 0.011380713]

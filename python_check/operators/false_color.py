@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Exposure as colours: a diagnostic of this project."""
+"""Exposure as colors: a diagnostic of this project."""
 
 import numpy as np
 
 from .base import limit_scene, luminance, smoothstep
 
 # -7 stops and below, -6, ... +6, +7 and above: sRGB code values.
-COLOURS = ("000000 16003B 3B0A6B 2A2A9E 1F5FBF 1E97B5 1FA36B 808080 7FB13A C9C22A E8982A E2602C D62839 F27BB5 "
+COLORS = ("000000 16003B 3B0A6B 2A2A9E 1F5FBF 1E97B5 1FA36B 808080 7FB13A C9C22A E8982A E2602C D62839 F27BB5 "
            "FFFFFF").split()
 
 
@@ -20,13 +20,13 @@ def srgb_decode(code):
 
 
 def false_color(rgb):
-    """One colour for each stop of luminance about 0.18, changing over 1/4 stop half-way between two.
+    """One color for each stop of luminance about 0.18, changing over 1/4 stop half-way between two.
 
     >>> srgb = false_color([[0.18] * 3, [0.18 * 2**5.49] * 3, [0.0] * 3])
     >>> srgb.round(6).tolist()
     [[0.215861, 0.215861, 0.215861], [0.767282, 0.099056, 0.22628], [0.0, 0.0, 0.0]]
     """
-    light = srgb_decode(np.array([[int(text[k:k + 2], 16) for k in (0, 2, 4)] for text in COLOURS]) / 255)
+    light = srgb_decode(np.array([[int(text[k:k + 2], 16) for k in (0, 2, 4)] for text in COLORS]) / 255)
     y = luminance(limit_scene(rgb))
     stops = np.where(y > 0, np.log2(np.where(y > 0, y, 1) / 0.18), -np.inf)
     out = np.broadcast_to(light[0], (*y.shape[:-1], 3))

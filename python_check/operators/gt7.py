@@ -8,7 +8,7 @@ from .pq import pq_decode, pq_encode
 
 TO_LMS = np.array([[1688, 2146, 262], [683, 2951, 462], [99, 309, 3688]]) / 4096  # ITU-R BT.2100-2, table 7
 TO_ICTCP = np.array([[2048, 2048, 0], [6610, -13613, 7003], [17933, -17390, -543]]) / 4096
-# The inverses as the source prints them, six digits: greys leave with a tint of 1e-6.
+# The inverses as the source prints them, six digits: grays leave with a tint of 1e-6.
 FROM_ICTCP = np.array([[1, 0.00860904, 0.11103], [1, -0.00860904, -0.11103], [1, 0.560031, -0.320627]])
 FROM_LMS = np.array([[3.43661, -2.50645, 0.0698454], [-0.79133, 1.9836, -0.192271],
                      [-0.0259499, -0.0989137, 1.12486]])
@@ -50,7 +50,7 @@ def gt7_curve(x, target, alpha=0.25, mid=0.538, linear=0.444, toe=1.28):
 
 
 def gt7(rgb, output="sdr", peak=1000.0):
-    """The curve per channel ("skewed"), mixed 0.4 : 0.6 with a colour of its ICtCp intensity and the input's chroma.
+    """The curve per channel ("skewed"), mixed 0.4 : 0.6 with a color of its ICtCp intensity and the input's chroma.
 
     Chroma fades out about the target's intensity. Rec.2020 in and out, 1.0 in = 100 cd/m2. ``sdr`` maps to 250 cd/m2
     and puts out 1 for it; ``hdr`` maps to `peak` and puts out units of 100 cd/m2.

@@ -7,7 +7,7 @@ from .base import limit_scene
 
 
 def compress(rgb, start_compression, desaturation, aim):
-    """The common part; `aim` is what bright colours desaturate to, None for their own new peak."""
+    """The common part; `aim` is what bright colors desaturate to, None for their own new peak."""
     c = limit_scene(rgb)
     start = start_compression - 0.04
     low = c.min(-1, keepdims=True)
@@ -22,7 +22,7 @@ def compress(rgb, start_compression, desaturation, aim):
 
 
 def khronos_neutral(rgb, start_compression=0.8, desaturation=0.15):
-    """Base colours stay as they are; above start_compression - 0.04 the peak is compressed and desaturates to itself.
+    """Base colors stay as they are; above start_compression - 0.04 the peak is compressed and desaturates to itself.
 
     References
     ----------
@@ -35,7 +35,7 @@ def khronos_neutral(rgb, start_compression=0.8, desaturation=0.15):
 
 
 def khronos_neutral_filament(rgb, start_compression=0.8, desaturation=0.15):
-    """Khronos PBR Neutral, but bright colours desaturate to 1 instead of their new peak.
+    """Khronos PBR Neutral, but bright colors desaturate to 1 instead of their new peak.
 
     References
     ----------

@@ -9,7 +9,7 @@ TO_YCBCR = np.array([[0.2126, 0.7152, 0.0722], [-0.1146, -0.3854, 0.5], [0.5, -0
 
 
 def somewhat_boring(rgb):
-    """1 - exp(-x) of the luminance and, after desaturation, per channel; the more colourful, the more of the latter.
+    """1 - exp(-x) of the luminance and, after desaturation, per channel; the more colorful, the more of the latter.
 
     References
     ----------
@@ -25,11 +25,11 @@ def somewhat_boring(rgb):
     c = limit_scene(rgb)
     ycbcr = c @ TO_YCBCR.T
     y = ycbcr[..., :1]
-    colourful = curve(2.4 * np.hypot(ycbcr[..., 1:2], ycbcr[..., 2:]))
-    desaturation = np.maximum(0.8 * (colourful - 0.7), 0) ** 2
+    colorful = curve(2.4 * np.hypot(ycbcr[..., 1:2], ycbcr[..., 2:]))
+    desaturation = np.maximum(0.8 * (colorful - 0.7), 0) ** 2
     by_luminance = c * curve(y) / np.maximum(1e-5, y)
     per_channel = curve(c + desaturation * (y - c))
-    return 0.97 * (by_luminance + colourful**2 * (per_channel - by_luminance))
+    return 0.97 * (by_luminance + colorful**2 * (per_channel - by_luminance))
 
 
 OPERATORS = {"somewhat_boring": somewhat_boring}

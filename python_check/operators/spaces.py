@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Colour spaces by their chromaticities, display encodings, and what happens to scene-linear before an operator."""
+"""Color spaces by their chromaticities, display encodings, and what happens to scene-linear before an operator."""
 
 from typing import Callable, NamedTuple
 
@@ -161,10 +161,10 @@ DISPLAYS = {
 }
 
 
-def sanitise(rgb):
+def sanitize(rgb):
     """NaN -> 0, then each channel limited to +-65504.
 
-    >>> sanitise([np.nan, -np.inf, np.inf]).tolist()
+    >>> sanitize([np.nan, -np.inf, np.inf]).tolist()
     [0.0, -65504.0, 65504.0]
     """
     return np.clip(np.nan_to_num(np.asarray(rgb, float), nan=0.0), -HALF_MAX, HALF_MAX)

@@ -118,7 +118,7 @@ def cones_and_rods(rgb, display_max, photopic, scotopic, k, shift):
 
 def ferwerda(rgb, display_max=80.0, photopic_adaptation=2.0, scotopic_adaptation=1.5, rod_weight_from="adaptation",
              rod_weight=0.5):
-    """Visibility matched to the display for cones, per channel, plus the rods' grey; an affine matrix.
+    """Visibility matched to the display for cones, per channel, plus the rods' gray; an affine matrix.
 
     The rods' weight from adaptation: clamp01(1 - (photopic_adaptation/2 - 0.01) / (10 - 0.01))^2.
 

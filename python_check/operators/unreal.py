@@ -18,13 +18,13 @@ def unreal_curve(x, slope=0.88, toe=0.55, shoulder=0.26, black_clip=0.0, white_c
     >>> unreal_curve(np.array([0.0, 0.18, 1.0, 16.0])).round(9).tolist()
     [0.0, 0.18, 0.723359457, 1.014184869]
     """
-    grey = np.log10(0.18)
+    gray = np.log10(0.18)
     toe_scale, shoulder_scale = 1 + black_clip - toe, 1 + white_clip - shoulder
     if toe > 0.8:
-        toe_end = (1 - toe - 0.18) / slope + grey
+        toe_end = (1 - toe - 0.18) / slope + gray
     else:
         b = (0.18 + black_clip) / toe_scale - 1
-        toe_end = grey - 0.5 * np.log((1 + b) / (1 - b)) * toe_scale / slope
+        toe_end = gray - 0.5 * np.log((1 + b) / (1 - b)) * toe_scale / slope
     straight_shift = (1 - toe) / slope - toe_end
     shoulder_begin = shoulder / slope - straight_shift
 

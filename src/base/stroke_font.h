@@ -21,7 +21,7 @@ struct Glyph {
 
 inline constexpr double kCapHeight = 7;
 inline constexpr double kStrokeWidth = 0.85;
-/// Space between the strokes of neighbouring letters.
+/// Space between the strokes of neighboring letters.
 inline constexpr double kLetterSpacing = 1.75;
 
 /// The glyph of a character; that of `?` for what is not printable ASCII.

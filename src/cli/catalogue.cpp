@@ -13,7 +13,7 @@
 #include "base/atomic_file.h"
 #include "base/format_number.h"
 #include "cli/curve_plot.h"
-#include "cli/grey_curve.h"
+#include "cli/gray_curve.h"
 #include "measure/error_metric.h"
 #include "measure/sample_set.h"
 #include "tonewright/engine.h"
@@ -59,7 +59,7 @@ struct SceneColor {
 constexpr SceneColor kOrange = {"orange", "1, 0.25, 0.02", {1, 0.25, 0.02}};
 constexpr SceneColor kGreen = {"green", "0.05, 1, 0.1", {0.05, 1, 0.1}};
 constexpr SceneColor kBlue = {"blue", "0.02, 0.06, 1", {0.02, 0.06, 1}};
-constexpr SceneColor kGrey = {"gray", "1, 1, 1", {1, 1, 1}};
+constexpr SceneColor kGray = {"gray", "1, 1, 1", {1, 1, 1}};
 
 constexpr std::array kChannelColors = {"#d1242f", "#1a8f3c", "#1f6feb"};
 constexpr std::array kChannelNames = {"red", "green", "blue"};
@@ -67,13 +67,13 @@ constexpr std::array kChannelNames = {"red", "green", "blue"};
 PlotLine reference_line(const std::vector<double>& scene) {
     return {"clamp",   "no tone mapping: clamp",
             "#a8b0b9", 1.2,
-            "5 3",     grey_codes(srgb_view("clamp"), scene)};
+            "5 3",     gray_codes(srgb_view("clamp"), scene)};
 }
 
 /// "0.18 -> 0.435" where the curve is at that scene value.
 PlotMark mark_at(const View& view, double scene) {
-    const double code = grey_code(view, scene);
-    return {std::log2(scene / kMidGrey), code,
+    const double code = gray_code(view, scene);
+    return {std::log2(scene / kMidGray), code,
             fmt::format("{} \u2192 {:.3f}", shortest(scene), code)};
 }
 
@@ -96,29 +96,29 @@ CurvePlot plot_of(const Operator& op) {
         const std::size_t index = plot.lines.size();
         add_line(plot.lines,
                  {v.id, v.label, line_color(index), index == 0 ? 2.4 : 1.3, line_dashes(index),
-                  grey_codes(v.view, scene)},
+                  gray_codes(v.view, scene)},
                  v.label);
     }
     if (variants.size() == 1) plot.lines[0].label.clear();
 
     const Pipeline view = build_view(variants[0].view);
-    const Planes grey = codes_of(view, kGrey.rgb, scene);
+    const Planes gray = codes_of(view, kGray.rgb, scene);
     double tint = 0;
-    for (const std::vector<double>& channel : grey)
+    for (const std::vector<double>& channel : gray)
         tint = std::max(tint, largest_difference(channel, plot.lines[0].values));
     if (tint > 0.5 / 255) {
         if (variants.size() == 1) plot.lines[0].label = "luminance of the shown gray";
         for (std::size_t c = 0; c < 3; ++c) {
-            plot.lines.push_back({fmt::format("grey-{}", kChannelNames[c]),
+            plot.lines.push_back({fmt::format("gray-{}", kChannelNames[c]),
                                   fmt::format("{} of the shown gray", kChannelNames[c]),
-                                  kChannelColors[c], 1, "", grey[c]});
+                                  kChannelColors[c], 1, "", gray[c]});
         }
     }
     PlotLine clamp = reference_line(scene);
     if (largest_difference(clamp.values, plot.lines[0].values) >= kSameLine)
         plot.lines.push_back(clamp);
     if (!op.is_diagnostic) {
-        plot.marks = {mark_at(variants[0].view, kMidGrey), mark_at(variants[0].view, 1)};
+        plot.marks = {mark_at(variants[0].view, kMidGray), mark_at(variants[0].view, 1)};
         plot.lower_heading = fmt::format("red, green and blue of {} ({}) \u00d7 scene",
                                          kOrange.name, kOrange.numbers);
         plot.lower_scale.step = 0.5;
@@ -129,7 +129,7 @@ CurvePlot plot_of(const Operator& op) {
     }
     std::vector<double> whole_stops(21);
     std::iota(whole_stops.begin(), whole_stops.end(), -10.0);
-    for (const SceneColor& color : {kGrey, kOrange, kBlue})
+    for (const SceneColor& color : {kGray, kOrange, kBlue})
         plot.sweeps.push_back({color.name, colors_of(view, color.rgb, whole_stops)});
     return plot;
 }
@@ -226,7 +226,7 @@ CurvePlot plot_of(const DialectGroup& group) {
     plot.subtitle = "sRGB code value of scene-linear gray";
     std::vector<double> mean(scene.size());
     for (const Dialect& d : group.dialects) {
-        const std::vector<double> codes = grey_codes(d.view, scene);
+        const std::vector<double> codes = gray_codes(d.view, scene);
         const std::size_t index = plot.lines.size();
         add_line(
             plot.lines,
@@ -348,7 +348,7 @@ std::optional<double> stops_at_code(const View& view, double code) {
     std::vector<double> stops;
     for (int i = -20 * 32; i <= 18 * 32; ++i)
         stops.push_back(i / 32.0);
-    const std::vector<double> codes = grey_codes(view, scene_of(stops));
+    const std::vector<double> codes = gray_codes(view, scene_of(stops));
     const auto found =
         std::find_if(codes.begin(), codes.end(), [&](double c) { return c >= code; });
     if (found == codes.begin() || found == codes.end()) return std::nullopt;
@@ -356,18 +356,18 @@ std::optional<double> stops_at_code(const View& view, double code) {
     double lo = hi - 1 / 32.0;
     for (int i = 0; i < 30; ++i) {
         const double middle = (lo + hi) / 2;
-        (grey_code(view, kMidGrey * std::exp2(middle)) >= code ? hi : lo) = middle;
+        (gray_code(view, kMidGray * std::exp2(middle)) >= code ? hi : lo) = middle;
     }
     return hi;
 }
 
 /// Slope of log output over log scene value at mid gray: 1 without tone mapping.
-double contrast_at_mid_grey(const View& view) {
+double contrast_at_mid_gray(const View& view) {
     View linear = view;
     const Display& display = find_display(view.display);
     constexpr double kStep = 1.0 / 256;
     std::vector<double> stops = {-kStep, kStep};
-    const std::vector<double> codes = grey_codes(linear, scene_of(stops));
+    const std::vector<double> codes = gray_codes(linear, scene_of(stops));
     const ReferenceEngine decode(display.decode);
     const double low = decode({codes[0], codes[0], codes[0]})[0];
     const double high = decode({codes[1], codes[1], codes[1]})[0];
@@ -377,13 +377,13 @@ double contrast_at_mid_grey(const View& view) {
 
 std::string measured_line(const Operator& op) {
     const View view = srgb_view(op.id);
-    const double darkest = grey_code(view, 0);
-    const double brightest = grey_code(view, kHalfMax);
+    const double darkest = gray_code(view, 0);
+    const double brightest = gray_code(view, kHalfMax);
     const std::optional<double> black = stops_at_code(view, 0.5 / 255);
     const std::optional<double> white = stops_at_code(view, 254.5 / 255);
     std::string text = fmt::format(
         "* Measured on sRGB: 0.18 \u2192 {:.3f}, 1 \u2192 {:.3f}; contrast at mid gray {:.2f}; ",
-        grey_code(view, kMidGrey), grey_code(view, 1), contrast_at_mid_grey(view));
+        gray_code(view, kMidGray), gray_code(view, 1), contrast_at_mid_gray(view));
     if (black) {
         text += fmt::format("black below {} stops", signed_stops(*black));
     } else {
@@ -391,7 +391,7 @@ std::string measured_line(const Operator& op) {
     }
     if (white) {
         text += fmt::format(", white from {} stops (scene-linear {:.3g})\n", signed_stops(*white),
-                            kMidGrey * std::exp2(*white));
+                            kMidGray * std::exp2(*white));
     } else {
         text += fmt::format(", white at code {:.3f}\n", brightest);
     }
@@ -432,8 +432,8 @@ std::string index_section(const std::vector<DialectGroup>& groups) {
         for (const Operator* op : families[family]) {
             const View view = srgb_view(op->id);
             text += fmt::format("| [{}](#{})<br>`{}` | {} | {:.3f} | {:.3f} |\n", cell(op->title),
-                                op->id, op->id, cell(op->character), grey_code(view, kMidGrey),
-                                grey_code(view, 1));
+                                op->id, op->id, cell(op->character), gray_code(view, kMidGray),
+                                gray_code(view, 1));
         }
     }
     text += "| **Local: pictures only** | [local operators](local.md) | | |\n";
@@ -497,8 +497,8 @@ std::string dialect_section(DialectGroup& group, const std::vector<float>& sampl
         group.slug, group.name);
     for (const Dialect& d : group.dialects) {
         text += fmt::format("| **{}** | {} | {} | {:.3f} | {:.3f} | {:.3f} |\n", d.letter,
-                            link_to(d), cell(d.help), grey_code(d.view, kMidGrey),
-                            grey_code(d.view, 1), grey_code(d.view, 4));
+                            link_to(d), cell(d.help), gray_code(d.view, kMidGray),
+                            gray_code(d.view, 1), gray_code(d.view, 4));
     }
     text += "\n";
     constexpr std::size_t kPlainList = 10;

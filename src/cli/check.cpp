@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <memory>
 
-#include "cli/grey_curve.h"
+#include "cli/gray_curve.h"
 #include "cli/json.h"
 #include "cli/lut_input.h"
 #include "cli/messages.h"
@@ -43,7 +43,7 @@ void print_text(const View& view, const Options& options, const std::vector<LawR
     }
     if (!message_options().is_quiet) {
         fmt::print("{}\n\n", operator_text(view.op));
-        const auto curve = [&](const std::vector<double>& x) { return grey_codes(view, x); };
+        const auto curve = [&](const std::vector<double>& x) { return gray_codes(view, x); };
         fmt::print("{}\n", terminal_plot(curve, places,
                                          options.is_ascii ? TerminalText::ascii : terminal_text()));
     }

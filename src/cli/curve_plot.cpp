@@ -24,7 +24,7 @@ using Rule = PlotSurface::Rule;
 using Segment = PlotSurface::Segment;
 
 constexpr PlotSurface::TextStyle kPlain = {};
-constexpr PlotSurface::TextStyle kCentred = {Anchor::middle};
+constexpr PlotSurface::TextStyle kCentered = {Anchor::middle};
 constexpr PlotSurface::TextStyle kAtEnd = {Anchor::end};
 constexpr PlotSurface::TextStyle kOnLines = {Anchor::start, true};
 constexpr PlotSurface::TextStyle kHeading = {Anchor::start, false, true};
@@ -41,7 +41,7 @@ constexpr std::string_view kBlack = "#000";  // SVG's own
 
 double x_of(double stops) { return kLeft + kStop * (stops - kLowestStop); }
 
-/// Scene-linear 1, in stops from mid grey.
+/// Scene-linear 1, in stops from mid gray.
 const double kWhiteStops = std::log2(1 / 0.18);
 
 /// Where a graph is.
@@ -147,8 +147,8 @@ class Svg : public PlotSurface {
             kind == Frame::graph ? "f" : "p", px(top_left.x), px(top_left.y), px(width),
             px(height));
     }
-    void dot(Point centre) override {
-        add("<circle cx=\"{}\" cy=\"{}\" r=\"{}\"/>\n", px(centre.x), px(centre.y), px(kDotRadius));
+    void dot(Point center) override {
+        add("<circle cx=\"{}\" cy=\"{}\" r=\"{}\"/>\n", px(center.x), px(center.y), px(kDotRadius));
     }
     void sample(const PlotLine& line, Point from, double length) override {
         add("<path{} d=\"M{} {}h{}\"/>\n", stroke(line), px(from.x), px(from.y), px(length));
@@ -335,7 +335,7 @@ void draw_sweeps(PlotSurface& surface, const std::vector<PatchRow>& sweeps, doub
     surface.begin_patches(kPatchRow);
     double y = top + kPatchRow / 2;
     for (const PatchRow& row : sweeps) {
-        // Patches are centred on their stops: of the first and the last there is half.
+        // Patches are centered on their stops: of the first and the last there is half.
         draw_patches(surface, row.codes, {kLeft - kStop / 2, y}, kStop, true);
         y += kPatchRow + 2;
     }
@@ -352,9 +352,9 @@ void draw_axis(PlotSurface& surface, double top) {
     std::vector<Segment> ticks;
     for (int stop = kLowestStop; stop <= kHighestStop; stop += 2) {
         ticks.push_back(vertical(stop, top, top + 4));
-        surface.text({x_of(stop), top + 16}, kCentred,
+        surface.text({x_of(stop), top + 16}, kCentered,
                      tick_label(fmt::format("{}{}", stop > 0 ? "+" : "", stop)));
-        surface.text({x_of(stop), top + 31}, kCentred, scene_linear_at(stop));
+        surface.text({x_of(stop), top + 31}, kCentered, scene_linear_at(stop));
     }
     surface.rules(Rule::tick, ticks);
     surface.text({kRight + 16, top + 16}, kPlain, "stops");
@@ -602,9 +602,9 @@ void draw(const CurvePlot& plot, PlotSurface& surface) {
         surface.text({x_of(mark.stops) + (is_first ? kOverLine : -kOverLine), 32},
                      is_first ? kAtEnd : kPlain, mark.words);
     }
-    if (plot.names_greys && plot.marks.empty()) {
-        surface.text({x_of(0), 32}, kCentred, "mid gray");
-        surface.text({x_of(kWhiteStops), 32}, kCentred, "white");
+    if (plot.names_grays && plot.marks.empty()) {
+        surface.text({x_of(0), 32}, kCentered, "mid gray");
+        surface.text({x_of(kWhiteStops), 32}, kCentered, "white");
     }
     draw_graph(surface, upper);
     draw_lines(surface, plot.lines, upper);
@@ -661,7 +661,7 @@ std::string to_svg(const PatchChart& chart) {
         const std::size_t count = block.columns.size();
         svg.text({x, 44}, kPlain, block.heading);
         for (std::size_t i = 0; i < count; ++i)
-            svg.text({x + width * (static_cast<double>(i) + 0.5), 60}, kCentred, block.columns[i]);
+            svg.text({x + width * (static_cast<double>(i) + 0.5), 60}, kCentered, block.columns[i]);
         svg.begin_patches(kRowHeight);
         for (std::size_t i = 0; i < chart.rows.size(); ++i) {
             draw_patches(svg, std::span(chart.rows[i].codes).subspan(column, count),

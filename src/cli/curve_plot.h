@@ -8,7 +8,7 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// Where the lines of a plot have their values: stops from mid grey, -10..+10, half a pixel apart.
+/// Where the lines of a plot have their values: stops from mid gray, -10..+10, half a pixel apart.
 [[nodiscard]] const std::vector<double>& plot_stops();
 
 /// One line of a plot.
@@ -62,7 +62,7 @@ struct CurvePlot {
     std::string subtitle;
     /// Without ticks: sRGB code values, with their light at the right.
     PlotScale scale;
-    bool names_greys = false;  // above the lines at mid gray and white, where no marks are
+    bool names_grays = false;  // above the lines at mid gray and white, where no marks are
     /// With labels: a legend where tone curves are low, in the graph at the left; for more than six
     /// lines small graphs, one for each.
     std::vector<PlotLine> lines;

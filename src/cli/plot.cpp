@@ -9,7 +9,7 @@
 #include "base/format_number.h"
 #include "base/strings.h"
 #include "cli/curve_plot.h"
-#include "cli/grey_curve.h"
+#include "cli/gray_curve.h"
 #include "cli/picture_commands.h"
 #include "cli/plot.h"
 #include "cli/shared_options.h"
@@ -194,13 +194,13 @@ CurvePlot plot_of(const PlotOptions& options) {
 
     CurvePlot plot;
     plot.theme = options.is_dark ? PlotTheme::dark : PlotTheme::light;
-    plot.names_greys = true;
+    plot.names_grays = true;
     const std::vector<double> scene = scene_of(plot_stops());
     const auto line_of = [&](const View& view) {
         const std::size_t index = plot.lines.size();
         return PlotLine{
             operator_text(view.op),        name_of(view.op),   line_color(index, plot.theme),
-            views.size() == 1 ? 2.4 : 1.8, line_dashes(index), grey_codes(view, scene)};
+            views.size() == 1 ? 2.4 : 1.8, line_dashes(index), gray_codes(view, scene)};
     };
     for (const View& view : views)
         add_line(plot.lines, line_of(view), name_of(view.op));
@@ -208,7 +208,7 @@ CurvePlot plot_of(const PlotOptions& options) {
         const View clamp =
             make_view(resolve_operator("clamp"), options.input, options.exposure, options.display);
         PlotLine line = {"no_tone_mapping",       "no tone mapping: clamp", "#a8b0b9", 1.2, "5 3",
-                         grey_codes(clamp, scene)};
+                         gray_codes(clamp, scene)};
         if (options.is_dark) line.color = "#767d85";
         const bool is_there =
             std::any_of(plot.lines.begin(), plot.lines.end(), [&](const PlotLine& other) {
@@ -217,11 +217,11 @@ CurvePlot plot_of(const PlotOptions& options) {
         if (!is_there) plot.lines.push_back(std::move(line));
     }
     if (views.size() == 1 && !views[0].op.op->is_diagnostic) {
-        for (const double grey : {kMidGrey, 1.0}) {
-            const double code = grey_code(views[0], grey);
+        for (const double gray : {kMidGray, 1.0}) {
+            const double code = gray_code(views[0], gray);
             plot.marks.push_back(
-                {std::log2(grey / kMidGrey), readings.values_of({code})[0],
-                 fmt::format("{} \u2192 {}", shortest(grey), readings.text_of(code))});
+                {std::log2(gray / kMidGray), readings.values_of({code})[0],
+                 fmt::format("{} \u2192 {}", shortest(gray), readings.text_of(code))});
         }
     }
     double brightest = readings.values_of({0})[0];

@@ -115,10 +115,10 @@ class PdfSurface : public PlotSurface {
             color_of(kind == Frame::graph ? colors_.frame : colors_.patch_frame), top_left.x,
             top_left.y, width, height);
     }
-    void dot(Point centre) override {
+    void dot(Point center) override {
         // A line without length, with round ends.
         add("{} RG {} w 1 J {:.2f} {:.2f} m {:.2f} {:.2f} l S 0 J\n", color_of(colors_.dot),
-            2 * kDotRadius, centre.x, centre.y, centre.x, centre.y);
+            2 * kDotRadius, center.x, center.y, center.x, center.y);
     }
     void sample(const PlotLine& line, Point from, double length) override {
         const std::array<Point, 2> ends = {{from, {from.x + length, from.y}}};

@@ -59,7 +59,7 @@ class PlotSurface {
     virtual void text(Point at, const TextStyle& style, std::string_view words) = 0;
     virtual void rules(Rule kind, std::span<const Segment> segments) = 0;
     virtual void frame(Frame kind, Point top_left, double width, double height) = 0;
-    virtual void dot(Point centre) = 0;
+    virtual void dot(Point center) = 0;
     /// What a line looks like, in a legend.
     virtual void sample(const PlotLine& line, Point from, double length) = 0;
 

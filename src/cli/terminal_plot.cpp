@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "cli/grey_curve.h"
+#include "cli/gray_curve.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -115,7 +115,7 @@ std::string terminal_plot(
     const std::function<std::vector<double>(const std::vector<double>&)>& curve,
     const std::vector<double>& places, TerminalText text) {
     const bool is_utf8 = text == TerminalText::utf8;
-    const double white = std::log2(1 / kMidGrey);
+    const double white = std::log2(1 / kMidGray);
     Dots dots(text);
     std::vector<double> stops;
     for (int x = 0; x < dots.width(); ++x)
@@ -130,7 +130,7 @@ std::string terminal_plot(
     dots.add_mark(0);
     dots.add_mark(white);
 
-    const std::vector<double> shown = curve({kMidGrey, 1});
+    const std::vector<double> shown = curve({kMidGray, 1});
     constexpr int kGutter = 5;
     std::string heading(kGutter + kColumns + 1, ' ');
     const std::string gray = fmt::format("mid gray {:.3f}", shown[0]);
@@ -152,7 +152,7 @@ std::string terminal_plot(
     for (int column = 0; column < kColumns; ++column) {
         bool is_place = false;
         for (const double x : places)
-            is_place = is_place || (x > 0 && column_of(std::log2(x / kMidGrey)) == column);
+            is_place = is_place || (x > 0 && column_of(std::log2(x / kMidGray)) == column);
         bool is_tick = false;
         for (int s = kLowest; s <= kHighest; s += 2) {
             if (column_of(s) != column) continue;

@@ -225,7 +225,7 @@ class CurveFitter {
             double& here = largest[CurveTolerance::exponent_of(influence_.value[p][root])];
             here = std::max(here, influence_.sensitivity[p][i]);
         }
-        // Neighbours count, too; where there is no probe, the nearest ones on both sides.
+        // Neighbors count, too; where there is no probe, the nearest ones on both sides.
         std::array<double, n> below{}, above{};
         for (std::size_t e = 1; e < n; ++e)
             below[e] = largest[e - 1] > 0 ? largest[e - 1] : below[e - 1];

@@ -262,7 +262,7 @@ void GradientEngine::run(const std::array<const double*, 3>& in, const std::arra
             if (instruction.op == ExprOp::input) {
                 const auto k = static_cast<std::size_t>(instruction.input);
                 for (std::size_t i = 0; i < n; ++i)
-                    y[i] = sanitise(in[k][begin + i]);
+                    y[i] = sanitize(in[k][begin + i]);
                 std::fill_n(row(step.out, 1 + k), n, 1.0);
                 continue;
             }

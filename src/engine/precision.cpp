@@ -17,8 +17,8 @@ constexpr double kHalfUlp = 0x1p-24;
 /// Half the smallest denormal.
 constexpr double kSmallestStep = 0x1p-150;
 
-/// Colours where roundings show: greys, colours of all saturations and signs, and the extremes.
-std::vector<Vector3> probe_colours() {
+/// Colors where roundings show: grays, colors of all saturations and signs, and the extremes.
+std::vector<Vector3> probe_colors() {
     std::vector<Vector3> probes;
     SampleRandom random(7);
     const auto add = [&](double r, double g, double b) {
@@ -32,8 +32,8 @@ std::vector<Vector3> probe_colours() {
     };
 
     for (double stops = -20; stops <= 16; stops += 0.5) {
-        const double grey = std::exp2(stops);
-        add(grey, grey, grey);
+        const double gray = std::exp2(stops);
+        add(gray, gray, gray);
     }
     for (int i = 0; i < 700; ++i) {  // a brightness, and channels up to 8 stops below it
         const double peak = log_uniform(-10, 14);
@@ -245,7 +245,7 @@ class PrecisionChooser {
 
     Sensitivity sensitivity() {
         Sensitivity result;
-        const std::vector<Vector3> probes = probe_colours();
+        const std::vector<Vector3> probes = probe_colors();
         for (std::size_t p = 0; p < probes.size(); p += 3) {
             evaluate(probes[p], code_.size());
             std::vector<double> largest(code_.size());
@@ -262,7 +262,7 @@ class PrecisionChooser {
     }
 
     Precision choose() {
-        const std::vector<Vector3> probes = probe_colours();
+        const std::vector<Vector3> probes = probe_colors();
         for (std::size_t i = 0; i < code_.size(); ++i)
             in_double_[i] = code_[i].curve && code_[i].curve->is_precise;
         // Where the rows of a matrix cancel, the loss has no bound, and no set of probes comes near
@@ -290,7 +290,7 @@ class PrecisionChooser {
             if (is_branch(code_[i].op)) branches_.push_back({i, {}});
         }
         keep_large_in_double(probes);
-        // Most curves that are too coarse are so for many colours: those few are enough to say so.
+        // Most curves that are too coarse are so for many colors: those few are enough to say so.
         for (std::size_t p = 0; p < probes.size(); p += 7)
             visit(probes[p]);
         if (!too_coarse_.empty()) return {in_double_, too_coarse_};
@@ -426,7 +426,7 @@ class PrecisionChooser {
         }
     }
 
-    /// Keeps the errors of this colour within what they may be.
+    /// Keeps the errors of this color within what they may be.
     /// @return  how near the worst output is to it
     double visit(const Vector3& rgb) {
         evaluate(rgb, code_.size());
@@ -437,7 +437,7 @@ class PrecisionChooser {
         return worst;
     }
 
-    /// From the worst probes on to worse colours: where rows of matrices nearly cancel, or a curve
+    /// From the worst probes on to worse colors: where rows of matrices nearly cancel, or a curve
     /// is steep, there may be few of them, and no probe among them.
     void climb(std::vector<Probe>& probes) {
         constexpr std::size_t kStarts = 24;
@@ -487,7 +487,7 @@ class PrecisionChooser {
     }
 
     /// Probes ever nearer to where the branch turns over, from both sides: a power display has no
-    /// end of slope at black, and random colours do not come near enough to show it.
+    /// end of slope at black, and random colors do not come near enough to show it.
     void approach(const Branch& branch) {
         const std::size_t pairs = std::min(branch.sides[0].size(), branch.sides[1].size());
         for (std::size_t p = 0; p < pairs; ++p) {

@@ -15,10 +15,10 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// A matrix with negative coefficients takes the difference of nearly equal numbers and the sRGB
 /// curve multiplies what is left by 12.92, so a rounding of 6e-8 may become 3e-6 of the picture;
 /// most other roundings are harmless. Which is which is not a matter of the operation but of what
-/// follows. So it is computed: over a set of probe colours, the derivative of each output by each
+/// follows. So it is computed: over a set of probe colors, the derivative of each output by each
 /// value (reverse accumulation) times the value's rounding error is what that rounding adds to the
 /// output. While the root of the sum of squares is above 0.4 of the error (roundings are
-/// independent; the rest is for colours between the probes), the value that adds most for its cost
+/// independent; the rest is for colors between the probes), the value that adds most for its cost
 /// becomes double. The rows of matrices with negative coefficients are double in any case, and so
 /// is what steep tables are indexed with. Compiled curves are as exact as they are: those that
 /// leave no such set are named.
@@ -32,7 +32,7 @@ struct Precision {
 
 /// What values are, and how much of their errors reaches an output: the largest derivative of an
 /// output by each value, relative to outputs above 1; 1e12 where it has no end.
-/// [probe][index], over a set of probe colours.
+/// [probe][index], over a set of probe colors.
 struct Sensitivity {
     std::vector<std::vector<double>> value;
     std::vector<std::vector<double>> sensitivity;

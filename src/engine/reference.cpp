@@ -216,7 +216,7 @@ void ReferenceEngine::run(const std::array<const double*, 3>& in, const std::arr
             if (step.instruction->op == ExprOp::input) {
                 const double* plane = in[static_cast<std::size_t>(step.instruction->input)] + begin;
                 for (std::size_t k = 0; k < n; ++k)
-                    result[k] = sanitise(plane[k]);
+                    result[k] = sanitize(plane[k]);
             } else if (step.instruction->op == ExprOp::lattice) {
                 LatticeChannels channels;
                 const auto add = [&](const Program::Step& same) {
@@ -251,7 +251,7 @@ Vector3 ReferenceEngine::operator()(const Vector3& rgb) const noexcept {
         const TapeInstruction& instruction = *step.instruction;
         double& result = registers[step.out.index];
         if (instruction.op == ExprOp::input) {
-            result = sanitise(rgb[static_cast<std::size_t>(instruction.input)]);
+            result = sanitize(rgb[static_cast<std::size_t>(instruction.input)]);
         } else if (instruction.op == ExprOp::lattice) {
             result =
                 (*instruction.lattice)(instruction.input, read(step.a), read(step.b), read(step.c));

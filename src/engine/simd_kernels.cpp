@@ -1014,7 +1014,7 @@ HWY_NOINLINE void run_instruction(const Frame& frame, const Code& code, const In
 // Pixels in and out
 
 /// NaN -> 0, then limited to +-65504.
-HWY_INLINE Vec<DF> sanitised(DF d, Vec<DF> x) {
+HWY_INLINE Vec<DF> sanitized(DF d, Vec<DF> x) {
     const auto limit = hn::Set(d, kLargestInput);
     const auto number = hn::IfThenElseZero(hn::Eq(x, x), x);
     return hn::Min(hn::Max(number, hn::Neg(limit)), limit);
@@ -1040,9 +1040,9 @@ HWY_NOINLINE void load_tile(const TilePorts& ports, unsigned char* registers,
     }
     std::size_t done = 0;
     const auto store = [&](Vec<DF> r, Vec<DF> g, Vec<DF> b) HWY_ATTR {
-        hn::Store(sanitised(d, r), d, out[0] + done);
-        hn::Store(sanitised(d, g), d, out[1] + done);
-        hn::Store(sanitised(d, b), d, out[2] + done);
+        hn::Store(sanitized(d, r), d, out[0] + done);
+        hn::Store(sanitized(d, g), d, out[1] + done);
+        hn::Store(sanitized(d, b), d, out[2] + done);
     };
     if (stride == 1) {
         for (; done + lanes <= count; done += lanes) {
@@ -1078,7 +1078,7 @@ HWY_NOINLINE void load_tile(const TilePorts& ports, unsigned char* registers,
         for (std::size_t i = count; i < padded; ++i)
             out[c][i] = 0.0F;
         for (std::size_t i = done; i < padded; i += lanes) {
-            hn::Store(sanitised(d, hn::Load(d, out[c] + i)), d, out[c] + i);
+            hn::Store(sanitized(d, hn::Load(d, out[c] + i)), d, out[c] + i);
         }
     }
 }

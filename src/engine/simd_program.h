@@ -12,7 +12,7 @@ namespace simd {
 
 /// The float program of a pipeline. The passes that change the last bits are here and only here:
 ///
-/// 1. neighbouring matrices multiplied; division by a constant as multiplication by its reciprocal;
+/// 1. neighboring matrices multiplied; division by a constant as multiplication by its reciprocal;
 ///    small whole powers as products;
 /// 2. functions of one value compiled to piecewise polynomials, on instruction sets where that is
 ///    faster (curve_fitting.h);

@@ -660,7 +660,7 @@ class Writer {
 
     // --- pixels --------------------------------------------------------------------------------
 
-    Number sanitised(Number x) {
+    Number sanitized(Number x) {
         const Number number = zero_unless(false, compare(VectorOp::equal, false, x, x), x);
         return limited(false, number, static_cast<double>(kLargestInput));
     }
@@ -947,7 +947,7 @@ class Translator {
         std::size_t part = 0;  // that defines it, or behind which a step over the tile does
         bool wide = false;
         bool crosses = false;       // into another part, or to or from a tile step
-        bool is_sanitised = false;  // by the curves that are all that reads it
+        bool is_sanitized = false;  // by the curves that are all that reads it
         std::uint32_t offset = 0;
     };
     struct Step {
@@ -1059,13 +1059,13 @@ class Translator {
 
     void find_crossings() {
         for (const std::int32_t i : input_) {
-            if (i != kNone) value(i).is_sanitised = true;
+            if (i != kNone) value(i).is_sanitized = true;
         }
         for (const Step& s : steps_) {
             for (const std::int32_t i : s.in) {
                 if (i == kNone) continue;
                 if (is_tile_step(*s.step) || s.part != value(i).part) value(i).crosses = true;
-                if (!limits_input(*s.step)) value(i).is_sanitised = false;
+                if (!limits_input(*s.step)) value(i).is_sanitized = false;
             }
             if (!is_tile_step(*s.step)) continue;
             for (const std::int32_t i : s.out) {
@@ -1075,7 +1075,7 @@ class Translator {
         for (const std::int32_t i : output_) {
             if (i == kNone) continue;
             if (value(i).part != part_count_ - 1) value(i).crosses = true;
-            value(i).is_sanitised = false;
+            value(i).is_sanitized = false;
         }
     }
 
@@ -1152,10 +1152,10 @@ class Translator {
             if (input_[c] == kNone) continue;
             Value& v = value(input_[c]);
             if (layout == PixelLayout::planes) given[c] = load(input_offset_[c], false, 0);
-            // In the tile they are sanitised already.
-            lanes(input_[c]).narrow = v.is_sanitised || layout == PixelLayout::planes
+            // In the tile they are sanitized already.
+            lanes(input_[c]).narrow = v.is_sanitized || layout == PixelLayout::planes
                                           ? given[c]
-                                          : writer_->sanitised(given[c]);
+                                          : writer_->sanitized(given[c]);
             keep(input_[c]);
         }
     }

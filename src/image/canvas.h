@@ -16,13 +16,13 @@ TONEWRIGHT_NAMESPACE_BEGIN
 
 using Rgb = std::array<float, 3>;
 
-inline Rgb grey_of(double value) {
+inline Rgb gray_of(double value) {
     const auto v = static_cast<float>(value);
     return {v, v, v};
 }
 
 /// A float RGB picture in memory that one can draw on. Coordinates are pixels; (0, 0) is the top
-/// left corner of the first pixel, whose centre is (0.5, 0.5). What lies outside is not drawn.
+/// left corner of the first pixel, whose center is (0.5, 0.5). What lies outside is not drawn.
 class TONEWRIGHT_API Canvas {
   public:
     Canvas(int width, int height, const Rgb& fill);
@@ -35,7 +35,7 @@ class TONEWRIGHT_API Canvas {
     }
 
     /// Colors the pixels [x0, x1) x [y0, y1) with `color_at(u, v)`, where (u, v) in (0, 1) is the
-    /// place of the pixel's centre in the rectangle, v downwards.
+    /// place of the pixel's center in the rectangle, v downwards.
     template <class ColorAt>
     void paint(int x0, int y0, int x1, int y1, ColorAt&& color_at) {
         for (int y = y0 < 0 ? 0 : y0; y < y1 && y < height_; ++y) {

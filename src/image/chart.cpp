@@ -17,7 +17,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-constexpr double kMidGrey = 0.18;
+constexpr double kMidGray = 0.18;
 // The chart is laid out on a sheet of this size, then scaled.
 constexpr double kSheetWidth = 1536;
 constexpr double kSheetHeight = 864;
@@ -25,12 +25,12 @@ constexpr double kMargin = 24;
 constexpr double kColumn = 484;  // width of each of three columns
 constexpr double kColumnStep = 502;
 
-// Below mid grey by a few stops: patches stand out, and no operator makes it black.
-const Rgb kBackground = grey_of(0.018);
-const Rgb kTitle = grey_of(0.32);
-const Rgb kLabel = grey_of(0.16);
+// Below mid gray by a few stops: patches stand out, and no operator makes it black.
+const Rgb kBackground = gray_of(0.018);
+const Rgb kTitle = gray_of(0.32);
+const Rgb kLabel = gray_of(0.16);
 
-double stops(double s) { return kMidGrey * std::exp2(s); }
+double stops(double s) { return kMidGray * std::exp2(s); }
 
 Rgb rgb_of(const Vector3& v) {
     return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
@@ -92,15 +92,15 @@ void draw_stop_ramp(Sheet& sheet, double top) {
     const double left = kMargin;
     const double right = kSheetWidth - kMargin;
     const double step = (right - left) / kCount;
-    sheet.title("Stops around mid grey 0.18, in steps and continuous", left, top - 10);
+    sheet.title("Stops around mid gray 0.18, in steps and continuous", left, top - 10);
     for (int i = 0; i < kCount; ++i) {
         const double x = left + i * step;
-        sheet.fill(x, top, x + step, top + 58, grey_of(stops(i - kStops)));
+        sheet.fill(x, top, x + step, top + 58, gray_of(stops(i - kStops)));
         sheet.label(signed_number(i - kStops), x + step / 2, top + 118);
     }
     // A step's value is met below its middle.
     sheet.paint(left, top + 58, right, top + 102,
-                [&](double u, double) { return grey_of(stops(u * kCount - 0.5 - kStops)); });
+                [&](double u, double) { return gray_of(stops(u * kCount - 0.5 - kStops)); });
 }
 
 void draw_hue_sweep(Sheet& sheet, double left, double top, double bottom, double saturation,
@@ -158,11 +158,11 @@ void draw_near_black(Sheet& sheet, double left, double top, double bottom) {
     sheet.title("Near black: linear -0.002 .. 0.016, and steps", left, top - 10);
     const double middle = top + (bottom - top) * 0.42;
     sheet.paint(left, top, left + kColumn, middle,
-                [](double u, double) { return grey_of(-0.002 + 0.018 * u); });
+                [](double u, double) { return gray_of(-0.002 + 0.018 * u); });
     const double step = kColumn / kSteps.size();
     for (std::size_t i = 0; i < kSteps.size(); ++i) {
         const double x = left + static_cast<double>(i) * step;
-        sheet.fill(x, middle, x + step, bottom - 15, grey_of(kSteps[i]));
+        sheet.fill(x, middle, x + step, bottom - 15, gray_of(kSteps[i]));
         sheet.label(fmt::format("{:g}", kSteps[i]), x + step / 2, bottom);
     }
 }
@@ -195,7 +195,7 @@ void draw_gamuts(Sheet& sheet, double left, double top, double bottom) {
 }
 
 void draw_saturation(Sheet& sheet, double left, double top, double bottom) {
-    sheet.title("Grey to pure hue at +3 stops", left, top - 10);
+    sheet.title("Gray to pure hue at +3 stops", left, top - 10);
     const double panel = left + 36;
     const double step = (bottom - top) / 6;
     for (std::size_t h = 0; h < 6; ++h) {
@@ -209,7 +209,7 @@ void draw_saturation(Sheet& sheet, double left, double top, double bottom) {
 
 /// Exposure ramps without a step: bands, kinks and turning hues show here.
 void draw_gradients(Sheet& sheet, double left, double top, double bottom) {
-    sheet.title("Gradients -6 .. +8 stops: grey, skin, orange, blue", left, top - 10);
+    sheet.title("Gradients -6 .. +8 stops: gray, skin, orange, blue", left, top - 10);
     const double step = (bottom - top) / kGradientTints.size();
     for (std::size_t i = 0; i < kGradientTints.size(); ++i) {
         const double y = top + static_cast<double>(i) * step;
@@ -237,7 +237,7 @@ OIIO::ImageBuf make_chart(int width, int height) {
     const double column3 = kMargin + 2 * kColumnStep;
 
     sheet.text("Tonewright HDR test chart", kMargin, 32, 13, kTitle);
-    sheet.text("scene-linear Rec.709, mid grey 0.18, diffuse white 1.0", kSheetWidth - kMargin, 32,
+    sheet.text("scene-linear Rec.709, mid gray 0.18, diffuse white 1.0", kSheetWidth - kMargin, 32,
                10, kLabel, Canvas::Align::right);
     draw_stop_ramp(sheet, 70);
 

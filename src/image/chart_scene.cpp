@@ -39,7 +39,7 @@ struct Sphere {
     Vec mirror;        // reflectance straight on
     double highlight;  // peak of the key light's reflection
     double gloss;      // exponent of the highlight
-    Vec emission;      // at its centre; 0 at its edge, so that edges stay smooth when tone mapped
+    Vec emission;      // at its center; 0 at its edge, so that edges stay smooth when tone mapped
 };
 
 constexpr double kGap = 0.01;
@@ -47,7 +47,7 @@ constexpr double kGap = 0.01;
 Vec lamp(std::size_t i) { return {kLamps[i][0], kLamps[i][1], kLamps[i][2]}; }
 
 const std::array<Sphere, 9> kSpheres = {{
-    // On the floor, lit: grey card, plastic, gold, ceramic, chrome.
+    // On the floor, lit: gray card, plastic, gold, ceramic, chrome.
     {{-2.5, 0.58, 0.15}, 0.58, {0.18, 0.18, 0.18}, {0, 0, 0}, 0, 1, {}},
     {{-1.25, 0.58, -0.2}, 0.58, {0.50, 0.012, 0.008}, {0.04, 0.04, 0.04}, 120, 900, {}},
     {{0.0, 0.58, -0.35}, 0.58, {0.02, 0.012, 0.003}, {1.0, 0.70, 0.29}, 500, 700, {}},
@@ -114,7 +114,7 @@ Vec matt_light(const Vec& point, const Vec& normal) {
         const double d2 = dot(to, to);
         if (d2 < s.radius * s.radius * 1.0001) continue;
         const double facing = std::max(0.0, dot(normal, to) / std::sqrt(d2));
-        // Its disc is 4/7 as bright as its centre, on the average.
+        // Its disc is 4/7 as bright as its center, on the average.
         light = light + facing * s.radius * s.radius / d2 * 4 / 7 * s.emission;
     }
     return light;

@@ -168,9 +168,9 @@ struct Caption {
         return std::max(text_width(title(), cap), text_width(detail(), detail_cap()));
     }
     void draw(Canvas& canvas, double x, double top, Canvas::Align align) const {
-        canvas.text(title(), x, top + 1.9 * cap, cap, grey_of(kSheetText), align);
+        canvas.text(title(), x, top + 1.9 * cap, cap, gray_of(kSheetText), align);
         canvas.text(detail(), x, top + 1.9 * cap + 1.8 * detail_cap(), detail_cap(),
-                    grey_of(kSheetDimText), align);
+                    gray_of(kSheetDimText), align);
     }
     [[nodiscard]] double detail_cap() const { return std::max(7.0, 0.8 * cap); }
 
@@ -239,7 +239,7 @@ ImageBuf make_split(const ImageBuf& before, const ImageBuf& after, const SplitOp
     const int top = is_horizontal ? band : 0;
     const int full_width = options.has_labels ? std::max(width, kNarrowest) : width;
     const int left = (full_width - width) / 2;
-    Canvas canvas(full_width, top + height + band, grey_of(kSheetBackground));
+    Canvas canvas(full_width, top + height + band, gray_of(kSheetBackground));
 
     const std::span<const Rgb> first = pixels_of(a);
     const std::span<const Rgb> second = pixels_of(b);
@@ -255,13 +255,13 @@ ImageBuf make_split(const ImageBuf& before, const ImageBuf& after, const SplitOp
         const int thickness =
             std::max(1, static_cast<int>(std::lround(std::min(width, height) / 700.0)));
         if (edge > 0 && edge < (is_horizontal ? height : width)) {
-            const auto bar = [&](int from, int to, double grey) {
+            const auto bar = [&](int from, int to, double gray) {
                 if (is_horizontal) {
                     canvas.fill(left, top + std::max(from, 0), left + width,
-                                top + std::min(to, height), grey_of(grey));
+                                top + std::min(to, height), gray_of(gray));
                 } else {
                     canvas.fill(left + std::max(from, 0), top, left + std::min(to, width),
-                                top + height, grey_of(grey));
+                                top + height, gray_of(gray));
                 }
             };
             const int from = edge - (3 * thickness) / 2;
@@ -280,13 +280,13 @@ ImageBuf make_split(const ImageBuf& before, const ImageBuf& after, const SplitOp
         const double remark_width = text_width(options.remark, remark_cap);
         if (is_horizontal) {
             if (cap + one.width() + 2 * cap + remark_width < right) {
-                canvas.text(options.remark, right, 1.9 * cap, remark_cap, grey_of(kSheetDimText),
+                canvas.text(options.remark, right, 1.9 * cap, remark_cap, gray_of(kSheetDimText),
                             Canvas::Align::right);
             }
         } else if (std::max(one.width(), two.width()) + 3 * cap + remark_width / 2 <
                    full_width / 2.0) {
             canvas.text(options.remark, full_width / 2.0, below + 1.9 * cap, remark_cap,
-                        grey_of(kSheetDimText), Canvas::Align::center);
+                        gray_of(kSheetDimText), Canvas::Align::center);
         }
     }
     ImageBuf split = canvas.to_image(OIIO::TypeDesc::FLOAT);

@@ -89,11 +89,11 @@ class Surround {
     void draw_heading(Canvas& canvas) const {
         const double baseline = margin_ + heading_height_;
         canvas.text(fit_text(words_.heading, heading_height_, width_), margin_, baseline,
-                    heading_height_, grey_of(kSheetText));
+                    heading_height_, gray_of(kSheetText));
         canvas.text(fit_text(words_.remark, remark_height_, width_),
                     is_remark_below_ ? margin_ : margin_ + width_,
                     is_remark_below_ ? baseline + 1.8 * remark_height_ : baseline, remark_height_,
-                    grey_of(kSheetDimText),
+                    gray_of(kSheetDimText),
                     is_remark_below_ ? Canvas::Align::left : Canvas::Align::right);
     }
     void draw_legend(Canvas& canvas) const {
@@ -103,7 +103,7 @@ class Surround {
         const int patches_end = static_cast<int>(std::lround(labels - 1.7 * cap));
         const int patches_top = static_cast<int>(std::lround(patches_end - 2.2 * cap));
         canvas.text(fit_text(words_.legend_heading, cap, width_), margin_, patches_top - 0.8 * cap,
-                    cap, grey_of(kSheetDimText));
+                    cap, gray_of(kSheetDimText));
         const auto count = static_cast<int>(words_.legend.size());
         // All labels have the room of the widest, or every second or third is there.
         double widest = 0;
@@ -117,7 +117,7 @@ class Surround {
             const int right = margin_ + (i + 1) * width_ / count;
             canvas.fill(left, patches_top, right, patches_end, color);
             if ((i - count / 2) % step == 0) {
-                canvas.text(label, (left + right) / 2.0, labels, cap, grey_of(kSheetText),
+                canvas.text(label, (left + right) / 2.0, labels, cap, gray_of(kSheetText),
                             Canvas::Align::center);
             }
         }
@@ -256,7 +256,7 @@ ImageBuf make_contact_sheet(const std::vector<std::pair<std::string, ImageBuf>>&
                                 width, height, kLargest));
     }
 
-    Canvas canvas(width, height, grey_of(kSheetBackground));
+    Canvas canvas(width, height, gray_of(kSheetBackground));
     for (std::size_t i = 0; i < labelled.size(); ++i) {
         const auto r = i / static_cast<std::size_t>(columns);
         const int left = margin + static_cast<int>(i % static_cast<std::size_t>(columns)) *
@@ -274,12 +274,12 @@ ImageBuf make_contact_sheet(const std::vector<std::pair<std::string, ImageBuf>>&
         const std::string& label = labelled[i].first;
         const std::size_t line_break = std::min(label.find('\n'), label.size());
         canvas.text(fit_text(label.substr(0, line_break), cap_height, cell_width),
-                    left + cell_width / 2.0, baseline, cap_height, grey_of(kSheetText),
+                    left + cell_width / 2.0, baseline, cap_height, gray_of(kSheetText),
                     Canvas::Align::center);
         if (line_break < label.size()) {
             canvas.text(fit_text(label.substr(line_break + 1), second_height, cell_width),
                         left + cell_width / 2.0, baseline + 1.8 * second_height, second_height,
-                        grey_of(kSheetDimText), Canvas::Align::center);
+                        gray_of(kSheetDimText), Canvas::Align::center);
         }
     }
     surround.draw(canvas);

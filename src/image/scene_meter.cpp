@@ -161,7 +161,7 @@ constexpr double kHistogramBlack = 1e-6;
 /// the next edge where one is within such a step.
 class Bins {
   public:
-    /// Several counters of each bin: neighbours are often alike, and one would wait for the other.
+    /// Several counters of each bin: neighbors are often alike, and one would wait for the other.
     static constexpr std::size_t kCopies = 4;
 
     explicit Bins(const MeterOptions& options) {
@@ -326,10 +326,10 @@ class RowMeter {
     }
 
     void load(const SpanSource& source, std::size_t n) noexcept {
-        const std::size_t colors = plan_.layout.is_grey ? 1 : 3;
+        const std::size_t colors = plan_.layout.is_gray ? 1 : 3;
         for (std::size_t c = 0; c < colors; ++c)
             load(source, static_cast<int>(c), planes_[c], n);
-        if (plan_.layout.is_grey) {
+        if (plan_.layout.is_gray) {
             std::copy_n(planes_[0].begin(), n, planes_[1].begin());
             std::copy_n(planes_[0].begin(), n, planes_[2].begin());
         }
@@ -342,7 +342,7 @@ class RowMeter {
     /// RGB or RGBA as floats that follow each other, of floats or halves; else null.
     const float* packed_floats(const SpanSource& source, std::size_t n) noexcept {
         const bool is_half = type_ == OIIO::TypeHalf;
-        if ((type_ != OIIO::TypeFloat && !is_half) || plan_.layout.is_grey ||
+        if ((type_ != OIIO::TypeFloat && !is_half) || plan_.layout.is_gray ||
             (source.stride != 3 * size_ && source.stride != 4 * size_) ||
             (plan_.layout.alpha >= 0 && plan_.layout.alpha != 3) ||
             reinterpret_cast<std::uintptr_t>(source.pixels) % type_.size() != 0) {
@@ -377,7 +377,7 @@ class RowMeter {
                 std::any_of(color.begin(), color.end(), [](double x) { return std::isnan(x); });
             ++(is_nan ? row.nan : row.infinite);
             for (std::size_t c = 0; c < 3; ++c)
-                limited_[c][limited] = sanitise(color[c] / (plan_.divides ? alpha : 1));
+                limited_[c][limited] = sanitize(color[c] / (plan_.divides ? alpha : 1));
             ++limited;
         }
         // Alpha is divided by in whole blocks.

@@ -62,7 +62,7 @@ class LightReader {
     void read_span(const SpanSource& source, std::size_t first, std::size_t n) noexcept {
         const std::array<float*, 3> rgb = {&light_.rgb[0][first], &light_.rgb[1][first],
                                            &light_.rgb[2][first]};
-        load_color(src_.spec().format, layout_.is_grey, source, rgb, n);
+        load_color(src_.spec().format, layout_.is_gray, source, rgb, n);
         if (!light_.counts.empty()) {
             load_divisor(src_.spec().format, layout_.alpha, source, alpha_.data(),
                          &light_.counts[first], n);

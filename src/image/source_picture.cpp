@@ -135,14 +135,14 @@ ChannelLayout channel_layout(const OIIO::ImageSpec& spec) {
             "channels are Y, RY, BY: luminance and chroma; expected R, G, B, or Y alone "
             "(oiiotool --ch Y)");
     }
-    const bool is_grey = spec.nchannels <= 2;
-    if (alpha >= 0 && alpha < (is_grey ? 1 : 3)) {
+    const bool is_gray = spec.nchannels <= 2;
+    if (alpha >= 0 && alpha < (is_gray ? 1 : 3)) {
         throw PictureError(
             fmt::format("alpha channel is {}; expected none, or {} and above: color comes first "
                         "(oiiotool --ch R,G,B,A)",
-                        alpha, is_grey ? 1 : 3));
+                        alpha, is_gray ? 1 : 3));
     }
-    return {is_grey, alpha};
+    return {is_gray, alpha};
 }
 
 bool divides_by_alpha(const OIIO::ImageSpec& spec, TonemapOptions::Unpremult unpremult) {
@@ -182,11 +182,11 @@ void check_was_read(const OIIO::ImageBuf& source, bool is_complete) {
     throw Error(source.has_error() ? first_line(source.geterror()) : "source cannot be read");
 }
 
-void load_color(const OIIO::TypeDesc& type, bool is_grey, const SpanSource& source,
+void load_color(const OIIO::TypeDesc& type, bool is_gray, const SpanSource& source,
                 const std::array<float*, 3>& rgb, std::size_t n) noexcept {
     const PixelAccess& access = *pixel_access(type);
     for (std::size_t c = 0; c < 3; ++c) {
-        if (is_grey && c > 0) {
+        if (is_gray && c > 0) {
             std::copy_n(rgb[0], n, rgb[c]);
         } else {
             access.load_float(source.pixels + c * type.size(), source.stride, rgb[c], n);

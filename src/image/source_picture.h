@@ -31,7 +31,7 @@ TONEWRIGHT_API void complete_channel_names(OIIO::ImageSpec& spec);
 
 /// Which channels are color and alpha. By position, not by name.
 struct ChannelLayout {
-    bool is_grey = false;  // channel 0 alone is color, else 0, 1, 2
+    bool is_gray = false;  // channel 0 alone is color, else 0, 1, 2
     int alpha = -1;        // -1: none
 };
 
@@ -76,8 +76,8 @@ struct SpanSource {
     std::ptrdiff_t stride;    // bytes from pixel to pixel
 };
 
-/// Red, green and blue of a span as planes; of a grey picture three times the same.
-TONEWRIGHT_API void load_color(const OIIO::TypeDesc& type, bool is_grey, const SpanSource& source,
+/// Red, green and blue of a span as planes; of a gray picture three times the same.
+TONEWRIGHT_API void load_color(const OIIO::TypeDesc& type, bool is_gray, const SpanSource& source,
                                const std::array<float*, 3>& rgb, std::size_t n) noexcept;
 
 /// What color is divided by: alpha, and 1 where there is nothing to divide by (0 or not finite).

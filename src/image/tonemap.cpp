@@ -51,8 +51,8 @@ struct CopiedChannel {
 
 /// Which channel of the source goes where.
 struct ChannelPlan {
-    bool grey_source = false;  // channel 0 alone is color
-    bool grey_result = false;
+    bool gray_source = false;  // channel 0 alone is color
+    bool gray_result = false;
     int alpha = -1;  // of the source, to divide by and multiply with; -1: color is taken as it is
     std::vector<CopiedChannel> copies;
 };
@@ -80,9 +80,9 @@ bool report_thrown(ImageBuf& dst, const char* prefix = "tonemap: ") noexcept {
 }
 
 /// The spec of a destination that does not exist yet.
-ImageSpec result_spec(const ImageSpec& source, bool grey_becomes_color) {
+ImageSpec result_spec(const ImageSpec& source, bool gray_becomes_color) {
     ImageSpec spec = source;
-    if (grey_becomes_color) {
+    if (gray_becomes_color) {
         const bool has_alpha = spec.nchannels == 2;
         spec.nchannels = has_alpha ? 4 : 3;
         spec.channelnames = {"R", "G", "B"};
@@ -155,8 +155,8 @@ class Progress {
 /// What is done to a picture.
 struct PictureMap {
     PlanarMap run;
-    /// A grey picture stays one.
-    bool keeps_grey = false;
+    /// A gray picture stays one.
+    bool keeps_gray = false;
     /// In messages.
     std::string label;
     TonemapOptions::Unpremult unpremult = TonemapOptions::Unpremult::automatic;
@@ -202,9 +202,9 @@ LiveUniforms engine_uniforms(const View& view) {
     return {{std::string(kExposureUniform), {0, -kMostLiveStops, kMostLiveStops}}};
 }
 
-bool keeps_greys_at_any_exposure(View view) {
+bool keeps_grays_at_any_exposure(View view) {
     if (is_exposure_live(view)) view.exposure_stops = 0;
-    return keeps_greys(engine_stages(view));
+    return keeps_grays(engine_stages(view));
 }
 
 /// What a picture is run through.
@@ -213,19 +213,19 @@ struct Prepared {
     explicit Prepared(View v)
         : view(std::move(v)),
           engine(engine_stages(view), engine_uniforms(view), view.op.op->bounds.simd_goal),
-          keeps_grey(keeps_greys_at_any_exposure(view)) {
+          keeps_gray(keeps_grays_at_any_exposure(view)) {
         if (view.op.op->is_local()) to_light.emplace(light_stages(view));
     }
     /// The same program at another exposure that it is for.
     Prepared(const Prepared& other, double stops)
-        : view(other.view), engine(other.at(stops)), keeps_grey(other.keeps_grey) {
+        : view(other.view), engine(other.at(stops)), keeps_gray(other.keeps_gray) {
         view.exposure_stops = stops;
         if (other.to_light) to_light.emplace(other.to_light->with_uniforms({}));
     }
 
     View view;
     SimdEngine engine;
-    bool keeps_grey;
+    bool keeps_gray;
     /// Of a local operator: what comes before it. `engine` comes behind it.
     std::optional<SimdEngine> to_light;
 
@@ -359,7 +359,7 @@ class RowRunner {
             } else if (light_) {
                 copy_light(x, y, rgb, n);
             } else {
-                load_color(floats.type, plan_.grey_source, floats.source, rgb, n);
+                load_color(floats.type, plan_.gray_source, floats.source, rgb, n);
                 if (alpha) divide(rgb, alpha, n);
             }
             map_({rgb[0], rgb[1], rgb[2]}, 1, rgb, 1, n);
@@ -396,7 +396,7 @@ class RowRunner {
                    stride % kFloat == 0;
         };
         const std::byte* pixels = from.source.pixels;
-        if (!pixels || light_ || plan_.grey_source || plan_.grey_result || alpha ||
+        if (!pixels || light_ || plan_.gray_source || plan_.gray_result || alpha ||
             from.type != OIIO::TypeFloat || !is_aligned(pixels, from.source.stride)) {
             return false;
         }
@@ -445,7 +445,7 @@ class RowRunner {
 
     void store_color(const std::array<float*, 3>& rgb, std::byte* to, std::ptrdiff_t to_stride,
                      std::size_t n) const noexcept {
-        if (plan_.grey_result) {
+        if (plan_.gray_result) {
             // The three agree within half a code value; green is nearest to luminance.
             dst_access_.store_float(rgb[1], to, to_stride, n);
             return;
@@ -500,8 +500,8 @@ void run_picture(const PictureMap& with, ImageBuf& dst, const ImageBuf& src, ROI
 
     ChannelPlan plan;
     const ChannelLayout layout = channel_layout(source);
-    plan.grey_source = layout.is_grey;
-    const int color_count = plan.grey_source ? 1 : 3;
+    plan.gray_source = layout.is_gray;
+    const int color_count = plan.gray_source ? 1 : 3;
     const int chbegin = roi.defined() ? std::max(roi.chbegin, 0) : 0;
     const int chend = roi.defined() ? std::min(roi.chend, source.nchannels) : source.nchannels;
     if (chbegin > 0 || chend < color_count) {
@@ -511,18 +511,18 @@ void run_picture(const PictureMap& with, ImageBuf& dst, const ImageBuf& src, ROI
             roi.chbegin, roi.chend, color_count));
     }
 
-    // A grey result takes one channel, unless the destination has a place for three.
+    // A gray result takes one channel, unless the destination has a place for three.
     const bool wide_destination = dst.initialized() && dst.nchannels() >= 3;
-    plan.grey_result = plan.grey_source && with.keeps_grey && !wide_destination;
-    if (dst.initialized() && !plan.grey_result && dst.nchannels() < 3) {
+    plan.gray_result = plan.gray_source && with.keeps_gray && !wide_destination;
+    if (dst.initialized() && !plan.gray_result && dst.nchannels() < 3) {
         fail(fmt::format("destination has {}; expected 3 or more: {}",
                          dst.nchannels() == 1 ? "1 channel" : "2 channels",
-                         plan.grey_source ? with.label + " shows this gray picture in color"
+                         plan.gray_source ? with.label + " shows this gray picture in color"
                                           : std::string("the picture is in color")));
     }
     if (layout.alpha >= 0 && divides_by_alpha(source, with.unpremult)) plan.alpha = layout.alpha;
 
-    const bool widens = plan.grey_source && !plan.grey_result;
+    const bool widens = plan.gray_source && !plan.gray_result;
     ImageSpec fresh = result_spec(source, widens);
     if (!OIIO::ImageBufAlgo::IBAprep(roi, &dst, &src, nullptr, &fresh,
                                      OIIO::ImageBufAlgo::IBAprep_DST_FLOAT_PIXELS)) {
@@ -600,7 +600,7 @@ void Tonemapper::State::run(const Prepared& with, ImageBuf& dst, const ImageBuf&
                                  std::ptrdiff_t out_stride, std::size_t count) {
         with.engine.run(in, in_stride, out, out_stride, count);
     };
-    run_picture({engine, with.keeps_grey, with.view.op.label, options.unpremult, light}, dst, src,
+    run_picture({engine, with.keeps_gray, with.view.op.label, options.unpremult, light}, dst, src,
                 roi, nthreads, progress);
     tag_as_result_of(with.view, dst.specmod());
     if (options.dither) dst.specmod().attribute("oiio:dither", 1);

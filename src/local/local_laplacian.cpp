@@ -388,11 +388,11 @@ void run(ScenePlanes& picture, const Params& p) {
     picture.for_rows(picture.height, [&](int begin, int end) {
         for (std::size_t i = index_of(picture, begin); i < index_of(picture, end); ++i) {
             const float shown = std::exp2(std::min(slope * (stops.pixels[i] + offset), 64.0F));
-            const float grey = (1 - saturation) * luminance[i];
+            const float gray = (1 - saturation) * luminance[i];
             // Divided first: 1/luminance may be infinite.
             for (std::vector<float>& channel : picture.rgb) {
                 channel[i] =
-                    luminance[i] > 0 ? (saturation * channel[i] + grey) / luminance[i] * shown : 0;
+                    luminance[i] > 0 ? (saturation * channel[i] + gray) / luminance[i] * shown : 0;
             }
         }
     });

@@ -12,11 +12,11 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-constexpr double kMidGrey = 0.18;
+constexpr double kMidGray = 0.18;
 constexpr double kSeen = 1.0 / 1023;
 constexpr int kStepsPerStop = 16;
 
-double stops_of(double light) { return std::log2(light / kMidGrey); }
+double stops_of(double light) { return std::log2(light / kMidGray); }
 
 /// Stops at which half floats end.
 double brightest() { return stops_of(kHalfMax); }
@@ -55,7 +55,7 @@ LutClipping measure_clipping(const LutRequest& request, const Lut& lut) {
         const double stops = stops_of(hi) + static_cast<double>(i) / kStepsPerStop;
         if (!(stops <= brightest())) break;
         for (unsigned mask = 1; mask < 8; ++mask) {
-            const double light = kMidGrey * std::exp2(stops);
+            const double light = kMidGray * std::exp2(stops);
             const Vector3 rec709 = {mask & 1 ? light : 0, mask & 2 ? light : 0,
                                     mask & 4 ? light : 0};
             Vector3 rgb = multiply(from_rec709, rec709);
@@ -69,7 +69,7 @@ LutClipping measure_clipping(const LutRequest& request, const Lut& lut) {
     for (int i = 0; lo > 0; ++i) {
         const double stops = stops_of(lo) - static_cast<double>(i) / kStepsPerStop;
         if (!(stops >= darkest())) break;
-        const double light = kMidGrey * std::exp2(stops);
+        const double light = kMidGray * std::exp2(stops);
         note(clipping.below, stops_of(lo), stops,
              change(engine, {light, light, light}, lo, kInfinity), false);
     }

@@ -64,7 +64,7 @@ class Fit {
 
     std::vector<double> run() {
         const std::vector<double> start = take_sampled();
-        fit_greys();
+        fit_grays();
         sort_samples(draw_samples());
         in_parallel(3, threads_, [&](std::size_t c) { solve(c); });
         std::vector<double> nodes(start.size());
@@ -107,7 +107,7 @@ class Fit {
 
     [[nodiscard]] Plane make_plane() const { return Plane(node_count_ + 2 * pad_, 0.0F); }
     /// Distance of the nodes of two neighboring grays.
-    [[nodiscard]] std::size_t grey_step() const { return step_[7]; }
+    [[nodiscard]] std::size_t gray_step() const { return step_[7]; }
 
     std::vector<double> take_sampled() {
         std::vector<double> start = sample_cube(problem_);
@@ -121,7 +121,7 @@ class Fit {
 
     /// Least squares in one dimension, with colors at equal distances: the edge between two grays'
     /// nodes is an edge of tetrahedra, so no other node affects a gray.
-    void fit_greys() {
+    void fit_grays() {
         constexpr std::size_t kPerStep = 64;
         const std::size_t count = (n_ - 1) * kPerStep;
         std::vector<double> light(count);
@@ -135,17 +135,17 @@ class Fit {
                  {code[0].data(), code[1].data(), code[2].data()}, count);
         for (std::size_t c = 0; c < 3; ++c) {
             for (int round = 0; round < kRounds; ++round)
-                fit_greys(code[c], kPerStep, start_[c]);
+                fit_grays(code[c], kPerStep, start_[c]);
         }
     }
 
     /// @param code  of grays, a fixed number in each step of the axis.
-    void fit_greys(const std::vector<double>& code, std::size_t per_step, Plane& x) const {
+    void fit_grays(const std::vector<double>& code, std::size_t per_step, Plane& x) const {
         // A tridiagonal matrix; black is known.
         std::vector<double> diagonal(n_, static_cast<double>(kPull));
         std::vector<double> beside(n_, 0.0);
         std::vector<double> right(n_, 0.0);
-        const auto node = [&](std::size_t i) -> float& { return x[pad_ + i * grey_step()]; };
+        const auto node = [&](std::size_t i) -> float& { return x[pad_ + i * gray_step()]; };
         for (std::size_t k = 0; k < code.size(); ++k) {
             const std::size_t i = k / per_step;
             const double t =
@@ -287,7 +287,7 @@ class Fit {
             right[i] += kPull * (start_[c][i] - x[i]);
         }
         for (std::size_t i = 0; i < n_; ++i)
-            hold(pad_ + i * grey_step(), equations);
+            hold(pad_ + i * gray_step(), equations);
     }
 
     /// Fixes the node.

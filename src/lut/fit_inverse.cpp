@@ -38,7 +38,7 @@ class InverseFit {
 
     CubeNodes run() {
         draw_samples();
-        start_from_greys();
+        start_from_grays();
         start_from_colors();
         solver_.solve(nodes_, kRounds);
         return std::move(nodes_);
@@ -75,8 +75,8 @@ class InverseFit {
         Vector3 color{};
         const std::size_t kind = i % 10;
         if (kind == 0) {
-            const double grey = std::exp2(random.uniform(-13, 7));
-            return {grey, grey, grey};
+            const double gray = std::exp2(random.uniform(-13, 7));
+            return {gray, gray, gray};
         }
         if (kind <= 3) return multiply(from_rec709, draw_picture_color(random));
         const bool is_usual = kind <= 6;
@@ -95,7 +95,7 @@ class InverseFit {
         for (std::size_t i = 0; i < reached; ++i) {
             const Vector3 color = draw_color(i, random, from_rec709);
             for (std::size_t c = 0; c < 3; ++c)
-                light[c][i] = sanitise(color[c]);
+                light[c][i] = sanitize(color[c]);
         }
         apply(ReferenceEngine(problem_.before), light);
         const Colors held = light;
@@ -124,13 +124,13 @@ class InverseFit {
     }
 
     /// Sets every channel to the gray solution at its position.
-    void start_from_greys() {
-        constexpr std::size_t kGreys = 2048;
-        Colors held = make_colors(kGreys);
-        for (std::size_t i = 0; i < kGreys; ++i) {
-            const double grey =
-                i == 0 ? 0 : std::exp2(-16 + 32 * static_cast<double>(i) / (kGreys - 1));
-            held[0][i] = held[1][i] = held[2][i] = grey;
+    void start_from_grays() {
+        constexpr std::size_t kGrays = 2048;
+        Colors held = make_colors(kGrays);
+        for (std::size_t i = 0; i < kGrays; ++i) {
+            const double gray =
+                i == 0 ? 0 : std::exp2(-16 + 32 * static_cast<double>(i) / (kGrays - 1));
+            held[0][i] = held[1][i] = held[2][i] = gray;
         }
         apply(ReferenceEngine(problem_.before), held);
         Colors place = held;
@@ -141,7 +141,7 @@ class InverseFit {
             std::size_t at = 0;
             for (std::size_t i = 0; i < n_; ++i) {
                 const double wanted = static_cast<double>(i) / static_cast<double>(n_ - 1);
-                while (at + 1 < kGreys && place[c][at] < wanted)
+                while (at + 1 < kGrays && place[c][at] < wanted)
                     ++at;
                 axis[c].push_back(held[c][at]);
             }

@@ -50,7 +50,7 @@ std::vector<float> sample_half_domain(const Expr& f, double lo, double hi) {
     const ReferenceEngine engine({curve_stage(f)});
     // Interpolation reaches a bound between two half floats from the entry beyond it. That entry
     // keeps the value of the curve; a held value would show a kink inside the interval.
-    const auto neighbour_is_inside = [&](unsigned bits) {
+    const auto neighbor_is_inside = [&](unsigned bits) {
         const unsigned sign = bits & kSignBit;
         const unsigned magnitude = bits & ~kSignBit;
         const auto inside = [&](unsigned m) {
@@ -62,9 +62,9 @@ std::vector<float> sample_half_domain(const Expr& f, double lo, double hi) {
     };
     std::vector<double> x(kHalfCount);
     for (unsigned bits = 0; bits < kHalfCount; ++bits) {
-        const double h = sanitise(half_value(bits));
+        const double h = sanitize(half_value(bits));
         const bool keep = h >= lo && h <= hi;
-        x[bits] = keep || (neighbour_is_inside(bits) && std::isfinite(evaluate(f, h)))
+        x[bits] = keep || (neighbor_is_inside(bits) && std::isfinite(evaluate(f, h)))
                       ? h
                       : std::clamp(h, lo, hi);
     }

@@ -19,7 +19,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 double interpolate_half(const Lut& lut, double x) {
-    x = sanitise(x);
+    x = sanitize(x);
     const unsigned sign = std::signbit(x) ? 0x8000U : 0U;
     const double magnitude = std::fabs(x);
     // The half float at or below, by bisection over the bit patterns (their order is the numbers').

@@ -10,23 +10,23 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// Errors over a set of colours; of each colour the worst channel counts.
+/// Errors over a set of colors; of each color the worst channel counts.
 struct ErrorStats {
     double max = 0;
     double p999 = 0;  // 99.9th percentile
     double mean = 0;
     std::size_t count = 0;
-    std::size_t worst = 0;  // index of the colour with the largest error
+    std::size_t worst = 0;  // index of the color with the largest error
 };
 
 /// Over values already computed; a NaN counts as an infinite error.
 [[nodiscard]] TONEWRIGHT_API ErrorStats summarise(std::span<const double> errors);
 
-/// Largest channel difference of one colour, `candidate` against `truth`; infinite where one is
+/// Largest channel difference of one color, `candidate` against `truth`; infinite where one is
 /// NaN.
 [[nodiscard]] TONEWRIGHT_API double channel_error(const double* truth, const float* candidate);
 
-/// Colour differences of pairs of code-value triplets (interleaved RGB) shown on a display, ITU-R
+/// Color differences of pairs of code-value triplets (interleaved RGB) shown on a display, ITU-R
 /// BT.2124-0: dE_ITP, where 1 is about the smallest difference that can be seen.
 /// @param unit_nits  luminance of light 1 in cd/m2; 100 is the reference of SDR grading, and what
 ///                   HDR displays have.

@@ -27,10 +27,10 @@ SampleSet make_sample_set(const InputSpace& input, const SampleSetOptions& optio
     SampleSet set;
     SampleRandom random(20021);
 
-    set.add(0, 0, 0, SampleKind::grey);
+    set.add(0, 0, 0, SampleKind::gray);
     for (int step = -12 * 64; step <= 12 * 64; ++step) {
-        const double grey = 0.18 * std::exp2(step / 64.0);
-        set.add(grey, grey, grey, SampleKind::grey);
+        const double gray = 0.18 * std::exp2(step / 64.0);
+        set.add(gray, gray, gray, SampleKind::gray);
     }
 
     const int n = options.lattice_edge;

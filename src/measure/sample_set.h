@@ -11,7 +11,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 
 /// Which part of the sample set a color belongs to.
 enum class SampleKind : unsigned char {
-    grey,        // R = G = B, -12..+12 stops around 0.18, and black
+    gray,        // R = G = B, -12..+12 stops around 0.18, and black
     lattice,     // gamut lattices of Rec.709, Rec.2020 and AP1 at five exposures
     random,      // log-uniform, 2^-16..2^12 per channel, a tenth with a channel at 0
     near_black,  // down to denormals
@@ -20,7 +20,7 @@ enum class SampleKind : unsigned char {
     special,     // NaN, infinities, the largest float
 };
 
-/// The colours that every form of a view is measured on. Scene-linear float, interleaved RGB.
+/// The colors that every form of a view is measured on. Scene-linear float, interleaved RGB.
 struct TONEWRIGHT_API SampleSet {
     std::vector<float> rgb;
     std::vector<SampleKind> kind;

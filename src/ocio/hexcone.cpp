@@ -33,7 +33,7 @@ const Column& halves() {
     static const Column all = [] {
         Column column(kHalfCount);
         for (unsigned bits = 0; bits < kHalfCount; ++bits)
-            column[bits] = sanitise(half_value(bits));
+            column[bits] = sanitize(half_value(bits));
         return column;
     }();
     return all;

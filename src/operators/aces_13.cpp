@@ -130,12 +130,12 @@ Expr spline(const Quadratics& pieces, const Expr& x) {
     return y;
 }
 
-constexpr double kMidGrey = 0.18;
+constexpr double kMidGray = 0.18;
 constexpr double kMidLight = 4.8;  // cd/m2 of it
 constexpr double kMidSlope = 1.55;
 
 /// Scene value of `stops` above scene-linear 0.18.
-double log10_scene(double stops) { return std::log10(kMidGrey) + stops * std::log10(2.0); }
+double log10_scene(double stops) { return std::log10(kMidGray) + stops * std::log10(2.0); }
 
 /// ACESlib.Tonescales, segmented_spline_c5, without the last of six coefficients each, which no
 /// interval uses.

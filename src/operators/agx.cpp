@@ -68,7 +68,7 @@ constexpr double kHighest = 4.026069;
 Stage limit_to_shaper() { return ClampStage{std::exp2(kLowest), std::exp2(kHighest)}; }
 
 /// Scene-linear in the shaper's range -> [0, 1]; mid gray -> 10/16.5.
-Expr normalised_log(const Expr& x) {
+Expr normalized_log(const Expr& x) {
     return named("n", (log2(x) - kLowest) / (kHighest - kLowest));
 }
 
@@ -121,7 +121,7 @@ Operator sobotka() {
     op.build = [](const Params& p) -> Pipeline {
         const AgxSigmoid sigmoid(10 / 16.5, 0.5, 2.0, 3.0, 3.25);
         Pipeline stages = {limit_to_positive(), MatrixStage{kInset, "inset"}, limit_to_shaper(),
-                           named("contrast", curve_stage(sigmoid(normalised_log(Expr::input()))))};
+                           named("contrast", curve_stage(sigmoid(normalized_log(Expr::input()))))};
         Pipeline look;
         if (p.look() == "golden") look = cdl({1, 0.9, 0.5}, 0.8, 1.3);
         if (p.look() == "punchy") look = cdl({1, 1, 1}, 1.35, 1.4);
@@ -153,7 +153,7 @@ Operator minimal() {
                      {DocumentedDifference::Kind::never_reaches_white, 0.961, "order7"},
                      {DocumentedDifference::Kind::not_monotone, 0.00024, "order7"}};
     op.build = [](const Params& p) -> Pipeline {
-        const Expr n = named("n", normalised_log(Expr::input()));
+        const Expr n = named("n", normalized_log(Expr::input()));
         const Expr f = p.choice("order") == "6" ? polynomial6(n) : polynomial7(n);
         return {limit_to_positive(), MatrixStage{kInset, "inset"}, limit_to_shaper(),
                 named("contrast", curve_stage(f)), MatrixStage{kOutset, "outset"}};
@@ -175,7 +175,7 @@ Operator minimal_clamped() {
     op.build = [](const Params&) -> Pipeline {
         return {limit_to_positive(), MatrixStage{kInset, "inset"},
                 ClampStage{std::exp2(kLowest), 1},
-                named("contrast", curve_stage(polynomial6(normalised_log(Expr::input())))),
+                named("contrast", curve_stage(polynomial6(normalized_log(Expr::input())))),
                 MatrixStage{kOutset, "outset"}};
     };
     return op;
@@ -240,7 +240,7 @@ Operator threejs() {
         const Pipeline stages = {
             MatrixStage{to_rec2020, "to_rec2020"}, MatrixStage{kAgxInsetRec2020, "inset"},
             limit_to_shaper(),
-            named("contrast", curve_stage(polynomial6(normalised_log(Expr::input()))))};
+            named("contrast", curve_stage(polynomial6(normalized_log(Expr::input()))))};
         return stages + outset_to_light() + Pipeline{MatrixStage{to_rec709, "to_rec709"}};
     };
     return op;
@@ -295,7 +295,7 @@ Operator filament() {
     op.build = [](const Params& p) -> Pipeline {
         Pipeline stages = {
             limit_to_positive(), MatrixStage{kAgxInsetRec2020, "inset"}, limit_to_shaper(),
-            named("contrast", curve_stage(polynomial7(normalised_log(Expr::input()))))};
+            named("contrast", curve_stage(polynomial7(normalized_log(Expr::input()))))};
         if (!p.look().empty()) {
             stages.push_back(ClampStage{0, 1});  // no effect: the polynomial stays inside
             stages.push_back(p.look() == "golden" ? filament_look({1, 0.9, 0.5}, 0.8, 1.3)

@@ -79,7 +79,7 @@ constexpr Matrix3 kXyzToP3 = {{
 constexpr Vector3 kRailWeights = {0.2658180370250449, 0.59846986045365, 0.1357121025213052};
 constexpr Vector3 kRailWeights2025 = {0.2589235355689848, 0.6104985346066525, 0.13057792982436284};
 
-constexpr double kMidGrey = 0.18;
+constexpr double kMidGray = 0.18;
 /// Peak of the HDR view divided by its reference white: 1000 and 100 cd/m2.
 constexpr double kHdrPeak = 10;
 /// Smallest divisor and smallest argument of a logarithm.
@@ -136,14 +136,14 @@ Color<T> display_rail(const Color<T>& c, const Vector3& weights) {
 
 /// Blender's sigmoid: mid gray is unchanged after the 2.4 power.
 AgxSigmoid sigmoid(double shoulder_power) {
-    return {10 / 16.5, std::pow(kMidGrey, 1 / 2.4), 2.4, 1.5, shoulder_power};
+    return {10 / 16.5, std::pow(kMidGray, 1 / 2.4), 2.4, 1.5, shoulder_power};
 }
 
 /// Maps stops from 10 below to 6.5 above mid gray to [0, 1], and continues above 1.
 template <class T>
 T stops_of(const T& x) {
-    constexpr double lowest = kMidGrey / 1024;
-    return max((log2(max(x, lowest) / kMidGrey) + 10) / 16.5, 0);
+    constexpr double lowest = kMidGray / 1024;
+    return max((log2(max(x, lowest) / kMidGray) + 10) / 16.5, 0);
 }
 
 template <class T>
@@ -164,7 +164,7 @@ T first_hdr_light(const T& x) {
 /// @param x  scene value; `light` is the result of the first curve.
 template <class T>
 T second_hdr_light(const T& x, const T& light) {
-    static const double height = 20 + std::log2(1 / kMidGrey);
+    static const double height = 20 + std::log2(1 / kMidGray);
     static const double px = 20 / height;
     static const double py = (20 - std::log2(kHdrPeak)) / height;
     constexpr double k = 1.000001;
@@ -172,7 +172,7 @@ T second_hdr_light(const T& x, const T& light) {
     static const double run = k * (1 - px);
     static const double shoulder = run / (run / (1 - py) - 1);
 
-    const T e = (log2(max(light, kTiny) / kMidGrey) + 20) / height;
+    const T e = (log2(max(light, kTiny) / kMidGray) + 20) / height;
     const T mapped = if_less(
         e, T(px),
         [&]() -> T {
@@ -184,7 +184,7 @@ T second_hdr_light(const T& x, const T& light) {
             return u / (1 + u / shoulder) + py;
         });
     return if_less(
-        T(0), stops_of(x), [&]() -> T { return kMidGrey * exp2(height * mapped - 20); },
+        T(0), stops_of(x), [&]() -> T { return kMidGray * exp2(height * mapped - 20); },
         []() -> T { return 0; });
 }
 
@@ -300,7 +300,7 @@ Color<T> times(const Matrix3& m, const Color<T>& c) {
 /// Scene value of a node, from its position on an axis.
 template <class T>
 T light_at(const T& place) {
-    return kMidGrey * exp2(25 * place - 10);
+    return kMidGray * exp2(25 * place - 10);
 }
 
 /// A 3D LUT, computed and cached at the first lookup; and the formula of its nodes.
@@ -411,7 +411,7 @@ struct RailNode {
         using std::floor;
         Color<T> out = times(to_e_gamut, scene_rail(c, kRailWeights));
         for (T& v : out) {
-            v = max((log2(max(v, kTiny) / kMidGrey) + 10) / 25, 0);
+            v = max((log2(max(v, kTiny) / kMidGray) + 10) / 25, 0);
             v = floor(T(v * 1e7 + 0.5)) / 1e7;  // rounded like the file
         }
         return out;

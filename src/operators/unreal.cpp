@@ -46,14 +46,14 @@ Expr film_curve(double slope, double toe, double shoulder, double black_clip, do
         throw Error("shoulder is " + shortest(shoulder) +
                     "; expected below 1 + white_clip = " + shortest(1 + white_clip));
     }
-    constexpr double kMidGrey = 0.18;  // in and out
-    const double mid = std::log10(kMidGrey);
+    constexpr double kMidGray = 0.18;  // in and out
+    const double mid = std::log10(kMidGray);
     const bool is_long_toe = toe > 0.8;
     // Height of mid gray as a fraction of the toe's height 2 ts.
-    const double grey_in_toe = (kMidGrey + black_clip) / ts / 2;
+    const double gray_in_toe = (kMidGray + black_clip) / ts / 2;
     const double tm = is_long_toe
-                          ? (1 - toe - kMidGrey) / slope + mid
-                          : mid - 0.5 * std::log(grey_in_toe / (1 - grey_in_toe)) * ts / slope;
+                          ? (1 - toe - kMidGray) / slope + mid
+                          : mid - 0.5 * std::log(gray_in_toe / (1 - gray_in_toe)) * ts / slope;
     const double st = (1 - toe) / slope - tm;
     const double sm = shoulder / slope - st;
 
@@ -65,7 +65,7 @@ Expr film_curve(double slope, double toe, double shoulder, double black_clip, do
     // tm for a long toe, where it is below mid gray.
     const Expr u =
         named("u", is_long_toe ? pow(min(x, std::pow(10, tm)) / std::pow(10, tm), toe_power)
-                               : grey_in_toe / (1 - grey_in_toe) * pow(x / kMidGrey, toe_power));
+                               : gray_in_toe / (1 - gray_in_toe) * pow(x / kMidGray, toe_power));
     const Expr toe_part = named("toe_part", arm(ts, u) - black_clip);
     if (std::min(tm, sm) >= top) return toe_part;
 

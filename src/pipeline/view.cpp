@@ -171,11 +171,11 @@ Pipeline build_inverse_view(const View& view) {
     return stages;
 }
 
-bool keeps_greys(const Pipeline& view) {
+bool keeps_grays(const Pipeline& view) {
     const std::array<Expr, 3> rgb = compose(view);
     for (int half_stops = -32; half_stops <= 32; ++half_stops) {
-        const double grey = 0.18 * std::exp2(half_stops / 2.0);
-        const std::array<double, 3> in = {grey, grey, grey};
+        const double gray = 0.18 * std::exp2(half_stops / 2.0);
+        const std::array<double, 3> in = {gray, gray, gray};
         const double r = evaluate(rgb[0], in);
         const double g = evaluate(rgb[1], in);
         const double b = evaluate(rgb[2], in);

@@ -333,12 +333,12 @@ class Linter {
 
     void check_gpu(const std::string& where, const OCIO::ConstProcessorRcPtr& processor) {
         std::vector<float> in;
-        for (int i = 0; i < 512; ++i) {  // by turns grey and colored, 14 stops
+        for (int i = 0; i < 512; ++i) {  // by turns gray and colored, 14 stops
             const float light = 0.18F * std::exp2(static_cast<float>(i) / 36 - 8);
-            const bool is_grey = i % 2 == 0;
+            const bool is_gray = i % 2 == 0;
             in.push_back(light);
-            in.push_back(is_grey ? light : light * 0.2F);
-            in.push_back(is_grey || i % 4 == 1 ? light : light * 0.05F);
+            in.push_back(is_gray ? light : light * 0.2F);
+            in.push_back(is_gray || i % 4 == 1 ? light : light * 0.05F);
         }
         std::vector<float> cpu(in.size());
         std::vector<float> gpu(in.size());

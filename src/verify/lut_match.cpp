@@ -56,10 +56,10 @@ std::vector<float> samples_of(bool is_linear, std::size_t count) {
     SampleRandom random(23);
     std::vector<float> in;
     for (std::size_t i = 0; i < count; ++i) {
-        // Every fourth is a grey.
-        const double grey = random.uniform(0, 1);
+        // Every fourth is a gray.
+        const double gray = random.uniform(0, 1);
         for (int c = 0; c < 3; ++c) {
-            const double code = i % 4 == 0 ? grey : random.uniform(0, 1);
+            const double code = i % 4 == 0 ? gray : random.uniform(0, 1);
             in.push_back(static_cast<float>(is_linear ? 0.18 * std::exp2(14 * code - 8) : code));
         }
     }

@@ -36,7 +36,7 @@ constexpr std::size_t kHeight = 2160;
 constexpr std::size_t kPixels = kWidth * kHeight;
 constexpr std::size_t kChannels = 4;
 
-/// The scene: colours between -10 and +6 stops, noise, the worst for branches and tables.
+/// The scene: colors between -10 and +6 stops, noise, the worst for branches and tables.
 const std::vector<float>& picture() {
     static const std::vector<float> pixels = [] {
         SampleRandom random(1);

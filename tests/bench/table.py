@@ -203,7 +203,7 @@ def print_commands(rows, frames, start):
           ["out", "a shell loop", "`--frames`", "times", "processors busy"],
           [[row["output"], number(row["loop"]), number(row["frames"]), times(row["frames"], row["loop"]),
             number(row["processors"])] for row in frames])
-    print(f"\n`eval` of one colour: {1000 * start:.0f} ms\n")
+    print(f"\n`eval` of one color: {1000 * start:.0f} ms\n")
 
 
 def main():

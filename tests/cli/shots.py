@@ -15,7 +15,7 @@ DATE = 1_600_000_000  # of every input, because outputs without a date get it
 
 
 def make_shot(folder, numbers, width=48, height=32, name="in.{:04d}.exr", seed=1):
-    """Noise with saturated colours, black, negatives, light above white and alpha; of 2020, without a date in them."""
+    """Noise with saturated colors, black, negatives, light above white and alpha; of 2020, without a date in them."""
     for number in numbers:
         rng = np.random.default_rng([seed, abs(number)])
         rgb = (2.0 ** rng.uniform(-10, 6, (height, width, 3)) * rng.choice([-0.1, 0, 1, 1], (height, width, 3)))

@@ -25,7 +25,7 @@ from test_artifacts import compare_folder, page_differs  # noqa: E402
 from pictures import PROJECT, Report, evaluate, run, share_of  # noqa: E402
 
 SVG = "{http://www.w3.org/2000/svg}"
-MID_GREY = 0.18
+MID_GRAY = 0.18
 WEIGHTS = np.array([0.2126, 0.7152, 0.0722])
 ORANGE, GREEN, BLUE = np.array([1, 0.25, 0.02]), np.array([0.05, 1, 0.1]), np.array([0.02, 0.06, 1])
 
@@ -41,7 +41,7 @@ DIGITS = 1e-6
 
 
 # --------------------------------------------------------------------------------------------------
-# Light and colour
+# Light and color
 
 
 def encode(light):
@@ -53,13 +53,13 @@ def decode(code):
     return np.where(code <= 0.04045, code / 12.92, ((np.maximum(code, 0) + 0.055) / 1.055) ** 2.4)
 
 
-def grey_level(code):
-    """Code value of the grey that has the luminance of each colour."""
+def gray_level(code):
+    """Code value of the gray that has the luminance of each color."""
     return encode(decode(code) @ WEIGHTS)
 
 
 def scene(stops):
-    return MID_GREY * 2.0 ** np.asarray(stops, float)
+    return MID_GRAY * 2.0 ** np.asarray(stops, float)
 
 
 def to_xyz(red, green, blue, white):
@@ -114,19 +114,19 @@ class SplitMix64:
 
 
 def non_negative_samples():
-    """The sample set of docs/conventions.md in linear Rec.709, without colours that have a negative channel."""
-    greys = np.repeat(np.concatenate([[0], scene(np.arange(-768, 769) / 64)])[:, None], 3, axis=1)
-    parts = [greys]
+    """The sample set of docs/conventions.md in linear Rec.709, without colors that have a negative channel."""
+    grays = np.repeat(np.concatenate([[0], scene(np.arange(-768, 769) / 64)])[:, None], 3, axis=1)
+    parts = [grays]
     for matrix in (np.eye(3), np.linalg.inv(REC709) @ REC2020,
                    np.linalg.inv(REC709) @ adaptation(ACES_WHITE, D65) @ AP1):
         for exposure in (-6, -2, 0, 3, 6):
             cube = np.stack(np.meshgrid(*[np.arange(33)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
             parts.append(cube * (2.0**exposure / 32) @ matrix.T)
     generator = SplitMix64(20021)
-    colours = 2.0 ** generator.uniform(-16, 12, (100000, 3))
+    colors = 2.0 ** generator.uniform(-16, 12, (100000, 3))
     tenth = np.arange(0, 100000, 10)
-    colours[tenth, tenth // 10 % 3] = 0
-    parts += [colours, 2.0 ** generator.uniform(-148, -10, (5000, 3))]
+    colors[tenth, tenth // 10 % 3] = 0
+    parts += [colors, 2.0 ** generator.uniform(-148, -10, (5000, 3))]
     rgb = np.concatenate(parts).astype(np.float32)
     return rgb[(rgb >= 0).all(axis=1)]
 
@@ -175,15 +175,15 @@ class Plot:
         return crossed
 
     def patches(self):
-        """Rows of (first, last, colour)."""
+        """Rows of (first, last, color)."""
         rows = []
         for group in self.root.iter(SVG + "g"):
             if group.get("transform"):
                 row = []
                 for patch in group.iter(SVG + "path"):
                     start, width = map(float, re.fullmatch(r"M([\d.]+) 0h([\d.]+)", patch.get("d")).groups())
-                    colour = [int(patch.get("stroke")[i:i + 2], 16) for i in (1, 3, 5)]
-                    row.append((start, start + width, colour))
+                    color = [int(patch.get("stroke")[i:i + 2], 16) for i in (1, 3, 5)]
+                    row.append((start, start + width, color))
                 rows.append(row)
         return rows
 
@@ -295,14 +295,14 @@ def check_files(report, folder, operators, groups):
 
 
 def evaluate_all(command, arguments, parts):
-    """Code values of several sets of colours through one call of the command."""
+    """Code values of several sets of colors through one call of the command."""
     parts = [np.asarray(part, float).reshape(-1, 3) for part in parts]
     codes = evaluate(command, np.concatenate(parts), *arguments)
     return np.split(codes, np.cumsum([len(part) for part in parts])[:-1])
 
 
-def of_scene(stops, colour):
-    return scene(stops)[:, None] * colour
+def of_scene(stops, color):
+    return scene(stops)[:, None] * color
 
 
 def check_operator(report, command, folder, page, operator):
@@ -325,30 +325,30 @@ def check_operator(report, command, folder, page, operator):
     ends = [(found[0], float(found[1]), level)
             for pattern, level in ((r"black below (\S+) stops", 0.5 / 255), (r"white from (\S+) stops", 254.5 / 255))
             for found in re.finditer(pattern, measured[0])]
-    channels = [(prefix + channel, i, colour) for prefix, colour in (("", ORANGE), ("grey-", np.ones(3)))
+    channels = [(prefix + channel, i, color) for prefix, color in (("", ORANGE), ("gray-", np.ones(3)))
                 for i, channel in enumerate(("red", "green", "blue"))]
     if not operator["is_diagnostic"]:
         problems += [f"has no line `{channel}`" for channel, _, _ in channels[:3] if channel not in plot.lines]
     channels = [channel for channel in channels if channel[0] in plot.lines]
-    patch_colours = (np.ones(3), ORANGE, BLUE)
+    patch_colors = (np.ones(3), ORANGE, BLUE)
     first, levels, known, sides, *rest = evaluate_all(command, [name], [
         of_scene(plot.lines.get("default", (none,))[0], np.ones(3)), of_scene(grid, np.ones(3)),
-        np.array([[MID_GREY] * 3, [1] * 3]),
+        np.array([[MID_GRAY] * 3, [1] * 3]),
         # One digit behind the point; where a curve jumps, only the sides are known.
         of_scene([stops + side for _, stops, _ in ends for side in (-0.051, 0.051)], np.ones(3)),
-        *(of_scene(whole, colour) for colour in patch_colours),
-        *(of_scene(plot.lines[channel][0], colour) for channel, _, colour in channels)])
+        *(of_scene(whole, color) for color in patch_colors),
+        *(of_scene(plot.lines[channel][0], color) for channel, _, color in channels)])
     patches, channel_codes = rest[:3], rest[3:]
 
-    drawn = {"default": grey_level(levels)}
+    drawn = {"default": gray_level(levels)}
     points = between = 0.0
     if "default" in plot.lines:
-        points, between = level_errors("default", grey_level(first), drawn["default"])
+        points, between = level_errors("default", gray_level(first), drawn["default"])
     for (channel, i, _), codes in zip(channels, channel_codes):
         points = max(points, np.abs(plot.lines[channel][1] - codes[:, i]).max() * plot.lines[channel][2])
     apart = 0.0
     for line, arguments, _ in list(variants_of(operator))[1:]:
-        at_points, at_grid = map(grey_level, evaluate_all(command, arguments, [
+        at_points, at_grid = map(gray_level, evaluate_all(command, arguments, [
             of_scene(plot.lines.get(line, (none,))[0], np.ones(3)), of_scene(grid, np.ones(3))]))
         if line in plot.lines:
             errors = level_errors(line, at_points, at_grid)
@@ -374,8 +374,8 @@ def check_operator(report, command, folder, page, operator):
 
     row = re.search(rf"^\|.*\(#{name}\)<br>.* \| (\S+) \| (\S+) \|$", page, re.M)
     figures = np.array([*row.groups(), *measured.groups()], float)
-    report.bound(f"{name}: figures of the text", np.abs(figures - [*grey_level(known)] * 2).max(), 5e-4 + DIGITS)
-    for (words, _, level), (low, high) in zip(ends, grey_level(sides).reshape(-1, 2)):
+    report.bound(f"{name}: figures of the text", np.abs(figures - [*gray_level(known)] * 2).max(), 5e-4 + DIGITS)
+    for (words, _, level), (low, high) in zip(ends, gray_level(sides).reshape(-1, 2)):
         report.check(f"{name}: {words}", low <= level <= high, f"{low} and {high}, expected {level} between")
 
 
@@ -402,32 +402,32 @@ def check_group(report, command, folder, page, group, members):
     letters = dict(re.findall(r"^\| \*\*(\w+)\*\* \| \[`([^`]+)`\]", text, re.M))
     report.check(f"{group}: a letter for every dialect", sorted(letters.values()) == sorted(names), letters)
     stops = np.linspace(-10, 10, 541)
-    colours = (ORANGE, GREEN, BLUE)
-    grey, known, codes = {}, {}, {}
+    colors = (ORANGE, GREEN, BLUE)
+    gray, known, codes = {}, {}, {}
     for name in names:
-        grey[name], known[name], *codes[name] = evaluate_all(command, [name], [
-            of_scene(stops, np.ones(3)), np.array([MID_GREY, 1, 4])[:, None] * np.ones(3),
-            *(of_scene([-2, 0, 2, 4, 6], colour) for colour in colours)])
-        grey[name] = grey_level(grey[name])
-    mean = np.mean(list(grey.values()), axis=0)
+        gray[name], known[name], *codes[name] = evaluate_all(command, [name], [
+            of_scene(stops, np.ones(3)), np.array([MID_GRAY, 1, 4])[:, None] * np.ones(3),
+            *(of_scene([-2, 0, 2, 4, 6], color) for color in colors)])
+        gray[name] = gray_level(gray[name])
+    mean = np.mean(list(gray.values()), axis=0)
     worst = difference = off = figures = 0.0
     rows = chart.patches()
     for number, (letter, name) in enumerate(letters.items()):
         if letter in plot.lines:
             at, values, unit = plot.lines[letter]
-            worst = max(worst, np.abs(np.interp(stops, at, values) - grey[name]).max() * unit)
+            worst = max(worst, np.abs(np.interp(stops, at, values) - gray[name]).max() * unit)
             at, values, unit = plot.lines[letter + "-difference"]
             shown = np.interp(stops, at, values)
-            difference = max(difference, np.abs(shown - 255 * (grey[name] - mean)).max() * unit)
+            difference = max(difference, np.abs(shown - 255 * (gray[name] - mean)).max() * unit)
         else:
             report.check(f"{group}: {letter} lies on a line", min(
-                np.abs(grey[name] - grey[letters[other]]).max() for other in letters if other in plot.lines) < SAME
+                np.abs(gray[name] - gray[letters[other]]).max() for other in letters if other in plot.lines) < SAME
                 and any(re.search(rf"\b{letter}\b", words or "") for words in plot.texts))
         for block, expected in enumerate(codes[name]):
             for start, end, rgb in rows[block * len(letters) + number]:
                 off = max(off, np.abs(255 * expected[int(start):int(end)] - rgb).max())
         found = re.search(rf"^\| \*\*{letter}\*\* .* \| (\S+) \| (\S+) \| (\S+) \|$", text, re.M)
-        figures = max(figures, np.abs(np.array(found.groups(), float) - grey_level(known[name])).max())
+        figures = max(figures, np.abs(np.array(found.groups(), float) - gray_level(known[name])).max())
     report.bound(f"{group}: figures of the rows", figures, 5e-4 + DIGITS)
     report.bound(f"{group}: lines, in pixels", worst, LINE)
     report.bound(f"{group}: differences, in pixels", difference, LINE)
@@ -438,7 +438,7 @@ def check_distances(report, command, page, group, a, b):
     """Figures of a pair, recomputed: own samples, `tonewright eval`, own dE ITP."""
     samples = non_negative_samples()
     count = int(re.search(r"measured on the (\d+) colors", page)[1])
-    # Colours on the hull of a wide gamut: rounding decides which have a channel below 0.
+    # Colors on the hull of a wide gamut: rounding decides which have a channel below 0.
     report.bound("distances: as many samples", abs(count - len(samples)) / len(samples), 1e-4)
     code = [evaluate(command, samples, name) for name in (a, b)]
     difference = 255 * np.abs(code[0] - code[1]).max(axis=1)

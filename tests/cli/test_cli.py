@@ -140,14 +140,14 @@ def check_eval_text(report, command):
     expected = "0.128338449 0.128338449 0.128338449\n"  # Hable, GDC 2010: h(2 x 0.18) / h(11.2)
     layouts = {
         "spaces": "0.18 0.18 0.18\n", "commas": "0.18,0.18,0.18\n", "commas and spaces": " 0.18, 0.18 ,0.18 \n",
-        "tabs": "\t0.18\t0.18\t0.18\t\n", "comment behind": "0.18 0.18 0.18 # mid grey\n",
+        "tabs": "\t0.18\t0.18\t0.18\t\n", "comment behind": "0.18 0.18 0.18 # mid gray\n",
         "comments and blank lines": "# a\n\n   \n#\n0.18 0.18 0.18\n", "CRLF": "\r\n# b\r\n0.18 0.18 0.18\r\n",
         "exponents": "1.8e-1 18E-2 +0.018e+1\n", "no newline at the end": "0.18 0.18 0.18",
     }
     out = run(command, "eval", "hable", "--display", "native", stdin="".join(layouts.values())).splitlines(True)
     for name, line in zip(layouts, out):
         report.check(f"eval: {name}", line == expected, f"is {line.strip()}, expected {expected.strip()}")
-    report.check("eval: as many colours as lines that hold one", len(out) == len(layouts), len(out))
+    report.check("eval: as many colors as lines that hold one", len(out) == len(layouts), len(out))
     for name, text in {"nothing": "", "only comments": "# a\n\n# b"}.items():
         report.check(f"eval: {name}", call(command, ["eval", "hable"], text) == (OK, "", ""))
 
@@ -351,8 +351,8 @@ def check_limits(report, command, scratch, picture):
 def check_engines(report, command):
     """One operator of each structure: curves, matrices and curves, a tone scale, a cube. `verify` has them all."""
     rng = np.random.default_rng(5)
-    greys = np.repeat(0.18 * 2.0 ** np.arange(-10, 11)[:, None], 3, axis=1)
-    rgb = np.concatenate([greys, 2.0 ** rng.uniform(-10, 8, (300, 3)), [[0, 0, 0], [-0.1, 0.2, 0.5], [1e9, 1, 0]]])
+    grays = np.repeat(0.18 * 2.0 ** np.arange(-10, 11)[:, None], 3, axis=1)
+    rgb = np.concatenate([grays, 2.0 ** rng.uniform(-10, 8, (300, 3)), [[0, 0, 0], [-0.1, 0.2, 0.5], [1e9, 1, 0]]])
     rgb = rgb.astype(np.float32)  # what the other engines take
     for operator in ("hable", "agx_sobotka", "reinhard:luminance", "reinhard_jodie"):
         truth = evaluate(command, rgb, operator)
@@ -436,16 +436,16 @@ def check_apply(report, command, scratch):
     straight = evaluate(command, (rgb * alpha[..., None]).reshape(-1, 3), "hable").reshape(rgb.shape)
     report.compare("apply --no-unpremult", stack(applied("-d", "float", "--no-unpremult")), straight, FLOAT32)
 
-    grey = rgb[..., 0]
-    grey_truth = evaluate(command, np.repeat(grey.reshape(-1, 1), 3, axis=1), "hable")[:, 0].reshape(grey.shape)
-    write_exr(source, {"Y": grey})
+    gray = rgb[..., 0]
+    gray_truth = evaluate(command, np.repeat(gray.reshape(-1, 1), 3, axis=1), "hable")[:, 0].reshape(gray.shape)
+    write_exr(source, {"Y": gray})
     planes = applied("-d", "float")
     report.check("apply: one channel stays one", list(planes) == ["Y"], list(planes))
-    report.compare("apply: one channel is grey", planes["Y"][..., None], grey_truth[..., None], FLOAT32)
-    write_exr(source, {"Y": grey * alpha, "A": alpha})
+    report.compare("apply: one channel is gray", planes["Y"][..., None], gray_truth[..., None], FLOAT32)
+    write_exr(source, {"Y": gray * alpha, "A": alpha})
     planes = applied("-d", "float")
-    report.check("apply: grey and alpha stay two", sorted(planes) == ["A", "Y"], list(planes))
-    report.compare("apply: grey with alpha", planes["Y"][..., None], (grey_truth * alpha)[..., None], FLOAT32)
+    report.check("apply: gray and alpha stay two", sorted(planes) == ["A", "Y"], list(planes))
+    report.compare("apply: gray with alpha", planes["Y"][..., None], (gray_truth * alpha)[..., None], FLOAT32)
 
     write_exr(source, unstack(rgb))
     run(command, "apply", source, source, "--operator", "hable", "-d", "float", "--in-place")

@@ -22,7 +22,7 @@ WIDTH, HEIGHT = 48, 32
 
 
 def scene():
-    """Saturated colours over many stops, black, negatives, NaN and infinities."""
+    """Saturated colors over many stops, black, negatives, NaN and infinities."""
     random = np.random.default_rng(7)
     rgb = (0.18 * 2.0 ** random.uniform(-10, 8, (HEIGHT, WIDTH, 3))).astype(np.float32)
     rgb[0, :12] = 0
@@ -124,7 +124,7 @@ def check_pictures(bench):
 
 
 def check_scaled(bench):
-    """A wide picture of one colour with one light: the operator that measures takes the light of the whole picture."""
+    """A wide picture of one color with one light: the operator that measures takes the light of the whole picture."""
     rgb = np.full((64, 192, 3), 0.3, np.float32) * [1, 0.5, 0.25]
     rgb[0, 0] = 500
     path = bench.folder / "wide.exr"
@@ -156,22 +156,22 @@ def check_false_color(bench):
                            (bench.applied("--false-color", *options) == expected).all())
         sheet = bench.sheet("hable", "--false-color", "--columns", 1, *options)
         bench.report.check(f"sheet --false-color {' '.join(options)}", len(places(sheet, expected)) == 1)
-    # The legend has the colour of every stop from -7 to +7, from left to right.
+    # The legend has the color of every stop from -7 to +7, from left to right.
     stops = 0.18 * 2.0 ** np.arange(-7, 8)
     ramp = bench.folder / "ramp.exr"
     write_exr(ramp, unstack(np.repeat(stops[None, :, None], 3, axis=2).astype(np.float32)))
-    colours = bench.applied("--false-color", picture=ramp)[0]
+    colors = bench.applied("--false-color", picture=ramp)[0]
     sheet = bench.compared("hable", "--false-color", "--cell-width", 200)
     rows = []
     for row in sheet:
         changes = row[np.flatnonzero(np.r_[True, (row[1:] != row[:-1]).any(axis=1)])]
-        rows.append(len(changes) == 17 and (changes[1:-1] == colours).all())
-    bench.report.check("the legend has the colours of 15 stops", sum(rows) >= 8, sum(rows))
+        rows.append(len(changes) == 17 and (changes[1:-1] == colors).all())
+    bench.report.check("the legend has the colors of 15 stops", sum(rows) >= 8, sum(rows))
     # `apply --legend` draws it below the picture, whose pixels stay.
     with_legend = bench.applied("--false-color", "--legend")
     bench.report.check("apply --legend: the picture", len(places(with_legend, bench.applied("--false-color"))) == 1)
     rows = [row[np.flatnonzero(np.r_[True, (row[1:] != row[:-1]).any(axis=1)])] for row in with_legend]
-    rows = sum(len(row) == 17 and (row[1:-1] == colours).all() for row in rows)
+    rows = sum(len(row) == 17 and (row[1:-1] == colors).all() for row in rows)
     bench.report.check("apply --legend: the colors of 15 stops", rows >= 8, rows)
     plain = bench.compared("hable", "--cell-width", 200)
     bench.report.check("and is not there without", plain.shape[0] < sheet.shape[0])
@@ -220,12 +220,12 @@ def check_other_pictures(bench):
     run(bench.command, "apply", path, out, "--operator", "hable", "-d", "float")
     expected = 255 * read_rgb(out, bench.folder)
     shown = bench.compared("hable", "clamp", "--split", 1, "--no-labels", picture=path)
-    bench.report.bound("alpha: colour is shown on black", np.abs(shown - expected).max(), 0.51)
-    grey = bench.folder / "grey.exr"
-    write_exr(grey, {"Y": rgb[..., 0]})
-    shown = bench.sheet("hable", picture=grey)
+    bench.report.bound("alpha: color is shown on black", np.abs(shown - expected).max(), 0.51)
+    gray = bench.folder / "gray.exr"
+    write_exr(gray, {"Y": rgb[..., 0]})
+    shown = bench.sheet("hable", picture=gray)
     same = (shown == shown[..., :1]).all(axis=-1)
-    bench.report.check("grey stays grey", same.all() and len(np.unique(shown)) > 50)
+    bench.report.check("gray stays gray", same.all() and len(np.unique(shown)) > 50)
     tiny = bench.folder / "tiny.exr"
     write_exr(tiny, unstack(rgb[:2, :2]))
     shown = bench.sheet("clamp", picture=tiny)

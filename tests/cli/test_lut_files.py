@@ -648,7 +648,7 @@ def check_encoding(report, command, folder):
 
 
 def check_apply(report, command, folder):
-    """Pictures: pixel types, grey, alpha, and the same as eval."""
+    """Pictures: pixel types, gray, alpha, and the same as eval."""
     path = folder / "adobe.cube"
     path.write_text(GOOD["adobe.cube"])
     colors = COLORS.reshape(8, 8, 3)
@@ -662,10 +662,10 @@ def check_apply(report, command, folder):
         "--input-encoding", "acescct", "--input", "lin_ap1", "--exposure", 1, "--threads", 2)
     report.compare("apply --lut with all options", stack(read_exr(folder / "out.exr")).reshape(-1, 3),
                    interpolate(CUBE, acescct_encode(2 * COLORS), True), 1e-5)
-    # A grey picture becomes one in color: the LUT is not neutral.
-    write_exr(folder / "grey.exr", {"Y": colors[..., 0]})
-    run(command, "apply", folder / "grey.exr", folder / "out.exr", "--lut", path, "-d", "float")
-    report.compare("apply --lut: a grey picture", stack(read_exr(folder / "out.exr")).reshape(-1, 3),
+    # A gray picture becomes one in color: the LUT is not neutral.
+    write_exr(folder / "gray.exr", {"Y": colors[..., 0]})
+    run(command, "apply", folder / "gray.exr", folder / "out.exr", "--lut", path, "-d", "float")
+    report.compare("apply --lut: a gray picture", stack(read_exr(folder / "out.exr")).reshape(-1, 3),
                    interpolate(CUBE, np.repeat(COLORS[:, :1], 3, axis=1)), FLOAT32)
     alpha = np.random.default_rng(7).uniform(0.2, 1, (8, 8))
     write_exr(folder / "alpha.exr", unstack(colors * alpha[..., None]) | {"A": alpha})

@@ -132,7 +132,7 @@ def malformed():
     body("mat3 m = mat3(1.0); m[0][0] = 2.0; return m*c;", "found part of a matrix; expected the whole of it to be set")
     # Names and values.
     body("return d;", "name is d; expected a variable, an argument or a constant of the shader")
-    body("vec3 color = c; return colour;", "did you mean color?")
+    body("vec3 shade = c; return shad;", "did you mean shade?")
     body("d = c; return c;", "name is d; expected")
     body("vec3 d; return d;", "name d is read before it has a value on every path")
     body("vec3 d; d.rg = c.rg; return d;", "name d is read before it has a value on every path")

@@ -103,7 +103,7 @@ def to_rec709(primaries):
     return np.linalg.inv(rgb_to_xyz(REC709)) @ adapt @ rgb_to_xyz(primaries)
 
 
-def sanitised(rgb):
+def sanitized(rgb):
     return np.clip(np.nan_to_num(rgb.astype(float), nan=0, posinf=65504, neginf=-65504), -65504, 65504)
 
 
@@ -117,7 +117,7 @@ class Check:
         return read(out)
 
     def expected(self, pixels, alpha=None, decode=None, matrix=None, divides=True):
-        """Of colours by `eval`; pixels that the picture says to be coded or of other primaries are brought to Rec.709.
+        """Of colors by `eval`; pixels that the picture says to be coded or of other primaries are brought to Rec.709.
 
         --engine simd: the numbers of `apply`.
         """
@@ -127,7 +127,7 @@ class Check:
             cover = np.where((alpha == 0) | ~np.isfinite(alpha), 1, alpha).astype(np.float32)[..., None]
             color = color / cover
         if decode or matrix is not None:
-            color = sanitised(color)
+            color = sanitized(color)
         if decode:
             color = decode(color)
         if matrix is not None:
@@ -144,7 +144,7 @@ class Check:
         colors = 1 if pixels.shape[-1] < 3 else 3
         if shown.shape[-1] >= 3 and colors == 1:
             colors = 3
-        first = 1 if colors == 1 else 0  # a grey result is the green of the view
+        first = 1 if colors == 1 else 0  # a gray result is the green of the view
         self.report.compare(f"{what}: color", shown[..., :colors],
                             expected[..., first:first + colors].astype(np.float32), bound)
         rest = 1 if pixels.shape[-1] < 3 else 3
@@ -179,9 +179,9 @@ def check_files(check, scratch):
     path = write(scratch / "alpha2.exr", spec_of(straight, alpha=True), straight)
     check.same("--no-unpremult", path, alpha=3, divides=False, options=("--no-unpremult",))
     check.same("five channels", write(scratch / "five.exr", spec_of(five), five))
-    check.same("one channel", write(scratch / "grey.exr", spec_of(rgb[..., :1]), rgb[..., :1]))
-    grey = np.abs(rgba[..., [0, 3]])
-    check.same("grey and alpha", write(scratch / "grey2.exr", spec_of(grey, alpha=True), grey), 1e-7, alpha=1)
+    check.same("one channel", write(scratch / "gray.exr", spec_of(rgb[..., :1]), rgb[..., :1]))
+    gray = np.abs(rgba[..., [0, 3]])
+    check.same("gray and alpha", write(scratch / "gray2.exr", spec_of(gray, alpha=True), gray), 1e-7, alpha=1)
     for height, width in ((1, 1), (1, 100000), (100000, 1)):
         line = picture(height, width, 3)
         check.same(f"{width} x {height}", write(scratch / "line.exr", spec_of(line, "half"), line))
@@ -207,7 +207,7 @@ def check_color(check, scratch):
     xyz = (1, 0, 0, 1, 0, 0, 1 / 3, 1 / 3)
     for name, primaries in (("ACEScg", ap1), ("CIE XYZ", xyz), ("Rec.709 itself", REC709)):
         path = write(scratch / "w.exr", spec_of(wide, attributes={"chromaticities": primaries}), wide)
-        # Saturated colours leave Rec.709: a matrix that is one with the operator's loses less than two in a row do.
+        # Saturated colors leave Rec.709: a matrix that is one with the operator's loses less than two in a row do.
         check.same(f"chromaticities of {name}", path, 2e-6, matrix=to_rec709(primaries))
         check.same(f"the same, --input lin_rec709 ({name})", path, options=("--input", "lin_rec709"))
     # OpenImageIO 3.1 sets the flag in half-float files that are all that ACES asks for, and in no others.

@@ -47,7 +47,7 @@ class Plot:
         scale = re.fullmatch(r"x = (\S+) \+ (\S+) \(stops from 0.18 \+ (\S+)\), y = (\S+) - (\S+) (.+)",
                              self.root.findtext(SVG + "desc"))
         self.left, self.stop, self.lowest, self.zero, self.unit = map(float, scale.groups()[:5])
-        self.lines, self.colours, self.small = {}, {}, []
+        self.lines, self.colors, self.small = {}, {}, []
         for line in self.root.iter(SVG + "polyline"):
             points = np.array([p.split(",") for p in line.get("points").split()], float)
             if line.get("id").startswith("small-"):
@@ -55,13 +55,13 @@ class Plot:
                 continue
             self.lines[line.get("id")] = ((points[:, 0] - self.left) / self.stop - self.lowest,
                                           (self.zero - points[:, 1]) / self.unit)
-            self.colours[line.get("id")] = line.get("stroke")
+            self.colors[line.get("id")] = line.get("stroke")
 
     def pixel(self, stops, value):
         return self.left + self.stop * (stops + self.lowest), self.zero - self.unit * value
 
 
-def greys(command, stops, *arguments):
+def grays(command, stops, *arguments):
     return evaluate(command, np.repeat(0.18 * 2.0 ** np.asarray(stops)[:, None], 3, axis=1), *arguments)
 
 
@@ -86,14 +86,14 @@ def check_svg(report, command, folder):
     options = ["--exposure", "0.5", "--input", "acescg"]
 
     def codes(name):
-        return lambda stops: greys(command, stops, *arguments[name], *options)[:, 1]
+        return lambda stops: grays(command, stops, *arguments[name], *options)[:, 1]
 
     run(command, "plot", *operators, *options, "-o", path)
     plot = Plot(path)
     check_lines(report, command, "code", plot, {name: codes(name) for name in arguments})
     report.check("code: names, axes and marks", {"Hable (Uncharted 2)", "mid gray", "white", "code", "light", "0.18",
                                                  "+10", "100 %"} <= set(plot.words), plot.words)
-    report.check("code: colours differ", len(set(plot.colours.values())) == len(plot.colours))
+    report.check("code: colors differ", len(set(plot.colors.values())) == len(plot.colors))
     report.check("code: nothing from elsewhere", not re.search(r"<script|href|url\(|@import|<image", plot.text))
     again = folder / "again.svg"
     run(command, "plot", *operators, *options, "-o", again)
@@ -116,7 +116,7 @@ def check_hdr(report, command, folder):
     operators = ["aces_20", "gt7", "hable"]
 
     def codes(name):
-        return lambda stops: greys(command, stops, name, *arguments)[:, 1]
+        return lambda stops: grays(command, stops, name, *arguments)[:, 1]
 
     run(command, "plot", *operators, *arguments, "-o", path)
     plot = Plot(path)
@@ -125,25 +125,25 @@ def check_hdr(report, command, folder):
     run(command, "plot", *operators, *arguments, "-o", path, "--y", "log")
     check_lines(report, command, "PQ log", Plot(path), {
         name: lambda stops, n=name: np.maximum(
-            np.log10(np.maximum(100 * pq_light(greys(command, stops, n, *arguments)) @ WEIGHTS_2020, 1e-9)), -3)
+            np.log10(np.maximum(100 * pq_light(grays(command, stops, n, *arguments)) @ WEIGHTS_2020, 1e-9)), -3)
         for name in operators})
 
 
 def check_one(report, command, folder):
-    """What is said of one operator; greys that are shown in another colour; lines that are the same."""
+    """What is said of one operator; grays that are shown in another color; lines that are the same."""
     path = folder / "one.svg"
     run(command, "plot", "hable", "--set", "white=4", "-o", path)
     plot = Plot(path)
-    value = greys(command, [0], "hable", "--set", "white=4")[0, 1]
-    report.check("one: its name and where it has mid grey", {"Hable (Uncharted 2), white=4", f"0.18 → {value:.3f}"} <=
+    value = grays(command, [0], "hable", "--set", "white=4")[0, 1]
+    report.check("one: its name and where it has mid gray", {"Hable (Uncharted 2), white=4", f"0.18 → {value:.3f}"} <=
                  set(plot.words), plot.words)
     run(command, "plot", "durand_dorsey_rods", "-o", path)
     stops = np.linspace(-10, 10, 60)
-    shown = greys(command, stops, "durand_dorsey_rods")
-    report.check("this operator shows greys in another colour", np.abs(shown - shown[:, :1]).max() > 0.01)
+    shown = grays(command, stops, "durand_dorsey_rods")
+    report.check("this operator shows grays in another color", np.abs(shown - shown[:, :1]).max() > 0.01)
     check_lines(report, command, "tinted", Plot(path), {
-        "durand_dorsey_rods": lambda s: encode(decode(greys(command, s, "durand_dorsey_rods")) @ WEIGHTS),
-        "no_tone_mapping": lambda s: greys(command, s, "clamp")[:, 1]})
+        "durand_dorsey_rods": lambda s: encode(decode(grays(command, s, "durand_dorsey_rods")) @ WEIGHTS),
+        "no_tone_mapping": lambda s: grays(command, s, "clamp")[:, 1]})
     run(command, "plot", "agx_minimal", "agx_threejs", "agx_minimal", "-o", path)
     plot = Plot(path)
     report.check("the same lines: one, with both names", set(plot.lines) == {"agx_minimal", "no_tone_mapping"}
@@ -199,10 +199,10 @@ def check_pixels(report, command, folder):
         for index, name in enumerate(operators):
             # Apart from the other lines and the grid.
             x, y = plot.pixel(-1.5, np.interp(-1.5, *plot.lines[name]))
-            colour = np.array([int(plot.colours[name][i:i + 2], 16) for i in (1, 3, 5)])
+            color = np.array([int(plot.colors[name][i:i + 2], 16) for i in (1, 3, 5)])
             at = pixels[int(y * scale), int(x * scale)]
-            report.bound(f"png of {width}: {name} is where it is in the SVG, code values", np.abs(at - colour).max(), 40,
-                         f"{at}, expected {colour}, {index}")
+            report.bound(f"png of {width}: {name} is where it is in the SVG, code values", np.abs(at - color).max(), 40,
+                         f"{at}, expected {color}, {index}")
         report.check(f"png of {width}: the page is white", (pixels[-1, :, :] == 255).all())
     run(command, "plot", "hable", "-o", folder / "same.jpg", "--dark")
     report.check("jpg: a JPEG file", (folder / "same.jpg").read_bytes()[:3] == b"\xff\xd8\xff")

@@ -82,9 +82,9 @@ def check_arrays(report, tw):
     report.check("and keeps it", (shown[..., 3] == 0.5).all())
     report.compare("unpremult='no'", tw.tonemap(rgba, "clamp", unpremult="no")[..., :3], srgb(rgba[..., :3]), FLOAT32)
     report.compare("unpremult=False", tw.tonemap(rgba, "clamp", unpremult=False)[..., :3], srgb(rgba[..., :3]), FLOAT32)
-    grey = rgb[..., 0]
-    report.compare("grey stays grey", tw.tonemap(grey, "clamp")[..., None], srgb(grey)[..., None], FLOAT32)
-    report.check("and of its shape", tw.tonemap(grey[..., None], "clamp").shape == (9, 7, 1))
+    gray = rgb[..., 0]
+    report.compare("gray stays gray", tw.tonemap(gray, "clamp")[..., None], srgb(gray)[..., None], FLOAT32)
+    report.check("and of its shape", tw.tonemap(gray[..., None], "clamp").shape == (9, 7, 1))
     parts = []
     tw.tonemap(light((500, 8, 3)), "hable", progress=lambda part: parts.append(part))
     report.check("progress", len(parts) > 50 and parts == sorted(parts) and parts[-1] == 1, parts[-3:])

@@ -62,11 +62,11 @@ Planes run(const Pipeline& pipeline, Planes planes) {
     return planes;
 }
 
-Planes grey(const std::vector<double>& values) { return {values, values, values}; }
+Planes gray(const std::vector<double>& values) { return {values, values, values}; }
 
 /// Log-uniform, every channel for itself: saturated ones are the rule. With `signs`, a third of the
 /// channels is negative.
-Planes random_colours(std::size_t count, double lowest, double highest, bool signs = false) {
+Planes random_colors(std::size_t count, double lowest, double highest, bool signs = false) {
     SampleRandom random(41);
     Planes planes;
     for (std::size_t i = 0; i < count; ++i) {
@@ -78,7 +78,7 @@ Planes random_colours(std::size_t count, double lowest, double highest, bool sig
     return planes;
 }
 
-std::string colour_text(const Planes& p, std::size_t i) {
+std::string color_text(const Planes& p, std::size_t i) {
     return "(" + shortest(p[0][i]) + ", " + shortest(p[1][i]) + ", " + shortest(p[2][i]) + ")";
 }
 
@@ -95,7 +95,7 @@ void fill_with_patterns(SampleRandom& random, std::vector<float>& rgb) {
     }
 }
 
-/// The first colour whose output is no picture, or empty.
+/// The first color whose output is no picture, or empty.
 std::string check_patterns(const SimdEngine& display, const SimdEngine& native,
                            unsigned long long seed, std::size_t float_count) {
     constexpr std::size_t kBlock = 3 * 4096;
@@ -200,36 +200,36 @@ TEST_P(Law, ReferenceIsTotal) {
         for (std::size_t i = 0; i < in[0].size(); ++i) {
             for (std::size_t c = 0; c < 3; ++c) {
                 ASSERT_TRUE(std::isfinite(native[c][i]))
-                    << colour_text(in, i) << ": native " << native[c][i];
+                    << color_text(in, i) << ": native " << native[c][i];
                 ASSERT_TRUE(shown[c][i] >= 0 && shown[c][i] <= 1)
-                    << colour_text(in, i) << ": sRGB " << shown[c][i];
+                    << color_text(in, i) << ": sRGB " << shown[c][i];
             }
         }
     }
 }
 
 TEST_P(Law, EveryDisplayGetsCodeValues) {
-    const Planes in = random_colours(count_of(20000U, 4000U), -20, 16, true);
+    const Planes in = random_colors(count_of(20000U, 4000U), -20, 16, true);
     for (const Display& display : all_displays()) {
         const Planes out = run(view(display.id, 0, "lin_rec2020"), in);
         for (std::size_t i = 0; i < in[0].size(); ++i) {
             for (std::size_t c = 0; c < 3; ++c) {
                 ASSERT_TRUE(out[c][i] >= 0 && out[c][i] <= 1)
-                    << display.id << " of " << colour_text(in, i) << ": " << out[c][i];
+                    << display.id << " of " << color_text(in, i) << ": " << out[c][i];
             }
         }
     }
 }
 
 TEST_P(Law, ExtremeExposuresAreTotal) {
-    const Planes in = random_colours(2000, -24, 16, true);
+    const Planes in = random_colors(2000, -24, 16, true);
     for (const double stops : {-64.0, -20.0, 20.0, 64.0}) {
         const Pipeline pipeline = view("srgb", stops);
         const Planes out = run(pipeline, in);
         std::vector<float> rgb;
         for (std::size_t i = 0; i < in[0].size(); ++i) {
             for (std::size_t c = 0; c < 3; ++c) {
-                ASSERT_TRUE(out[c][i] >= 0 && out[c][i] <= 1) << colour_text(in, i);
+                ASSERT_TRUE(out[c][i] >= 0 && out[c][i] <= 1) << color_text(in, i);
                 rgb.push_back(static_cast<float>(in[c][i]));
             }
         }
@@ -281,17 +281,17 @@ TEST_P(Law, NothingIsDarkerThanBlack) {
         EXPECT_LE(below[c], shown[c]);
 }
 
-TEST_P(Law, GreysStayGreyWhereTheViewSaysSo) {
+TEST_P(Law, GraysStayGrayWhereTheViewSaysSo) {
     const std::vector<double> ramp = gray_ramp();
     for (const char* display : {"srgb", "display_p3"}) {
         const Pipeline pipeline = view(display);
-        const Planes out = run(pipeline, grey(ramp));
+        const Planes out = run(pipeline, gray(ramp));
         double spread = 0;
         for (std::size_t i = 0; i < ramp.size(); ++i) {
             const auto [lo, hi] = std::minmax({out[0][i], out[1][i], out[2][i]});
             spread = std::max(spread, hi - lo);
         }
-        EXPECT_EQ(keeps_greys(pipeline), spread <= 0.5 / 1023)
+        EXPECT_EQ(keeps_grays(pipeline), spread <= 0.5 / 1023)
             << display << ": " << spread * 1023 << " codes of 10 bits";
     }
 }
@@ -303,7 +303,7 @@ TEST_P(Law, ExposureIsAFactorOnTheScene) {
     for (const char* input : {"lin_rec709", "lin_ap1"}) {
         for (const double stops : {-3.0, -0.7, 2.0, 4.3}) {
             // Up to 2^10 in, 2^14.3 with the exposure: away from the limit at 65504.
-            const Planes in = random_colours(count_of(3000U, 500U), -14, 10);
+            const Planes in = random_colors(count_of(3000U, 500U), -14, 10);
             Planes scaled = in;
             for (auto& plane : scaled) {
                 for (double& x : plane)
@@ -321,7 +321,7 @@ TEST_P(Law, ExposureIsAFactorOnTheScene) {
                 const double tolerance = 2e-11 + 6 * 0x1p-53 * 2.4 * 12.92 * largest;
                 for (std::size_t c = 0; c < 3; ++c) {
                     ASSERT_NEAR(a[c][i], b[c][i], tolerance)
-                        << input << ", " << stops << " stops, " << colour_text(in, i);
+                        << input << ", " << stops << " stops, " << color_text(in, i);
                 }
             }
         }
@@ -331,7 +331,7 @@ TEST_P(Law, ExposureIsAFactorOnTheScene) {
 class ToneScaleLaw : public Law {};
 
 TEST_P(ToneScaleLaw, RatiosOfTheChannelsAreKept) {
-    const Planes in = random_colours(20000, -14, 14);
+    const Planes in = random_colors(20000, -14, 14);
     const Planes out = run(view("native"), in);
     std::size_t lit = 0;
     for (std::size_t i = 0; i < in[0].size(); ++i) {
@@ -340,13 +340,12 @@ TEST_P(ToneScaleLaw, RatiosOfTheChannelsAreKept) {
             // out_c/out_d = in_c/in_d: a product and a division, rounded.
             const double left = out[c][i] * in[d][i];
             const double right = out[d][i] * in[c][i];
-            ASSERT_NEAR(left, right, 1e-15 * std::max(left, right)) << colour_text(in, i);
-            ASSERT_GE(out[c][i], 0) << colour_text(in, i);
+            ASSERT_NEAR(left, right, 1e-15 * std::max(left, right)) << color_text(in, i);
+            ASSERT_GE(out[c][i], 0) << color_text(in, i);
             lit += out[c][i] > 0 ? 1 : 0;
         }
     }
-    EXPECT_GT(lit, 3 * in[0].size() / 2)
-        << "some crush their shadows, none the half of all colours";
+    EXPECT_GT(lit, 3 * in[0].size() / 2) << "some crush their shadows, none the half of all colors";
     const Vector3 red = ReferenceEngine(view("native"))({3, 0, 0});
     EXPECT_GT(red[0], 0);
     EXPECT_EQ(red[1], 0);
@@ -414,10 +413,10 @@ TEST_P(CurveLaw, IsInvertedNumerically) {
 class ThreadLaw : public Law {};
 
 TEST_P(ThreadLaw, ThreadsMayCompileAndRunTogether) {
-    const Planes colours = random_colours(5000, -16, 12, true);
+    const Planes colors = random_colors(5000, -16, 12, true);
     std::vector<float> in;
-    for (std::size_t i = 0; i < colours[0].size(); ++i) {
-        for (const auto& plane : colours)
+    for (std::size_t i = 0; i < colors[0].size(); ++i) {
+        for (const auto& plane : colors)
             in.push_back(static_cast<float>(plane[i]));
     }
     const SimdEngine shared(view("srgb"));

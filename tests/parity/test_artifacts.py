@@ -223,7 +223,7 @@ def page_differs(is_, expected):
 
 
 def plot_differs(is_, expected):
-    """None, or what differs between two plots: words and colours exactly, points by what rounding may do."""
+    """None, or what differs between two plots: words and colors exactly, points by what rounding may do."""
     points = re.compile(r' points="([^"]*)"')
     difference = figures_differ(points.sub("", is_), points.sub("", expected), 0, PIXEL)
     if difference:

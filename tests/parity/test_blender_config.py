@@ -41,10 +41,10 @@ LIGHT = {"rec1886": lambda code: code**2.4, "rec2020": lambda code: code**2.4,
          "rec2100_hlg": lambda code: np.where(code <= 0.5, code**2 / 3, 1 / 12 + (code - 0.5) / 6)}
 
 
-def colours():
+def colors():
     random = np.random.default_rng(5)
-    greys = np.repeat(0.18 * 2.0 ** np.arange(-10, 7, 0.5)[:, None], 3, axis=1)
-    return np.concatenate([greys, 2.0 ** random.uniform(-10, 6, (3000, 3)), np.eye(3), 1 - np.eye(3),
+    grays = np.repeat(0.18 * 2.0 ** np.arange(-10, 7, 0.5)[:, None], 3, axis=1)
+    return np.concatenate([grays, 2.0 ** random.uniform(-10, 6, (3000, 3)), np.eye(3), 1 - np.eye(3),
                            [[-0.1, 0.2, 3], [0, 0.18, 0.18]]]).astype(np.float32)
 
 
@@ -88,7 +88,7 @@ def main():
         skip(f"OpenColorIO {ocio.GetVersion()}: {str(error).splitlines()[0]}")
     print(f"OpenColorIO {ocio.GetVersion()}, {config.getName() or path}")
     report = Report()
-    rgb = colours()
+    rgb = colors()
     jobs = [(display, "AgX", "agx_blender", "") for display in ("sRGB", "Display P3", "Rec.1886", "Rec.2020")]
     jobs += [("sRGB", "AgX", "agx_blender", look) for look in LOOKS]
     jobs += [(display, "AgX - HDR 1000 nits", "agx_blender", "") for display in ("Rec.2100-PQ", "Rec.2100-HLG")]

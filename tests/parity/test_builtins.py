@@ -46,24 +46,24 @@ FORMS += [("aces_20", f"peak={peak};limit={limit}", limit, f"{'SDR' if peak == 1
 
 # aces_13: float32 residue. Where one channel is bright and another nearly 0, OpenColorIO's AP0 -> AP1 in float32
 # leaves 5e-6 of the bright one in it.
-# aces_20: OpenColorIO's float32 differs from its own code in double by up to 3e-5 on random AP1 colours (p99.9
+# aces_20: OpenColorIO's float32 differs from its own code in double by up to 3e-5 on random AP1 colors (p99.9
 # 1.1e-5 to 1.9e-5).
 BOUNDS = {"aces_13": {"p99.9": 1e-5, "max": 6e-5}, "aces_20": {"p99.9": 2e-5, "max": 4e-5}}
 
 
-def colours():
-    """ACES2065-1: greys, log-uniform colours of Rec.709, of AP1, and some beyond."""
+def colors():
+    """ACES2065-1: grays, log-uniform colors of Rec.709, of AP1, and some beyond."""
     random = np.random.default_rng(11)
-    greys = np.repeat(2.0 ** np.arange(-12, 9.01, 0.25)[:, None], 3, axis=1) * 0.18
+    grays = np.repeat(2.0 ** np.arange(-12, 9.01, 0.25)[:, None], 3, axis=1) * 0.18
     log = 2.0 ** random.uniform(-10, 7, (2, 6000, 3))
     log[:, ::10, 0] = 0
     to_ap0 = {name: np.linalg.solve(rgb_to_xyz("ap0"), adapted(name)) for name in ("rec709", "ap1")}
     beyond = log[0, :300] * random.uniform(-0.05, 1, (300, 3))
-    return np.concatenate([greys, log[0] @ to_ap0["rec709"].T, log[1] @ to_ap0["ap1"].T, beyond]).astype(np.float32)
+    return np.concatenate([grays, log[0] @ to_ap0["rec709"].T, log[1] @ to_ap0["ap1"].T, beyond]).astype(np.float32)
 
 
 def adapted(primaries):
-    """RGB -> XYZ under the ACES white: colours to test with, so von Kries on XYZ will do."""
+    """RGB -> XYZ under the ACES white: colors to test with, so von Kries on XYZ will do."""
     to_xyz = rgb_to_xyz(primaries)
     white = rgb_to_xyz("ap0") @ np.ones(3)
     return np.diag(white / (to_xyz @ np.ones(3))) @ to_xyz
@@ -87,7 +87,7 @@ def built_in(style, primaries, rgb):
 
 
 def error_of(light, expected, peak):
-    """Of each colour the worst channel's: of sRGB's code values for SDR, of PQ's or of light in units of the peak,
+    """Of each color the worst channel's: of sRGB's code values for SDR, of PQ's or of light in units of the peak,
     whichever is less, for HDR: PQ is infinitely steep at black."""
     if peak == 1:
         return np.abs(srgb_encode(np.clip(light, 0, 1)) - srgb_encode(np.clip(expected, 0, 1))).max(axis=1)
@@ -102,7 +102,7 @@ def main():
     known = set(ocio.BuiltinTransformRegistry())
     print(f"OpenColorIO {ocio.GetVersion()}")
     report = Report()
-    rgb = colours()
+    rgb = colors()
     for operator, settings, primaries, name in FORMS:
         if STYLE + name not in known:
             continue

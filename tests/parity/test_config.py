@@ -31,7 +31,7 @@ ROLES = ["aces_interchange", "cie_xyz_d65_interchange", "default", "reference", 
          "color_picking", "color_timing", "compositing_log", "matte_paint", "texture_paint", "default_byte",
          "default_float", "default_sequencer"]
 # Names that scripts and files use, and the space that each must find: what OpenImageIO calls every EXR and every HDR,
-# the names of Blender 3 and of the ACES configs, the ids of the colour interop forum.
+# the names of Blender 3 and of the ACES configs, the ids of the color interop forum.
 ALIASES = {"Linear": "Linear Rec.709", "linear": "Linear Rec.709", "lin_srgb": "Linear Rec.709",
            "Linear Rec.709 (sRGB)": "Linear Rec.709", "lin_rec709_scene": "Linear Rec.709",
            "Utility - Linear - sRGB": "Linear Rec.709", "lin_ap1": "ACEScg", "ACES - ACEScg": "ACEScg",
@@ -113,7 +113,7 @@ def check_views(report, config):
     shown_views = list(config.getViews("sRGB"))
     report.check("views", shown_views == VIEWS, shown_views)
     missing, direct, broken, differ, count = [], [], [], [], 0
-    grey = [0.18, 0.18, 0.18]
+    gray = [0.18, 0.18, 0.18]
     names = {s.getName() for s in config.getColorSpaces()}
     for display in displays:
         plain = {view.split(" - HDR ")[0] for view in config.getViews(display)}
@@ -126,23 +126,23 @@ def check_views(report, config):
                 direct.append(f"{display}: {view}")
             try:
                 processor = config.getProcessor("Linear Rec.709", display, view, ocio.TRANSFORM_DIR_FORWARD)
-                shown = processor.getDefaultCPUProcessor().applyRGB(grey)
+                shown = processor.getDefaultCPUProcessor().applyRGB(gray)
                 if not all(0 <= v <= 1 for v in shown):
-                    broken.append(f"{display}: {view}: grey is {shown}")
+                    broken.append(f"{display}: {view}: gray is {shown}")
                 space = f"Output - {view} - {display}"
                 if view in ("Raw", "Un-tone-mapped"):
                     continue
                 if space not in names:
                     missing.append(space)
                     continue
-                same = config.getProcessor("Linear Rec.709", space).getDefaultCPUProcessor().applyRGB(grey)
+                same = config.getProcessor("Linear Rec.709", space).getDefaultCPUProcessor().applyRGB(gray)
                 if same != shown:
-                    differ.append(f"{space}: grey is {same}, of the view {shown}")
+                    differ.append(f"{space}: gray is {same}, of the view {shown}")
             except ocio.Exception as error:
                 broken.append(f"{display}: {view}: {error}")
     report.check("every view is on every display, and is a space", not missing, missing[:3])
     report.check("every view but Raw has a view transform", not direct, direct[:3])
-    report.check(f"{count} processors, all display-referred grey", not broken, broken[:3])
+    report.check(f"{count} processors, all display-referred gray", not broken, broken[:3])
     report.check("output spaces show what views show", not differ, differ[:3])
 
 
@@ -214,7 +214,7 @@ def check_cameras(report, config, command, operators, lut_encodings):
 
 
 def check_round_trips(report, config, folder):
-    """What the README says of the inverse, for colours of its kind, without loss and by default."""
+    """What the README says of the inverse, for colors of its kind, without loss and by default."""
     stated = {}
     for line in (folder / "README.md").read_text().splitlines():
         cells = [c.strip() for c in line.split("|")]
@@ -231,7 +231,7 @@ def check_round_trips(report, config, folder):
         there = apply(config, "Linear Rec.709", space, light)
         for bound, form in zip(bounds, (ocio.OPTIMIZATION_LOSSLESS, ocio.OPTIMIZATION_DEFAULT)):
             again = apply(config, "Linear Rec.709", space, apply(config, space, "Linear Rec.709", there, form))
-            # Other colours than those that the README's figure is of, and float32 each way.
+            # Other colors than those that the README's figure is of, and float32 each way.
             report.bound(f"{space}: and back, {form.name}, 99.9 %",
                          np.quantile(np.abs(again - there).max(1), 0.999), 3 * bound + 1e-6)
 
@@ -301,22 +301,22 @@ def check_spaces(report, config, operators):
         matrix = apply(config, space, "aces_interchange", unit).T
         report.bound(f"{space} to ACES2065-1", np.abs(matrix - operators.rgb_to_rgb(primaries, "ap0")).max(), MATRIX)
     rng = np.random.default_rng(11)
-    greys = np.repeat(np.arange(256)[:, None] / 255, 3, axis=1)
-    colours = rng.random((4096, 3))
+    grays = np.repeat(np.arange(256)[:, None] / 255, 3, axis=1)
+    colors = rng.random((4096, 3))
     spaces = [(display, "cie_xyz_d65_interchange") for display in config.getDisplays()]
     for space, reference in [*spaces, ("sRGB - Texture", "aces_interchange")]:
-        back = apply(config, reference, space, apply(config, space, reference, greys))
-        report.compare(f"{space}: grey codes to the reference and back", back, greys, ROUND_TRIP)
-        # A dark channel of a bright colour is what the matrix leaves of numbers near 1, and its code, where the
-        # display's curve is steep, shows that: such colours come back as the same light.
-        light = apply(config, space, reference, colours)
+        back = apply(config, reference, space, apply(config, space, reference, grays))
+        report.compare(f"{space}: gray codes to the reference and back", back, grays, ROUND_TRIP)
+        # A dark channel of a bright color is what the matrix leaves of numbers near 1, and its code, where the
+        # display's curve is steep, shows that: such colors come back as the same light.
+        light = apply(config, space, reference, colors)
         again = apply(config, space, reference, apply(config, reference, space, light))
-        # Relative to the colour's brightest light, where that is above 1: on HDR displays.
+        # Relative to the color's brightest light, where that is above 1: on HDR displays.
         scale = np.maximum(np.abs(light).max(axis=1, keepdims=True), 1)
-        report.compare(f"{space}: light of colours to codes and back", again / scale, light / scale,
+        report.compare(f"{space}: light of colors to codes and back", again / scale, light / scale,
                        HDR_ROUND_TRIP if scale.max() > 2 else ROUND_TRIP)
     # Without an operator sRGB is what IEC 61966-2-1 says, not OCIO's own curve, which is 1e-5 off.
-    light = operators.sanitise(rng.random((4096, 3)))
+    light = operators.sanitize(rng.random((4096, 3)))
     encoded = apply(config, "Linear Rec.709", "sRGB - Texture", light)
     report.compare("sRGB - Texture of linear light", encoded, operators.srgb_encode(light.astype(np.float32)),
                    ROUND_TRIP)

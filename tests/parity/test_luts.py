@@ -28,7 +28,7 @@ try:
 except ImportError:
     skip("PyOpenColorIO is not installed (Debian: python3-pyopencolorio)")
 
-# A view whose picture of every colour is another one, so that no axis can be taken for another.
+# A view whose picture of every color is another one, so that no axis can be taken for another.
 OPERATOR = ("agx_sobotka", "--look", "punchy")
 # Half a unit of the last of 9 digits, in float32.
 EXACT = 1e-7
@@ -121,23 +121,23 @@ def check_formats(report, command, folder):
     path = folder / "x.csp"
     run(command, "bake", *OPERATOR, "--nodes", "sampled", "--format", "csp", "--size", 17, "-o", path)
     # Its readers resample the prelut to 65536 equal steps of light: 3.4e-3 up to 222.9, where steps at black are some
-    # stops. From mid grey on they are less than a fiftieth of a stop.
+    # stops. From mid gray on they are less than a fiftieth of a stop.
     light = acescct_decode(codes)
     shown, bright = through_ocio(path, light), (light >= 0.18).all(axis=1)
-    report.compare("csp: scene-linear in, from mid grey on", shown[bright], truth[bright], 2e-5)
+    report.compare("csp: scene-linear in, from mid gray on", shown[bright], truth[bright], 2e-5)
     report.compare("csp: all light", shown, truth, 2e-3)
     path = folder / "logc3.csp"  # OpenColorIO keeps tables by their files' names
     run(command, "bake", *OPERATOR, "--nodes", "sampled", "--format", "csp", "--size", 17, "--input-encoding", "logc3",
         "-o", path)
     light = logc3(codes)
     shown, bright = through_ocio(path, light), (light >= 0.18).all(axis=1)
-    report.compare("csp: LogC3, from mid grey on", shown[bright],
+    report.compare("csp: LogC3, from mid gray on", shown[bright],
                    expected_of(command, codes[bright], "logc3", "srgb"), 2e-5)
     path = folder / "shaper.cube"
     run(command, "bake", *OPERATOR, "--nodes", "sampled", "--format", "resolve_cube", "--size", 17, "--input-encoding",
         "logc3", "-o", path)
     shown = through_ocio(path, light)
-    report.compare("resolve_cube: LogC3, from mid grey on", shown[bright],
+    report.compare("resolve_cube: LogC3, from mid gray on", shown[bright],
                    expected_of(command, codes[bright], "logc3", "srgb"), 2e-5)
     report.compare("resolve_cube: all light", shown, expected_of(command, codes, "logc3", "srgb"), 2e-3)
     # What the header says of it has the 1D LUT before the 3D LUT in it: colors between the nodes, by OpenColorIO.
@@ -179,7 +179,7 @@ def check_formats(report, command, folder):
 
 
 def check_fit(report, command, folder):
-    """A fitted cube is nearer between its nodes, by OpenColorIO's interpolation of colours it was not fitted to; and
+    """A fitted cube is nearer between its nodes, by OpenColorIO's interpolation of colors it was not fitted to; and
     --max-error takes the smallest size that keeps to it."""
     codes = np.random.default_rng(8).uniform(0, 1, (20000, 3)).astype(np.float32).astype(float)
     truth = expected_of(command, codes, "unity_logc", "linear")
@@ -208,12 +208,12 @@ def check_fit(report, command, folder):
 
 
 def check_clipping(report, command, folder):
-    """`bake` says which stops an encoding clips, of what the operator would show: by eval, on greys."""
+    """`bake` says which stops an encoding clips, of what the operator would show: by eval, on grays."""
     ends = [(name, 0, float(ENCODINGS[name][0](np.array(1.0))))
             for name in ("acescct", "logc3", "davinci", "unity_logc", "srgb", "pq")]
     ends += [(f"log2:{low}:{high}", 0.18 * 2.0 ** low, 0.18 * 2.0 ** high) for low, high in ((-10, 6.5), (-4, 2), (-20, 18))]
     for encoding, low, high in ends:
-        # Per channel and of Rec.709: a saturated color clips as a grey does.
+        # Per channel and of Rec.709: a saturated color clips as a gray does.
         done = subprocess.run([command, "bake", "hable", "--3d", "--size", "17", "--nodes", "sampled", "--input", "lin_rec709",
                                "--input-encoding", encoding, "-o", folder / "clip.cube"], capture_output=True, text=True,
                               check=True)
@@ -223,8 +223,8 @@ def check_clipping(report, command, folder):
                                         ("below", below, low, low * 2.0 ** -np.arange(0, 24, 1 / 16))):
             light = np.minimum(beyond, 65504)
             light = light[light >= 2.0 ** -24]
-            grey = evaluate(command, np.repeat(np.append(light, end)[:, None], 3, axis=1), "hable")[:, 0]
-            difference = np.abs(grey[:-1] - grey[-1])
+            gray = evaluate(command, np.repeat(np.append(light, end)[:, None], 3, axis=1), "hable")[:, 0]
+            difference = np.abs(gray[:-1] - gray[-1])
             seen = difference > 1 / 1023
             if not seen.any():
                 report.check(f"clipping, {encoding}: nothing {side}", said is None, done.stderr)

@@ -28,7 +28,7 @@ import check_config  # noqa: E402
 
 FILES = {(2, 1): "config.ocio", (2, 0): "config-2.0.ocio", (2, 5): "config-2.5.ocio"}
 VERSION = tuple(int(n) for n in ocio.GetVersion().split(".")[:2])
-# OpenColorIO's ACES 2.0 is float32: 2.3e-5 from the double reference on random colours (tests/parity/test_builtins.py),
+# OpenColorIO's ACES 2.0 is float32: 2.3e-5 from the double reference on random colors (tests/parity/test_builtins.py),
 # where one channel is near black and another bright; Rec.1886 and the pure powers are steeper there than sRGB.
 ACES_20 = 4e-5
 # Color Interop Forum and OpenColorIO's own configs: the spaces that have an id, by their names in this config.
@@ -70,16 +70,16 @@ def names(config):
 
 
 def check_numbers(report, name, config, probes, folder):
-    """Every view on every display, as applications compute it and without optimisation, against probe.csv."""
+    """Every view on every display, as applications compute it and without optimization, against probe.csv."""
     config.setWorkingDir(str(folder))
     failed, largest = [], 0.0
-    for key, colours in probes.items():
-        line, ok = check_config.compare(ocio, config, key, colours)
+    for key, colors in probes.items():
+        line, ok = check_config.compare(ocio, config, key, colors)
         if not ok:
             failed.append(line)
         if config.getMinorVersion() >= 4 and key[1] == "ACES 2.0":
             processor = config.getProcessor(key[2], key[0], key[1], ocio.TRANSFORM_DIR_FORWARD)
-            error, _ = check_config.worst(processor.getDefaultCPUProcessor(), colours)
+            error, _ = check_config.worst(processor.getDefaultCPUProcessor(), colors)
             largest = max(largest, error)
     report.check(f"{name}: {len(probes)} views on displays are the reference's", not failed and len(probes) >= 80,
                  failed[:3])

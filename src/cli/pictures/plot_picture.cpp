@@ -65,8 +65,8 @@ class CanvasSurface : public PlotSurface {
         rule(p, {p.x, bottom}, color);
         rule({right, p.y}, {right, bottom}, color);
     }
-    void dot(Point centre) override {
-        const Stroke point = stroke_of(centre, centre);
+    void dot(Point center) override {
+        const Stroke point = stroke_of(center, center);
         canvas_.strokes({&point, 1}, 2 * kDotRadius * scale_, parse_color(colors_.dot));
     }
     void sample(const PlotLine& line, Point from, double length) override {

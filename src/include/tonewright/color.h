@@ -162,7 +162,7 @@ inline constexpr Vector3 kRec709Weights = {0.2126, 0.7152, 0.0722};
 /// LinearToLogC.
 [[nodiscard]] TONEWRIGHT_API Expr unity_logc_encode(const Expr& linear);
 [[nodiscard]] TONEWRIGHT_API Expr unity_logc_decode(const Expr& code);
-/// Unreal Engine, TonemapCommon.ush, LinToLog: 14 stops, grey 0.18 at code 444 of 1023. Clamped at
+/// Unreal Engine, TonemapCommon.ush, LinToLog: 14 stops, gray 0.18 at code 444 of 1023. Clamped at
 /// code 0.
 [[nodiscard]] TONEWRIGHT_API Expr unreal_log_encode(const Expr& linear);
 [[nodiscard]] TONEWRIGHT_API Expr unreal_log_decode(const Expr& code);

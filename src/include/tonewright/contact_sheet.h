@@ -22,14 +22,14 @@ struct SheetAnnotations {
     std::string legend_heading = {};
 };
 
-/// Pictures side by side in a grid, each with its label below, on dark neutral grey.
+/// Pictures side by side in a grid, each with its label below, on dark neutral gray.
 ///
 /// Each picture is scaled into its cell without distortion (its display window and pixel aspect
 /// ratio count), in linear light. Rows are as high as their tallest picture.
 ///
 /// @param labelled    label (printable ASCII; other characters show as `?`; cut to the cell's
 ///                    width; after a line break a second line, smaller and dimmer) and picture in
-///                    sRGB code values, any pixel type; grey is shown as grey; alpha is not used:
+///                    sRGB code values, any pixel type; gray is shown as gray; alpha is not used:
 ///                    associated color is shown on black.
 /// @param columns     1 or more.
 /// @param cell_width  width of a picture in pixels, [16, 16384].

@@ -15,7 +15,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 
 /// The first step of every engine: NaN -> 0, then limited to +-kHalfMax.
-[[nodiscard]] inline double sanitise(double x) noexcept {
+[[nodiscard]] inline double sanitize(double x) noexcept {
     return x != x ? 0.0 : (x < -kHalfMax ? -kHalfMax : (x > kHalfMax ? kHalfMax : x));
 }
 

@@ -64,7 +64,7 @@ struct Table {
 
 class Expr;
 
-/// Colours on a grid of edge^3 nodes over the unit cube, interpolated in tetrahedra along the grey
+/// Colors on a grid of edge^3 nodes over the unit cube, interpolated in tetrahedra along the gray
 /// diagonal; outside, the nearest face holds.
 class TONEWRIGHT_API Lattice {
   public:

@@ -146,7 +146,7 @@ inline constexpr double kLargestRayError = 0.02;
 
 /// Light beyond the ends of an encoding that the operator would still show as something else than
 /// the light at the end: by more than one code of 10 bits (of `linear` and `native`: more than
-/// 1/1023), on greys, and above also on the six saturated colors of Rec.709.
+/// 1/1023), on grays, and above also on the six saturated colors of Rec.709.
 struct ClippedStops {
     /// Stops from 0.18: where the encoding ends, and the last stop at which it shows.
     double end = 0;

@@ -122,7 +122,7 @@ template <class NamedStage>
                                                              const std::array<Expr, 3>& rgb);
 /// The whole chain as three expressions of inputs 0, 1, 2.
 [[nodiscard]] TONEWRIGHT_API std::array<Expr, 3> compose(const Pipeline& pipeline);
-/// Drops identities, multiplies neighbouring matrices (in double), joins neighbouring clamps. The
+/// Drops identities, multiplies neighboring matrices (in double), joins neighboring clamps. The
 /// picture is the same; the reference engine does not do it, every lowering does.
 [[nodiscard]] TONEWRIGHT_API Pipeline simplify(const Pipeline& pipeline);
 /// A readable listing, one stage a line.
@@ -258,10 +258,10 @@ struct Preset {
 struct DocumentedDifference {
     enum class Kind : unsigned char {
         black,                // native value of black: value
-        crushes_black,        // greys up to value are shown as black
-        never_reaches_white,  // the largest grey is shown at value < 1, display-linear
+        crushes_black,        // grays up to value are shown as black
+        never_reaches_white,  // the largest gray is shown at value < 1, display-linear
         exceeds_white,        // native light goes up to value > 1 (kInfinity: without end)
-        not_monotone,         // brighter greys may be shown darker, up to scene-linear value
+        not_monotone,         // brighter grays may be shown darker, up to scene-linear value
         tints_gray,           // the sRGB code values of a gray differ by up to value
         jumps,                // neighboring grays differ by up to value, native
     };
@@ -322,7 +322,7 @@ struct Operator {
     DeclaredBounds bounds;
     /// Operators of one name and different pictures: "AgX". Docs compare them. Empty: none.
     std::string dialects;
-    /// Shows what is in a picture, not a picture: false colours.
+    /// Shows what is in a picture, not a picture: false colors.
     bool is_diagnostic = false;
     /// A known defect reproduces a mistake that programs make. This says what is wrong, in words
     /// that follow "a defect: ". Empty for every other operator.

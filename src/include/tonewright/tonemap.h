@@ -143,9 +143,9 @@ class TONEWRIGHT_API Tonemapper {
 /// `spec().alpha_channel` is alpha; all others are copied, bit for bit where
 ///    the two pixel types are the same. (A picture that has red elsewhere: `oiiotool --ch
 ///    R,G,B,A`.)
-/// 2. One channel is grey, R = G = B; so is the first of two when the second is alpha. A grey
+/// 2. One channel is gray, R = G = B; so is the first of two when the second is alpha. A gray
 /// picture
-///    stays grey where the view shows greys as greys, else it becomes R, G, B (, A).
+///    stays gray where the view shows grays as grays, else it becomes R, G, B (, A).
 /// 3. Associated color is divided by alpha first and multiplied by it last (`options.unpremult`).
 ///    Where alpha is 0, or not finite, color is taken as it is: light without cover, such as a
 ///    flame, stays.
@@ -162,10 +162,10 @@ class TONEWRIGHT_API Tonemapper {
 /// 7. A local operator (local.h) looks at the whole data window, whatever the region: regions fit
 ///    together. It holds three floats a pixel and some more in memory. Volumes are refused.
 ///
-/// @param dst       uninitialised: becomes a float image of the ROI's size with the source's
+/// @param dst       uninitialized: becomes a float image of the ROI's size with the source's
 /// metadata.
-///                  Initialised: keeps its size and pixel type (integers are rounded and clamped as
-///                  OIIO does), and only the pixels and channels of the ROI are written; a grey
+///                  Initialized: keeps its size and pixel type (integers are rounded and clamped as
+///                  OIIO does), and only the pixels and channels of the ROI are written; a gray
 ///                  source fills the first three channels of a destination that has them. May be
 ///                  `src`.
 /// @param src       any pixel type, tiled, cached or local. Outside its data window it is black.
@@ -191,7 +191,7 @@ TONEWRIGHT_API bool tonemap(OIIO::ImageBuf& dst, const OIIO::ImageBuf& src,
                                                     void* progress_data = nullptr) noexcept;
 
 /// Runs the colors of a picture through a function, such as a LUT of lut_file.h: channels, alpha,
-/// pixel types, regions and threads as in tonemap(). A grey picture becomes one in color. `dst`
+/// pixel types, regions and threads as in tonemap(). A gray picture becomes one in color. `dst`
 /// makes no claim about its colors.
 ///
 /// @param map  interleaved RGB, `count` colors from `in` to `out`, which are not the same memory;

@@ -122,9 +122,9 @@ struct DisplayLimit {
 [[nodiscard]] TONEWRIGHT_API Pipeline display_light_stages(const ResolvedOperator& op,
                                                            const DisplayLimit& limit);
 
-/// The whole view as stages. Its input is sanitised: scene-linear in the view's input space, or
+/// The whole view as stages. Its input is sanitized: scene-linear in the view's input space, or
 /// what the view decodes.
-/// @see sanitise in engine.h: NaN -> 0, then each channel to +-kHalfMax
+/// @see sanitize in engine.h: NaN -> 0, then each channel to +-kHalfMax
 [[nodiscard]] TONEWRIGHT_API Pipeline build_view(const View& view);
 
 /// The name of the exposure, in stops, as a uniform.
@@ -143,7 +143,7 @@ inline constexpr std::string_view kExposureUniform = "exposure";
 [[nodiscard]] TONEWRIGHT_API Pipeline build_inverse_view(const View& view);
 
 /// True when R = G = B stays so within half a code value of 10 bits, over -16..+16 stops: such a
-/// view shows a grey picture as a grey picture.
-[[nodiscard]] TONEWRIGHT_API bool keeps_greys(const Pipeline& view);
+/// view shows a gray picture as a gray picture.
+[[nodiscard]] TONEWRIGHT_API bool keeps_grays(const Pipeline& view);
 
 TONEWRIGHT_NAMESPACE_END

@@ -46,7 +46,7 @@ class Report:
         return self.check(f"{what:72s} max {error:8.2g}  bound {bound:8.2g}  {times:6.2f} x", ok, detail)
 
     def compare(self, what, actual, expected, bound, light=None):
-        """Arrays of colours; a failure prints the worst one.
+        """Arrays of colors; a failure prints the worst one.
 
         light: the light of a code value, see LIGHT: near black, where codes are steep, the errors of light count.
         """
@@ -139,7 +139,7 @@ def screen(size="640x480"):
 
 
 def evaluate(command, rgb, *arguments):
-    """Colours (n, 3) through `tonewright eval`."""
+    """Colors (n, 3) through `tonewright eval`."""
     text = "".join(f"{r!r} {g!r} {b!r}\n" for r, g, b in np.asarray(rgb, float).tolist())
     out = run(command, "eval", *arguments, stdin=text)
     return np.array(out.split(), float).reshape(-1, 3)
@@ -237,7 +237,7 @@ def read_exr(path):
 
 
 def read_planes(path, scratch):
-    """Planes of any picture that OpenImageIO reads; integers become 0..1. No colour conversion takes place."""
+    """Planes of any picture that OpenImageIO reads; integers become 0..1. No color conversion takes place."""
     try:
         return read_exr(path)
     except ValueError:

@@ -28,7 +28,7 @@ from pictures import (LIGHT, PROJECT, Report, hlg_code, hlg_light, need_program,
 # Half a step of 16 bits is 7.6e-6; OpenColorIO may be 3e-7 and the SIMD engine 1e-6 from the reference, and Blender
 # rounds once more.
 EXACT = 2e-5
-# A cube is as far from its operator as the config's README says: of random colours, between which there are others.
+# A cube is as far from its operator as the config's README says: of random colors, between which there are others.
 BETWEEN_PROBES = 3
 # Profile 2.5 has OpenColorIO's own ACES 2.0 in place of a cube, whose float32 is as far from its double.
 BUILT_IN = {"ACES 2.0": 4e-5}
@@ -175,7 +175,7 @@ def check_saved(report, config, jobs, expected, brighter, scratch):
     for (display, view, look, _), saved, truth in zip(
             jobs, in_parallel(lambda job: read_rgb(job[-1], scratch), jobs), expected):
         if display in brighter:
-            inside = truth.max(axis=-1) < 0.999  # what light a clipped colour had is not known
+            inside = truth.max(axis=-1) < 0.999  # what light a clipped color had is not known
             saved, truth = saved[inside], brighter[display](truth[inside].astype(float))
         error = published_error(config, view.split(HDR)[0])
         bound = EXACT + (BETWEEN_PROBES if error > 1e-4 else 1) * error

@@ -21,7 +21,7 @@ WORKING_PROFILE = 5e-4
 LINEAR_REC709 = 3
 TETRAHEDRAL, TRILINEAR = 0, 1
 
-# The parameters of "LUT 3D", version 3: the file, colour space, interpolation, and room for compressed LUTs.
+# The parameters of "LUT 3D", version 3: the file, color space, interpolation, and room for compressed LUTs.
 SIDECAR = """<?xml version="1.0" encoding="UTF-8"?>
 <x:xmpmeta xmlns:x="adobe:ns:meta/">
  <rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#">

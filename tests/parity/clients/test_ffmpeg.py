@@ -20,7 +20,7 @@ from operators import rgb_to_rgb  # from the chromaticities, a second opinion on
 from pictures import (evaluate, log2_decode, log2_encode, read_exr, read_rgb, run, shared_picture, skip, stack, unstack,
                       write_exr)
 
-# Colours compared with the operator; `eval` reads text, a million lines would take longer than they tell.
+# Colors compared with the operator; `eval` reads text, a million lines would take longer than they tell.
 SAMPLES = 20000
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""ociochecklut with LUTs of `tonewright bake`, colour by colour, on its CPU and its GPU path.
+"""ociochecklut with LUTs of `tonewright bake`, color by color, on its CPU and its GPU path.
 
     python3 tests/parity/clients/test_ociochecklut.py build/release/bin/tonewright
 
@@ -48,7 +48,7 @@ def main(test):
             print("skipped: the GPU path (no X server without a screen: Xvfb; Debian: xvfb)")
             return
         environment = {**os.environ, "DISPLAY": display, "LIBGL_ALWAYS_SOFTWARE": "1"}
-        # Its context is made anew for each colour.
+        # Its context is made anew for each color.
         test.flat, test.truth = test.flat[::5], test.truth[::5]
         shown = through_ociochecklut(cube, test.flat, "--gpu", environment=environment)
         test.compare(".cube 33, --gpu", shown, tetrahedral(table, test.flat), stated, PRINTED, clips=False)

@@ -44,10 +44,10 @@ JOBS = [(view, "sRGB", "srgb", view in ON_GPU) for view in OPERATORS] + [
 
 
 def test_picture(scratch):
-    """Random colours of 18 stops, a fifth of them with negatives, primaries, black; a real picture where there is one.
+    """Random colors of 18 stops, a fifth of them with negatives, primaries, black; a real picture where there is one.
 
     Its sides are powers of two: ocioconvert's GPU path reads the picture by filtering, at positions in float32, so
-    that other pixels get 1e-5 of their neighbour's light, which is much beside the sun.
+    that other pixels get 1e-5 of their neighbor's light, which is much beside the sun.
     """
     random = np.random.default_rng(11)
     rgb = 0.18 * 2.0 ** random.uniform(-10, 8, (HALF, WIDTH, 3))

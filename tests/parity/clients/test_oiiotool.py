@@ -40,7 +40,7 @@ def through_oiiotool(config, picture, scratch, *conversions):
     """[pixels] of `oiiotool PICTURE CONVERSION -o`, for many conversions: one process, which reads the config once.
 
     No `from=`: the picture's own space is found by the name that OIIO gives it. --ch R,G,B first: oiiotool converts
-    colour that is multiplied by alpha as if it were not, and OIIO changes channels behind alpha (0.5 + 10 v).
+    color that is multiplied by alpha as if it were not, and OIIO changes channels behind alpha (0.5 + 10 v).
     """
     with tempfile.TemporaryDirectory(dir=scratch) as folder:
         outs = [f"{folder}/{number}.exr" for number in range(len(conversions))]
@@ -65,11 +65,11 @@ def compare_views(report, command, config, path, parts, scratch, jobs):
     def both(jobs):
         shown = through_oiiotool(config, path, scratch,
                                  *(("--ociodisplay", display, view) for _, view, _, display in jobs))
-        for (operator, view, option, _), colours in zip(jobs, shown):
+        for (operator, view, option, _), colors in zip(jobs, shown):
             # --no-unpremult: what oiiotool does, see above.
             applied = through_apply(command, path, scratch, operator, "--no-unpremult", "--display", option)
             for name, where, shape in parts:
-                report.compare(f"{name} {option} {operator}", colours.reshape(-1, 3)[where].reshape(shape),
+                report.compare(f"{name} {option} {operator}", colors.reshape(-1, 3)[where].reshape(shape),
                                applied.reshape(-1, 3)[where].reshape(shape), bound_of(config, view))
 
     # Eight views a process: what it reads for all of them is then little, and so is what lies on the disk.
@@ -96,7 +96,7 @@ def join(pictures, path, scratch):
 
 
 def check_alpha(report, command, config, picture, scratch):
-    """Premultiplied colour: `--ociodisplay:unpremult=1` divides by alpha, and `apply` does it on its own."""
+    """Premultiplied color: `--ociodisplay:unpremult=1` divides by alpha, and `apply` does it on its own."""
     out = scratch / "alpha.exr"
     run("oiiotool", picture, "--colorconfig", config, "--ociodisplay:unpremult=1", "sRGB", "Hable",
         "-d", "float", "--compression", "none", "-o", out)
@@ -120,7 +120,7 @@ def check_output_spaces(report, config, picture, scratch):
 
 
 def check_negatives(report, command, config, scratch):
-    """Colours outside the display's gamut, NaN and infinities: both forms give the same finite picture."""
+    """Colors outside the display's gamut, NaN and infinities: both forms give the same finite picture."""
     rng = np.random.default_rng(7)
     rgb = (0.18 * 2.0 ** rng.uniform(-8, 8, (64, 64, 3)) * rng.choice([-1, 1], (64, 64, 3), p=[0.2, 0.8]))
     rgb = rgb.astype(np.float32)

@@ -89,7 +89,7 @@ def make_pictures(scratch):
     rgb["R"][0, :4] = [np.nan, np.inf, -np.inf, 1e30]
     made = {}
     for key, planes_of in (("rgb", rgb), ("alpha", rgba), ("five", {**planes("RGB"), "Z": rgb["G"], "id": rgb["B"]}),
-                           ("grey", planes("Y")), ("pixel", planes("RGB", 1, 1))):
+                           ("gray", planes("Y")), ("pixel", planes("RGB", 1, 1))):
         made[key] = scratch / f"{key}.exr"
         write_exr(made[key], planes_of)
     variants = {"tiled": ["--tile", "32", "16"], "half": ["-d", "half", "--compression", "piz"],

@@ -13,7 +13,7 @@ from lut_client import Client, lut_test
 from lut_tables import trilinear
 from pictures import read_rgb
 
-# Its pipeline is not made for numbers: without a LUT, colours come out 1.1e-3 off at most (it decodes sRGB by a table,
+# Its pipeline is not made for numbers: without a LUT, colors come out 1.1e-3 off at most (it decodes sRGB by a table,
 # works in another gamut and encodes again).
 PIPELINE = 1.5e-3
 PROFILE = """[Version]

@@ -213,7 +213,7 @@ TEST(OperatorsCsvFile, RowsSayWhereTheirNumbersComeFrom) {
 TEST(OperatorsCsvFile, EveryOperatorHasTheRowsThatFindMistakes) {
     for (const std::string& id : registry_ids()) {
         bool black = false;
-        bool mid_grey = false;
+        bool mid_gray = false;
         bool bright = false;
         bool saturated = false;
         bool negative = false;
@@ -221,13 +221,13 @@ TEST(OperatorsCsvFile, EveryOperatorHasTheRowsThatFindMistakes) {
             if (row.op != id) continue;
             const auto [lo, hi] = std::minmax({row.in[0], row.in[1], row.in[2]});
             black = black || (lo == 0 && hi == 0);
-            mid_grey = mid_grey || (lo == 0.18 && hi == 0.18);
+            mid_gray = mid_gray || (lo == 0.18 && hi == 0.18);
             bright = bright || hi >= 16;
             saturated = saturated || (lo > 0 && hi > 8 * lo);
             negative = negative || lo < 0;
         }
         EXPECT_TRUE(black) << id;
-        EXPECT_TRUE(mid_grey) << id;
+        EXPECT_TRUE(mid_gray) << id;
         EXPECT_TRUE(bright) << id;
         EXPECT_TRUE(saturated) << id;
         EXPECT_TRUE(negative) << id;

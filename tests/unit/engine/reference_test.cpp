@@ -27,9 +27,9 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 using Planes = std::array<std::vector<double>, 3>;
 
-/// Colours as pictures and accidents have them: log-uniform, saturated, negative, zero of both
+/// Colors as pictures and accidents have them: log-uniform, saturated, negative, zero of both
 /// signs, denormal, huge, not a number.
-Planes random_colours(std::size_t count, unsigned long long seed) {
+Planes random_colors(std::size_t count, unsigned long long seed) {
     SampleRandom random(seed);
     Planes planes;
     for (auto& plane : planes) {
@@ -86,13 +86,13 @@ std::vector<Pipeline> all_views(const OperatorVariant& variant) {
 }
 
 TEST(Reference, IsEvaluateBitForBit) {
-    const Planes in = random_colours(count_of(300U, 60U), 1);
+    const Planes in = random_colors(count_of(300U, 60U), 1);
     for (const OperatorVariant& variant : all_variants()) {
         for (const Pipeline& view : all_views(variant)) {
             const std::array<Expr, 3> f = compose(view);
             const Planes out = run(ReferenceEngine(view), in);
             for (std::size_t i = 0; i < in[0].size(); ++i) {
-                const Vector3 rgb = {sanitise(in[0][i]), sanitise(in[1][i]), sanitise(in[2][i])};
+                const Vector3 rgb = {sanitize(in[0][i]), sanitize(in[1][i]), sanitize(in[2][i])};
                 for (std::size_t c = 0; c < 3; ++c) {
                     const double expected = evaluate(f[c], rgb);
                     ASSERT_EQ(std::bit_cast<std::uint64_t>(out[c][i]),
@@ -141,13 +141,13 @@ TEST(Reference, RunsEveryOperation) {
                                    Expr(0.1),
                                    c};
     std::set<ExprOp> covered;
-    const Planes in = random_colours(500, 2);
+    const Planes in = random_colors(500, 2);
     for (const Expr& e : all) {
         covered.insert(e.op());
         const Pipeline pipeline = {CrossTalkStage{{e, a, b}}};
         const Planes out = run(ReferenceEngine(pipeline), in);
         for (std::size_t i = 0; i < in[0].size(); ++i) {
-            const Vector3 rgb = {sanitise(in[0][i]), sanitise(in[1][i]), sanitise(in[2][i])};
+            const Vector3 rgb = {sanitize(in[0][i]), sanitize(in[1][i]), sanitize(in[2][i])};
             ASSERT_EQ(std::bit_cast<std::uint64_t>(out[0][i]),
                       std::bit_cast<std::uint64_t>(evaluate(e, rgb)))
                 << to_string(e);
@@ -157,15 +157,15 @@ TEST(Reference, RunsEveryOperation) {
         << "an operation without a case here";
 }
 
-TEST(Reference, SanitisesItsInput) {
-    EXPECT_EQ(sanitise(kNan), 0);
-    EXPECT_EQ(sanitise(-kNan), 0);
-    EXPECT_EQ(sanitise(kInfinity), 65504);
-    EXPECT_EQ(sanitise(-kInfinity), -65504);
-    EXPECT_EQ(sanitise(65504.5), 65504);
-    EXPECT_EQ(sanitise(-1e300), -65504);
-    EXPECT_EQ(sanitise(65503.9), 65503.9);
-    EXPECT_EQ(sanitise(5e-324), 5e-324);
+TEST(Reference, SanitizesItsInput) {
+    EXPECT_EQ(sanitize(kNan), 0);
+    EXPECT_EQ(sanitize(-kNan), 0);
+    EXPECT_EQ(sanitize(kInfinity), 65504);
+    EXPECT_EQ(sanitize(-kInfinity), -65504);
+    EXPECT_EQ(sanitize(65504.5), 65504);
+    EXPECT_EQ(sanitize(-1e300), -65504);
+    EXPECT_EQ(sanitize(65503.9), 65503.9);
+    EXPECT_EQ(sanitize(5e-324), 5e-324);
     const ReferenceEngine nothing(Pipeline{});
     EXPECT_EQ(nothing({kNan, kInfinity, -kInfinity}), (Vector3{0, 65504, -65504}));
     EXPECT_EQ(nothing({0.25, -2, 1e300}), (Vector3{0.25, -2, 65504}));
@@ -179,7 +179,7 @@ TEST(Reference, TakesAnyCount) {
         build_view(make_view(resolve_operator("agx_sobotka"), "lin_ap1", 0, "srgb")));
     // Around the tile of 256 that it works in.
     for (const std::size_t count : {0U, 1U, 2U, 255U, 256U, 257U, 511U, 512U, 513U, 1000U}) {
-        const Planes in = random_colours(count, 3 + count);
+        const Planes in = random_colors(count, 3 + count);
         Planes out;
         constexpr double kGuard = -77;
         for (auto& plane : out)
@@ -200,7 +200,7 @@ TEST(Reference, WorksInPlace) {
     for (const char* op : {"clamp", "reinhard:luminance", "reinhard_jodie", "agx_minimal"}) {
         const ReferenceEngine engine(
             build_view(make_view(resolve_operator(op), "lin_rec2020", 0, "display_p3")));
-        const Planes in = random_colours(1000, 4);
+        const Planes in = random_colors(1000, 4);
         const Planes expected = run(engine, in);
         Planes planes = in;
         engine.run({planes[0].data(), planes[1].data(), planes[2].data()},
@@ -214,12 +214,12 @@ TEST(Reference, RunRgbIsInterleaved) {
         build_view(make_view(resolve_operator("aces_hill"), "lin_rec709", 0, "srgb")));
     // Around its chunk of 4096.
     for (const std::size_t count : {0U, 1U, 4095U, 4096U, 4097U, 9000U}) {
-        const Planes colours = random_colours(count, 5);
+        const Planes colors = random_colors(count, 5);
         std::vector<float> in;
         Planes rounded;
         for (std::size_t i = 0; i < count; ++i) {
             for (std::size_t c = 0; c < 3; ++c) {
-                in.push_back(static_cast<float>(sanitise(colours[c][i])));
+                in.push_back(static_cast<float>(sanitize(colors[c][i])));
                 rounded[c].push_back(static_cast<double>(in.back()));
             }
         }
@@ -295,10 +295,10 @@ TEST(Reference, RunsAsManyValuesAsATileHolds) {
     for (const int count : {3, 100, 1000, 3000}) {
         const Pipeline pipeline = waiting(count);
         const Expr f = compose(pipeline)[0];
-        const Planes in = random_colours(20, 3);
+        const Planes in = random_colors(20, 3);
         const Planes out = run(ReferenceEngine(pipeline), in);
         for (std::size_t i = 0; i < in[0].size(); ++i)
-            EXPECT_EQ(out[0][i], evaluate(f, sanitise(in[0][i]))) << count << " values";
+            EXPECT_EQ(out[0][i], evaluate(f, sanitize(in[0][i]))) << count << " values";
     }
     try {
         const ReferenceEngine engine(waiting(5000));
@@ -495,7 +495,7 @@ TEST(Probes, CountsAreAsAsked) {
     EXPECT_EQ(count_of(set, SampleKind::random), 2000U);
     EXPECT_EQ(count_of(set, SampleKind::picture), 0U);
     for (const SampleKind kind :
-         {SampleKind::grey, SampleKind::near_black, SampleKind::negative, SampleKind::special}) {
+         {SampleKind::gray, SampleKind::near_black, SampleKind::negative, SampleKind::special}) {
         EXPECT_GT(count_of(set, kind), 20U) << static_cast<int>(kind);
     }
     const SampleSet standard = make_sample_set(find_input_space("lin_rec709"));
@@ -505,8 +505,8 @@ TEST(Probes, CountsAreAsAsked) {
 
 TEST(Probes, KindsAreWhatTheyAreCalled) {
     const SampleSet set = make_sample_set(find_input_space("lin_rec2020"), {9, 20000});
-    double grey_lo = 1;
-    double grey_hi = 0;
+    double gray_lo = 1;
+    double gray_hi = 0;
     double random_lo = 1;
     double random_hi = 0;
     double smallest = 1;
@@ -522,11 +522,11 @@ TEST(Probes, KindsAreWhatTheyAreCalled) {
         const auto [lo, hi] = std::minmax({rgb[0], rgb[1], rgb[2]});
         const auto below = std::count_if(rgb, rgb + 3, [](float x) { return x < 0; });
         switch (set.kind[i]) {
-            case SampleKind::grey:
+            case SampleKind::gray:
                 ASSERT_EQ(lo, hi);
                 has_black = has_black || hi == 0;
-                if (hi > 0) grey_lo = std::min(grey_lo, static_cast<double>(lo));
-                grey_hi = std::max(grey_hi, static_cast<double>(hi));
+                if (hi > 0) gray_lo = std::min(gray_lo, static_cast<double>(lo));
+                gray_hi = std::max(gray_hi, static_cast<double>(hi));
                 break;
             case SampleKind::random:
                 ASSERT_TRUE(set.is_non_negative(i));
@@ -558,8 +558,8 @@ TEST(Probes, KindsAreWhatTheyAreCalled) {
         }
     }
     // Float rounding of 0.18 * 2^+-12.
-    EXPECT_NEAR(grey_lo / (0.18 / 4096), 1, 1e-7);
-    EXPECT_NEAR(grey_hi / (0.18 * 4096), 1, 1e-7);
+    EXPECT_NEAR(gray_lo / (0.18 / 4096), 1, 1e-7);
+    EXPECT_NEAR(gray_hi / (0.18 * 4096), 1, 1e-7);
     EXPECT_TRUE(has_black);
     // 60000 draws over 28 stops: the extreme ones are within 0.01 stops of the ends, all but
     // surely.
@@ -756,28 +756,28 @@ TEST(DeltaEItp, AgreesWithPublishedPairs) {
     }
 }
 
-TEST(DeltaEItp, OfGreysIsTheDifferenceOfPq) {
+TEST(DeltaEItp, OfGraysIsTheDifferenceOfPq) {
     // R = G = B gives L = M = S = Y, so I = PQ(Y) and T = P = 0. SMPTE ST 2084: PQ(100 cd/m2) is
     // 0.508078421517 and PQ(1 cd/m2) 0.149945732100; 1 % of sRGB's light is code 0.099852...
     const double code = 1.055 * std::pow(0.01, 1 / 2.4) - 0.055;
     const std::vector<double> white = {1, 1, 1};
-    const std::vector<double> grey = {code, code, code};
+    const std::vector<double> gray = {code, code, code};
     const double expected = 720 * (0.508078421517 - 0.149945732100);
     for (const char* display : {"srgb", "display_p3"}) {
-        const auto d = delta_e_itp(find_display(display), white, grey, 100);
+        const auto d = delta_e_itp(find_display(display), white, gray, 100);
         ASSERT_EQ(d.size(), 1U);
         EXPECT_NEAR(d[0], expected, 1e-8) << display << ": twelve digits, times 720";
-        EXPECT_EQ(delta_e_itp(find_display(display), grey, white, 100), d) << "symmetric";
+        EXPECT_EQ(delta_e_itp(find_display(display), gray, white, 100), d) << "symmetric";
         EXPECT_EQ(delta_e_itp(find_display(display), white, white, 100)[0], 0);
     }
     // Ten times the light: PQ(1000) and PQ(10).
-    EXPECT_NEAR(delta_e_itp(find_display("srgb"), white, grey, 1000)[0],
+    EXPECT_NEAR(delta_e_itp(find_display("srgb"), white, gray, 1000)[0],
                 720 * (0.751827096247 - 0.299699092421), 1e-8);
 }
 
 TEST(DeltaEItp, IsOfLightNotOfCodes) {
     // The same light on an sRGB and on a BT.2020 display, by ITU-R BT.2087's matrix and the two
-    // curves, is the same colour: differences to black agree.
+    // curves, is the same color: differences to black agree.
     const Vector3 light = {0.5, 0.2, 0.05};
     const Vector3 wide = {0.6274 * 0.5 + 0.3293 * 0.2 + 0.0433 * 0.05,
                           0.0691 * 0.5 + 0.9195 * 0.2 + 0.0114 * 0.05,

@@ -27,7 +27,7 @@ namespace {
 
 constexpr double kBound = 1e-6;
 
-/// "SCALAR" runs some 30 times slower than the others: fewer colours for it.
+/// "SCALAR" runs some 30 times slower than the others: fewer colors for it.
 std::size_t scaled_count(const std::string& target, std::size_t count) {
     return target == "SCALAR" ? count / 20 : count;
 }
@@ -44,7 +44,7 @@ std::vector<double> run(const ReferenceEngine& engine, const std::vector<float>&
     return out;
 }
 
-std::vector<float> grey(const std::vector<float>& values) {
+std::vector<float> gray(const std::vector<float>& values) {
     std::vector<float> rgb;
     for (const float v : values)
         rgb.insert(rgb.end(), 3, v);
@@ -180,7 +180,7 @@ TEST(Simd, ElementaryFunctionsAreWithinTwoUlp) {
             const std::vector<float> x = sweep(f.lo, f.hi, scaled_count(target, 300000));
             const Expr argument =
                 clamp(Expr::input(), static_cast<float>(f.lo), static_cast<float>(f.hi));
-            const std::vector<float> out = run_kernels(f.build(argument), grey(x), target);
+            const std::vector<float> out = run_kernels(f.build(argument), gray(x), target);
             double worst = 0;
             float at = 0;
             for (std::size_t i = 0; i < x.size(); ++i) {
@@ -213,7 +213,7 @@ TEST(Simd, ElementaryFunctionsInDouble) {
             const Expr argument =
                 clamp(Expr::input(), static_cast<float>(lo), static_cast<float>(hi));
             const Expr y = f.build(argument) * kGain;
-            const std::vector<float> out = run_kernels(y - floor(y), grey(x), target);
+            const std::vector<float> out = run_kernels(y - floor(y), gray(x), target);
             double worst = 0;
             for (std::size_t i = 0; i < x.size(); ++i) {
                 const double truth = f.truth(static_cast<double>(x[i]));
@@ -328,7 +328,7 @@ TEST(Simd, UnevenTablesAreExact) {
         }
         for (int i = 0; i < 500; ++i)
             inputs.push_back(static_cast<float>(random.uniform(-0.1, 1.1)));
-        const std::vector<float> rgb = grey(inputs);
+        const std::vector<float> rgb = gray(inputs);
         for (const bool linear : {true, false}) {
             auto copy = std::make_shared<Table>(*table);
             if (!linear) copy->interpolation = Table::Interpolation::step;
@@ -359,7 +359,7 @@ TEST(Simd, SteepTablesAreIndexedInDouble) {
     std::vector<float> inputs;
     for (float x = 3000.0F / 4096 * 6; x < 3001.0F / 4096 * 6; x = std::nextafterf(x, 7))
         inputs.push_back(x);
-    const std::vector<float> rgb = grey(inputs);
+    const std::vector<float> rgb = gray(inputs);
     const std::vector<double> truth = run(ReferenceEngine(pipeline), rgb);
     for (const std::string& target : SimdEngine::targets()) {
         const std::vector<float> out = run(SimdEngine(pipeline, kSimdError, target), rgb);
@@ -392,9 +392,9 @@ TEST(Simd, WhatASteepTableIsIndexedWithIsNoCompiledCurve) {
 
 class SimdOperator : public ::testing::TestWithParam<std::string> {};
 
-/// The standard samples, and colours of huge mixed signs: what is left of them after a matrix is
+/// The standard samples, and colors of huge mixed signs: what is left of them after a matrix is
 /// the difference of large numbers.
-std::vector<float> test_colours() {
+std::vector<float> test_colors() {
     SampleSet set = make_sample_set(find_input_space("lin_rec709"), {7, count_of(20000U, 4000U)});
     SampleRandom random(99);
     set.add(-280, 3000, 0.1, SampleKind::negative);
@@ -450,7 +450,7 @@ std::vector<std::string> bound_displays() {
 TEST_P(SimdOperator, IsWithinBoundOfReference) {
     const double bound = resolve_operator(GetParam()).op->bounds.simd;
     const double goal = resolve_operator(GetParam()).op->bounds.simd_goal;
-    const std::vector<float> rgb = test_colours();
+    const std::vector<float> rgb = test_colors();
     for (const std::string& display : bound_displays()) {
         const Pipeline view = view_of(GetParam(), display);
         const ReferenceEngine decode(find_display(display).decode);
@@ -522,7 +522,7 @@ TEST_P(SimdOperator, IsWithinBoundAtEachExposure) {
     const ResolvedOperator op = resolve_operator(GetParam());
     const std::string exposure(kExposureUniform);
     View view = make_view(op, "lin_rec709", 0, "srgb");
-    const std::vector<float> rgb = test_colours();
+    const std::vector<float> rgb = test_colors();
     const SimdEngine live(build_live_view(view, {exposure}), {{exposure, {0, -16, 16}}},
                           op.op->bounds.simd_goal);
     for (const double stops : {-15.9, -3.3, 0.7, 16.0}) {
@@ -553,7 +553,7 @@ INSTANTIATE_TEST_SUITE_P(Operators, SimdOperator, ::testing::ValuesIn(all_operat
 
 TEST(Simd, CurvesOfFilesAreWithinBound) {
     const std::string data = TONEWRIGHT_TEST_DATA "/";
-    const std::vector<float> rgb = test_colours();
+    const std::vector<float> rgb = test_colors();
     for (const Settings& settings : std::vector<Settings>{
              {{"file", data + "synthetic_response.rf"}, {"iso", "0.5"}},
              {{"file", data + "synthetic_response_uneven.csv"}},
@@ -573,8 +573,8 @@ TEST(Simd, CurvesOfFilesAreWithinBound) {
 
 TEST(Simd, MatrixOfMixedSignsBeforeAPowerDisplay) {
     // The slope of a power display has no bound at black: whatever the float rounding of the
-    // difference is, some colour makes it visible. Such a matrix has to run in double. (With
-    // colours of thousands the reference's own rounding shows.)
+    // difference is, some color makes it visible. Such a matrix has to run in double. (With
+    // colors of thousands the reference's own rounding shows.)
     const Matrix3 m = {{{1.6, -0.53, -0.07}, {-0.1, 1.1, 0.0}, {-0.003, -0.07, 1.073}}};
     const Pipeline view = {MatrixStage{m}, ClampStage{0, 1},
                            curve_stage(pow(Expr::input(), 1 / 2.4))};
@@ -696,7 +696,7 @@ TEST(Simd, PixelsMayEndWithTheBuffer) {
 }
 
 TEST(Simd, EnginesOfAllTargetsAreTheOnesMadeOneByOne) {
-    const std::vector<float> rgb = test_colours();
+    const std::vector<float> rgb = test_colors();
     for (const char* op : {"agx_sobotka", "hable", "aces_13"}) {
         const std::vector<SimdEngine> engines = SimdEngine::of_all_targets(view_of(op), 1e-6);
         const std::vector<std::string> targets = SimdEngine::targets();
@@ -774,7 +774,7 @@ TEST(Simd, EnginesOfTwoTargetsWorkSideBySide) {
     const std::vector<std::string> targets = SimdEngine::targets();
     if (targets.size() < 2) GTEST_SKIP() << "this machine has one instruction set";
     const Pipeline view = view_of("agx_sobotka");
-    const std::vector<float> rgb = test_colours();
+    const std::vector<float> rgb = test_colors();
     std::vector<std::vector<float>> alone;
     for (const std::string& target : targets)
         alone.push_back(run(SimdEngine(view, kSimdError, target), rgb));
@@ -793,7 +793,7 @@ TEST(Simd, EnginesOfTwoTargetsWorkSideBySide) {
 
 TEST(Simd, ThreadsShareAnEngine) {
     const SimdEngine engine(view_of("agx_sobotka"));
-    const std::vector<float> rgb = test_colours();
+    const std::vector<float> rgb = test_colors();
     const std::vector<float> expected = run(engine, rgb);
     std::vector<std::vector<float>> results(4);
     std::vector<std::thread> threads;
@@ -809,7 +809,7 @@ TEST(Simd, ThreadsShareAnEngine) {
         EXPECT_EQ(result, expected);
 }
 
-TEST(Simd, EmptyPipelineOnlySanitises) {
+TEST(Simd, EmptyPipelineOnlySanitizes) {
     const SimdEngine engine(Pipeline{});
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const float inf = std::numeric_limits<float>::infinity();

@@ -36,7 +36,7 @@ TEST(Chart, EveryStopHasItsPatch) {
         const double expected = 0.18 * std::exp2(s);
         for (int c = 0; c < 3; ++c) {
             EXPECT_NEAR(chart.getchannel(x, 90, 0, c), expected, 1e-6 * expected) << s;
-            // The continuous ramp below has the same value at the patch's centre, within half a
+            // The continuous ramp below has the same value at the patch's center, within half a
             // pixel of 60 to the stop.
             const auto below = static_cast<double>(chart.getchannel(x, 150, 0, c));
             EXPECT_NEAR(std::log2(below / expected), 0, 1 / 59.0) << s;
@@ -52,7 +52,7 @@ TEST(Chart, HoldsWhatItsTitlesSay) {
         EXPECT_EQ(stats.infcount[c], 0U);
     }
     // Wide-gamut patches: Rec.2020 cyan has a red of -0.5876411 - 0.0728499 in Rec.709 (ITU-R
-    // BT.2087), 6 stops above mid grey.
+    // BT.2087), 6 stops above mid gray.
     EXPECT_NEAR(range_of(chart, 526, 1010, 526, 724).first, -0.6604910 * 0.18 * 64, 1e-5);
     // Spheres: lights, and highlights of 500 at most where mirrors add nothing to speak of.
     const float highlights = range_of(chart, 1028, 1512, 226, 490).second;

@@ -101,7 +101,7 @@ TEST(Split, TheLineCoversThreePixelsAndLabelsNone) {
 
 TEST(Split, SmallPicturesKeepTheirPixelsAndGetRoomForWords) {
     const ImageBuf a = counted(16, 16, 3, 0.2F);
-    const ImageBuf b = counted(16, 16, 1, 0.6F);  // grey is shown as grey
+    const ImageBuf b = counted(16, 16, 1, 0.6F);  // gray is shown as gray
     SplitOptions options;
     options.before = {"A", "a"};
     options.position = 1;
@@ -109,8 +109,8 @@ TEST(Split, SmallPicturesKeepTheirPixelsAndGetRoomForWords) {
     ASSERT_EQ(split.spec().width, 320);
     EXPECT_EQ(sides(split, a, a, false, 152, 0).first, 16);
     options.position = 0;
-    const ImageBuf grey = make_split(a, b, options);
-    EXPECT_EQ(at(grey, 152 + 3, 5, 2), at(b, 3, 5, 0));
+    const ImageBuf gray = make_split(a, b, options);
+    EXPECT_EQ(at(gray, 152 + 3, 5, 2), at(b, 3, 5, 0));
 }
 
 TEST(Split, BadArguments) {
@@ -162,7 +162,7 @@ TEST(ResizeScene, IsAMeanOfLight) {
     EXPECT_NEAR(at(scene, 25, 12, 2), 1, 0.05);
 }
 
-TEST(ResizeScene, OneBadPixelDoesNotSpoilItsNeighbours) {
+TEST(ResizeScene, OneBadPixelDoesNotSpoilItsNeighbors) {
     ImageBuf picture = counted(64, 64, 3, 1);
     const float bad[] = {std::numeric_limits<float>::quiet_NaN(),
                          std::numeric_limits<float>::infinity(),

@@ -107,7 +107,7 @@ TEST(ContactSheet, ShrinksLightNotCodeValues) {
 }
 
 TEST(ContactSheet, OtherPictures) {
-    // Grey; float; with alpha; data window smaller than the display window; pixels not square.
+    // Gray; float; with alpha; data window smaller than the display window; pixels not square.
     EXPECT_EQ(extent_of(make_contact_sheet({{"", flat(10, 10, {0.6F})}}, 1, 40), {0.6F, 0.6F, 0.6F})
                   .width(),
               40);
@@ -196,8 +196,8 @@ TEST(Canvas, TextIsMeasuredAndCut) {
 
 TEST(Canvas, EveryPrintableCharacterIsDrawn) {
     for (char c = '!'; c <= '~'; ++c) {
-        Canvas canvas(40, 40, grey_of(0));
-        canvas.text(std::string(1, c), 10, 28, 16, grey_of(1));
+        Canvas canvas(40, 40, gray_of(0));
+        canvas.text(std::string(1, c), 10, 28, 16, gray_of(1));
         double sum = 0;
         for (int y = 0; y < 40; ++y) {
             for (int x = 0; x < 40; ++x)
@@ -249,8 +249,8 @@ TEST(Canvas, LettersHaveTheHolesAndPartsOfTheirShapes) {
     const std::string two_parts = "ij:;!?=\"";
     for (char c = '!'; c <= '~'; ++c) {
         if (std::string("$&@Q").find(c) != std::string::npos) continue;  // drawn in several ways
-        Canvas canvas(160, 200, grey_of(0));
-        canvas.text(std::string(1, c), 20, 150, 112, grey_of(1));
+        Canvas canvas(160, 200, gray_of(0));
+        canvas.text(std::string(1, c), 20, 150, 112, gray_of(1));
         const auto is_in = [&](const std::string& set) { return set.find(c) != std::string::npos; };
         EXPECT_EQ(parts_of(canvas, false) - 1, is_in(two_holes) ? 2 : is_in(one_hole) ? 1 : 0) << c;
         EXPECT_EQ(parts_of(canvas, true), c == '%' ? 3 : is_in(two_parts) ? 2 : 1) << c;
@@ -261,8 +261,8 @@ TEST(Canvas, LettersAreSymmetricWhereTheirShapesAre) {
     // The strokes of one letter, mirrored, are those of the other. y up.
     const auto looks_like = [](char letter, char other, bool mirrors_y) {
         const auto draw = [](char c) {
-            Canvas canvas(160, 200, grey_of(0));
-            canvas.text(std::string(1, c), 80, 130, 56, grey_of(1), Canvas::Align::center);
+            Canvas canvas(160, 200, gray_of(0));
+            canvas.text(std::string(1, c), 80, 130, 56, gray_of(1), Canvas::Align::center);
             return canvas;
         };
         Canvas a = draw(letter);
@@ -303,7 +303,7 @@ TEST(Canvas, LettersAreSymmetricWhereTheirShapesAre) {
 }
 
 TEST(Canvas, StrokesAreOneShape) {
-    Canvas canvas(40, 20, grey_of(0));
+    Canvas canvas(40, 20, gray_of(0));
     // Twice the same line, and one that crosses it: half covered pixels stay half covered.
     const std::vector<Stroke> cross = {{5, 10, 35, 10}, {35, 10, 5, 10}, {20, 2, 20, 18}};
     canvas.strokes(cross, 3, {1, 0.5F, 0});
@@ -316,18 +316,18 @@ TEST(Canvas, StrokesAreOneShape) {
     EXPECT_EQ(canvas.at(2, 10)[0], 0);
     // Nothing beyond the edges.
     const std::vector<Stroke> outside = {{-50, -50, 100, -40}, {-9, 5, 60, 5}};
-    canvas.strokes(outside, 2, grey_of(1));
+    canvas.strokes(outside, 2, gray_of(1));
     EXPECT_EQ(canvas.at(0, 4)[0], 1);
     EXPECT_EQ(canvas.at(39, 5)[0], 1);
     EXPECT_EQ(canvas.at(0, 0)[0], 0);
 }
 
 TEST(Canvas, NothingIsDrawnOutside) {
-    Canvas canvas(10, 10, grey_of(0));
-    canvas.text("Tonewright", -50, 5, 12, grey_of(1));
-    canvas.text("Tonewright", 8, 500, 12, grey_of(1));
-    canvas.fill(-5, -5, 3, 3, grey_of(1));
-    canvas.fill(8, 8, 100, 100, grey_of(1));
+    Canvas canvas(10, 10, gray_of(0));
+    canvas.text("Tonewright", -50, 5, 12, gray_of(1));
+    canvas.text("Tonewright", 8, 500, 12, gray_of(1));
+    canvas.fill(-5, -5, 3, 3, gray_of(1));
+    canvas.fill(8, 8, 100, 100, gray_of(1));
     EXPECT_EQ(canvas.at(0, 0)[0], 1);
     EXPECT_EQ(canvas.at(9, 9)[0], 1);
 }

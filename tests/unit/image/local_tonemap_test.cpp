@@ -126,7 +126,7 @@ TEST_P(LocalPicture, AlphaAndOtherChannels) {
     }
 }
 
-TEST_P(LocalPicture, GreyStaysGrey) {
+TEST_P(LocalPicture, GrayStaysGray) {
     const ImageBuf source = make_picture(make_spec(20, 16, {"Y"}, OIIO::TypeDesc::FLOAT), 5);
     const ImageBuf result = tonemap(source, options_of(op(), "srgb"));
     ASSERT_FALSE(result.has_error()) << result.geterror();

@@ -25,8 +25,8 @@ using Method = ExposureRule::Method;
 const float kInf = std::numeric_limits<float>::infinity();
 const float kNan = std::numeric_limits<float>::quiet_NaN();
 
-/// One row of greys of doubles: 0.01 and 0.1 are no floats.
-ImageBuf greys(const std::vector<double>& values) {
+/// One row of grays of doubles: 0.01 and 0.1 are no floats.
+ImageBuf grays(const std::vector<double>& values) {
     ImageBuf picture(make_spec(static_cast<int>(values.size()), 1, {"Y"}, TypeDesc::DOUBLE));
     EXPECT_TRUE(picture.set_pixels(picture.roi(), TypeDesc::DOUBLE, values.data()));
     return picture;
@@ -73,7 +73,7 @@ std::vector<double> luminances(const ImageBuf& picture) {
 
 // The dossier's figures of L = 0.01, 0.1, 1, 10, printed with 9 and 12 digits.
 TEST(Meter, LogAverageOfPublishedFigures) {
-    const ImageBuf picture = greys({0.01, 0.1, 1, 10});
+    const ImageBuf picture = grays({0.01, 0.1, 1, 10});
     MeterOptions options;
     const Metering m = meter(picture, options);
     expect_near(m.geometric_mean, 0.316227766, 1e-9);
@@ -86,7 +86,7 @@ TEST(Meter, LogAverageOfPublishedFigures) {
 }
 
 TEST(Meter, HistogramOfPublishedFigures) {
-    const Metering m = meter(greys({0.01, 0.1, 1, 10}));
+    const Metering m = meter(grays({0.01, 0.1, 1, 10}));
     expect_near(m.histogram_average, 0.311206668979, 1e-12);
     ExposureRule rule;
     rule.method = Method::histogram;
@@ -108,7 +108,7 @@ TEST(Meter, MeanAndMaximumAndEv100) {
 }
 
 TEST(Meter, BlackIsMeteredAsDelta) {
-    const Metering m = meter(greys({0, 0, 0}));
+    const Metering m = meter(grays({0, 0, 0}));
     EXPECT_EQ(m.counted, 3U);
     EXPECT_EQ(m.black, 3U);
     EXPECT_EQ(m.histogram[0], 3U);
@@ -139,7 +139,7 @@ TEST(Meter, OnePixel) {
 TEST(Meter, TinyLight) {
     // The smallest double and others far below what four of them may be together.
     const double tiny = 5e-324;
-    const Metering m = meter(greys({tiny, tiny, 0x1p-1000, 0x1p-600, 0}));
+    const Metering m = meter(grays({tiny, tiny, 0x1p-1000, 0x1p-600, 0}));
     EXPECT_NEAR(std::log2(m.geometric_mean), (-1074 - 1074 - 1000 - 600) / 4.0, 1e-12);
     EXPECT_EQ(m.minimum, tiny);
     EXPECT_EQ(m.histogram[0], 5U);
@@ -168,8 +168,8 @@ TEST(Meter, NarrowAndOddHistograms) {
     ImageBuf picture = make_rgb(300, 40, TypeDesc::FLOAT, 2);
     // About black, where bins end that begin below it.
     for (int x = 0; x < 300; ++x) {
-        const float grey = 0.9e-6F + static_cast<float>(x) * 1e-9F;
-        set(picture, x, 7, {grey, grey, grey});
+        const float gray = 0.9e-6F + static_cast<float>(x) * 1e-9F;
+        set(picture, x, 7, {gray, gray, gray});
     }
     const std::vector<double> all = luminances(picture);
     struct Shape {
@@ -195,7 +195,7 @@ TEST(Meter, NarrowAndOddHistograms) {
 }
 
 TEST(Meter, PercentilesAreTrimmed) {
-    // Ten greys, one stop apart: of what is between 20 and 75 %, the third to the seventh and half
+    // Ten grays, one stop apart: of what is between 20 and 75 %, the third to the seventh and half
     // of the eighth: exponents (2 + 3 + 4 + 5 + 6 + 7/2)/5.5.
     std::vector<double> values;
     for (int i = 0; i < 10; ++i)
@@ -207,11 +207,11 @@ TEST(Meter, PercentilesAreTrimmed) {
     options.high_percentile = 75;
     options.histogram_max = 12;
     options.exact = true;
-    expect_near(meter(greys(values), options).histogram_average, std::exp2(23.5 / 5.5), 1e-14);
+    expect_near(meter(grays(values), options).histogram_average, std::exp2(23.5 / 5.5), 1e-14);
     // 1 to 1024 lies on edges of these bins, which are 20/320 of a stop wide.
     options.exact = false;
     options.bins = 322;
-    expect_near(meter(greys(values), options).histogram_average, std::exp2(23.5 / 5.5), 1e-14);
+    expect_near(meter(grays(values), options).histogram_average, std::exp2(23.5 / 5.5), 1e-14);
 }
 
 TEST(Meter, ExactPercentilesAreThoseOfSortedLuminances) {
@@ -369,7 +369,7 @@ TEST(Meter, OfASequenceAsOfOnePicture) {
     set(both, 64 * 20 + 1, 0, pixel(b, 1, 0));
     const SceneStatistics expected = measure_scene(both);
     const SceneStatistics actual =
-        statistics_of_sequence({meter(a), meter(b), meter(greys({0})), meter(greys({0}))});
+        statistics_of_sequence({meter(a), meter(b), meter(grays({0})), meter(grays({0}))});
     // The two black pixels more count in means alone.
     const double share = (64.0 * 20 + 2) / (64.0 * 20 + 4);
     expect_near(actual.log_average, expected.log_average, 1e-14);
@@ -377,7 +377,7 @@ TEST(Meter, OfASequenceAsOfOnePicture) {
     expect_near(actual.mean_rgb[2], expected.mean_rgb[2] * share, 1e-14);
     EXPECT_EQ(actual.maximum_rgb, expected.maximum_rgb);
     EXPECT_EQ(actual.minimum_luminance, expected.minimum_luminance);
-    EXPECT_EQ(statistics_of_sequence({meter(greys({0}))}).mean_luminance, 0);
+    EXPECT_EQ(statistics_of_sequence({meter(grays({0}))}).mean_luminance, 0);
 }
 
 // ---------------------------------------------------------------------------------------------
@@ -455,7 +455,7 @@ TEST(Adaptation, SpeedZeroStaysAndEmptyShotsAreEmpty) {
 TEST(Meter, ErrorsNameWhatIsWrong) {
     const auto error_of = [](MeterOptions options) {
         try {
-            (void)meter(greys({1}), options);
+            (void)meter(grays({1}), options);
         } catch (const Error& e) {
             return std::string(e.what());
         }

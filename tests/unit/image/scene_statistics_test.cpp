@@ -100,7 +100,7 @@ SceneStatistics by_definition(const ImageBuf& picture) {
 // ---------------------------------------------------------------------------------------------
 // What is measured
 
-TEST(SceneStatistics, OfGreysByHand) {
+TEST(SceneStatistics, OfGraysByHand) {
     // Powers of 2, whose logarithms cancel: the geometric mean of 1/4, 1/2, 4 and 8 is 2^0.5.
     const double mean = 12.75 / 4;
     expect_statistics(measure_scene(row_of({{0.25F}, {0.5F}, {4}, {8}})),
@@ -130,7 +130,7 @@ TEST(SceneStatistics, WithoutLightTheyAreZero) {
     }
 }
 
-TEST(SceneStatistics, EveryPixelIsSanitised) {
+TEST(SceneStatistics, EveryPixelIsSanitized) {
     // NaN is 0, infinity the largest half float, a negative 0: channel by channel.
     expect_statistics(measure_scene(row_of({{kNan, 1, -7}, {-kInf, 0, 1e30F}})),
                       {std::sqrt(0.7152 * 0.0722 * 65504),
@@ -155,9 +155,9 @@ TEST(SceneStatistics, AreOfRec709Light) {
     EXPECT_EQ(green.maximum_rgb[0], 0);
     EXPECT_EQ(green.mean_rgb[2], 0);
     EXPECT_NEAR(green.mean_luminance, 0.7152 * 1.1408047366, 1e-10);
-    // Greys are greys in every space, within the rounding of the matrix.
-    const SceneStatistics grey = measure_scene(row_of({{3}}), "lin_ap0");
-    expect_statistics(grey, {3, 3, 3, 3, {3, 3, 3}, {3, 3, 3}}, 1e-14);
+    // Grays are grays in every space, within the rounding of the matrix.
+    const SceneStatistics gray = measure_scene(row_of({{3}}), "lin_ap0");
+    expect_statistics(gray, {3, 3, 3, 3, {3, 3, 3}, {3, 3, 3}}, 1e-14);
     // The conversion can exceed what the source was limited to.
     EXPECT_EQ(measure_scene(row_of({{65504, 0, 0}}), "lin_ap1").maximum_rgb[0], 65504);
 }
@@ -269,7 +269,7 @@ TEST(SceneStatistics, WithoutAnyCoverThePictureIsMeasuredAsItIs) {
                       {4, mean, 2, 8, {mean, mean, mean}, {8, 8, 8}});
 }
 
-TEST(SceneStatistics, GreyAndAlpha) {
+TEST(SceneStatistics, GrayAndAlpha) {
     expect_statistics(measure_scene(row_of({{0.5F, 0.25F}, {8, 1}, {100, 0}})),
                       {4, 5, 2, 8, {5, 5, 5}, {8, 8, 8}});
 }

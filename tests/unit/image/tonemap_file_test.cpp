@@ -192,7 +192,7 @@ TEST_F(TonemapFile, StatisticsAreOfTheWholePicture) {
     expect_same(in, "out.exr", {.op = "drago"});
 }
 
-TEST_F(TonemapFile, GreyStaysGreyOrBecomesColor) {
+TEST_F(TonemapFile, GrayStaysGrayOrBecomesColor) {
     const std::string in = folder_.file("a.exr");
     put(spec_of({"Y"}, TypeDesc::FLOAT), in);
     const ImageSpec spec = read_image(in).spec();

@@ -638,12 +638,12 @@ TEST(Tonemap, PositionDecidesNotTheName) {
 }
 
 // ---------------------------------------------------------------------------------------------
-// Grey
+// Gray
 
-// Its look raises red above blue: greys do not stay grey.
+// Its look raises red above blue: grays do not stay gray.
 TonemapOptions golden() { return {.op = "agx_sobotka", .look = "golden"}; }
 
-TEST(Tonemap, GreyStaysGrey) {
+TEST(Tonemap, GrayStaysGray) {
     const ImageBuf src = make_picture(make_spec(5, 5, {"Y"}, TypeDesc::HALF), 4);
     const ImageBuf result = tonemap(src, hable());
     ASSERT_FALSE(result.has_error()) << result.geterror();
@@ -654,9 +654,9 @@ TEST(Tonemap, GreyStaysGrey) {
     EXPECT_TRUE(same_bits(tonemap(src, hable(), src.roi()), result));
 }
 
-TEST(Tonemap, GreyBecomesColorWhereTheViewTintsIt) {
+TEST(Tonemap, GrayBecomesColorWhereTheViewTintsIt) {
     const ImageBuf src = make_picture(make_spec(5, 5, {"Y"}, TypeDesc::FLOAT));
-    ASSERT_FALSE(keeps_greys(build_view(
+    ASSERT_FALSE(keeps_grays(build_view(
         make_view(resolve_operator("agx_sobotka", {}, "golden"), "lin_rec709", 0, "srgb"))));
     for (const ROI& roi : {ROI(), src.roi()}) {
         const ImageBuf result = tonemap(src, golden(), roi);
@@ -672,13 +672,13 @@ TEST(Tonemap, GreyBecomesColorWhereTheViewTintsIt) {
                  "destination has 1 channel; expected 3 or more");
 }
 
-TEST(Tonemap, GreyAndAlpha) {
+TEST(Tonemap, GrayAndAlpha) {
     ImageBuf src(make_spec(1, 1, {"Y", "A"}, TypeDesc::FLOAT));
     set(src, 0, 0, {0.09F, 0.5F});
-    const Vector3 grey = reference(hable())(Vector3{0.18, 0.18, 0.18});
+    const Vector3 gray = reference(hable())(Vector3{0.18, 0.18, 0.18});
     const ImageBuf result = tonemap(src, hable());
     ASSERT_EQ(result.nchannels(), 2);
-    EXPECT_NEAR(pixel(result, 0, 0)[0], 0.5 * grey[0], kTolerance);
+    EXPECT_NEAR(pixel(result, 0, 0)[0], 0.5 * gray[0], kTolerance);
     EXPECT_EQ(pixel(result, 0, 0)[1], 0.5F);
 
     const ImageBuf tinted = tonemap(src, golden());
@@ -694,7 +694,7 @@ TEST(Tonemap, GreyAndAlpha) {
     EXPECT_EQ(pixel(tonemap(src, hable()), 0, 0), pixel(result, 0, 0));
 }
 
-TEST(Tonemap, GreyFillsADestinationOfThreeChannels) {
+TEST(Tonemap, GrayFillsADestinationOfThreeChannels) {
     ImageBuf src(make_spec(1, 1, {"Y", "A"}, TypeDesc::FLOAT));
     set(src, 0, 0, {0.18F, 1});
     ImageBuf dst(make_spec(1, 1, {"R", "G", "B", "A"}, TypeDesc::UINT8));
@@ -732,8 +732,8 @@ TEST(Tonemap, ErrorsAreOnTheDestination) {
     const ImageBuf value = tonemap(src, {.op = "habel"});
     EXPECT_TRUE(value.has_error());
 
-    ImageBuf grey(make_spec(2, 2, {"Y"}, TypeDesc::FLOAT));
-    expect_error(grey, tonemap(grey, src, hable()),
+    ImageBuf gray(make_spec(2, 2, {"Y"}, TypeDesc::FLOAT));
+    expect_error(gray, tonemap(gray, src, hable()),
                  "destination has 1 channel; expected 3 or more");
 }
 

@@ -42,7 +42,7 @@ Errors errors_of(const InverseCubeProblem& problem, const std::vector<double>& n
     const ReferenceEngine forward(problem.forward);
     const ReferenceEngine place({curve_stage(problem.place)});
     const ReferenceEngine encode({curve_stage(problem.code)});
-    // Other colours than those of the fit, log-uniform as lights of a scene are.
+    // Other colors than those of the fit, log-uniform as lights of a scene are.
     SampleRandom random(77);
     constexpr int kCount = 20000;
     Errors errors;

@@ -83,7 +83,7 @@ Errors errors_of(const CubeProblem& problem, const std::vector<double>& nodes,
     return result;
 }
 
-/// Colours that no fit has seen: log-uniform inside Rec.709, a tenth with a channel at 0.
+/// Colors that no fit has seen: log-uniform inside Rec.709, a tenth with a channel at 0.
 std::vector<float> unseen_colors(const CubeProblem& problem) {
     const Matrix3 m = rgb_to_rgb(kRec709, problem.primaries);
     SampleRandom random(424242);
@@ -99,11 +99,11 @@ std::vector<float> unseen_colors(const CubeProblem& problem) {
     return rgb;
 }
 
-std::vector<float> greys(const CubeProblem& problem) {
+std::vector<float> grays(const CubeProblem& problem) {
     std::vector<float> rgb;
     for (int i = 0; i <= 4000; ++i) {
-        const double grey = problem.axis.top * std::exp2((i - 4000) / 200.0);
-        rgb.insert(rgb.end(), 3, static_cast<float>(grey));
+        const double gray = problem.axis.top * std::exp2((i - 4000) / 200.0);
+        rgb.insert(rgb.end(), 3, static_cast<float>(gray));
     }
     return rgb;
 }
@@ -117,27 +117,27 @@ void expect_better(const CubeProblem& problem, double mean_factor, double p999_f
     const Errors after = errors_of(problem, fitted, colors);
     EXPECT_LT(after.mean, before.mean / mean_factor);
     EXPECT_LT(after.p999, before.p999 / p999_factor);
-    const Errors grey_before = errors_of(problem, sampled, greys(problem));
-    const Errors grey_after = errors_of(problem, fitted, greys(problem));
-    EXPECT_LT(grey_after.mean, grey_before.mean);
-    EXPECT_LE(grey_after.max, grey_before.max);
+    const Errors gray_before = errors_of(problem, sampled, grays(problem));
+    const Errors gray_after = errors_of(problem, fitted, grays(problem));
+    EXPECT_LT(gray_after.mean, gray_before.mean);
+    EXPECT_LE(gray_after.max, gray_before.max);
     for (std::size_t c = 0; c < 3; ++c)
         EXPECT_EQ(fitted[c], sampled[c]) << "black";
 }
 
-TEST(FitCube, IsBetterThanSampledOnUnseenColorsAndOnGreys) {
+TEST(FitCube, IsBetterThanSampledOnUnseenColorsAndOnGrays) {
     expect_better(problem_of("gt7", 17, 128, 2.5), 1.6, 1.25);
     expect_better(problem_of("reinhard_jodie", 17, 128, 1), 1.6, 1.2);
 }
 
-TEST(FitCube, GreysStayAsNeutralAsTheOperatorMakesThem) {
+TEST(FitCube, GraysStayAsNeutralAsTheOperatorMakesThem) {
     const CubeProblem problem = problem_of("reinhard_jodie", 9, 64, 1);
     const std::vector<double> nodes = fit_cube(problem);
     const auto n = static_cast<std::size_t>(problem.edge);
     for (std::size_t i = 0; i < n; ++i) {
-        const double* grey = &nodes[3 * i * (n * n + n + 1)];
-        EXPECT_NEAR(grey[0], grey[1], 1e-6);
-        EXPECT_NEAR(grey[1], grey[2], 1e-6);
+        const double* gray = &nodes[3 * i * (n * n + n + 1)];
+        EXPECT_NEAR(gray[0], gray[1], 1e-6);
+        EXPECT_NEAR(gray[1], gray[2], 1e-6);
     }
 }
 
@@ -153,7 +153,7 @@ TEST(FitCube, KeepsWhatIsStraightBetweenTheNodes) {
     CubeProblem problem;
     problem.edge = 9;
     problem.axis = make_log_axis(16, problem.edge);
-    // Red carries more green than red: no neighbour is like another.
+    // Red carries more green than red: no neighbor is like another.
     problem.pipeline = {curve_stage(problem.axis.place),
                         MatrixStage{{{{0.25, 0.5, -0.125}, {1, 0, 0.25}, {-0.5, 0.125, 2}}}}};
     const std::vector<double> sampled = sample_cube(problem);
@@ -175,13 +175,13 @@ TEST(FitCube, SampledNodesAreThePipelineBlueFastest) {
     EXPECT_EQ(node[2], 100);
 }
 
-TEST(FitCube, WithoutSamplesOnlyGreysAreFitted) {
+TEST(FitCube, WithoutSamplesOnlyGraysAreFitted) {
     const CubeProblem problem = problem_of("gt7", 5, 128, 2.5);
     const std::vector<double> sampled = sample_cube(problem);
     const std::vector<double> fitted = fit_cube(problem, {.samples_per_node = 0});
     for (std::size_t i = 0; i < sampled.size() / 3; ++i) {
-        const bool is_grey = i % 31 == 0;
-        for (std::size_t c = 0; c < 3 && !is_grey; ++c)
+        const bool is_gray = i % 31 == 0;
+        for (std::size_t c = 0; c < 3 && !is_gray; ++c)
             EXPECT_NEAR(fitted[3 * i + c], sampled[3 * i + c], 1e-6);
     }
 }
@@ -199,7 +199,7 @@ TEST(FitCube, WhatIsClippedDoesNotCount) {
     problem.lo = 0;
     problem.hi = kPeak;
     const std::vector<double> for_shown = fit_cube(problem);
-    for (const std::vector<float>& shown : {colors, greys(problem)}) {
+    for (const std::vector<float>& shown : {colors, grays(problem)}) {
         EXPECT_LT(errors_of(problem, for_shown, shown).mean,
                   0.2 * errors_of(problem, for_all, shown).mean);
     }
@@ -227,13 +227,13 @@ TEST(LogAxis, LongerStepsBeginAtANode) {
 }
 
 TEST(LogAxis, IsChosenForWhatTheOperatorHasToDoWithLights) {
-    const double mid_grey = 0.18;
+    const double mid_gray = 0.18;
     const auto is_equal_steps = [&](const Expr& curve) {
         CubeProblem problem;
         problem.edge = 17;
         problem.pipeline = {curve_stage(curve)};
         const CubeAxis axis = choose_log_axis(problem, 4096);
-        return evaluate(axis.place, mid_grey) == evaluate(make_log_axis(4096, 17).place, mid_grey);
+        return evaluate(axis.place, mid_gray) == evaluate(make_log_axis(4096, 17).place, mid_gray);
     };
     EXPECT_FALSE(is_equal_steps(srgb_encode(kX / (1 + kX))));
     EXPECT_TRUE(is_equal_steps(sqrt(kX)));

@@ -67,14 +67,14 @@ TEST(InputEncoding, AcescctIsTheAcademys) {
     EXPECT_NEAR(evaluate(e.encode, e.scene_hi), 1, 1e-15);
 }
 
-/// OpenColorIO 2.5.1's built-in transforms of the same names from ACES2065-1, of greys, and DaVinci
+/// OpenColorIO 2.5.1's built-in transforms of the same names from ACES2065-1, of grays, and DaVinci
 /// Intermediate of its Studio config v4.0.0, 7 digits.
-struct GreyCode {
+struct GrayCode {
     const char* encoding;
     double scene;
     double code;
 };
-const GreyCode kGreyCodes[] = {
+const GrayCode kGrayCodes[] = {
     {"logc3", 0, 0.09280936},
     {"logc3", 0.001, 0.09817702},
     {"logc3", 0.18, 0.3910069},
@@ -109,8 +109,8 @@ const GreyCode kGreyCodes[] = {
     {"unity_logc", 1, 0.5688},
 };
 
-TEST(InputEncoding, GreysHaveThePublishedCodes) {
-    for (const GreyCode& row : kGreyCodes) {
+TEST(InputEncoding, GraysHaveThePublishedCodes) {
+    for (const GrayCode& row : kGrayCodes) {
         const InputEncoding e = parse_input_encoding(row.encoding);
         // Seven digits, from float32; four by hand; OpenColorIO derives LogC3's constants, of which
         // ARRI prints six digits.
@@ -175,7 +175,7 @@ TEST(InputEncoding, CamerasHaveTheirPublishedPrimaries) {
     }
 }
 
-TEST(InputEncoding, Log2CountsStopsFromMidGrey) {
+TEST(InputEncoding, Log2CountsStopsFromMidGray) {
     const InputEncoding e = parse_input_encoding("log2");
     EXPECT_EQ(e.id, "log2:-10:6.5") << "the defaults are in the name";
     EXPECT_EQ(e.default_input, "lin_rec709");
@@ -303,7 +303,7 @@ TEST(HalfDomain, SpecialEntriesHaveTheirRule) {
     for (unsigned bits = 0; bits < 65536; ++bits) {
         const float expected = static_cast<float>(std::isnan(half_value(bits))
                                                       ? evaluate(f, 0.0)
-                                                      : evaluate(f, sanitise(half_value(bits))));
+                                                      : evaluate(f, sanitize(half_value(bits))));
         if (bits == kMinusZero) continue;
         ASSERT_EQ(table[bits], expected) << bits << ", " << half_value(bits);
     }
@@ -343,7 +343,7 @@ TEST(HalfDomain, HoldsItsEndsWithoutAKinkInside) {
 }
 
 TEST(HalfDomain, SmoothCurvesLoseNothingAtAShapersEnds) {
-    // AgX's log2 between its ends: error of a chord between neighbouring halves, h^2/8 f'' with
+    // AgX's log2 between its ends: error of a chord between neighboring halves, h^2/8 f'' with
     // h = x 2^-10 and f'' = 1/(ln 2 x^2), is 1.7e-7; and float rounding of values up to 12.5.
     const double lo = std::exp2(-12.47393);
     const double hi = std::exp2(4.026069);
@@ -371,7 +371,7 @@ TEST(HalfDomain, InterpolationIsExactAtHalvesAndStraightBetween) {
         ASSERT_EQ(interpolate(lut, {x, -x, 0})[0], static_cast<double>(static_cast<float>(x * x)));
         ASSERT_EQ(interpolate(lut, {x, -x, 0})[1], static_cast<double>(static_cast<float>(x * x)));
     }
-    // Half way from 1 to its neighbour: (1 + (1 + 2^-10)^2)/2.
+    // Half way from 1 to its neighbor: (1 + (1 + 2^-10)^2)/2.
     const double x = 1 + 0x1p-11;
     EXPECT_EQ(interpolate(lut, {x, x, x})[2], (1 + (1 + 0x1p-10) * (1 + 0x1p-10)) / 2);
     const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -622,8 +622,8 @@ TEST(MeasureLut, IsNeverBelowTheErrorAtTheProbes) {
         double worst = 0;
         int inside = 0;
         for (std::size_t i = 0; i < samples.size(); ++i) {
-            // The lattices and greys are the same whatever the number of random colours.
-            if (samples.kind[i] != SampleKind::lattice && samples.kind[i] != SampleKind::grey)
+            // The lattices and grays are the same whatever the number of random colors.
+            if (samples.kind[i] != SampleKind::lattice && samples.kind[i] != SampleKind::gray)
                 continue;
             const float* v = &samples.rgb[3 * i];
             const bool is_inside =
@@ -684,7 +684,7 @@ TEST(MeasureLut, NamesTheInterpolation) {
 
 TEST(MeasureLut, LargerCubesAreBetter) {
     // Chords of a smooth function: a quarter of the error for twice the nodes. The operator's
-    // clamps keep the worst colour from it, the mean shows it.
+    // clamps keep the worst color from it, the mean shows it.
     const LutRequest small = request_for("agx_sobotka", "acescct", LutFormat::cube, 17);
     const LutRequest large = request_for("agx_sobotka", "acescct", LutFormat::cube, 65);
     EXPECT_LT(measure_lut(sample_lut(large), large).mean,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Every kind of stage as OpenColorIO transforms, run by OCIO itself (CPU with the lossless and the
-// default optimiser, GPU where there is one), against the double reference. Bounds: DESIGN of the
+// default optimizer, GPU where there is one), against the double reference. Bounds: DESIGN of the
 // project, section 4, in code values of the display.
 #include "ocio/lower.h"
 #include "base/random.h"
@@ -72,8 +72,8 @@ std::vector<double> reference(const Pipeline& pipeline, const std::vector<float>
     return out;
 }
 
-/// Greys, lattices, saturated and dark colours; all channels >= 0 and finite.
-std::vector<float> positive_colours() {
+/// Grays, lattices, saturated and dark colors; all channels >= 0 and finite.
+std::vector<float> positive_colors() {
     const SampleSet set = make_sample_set(find_input_space("lin_rec709"), {9, 20000});
     std::vector<float> rgb;
     for (std::size_t i = 0; i < set.size(); ++i) {
@@ -84,7 +84,7 @@ std::vector<float> positive_colours() {
 }
 
 /// The same with negative channels.
-std::vector<float> mixed_colours() {
+std::vector<float> mixed_colors() {
     const SampleSet set = make_sample_set(find_input_space("lin_rec709"), {9, 20000});
     std::vector<float> rgb;
     for (std::size_t i = 0; i < set.size(); ++i) {
@@ -155,7 +155,7 @@ TEST(LowerMatrix, IsExactToFloatRounding) {
     const Lowered lowered = lower_to_ocio({MatrixStage{m}});
     EXPECT_EQ(types_of(lowered), (Types{kMatrixType}));
     EXPECT_TRUE(lowered.is_exact);
-    const std::vector<float> in = mixed_colours();
+    const std::vector<float> in = mixed_colors();
     const std::vector<double> truth = reference({MatrixStage{m}}, in);
     for (const Form& form : run_forms({MatrixStage{m}}, in)) {
         for (std::size_t i = 0; i < in.size(); ++i) {
@@ -185,7 +185,7 @@ TEST(LowerMatrix, IsNotTransposed) {
     }
 }
 
-TEST(LowerMatrix, NeighboursAreMultipliedInOrder) {
+TEST(LowerMatrix, NeighborsAreMultipliedInOrder) {
     const Matrix3 a = {{{1, 2, 0}, {0, 1, 3}, {4, 0, 1}}};
     const Matrix3 b = {{{0, 1, 0}, {5, 0, 1}, {1, 1, 1}}};
     const Pipeline pipeline = {MatrixStage{a}, MatrixStage{b}};
@@ -222,7 +222,7 @@ TEST(LowerClamp, IsNeverBakedIntoATable) {
     const Lowered lowered = lower_to_ocio({kPositive, curve_stage(reinhard()), kSdr, srgb()});
     EXPECT_EQ(types_of(lowered), (Types{kRangeType, kLut1D, kRangeType, kLut1D}));
     expect_close(build_view(make_view(resolve_operator("hable"), "lin_rec709", 0, "srgb")),
-                 positive_colours(), 3e-7, 1e-6);
+                 positive_colors(), 3e-7, 1e-6);
     std::vector<float> around_white;
     for (int i = -3000; i <= 3000; ++i)
         around_white.insert(around_white.end(), 3, 5.6F + static_cast<float>(i) * 1e-6F);
@@ -242,12 +242,12 @@ TEST(LowerCurve, IsOneHalfDomainTable) {
     EXPECT_EQ(lut_at(lowered, 0).channels, 1);
 }
 
-TEST(LowerCurve, NeighboursAreFusedIntoOneTable) {
+TEST(LowerCurve, NeighborsAreFusedIntoOneTable) {
     // Each step alone would round to float between them; the order shows.
     const Pipeline pipeline = {kPositive, curve_stage(log2(kX + 1)), curve_stage(kX * 0.1),
                                curve_stage(reinhard()), srgb()};
     EXPECT_EQ(types_of(lower_to_ocio(pipeline)), (Types{kRangeType, kLut1D}));
-    expect_close(pipeline, positive_colours(), 3e-7, 1e-6);
+    expect_close(pipeline, positive_colors(), 3e-7, 1e-6);
     // An identity between them does not part them, a clamp does.
     EXPECT_EQ(types_of(lower_to_ocio({curve_stage(reinhard()), MatrixStage{kIdentity3}, srgb()})),
               (Types{kLut1D}));
@@ -262,7 +262,7 @@ TEST(LowerCurve, ChannelsKeepTheirOwn) {
     const Pipeline pipeline = {kPositive, before, curve_stage(reinhard()), after, srgb()};
     EXPECT_EQ(types_of(lower_to_ocio(pipeline)), (Types{kRangeType, kLut1D}));
     // 1 - x near black has the full slope of the sRGB curve, on floats near 1: 2^-24 * 12.92.
-    expect_close(pipeline, positive_colours(), 8e-7, 1.5e-6);
+    expect_close(pipeline, positive_colors(), 8e-7, 1.5e-6);
     for (const Form& form : run_forms({before}, {4, 4, 4}))
         EXPECT_EQ(form.out, (std::vector<float>{4, 2, 1})) << form.name;
 }
@@ -300,7 +300,7 @@ TEST(LowerCurve, LogarithmBehindAClampIsSmoothAtItsEnds) {
     const double hi = 4.026069;
     const Pipeline pipeline = {ClampStage{std::exp2(lo), std::exp2(hi)},
                                curve_stage((log2(kX) - lo) / (hi - lo))};
-    std::vector<float> in = positive_colours();
+    std::vector<float> in = positive_colors();
     for (int i = -2000; i <= 2000; ++i) {
         in.insert(in.end(), 3, static_cast<float>(std::exp2(lo) * (1 + i * 1e-6)));
         in.insert(in.end(), 3, static_cast<float>(std::exp2(hi) * (1 + i * 1e-6)));
@@ -324,7 +324,7 @@ TEST(LowerToneScale, OnLuminanceNeedsNoCube) {
     expect_no_cube(pipeline);
     EXPECT_EQ(types_of(lower_to_ocio(pipeline)), (Types{kRangeType, kMatrixType, kFixed, kLut1D,
                                                         kFixed, kMatrixType, kRangeType, kLut1D}));
-    expect_close(pipeline, positive_colours(), 2e-5, 5e-5);
+    expect_close(pipeline, positive_colors(), 2e-5, 5e-5);
 }
 
 TEST(LowerToneScale, OnLuminanceUsesItsOwnWeights) {
@@ -333,7 +333,7 @@ TEST(LowerToneScale, OnLuminanceUsesItsOwnWeights) {
     const Pipeline pipeline = {kPositive, ToneScaleStage{Norm::luminance, ap1, reinhard()}, kSdr,
                                srgb()};
     expect_no_cube(pipeline);
-    expect_close(pipeline, positive_colours(), 2e-5, 5e-5);
+    expect_close(pipeline, positive_colors(), 2e-5, 5e-5);
     // By hand, Y of (0, 1, 0): 0.6740817658/(1 + 0.6740817658)/0.6740817658.
     const Pipeline linear = {kPositive, ToneScaleStage{Norm::luminance, ap1, reinhard()}};
     for (const Form& form : run_forms(linear, {0, 1, 0})) {
@@ -352,7 +352,7 @@ TEST(LowerToneScale, FixedFunctionWhereItEqualsOne) {
         const Pipeline pipeline = {kPositive, stage};
         expect_no_cube(pipeline);
         EXPECT_EQ(types_of(lower_to_ocio(pipeline)), types);
-        expect_close({kPositive, stage, kSdr, srgb()}, positive_colours(), 1e-6, 5e-6);
+        expect_close({kPositive, stage, kSdr, srgb()}, positive_colors(), 1e-6, 5e-6);
     };
     expect_fixed({Norm::luminance, rec2020, floored_power(1, 1e-4, 1.2)}, {kRangeType, kFixed});
     expect_fixed({Norm::luminance, rec2020, floored_power(3, 2e-5, 1 / 1.2)},
@@ -385,7 +385,7 @@ TEST(LowerToneScale, OnLuminanceOfRec2020IsAsExact) {
         const Pipeline pipeline = {kPositive, ToneScaleStage{Norm::luminance, weights, f}, kSdr,
                                    srgb()};
         expect_no_cube(pipeline);
-        expect_close(pipeline, positive_colours(), 1e-5, 3e-5);
+        expect_close(pipeline, positive_colors(), 1e-5, 3e-5);
     }
 }
 
@@ -393,7 +393,7 @@ TEST(LowerToneScale, OnTheLargestChannelNeedsNoCube) {
     const Pipeline pipeline = {kPositive, ToneScaleStage{Norm::max_rgb, {}, reinhard()}, kSdr,
                                srgb()};
     expect_no_cube(pipeline);
-    expect_close(pipeline, positive_colours(), 2e-5, 5e-5);
+    expect_close(pipeline, positive_colors(), 2e-5, 5e-5);
     for (const Form& form : run_forms({kPositive, ToneScaleStage{Norm::max_rgb, {}, reinhard()}},
                                       {4, 1, 2, 1, 4, 2, 2, 1, 4})) {
         const std::vector<double> expected = {0.8, 0.2, 0.4, 0.2, 0.8, 0.4, 0.4, 0.2, 0.8};
@@ -414,7 +414,7 @@ TEST(LowerToneScale, BlackStaysBlack) {
 }
 
 TEST(LowerToneScale, NegativeChannelsUnderAPositiveLuminance) {
-    // Without a clamp before it: a saturated colour outside the gamut. The norm is positive, so the
+    // Without a clamp before it: a saturated color outside the gamut. The norm is positive, so the
     // negative channel is scaled like the others.
     const Pipeline pipeline = {ToneScaleStage{Norm::luminance, kRec709Weights, reinhard()}};
     const std::vector<float> in = {1, -0.2F, 0.1F, -0.5F, 2, 0.3F, 0.3F, 0.4F, -0.2F};
@@ -442,8 +442,8 @@ TEST(LowerToneScale, NegativeChannelsUnderAPositiveMaximumAreKeptOrRefused) {
 // ---------------------------------------------------------------------------------------------
 // Hue-preserving curves
 
-/// Saturated colours of six hues and all orders of the channels, greys, black, and both ends.
-std::vector<float> saturated_colours() {
+/// Saturated colors of six hues and all orders of the channels, grays, black, and both ends.
+std::vector<float> saturated_colors() {
     std::vector<float> rgb;
     for (const float light :
          {1e-7F, 1e-3F, 0.05F, 0.3F, 0.8F, 1.0F, 3.0F, 50.0F, 4000.0F, 65504.0F}) {
@@ -502,8 +502,8 @@ TEST(LowerHuePreserving, IsAsExactAsACurve) {
     for (const Expr& f : {reinhard(), hable, 1 - exp(-kX)}) {
         const Pipeline pipeline = {kPositive, HuePreservingStage{f}, kSdr, srgb()};
         expect_no_cube(pipeline);
-        expect_close(pipeline, positive_colours(), 3e-7, 1e-6);
-        expect_close(pipeline, saturated_colours(), 3e-7, 1e-6);
+        expect_close(pipeline, positive_colors(), 3e-7, 1e-6);
+        expect_close(pipeline, saturated_colors(), 3e-7, 1e-6);
     }
 }
 
@@ -544,12 +544,12 @@ TEST(LowerHuePreserving, NeedsAClampAtZeroBeforeIt) {
     EXPECT_NO_THROW((void)lower_to_ocio({ClampStage{0, kInfinity}, stage}));
 }
 
-TEST(LowerHuePreserving, IsNotFusedWithItsNeighbours) {
+TEST(LowerHuePreserving, IsNotFusedWithItsNeighbors) {
     const Pipeline pipeline = {kPositive, curve_stage(sqrt(kX + 0.1)), kPositive,
                                HuePreservingStage{reinhard()}, curve_stage(kX * kX)};
     EXPECT_EQ(types_of(lower_to_ocio(pipeline)),
               (Types{kRangeType, kLut1D, kRangeType, kLut1D, kLut1D}));
-    expect_close(pipeline, positive_colours(), 6e-7, 3e-6);
+    expect_close(pipeline, positive_colors(), 6e-7, 3e-6);
 }
 
 TEST(LowerHuePreserving, SurvivesAFile) {
@@ -571,7 +571,7 @@ TEST(LowerHuePreserving, SurvivesAFile) {
     file->setSrc(path.c_str());
     file->setInterpolation(OCIO::INTERP_LINEAR);
     group->appendTransform(file);
-    const std::vector<float> in = positive_colours();
+    const std::vector<float> in = positive_colors();
     const auto from_file = run_forms(make_processor(group), in);
     const auto from_memory = run_forms({kPositive, HuePreservingStage{f}}, in);
     std::filesystem::remove(path);
@@ -599,7 +599,7 @@ TEST(LutFileNumbers, AreReadBackByOpenColorIO) {
     std::vector<float> values = sample_half_domain(f, 0, 4);
     const std::vector<signed char> slack = unused_entries(values, 0, 4);
     std::vector<float> in;
-    for (const float x : positive_colours())
+    for (const float x : positive_colors())
         in.push_back(std::min(x, 4.0F));
     ClfTable table;
     table.size = 65536;
@@ -665,7 +665,7 @@ TEST(LowerHexcone, PbrNeutralNeedsNoCube) {
     for (const bool white : {false, true}) {
         expect_no_cube(shown(neutral(0.8, 0.15, white)));
         expect_close(shown(neutral(0.8, 0.15, white)), in, 1e-5, 3e-5);
-        expect_close(shown(neutral(0.8, 0.15, white)), saturated_colours(), 1e-5, 3e-5);
+        expect_close(shown(neutral(0.8, 0.15, white)), saturated_colors(), 1e-5, 3e-5);
     }
 }
 
@@ -688,7 +688,7 @@ TEST(LowerHexcone, PbrNeutralByHand) {
 
 /// OpenColorIO inverts every transform: tables that fall, too, over positive and negative numbers.
 TEST(LowerHexcone, PbrNeutralBackByHand) {
-    // The three colours above, from their light; and one whose peak is compressed, so that stops
+    // The three colors above, from their light; and one whose peak is compressed, so that stops
     // are counted on both sides: (3, 0.5, 0.5) less 0.04 has the peak 2.96, which becomes
     // n = 1 - 0.0576/2.44.
     const double low = 1 - 0.0576 / 0.44;
@@ -722,12 +722,11 @@ TEST(LowerHexcone, PbrNeutralBackByHand) {
 TEST(LowerHexcone, PbrNeutralWithAnyParameters) {
     for (const double start : {0.1, 0.99}) {
         for (const double desaturation : {0.0, 1.0})
-            expect_close(shown(neutral(start, desaturation, false)), positive_colours(), 1e-5,
-                         3e-5);
+            expect_close(shown(neutral(start, desaturation, false)), positive_colors(), 1e-5, 3e-5);
     }
 }
 
-TEST(LowerHexcone, GreysStayGrey) {
+TEST(LowerHexcone, GraysStayGray) {
     std::vector<float> in;
     for (int i = -1000; i <= 800; ++i)
         in.insert(in.end(), 3, std::exp2(static_cast<float>(i) / 50));
@@ -750,8 +749,8 @@ TEST(LowerHexcone, LosesChromaGainsChromaOrKeepsIt) {
     const Expr f = reinhard();
     const HexconeStage stages[] = {
         {0, f, 1 / (1 + kX)},                           // the largest channel's tone scale
-        {0, f, max(0, 1 - kX) / (1 + kX)},              // grey from 1 on
-        {0, f, 0},                                      // grey
+        {0, f, max(0, 1 - kX) / (1 + kX)},              // gray from 1 on
+        {0, f, 0},                                      // gray
         {0.3 * kX, f, 1 / (1 + kX) * (0.5 + 0.5 * f)},  // more chroma where it is brighter
         {0.3 * kX, f, select(less(kX, 0.5), 1, 0.5) / (1 + kX)},  // a step
         {kX / 2, 0.01 + f, 1 / (1 + kX)},                         // black is not 0
@@ -762,7 +761,7 @@ TEST(LowerHexcone, LosesChromaGainsChromaOrKeepsIt) {
         expect_no_cube(shown(stage));
         // Nothing here desaturates lights as the Neutrals do: the hue's float rounding is what max
         // RGB has, twice the bound of the Neutrals.
-        expect_close(shown(stage), positive_colours(), 2e-5, 5e-5);
+        expect_close(shown(stage), positive_colors(), 2e-5, 5e-5);
         expect_sane(shown(stage), 5e-5);
     }
 }
@@ -770,14 +769,14 @@ TEST(LowerHexcone, LosesChromaGainsChromaOrKeepsIt) {
 TEST(LowerHexcone, LightAboveThePeakIsKept) {
     // `linear` output: values to 8, in float32's proportions.
     const HexconeStage stage{0, 8 * kX / (7 + kX), 8 / (7 + kX) * 0.9};
-    expect_close({kPositive, stage}, positive_colours(), 8 * 1e-6, 8 * 3e-6);
+    expect_close({kPositive, stage}, positive_colors(), 8 * 1e-6, 8 * 3e-6);
 }
 
 TEST(LowerHexcone, ClampsBeforeItEndItsDomain) {
     // sqrt(3.3 - p) is not defined beyond.
     const HexconeStage stage{0, sqrt(3.3 - kX) * kX / 2, sqrt(3.3 - kX) / 4};
     const Pipeline pipeline = {ClampStage{0, 3.25}, stage, kSdr, srgb()};
-    expect_close(pipeline, positive_colours(), 2e-5, 5e-5);
+    expect_close(pipeline, positive_colors(), 2e-5, 5e-5);
     const Lowered lowered = lower_to_ocio(pipeline);
     for (std::size_t i = 0; i < lowered.ops.size(); ++i) {
         const auto* lut = std::get_if<Lut1DOp>(&lowered.ops[i].op);
@@ -822,12 +821,12 @@ TEST(LowerMap3, IsAShaperAndACube) {
         EXPECT_EQ(cube->getInterpolation(), OCIO::INTERP_TETRAHEDRAL);
     }
     // 65^3 of a smooth operator: one code of 10 bits.
-    expect_close(pipeline, positive_colours(), 1.0 / 1023, 1.0 / 1023);
+    expect_close(pipeline, positive_colors(), 1.0 / 1023, 1.0 / 1023);
     // 4 times the nodes, some 16 times less error: a cube of 17 must be clearly worse.
     const auto worst = [&](int edge) {
         LowerOptions options;
         options.cube_edge = edge;
-        const std::vector<float> in = positive_colours();
+        const std::vector<float> in = positive_colors();
         const std::vector<double> truth = reference(pipeline, in);
         std::vector<float> out(in.size());
         OcioCpu(make_processor(lower_to_ocio(pipeline, options).ops))
@@ -841,7 +840,7 @@ TEST(LowerMap3, IsAShaperAndACube) {
 }
 
 TEST(LowerMap3, AxesAreNotSwapped) {
-    // Six saturated colours through a map that treats no two channels alike.
+    // Six saturated colors through a map that treats no two channels alike.
     const Expr r = Expr::input(0);
     const Expr g = Expr::input(1);
     const Expr b = Expr::input(2);
@@ -883,7 +882,7 @@ TEST(LowerMap3, LightAboveThePeakIsKeptOrRefused) {
 // Whole views
 
 /// NaN, infinities, the largest float, alone and together.
-std::vector<float> special_colours() {
+std::vector<float> special_colors() {
     const SampleSet set = make_sample_set(find_input_space("lin_rec709"), {2, 10});
     std::vector<float> rgb;
     for (std::size_t i = 0; i < set.size(); ++i) {
@@ -893,8 +892,8 @@ std::vector<float> special_colours() {
     return rgb;
 }
 
-TEST(LowerView, NanAndInfinitiesAreSanitisedAsInTheEngines) {
-    const std::vector<float> in = special_colours();
+TEST(LowerView, NanAndInfinitiesAreSanitizedAsInTheEngines) {
+    const std::vector<float> in = special_colors();
     ASSERT_GT(in.size(), 60U);
     for (const char* op : {"clamp", "hable", "reinhard:luminance", "reinhard:max", "agx_sobotka",
                            "aces_hill", "reinhard_jodie"}) {
@@ -919,9 +918,9 @@ TEST(LowerView, NanAndInfinitiesAreSanitisedAsInTheEngines) {
     }
 }
 
-TEST(LowerView, SpecialColoursStayInRangeInOtherInputSpaces) {
+TEST(LowerView, SpecialColorsStayInRangeInOtherInputSpaces) {
     // The matrix comes first there, and spreads a NaN over the channels: the view stays a picture.
-    const std::vector<float> in = special_colours();
+    const std::vector<float> in = special_colors();
     for (const char* op : {"clamp", "hable", "reinhard:luminance", "agx_sobotka"}) {
         const Pipeline pipeline = build_view(make_view(resolve_operator(op), "lin_ap1", 0, "srgb"));
         for (const Form& form : run_forms(pipeline, in)) {
@@ -938,13 +937,13 @@ TEST(LowerView, PerChannelOperatorsKeepToTheCurveBound) {
         if (!is_per_channel(view)) continue;
         SCOPED_TRACE(op.id);
         // What an operator declares is wider than the structure's bound, and has its reason.
-        expect_close(view, mixed_colours(), std::max(3e-7, op.bounds.ocio_cpu),
+        expect_close(view, mixed_colors(), std::max(3e-7, op.bounds.ocio_cpu),
                      std::max(1e-6, op.bounds.ocio_gpu));
     }
 }
 
 TEST(LowerView, ConvertedInputsAndDisplays) {
-    // ACEScg in, Display P3 out, colours inside Rec.709: three matrices, no cancellation to speak
+    // ACEScg in, Display P3 out, colors inside Rec.709: three matrices, no cancellation to speak
     // of.
     const Pipeline view =
         build_view(make_view(resolve_operator("hable"), "lin_ap1", -1, "display_p3"));

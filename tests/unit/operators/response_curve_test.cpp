@@ -94,14 +94,14 @@ TEST(ResponseCurve, TellsLayoutsByContent) {
         const ResponseCurves c = parse_response_curves(text, "f", curve);
         return Vector3{at(c, 0, 0.5), at(c, 1, 0.5), at(c, 2, 0.5)};
     };
-    const Vector3 grey = {0.7, 0.7, 0.7};
-    EXPECT_EQ(values("0 0\n0.5 0.7\n1 1\n"), grey);
-    EXPECT_EQ(values("0 0\n0.5 0.7\n1 1"), grey) << "no end of line at the end";
-    EXPECT_EQ(values("\xEF\xBB\xBF# film\r\n\r\n  0\t0 \r\n+0.5  7e-1 # mid\r\n1. 1\r\n"), grey);
-    EXPECT_EQ(values("0 0\r0.5 0.7\r1 1\r"), grey);
-    EXPECT_EQ(values("0,0\n0.5,0.7\n1,1\n"), grey);
-    EXPECT_EQ(values("irradiance, response\n0, 0\n0.5, 0.7\n1, 1\n"), grey);
-    EXPECT_EQ(values("x;y\n0;0\n0.5;0.7\n1;1\n"), grey);
+    const Vector3 gray = {0.7, 0.7, 0.7};
+    EXPECT_EQ(values("0 0\n0.5 0.7\n1 1\n"), gray);
+    EXPECT_EQ(values("0 0\n0.5 0.7\n1 1"), gray) << "no end of line at the end";
+    EXPECT_EQ(values("\xEF\xBB\xBF# film\r\n\r\n  0\t0 \r\n+0.5  7e-1 # mid\r\n1. 1\r\n"), gray);
+    EXPECT_EQ(values("0 0\r0.5 0.7\r1 1\r"), gray);
+    EXPECT_EQ(values("0,0\n0.5,0.7\n1,1\n"), gray);
+    EXPECT_EQ(values("irradiance, response\n0, 0\n0.5, 0.7\n1, 1\n"), gray);
+    EXPECT_EQ(values("x;y\n0;0\n0.5;0.7\n1;1\n"), gray);
     const Vector3 rgb = {0.7, 0.6, 0.5};
     EXPECT_EQ(values("0 0 0 0\n0.5 0.7 0.6 0.5\n1 1 1 1\n"), rgb);
     EXPECT_EQ(values("B,R,G,B\n0,0,0,0\n0.5,0.7,0.6,0.5\n1,1,1,1\n"), rgb);
@@ -113,7 +113,7 @@ TEST(ResponseCurve, TellsLayoutsByContent) {
         "aBlue\r\ng\r\nI =\r\n0 1\r\nB =\r\n0 1\r\n";
     EXPECT_EQ(values(three), rgb) << "nor do three that can only be one";
     EXPECT_EQ(values(three, "a"), rgb);
-    EXPECT_EQ(values(three, "aRed"), grey);
+    EXPECT_EQ(values(three, "aRed"), gray);
     EXPECT_EQ(values("a-R\ng\nI =\n0 1\nB =\n0 1\na-G\ng\nI =\n0 1\nB =\n0.5 1\n"
                      "a-B\ng\nI =\n0 1\nB =\n0 0.5\n",
                      "a"),

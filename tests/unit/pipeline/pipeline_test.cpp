@@ -97,11 +97,11 @@ TEST(Stage, AnIdentityChangesNoPixel) {
     Pipeline stages = identities();
     stages.push_back(ToneScaleStage{Norm::luminance, kRec709Weights, kX});
     stages.push_back(ToneScaleStage{Norm::max_rgb, {}, kX});
-    const std::vector<Vector3> colours = {
+    const std::vector<Vector3> colors = {
         {0.2, 0.5, 4}, {-1, -2, -3}, {0, 0, 0}, {-3, 0.5, 0.1}, {65504, -65504, 1}};
     for (const Stage& stage : stages) {
         if (!is_identity(stage)) continue;
-        for (const Vector3& rgb : colours) {
+        for (const Vector3& rgb : colors) {
             // The tone scale multiplies by f(n)/n: one division, one product. The hue-preserving
             // curve divides by a range of twice the peak, and multiplies.
             expect_rgb(shown(stage, rgb), rgb, 65504 * 0x1p-50, std::string(stage_kind(stage)));
@@ -285,13 +285,13 @@ TEST(Pipeline, SimplifyDropsWhatDoesNothing) {
 }
 
 TEST(Pipeline, SimplifyKeepsThePicture) {
-    const std::vector<Vector3> colours = {{0.18, 0.18, 0.18}, {4, 0.02, 0.5},  {0, 0, 0},
-                                          {-0.3, 0.4, 2},     {1e-5, 900, 30}, {-2, -3, -4}};
+    const std::vector<Vector3> colors = {{0.18, 0.18, 0.18}, {4, 0.02, 0.5},  {0, 0, 0},
+                                         {-0.3, 0.4, 2},     {1e-5, 900, 30}, {-2, -3, -4}};
     for (const Operator& op : all_operators()) {
         for (const char* input : {"lin_rec709", "lin_ap1"}) {
             const Pipeline view =
                 build_view(make_view(resolve_operator(op.id), input, 0, "rec2020"));
-            for (const Vector3& rgb : colours) {
+            for (const Vector3& rgb : colors) {
                 // Only the multiplication of two matrices of the view moves a last bit.
                 expect_rgb(shown(simplify(view), rgb), shown(view, rgb), 1e-12, op.id);
             }
@@ -533,11 +533,11 @@ TEST(Resolve, TextsAreTakenAsTheyAre) {
     EXPECT_EQ(file.params.text("file"), kResponseFile);
     EXPECT_EQ(file.label, "camera_response file=" + kResponseFile);
     EXPECT_EQ(resolve_operator("camera_response", {{"file", ""}}).label, "camera_response");
-    const Vector3 grey = {0.5, 0.5, 0.5};
-    EXPECT_NE(shown(file.build(), grey), shown(none.build(), grey));
+    const Vector3 gray = {0.5, 0.5, 0.5};
+    EXPECT_NE(shown(file.build(), gray), shown(none.build(), gray));
     const ResolvedOperator blue =
         resolve_operator("camera_response", {{"file", kResponseFile}, {"curve", "blue"}});
-    EXPECT_EQ(shown(blue.build(), grey)[0], shown(file.build(), grey)[2]);
+    EXPECT_EQ(shown(blue.build(), gray)[0], shown(file.build(), gray)[2]);
 }
 
 TEST(Resolve, TextsThatNameNothingAreErrors) {
@@ -661,7 +661,7 @@ TEST(Statistics, KeepEveryDigit) {
 }
 
 TEST(Statistics, OfEveryPictureAreAccepted) {
-    // Black; one grey; a pixel of light in the dark; the brightest there is.
+    // Black; one gray; a pixel of light in the dark; the brightest there is.
     SceneStatistics uniform = {0.18, 0.18, 0.18, 0.18, {0.18, 0.18, 0.18}, {0.18, 0.18, 0.18}};
     SceneStatistics spark = {65504, 0.01, 65504, 65504, {0.01, 0.01, 0.01}, {65504, 65504, 65504}};
     SceneStatistics dim = {5e-324, 5e-324, 5e-324, 5e-324, {0, 0, 7e-323}, {0, 0, 7e-323}};
@@ -973,13 +973,13 @@ TEST(Registry, PresetsAndLooksResolve) {
     }
 }
 
-/// The picture of a set of colours in one list of numbers.
+/// The picture of a set of colors in one list of numbers.
 std::vector<double> picture(const ResolvedOperator& op) {
-    const std::vector<Vector3> colours = {{0, 0, 0},        {0.01, 0.01, 0.01}, {0.18, 0.18, 0.18},
-                                          {0.7, 0.3, 0.05}, {2, 4, 1},          {30, 3, 9}};
+    const std::vector<Vector3> colors = {{0, 0, 0},        {0.01, 0.01, 0.01}, {0.18, 0.18, 0.18},
+                                         {0.7, 0.3, 0.05}, {2, 4, 1},          {30, 3, 9}};
     std::vector<double> numbers;
     const Pipeline pipeline = op.build();
-    for (const Vector3& rgb : colours) {
+    for (const Vector3& rgb : colors) {
         const Vector3 out = shown(pipeline, rgb);
         numbers.insert(numbers.end(), out.begin(), out.end());
     }
@@ -1167,7 +1167,7 @@ TEST(View, HdrDisplaysShowLightInUnitsOf100Nits) {
         expect_rgb(shown(view_of("clamp", "rec2100_hlg"), {light, light, light}),
                    {code, code, code}, 5e-8);
     }
-    // A saturated colour: BT.2100-2 by hand. Red of Rec.2020 at 100 cd/m2 of 1000: the luminance is
+    // A saturated color: BT.2100-2 by hand. Red of Rec.2020 at 100 cd/m2 of 1000: the luminance is
     // 0.02627 of the peak, the scene light 0.1 * 0.02627^(-1/6), the code its OETF.
     const double scene = 0.1 * std::pow(0.02627, -1 / 6.0);
     const double a = 0.17883277;
@@ -1441,22 +1441,22 @@ TEST(View, MisspeltOutputsGetTheNearestToo) {
               std::string::npos);
 }
 
-TEST(View, KeepsGreysWithinHalfACodeOfTenBits) {
-    EXPECT_TRUE(keeps_greys({}));
-    EXPECT_TRUE(keeps_greys(view_of("hable", "srgb")));
+TEST(View, KeepsGraysWithinHalfACodeOfTenBits) {
+    EXPECT_TRUE(keeps_grays({}));
+    EXPECT_TRUE(keeps_grays(view_of("hable", "srgb")));
     const auto offset = [](double codes) {
         return Pipeline{CurveStage{{0.5, 0.5 + codes / 1023, 0.5}, std::nullopt}};
     };
-    EXPECT_TRUE(keeps_greys(offset(0.49)));
-    EXPECT_FALSE(keeps_greys(offset(0.51)));
-    EXPECT_TRUE(keeps_greys(offset(-0.49)));
-    EXPECT_FALSE(keeps_greys(offset(-0.51)));
+    EXPECT_TRUE(keeps_grays(offset(0.49)));
+    EXPECT_FALSE(keeps_grays(offset(0.51)));
+    EXPECT_TRUE(keeps_grays(offset(-0.49)));
+    EXPECT_FALSE(keeps_grays(offset(-0.51)));
     // Golden is a warm look: slopes 1, 0.9, 0.5.
-    EXPECT_FALSE(keeps_greys(build_view(
+    EXPECT_FALSE(keeps_grays(build_view(
         make_view(resolve_operator("agx_sobotka", {}, "golden"), "lin_rec709", 0, "srgb"))));
     // Tinted in the brightest stop alone.
-    EXPECT_FALSE(keeps_greys({CurveStage{{kX, kX, select(less(8000, kX), 0, kX)}, std::nullopt}}));
-    EXPECT_FALSE(keeps_greys({CurveStage{{kX, kX, select(less(kX, 4e-6), 1, kX)}, std::nullopt}}));
+    EXPECT_FALSE(keeps_grays({CurveStage{{kX, kX, select(less(8000, kX), 0, kX)}, std::nullopt}}));
+    EXPECT_FALSE(keeps_grays({CurveStage{{kX, kX, select(less(kX, 4e-6), 1, kX)}, std::nullopt}}));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/grey_curve.h"
+#include "cli/gray_curve.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,9 +15,9 @@ Vector3 luminance_weights(const Primaries& primaries) {
     return primaries == kRec709 ? kRec709Weights : rgb_to_xyz(primaries)[1];
 }
 
-/// The view, and then the code value of the grey that has the luminance of the color it shows: for
+/// The view, and then the code value of the gray that has the luminance of the color it shows: for
 /// a neutral color its own.
-Pipeline with_grey_level(const View& view) {
+Pipeline with_gray_level(const View& view) {
     const Display& display = find_display(view.display);
     const Vector3 weights = luminance_weights(display.primaries);
     Pipeline stages = build_view(view);
@@ -40,17 +40,17 @@ Planes codes_of(const Pipeline& pipeline, const Vector3& color, std::span<const 
     return planes;
 }
 
-std::vector<double> grey_codes(const View& view, std::span<const double> scene) {
-    return codes_of(with_grey_level(view), {1, 1, 1}, scene)[0];
+std::vector<double> gray_codes(const View& view, std::span<const double> scene) {
+    return codes_of(with_gray_level(view), {1, 1, 1}, scene)[0];
 }
 
-double grey_code(const View& view, double scene) { return grey_codes(view, {{scene}})[0]; }
+double gray_code(const View& view, double scene) { return gray_codes(view, {{scene}})[0]; }
 
 std::vector<double> scene_of(const std::vector<double>& stops) {
     std::vector<double> scene;
     scene.reserve(stops.size());
     for (const double s : stops)
-        scene.push_back(kMidGrey * std::exp2(s));
+        scene.push_back(kMidGray * std::exp2(s));
     return scene;
 }
 

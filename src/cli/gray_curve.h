@@ -11,7 +11,7 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-inline constexpr double kMidGrey = 0.18;
+inline constexpr double kMidGray = 0.18;
 
 /// Red, green and blue.
 using Planes = std::array<std::vector<double>, 3>;
@@ -20,12 +20,12 @@ using Planes = std::array<std::vector<double>, 3>;
 [[nodiscard]] Planes codes_of(const Pipeline& pipeline, const Vector3& color,
                               std::span<const double> exposures);
 
-/// The code value that each scene-linear grey is shown with on the view's display: where what is
-/// shown is not grey, that of the grey with the same luminance.
-[[nodiscard]] std::vector<double> grey_codes(const View& view, std::span<const double> scene);
-[[nodiscard]] double grey_code(const View& view, double scene);
+/// The code value that each scene-linear gray is shown with on the view's display: where what is
+/// shown is not gray, that of the gray with the same luminance.
+[[nodiscard]] std::vector<double> gray_codes(const View& view, std::span<const double> scene);
+[[nodiscard]] double gray_code(const View& view, double scene);
 
-/// Scene-linear values of stops from mid grey.
+/// Scene-linear values of stops from mid gray.
 [[nodiscard]] std::vector<double> scene_of(const std::vector<double>& stops);
 
 [[nodiscard]] double largest_difference(const std::vector<double>& a, const std::vector<double>& b);

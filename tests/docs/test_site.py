@@ -106,7 +106,7 @@ def check_contents(report, site, command):
     for op in listed["operators"] + listed["local_operators"]:
         name = f"operators/{op['id']}.html"
         text = (site / name).read_text() if name in found else ""
-        needed = [f'src="{op["id"]}.png"', f"../curves/{op['id']}.svg", *(f"<code>{p['name']}</code>" for p in op["parameters"])]
+        needed = [f'src="{op["id"]}.png"', f"../curves/{op['id']}.svg", *(f">{p['name']}</code>" for p in op["parameters"])]
         if op["is_local"]:  # its result depends on the picture: it has no curve
             needed.pop(1)
         poor += [f"{name} lacks {what}" for what in needed if what not in text]

@@ -52,6 +52,8 @@ def as_python_markdown(text):
     def prose(piece):
         # A list begins after an empty line.
         piece = re.sub(r"(?m)^(?!\s*(?:[*-]|\d+\.) |\s*$|\s*\||#)(.*\S.*)\n(?=(?:[*-]|1\.) )", r"\1\n\n", piece)
+        # Names, options and short commands do not break at their hyphens.
+        piece = re.sub(r"(?<!`)`[^`]+`(?!`)", lambda code: code.group() + "{.whole}" * (len(code.group()) <= 34), piece)
         return piece.replace("<details>", '<details markdown="1">')
 
     # Words behind the language tell tests what a block is.

@@ -204,7 +204,7 @@ void add_config(CommandLine& program) {
     out.excludes(into);
     const Option update = command.add_flag(
         "--update", options->is_updated,
-        "with --into: replace the added views, by those of --views or the same ones");
+        "with --into: rebuild the added views, or replace them with those of --views");
     update.group(output).needs(into);
     command.add_flag("--remove", options->is_removed, "with --into: remove the added views")
         .group(output)

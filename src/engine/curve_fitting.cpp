@@ -94,6 +94,10 @@ class CurveFitter {
     void fold() {
         for (const std::uint32_t output : outputs_)
             fold_value(output);
+        count_uses();
+        for (const TapeInstruction& step : code_) {
+            if (step.curve) skip_limits_before(step.a);
+        }
         drop_unread();
     }
 
@@ -169,6 +173,36 @@ class CurveFitter {
         }
         for (const std::uint32_t operand : operands)
             fold_value(operand);
+    }
+
+    /// By what outputs depend on.
+    void count_uses() {
+        std::fill(uses_.begin(), uses_.end(), 0);
+        for (const std::uint32_t output : outputs_)
+            ++uses_[output];
+        for (std::size_t i = code_.size(); i-- > 0;) {
+            if (uses_[i] == 0) continue;
+            for (const std::uint32_t operand : operands_of(i))
+                ++uses_[operand];
+        }
+    }
+
+    /// Where a curve reads x times a positive uniform, it does itself what limits of x do: it has
+    /// one value up to 0. Above, a limit that x cannot reach does nothing.
+    void skip_limits_before(std::uint32_t i) {
+        TapeInstruction& product = code_[i];
+        if (product.op != ExprOp::multiply || uses_[i] != 1) return;
+        if (code_[product.a].op == ExprOp::uniform) std::swap(product.a, product.b);
+        if (code_[product.b].op != ExprOp::uniform || !(code_[product.b].least > 0)) return;
+        while (true) {
+            const TapeInstruction& limit = code_[product.a];
+            if (limit.op != ExprOp::maximum && limit.op != ExprOp::minimum) return;
+            const TapeInstruction& at = code_[limit.b];
+            if (at.op != ExprOp::constant) return;
+            if (limit.op == ExprOp::maximum ? at.value != 0 : at.value < interval_[limit.a].hi)
+                return;
+            product.a = limit.a;
+        }
     }
 
     /// The steps between a root and a value as text, the same for channels that are treated alike.

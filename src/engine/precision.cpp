@@ -142,9 +142,11 @@ double cost_of_double(ExprOp op) {
 class PrecisionChooser {
   public:
     PrecisionChooser(const std::vector<TapeInstruction>& code,
-                     const std::array<std::uint32_t, 3>& outputs, double max_error)
+                     const std::array<std::uint32_t, 3>& outputs, double max_error,
+                     const std::vector<std::vector<double>>& settings)
         : code_(code),
           outputs_(outputs),
+          settings_(settings),
           max_error_(max_error),
           largest_sum_(0.25 * 0.25 * max_error * max_error),
           in_double_(code.size()),
@@ -193,6 +195,7 @@ class PrecisionChooser {
         for (std::size_t p = 0; p < probes.size(); p += 7)
             few.push_back(probes[p]);
         visit(few);
+        visit_settings(few);
         if (!too_coarse_.empty()) return {in_double_, too_coarse_};
         // A copy (min, select, ...) of a float is exact, one of a double is not: what was decided
         // may have to be looked at again.
@@ -208,6 +211,7 @@ class PrecisionChooser {
             if (!too_coarse_.empty()) break;
             if (pass == 0) near_branches = approach_branches();
             visit(near_branches);
+            visit_settings(few);
             if (in_double_ == before) break;
         }
         return {in_double_, too_coarse_};
@@ -384,6 +388,14 @@ class PrecisionChooser {
     }
     void visit(const std::vector<Vector3>& colors) {
         visit(colors, [](std::size_t, std::size_t, double) {});
+    }
+
+    void visit_settings(const std::vector<Vector3>& colors) {
+        for (const std::vector<double>& setting : settings_) {
+            block_.set_uniforms(setting);
+            visit(colors);
+        }
+        if (!settings_.empty()) block_.set_uniforms(&TapeInstruction::value);
     }
 
     /// A color that climbs to worse ones, by the steps that it has been given.
@@ -694,6 +706,7 @@ class PrecisionChooser {
 
     const std::vector<TapeInstruction>& code_;
     const std::array<std::uint32_t, 3>& outputs_;
+    const std::vector<std::vector<double>>& settings_;
     double max_error_;
     double largest_sum_;  // of the squares of what roundings add to an output
     std::vector<bool> in_double_;
@@ -713,7 +726,8 @@ class PrecisionChooser {
 }  // namespace
 
 Sensitivity measure_influence(const std::vector<TapeInstruction>& code,
-                              const std::array<std::uint32_t, 3>& outputs) {
+                              const std::array<std::uint32_t, 3>& outputs,
+                              const std::vector<std::vector<double>>& settings) {
     /// Where the derivative has no end.
     constexpr double kPole = 1e12;
     constexpr std::size_t kStride = 3;
@@ -723,19 +737,23 @@ Sensitivity measure_influence(const std::vector<TapeInstruction>& code,
         probes.push_back(all[p]);
     Sensitivity result;
     ProbeBlock block(code, outputs, true);
-    for (std::size_t p = 0; p < probes.size(); p += ProbeBlock::kLanes) {
-        block.evaluate(&probes[p], std::min(ProbeBlock::kLanes, probes.size() - p));
-        block.differentiate();
-        result.value.resize(p + block.size(), std::vector<double>(code.size()));
-        result.sensitivity.resize(p + block.size(), std::vector<double>(code.size()));
-        for (std::size_t i = 0; i < code.size(); ++i) {
-            for (std::size_t lane = 0; lane < block.size(); ++lane) {
-                result.value[p + lane][i] = block.value(i, lane);
-                double& largest = result.sensitivity[p + lane][i];
-                for (std::size_t o = 0; o < 3; ++o) {
-                    largest = std::max(largest, block.has_pole(o, i, lane)
-                                                    ? kPole
-                                                    : std::fabs(block.adjoint(o, i, lane)));
+    for (std::size_t setting = 0; setting <= settings.size(); ++setting) {
+        if (setting > 0) block.set_uniforms(settings[setting - 1]);
+        for (std::size_t p = 0; p < probes.size(); p += ProbeBlock::kLanes) {
+            block.evaluate(&probes[p], std::min(ProbeBlock::kLanes, probes.size() - p));
+            block.differentiate();
+            const std::size_t first = result.value.size();
+            result.value.resize(first + block.size(), std::vector<double>(code.size()));
+            result.sensitivity.resize(first + block.size(), std::vector<double>(code.size()));
+            for (std::size_t i = 0; i < code.size(); ++i) {
+                for (std::size_t lane = 0; lane < block.size(); ++lane) {
+                    result.value[first + lane][i] = block.value(i, lane);
+                    double& largest = result.sensitivity[first + lane][i];
+                    for (std::size_t o = 0; o < 3; ++o) {
+                        largest = std::max(largest, block.has_pole(o, i, lane)
+                                                        ? kPole
+                                                        : std::fabs(block.adjoint(o, i, lane)));
+                    }
                 }
             }
         }
@@ -744,8 +762,9 @@ Sensitivity measure_influence(const std::vector<TapeInstruction>& code,
 }
 
 Precision choose_precision(const std::vector<TapeInstruction>& code,
-                           const std::array<std::uint32_t, 3>& outputs, double max_error) {
-    return PrecisionChooser(code, outputs, max_error).choose();
+                           const std::array<std::uint32_t, 3>& outputs, double max_error,
+                           const std::vector<std::vector<double>>& settings) {
+    return PrecisionChooser(code, outputs, max_error, settings).choose();
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -26,18 +26,22 @@ struct Precision {
     std::vector<bool> in_double;
     std::vector<const CompiledCurve*> too_coarse;
 };
+/// @param settings  of the uniforms, beside their typical values: values by TapeInstruction::source
 [[nodiscard]] Precision choose_precision(const std::vector<TapeInstruction>& code,
                                          const std::array<std::uint32_t, 3>& outputs,
-                                         double max_error);
+                                         double max_error,
+                                         const std::vector<std::vector<double>>& settings = {});
 
 /// What values are, and how much of their errors reaches an output: the largest derivative of an
 /// output by each value, relative to outputs above 1; 1e12 where it has no end.
-/// [probe][index], over a set of probe colors.
+/// [probe][index], over a set of probe colors, with each setting of the uniforms.
 struct Sensitivity {
     std::vector<std::vector<double>> value;
     std::vector<std::vector<double>> sensitivity;
 };
+/// @param settings  as for choose_precision()
 [[nodiscard]] Sensitivity measure_influence(const std::vector<TapeInstruction>& code,
-                                            const std::array<std::uint32_t, 3>& outputs);
+                                            const std::array<std::uint32_t, 3>& outputs,
+                                            const std::vector<std::vector<double>>& settings = {});
 
 TONEWRIGHT_NAMESPACE_END

@@ -371,6 +371,12 @@ bool ProbeBlock::set_uniforms(double TapeInstruction::*from) {
     return has_uniforms;
 }
 
+void ProbeBlock::set_uniforms(const std::vector<double>& values) {
+    for (std::size_t i = 0; i < code_.size(); ++i) {
+        if (code_[i].op == ExprOp::uniform) value_[i].lane.fill(values[code_[i].source]);
+    }
+}
+
 void ProbeBlock::evaluate(const Vector3* colors, std::size_t n) { evaluate(colors, n, computed_); }
 
 void ProbeBlock::evaluate(const Vector3* colors, std::size_t n,

@@ -29,6 +29,8 @@ class ProbeBlock {
     /// @param from  the value, the least or the most that an instruction has for its uniform
     /// @return  false: there are no uniforms
     bool set_uniforms(double TapeInstruction::*from);
+    /// @param values  by TapeInstruction::source
+    void set_uniforms(const std::vector<double>& values);
 
     /// @param n  of the colors, at most kLanes
     void evaluate(const Vector3* colors, std::size_t n);

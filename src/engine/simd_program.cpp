@@ -2,6 +2,7 @@
 #include "engine/simd_program.h"
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -73,6 +74,12 @@ class FloatTape {
             TapeInstruction& step = code[i];
             step.source = i;
             const int operands = operand_count(step.op);
+            // As constants are multiplied by their reciprocals: see add().
+            if (step.op == ExprOp::divide && !tape.is_number(i) &&
+                code[step.b].op == ExprOp::uniform) {
+                step.op = ExprOp::multiply;
+                step.b = tape.reciprocal(step.b);
+            }
             if (!tape.is_number(i) || operands == 0) continue;
             step.value = scalar_op(step.op, code[step.a].value, code[step.b].value,
                                    code[step.c].value, step.table);
@@ -756,18 +763,46 @@ struct Form {
     }
 };
 
+/// The numbers of the tape with uniforms at their ends: with all at the same end, and in turns.
+std::vector<std::vector<double>> numbers_at_ends(const Tape& tape, const LiveUniforms& uniforms) {
+    const auto count = std::count_if(uniforms.begin(), uniforms.end(),
+                                     [](const auto& u) { return u.second.covers_ends; });
+    std::vector<std::vector<double>> result;
+    const auto add = [&](bool first_is_least, bool takes_turns) {
+        UniformValues values;
+        bool is_least = first_is_least;
+        for (const auto& [name, uniform] : uniforms) {
+            values[name] = uniform.typical;
+            if (!uniform.covers_ends) continue;
+            values[name] = is_least ? uniform.least : uniform.most;
+            if (takes_turns) is_least = !is_least;
+        }
+        result.push_back(tape.evaluate_numbers(values));
+    };
+    for (const bool takes_turns : {false, true}) {
+        if (count < (takes_turns ? 2 : 1)) break;
+        add(true, takes_turns);
+        add(false, takes_turns);
+    }
+    return result;
+}
+
+std::atomic<std::size_t> compiled_forms = 0;
+
 Form make_form(const Pipeline& pipeline, const LiveUniforms& uniforms, double max_error,
                CurveForm curve_form) {
+    ++compiled_forms;
     const bool has_curves = curve_form != CurveForm::none;
     const auto source = std::make_shared<const Tape>(compose(simplify(pipeline)), uniforms);
     const FloatTape plain(*source);
     Sensitivity sensitivity;
-    if (has_curves) sensitivity = measure_influence(plain.code(), plain.outputs());
+    const std::vector<std::vector<double>> ends = numbers_at_ends(*source, uniforms);
+    if (has_curves) sensitivity = measure_influence(plain.code(), plain.outputs(), ends);
     CurveCache curves;
     while (true) {
         FloatTape tape = plain;
         if (has_curves) tape.fold(sensitivity, curves, curve_form);
-        Precision precision = choose_precision(tape.code(), tape.outputs(), max_error);
+        Precision precision = choose_precision(tape.code(), tape.outputs(), max_error, ends);
         // Exact enough where it stands, or compiled again or not at all.
         for (const CompiledCurve* curve : precision.too_coarse)
             reject_curve(curves, curve);
@@ -814,6 +849,8 @@ Steps compile_in_steps(const Pipeline& pipeline, const LiveUniforms& uniforms, d
     steps.curves = std::move(form.curves);
     return steps;
 }
+
+std::size_t compilations() noexcept { return compiled_forms; }
 
 void set_uniforms(const Code& code, const std::vector<double>& values, Numbers& numbers) {
     const auto set = [&](const std::vector<UniformPlace>& places, std::vector<ConstantVector>& to) {

@@ -27,6 +27,9 @@ namespace simd {
                            const Target& target = find_target(), bool has_curves = true,
                            const LiveUniforms& uniforms = {});
 
+/// How many pipelines were compiled so far, for tests.
+[[nodiscard]] std::size_t compilations() noexcept;
+
 /// Where a code has the curves that its tape refers to.
 using CurveIndex = std::map<const CompiledCurve*, std::uint32_t>;
 /// A program with what lies behind it.

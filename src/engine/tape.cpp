@@ -38,18 +38,35 @@ std::uint32_t Tape::add(const Expr& expr,
         step.lattice = expr.lattice().get();
         step.input = expr.channel();
     }
+    bool is_live = expr.op() == ExprOp::uniform;
     bool is_number = expr.op() != ExprOp::input && expr.op() != ExprOp::lattice;
     std::array<std::uint32_t*, 3> slots = {&step.a, &step.b, &step.c};
     for (int i = 0; i < expr.operand_count(); ++i) {
         const std::uint32_t operand = add(expr.operand(i), seen);
         *slots[static_cast<std::size_t>(i)] = operand;
         is_number = is_number && is_number_[operand];
+        is_live = is_live || is_live_[operand];
     }
-    code_.push_back(step);
-    is_number_.push_back(is_number);
+    if (step.op == ExprOp::divide && !is_number && is_live_[step.b] &&
+        !reciprocal_.contains(step.b)) {
+        TapeInstruction one;
+        one.value = 1;
+        push(one, true, false);
+        TapeInstruction reciprocal = step;
+        reciprocal.a = static_cast<std::uint32_t>(code_.size() - 1);
+        push(reciprocal, true, true);
+        reciprocal_.emplace(step.b, static_cast<std::uint32_t>(code_.size() - 1));
+    }
+    push(step, is_number, is_live && is_number);
     const auto index = static_cast<std::uint32_t>(code_.size() - 1);
     seen.emplace(expr.node(), index);
     return index;
+}
+
+void Tape::push(const TapeInstruction& step, bool is_number, bool is_live) {
+    code_.push_back(step);
+    is_number_.push_back(is_number);
+    is_live_.push_back(is_live);
 }
 
 std::vector<double> Tape::evaluate_numbers(const UniformValues& uniforms) const {

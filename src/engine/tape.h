@@ -69,6 +69,9 @@ class Tape {
 
     /// Depends on no input: the same for every pixel.
     [[nodiscard]] bool is_number(std::uint32_t i) const { return is_number_[i]; }
+    /// The instruction that is 1 divided by this one; no output reads it. There is one for every
+    /// number that uniforms decide on and that others are divided by.
+    [[nodiscard]] std::uint32_t reciprocal(std::uint32_t i) const { return reciprocal_.at(i); }
     /// Of every such instruction, with these uniforms; of all others 0.
     /// @throws Error  a uniform has no value, or one out of its range
     [[nodiscard]] std::vector<double> evaluate_numbers(const UniformValues& uniforms) const;
@@ -76,7 +79,10 @@ class Tape {
   private:
     std::uint32_t add(const Expr& expr, std::unordered_map<const ExprNode*, std::uint32_t>& seen);
     std::vector<TapeInstruction> code_;
+    void push(const TapeInstruction& step, bool is_number, bool is_live);
     std::vector<bool> is_number_;
+    std::vector<bool> is_live_;  // a number that uniforms decide on
+    std::unordered_map<std::uint32_t, std::uint32_t> reciprocal_;
     LiveUniforms uniforms_;
     std::array<std::uint32_t, 3> outputs_{};
     std::vector<Expr> keep_;  // keeps nodes (and their tables) alive

@@ -6,8 +6,9 @@
 // planar float, whatever the pixel type, run through the engine, and scattered into the
 // destination. No pixel type is known to the kernel.
 //
-// Operators with parameters that a picture has are prepared anew for each picture, from its
-// statistics; all others once, whatever the exposure.
+// Views are compiled once, whatever the exposure and the statistics that operators take from each
+// picture: both are uniforms. Where an operator needs its statistics as constants, it is compiled
+// anew for each picture.
 #include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imagebufalgo_util.h>
 #include <fmt/format.h>
@@ -187,53 +188,61 @@ bool is_exposure_live(const View& view) {
 }
 
 /// What the engine has to do: behind a local operator, the display.
-Pipeline engine_stages(View view) {
-    if (is_exposure_live(view)) return build_live_view(view, {std::string(kExposureUniform)});
+Pipeline engine_stages(View view, const LiveUniforms& uniforms) {
     if (view.op.op->is_local()) {
         view.input_primaries = kRec709;
         view.input_decode = {};
         view.exposure_stops = 0;
     }
-    return build_view(view);
+    return build_live_view(view, uniform_names(uniforms));
 }
 
-LiveUniforms engine_uniforms(const View& view) {
-    if (!is_exposure_live(view)) return {};
-    return {{std::string(kExposureUniform), {0, -kMostLiveStops, kMostLiveStops}}};
-}
-
-bool keeps_grays_at_any_exposure(View view) {
-    if (is_exposure_live(view)) view.exposure_stops = 0;
-    return keeps_grays(engine_stages(view));
+/// @param uniforms  the statistics that are live
+LiveUniforms with_exposure(LiveUniforms uniforms, const View& view) {
+    if (is_exposure_live(view))
+        uniforms[std::string(kExposureUniform)] = {0, -kMostLiveStops, kMostLiveStops};
+    return uniforms;
 }
 
 /// What a picture is run through.
 struct Prepared {
-    /// With a program for all exposures that are live, if the view's own is.
-    explicit Prepared(View v)
+    /// With a program for all exposures that are live, if the view's own is, and for all values of
+    /// the statistics that are.
+    Prepared(View v, const LiveUniforms& statistics)
         : view(std::move(v)),
-          engine(engine_stages(view), engine_uniforms(view), view.op.op->bounds.simd_goal),
-          keeps_gray(keeps_grays_at_any_exposure(view)) {
+          uniforms(with_exposure(statistics, view)),
+          engine(engine_stages(view, uniforms), uniforms, view.op.op->bounds.simd_goal) {
         if (view.op.op->is_local()) to_light.emplace(light_stages(view));
     }
-    /// The same program at another exposure that it is for.
-    Prepared(const Prepared& other, double stops)
-        : view(other.view), engine(other.at(stops)), keeps_gray(other.keeps_gray) {
-        view.exposure_stops = stops;
-        if (other.to_light) to_light.emplace(other.to_light->with_uniforms({}));
+    /// The same program for another view that it serves.
+    Prepared(const Prepared& program, View v)
+        : view(std::move(v)),
+          uniforms(program.uniforms),
+          engine(program.engine.with_uniforms(values())) {
+        if (program.to_light) to_light.emplace(program.to_light->with_uniforms({}));
+    }
+
+    /// Whether a gray picture stays one; at all exposures that are live.
+    [[nodiscard]] bool keeps_gray() const {
+        View any = view;
+        if (is_exposure_live(any)) any.exposure_stops = 0;
+        return keeps_grays(engine_stages(any, {}));
     }
 
     View view;
+    LiveUniforms uniforms;
     SimdEngine engine;
-    bool keeps_gray;
     /// Of a local operator: what comes before it. `engine` comes behind it.
     std::optional<SimdEngine> to_light;
 
   private:
-    [[nodiscard]] SimdEngine at(double stops) const {
+    [[nodiscard]] UniformValues values() const {
         UniformValues values;
-        if (is_exposure_live(view)) values.emplace(kExposureUniform, stops);
-        return engine.with_uniforms(values);
+        for (const auto& [name, uniform] : uniforms) {
+            values[name] =
+                name == kExposureUniform ? view.exposure_stops : view.op.params.number(name);
+        }
+        return values;
     }
 };
 
@@ -244,6 +253,7 @@ struct Tonemapper::State {
         : options(in_places(o)),
           depends_on_picture(tonewright::depends_on_picture(options)),
           programs_(std::make_shared<Programs>(kMostPrepared)) {
+        if (depends_on_picture) statistics_ = live_statistics(operator_of(options));
         // Tells what is wrong with the options before there is a picture.
         is_local =
             view_of(options, options.settings, source_color({}, options.input)).op.op->is_local();
@@ -254,9 +264,21 @@ struct Tonemapper::State {
         : options(other.options),
           depends_on_picture(other.depends_on_picture),
           is_local(other.is_local),
+          statistics_(other.statistics_),
           programs_(other.programs_) {
         check_exposure(stops);
         options.exposure_stops = stops;
+    }
+    /// For pictures with these statistics, with the same programs.
+    State(const State& other, const SceneStatistics& statistics)
+        : State(other, other.options.exposure_stops) {
+        const ResolvedOperator op = operator_of(options);
+        if (statistics_.empty()) statistics_ = live_statistics(op);
+        options.settings = settings_for_picture(op, statistics);
+        options.statistics = TonemapOptions::Statistics::defaults;
+        depends_on_picture = false;
+        // Tells what is wrong with the statistics.
+        (void)operator_of(options);
     }
 
     TonemapOptions options;
@@ -274,7 +296,8 @@ struct Tonemapper::State {
     /// Pictures of one shot are of one kind.
     static constexpr std::size_t kMostPrepared = 8;
     using Programs = BoundedCache<std::string, Prepared>;
-    std::shared_ptr<Programs> programs_;        // by input space, and exposure if not live
+    LiveUniforms statistics_;
+    std::shared_ptr<Programs> programs_;        // by input space, and by what is not live
     mutable Programs prepared_{kMostPrepared};  // by input space
 };
 
@@ -577,20 +600,20 @@ void Tonemapper::State::run(ImageBuf& dst, const ImageBuf& src, ROI roi, int nth
     // Of the whole picture, whatever the region: its parts must fit together.
     const SceneStatistics statistics =
         measure_scene(src, options.input, options.unpremult, {}, nthreads);
-    const Settings settings = settings_for_picture(operator_of(options), statistics);
-    run(Prepared(Prepared(view_of(options, settings, source)), options.exposure_stops), dst, src,
-        roi, nthreads, progress);
+    State(*this, statistics).run(dst, src, roi, nthreads, progress);
 }
 
 std::shared_ptr<const Prepared> Tonemapper::State::prepared_for(const SourceColor& source) const {
-    const double stops = options.exposure_stops;
-    const bool is_for_many = is_live_exposure(stops) || is_local;
     return prepared_.get(source.name, [&] {
-        const std::string program = source.name + (is_for_many ? "" : " " + shortest(stops));
-        return Prepared(
-            *programs_->get(program,
-                            [&] { return Prepared(view_of(options, options.settings, source)); }),
-            stops);
+        View view = view_of(options, options.settings, source);
+        std::string program = source.name;
+        if (!is_live_exposure(options.exposure_stops) && !is_local)
+            program += " " + shortest(options.exposure_stops);
+        for (const auto& [name, value] : options.settings)
+            program += " " + name + (statistics_.contains(name) ? "" : "=" + value);
+        const std::shared_ptr<const Prepared> compiled =
+            programs_->get(program, [&] { return Prepared(view, statistics_); });
+        return Prepared(*compiled, std::move(view));
     });
 }
 
@@ -600,8 +623,9 @@ void Tonemapper::State::run(const Prepared& with, ImageBuf& dst, const ImageBuf&
                                  std::ptrdiff_t out_stride, std::size_t count) {
         with.engine.run(in, in_stride, out, out_stride, count);
     };
-    run_picture({engine, with.keeps_gray, with.view.op.label, options.unpremult, light}, dst, src,
-                roi, nthreads, progress);
+    const bool keeps_gray = channel_layout(src.spec()).is_gray && with.keeps_gray();
+    run_picture({engine, keeps_gray, with.view.op.label, options.unpremult, light}, dst, src, roi,
+                nthreads, progress);
     tag_as_result_of(with.view, dst.specmod());
     if (options.dither) dst.specmod().attribute("oiio:dither", 1);
 }
@@ -617,14 +641,11 @@ const TonemapOptions& Tonemapper::options() const noexcept { return state_->opti
 bool Tonemapper::takes_statistics() const noexcept { return state_->depends_on_picture; }
 bool Tonemapper::needs_whole_picture() const noexcept { return state_->is_local; }
 
-Tonemapper Tonemapper::with_statistics(const SceneStatistics& statistics) const {
-    TonemapOptions options = state_->options;
-    options.settings = settings_for_picture(operator_of(options), statistics);
-    options.statistics = TonemapOptions::Statistics::defaults;
-    return Tonemapper(options);
-}
-
 Tonemapper::Tonemapper(std::unique_ptr<const State> state) : state_(std::move(state)) {}
+
+Tonemapper Tonemapper::with_statistics(const SceneStatistics& statistics) const {
+    return Tonemapper(std::make_unique<const State>(*state_, statistics));
+}
 
 Tonemapper Tonemapper::with_exposure(double stops) const {
     return Tonemapper(std::make_unique<const State>(*state_, stops));

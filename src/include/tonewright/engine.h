@@ -49,6 +49,9 @@ struct LiveUniform {
     double typical = 0;
     double least = 0;
     double most = 0;
+    /// Precision is chosen for both ends, too: the uniform decides how much errors of other values
+    /// count, as a number close to 0 does that something is divided by.
+    bool covers_ends = false;
 };
 /// By the names of the uniforms.
 using LiveUniforms = std::map<std::string, LiveUniform, std::less<>>;
@@ -103,6 +106,24 @@ class TONEWRIGHT_API SimdEngine {
     explicit SimdEngine(std::unique_ptr<const Program> program);
     std::unique_ptr<const Program> program_;
 };
+
+/// The parameters that a picture decides (ParameterSpec::from_picture) as uniforms, so that one
+/// engine serves every picture and every frame of a sequence. Their intervals and units are the
+/// parameters' own, their typical values the defaults; errors keep to the operator's bound at both
+/// ends of each interval.
+///
+/// Left out is what the settings or the preset set. Empty where each picture should have an engine
+/// of its own: a parameter is fixed, or a program with uniforms would be up to three times as slow,
+/// because one of them is an exponent, or values are scaled by two of them.
+[[nodiscard]] TONEWRIGHT_API LiveUniforms live_statistics(const ResolvedOperator& resolved);
+
+/// For build_live_view().
+[[nodiscard]] TONEWRIGHT_API std::vector<std::string> uniform_names(const LiveUniforms& uniforms);
+
+/// The values of live_statistics() for a picture.
+[[nodiscard]] TONEWRIGHT_API UniformValues statistic_values(const LiveUniforms& uniforms,
+                                                            const ResolvedOperator& resolved,
+                                                            const SceneStatistics& statistics);
 
 /// What SimdEngine makes of a pipeline, step by step, for developers: expressions, precision,
 /// curves, program and machine code. The text has no fixed form.

@@ -100,8 +100,10 @@ measure_scene(const OIIO::ImageBuf& src, std::string_view input = kAutoInput,
 /// picture, and used for every frame of a shot. Safe to use from several threads at once, on
 /// different destinations.
 ///
-/// An operator that takes statistics is prepared again for each picture, with its own. A shot would
-/// flicker: give it those of one frame, with_statistics(measure_scene(frame)).
+/// An operator that takes statistics takes those of each picture. Where live_statistics()
+/// (engine.h) has them as uniforms, all pictures share one program, and the pixels keep to the
+/// operator's bound; else each picture has its own. A shot would flicker: give it the statistics of
+/// one frame, with_statistics(measure_scene(frame)).
 class TONEWRIGHT_API Tonemapper {
   public:
     /// @throws Error  unknown name or bad value among the options, with the nearest name.
@@ -115,14 +117,15 @@ class TONEWRIGHT_API Tonemapper {
     [[nodiscard]] bool takes_statistics() const noexcept;
     /// The operator is a local one: a pixel's surroundings count.
     [[nodiscard]] bool needs_whole_picture() const noexcept;
-    /// The same for all pictures that have these statistics: prepared once.
+    /// The same for all pictures that have these statistics. Compiles nothing where all statistics
+    /// of the operator are live, else once.
     /// @throws Error  statistics that are no values of the operator's parameters
     [[nodiscard]] Tonemapper with_statistics(const SceneStatistics& statistics) const;
     /// The same at another exposure, in stops, [-64, 64]. Takes microseconds, and so does the
     /// first picture: within 16 stops up or down, a view is compiled once for all exposures but 0,
-    /// and once without exposure. Beyond, and where an operator takes statistics from each picture,
-    /// it is compiled anew at the first picture. The pixels are those of a Tonemapper that was made
-    /// with this exposure.
+    /// and once without exposure. Beyond, and where an operator takes statistics that are not live
+    /// from each picture, it is compiled anew at the first picture. The pixels are those of a
+    /// Tonemapper that was made with this exposure.
     /// @throws Error  out of that interval
     [[nodiscard]] Tonemapper with_exposure(double stops) const;
 

@@ -5,6 +5,7 @@
 // contract) for whole views.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -756,6 +757,88 @@ TEST(Simd, UniformsMeanWhatTheirValuesMean) {
             }
         }
     }
+}
+
+/// Every operator with statistics, also those of which each picture has an engine of its own: with
+/// all of a picture's numbers at the ends of their intervals and at opposite ends, on colors of all
+/// magnitudes and on those near the statistics.
+TEST(Simd, StatisticsAsUniformsKeepTheBound) {
+    std::size_t tested = 0;
+    for (const Operator& op : all_operators()) {
+        LiveUniforms uniforms;
+        std::vector<std::string> names;
+        const std::vector<std::string> live = live_parameters(op);
+        for (const ParameterSpec& spec : op.parameters) {
+            if (!spec.from_picture || std::find(live.begin(), live.end(), spec.name) == live.end())
+                continue;
+            uniforms[spec.name] = {spec.default_value, spec.min, spec.max, true};
+            names.push_back(spec.name);
+        }
+        if (names.empty()) continue;
+        ++tested;
+        const ResolvedOperator resolved = resolve_operator(op.id);
+        const View view = make_view(resolved, "lin_rec709", 0, "srgb");
+        const Pipeline pipeline = build_live_view(view, names);
+        for (const std::string& target : SimdEngine::targets()) {
+            const SimdEngine engine(pipeline, uniforms, op.bounds.simd_goal, target);
+            const std::vector<double> levels =
+                takes_full_counts()
+                    ? std::vector<double>{0, 1e-6, 1e-3, 0.18, 1, 50, 3000, kHalfMax}
+                    : std::vector<double>{0, 1e-6, 0.18, kHalfMax};
+            for (const double level : levels) {
+                for (const double other : {level, 1e-6, kHalfMax}) {
+                    UniformValues values;
+                    Settings settings;
+                    for (std::size_t i = 0; i < names.size(); ++i) {
+                        const LiveUniform& range = uniforms.at(names[i]);
+                        const double value =
+                            std::clamp(i % 2 ? other : level, range.least, range.most);
+                        values[names[i]] = value;
+                        settings[names[i]] = shortest(value);
+                    }
+                    SampleRandom random(5);
+                    std::vector<float> in;
+                    for (std::size_t i = 0; i < scaled_count(target, 4000); ++i) {
+                        const double middle = i % 2 ? std::log2(std::max(level, 1e-6)) : -4;
+                        const double reach = i % 2 ? 6 : 20;
+                        for (int c = 0; c < 3; ++c) {
+                            const double x = std::exp2(middle + random.uniform(-reach, reach)) *
+                                             (random.uniform(0, 1) < 0.1 ? -1 : 1);
+                            in.push_back(static_cast<float>(x));
+                        }
+                    }
+                    const ReferenceEngine reference(build_view(
+                        make_view(resolve_operator(op.id, settings, ""), "lin_rec709", 0, "srgb")));
+                    const std::vector<double> expected = run(reference, in);
+                    const std::vector<float> out = run(engine.with_uniforms(values), in);
+                    for (std::size_t i = 0; i < out.size(); ++i) {
+                        ASSERT_NEAR(out[i], expected[i], op.bounds.simd)
+                            << op.id << " " << target << " at " << level << ", " << other
+                            << ", color " << in[i / 3 * 3] << " " << in[i / 3 * 3 + 1] << " "
+                            << in[i / 3 * 3 + 2];
+                    }
+                }
+            }
+        }
+    }
+    EXPECT_EQ(tested, 12);
+}
+
+TEST(Simd, StatisticsThatAreFixedOrSlowHaveNoUniforms) {
+    for (const char* id : {"ferwerda", "durand_dorsey_rods", "reinhard_devlin", "drago",
+                           "tumblin_rushmeier", "hable"}) {
+        EXPECT_TRUE(live_statistics(resolve_operator(id)).empty()) << id;
+    }
+    const LiveUniforms uniforms = live_statistics(resolve_operator("logarithmic"));
+    ASSERT_EQ(uniforms.size(), 1);
+    EXPECT_EQ(uniforms.at("maximum").least, 1e-6);
+    EXPECT_EQ(uniforms.at("maximum").most, kHalfMax);
+    EXPECT_TRUE(live_statistics(resolve_operator("logarithmic", {{"maximum", "4"}}, "")).empty());
+    // With one of two fixed, one scale is left.
+    EXPECT_EQ(live_statistics(resolve_operator("drago", {{"maximum", "4"}}, "")).size(), 1);
+    const SceneStatistics dark = {0, 0, 0, 1e-9, {}, {}};
+    EXPECT_EQ(statistic_values(uniforms, resolve_operator("logarithmic"), dark),
+              (UniformValues{{"maximum", 1e-6}}));
 }
 
 TEST(Simd, UniformsOutOfTheirRangeAreRefused) {

@@ -219,14 +219,21 @@ struct Prepared {
         : view(std::move(v)),
           uniforms(program.uniforms),
           engine(program.engine.with_uniforms(values())) {
+        if (view.op.params == program.view.op.params) keeps_gray_ = program.keeps_gray_;
         if (program.to_light) to_light.emplace(program.to_light->with_uniforms({}));
     }
 
     /// Whether a gray picture stays one; at all exposures that are live.
     [[nodiscard]] bool keeps_gray() const {
-        View any = view;
-        if (is_exposure_live(any)) any.exposure_stops = 0;
-        return keeps_grays(engine_stages(any, {}));
+        // Looked up when a picture is gray, which few are. Threads find the same.
+        Known known = *keeps_gray_;
+        if (known == Known::nothing) {
+            View any = view;
+            if (is_exposure_live(any)) any.exposure_stops = 0;
+            known = keeps_grays(engine_stages(any, {})) ? Known::yes : Known::no;
+            *keeps_gray_ = known;
+        }
+        return known == Known::yes;
     }
 
     View view;
@@ -236,6 +243,10 @@ struct Prepared {
     std::optional<SimdEngine> to_light;
 
   private:
+    enum class Known : unsigned char { nothing, no, yes };
+    std::shared_ptr<std::atomic<Known>> keeps_gray_ =
+        std::make_shared<std::atomic<Known>>(Known::nothing);
+
     [[nodiscard]] UniformValues values() const {
         UniformValues values;
         for (const auto& [name, uniform] : uniforms) {
@@ -605,14 +616,18 @@ void Tonemapper::State::run(ImageBuf& dst, const ImageBuf& src, ROI roi, int nth
 
 std::shared_ptr<const Prepared> Tonemapper::State::prepared_for(const SourceColor& source) const {
     return prepared_.get(source.name, [&] {
-        View view = view_of(options, options.settings, source);
         std::string program = source.name;
         if (!is_live_exposure(options.exposure_stops) && !is_local)
             program += " " + shortest(options.exposure_stops);
         for (const auto& [name, value] : options.settings)
             program += " " + name + (statistics_.contains(name) ? "" : "=" + value);
-        const std::shared_ptr<const Prepared> compiled =
-            programs_->get(program, [&] { return Prepared(view, statistics_); });
+        const std::shared_ptr<const Prepared> compiled = programs_->get(program, [&] {
+            return Prepared(view_of(options, options.settings, source), statistics_);
+        });
+        // Making a view takes longer than all the rest: only another one's statistics need it.
+        View view =
+            statistics_.empty() ? compiled->view : view_of(options, options.settings, source);
+        view.exposure_stops = options.exposure_stops;
         return Prepared(*compiled, std::move(view));
     });
 }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -24,8 +25,10 @@ namespace fs = std::filesystem;
 
 constexpr std::uintmax_t kLargestFolder = std::uintmax_t{256} << 20;
 constexpr std::string_view kEnding = ".numbers";
-/// Of the format of the file.
-constexpr std::string_view kBeginning = "tonewright numbers 1\n";
+/// Of the format of the file: the numbers of this processor, whose folder others may share.
+constexpr std::string_view kBeginning = std::endian::native == std::endian::little
+                                            ? "tonewright numbers 1\n"
+                                            : "tonewright numbers 1 big-endian\n";
 
 /// FNV-1a of 64 bits.
 std::uint64_t check_sum(std::string_view bytes) {

@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <set>
 
+#include "base/little_endian.h"
 #include "base/strings.h"
 #include "cli/json.h"
 #include "measure/error_metric.h"
@@ -250,9 +250,7 @@ class Package {
 }  // namespace
 
 std::string texture_bytes(const ShaderTexture& texture) {
-    std::string bytes(texture.rgba.size() * sizeof(float), '\0');
-    std::memcpy(bytes.data(), texture.rgba.data(), bytes.size());
-    return bytes;
+    return little_endian_bytes(texture.rgba);
 }
 
 std::vector<GeneratedFile> npm_package(const std::vector<NpmOperator>& operators) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lut/raw.h"
+#include "base/little_endian.h"
 #include "tonewright/lut.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstring>
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
@@ -21,8 +21,7 @@ Lut parse_raw_lut(const std::string& path, std::string_view bytes) {
     }
     Lut lut;
     lut.size = n;
-    lut.values.resize(bytes.size() / sizeof(float));
-    std::memcpy(lut.values.data(), bytes.data(), bytes.size());
+    lut.values = floats_of_little_endian(bytes);
     for (std::size_t i = 0; i < lut.values.size(); ++i) {
         if (!std::isfinite(lut.values[i])) {
             throw FileError(fmt::format("read: {}: number {} is {}; expected a finite number", path,

@@ -2,11 +2,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstring>
 
 #include "base/format_number.h"
+#include "base/little_endian.h"
 #include "base/strings.h"
 #include "lut/clf.h"
 #include "lut/icc.h"
@@ -37,10 +36,7 @@ void add_error_lines(std::vector<std::string>& lines, const LutError& e) {
 }
 
 /// Hash of the numbers, not of the file.
-std::string hash_of(const Lut& lut) {
-    return content_hash(
-        {reinterpret_cast<const char*>(lut.values.data()), lut.values.size() * sizeof(float)});
-}
+std::string hash_of(const Lut& lut) { return content_hash(little_endian_bytes(lut.values)); }
 
 /// Operator, input, output and error of the LUT.
 std::vector<std::string> header_lines(const Lut& lut, const LutRequest& r, const LutError& e,
@@ -271,12 +267,7 @@ std::string write_3dl(const Lut& lut, const LutRequest& r) {
     return text + "\nLUT8\ngamma 1.0\n";
 }
 
-std::string write_raw(const Lut& lut) {
-    static_assert(std::endian::native == std::endian::little, "raw is little-endian");
-    std::string bytes(lut.values.size() * sizeof(float), '\0');
-    std::memcpy(bytes.data(), lut.values.data(), bytes.size());
-    return bytes;
-}
+std::string write_raw(const Lut& lut) { return little_endian_bytes(lut.values); }
 
 /// Text after the word in the first line that begins with it.
 std::string described(const Lines& header, std::string_view word) {

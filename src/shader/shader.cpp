@@ -10,6 +10,7 @@
 #include <unordered_map>
 
 #include "base/format_number.h"
+#include "base/little_endian.h"
 #include "base/number_cache.h"
 #include "base/strings.h"
 #include "expr/nodes.h"
@@ -266,7 +267,7 @@ std::string definition_hash(const Pipeline& pipeline) {
     const auto add_numbers = [&](const void* what, const std::vector<double>& numbers) {
         if (!seen.insert(what).second) return;
         const std::vector<float> floats(numbers.begin(), numbers.end());
-        text.append(reinterpret_cast<const char*>(floats.data()), floats.size() * sizeof(float));
+        text += little_endian_bytes(floats);
     };
     for (const Expr& e : nodes_of(rgb)) {
         text += std::to_string(static_cast<int>(e.op()));

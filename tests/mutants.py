@@ -38,7 +38,7 @@ LEAST = 4  # mutants of each folder
 KINDS = ["constant", "sign", "comparison", "order", "channel", "logic"]
 MEMORY = 12 << 30  # bytes that a test may take
 # Some of the machine code runs on processors with AVX-512 only.
-NEEDS_AVX512 = ("src/engine/machine_code", "src/engine/vector_code")
+NEEDS_AVX512 = ("src/engine/machine_code", "src/engine/vector_")
 
 Mutant = namedtuple("Mutant", "path line kind before after text")  # text: of the whole changed file
 

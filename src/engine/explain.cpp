@@ -16,15 +16,7 @@ namespace {
 
 using simd::VectorOp;
 
-// Names stand in the order of the enumerations.
-
-constexpr const char* kTapeNames[] = {
-    "constant", "input",       "add",     "subtract", "multiply",   "divide", "minimum",
-    "maximum",  "power",       "atan2",   "less",     "less_equal", "equal",  "negate",
-    "absolute", "square_root", "exp2",    "log2",     "sine",       "cosine", "floor",
-    "select",   "lookup",      "lattice", "uniform"};
-static_assert(std::size(kTapeNames) == static_cast<std::size_t>(ExprOp::uniform) + 1);
-
+/// In the order of VectorOp.
 constexpr const char* kVectorNames[] = {"add",
                                         "subtract",
                                         "multiply",
@@ -81,11 +73,6 @@ constexpr const char* kVectorNames[] = {"add",
                                         "shuffle_4"};
 static_assert(std::size(kVectorNames) == static_cast<std::size_t>(VectorOp::shuffle_4) + 1);
 
-template <std::size_t n, class Enum>
-const char* name_of(const char* const (&names)[n], Enum e) {
-    return names[static_cast<std::size_t>(e)];
-}
-
 class Explanation {
   public:
     std::string of(const simd::Steps& steps) {
@@ -120,7 +107,7 @@ class Explanation {
                     const std::vector<bool>& in_double) {
         for (std::size_t i = 0; i < tape.size(); ++i) {
             const TapeInstruction& step = tape[i];
-            std::string what = name_of(kTapeNames, step.op);
+            std::string what = name_of(step.op);
             if (step.op == ExprOp::constant) what = fmt::format("{}", step.value);
             if (step.op == ExprOp::input) what = "rgb"[step.input];
             if (step.op == ExprOp::uniform)
@@ -198,7 +185,8 @@ class Explanation {
     void write_vector_instruction(const simd::VectorInstruction& step) {
         std::string text =
             step.result == simd::VectorOperand::kNone ? "" : fmt::format("v{} = ", step.result);
-        text += fmt::format("{}{}", name_of(kVectorNames, step.op), step.wide ? ".f64" : "");
+        text += fmt::format("{}{}", kVectorNames[static_cast<std::size_t>(step.op)],
+                            step.wide ? ".f64" : "");
         const char* separator = " ";
         for (const simd::VectorOperand& in : step.in) {
             if (in.is_value()) text += fmt::format("{}v{}", separator, in.value);

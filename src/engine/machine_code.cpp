@@ -325,12 +325,17 @@ class Generator : public Xbyak::CodeGenerator {
 
     // --- instructions ----------------------------------------------------------------------------
 
+    static bool commutes(VectorOp op) {
+        return op == VectorOp::add || op == VectorOp::multiply || op == VectorOp::bit_and ||
+               op == VectorOp::bit_or || op == VectorOp::bit_xor || op == VectorOp::integer_add;
+    }
+
     /// op(result, a, b), b from memory where it is there.
     template <class F>
-    void binary(const VectorInstruction& step, F op, bool commutes = false) {
+    void binary(const VectorInstruction& step, F op) {
         VectorOperand a = step.in[0];
         VectorOperand b = step.in[1];
-        if (commutes && is_in_memory(a) && !is_in_memory(b)) std::swap(a, b);
+        if (commutes(step.op) && is_in_memory(a) && !is_in_memory(b)) std::swap(a, b);
         const Xbyak::Xmm ra = in_register(a, step.wide);
         if (is_in_memory(b)) {
             const Xbyak::Address mb = in_memory(b);
@@ -481,92 +486,50 @@ class Generator : public Xbyak::CodeGenerator {
         const bool wide = step.wide;
         switch (step.op) {
             case VectorOp::add:
-                return binary(
-                    step, [&](Z r, Z a, const O& b) { wide ? vaddpd(r, a, b) : vaddps(r, a, b); },
-                    true);
+                return binary(step, [&](auto... x) { wide ? vaddpd(x...) : vaddps(x...); });
             case VectorOp::subtract:
-                return binary(
-                    step, [&](Z r, Z a, const O& b) { wide ? vsubpd(r, a, b) : vsubps(r, a, b); });
+                return binary(step, [&](auto... x) { wide ? vsubpd(x...) : vsubps(x...); });
             case VectorOp::multiply:
-                return binary(
-                    step, [&](Z r, Z a, const O& b) { wide ? vmulpd(r, a, b) : vmulps(r, a, b); },
-                    true);
+                return binary(step, [&](auto... x) { wide ? vmulpd(x...) : vmulps(x...); });
             case VectorOp::divide:
-                return binary(
-                    step, [&](Z r, Z a, const O& b) { wide ? vdivpd(r, a, b) : vdivps(r, a, b); });
+                return binary(step, [&](auto... x) { wide ? vdivpd(x...) : vdivps(x...); });
             case VectorOp::minimum:
-                return binary(
-                    step, [&](Z r, Z a, const O& b) { wide ? vminpd(r, a, b) : vminps(r, a, b); });
+                return binary(step, [&](auto... x) { wide ? vminpd(x...) : vminps(x...); });
             case VectorOp::maximum:
-                return binary(
-                    step, [&](Z r, Z a, const O& b) { wide ? vmaxpd(r, a, b) : vmaxps(r, a, b); });
+                return binary(step, [&](auto... x) { wide ? vmaxpd(x...) : vmaxps(x...); });
             case VectorOp::scale:
-                return binary(step, [&](Z r, Z a, const O& b) {
-                    wide ? vscalefpd(r, a, b) : vscalefps(r, a, b);
-                });
+                return binary(step, [&](auto... x) { wide ? vscalefpd(x...) : vscalefps(x...); });
             case VectorOp::bit_and:
-                return binary(
-                    step, [&](Z r, Z a, const O& b) { wide ? vandpd(r, a, b) : vandps(r, a, b); },
-                    true);
+                return binary(step, [&](auto... x) { wide ? vandpd(x...) : vandps(x...); });
             case VectorOp::bit_or:
-                return binary(
-                    step, [&](Z r, Z a, const O& b) { wide ? vorpd(r, a, b) : vorps(r, a, b); },
-                    true);
+                return binary(step, [&](auto... x) { wide ? vorpd(x...) : vorps(x...); });
             case VectorOp::bit_xor:
-                return binary(
-                    step, [&](Z r, Z a, const O& b) { wide ? vxorpd(r, a, b) : vxorps(r, a, b); },
-                    true);
+                return binary(step, [&](auto... x) { wide ? vxorpd(x...) : vxorps(x...); });
             case VectorOp::bit_and_not:
-                return binary(step, [&](Z r, Z a, const O& b) {
-                    wide ? vandnpd(r, a, b) : vandnps(r, a, b);
-                });
+                return binary(step, [&](auto... x) { wide ? vandnpd(x...) : vandnps(x...); });
             case VectorOp::integer_add:
-                return binary(
-                    step, [&](Z r, Z a, const O& b) { wide ? vpaddq(r, a, b) : vpaddd(r, a, b); },
-                    true);
+                return binary(step, [&](auto... x) { wide ? vpaddq(x...) : vpaddd(x...); });
             case VectorOp::integer_subtract:
-                return binary(
-                    step, [&](Z r, Z a, const O& b) { wide ? vpsubq(r, a, b) : vpsubd(r, a, b); });
+                return binary(step, [&](auto... x) { wide ? vpsubq(x...) : vpsubd(x...); });
             case VectorOp::to_float:
                 return unary(step, [&](Z r, const O& a) { vcvtdq2ps(r, a); });
             case VectorOp::multiply_add:
                 return fused(
-                    step,
-                    [&](Z a, Z b, const O& c) {
-                        wide ? vfmadd213pd(a, b, c) : vfmadd213ps(a, b, c);
-                    },
-                    [&](Z a, Z c, const O& b) {
-                        wide ? vfmadd132pd(a, c, b) : vfmadd132ps(a, c, b);
-                    },
-                    [&](Z c, Z a, const O& b) {
-                        wide ? vfmadd231pd(c, a, b) : vfmadd231ps(c, a, b);
-                    });
+                    step, [&](auto... x) { wide ? vfmadd213pd(x...) : vfmadd213ps(x...); },
+                    [&](auto... x) { wide ? vfmadd132pd(x...) : vfmadd132ps(x...); },
+                    [&](auto... x) { wide ? vfmadd231pd(x...) : vfmadd231ps(x...); });
             case VectorOp::multiply_subtract:
                 return fused(
-                    step,
-                    [&](Z a, Z b, const O& c) {
-                        wide ? vfmsub213pd(a, b, c) : vfmsub213ps(a, b, c);
-                    },
-                    [&](Z a, Z c, const O& b) {
-                        wide ? vfmsub132pd(a, c, b) : vfmsub132ps(a, c, b);
-                    },
-                    [&](Z c, Z a, const O& b) {
-                        wide ? vfmsub231pd(c, a, b) : vfmsub231ps(c, a, b);
-                    });
+                    step, [&](auto... x) { wide ? vfmsub213pd(x...) : vfmsub213ps(x...); },
+                    [&](auto... x) { wide ? vfmsub132pd(x...) : vfmsub132ps(x...); },
+                    [&](auto... x) { wide ? vfmsub231pd(x...) : vfmsub231ps(x...); });
             case VectorOp::subtract_product:
                 return fused(
-                    step,
-                    [&](Z a, Z b, const O& c) {
-                        wide ? vfnmadd213pd(a, b, c) : vfnmadd213ps(a, b, c);
-                    },
-                    [&](Z a, Z c, const O& b) {
-                        wide ? vfnmadd132pd(a, c, b) : vfnmadd132ps(a, c, b);
-                    },
-                    [&](Z c, Z a, const O& b) {
-                        wide ? vfnmadd231pd(c, a, b) : vfnmadd231ps(c, a, b);
-                    });
+                    step, [&](auto... x) { wide ? vfnmadd213pd(x...) : vfnmadd213ps(x...); },
+                    [&](auto... x) { wide ? vfnmadd132pd(x...) : vfnmadd132ps(x...); },
+                    [&](auto... x) { wide ? vfnmadd231pd(x...) : vfnmadd231ps(x...); });
             case VectorOp::square_root:
-                return unary(step, [&](Z r, const O& a) { wide ? vsqrtpd(r, a) : vsqrtps(r, a); });
+                return unary(step, [&](auto... x) { wide ? vsqrtpd(x...) : vsqrtps(x...); });
             case VectorOp::round:
             case VectorOp::floor: {
                 const std::uint8_t mode = step.op == VectorOp::round ? 8 : 9;
@@ -579,8 +542,7 @@ class Generator : public Xbyak::CodeGenerator {
                 });
             }
             case VectorOp::exponent:
-                return unary(step,
-                             [&](Z r, const O& a) { wide ? vgetexppd(r, a) : vgetexpps(r, a); });
+                return unary(step, [&](auto... x) { wide ? vgetexppd(x...) : vgetexpps(x...); });
             case VectorOp::mantissa:  // [3/4, 3/2), sign 0
                 return unary(step, [&](Z r, const O& a) {
                     wide ? vgetmantpd(r, a, 7) : vgetmantps(r, a, 7);

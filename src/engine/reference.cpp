@@ -20,83 +20,46 @@ constexpr std::size_t kTile = 128;
 /// operators of the catalog have at most 35 values at a time.
 constexpr std::size_t kTileDoubles = 4096;
 
-/// One operation over a tile. The switch is outside the loop, so that the plain operations become
-/// vector code; each computes exactly scalar_op().
+/// One operation over a tile. The operation is chosen outside the loop, so that the plain ones
+/// become vector code; each computes exactly scalar_op().
 template <ExprOp op>
-[[gnu::always_inline]] inline void run_op(double* out, const double* a, const double* b,
-                                          const double* c, const Table* table,
-                                          std::size_t count) noexcept {
+[[gnu::always_inline]] inline void run_with_any_target(double* out, const double* a,
+                                                       const double* b, const double* c,
+                                                       const Table* table, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i)
         out[i] = scalar_op(op, a[i], b[i], c[i], table);
 }
 
-[[gnu::always_inline]] inline void run_with_any_target(const TapeInstruction& step, double* out,
-                                                       const double* a, const double* b,
-                                                       const double* c, std::size_t n) noexcept {
-    const Table* t = step.table;
-    switch (step.op) {
-        case ExprOp::add:
-            return run_op<ExprOp::add>(out, a, b, c, t, n);
-        case ExprOp::subtract:
-            return run_op<ExprOp::subtract>(out, a, b, c, t, n);
-        case ExprOp::multiply:
-            return run_op<ExprOp::multiply>(out, a, b, c, t, n);
-        case ExprOp::divide:
-            return run_op<ExprOp::divide>(out, a, b, c, t, n);
-        case ExprOp::minimum:
-            return run_op<ExprOp::minimum>(out, a, b, c, t, n);
-        case ExprOp::maximum:
-            return run_op<ExprOp::maximum>(out, a, b, c, t, n);
-        case ExprOp::power:
-            return run_op<ExprOp::power>(out, a, b, c, t, n);
-        case ExprOp::atan2:
-            return run_op<ExprOp::atan2>(out, a, b, c, t, n);
-        case ExprOp::less:
-            return run_op<ExprOp::less>(out, a, b, c, t, n);
-        case ExprOp::less_equal:
-            return run_op<ExprOp::less_equal>(out, a, b, c, t, n);
-        case ExprOp::equal:
-            return run_op<ExprOp::equal>(out, a, b, c, t, n);
-        case ExprOp::negate:
-            return run_op<ExprOp::negate>(out, a, b, c, t, n);
-        case ExprOp::absolute:
-            return run_op<ExprOp::absolute>(out, a, b, c, t, n);
-        case ExprOp::square_root:
-            return run_op<ExprOp::square_root>(out, a, b, c, t, n);
-        case ExprOp::exp2:
-            return run_op<ExprOp::exp2>(out, a, b, c, t, n);
-        case ExprOp::log2:
-            return run_op<ExprOp::log2>(out, a, b, c, t, n);
-        case ExprOp::sine:
-            return run_op<ExprOp::sine>(out, a, b, c, t, n);
-        case ExprOp::cosine:
-            return run_op<ExprOp::cosine>(out, a, b, c, t, n);
-        case ExprOp::floor:
-            return run_op<ExprOp::floor>(out, a, b, c, t, n);
-        case ExprOp::select:
-            return run_op<ExprOp::select>(out, a, b, c, t, n);
-        case ExprOp::lookup:
-            return run_op<ExprOp::lookup>(out, a, b, c, t, n);
-        case ExprOp::constant:
-        case ExprOp::input:
-        case ExprOp::lattice:
-        case ExprOp::uniform:
-            return;
+struct Baseline {
+    template <ExprOp op>
+    static void run(double* out, const double* a, const double* b, const double* c,
+                    const Table* table, std::size_t n) {
+        run_with_any_target<op>(out, a, b, c, table, n);
     }
-}
-
-void run_on_baseline(const TapeInstruction& step, double* out, const double* a, const double* b,
-                     const double* c, std::size_t n) noexcept {
-    run_with_any_target(step, out, a, b, c, n);
-}
+};
 
 #if defined(__x86_64__) && defined(__GNUC__)
 /// The same bits: AVX2 has no fused multiply-add.
-[[gnu::target("avx2")]] void run_on_avx2(const TapeInstruction& step, double* out, const double* a,
-                                         const double* b, const double* c, std::size_t n) noexcept {
-    run_with_any_target(step, out, a, b, c, n);
-}
+struct Avx2 {
+    template <ExprOp op>
+    [[gnu::target("avx2")]] static void run(double* out, const double* a, const double* b,
+                                            const double* c, const Table* table, std::size_t n) {
+        run_with_any_target<op>(out, a, b, c, table, n);
+    }
+};
 #endif
+
+template <class Target, std::size_t... kOp>
+constexpr auto all_operations(std::index_sequence<kOp...> /*all*/) {
+    return std::array{&Target::template run<static_cast<ExprOp>(kOp)>...};
+}
+template <class Target>
+void run_on(const TapeInstruction& step, double* out, const double* a, const double* b,
+            const double* c, std::size_t n) {
+    static constexpr auto kAll =
+        all_operations<Target>(std::make_index_sequence<std::size(kScalarOperations)>());
+    kAll[static_cast<std::size_t>(step.op)](out, a, b, c, step.table, n);
+}
 
 /// Of the same place in a lattice, what several instructions make of it: a place is found once.
 struct LatticeChannels {
@@ -120,9 +83,9 @@ void run_lattice(const Lattice& lattice, const LatticeChannels& channels, const 
 RunInstruction reference_operations() {
 #if defined(__x86_64__) && defined(__GNUC__)
     static const bool has_avx2 = __builtin_cpu_supports("avx2") != 0;
-    if (has_avx2) return run_on_avx2;
+    if (has_avx2) return run_on<Avx2>;
 #endif
-    return run_on_baseline;
+    return run_on<Baseline>;
 }
 
 /// The tape with a register for each value. run() allocates no memory.

@@ -200,10 +200,16 @@ class Rows {
     const float* numbers_;
     alignas(kVectorBytes) std::uint32_t at_[kLaneMultiple];
 };
-template <int kLength>
-HWY_INLINE Rows<kLength> rows_at(DF /*d*/, std::span<const float> numbers, hn::Vec<DI> cell,
-                                 std::integral_constant<int, kLength> /*length*/) {
-    return {numbers, cell};
+/// See RowPolynomial.
+template <int kLength, bool kHasRestarts>
+struct RowKind {
+    static constexpr int length = kLength;
+    static constexpr bool has_restarts = kHasRestarts;
+    static constexpr bool is_aligned = false;  // gains nothing here
+};
+template <class Kind>
+HWY_INLINE auto rows_at(DF /*d*/, std::span<const float> numbers, hn::Vec<DI> cell, Kind /*kind*/) {
+    return Rows<Kind::length>(numbers, cell);
 }
 
 #endif
@@ -419,7 +425,7 @@ HWY_INLINE void over_curve(const Frame& given, const Instruction& step, const Co
     const DF d;
     const Frame frame = given;
     const Operand out = step.out;
-    const CurveEnds ends(curve);
+    const CurveEnds<DF> ends(d, curve);
     const Source source(frame, step.in[0]);
     if (!curve.is_precise) {
         for (std::size_t i = 0; i < frame.count; i += hn::Lanes(d)) {
@@ -428,12 +434,13 @@ HWY_INLINE void over_curve(const Frame& given, const Instruction& step, const Co
         }
         return;
     }
+    const CurveEnds<DD> wide_ends(DD(), curve);
     for (std::size_t i = 0; i < frame.count; i += hn::Lanes(d)) {
         const Doubles exact = load_doubles(source, i);
         const auto narrow = load_narrow(d, source, i);
-        store_result(
-            frame, out, i,
-            precise_curve_value(d, ends, polynomial, narrow, source.wide ? &exact : nullptr));
+        store_result(frame, out, i,
+                     precise_curve_value(d, ends, wide_ends, polynomial, narrow,
+                                         source.wide ? &exact : nullptr));
     }
 }
 
@@ -468,32 +475,38 @@ constexpr CurveForm kCurveForm = CurveForm::segments;
 
 #elif HWY_TARGET <= HWY_SSE4
 
-template <int kLength>
-using CurveOfRows = RowPolynomial<DF, std::integral_constant<int, kLength>>;
+/// use(kind) with the curve's RowKind.
+template <class F>
+HWY_INLINE void with_row_kind(const CompiledCurve& curve, F use) {
+    const bool has_restarts = !curve.rows->restarts.empty();
+    if (curve.rows->length == 8)
+        return has_restarts ? use(RowKind<8, true>()) : use(RowKind<8, false>());
+    return has_restarts ? use(RowKind<4, true>()) : use(RowKind<4, false>());
+}
 
-template <int kLength>
+template <class Kind>
 HWY_NOINLINE void run_curve(const Frame& frame, const Instruction& step,
                             const CompiledCurve& curve) {
-    over_curve(frame, step, curve, CurveOfRows<kLength>(*curve.rows, {}));
+    over_curve(frame, step, curve, RowPolynomial<DF, Kind>(DF(), *curve.rows, {}));
 }
 
 template <>
 HWY_NOINLINE void run_op<Op::curve>(const Frame& frame, const Code& code, const Instruction& step) {
     const CompiledCurve& curve = code.curves[step.table];
-    if (curve.rows->length == 8) return run_curve<8>(frame, step, curve);
-    run_curve<4>(frame, step, curve);
+    with_row_kind(curve,
+                  [&](auto kind) HWY_ATTR { run_curve<decltype(kind)>(frame, step, curve); });
 }
 
 /// The curve of every float.
 /// @param is_rgba  every fourth is left as it is
-template <int kLength>
+template <class Kind>
 HWY_NOINLINE void run_flat(const CompiledCurve& curve, const float* in, float* out,
                            std::size_t count, bool is_rgba) {
     const DF d;
     const DI di;
     const std::size_t lanes = hn::Lanes(d);
-    const CurveOfRows<kLength> polynomial(*curve.rows, {});
-    const CurveEnds ends(curve);
+    const RowPolynomial<DF, Kind> polynomial(d, *curve.rows, {});
+    const CurveEnds<DF> ends(d, curve);
     const auto at = [&](Vec<DF> x) HWY_ATTR { return curve_value(d, ends, polynomial, x); };
     const auto channel = hn::And(hn::Iota(di, 0), hn::Set(di, 3));
     const auto is_left = hn::RebindMask(d, hn::Eq(channel, hn::Set(di, is_rgba ? 3 : 4)));
@@ -512,8 +525,9 @@ HWY_NOINLINE void run_flat(const CompiledCurve& curve, const float* in, float* o
 
 HWY_INLINE void run_flat(const CompiledCurve& curve, const float* in, float* out, std::size_t count,
                          bool is_rgba) {
-    if (curve.rows->length == 8) return run_flat<8>(curve, in, out, count, is_rgba);
-    run_flat<4>(curve, in, out, count, is_rgba);
+    with_row_kind(curve, [&](auto kind) HWY_ATTR {
+        run_flat<decltype(kind)>(curve, in, out, count, is_rgba);
+    });
 }
 
 constexpr CurveForm kCurveForm = HWY_NATIVE_FMA ? CurveForm::rows : CurveForm::rows_unfused;

@@ -462,26 +462,23 @@ HWY_INLINE auto weighted_sum(Weight weight, Node node) {
 // ---------------------------------------------------------------------------------------------
 // Compiled curves (compiled_curve.h)
 
-/// Ends of a curve as numbers of their own: what a kernel writes may not be them.
+/// Ends of a curve, vectors from the start: what a kernel writes may not be the curve.
+template <class D>
 struct CurveEnds {
-    double lo, hi, least, most, at_lo;
+    Vec<D> lo, hi, least, most, at_lo;
 
-    explicit CurveEnds(const CompiledCurve& curve)
-        : lo(static_cast<double>(curve.lo)),
-          hi(static_cast<double>(curve.hi)),
-          least(static_cast<double>(curve.least)),
-          most(static_cast<double>(curve.most)),
-          at_lo(curve.at_lo) {}
+    HWY_INLINE CurveEnds(D d, const CompiledCurve& curve)
+        : lo(set(d, static_cast<double>(curve.lo))),
+          hi(set(d, static_cast<double>(curve.hi))),
+          least(set(d, static_cast<double>(curve.least))),
+          most(set(d, static_cast<double>(curve.most))),
+          at_lo(set(d, curve.at_lo)) {}
 
-    template <class D>
-    HWY_INLINE Vec<D> limit(D d, Vec<D> x) const {
-        return hn::Min(hn::Max(x, set(d, lo)), set(d, hi));
-    }
-    template <class D>
-    HWY_INLINE Vec<D> finish(D d, Vec<D> x, Vec<D> y) const {
-        const auto limited = hn::Min(hn::Max(y, set(d, least)), set(d, most));
+    HWY_INLINE Vec<D> limit(Vec<D> x) const { return hn::Min(hn::Max(x, lo), hi); }
+    HWY_INLINE Vec<D> finish(Vec<D> x, Vec<D> y) const {
+        const auto limited = hn::Min(hn::Max(y, least), most);
         // NaN is not above lo.
-        return hn::IfThenElse(hn::Gt(x, set(d, lo)), limited, set(d, at_lo));
+        return hn::IfThenElse(hn::Gt(x, lo), limited, at_lo);
     }
 };
 
@@ -553,80 +550,84 @@ class SegmentPolynomial {
 };
 
 /// In rows.
-/// @tparam Length  of the length of a row, a number or a constant
-template <class D, class Length>
+/// @tparam Kind  its members are numbers or constants: `length` of a row; `has_restarts`;
+///               `is_aligned` where there are none and `base` has no bit within a cell
+template <class D, class Kind>
 class RowPolynomial {
   public:
-    HWY_INLINE RowPolynomial(const CurveRows& rows, Length length)
+    HWY_INLINE RowPolynomial(D d, const CurveRows& rows, Kind kind)
         : numbers_(rows.numbers),
           restarts_(rows.restarts),
-          base_(rows.base),
+          base_(float_of(d, rows.base)),
           shift_(rows.shift),
-          length_(length) {}
+          kind_(kind) {}
 
     /// @param x  not below 0
     /// @param rest  see SegmentPolynomial
     HWY_INLINE Polynomial<D> operator()(D d, Vec<D> x, const Vec<D>* rest) const {
         const auto tag = bits_tag(d);
-        const auto float_of = [&](std::uint32_t bits) HWY_ATTR {
-            return hn::BitCast(d, hn::Set(tag, static_cast<std::int32_t>(bits)));
-        };
-        auto base = float_of(base_);
+        auto base = base_;
         const auto above = hn::Max(x, base);
-        for (const CurveRows::Restart& restart : restarts_) {
-            const auto is_behind = hn::Ge(above, float_of(restart.from));
-            base = hn::IfThenElse(is_behind, float_of(restart.base), base);
+        if (kind_.has_restarts) {
+            for (const CurveRows::Restart& restart : restarts_) {
+                const auto is_behind = hn::Ge(above, float_of(d, restart.from));
+                base = hn::IfThenElse(is_behind, float_of(d, restart.base), base);
+            }
         }
-        const auto distance_in_bits = hn::Sub(hn::BitCast(tag, above), hn::BitCast(tag, base));
-        const auto cell = hn::ShiftRightSame(distance_in_bits, shift_);
-        const auto rows = rows_at(d, numbers_, cell, length_);
-        const std::uint32_t in_cell = (std::uint32_t{1} << static_cast<unsigned>(shift_)) - 1;
+        const auto base_bits = hn::BitCast(tag, base);
+        const auto cell = hn::ShiftRightSame(hn::Sub(hn::BitCast(tag, above), base_bits), shift_);
+        auto rows = rows_at(d, numbers_, cell, kind_);
         const auto x0 =
-            restarts_.empty() && (base_ & in_cell) == 0
-                ? hn::And(above, float_of(~in_cell))
-                : hn::BitCast(d, hn::Add(hn::ShiftLeftSame(cell, shift_), hn::BitCast(tag, base)));
+            kind_.is_aligned
+                ? hn::And(above, float_of(d, ~std::uint32_t{0} << static_cast<unsigned>(shift_)))
+                : hn::BitCast(d, hn::Add(hn::ShiftLeftSame(cell, shift_), base_bits));
         // 0x7F000000 less the exponent.
-        const auto complement = hn::AndNot(x0, float_of(0x7F800000));
-        const auto scale = hn::BitCast(
-            d, hn::Add(hn::BitCast(tag, complement), hn::Set(tag, std::int32_t{-0x00800000})));
+        const auto complement = hn::BitCast(tag, hn::AndNot(x0, float_of(d, 0x7F800000)));
+        const auto scale = hn::BitCast(d, hn::Add(complement, hn::Set(tag, -0x00800000)));
         auto distance = hn::Sub(x, x0);
         if (rest) distance = hn::Add(distance, *rest);
         const auto t = hn::Mul(distance, scale);
         Vec<D> number[4];
         auto y = hn::Zero(d);
-        if (length_ == 8) {
+        if (kind_.length == 8) {
             rows.columns(1, number);
             y = number[3];
             for (int k = 2; k >= 0; --k)
                 y = hn::MulAdd(y, t, number[k]);
         }
         rows.columns(0, number);
-        y = length_ == 8 ? hn::MulAdd(y, t, number[3]) : number[3];
+        y = kind_.length == 8 ? hn::MulAdd(y, t, number[3]) : number[3];
         y = hn::MulAdd(hn::MulAdd(y, t, number[2]), t, number[1]);
         return {y, t, number[0]};
     }
 
   private:
+    static HWY_INLINE Vec<D> float_of(D d, std::uint32_t bits) {
+        return hn::BitCast(d, hn::Set(bits_tag(d), static_cast<std::int32_t>(bits)));
+    }
+
     std::span<const float> numbers_;
     std::span<const CurveRows::Restart> restarts_;
-    std::uint32_t base_;
+    Vec<D> base_;
     int shift_;
-    Length length_;
+    Kind kind_;
 };
 
 template <class D, class P>
-HWY_INLINE Vec<D> curve_value(D d, const CurveEnds& ends, const P& polynomial, Vec<D> given) {
-    const auto x = ends.limit(d, given);
+HWY_INLINE Vec<D> curve_value(D d, const CurveEnds<D>& ends, const P& polynomial, Vec<D> given) {
+    const auto x = ends.limit(given);
     const Polynomial<D> p = polynomial(d, x, nullptr);
-    return ends.finish(d, x, hn::MulAdd(p.y, p.t, p.first));
+    return ends.finish(x, hn::MulAdd(p.y, p.t, p.first));
 }
 
 /// Of a precise curve.
-/// @param exact  what was rounded to `given`; null where nothing was
-template <class D, class P>
-HWY_INLINE Doubles precise_curve_value(D d, const CurveEnds& ends, const P& polynomial,
+/// @param wide_ends  the same ends in double
+/// @param exact      what was rounded to `given`; null where nothing was
+template <class D, class DD>
+HWY_INLINE Doubles precise_curve_value(D d, const CurveEnds<D>& ends,
+                                       const CurveEnds<DD>& wide_ends, const auto& polynomial,
                                        Vec<D> given, const Doubles* exact) {
-    const auto x = ends.limit(d, given);
+    const auto x = ends.limit(given);
     auto rest = hn::Zero(d);
     if (exact) {
         Doubles lost;
@@ -638,7 +639,7 @@ HWY_INLINE Doubles precise_curve_value(D d, const CurveEnds& ends, const P& poly
     Doubles result;
     for (int h = 0; h < kHalves; ++h) {
         const auto y = hn::Add(promote(p.first, h), promote(p.y, h));
-        result.half[h] = ends.finish(double_tag(d), promote(x, h), y);
+        result.half[h] = wide_ends.finish(promote(x, h), y);
     }
     return result;
 }

@@ -190,6 +190,21 @@ bool are_siblings(const Selected& x, const Selected& y) {
     }
 }
 
+/// The operation of the same name.
+constexpr Op same_operation(ExprOp op) {
+    const std::string_view name = name_of(op);
+    const auto is_same = [name](const Operation& other) { return name == other.name; };
+    return static_cast<Op>(std::find_if(std::begin(kOperations), std::end(kOperations), is_same) -
+                           std::begin(kOperations));
+}
+static_assert(std::all_of(std::begin(kScalarOperations), std::end(kScalarOperations),
+                          [](const ScalarOperation& op) {
+                              const auto i = static_cast<std::size_t>(&op - kScalarOperations);
+                              return op.operands == 0 ||
+                                     static_cast<std::size_t>(same_operation(
+                                         static_cast<ExprOp>(i))) < std::size(kOperations);
+                          }));
+
 class Selector {
   public:
     Selector(const FloatTape& tape, const std::vector<bool>& in_double)
@@ -360,36 +375,11 @@ class Selector {
                 current_.lattice = step.lattice;
                 current_.channel = step.input;
                 return emit(Op::lattice, {a, b, step.c});
-            case ExprOp::multiply:
-                return emit(Op::multiply, {a, b});
-            case ExprOp::divide:
-                return emit(Op::divide, {a, b});
-            case ExprOp::maximum:
-                return emit(Op::maximum, {a, b});
-            case ExprOp::atan2:
-                return emit(Op::atan2, {a, b});
-            case ExprOp::less:
-                return emit(Op::less, {a, b});
-            case ExprOp::less_equal:
-                return emit(Op::less_equal, {a, b});
-            case ExprOp::equal:
-                return emit(Op::equal, {a, b});
-            case ExprOp::negate:
-                return emit(Op::negate, {a});
-            case ExprOp::absolute:
-                return emit(Op::absolute, {a});
-            case ExprOp::square_root:
-                return emit(Op::square_root, {a});
-            case ExprOp::exp2:
-                return emit(Op::exp2, {a});
-            case ExprOp::log2:
-                return emit(Op::log2, {a});
-            case ExprOp::sine:
-                return emit(Op::sine, {a});
-            case ExprOp::cosine:
-                return emit(Op::cosine, {a});
-            case ExprOp::floor:
-                return emit(Op::floor, {a});
+            default: {
+                current_.op = same_operation(step.op);
+                const std::vector<std::uint32_t> operands = operands_of(step);
+                std::copy(operands.begin(), operands.end(), current_.operands.begin());
+            }
         }
     }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/compiled_curve.h"
+#include "expr/scalar_ops.h"
 #include "tonewright/engine.h"
 #include "tonewright/expr.h"
 
@@ -26,31 +27,6 @@ struct TapeInstruction {
     const CompiledCurve* curve = nullptr;  // of a lookup, instead of a table: see fit_curves()
     const ExprNode* node = nullptr;        // where it came from
 };
-
-/// How many of a, b, c the operation reads.
-[[nodiscard]] constexpr int operand_count(ExprOp op) noexcept {
-    switch (op) {
-        case ExprOp::constant:
-        case ExprOp::input:
-        case ExprOp::uniform:
-            return 0;
-        case ExprOp::negate:
-        case ExprOp::absolute:
-        case ExprOp::square_root:
-        case ExprOp::exp2:
-        case ExprOp::log2:
-        case ExprOp::sine:
-        case ExprOp::cosine:
-        case ExprOp::floor:
-        case ExprOp::lookup:
-            return 1;
-        case ExprOp::select:
-        case ExprOp::lattice:
-            return 3;
-        default:
-            return 2;
-    }
-}
 
 /// The same number for every pixel.
 [[nodiscard]] constexpr bool is_number(ExprOp op) noexcept {

@@ -424,9 +424,7 @@ class Translator {
             write_lattice(s, code_.lattices[step.table]);
         } else if constexpr (op == Op::curve) {
             const CompiledCurve& curve = code_.curves[step.table];
-            if (curve.rows)
-                return write_curve(
-                    s, curve, RowPolynomial<hn::Tag<float>, int>(*curve.rows, curve.rows->length));
+            if (curve.rows) return write_rows(s, curve);
             write_curve(s, curve,
                         SegmentPolynomial<hn::Tag<float>, int, int>(
                             float_tag(), curve, threshold_count(curve), curve.segments));
@@ -441,16 +439,25 @@ class Translator {
         return {&Translator::write_op<static_cast<Op>(kOp)>...};
     }
 
+    void write_rows(const Step& s, const CompiledCurve& curve) {
+        const CurveRows& rows = *curve.rows;
+        const bool has_restarts = !rows.restarts.empty();
+        const std::uint32_t in_cell = (std::uint32_t{1} << static_cast<unsigned>(rows.shift)) - 1;
+        const RowKind kind = {rows.length, has_restarts,
+                              !has_restarts && (rows.base & in_cell) == 0};
+        write_curve(s, curve, RowPolynomial<hn::Tag<float>, RowKind>(float_tag(), rows, kind));
+    }
+
     template <class P>
     void write_curve(const Step& s, const CompiledCurve& curve, const P& polynomial) {
-        const CurveEnds ends(curve);
-        if (!curve.is_precise)
-            return set(s.out[0], curve_value(float_tag(), ends, polynomial, in(s, 0)));
-        const bool is_rounded = s.step->in[0].wide;
+        const hn::Tag<float> d = float_tag();
+        const CurveEnds ends(d, curve);
+        if (!curve.is_precise) return set(s.out[0], curve_value(d, ends, polynomial, in(s, 0)));
         Doubles exact;
+        const bool is_rounded = s.step->in[0].wide;
         if (is_rounded) exact = {in(s, 0, 0), in(s, 0, 1)};
-        set(s.out[0], precise_curve_value(float_tag(), ends, polynomial, in(s, 0),
-                                          is_rounded ? &exact : nullptr));
+        set(s.out[0], precise_curve_value(d, ends, CurveEnds(double_tag(d), curve), polynomial,
+                                          in(s, 0), is_rounded ? &exact : nullptr));
     }
 
     void write_lattice(const Step& s, const SampledLattice& lattice) {

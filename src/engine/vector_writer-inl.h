@@ -500,28 +500,51 @@ inline VI add_one_where(hn::Mask<float> mask, VI x) {
                                       .in = {x.operand, x.writer->pool().bits(std::int32_t{1})}})};
 }
 
-/// Four or eight floats in a row for each pixel, as they are loaded: one row after the other.
-struct Rows {
-    Writer* writer;
-    std::array<std::array<VectorOperand, 4>, 2> group;
-
-    void columns(std::size_t which, VF* result) const {
-        const std::array<VectorOperand, 4> columns = writer->columns(group[which]);
+/// Four or eight floats in a row for each pixel.
+class Rows {
+  public:
+    Rows(Writer& writer, std::span<const float> numbers, VI cell, std::size_t groups)
+        : writer_(writer),
+          offset_(writer.pool().table(numbers.data(), numbers.size())),
+          index_(writer.next_index()),
+          groups_(groups) {
+        writer.spill_index(index_, hn::ShiftLeftSame(cell, groups == 2 ? 5 : 4).operand);
+    }
+    /// The first four numbers as four vectors, or the second four.
+    void columns(std::size_t group, VF* result) {
+        // Both groups are loaded at once: each index is read once.
+        if (!is_loaded_) load();
+        const std::array<VectorOperand, 4> columns = writer_.columns(rows_[group]);
         for (std::size_t i = 0; i < 4; ++i)
-            result[i] = {writer, columns[i]};
+            result[i] = {&writer_, columns[i]};
     }
+
+  private:
+    void load() {
+        for (std::size_t quarter = 0; quarter < 4; ++quarter) {
+            for (std::size_t group = 0; group < groups_; ++group)
+                rows_[group][quarter] =
+                    writer_.rows(index_, static_cast<int>(quarter), nullptr,
+                                 offset_ + static_cast<std::uint32_t>(16 * group));
+        }
+        is_loaded_ = true;
+    }
+
+    Writer& writer_;
+    std::uint32_t offset_;
+    int index_;
+    std::size_t groups_;
+    bool is_loaded_ = false;
+    std::array<std::array<VectorOperand, 4>, 2> rows_{};
 };
-inline Rows rows_at(hn::Tag<float> d, std::span<const float> numbers, VI cell, int length) {
-    Rows result{d.writer, {}};
-    const int index = d.writer->next_index();
-    d.writer->spill_index(index, hn::ShiftLeftSame(cell, length == 8 ? 5 : 4).operand);
-    const std::uint32_t offset = d.writer->pool().table(numbers.data(), numbers.size());
-    for (std::uint32_t quarter = 0; quarter < 4; ++quarter) {
-        for (std::uint32_t g = 0; g < (length == 8 ? 2 : 1); ++g)
-            result.group[g][quarter] =
-                d.writer->rows(index, static_cast<int>(quarter), nullptr, offset + 16 * g);
-    }
-    return result;
+/// See RowPolynomial.
+struct RowKind {
+    int length;
+    bool has_restarts;
+    bool is_aligned;
+};
+inline Rows rows_at(hn::Tag<float> d, std::span<const float> numbers, VI cell, RowKind kind) {
+    return {*d.writer, numbers, cell, kind.length == 8 ? std::size_t{2} : std::size_t{1}};
 }
 
 #include "engine/simd_math-inl.h"

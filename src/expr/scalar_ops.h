@@ -2,10 +2,32 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
+#include <iterator>
 
 #include "tonewright/expr.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
+
+struct ScalarOperation {
+    const char* name;
+    int operands;
+};
+/// In the order of ExprOp.
+inline constexpr ScalarOperation kScalarOperations[] = {
+    {"constant", 0},    {"input", 0},      {"add", 2},     {"subtract", 2}, {"multiply", 2},
+    {"divide", 2},      {"minimum", 2},    {"maximum", 2}, {"power", 2},    {"atan2", 2},
+    {"less", 2},        {"less_equal", 2}, {"equal", 2},   {"negate", 1},   {"absolute", 1},
+    {"square_root", 1}, {"exp2", 1},       {"log2", 1},    {"sine", 1},     {"cosine", 1},
+    {"floor", 1},       {"select", 3},     {"lookup", 1},  {"lattice", 3},  {"uniform", 0}};
+static_assert(std::size(kScalarOperations) == static_cast<std::size_t>(ExprOp::uniform) + 1);
+
+[[nodiscard]] constexpr const char* name_of(ExprOp op) noexcept {
+    return kScalarOperations[static_cast<std::size_t>(op)].name;
+}
+[[nodiscard]] constexpr int operand_count(ExprOp op) noexcept {
+    return kScalarOperations[static_cast<std::size_t>(op)].operands;
+}
 
 /// Defines each operation in double; Lattice::operator() defines its own. Constant folding,
 /// evaluate() and the reference engine use it.

@@ -239,7 +239,8 @@ def check_page(report, folder, operators, groups):
             bad.append(f"{name}: its row of the index")
     report.check(f"the page has all about {len(groups)} groups of dialects", not bad, bad[:5])
     links = set(re.findall(r"\]\(#([^)]+)\)", page))
-    anchors = set(re.findall(r'<a id="([^"]+)"', page)) | {"dialects"}
+    headings = re.findall(r"^#+ ([\w ]+)$", page, re.M)  # of words alone, whose ids are plain
+    anchors = {*re.findall(r'<a id="([^"]+)"', page), *(heading.lower().replace(" ", "-") for heading in headings)}
     report.check(f"{len(links)} links within the page have their end", links <= anchors, sorted(links - anchors)[:5])
     linked = {folder / path for path in re.findall(r"\]\((curves/[^)]+)\)", page)}
     plots = set((folder / "curves").glob("*.svg"))

@@ -88,7 +88,8 @@ HWY_INLINE void split(D d, Vec<D> x, Vec<D>& e, Vec<D>& f) {
             // rounded: with 4/3 rounded up to float (by 1/3 of a last place) and down to double (by
             // 1/3), 3/2 gives 2 and the number before it gives less. Rounded up to double (by 2/3),
             // that one would give 2 as well.
-            const double up = kIsDouble<D> ? 0x1.5555555555555p+0 : double{1.33333337F};
+            const double up =
+                kIsDouble<D> ? 0x1.5555555555555p+0 : static_cast<double>(1.33333337F);
             e = exponent(hn::Mul(x, set(d, up)));
             f = hn::Sub(mantissa(x), set(d, 1));
             return;

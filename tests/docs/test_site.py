@@ -180,7 +180,7 @@ def main():
     with tempfile.TemporaryDirectory() as scratch:
         site = arguments.site or Path(scratch) / "site"
         if not arguments.site:
-            done = subprocess.run([sys.executable, ROOT / "tools/site/build.py", arguments.command, site], capture_output=True, text=True,
+            done = subprocess.run([sys.executable, ROOT / "docs/site/build.py", arguments.command, site], capture_output=True, text=True,
                                   check=False)
             if not report.check("mkdocs build --strict", done.returncode == 0, done.stdout + done.stderr):
                 return report.finish()

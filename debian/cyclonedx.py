@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A CycloneDX 1.4 bill of materials of the packages: what they load, and the headers that are compiled into them.
 
-    python3 tools/release/cyclonedx.py VERSION COMMIT SECONDS_SINCE_1970 DEBIAN_CONTROL PACKAGE.deb... >bom.json
+    python3 debian/cyclonedx.py VERSION COMMIT SECONDS_SINCE_1970 DEBIAN_CONTROL PACKAGE.deb... >bom.json
 
 Versions are those of the machine that built the packages. The same packages on the same machine give the same bytes.
 """

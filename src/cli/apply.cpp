@@ -71,13 +71,6 @@ void add_file_options(const Command& command, ApplyOptions& options) {
         .add_flag("--no-metadata", options.has_no_metadata,
                   "do not write version, operator, exposure and display into the file")
         .group(group);
-    command
-        .add("--max-pixels", options.max_pixels,
-             "limit of the display window that is filled with black around the picture")
-        .value("N")
-        .show_default()
-        .range(1, 1e12)
-        .group(group);
 }
 
 }  // namespace
@@ -126,6 +119,10 @@ void add_apply(CommandLine& program) {
                   "dither 8-bit output by half a code value, alike in every frame")
         .group("Pictures");
     add_picture_input(command, options->picture);
+    command.option("--max-pixels")
+        .describe(
+            "most pixels of a picture (default 1e9), and of a display window that is filled with "
+            "black around it (default 1e8)");
     const Option metered = command
                                .add("--auto-exposure", options->metering.method,
                                     "meter the picture: log-average, histogram, mean or max; "

@@ -6,6 +6,7 @@
 #include "cli/messages.h"
 #include "cli/options.h"
 #include "cli/picture_commands.h"
+#include "cli/shared_options.h"
 #include "cli/suggestions.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -38,6 +39,7 @@ void add_compare(CommandLine& program) {
         .suggest(suggest_source_colors)
         .show_default()
         .group(output);
+    add_max_pixels(command, options->max_pixels).group(output);
     const Option columns =
         command.add("--columns", options->columns, "pictures in a row (default: as fits)")
             .value("N")

@@ -43,7 +43,8 @@ bool is_about_memory(std::string_view reason) {
 /// whether they got them. Where addresses are limited, loading can therefore abort the process,
 /// crash or wait forever, with all signals blocked; a process of its own finds out.
 bool survives_loading(const std::string& path) {
-    constexpr std::chrono::seconds kLongest{10};
+    // Loading takes 0.2 s of a processor, which other programs may hold back for long.
+    constexpr std::chrono::seconds kLongest{60};
     // What a second process may take more than the first: stacks and arenas of its threads.
     constexpr rlim_t kHeadroom = rlim_t{32} << 20U;
     const pid_t parent = ::getpid();

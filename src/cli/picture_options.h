@@ -22,6 +22,8 @@ struct PictureInput {
     double timeout = 0;
     bool unpremult = false;
     bool no_unpremult = false;
+    /// Unset: the defaults of the library.
+    std::optional<double> max_pixels = {};
 };
 
 /// What `apply` does with the frames of a shot.
@@ -80,7 +82,6 @@ struct ApplyOptions : ViewOptions {
     std::string alpha = "keep";
     std::string compression;
     int quality = 0;
-    double max_pixels = 1e8;
     bool has_no_metadata = false;
     PictureInput picture;
     LutOptions lut;
@@ -112,6 +113,7 @@ struct CompareOptions {
     std::optional<double> split;
     bool is_horizontal = false;
     bool has_no_labels = false;
+    std::optional<double> max_pixels = {};
 };
 
 struct ChartOptions {
@@ -126,6 +128,7 @@ struct SheetOptions {
     std::vector<std::string> pictures;
     int columns = 4;
     int cell_width = 480;
+    std::optional<double> max_pixels = {};
 };
 
 /// A picture of the page.
@@ -133,6 +136,7 @@ struct ReportPictureOptions {
     std::string path;  // empty: the chart
     /// A larger picture is made smaller.
     int width = 960;
+    std::optional<double> max_pixels = {};
     /// Operators that look at a pixel's surroundings, which the page cannot run.
     std::vector<std::string> local_operators;
 };

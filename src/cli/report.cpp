@@ -17,6 +17,7 @@
 #include "cli/messages.h"
 #include "cli/options.h"
 #include "cli/picture_commands.h"
+#include "cli/shared_options.h"
 #include "cli/suggestions.h"
 #include "report/backends.h"
 #include "report/page.h"
@@ -35,6 +36,7 @@ struct Options {
     std::vector<std::string> pictures;
     std::vector<std::string> operators;
     int width = 960;
+    std::optional<double> max_pixels;
     bool no_parity = false;
 };
 
@@ -143,6 +145,7 @@ class PageContents {
         ReportPictureOptions wanted;
         wanted.path = path;
         wanted.width = options_.width;
+        wanted.max_pixels = options_.max_pixels;
         for (const ResolvedOperator& op : operators_) {
             if (!op.op->is_local()) continue;
             wanted.local_operators.push_back(operator_text(op));
@@ -408,6 +411,7 @@ void add_report(CommandLine& program) {
         .show_default()
         .range(320, 8192)
         .group(contents);
+    add_max_pixels(command, options->max_pixels).group(contents);
     command.add_flag("--no-parity", options->no_parity, "leave out the parity table")
         .group(contents);
     command.footer(

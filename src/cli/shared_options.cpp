@@ -78,6 +78,13 @@ void add_lut_options(const Command& command, LutOptions& options, const Option& 
         .needs(lut);
 }
 
+Option add_max_pixels(const Command& command, std::optional<double>& value) {
+    return command
+        .add("--max-pixels", value, "most pixels that a picture may declare (default 1e9)")
+        .value("N")
+        .range(1, 1e12);
+}
+
 void add_picture_input(const Command& command, PictureInput& options) {
     const char* const group = "Pictures";
     command.add("--threads", options.threads, "number of threads; 0 uses all cores")
@@ -98,6 +105,7 @@ void add_picture_input(const Command& command, PictureInput& options) {
         .show_default()
         .range(0, 1 << 20)
         .group(group);
+    add_max_pixels(command, options.max_pixels).group(group);
     const Option yes =
         command.add_flag("--unpremult", options.unpremult,
                          "divide color by alpha first (default: as the picture's alpha is stored)");

@@ -3,6 +3,7 @@
 // Options that several commands share.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,7 +31,10 @@ void add_lut_input_options(const Command& command, LutOptions& options,
 void add_lut_options(const Command& command, LutOptions& options, const Option& op,
                      const std::vector<std::string>& others);
 
-/// --subimage, --threads, --timeout, --unpremult, --no-unpremult.
+/// --max-pixels.
+Option add_max_pixels(const Command& command, std::optional<double>& value);
+
+/// --max-pixels, --subimage, --threads, --timeout, --unpremult, --no-unpremult.
 void add_picture_input(const Command& command, PictureInput& options);
 
 /// --delta, --percentiles, --key, ... and --meter-region.

@@ -6,6 +6,7 @@
 #include "cli/messages.h"
 #include "cli/options.h"
 #include "cli/picture_commands.h"
+#include "cli/shared_options.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
@@ -28,6 +29,7 @@ void add_sheet(CommandLine& program) {
         .show_default()
         .range(16, 16384)
         .group(group);
+    add_max_pixels(command, options->max_pixels).group(group);
     command.footer("Example:\n  tonewright sheet -o sheet.png Hable=hable.png AgX=agx.png");
     command.action([options] {
         const ResultLine line;

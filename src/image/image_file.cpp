@@ -10,8 +10,8 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-OIIO::ImageBuf read_image(const std::string& path) {
-    return with_memory_for(path, [&] { return PictureReader(path).read_all(); });
+OIIO::ImageBuf read_image(const std::string& path, double max_pixels) {
+    return with_memory_for(path, [&] { return PictureReader(path, 0, 0, max_pixels).read_all(); });
 }
 
 void write_image_atomically(const OIIO::ImageBuf& image, const std::string& path,

@@ -101,11 +101,12 @@ SceneMeter measure_picture(const ImageSpec& spec, const MeterOptions& options,
 
 SceneMeter measure_file(const std::string& path, const MeterOptions& options,
                         SceneMeter::Figures figures, int nthreads, std::size_t batch_bytes) {
-    const ImageSpec spec = PictureReader(path, nthreads, options.subimage).spec();
+    const ImageSpec spec =
+        PictureReader(path, nthreads, options.subimage, options.max_pixels).spec();
     check_pixel_type("source", spec.format);
     const ROI window = measured_window(spec, options);
     return measure_picture(spec, options, figures, nthreads, [&](SceneMeter& meter) {
-        PictureReader reader(path, nthreads, options.subimage);
+        PictureReader reader(path, nthreads, options.subimage, options.max_pixels);
         if (spec.depth > 1) {
             const ImageBuf volume = reader.read_all();
             pass_over(volume, options)(meter);
@@ -153,8 +154,9 @@ Metering meter(const ImageBuf& src, const MeterOptions& options, int nthreads) {
 
 Metering meter_file(const std::string& path, const MeterOptions& options, int nthreads) {
     check_meter_options(options);
-    const ImageSpec spec =
-        about_picture(path, [&] { return PictureReader(path, nthreads, options.subimage).spec(); });
+    const ImageSpec spec = about_picture(path, [&] {
+        return PictureReader(path, nthreads, options.subimage, options.max_pixels).spec();
+    });
     try {
         require_pixels(spec, options);
     } catch (const Error& e) {

@@ -5,6 +5,8 @@
 #include <OpenImageIO/imageio.h>
 
 #include <cstddef>
+#include <ctime>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,10 +22,23 @@
 /// Picture files, read and written some rows at a time, whole or not at all.
 TONEWRIGHT_NAMESPACE_BEGIN
 
+/// `DateTime` of pictures that have none: that of the environment variable SOURCE_DATE_EPOCH, UTC
+/// (reproducible-builds.org/specs/source-date-epoch). Empty: it is not set.
+/// @throws Error  it is no number of seconds since 1970
+[[nodiscard]] TONEWRIGHT_API std::string source_date();
+/// As `DateTime` has it, UTC.
+[[nodiscard]] TONEWRIGHT_API std::string date_text(std::time_t seconds);
+
+/// Of a picture that is our own: any number of pixels.
+inline constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+
 /// Opens a picture, or a name that one of OpenImageIO's readers makes one of.
-/// @throws FileError  missing, unreadable, a folder, a pipe, or of unknown format. One line.
+/// @throws FileError  missing, unreadable, a folder, a pipe, of unknown format, or of a format
+/// whose
+///                    reader decodes more pixels than `max_pixels` while it opens. One line.
 [[nodiscard]] TONEWRIGHT_API std::unique_ptr<OIIO::ImageInput> open_picture(
-    const std::string& path, const OIIO::ImageSpec* config = nullptr);
+    const std::string& path, const OIIO::ImageSpec* config = nullptr,
+    double max_pixels = kMaxPixels);
 
 /// Runs `step`, which works on a picture whose options were checked before: what is wrong now, the
 /// picture is.
@@ -49,10 +64,10 @@ decltype(auto) about_picture(const std::string& path, const Step& step) {
 class TONEWRIGHT_API PictureReader {
   public:
     /// @param nthreads  0: OIIO's `threads` attribute.
-    /// @throws FileError  missing, unreadable, of unknown format, without that subimage, or deep.
-    /// One
-    ///                    line.
-    explicit PictureReader(const std::string& path, int nthreads = 0, int subimage = 0);
+    /// @throws FileError  missing, unreadable, of unknown format, without that subimage, deep, or
+    ///                    with more pixels than `max_pixels`. One line.
+    explicit PictureReader(const std::string& path, int nthreads = 0, int subimage = 0,
+                           double max_pixels = kMaxPixels);
     ~PictureReader();
     PictureReader(const PictureReader&) = delete;
     PictureReader& operator=(const PictureReader&) = delete;

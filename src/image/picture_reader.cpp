@@ -82,6 +82,55 @@ void check_dpx_size(const std::string& path) {
                                   offset + row * height));
 }
 
+[[noreturn]] void refuse_size(const std::string& path, double width, double height,
+                              double max_pixels) {
+    cannot_read(path, fmt::format("it declares {:.0f} x {:.0f} pixels; expected at most {:.0f} in "
+                                  "all (--max-pixels)",
+                                  width, height, max_pixels));
+}
+
+/// OpenImageIO's reader of JPEG 2000 decodes the picture while it opens it. ISO/IEC 15444-1: the
+/// codestream begins with the markers SOC and SIZ (A.5.1), alone or in a box `jp2c` (I.4).
+void check_jpeg2000_size(const std::string& path, double max_pixels) {
+    std::ifstream file(path, std::ios::binary);
+    const auto number = [&](std::size_t bytes) {
+        std::uint64_t value = 0;
+        for (std::size_t i = 0; i < bytes; ++i)
+            value = value << 8 | static_cast<std::uint64_t>(file.get() & 0xFF);
+        return value;
+    };
+    constexpr std::uint64_t kSocAndSiz = 0xFF4FFF51;
+    constexpr std::uint64_t kCodestream = 0x6A703263;  // "jp2c"
+    constexpr std::uint64_t kSignature = 0x6A502020;   // "jP  "
+    std::uint64_t first = number(4);
+    if (first != kSocAndSiz) {
+        if (number(4) != kSignature) return;
+        std::uint64_t at = 0;
+        std::uint64_t type = kSignature;
+        while (type != kCodestream) {
+            // A box that lasts to the end of the file, or one without its own head.
+            if (first == 1) first = number(8);
+            if (first < 8 || first > INT64_MAX - at) return;
+            at += first;
+            file.seekg(static_cast<std::streamoff>(at));
+            first = number(4);
+            type = number(4);
+            if (!file) return;
+        }
+        if (first == 1) (void)number(8);
+        if (number(4) != kSocAndSiz) return;
+    }
+    (void)number(4);  // length of the segment, capabilities
+    const auto right = static_cast<double>(number(4));
+    const auto bottom = static_cast<double>(number(4));
+    const auto left = static_cast<double>(number(4));
+    const auto top = static_cast<double>(number(4));
+    if (!file) return;  // the reader says what is wrong
+    const double width = std::max(right - left, 0.0);
+    const double height = std::max(bottom - top, 0.0);
+    if (width * height > max_pixels) refuse_size(path, width, height, max_pixels);
+}
+
 /// In one line, why a picture could not be opened.
 /// @param reported  what OpenImageIO says
 std::string why_not_open(const std::string& path, const std::string& reported) {
@@ -98,10 +147,11 @@ void forget_errors(const OIIO::ImageInput& in) { (void)in.geterror(); }
 }  // namespace
 
 std::unique_ptr<OIIO::ImageInput> open_picture(const std::string& path,
-                                               const OIIO::ImageSpec* config) {
+                                               const OIIO::ImageSpec* config, double max_pixels) {
     // A reader would wait for ever for the end of a pipe. A name without a file may be one that a
     // reader understands: "shot.exr.tonewright?op=hable".
     if (const std::string why = why_no_file(path); !why.empty()) cannot_read(path, why);
+    check_jpeg2000_size(path, max_pixels);
     std::unique_ptr<OIIO::ImageInput> in;
     if (path.find('?') != std::string::npos && why_not_readable(path).empty()) {
         // OpenImageIO would take what follows the ? for arguments of a reader.
@@ -118,8 +168,8 @@ std::unique_ptr<OIIO::ImageInput> open_picture(const std::string& path,
     return in;
 }
 
-PictureReader::PictureReader(const std::string& path, int nthreads, int subimage)
-    : path_(path), subimage_(subimage), in_(open_picture(path)) {
+PictureReader::PictureReader(const std::string& path, int nthreads, int subimage, double max_pixels)
+    : path_(path), subimage_(subimage), in_(open_picture(path, nullptr, max_pixels)) {
     // Not through ImageBuf: it asks the shared cache, which may know an older file of this name,
     // and it passes over errors that a reader reports while it delivers pixels.
     in_->threads(nthreads);
@@ -130,14 +180,18 @@ PictureReader::PictureReader(const std::string& path, int nthreads, int subimage
         cannot_read(path, "the picture is deep; expected flat pixels (oiiotool --flatten)");
     spec_.channelformats.clear();  // all channels are read in the widest of them
     complete_channel_names(spec_);
+    const double pixels =
+        static_cast<double>(spec_.width) * spec_.height * std::max(spec_.depth, 1);
+    if (pixels > max_pixels) {
+        refuse_size(path, spec_.width, spec_.height, max_pixels);
+    }
     std::error_code error;
     const auto bytes = static_cast<double>(std::filesystem::file_size(path, error));
     if (error) return;  // no regular file
     // The densest compressions of black (DWAB of wide rows) have some 300,000 bytes in one.
     constexpr double kDensest = 1e6;
     constexpr double kHarmless = 64 << 20;
-    const double claimed = static_cast<double>(spec_.width) * spec_.height *
-                           std::max(spec_.depth, 1) * static_cast<double>(spec_.pixel_bytes());
+    const double claimed = pixels * static_cast<double>(spec_.pixel_bytes());
     if (claimed > std::max(kDensest * bytes, kHarmless)) {
         cannot_read(path, fmt::format("it declares {} x {} pixels of {} channels in {:.0f} bytes",
                                       spec_.width, spec_.height, spec_.nchannels, bytes));

@@ -13,6 +13,8 @@
 #include <charconv>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -174,6 +176,29 @@ class PictureWriter::FileProxy final : public OIIO::Filesystem::IOProxy {
 };
 
 // ---------------------------------------------------------------------------------------------
+
+std::string date_text(std::time_t seconds) {
+    std::tm utc{};
+    ::gmtime_r(&seconds, &utc);
+    std::array<char, 32> text{};
+    (void)std::strftime(text.data(), text.size(), "%Y:%m:%d %H:%M:%S", &utc);
+    return text.data();
+}
+
+std::string source_date() {
+    const char* const value = std::getenv("SOURCE_DATE_EPOCH");
+    if (!value || !*value) return {};
+    const std::string_view text = value;
+    constexpr std::int64_t kYear10000 = 253402300800;  // DateTime has four digits for a year
+    std::int64_t seconds = -1;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
+    if (error != std::errc() || end != text.data() + text.size() || seconds < 0 ||
+        seconds >= kYear10000) {
+        throw Error(fmt::format("SOURCE_DATE_EPOCH is {}; expected seconds since 1970, [0, {})",
+                                text, kYear10000));
+    }
+    return date_text(static_cast<std::time_t>(seconds));
+}
 
 PictureWriter::PictureWriter(const std::string& path, WriteOptions options, int nthreads)
     : path_(path), options_(std::move(options)) {
@@ -349,6 +374,12 @@ ImageSpec PictureWriter::file_spec(const ImageSpec& picture) {
 void PictureWriter::open(const ImageSpec& picture) {
     if (const int error = temporary_->check_target()) fail(reason_of(error));
     ImageSpec spec = plan(picture);
+    // These writers put in the time of writing.
+    if (format() == "openexr" || format() == "tiff" || format() == "dpx") {
+        if (const std::string date = source_date();
+            !date.empty() && !spec.find_attribute("DateTime"))
+            spec.attribute("DateTime", date);
+    }
     const ColorDescription color = describe_color(spec, format());
     if (!color.icc.empty()) {
         spec.attribute("ICCProfile",
@@ -498,7 +529,7 @@ void PictureWriter::finish() {
         if (const int error = proxy_->finish()) fail(reason_of(error));
     } else {
         try {
-            PictureReader written(temporary_->path().string());
+            PictureReader written(temporary_->path().string(), 0, 0, kUnlimited);
             check_is_complete(written);  // there is no other proof
         } catch (const FileError&) {
             fail("what was written cannot be read back (disk full?)");

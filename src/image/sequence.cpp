@@ -29,14 +29,15 @@ bool is_newer(const std::string& path, const std::string& than) {
 }
 
 /// @param tonemapper  one that takes no statistics
-bool is_done(const Tonemapper& tonemapper, const FrameFiles& frame, const WriteOptions& write) {
+bool is_done(const Tonemapper& tonemapper, const FrameFiles& frame,
+             const SequenceOptions& options) {
     if (!is_newer(frame.out, frame.in)) return false;
     try {
-        const PictureReader source(frame.in, 0, frame.subimage);
-        PictureReader result(frame.out);
+        const PictureReader source(frame.in, 0, frame.subimage, options.max_pixels);
+        PictureReader result(frame.out, 0, 0, kUnlimited);
         const OIIO::ImageSpec is = result.spec();
-        const OIIO::ImageSpec should =
-            PictureWriter(frame.out, write).file_spec(result_spec(tonemapper, source.spec()));
+        const OIIO::ImageSpec should = PictureWriter(frame.out, options.write)
+                                           .file_spec(result_spec(tonemapper, source.spec()));
         if (is.width != should.width || is.height != should.height || is.depth != should.depth ||
             (should.format != OIIO::TypeUnknown && is.format != should.format)) {
             return false;
@@ -82,12 +83,12 @@ void tonemap_files(const Tonemapper& tonemapper, std::vector<FrameFiles>& frames
         for (std::size_t i = next++; i < frames.size(); i = next++) {
             FrameFiles& frame = frames[i];
             try {
-                frame.is_skipped = options.skip_existing && is_done(any, frame, write);
+                frame.is_skipped = options.skip_existing && is_done(any, frame, options);
                 if (!frame.is_skipped) {
                     std::optional<Tonemapper> own;
                     if (frame.exposure_stops) own = tonemapper.with_exposure(*frame.exposure_stops);
                     tonemap_file(own ? *own : tonemapper, frame.in, frame.out, write, nthreads,
-                                 frame.subimage);
+                                 frame.subimage, options.max_pixels);
                 }
             } catch (const std::exception& e) {
                 frame.error = e.what();

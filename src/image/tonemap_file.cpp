@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <array>
-#include <ctime>
 #include <exception>
 #include <map>
 #include <mutex>
@@ -56,16 +55,14 @@ void say_how(ImageSpec& picture, const TonemapOptions& options) {
     picture.attribute("tonewright:display", display);
 }
 
-/// A picture without a date gets its file's: writers of EXR, TIFF and DPX would put in the time,
-/// and the same run could not make the same bytes again.
+/// A picture without a date gets that of SOURCE_DATE_EPOCH, or its file's: writers of EXR, TIFF and
+/// DPX would put in the time, and the same run could not make the same bytes again.
 void give_date(ImageSpec& picture, const std::string& path) {
+    if (picture.find_attribute("DateTime")) return;
+    std::string date = source_date();
     struct stat file {};
-    if (picture.find_attribute("DateTime") || ::stat(path.c_str(), &file) != 0) return;
-    std::tm utc{};
-    ::gmtime_r(&file.st_mtime, &utc);
-    std::array<char, 32> text{};
-    (void)std::strftime(text.data(), text.size(), "%Y:%m:%d %H:%M:%S", &utc);
-    picture.attribute("DateTime", text.data());
+    if (date.empty() && ::stat(path.c_str(), &file) == 0) date = date_text(file.st_mtime);
+    if (!date.empty()) picture.attribute("DateTime", date);
 }
 
 }  // namespace
@@ -226,10 +223,10 @@ class FilePass {
 
 void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
                         const WriteOptions& write, int nthreads, std::size_t batch_bytes,
-                        int subimage) {
+                        int subimage, double max_pixels) {
     nthreads = thread_count(nthreads);
     PictureWriter writer(out, write, nthreads);  // a wrong name is told before a large file is read
-    PictureReader reader(in, nthreads, subimage);
+    PictureReader reader(in, nthreads, subimage, max_pixels);
     check_pixel_type("source", reader.spec().format);
     (void)channel_layout(reader.spec());
     (void)source_color(reader.spec(), tonemapper.options().input);
@@ -248,6 +245,7 @@ void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, con
         options.input = tonemapper.options().input;
         options.unpremult = tonemapper.options().unpremult;
         options.subimage = subimage;
+        options.max_pixels = max_pixels;
         own = tonemapper.with_statistics(
             measure_file(in, options, SceneMeter::Figures::statistics, nthreads, batch_bytes)
                 .statistics());
@@ -280,9 +278,10 @@ void check_overwriting(const std::string& command, const std::vector<FrameFiles>
 }
 
 void tonemap_file(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
-                  const WriteOptions& options, int nthreads, int subimage) {
+                  const WriteOptions& options, int nthreads, int subimage, double max_pixels) {
     about_picture(in, [&] {
-        tonemap_in_batches(tonemapper, in, out, options, nthreads, kBatchBytes, subimage);
+        tonemap_in_batches(tonemapper, in, out, options, nthreads, kBatchBytes, subimage,
+                           max_pixels);
     });
 }
 

@@ -23,7 +23,8 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// @throws Error  without the picture's name
 TONEWRIGHT_API void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in,
                                        const std::string& out, const WriteOptions& write,
-                                       int nthreads, std::size_t batch_bytes, int subimage = 0);
+                                       int nthreads, std::size_t batch_bytes, int subimage = 0,
+                                       double max_pixels = kMaxPixels);
 
 /// That no output replaces what is read, through links either: each its own picture with
 /// --in-place, another's never.

@@ -480,7 +480,8 @@ WriteOptions::Alpha parse_alpha(const std::string& text) {
 
 void tonemap_into_file(const std::string& in, const std::string& out, const std::string& op,
                        const std::string& type, const std::string& alpha, int nthreads,
-                       int subimage, bool is_in_place, const py::kwargs& arguments) {
+                       int subimage, bool is_in_place, double max_pixels,
+                       const py::kwargs& arguments) {
     check_overwriting("tonemap_file", {{in, out}}, is_in_place);
     TonemapOptions options = parse_options(op, arguments);
     WriteOptions write;
@@ -497,7 +498,7 @@ void tonemap_into_file(const std::string& in, const std::string& out, const std:
     write.type = pixel_type;
     write.says_how = true;
     write.warn = [&](const std::string& text) { warn(fmt::format("{}: {}", out, text)); };
-    tonemap_file(Tonemapper(options), in, out, write, nthreads, subimage);
+    tonemap_file(Tonemapper(options), in, out, write, nthreads, subimage, max_pixels);
 }
 
 py::dict describe(const Metering& metering, const ExposureRule& rule, double delta) {
@@ -527,13 +528,14 @@ py::dict describe(const Metering& metering, const ExposureRule& rule, double del
 py::dict meter_any(const py::object& image, const std::string& method, std::optional<double> key,
                    double compensation, double delta, double low, double high,
                    const std::string& input, const std::string& unpremult, int subimage,
-                   int nthreads) {
+                   int nthreads, double max_pixels) {
     TonemapOptions alpha;
     set_tonemap_argument(alpha, "unpremult", unpremult);
     MeterOptions options;
     options.input = input;
     options.unpremult = alpha.unpremult;
     options.subimage = subimage;
+    options.max_pixels = max_pixels;
     options.delta = delta;
     options.low_percentile = low;
     options.high_percentile = high;
@@ -637,7 +639,7 @@ PYBIND11_MODULE(_tonewright, m) {
           py::arg("roi"), py::arg("nthreads"), py::arg("progress"));
     m.def("tonemap_file", &tw::tonemap_into_file, py::arg("source"), py::arg("target"),
           py::arg("op"), py::kw_only(), py::arg("type"), py::arg("alpha"), py::arg("nthreads"),
-          py::arg("subimage"), py::arg("in_place"));
+          py::arg("subimage"), py::arg("in_place"), py::arg("max_pixels"));
     m.def("evaluate", &tw::evaluate_colors, py::arg("op"), py::arg("colors"));
     m.def("meter", &tw::meter_any);
     m.def("operators", [] { return tw::describe_all(tw::all_operators()); });

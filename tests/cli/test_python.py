@@ -360,6 +360,9 @@ def check_pictures(report, tw, command, scratch):
     (scratch / "own.exr").write_bytes(original)
     tw.tonemap_file(scratch / "own.exr", scratch / "own.exr", "hable", display="linear", in_place=True)
     report.check("tonemap_file with in_place=True", (scratch / "own.exr").read_bytes() != original)
+    raises(report, "tonemap_file with max_pixels", OSError, "expected at most 10 in all",
+           lambda: tw.tonemap_file(path, scratch / "d.exr", "hable", max_pixels=10))
+    raises(report, "meter with max_pixels", OSError, "expected at most 10 in all", lambda: tw.meter(path, max_pixels=10))
     raises(report, "tonemap_file: a missing file", FileNotFoundError, "gone.exr",
            lambda: tw.tonemap_file(scratch / "gone.exr", scratch / "d.exr", "hable"))
     raises(report, "tonemap_file: a pixel type", ValueError, "expected uint8, uint16, half or float",

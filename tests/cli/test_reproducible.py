@@ -3,8 +3,9 @@
 
     python3 tests/cli/test_reproducible.py build/release/bin/tonewright [OTHER_COMMAND]
 
-All shipped LUTs, the config, a shader and numbers, each written twice without a cache. Pictures hold their date. OTHER_COMMAND
-is the command of another build: then that one writes the second files. The last line is `N passed, M failed`.
+All shipped LUTs, the config, a shader, numbers, pictures and a page, each written twice without a cache. Pictures that no other
+picture gives a date take that of SOURCE_DATE_EPOCH. OTHER_COMMAND is the command of another build: then that one writes the
+second files. The last line is `N passed, M failed`.
 """
 
 import argparse
@@ -25,6 +26,10 @@ JOBS = {
     "eval": "printf '0.18 1 2\\n' | tonewright eval agx_blender >numbers.txt",
     "shader": "tonewright shader aces_20 --language glsl -q -o shader.glsl",
     "bake": "tonewright bake agx_sobotka --format icc -q -o link.icc; tonewright bake hable --format hald -q -o hald.png",
+    # The second time is seconds later: the time of writing would differ.
+    "pictures": "for e in exr tif dpx png jpg; do tonewright chart -o chart.$e --width 320 --height 180 -q; done; "
+                "tonewright apply chart.exr shown.tif --operator hable -q; tonewright compare chart.exr hable -o sheet.exr -q",
+    "page": "tonewright report -o page.html --operators hable,reinhard_local -q",
     "config": "tonewright config -q -o config; tonewright config --archive config.ocioz --profile 2.5 -q",
     "bake --all": "tonewright bake --all luts -q",
 }
@@ -49,7 +54,7 @@ def run_jobs(report, command, folder, locales, jobs, zone, locale, mask, cores):
     (program / "tonewright").write_text(f'#!/bin/sh\nexec "{command}" "$@"\n')
     (program / "tonewright").chmod(0o755)
     environment = {"PATH": f"{program}:/usr/bin:/bin", "HOME": str(folder), "XDG_CACHE_HOME": str(folder / ".cache"),
-                   "TZ": zone, "LC_ALL": locale, "LANG": locale, "LOCPATH": str(locales),
+                   "TZ": zone, "SOURCE_DATE_EPOCH": "1700000000", "LC_ALL": locale, "LANG": locale, "LOCPATH": str(locales),
                    **{name: value for name, value in os.environ.items() if name.startswith("LD_LIBRARY")}}
     for name, text in jobs.items():
         line = ["taskset", "-c", ",".join(map(str, cores)), "sh", "-euc", f"umask {mask}; {text}"]
@@ -79,6 +84,12 @@ def main():
         command = arguments.command.resolve()
         first = scratch / "first"
         run_jobs(report, command, first, locales, JOBS, "UTC", "C.UTF-8", "022", cores)
+        # 1700000000 seconds after 1970, by `date -u -d @1700000000`.
+        report.check("the date of a picture", b"2023:11:14 22:13:20" in (first / "chart.exr").read_bytes())
+        wrong = subprocess.run([command, "chart", "-o", scratch / "wrong.exr", "-q"], capture_output=True, text=True, check=False,
+                               env={**os.environ, "SOURCE_DATE_EPOCH": "today"})
+        report.check("a wrong SOURCE_DATE_EPOCH", wrong.returncode == 2 and "SOURCE_DATE_EPOCH is today" in wrong.stderr
+                     and not (scratch / "wrong.exr").exists(), wrong.stderr)
         for number, locale in enumerate(made or ["C"]):
             jobs = JOBS if number == 0 else SHORT_JOBS
             folder = scratch / "elsewhere" / f"with a blank {number}"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# The Debian packages in a clean Debian 12: installs them, runs the cookbook and debian/tests with them, removes them, and
-# finds no trace of them.
+# The Debian packages in a clean Debian 12: installs them, runs the cookbook and debian/tests with them, removes them,
+# upgrades to them from an older version, and finds no trace of them.
 # debian.sh FOLDER_OF_PACKAGES [WORK_FOLDER]
 set -euo pipefail
 source=$(cd "$(dirname "$0")/../.." && pwd)
@@ -85,4 +85,32 @@ expect "apt remove" apt remove $names
 expect "dpkg --purge" inside dpkg --purge $names
 files >"$work/after"
 expect "no trace is left" diff "$work/before" "$work/after"
+
+# Repacked with a lower version and a file that is gone in the new one.
+version=$(dpkg-deb -f "${debs[0]}" Version)
+mkdir -p "$root/tmp/older"
+for deb in "${debs[@]}"; do
+    name=$(dpkg-deb -f "$deb" Package)
+    dpkg-deb --raw-extract "$deb" "$work/older"
+    sed -i "s/^Version: .*/&~older/; s/(= $version)/(= $version~older)/g" "$work/older/DEBIAN/control"
+    mkdir -p "$work/older/usr/share/tonewright-older"
+    touch "$work/older/usr/share/tonewright-older/$name"
+    dpkg-deb --root-owner-group -Znone --build "$work/older" "$root/tmp/older/" >/dev/null
+    rm -rf "$work/older"
+done
+versions() { # VERSION: that of each package
+    # shellcheck disable=SC2086 # one package a word
+    [ "$(inside dpkg-query -W -f='${Version}\n' $names | sort -u)" = "$1" ]
+}
+expect "apt install of older packages" inside bash -c 'apt-get -q -y install /tmp/older/*.deb'
+expect "they are $version~older" versions "$version~older"
+expect "upgrade" inside bash -c 'apt-get -q -y install /tmp/packages/*.deb'
+expect "they are $version" versions "$version"
+expect "the file of the old version is gone" test ! -e "$root/usr/share/tonewright-older"
+expect "dpkg --verify after the upgrade" inside bash -c "dpkg --verify $(paste -sd' ' <<<"$names")"
+expect "the command after the upgrade" inside tonewright list agx_blender
+# shellcheck disable=SC2086
+expect "dpkg --purge after the upgrade" inside dpkg --purge $names
+files >"$work/after"
+expect "no trace is left after the upgrade" diff "$work/before" "$work/after"
 exit $failed

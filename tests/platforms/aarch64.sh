@@ -2,33 +2,26 @@
 # SPDX-License-Identifier: Apache-2.0
 # Cross-compiles the core library and its tests for 64-bit Arm, runs tests in QEMU's user mode, and prints the largest
 # error of the NEON engine against the reference for each operator.
-#   aarch64.sh SOURCE_TREE BUILD_FOLDER
+#   aarch64.sh SOURCE_TREE BUILD_FOLDER [core_files]
+# core_files of this processor: LUTs, shaders and numbers of the reference have its bytes.
 set -euo pipefail
-source=$1 build=$2
+tree=$1 build=$2 native=${3:-}
 skip() { echo "skipped: $*"; exit 77; }
 for program in aarch64-linux-gnu-g++ qemu-aarch64-static; do
     command -v $program >/dev/null ||
         skip "$program is not installed (Debian: g++-aarch64-linux-gnu qemu-user-static)"
 done
 command -v apt-get >/dev/null || skip "apt-get is missing; it downloads Debian's libraries for arm64"
-
-# The arm64 libraries go into a folder: the system gets no second architecture, and no package of its own changes.
-mkdir -p "$build/sysroot"/apt/{lists/partial,archives/partial}
+# shellcheck source=tests/platforms/sysroot.sh
+here=$(dirname "$0")
+source "$here/sysroot.sh"
+# shellcheck source=tests/platforms/core_files.sh
+source "$here/core_files.sh"
+make_sysroot arm64 "$build/sysroot"
 sysroot=$(realpath "$build/sysroot")
-if [ ! -f "$sysroot/complete-2" ]; then
-    packages=(libhwy1 libhwy-dev libfmt9 libfmt-dev libgtest-dev libtomlplusplus-dev)
-    : >"$sysroot/apt/status"
-    apt=(apt-get -qq -o APT::Architecture=arm64 -o APT::Architectures=arm64 -o APT::Sandbox::User=root
-        -o Acquire::Retries=3 -o Acquire::Languages=none -o Dir::State="$sysroot/apt"
-        -o Dir::State::status="$sysroot/apt/status" -o Dir::Cache="$sysroot/apt")
-    { "${apt[@]}" update && (cd "$sysroot/apt" && "${apt[@]}" download "${packages[@]}"); } ||
-        skip "apt-get cannot download for arm64: ${packages[*]}"
-    for package in "$sysroot"/apt/*.deb; do dpkg -x "$package" "$sysroot"; done
-    touch "$sysroot/complete-2"
-fi
 
-cmake -S "$source" -B "$build/core" -G Ninja -DCMAKE_BUILD_TYPE=Release \
-    -DCMAKE_TOOLCHAIN_FILE="$source/tests/platforms/aarch64.cmake" -DCMAKE_PREFIX_PATH="$sysroot/usr" \
+cmake -S "$tree" -B "$build/core" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+    -DCMAKE_TOOLCHAIN_FILE="$tree/tests/platforms/aarch64.cmake" -DCMAKE_PREFIX_PATH="$sysroot/usr" \
     -DTONEWRIGHT_BUILD_OCIO=OFF -DTONEWRIGHT_BUILD_IMAGE=OFF -DTONEWRIGHT_WITH_ICC=OFF \
     -DTONEWRIGHT_WARNINGS_AS_ERRORS=ON
 cmake --build "$build/core"
@@ -40,7 +33,7 @@ bound='*/Law.SimdIsTotalAndWithinItsBound/*'
 # These compare every view of every operator, or fit LUTs: minutes each in QEMU. None of them depends on the vectors.
 slow='Reference.IsEvaluateBitForBit:*Fit*:*Shipped*:*SimdOperator.IsTotal*'
 shares=16
-share=${TONEWRIGHT_TEST_SHARE:-$((16#$(git -C "$source" rev-parse HEAD | cut -c1-8)))}
+share=${TONEWRIGHT_TEST_SHARE:-$((16#$(git -C "$tree" rev-parse HEAD | cut -c1-8)))}
 share=$((share % shares))
 cat <<TEXT
 Left out: unit tests of ocio/ and image/ and of ICC files, whose libraries are not built; unit tests that take minutes
@@ -57,4 +50,7 @@ tr -d '\n' <"$build/bound.xml" | sed 's/<testcase/\n&/g' |
     sed -n 's/.*name="SimdIsTotalAndWithinItsBound\/\([^"]*\)".*name="NEON" value="\([^"]*\)".*/\2 \1/p' |
     sort -rg | awk '{ printf "  %-8s %s\n", $1, $2; n++ } END { print n + 0, "operators, presets and looks"; exit n == 0 }' ||
     failed=1
+if [ -n "$native" ]; then
+    compare_core_files "$native" qemu-aarch64-static -L /usr/aarch64-linux-gnu "$build/core/bin/core_files" || failed=1
+fi
 exit $failed

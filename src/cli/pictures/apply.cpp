@@ -72,11 +72,15 @@ WriteOptions write_options_of(const ApplyOptions& options, const std::string& ou
     write.alpha = parse_alpha(options);
     write.compression = options.compression;
     write.quality = options.quality;
-    write.max_pixels = options.max_pixels;
+    if (options.picture.max_pixels) write.max_pixels = *options.picture.max_pixels;
     write.says_how = !options.has_no_metadata;
     if (options.given.contains("--compression") || options.given.contains("--quality"))
         (void)PictureWriter(out, write);
     return write;
+}
+
+double max_pixels_of(const ApplyOptions& options) {
+    return options.picture.max_pixels.value_or(kMaxPixels);
 }
 
 /// Where alpha plays no part, color is taken as it is.
@@ -180,7 +184,7 @@ void apply_lut(const ApplyOptions& options, const LutFile& lut, const FrameFiles
         hear(text);
     };
     auto quiet = std::make_optional<QuietStderr>();
-    const OIIO::ImageBuf source = read_image(file.in);
+    const OIIO::ImageBuf source = read_image(file.in, max_pixels_of(options));
     quiet.reset();
     const SourceColor color = about_picture(file.in, [&] {
         (void)channel_layout(source.spec());
@@ -247,7 +251,7 @@ void print_result(const FrameFiles& file, const Tonemapper& tonemapper, const Re
     const TonemapOptions& options = tonemapper.options();
     const ResolvedOperator op =
         resolve_picture_operator(options.op, options.settings, options.look, options.others);
-    const PictureReader reader(file.in, 1, file.subimage);
+    const PictureReader reader(file.in, 1, file.subimage, kUnlimited);
     const OIIO::ImageSpec& spec = reader.spec();
     std::string text = fmt::format(
         "apply: {} ({} x {} {}, {}) -> {}: {} ({}), exposure {:+.3g}, display {}", file.in,
@@ -261,7 +265,8 @@ void print_result(const FrameFiles& file, const Tonemapper& tonemapper, const Re
 void write_with_legend(const Tonemapper& tonemapper, const FrameFiles& file,
                        const ApplyOptions& options, const WriteOptions& write) {
     OIIO::ImageBuf picture;
-    if (!tonemapper(picture, read_image(file.in), {}, options.picture.threads))
+    if (!tonemapper(picture, read_image(file.in, max_pixels_of(options)), {},
+                    options.picture.threads))
         throw FileError(file.in + ": " + first_line(picture.geterror()));
     write_image_atomically(with_legend(picture), file.out, write);
 }
@@ -345,7 +350,7 @@ int run_apply(const ApplyOptions& given) {
             tonemap_contained(tonemapper, file, write, options.picture);
         } else {
             tonemap_file(tonemapper, file.in, file.out, write, options.picture.threads,
-                         file.subimage);
+                         file.subimage, max_pixels_of(options));
         }
     } catch (const FileError& e) {
         if (!is_frame_pattern(file.in)) throw;

@@ -238,7 +238,7 @@ void tonemap_contained(const Tonemapper& tonemapper, const FrameFiles& file,
         use_threads({.threads = picture.threads});
         std::vector<std::string> warnings;
         tonemap_file(tonemapper, file.in, file.out, with_kept_warnings(write, warnings),
-                     picture.threads, file.subimage);
+                     picture.threads, file.subimage, picture.max_pixels.value_or(kMaxPixels));
         return Json(warnings).dump();
     };
     run_contained({file.in}, 1, picture.timeout, work,
@@ -262,6 +262,7 @@ int apply_to_frames(
     sequence.skip_existing = options.frames.skip_existing;
     sequence.jobs = options.frames.jobs;
     sequence.nthreads = options.picture.threads;
+    sequence.max_pixels = options.picture.max_pixels.value_or(kMaxPixels);
     run(tonemapper, plan.frames, sequence, options.picture, "frames");
     warnings.print();
     print_summary(plan);
@@ -275,6 +276,7 @@ int apply_to_files(const Tonemapper& tonemapper, const ApplyOptions& options,
     SequenceOptions sequence;
     sequence.write = write;
     sequence.nthreads = options.picture.threads;
+    sequence.max_pixels = options.picture.max_pixels.value_or(kMaxPixels);
     run(tonemapper, files, sequence, options.picture, "pictures");
     warnings.print();
     const std::size_t failed = print_failures(files);

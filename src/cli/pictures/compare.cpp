@@ -189,7 +189,7 @@ void compare_pictures(CompareOptions options) {
                         "file",
                         options.file));
     }
-    OIIO::ImageBuf picture = read_picture(options.in);
+    OIIO::ImageBuf picture = read_picture(options.in, options.max_pixels);
     const QuietStderr quiet;
     const SourceColor source = about_picture(options.in, [&] {
         (void)channel_layout(picture.spec());

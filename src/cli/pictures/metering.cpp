@@ -69,6 +69,7 @@ MeterOptions meter_options_of(const ExposureOptions& options, const std::string&
     MeterOptions o;
     o.input = input;
     o.subimage = picture.subimage;
+    o.max_pixels = picture.max_pixels.value_or(kMaxPixels);
     o.unpremult = alpha_of(picture);
     if (!options.region.empty()) o.region = parse_region(options.region);
     o.delta = options.delta;

@@ -62,9 +62,9 @@ void use_threads(const PictureInput& input) {
     OIIO::attribute("exr_threads", input.threads == 1 ? -1 : input.threads);
 }
 
-OIIO::ImageBuf read_picture(const std::string& path) {
+OIIO::ImageBuf read_picture(const std::string& path, std::optional<double> max_pixels) {
     const QuietStderr quiet;
-    return read_image(path);
+    return read_image(path, max_pixels.value_or(kMaxPixels));
 }
 
 OIIO::ImageBuf to_rec709_light(const OIIO::ImageBuf& picture, const SourceColor& source,

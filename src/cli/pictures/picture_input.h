@@ -4,6 +4,7 @@
 #include <OpenImageIO/imagebuf.h>
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -64,6 +65,8 @@ void use_threads(const PictureInput& input);
                                              const SourceColor& source, const std::string& path);
 
 /// read_image() with the terminal kept clean.
-[[nodiscard]] OIIO::ImageBuf read_picture(const std::string& path);
+/// @param max_pixels  of --max-pixels
+[[nodiscard]] OIIO::ImageBuf read_picture(const std::string& path,
+                                          std::optional<double> max_pixels = {});
 
 TONEWRIGHT_NAMESPACE_END

@@ -28,6 +28,8 @@ std::string encoded(const std::vector<float>& rgb, int width, int height, const 
     if (!out) throw FileError("report: " + first_line(OIIO::geterror()));
     OIIO::ImageSpec spec(width, height, 3, type);
     spec.attribute("compression", type == OIIO::TypeUInt8 ? "zip:9" : "zip");
+    // The writer of OpenEXR would put in the time, and each page would have other bytes.
+    if (type == OIIO::TypeHalf) spec.attribute("DateTime", date_text(0));
     out->set_ioproxy(&memory);
     if (!out->open(name, spec) || !out->write_image(OIIO::TypeFloat, rgb.data()) || !out->close())
         throw FileError("report: " + first_line(out->geterror()));
@@ -40,7 +42,7 @@ OIIO::ImageBuf light_of(const ReportPictureOptions& options) {
         const int width = std::min(options.width, kLargestChart);
         return make_chart(width, width * 9 / 16);
     }
-    OIIO::ImageBuf picture = read_picture(options.path);
+    OIIO::ImageBuf picture = read_picture(options.path, options.max_pixels);
     const QuietStderr quiet;
     const SourceColor source = about_picture(options.path, [&] {
         (void)channel_layout(picture.spec());

@@ -12,6 +12,10 @@
 /// Picture files, read and written whole or not at all.
 TONEWRIGHT_NAMESPACE_BEGIN
 
+/// Pixels (width x height x depth) that a picture may declare unless the caller says otherwise: 12
+/// GB as three floats each. A file of a kilobyte can declare more than any memory holds.
+inline constexpr double kMaxPixels = 1e9;
+
 /// Reads a whole picture into memory, in the pixel type of the file: first subimage, full
 /// resolution.
 ///
@@ -19,8 +23,10 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// file is never a half-black picture (ImageBuf passes over truncated TIFF and JPEG files). Nothing
 /// stays in OIIO's cache: a file that was rewritten is read anew.
 ///
-/// @throws FileError  missing, truncated, unreadable, of unknown format, or deep. One line.
-[[nodiscard]] TONEWRIGHT_API OIIO::ImageBuf read_image(const std::string& path);
+/// @throws FileError  missing, truncated, unreadable, of unknown format, deep, or with more pixels
+///                    than `max_pixels`, before there is memory for them. One line.
+[[nodiscard]] TONEWRIGHT_API OIIO::ImageBuf read_image(const std::string& path,
+                                                       double max_pixels = kMaxPixels);
 
 /// How a picture file is written.
 struct WriteOptions {

@@ -28,6 +28,8 @@ struct MeterOptions {
     TonemapOptions::Unpremult unpremult = TonemapOptions::Unpremult::automatic;
     /// Of a file.
     int subimage = 0;
+    /// Of a file. @see read_image
+    double max_pixels = kMaxPixels;
     /// Pixels that count, in the picture's coordinates. Default: the data window. Channels of it
     /// are not read.
     OIIO::ROI region = {};

@@ -38,6 +38,8 @@ struct SequenceOptions {
     int jobs = 0;
     /// Threads of all of them together; each frame has at least one. 0: OIIO's `threads` attribute.
     int nthreads = 0;
+    /// Of each frame. @see read_image
+    double max_pixels = kMaxPixels;
     /// Called after each frame, from one thread at a time.
     std::function<void(const FrameFiles&)> done = {};
 };

@@ -208,8 +208,9 @@ TONEWRIGHT_API bool map_colors(
 
 /// Tone maps a file into a file: read_image(), tonemap() and write_image_atomically() at once, with
 /// the same result to the last byte, in the memory of some rows. One subimage of it (a part of an
-/// OpenEXR file, a page): parts are seldom all of them color. A picture without a date gets its
-/// file's (UTC), or some formats would put in the time: made again, the result is the same.
+/// OpenEXR file, a page): parts are seldom all of them color. A picture without a date gets that
+/// of the environment variable SOURCE_DATE_EPOCH, else its file's (UTC), or some formats would put
+/// in the time: made again, the result is the same.
 ///
 /// Rows are read, tone mapped and written at the same time. An operator that takes statistics reads
 /// the file twice. Volumes, and the pictures of local operators, are held in memory as a whole.
@@ -225,6 +226,7 @@ TONEWRIGHT_API void tonemap_file(const Tonemapper& tonemapper, const std::string
                                  int subimage = 0);
 TONEWRIGHT_API void tonemap_file(const Tonemapper& tonemapper, const std::string& in,
                                  const std::string& out, const WriteOptions& options,
-                                 int nthreads = 0, int subimage = 0);
+                                 int nthreads = 0, int subimage = 0,
+                                 double max_pixels = kMaxPixels);
 
 TONEWRIGHT_NAMESPACE_END

@@ -115,7 +115,8 @@ def tonemap(image: Picture, op: str, *, settings: Mapping[str, Any] | None = Non
 def tonemap_file(source: Path, target: Path, op: str, *, settings: Mapping[str, Any] | None = None, exposure: float = 0,
                  input: str = "auto", display: str = "srgb", look: str = "", reference_white: float = 100,
                  unpremult: str | bool = "auto", statistics: str = "picture", dtype: str | None = None,
-                 alpha: str = "keep", subimage: int = 0, nthreads: int = 0, in_place: bool = False) -> None:
+                 alpha: str = "keep", subimage: int = 0, nthreads: int = 0, in_place: bool = False,
+                 max_pixels: float = 1e9) -> None:
     """Tone map a picture file into another file, as `tonewright apply` does. Its warnings are UserWarnings.
 
     target: replaced only when the new file is complete; its extension sets the format.
@@ -123,6 +124,7 @@ def tonemap_file(source: Path, target: Path, op: str, *, settings: Mapping[str, 
     alpha: "keep", "ignore" (leave it out) or "opaque" (make it 1).
     subimage: subimage of a multi-part file, counted from 0.
     in_place: allow the target to be the source, which is lost then.
+    max_pixels: most pixels that the source may declare.
     Other options: as tonemap().
 
     Example: tonewright.tonemap_file("shot.exr", "shot.png", "hable", settings={"white": 8})
@@ -132,7 +134,7 @@ def tonemap_file(source: Path, target: Path, op: str, *, settings: Mapping[str, 
     _tonewright.tonemap_file(_path("source", source), _path("target", target), _text("op", op),
                              type="" if dtype is None else _text("dtype", dtype), alpha=_text("alpha", alpha),
                              nthreads=_operator.index(nthreads), subimage=_operator.index(subimage),
-                             in_place=bool(in_place), **options)
+                             in_place=bool(in_place), max_pixels=_number("max_pixels", max_pixels), **options)
 
 
 def evaluate(op: str, colors: npt.ArrayLike, *, settings: Mapping[str, Any] | None = None, exposure: float = 0,
@@ -151,7 +153,8 @@ def evaluate(op: str, colors: npt.ArrayLike, *, settings: Mapping[str, Any] | No
 
 def meter(image: Path | Picture, *, method: str = "log-average", key: float | None = None, compensation: float = 0,
           delta: float = 1e-3, percentiles: tuple[float, float] = (0, 100), input: str = "auto",
-          unpremult: str | bool = "auto", subimage: int = 0, nthreads: int = 0) -> dict[str, Any]:
+          unpremult: str | bool = "auto", subimage: int = 0, nthreads: int = 0,
+          max_pixels: float = 1e9) -> dict[str, Any]:
     """Measure the luminance of a picture and suggest an exposure, in stops, as `tonewright meter` does.
 
     image: a file, an OpenImageIO.ImageBuf or an array (see tonemap()).
@@ -160,6 +163,7 @@ def meter(image: Path | Picture, *, method: str = "log-average", key: float | No
     compensation: stops on top of the metered exposure.
     delta: added to each luminance inside the logarithm.
     percentiles: between which "histogram" averages.
+    max_pixels: most pixels that a file may declare.
 
     Example: tonewright.meter("shot.exr")["exposure"]
     """
@@ -169,7 +173,7 @@ def meter(image: Path | Picture, *, method: str = "log-average", key: float | No
     return _tonewright.meter(image, _text("method", method), None if key is None else _number("key", key),
                              _number("compensation", compensation), _number("delta", delta), _number("percentiles", low),
                              _number("percentiles", high), _text("input", input), _choice("unpremult", unpremult),
-                             _operator.index(subimage), _operator.index(nthreads))
+                             _operator.index(subimage), _operator.index(nthreads), _number("max_pixels", max_pixels))
 
 
 def operators() -> list[dict[str, Any]]:

@@ -120,9 +120,7 @@ void add_apply(CommandLine& program) {
         .group("Pictures");
     add_picture_input(command, options->picture);
     command.option("--max-pixels")
-        .describe(
-            "most pixels of a picture (default 1e9), and of a display window that is filled with "
-            "black around it (default 1e8)");
+        .describe("most pixels of a picture (default 1e9) or of a window filled with black (1e8)");
     const Option metered = command
                                .add("--auto-exposure", options->metering.method,
                                     "meter the picture: log-average, histogram, mean or max; "

@@ -4,6 +4,7 @@
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <malloc.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -86,6 +87,8 @@ const PictureCommands& load() {
         throw FileError("start: cannot load the picture commands: " + reason);
     };
     const std::optional<double> limit = address_limit();
+    // Each further arena of malloc reserves 64 to 128 MB of addresses for a thread.
+    if (limit) (void)::mallopt(M_ARENA_MAX, 1);
     const auto fail_for_memory = [&] {
         fail(
             fmt::format("not enough memory; expected more addresses than the limit of {:.0f} MB "

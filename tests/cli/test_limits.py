@@ -141,7 +141,7 @@ def softimage(side):
 
 
 def iff(side):
-    head = struct.pack(">IIHHIHHHHI", side, side, 1, 1, 0, 0, 0, 1, 0, 0)
+    head = struct.pack(">IIHHIHHIII", side, side, 1, 1, 0, 0, 1, 0, 0, 0)
     body = b"CIMG" + b"TBHD" + struct.pack(">I", len(head)) + head + b"FOR4" + struct.pack(">I", 300) + b"TBMP" + bytes(296)
     return b"FOR4" + struct.pack(">I", len(body)) + body
 
@@ -231,7 +231,7 @@ def main():
             limits.check(f"{bomb} is small", len(contents) <= 3000, len(contents))
             limits.refused(f"meter {bomb}", ["meter", bomb], bomb)
             limits.refused(f"apply {bomb}", ["apply", bomb, "out.png", "--operator", "clamp", "-q"], bomb)
-        for bomb in ("lines.exr", "lines.png", "strip.tif"):
+        for bomb in ("lines.hdr", "lines.png", "strip.tif"):
             words = f"{bomb}: cannot read: it declares {SIDE} x {SIDE} pixels; expected at most 1000000000"
             limits.refused(f"{bomb}: the line", ["meter", bomb], words)
             for what, arguments in {
@@ -256,7 +256,7 @@ def main():
             limits.accepted(f"{what} --max-pixels 57600", *arguments, "--max-pixels", "57600")
             refused = [argument.replace("kept", "out") for argument in arguments]
             limits.refused(f"{what} --max-pixels 57599", [*refused, "--max-pixels", "57599"], "expected at most 57599 in all")
-        (folder / "shot.1.exr").write_bytes((folder / "good.exr").read_bytes())
+        (folder / "shot.0001.exr").write_bytes((folder / "good.exr").read_bytes())
         code, said, _ = limits.run("apply", "shot.#.exr", "out.#.png", "--frames", "1", "--operator", "clamp", "-q", "--max-pixels", "57599")
         limits.check("frames", code == 1 and "expected at most 57599" in said, said)
 

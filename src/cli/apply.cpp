@@ -49,7 +49,7 @@ void add_file_options(const Command& command, ApplyOptions& options) {
         .group(group);
     command
         .add("--alpha", options.alpha,
-             "`keep`, `ignore` (leave it out) or `opaque` (1); the last two do not divide by it")
+             "`keep`, `ignore` (leave it out) or `opaque` (1); the last two do not un-premultiply")
         .value("ACTION")
         .suggest({"keep", "ignore", "opaque"})
         .show_default()
@@ -96,19 +96,19 @@ void add_apply(CommandLine& program) {
     options->input = "auto";
     add_view_options(command, *options);
     command.option("--input")
-        .describe("color space of the input: a space, a display or `auto` (what the file says)")
+        .describe("color space of the input: a space, a display or `auto`, as the file says")
         .suggest(suggest_source_colors);
     command.option("--exposure").group("Exposure");
     const Option false_color =
         command.add_flag("--false-color", options->is_false_color,
                          "show exposure as colors, one for every stop (operator false_color)");
     false_color.group("Operator").excludes(op);
-    const Option legend = command.add_flag("--legend", options->has_legend,
-                                           "draw what the colors mean below the picture");
+    const Option legend =
+        command.add_flag("--legend", options->has_legend, "explain the colors below the picture");
     legend.group("Operator").needs(false_color);
     command
         .add("--statistics", options->statistics,
-             "operators measure each `picture`, the whole `sequence`, or use `defaults`")
+             "operators measure each `picture` or the whole `sequence`, or use `defaults`")
         .value("NAME")
         .suggest({"picture", "sequence", "defaults"})
         .show_default()
@@ -116,13 +116,13 @@ void add_apply(CommandLine& program) {
     add_file_options(command, *options);
     command
         .add_flag("--dither", options->dither,
-                  "dither 8-bit output by half a code value, alike in every frame")
+                  "dither 8-bit output by half a code value, the same in every frame")
         .group("Pictures");
     add_picture_input(command, options->picture);
     command.option("--max-pixels")
         .describe(
-            "most pixels of a picture (default 1e9), and of a display window that is filled with "
-            "black around it (default 1e8)");
+            "most pixels that a picture may declare (default 1e9; 1e8 for a padded display "
+            "window)");
     const Option metered = command
                                .add("--auto-exposure", options->metering.method,
                                     "meter the picture: log-average, histogram, mean or max; "

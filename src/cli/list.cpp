@@ -396,8 +396,10 @@ void add_list(CommandLine& program) {
     definition.group(contents);
     const Option hosts =
         command
-            .add_flag("--hosts", options->hosts,
-                      "applications that read LUTs, what each expects, and how to load a LUT there")
+            .add_flag(
+                "--hosts", options->hosts,
+                "list applications that read LUTs, the LUT that each expects, and how to load "
+                "it")
             .excludes(markdown)
             .excludes(views)
             .excludes(definition);

@@ -117,13 +117,13 @@ void print_summary(const std::vector<ParityRow>& rows) {
         });
         std::string codes;
         std::string values;
-        for (const char* form : {"simd", "ocio cpu default", "ocio gpu"}) {
+        for (const char* backend : {"simd", "ocio cpu default", "ocio gpu"}) {
             const auto row = std::find_if(
-                first, last, [&](const ParityRow& r) { return r.form.starts_with(form); });
+                first, last, [&](const ParityRow& r) { return r.backend.starts_with(backend); });
             if (row == last || row->bound == 0) {
                 codes += fmt::format("{:<18}", "-");
                 values += fmt::format("{:>9}", "-");
-                if (row != last) notes = row->form + ": " + row->note + "\n";
+                if (row != last) notes = row->backend + ": " + row->note + "\n";
                 continue;
             }
             codes += fmt::format("{:<9}{:<9}", codes_text(row->max), codes_text(row->mean));
@@ -222,7 +222,7 @@ int run_verify(Options& options) {
 Json to_json(const ParityRow& row) {
     return {{"operator", row.op},
             {"display", row.display},
-            {"form", row.form},
+            {"backend", row.backend},
             {"lowering", row.lowering},
             {"max", row.max},
             {"p999", row.p999},
@@ -250,12 +250,12 @@ void add_verify(CommandLine& program) {
         .suggest(suggest_operators);
     command
         .add("--config", options->verify.config,
-             "config file or its folder, from Tonewright or not (default: a new config)")
+             "config file or its folder, also one of other software (default: a new config)")
         .value("CONFIG")
         .group(what);
     command
         .add("--lut", options->lut,
-             "LUT file: find the operator and input encoding that made it, and its error")
+             "LUT file: find the operator and the input encoding that made it, and the error")
         .value("FILE")
         .group(what);
     command

@@ -537,7 +537,7 @@ class Checker {
                 }
             }
         }
-        return {name, Verdict::holds, "leads back within " + rounded(worst, 1), {}};
+        return {name, Verdict::holds, "round trip within " + rounded(worst, 1), {}};
     }
 
     Subject subject_;

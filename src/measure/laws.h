@@ -51,7 +51,7 @@ struct LawResult {
 /// black       black is 0, and grays above -8 stops are not shown as black;
 /// gray        grays have no tint;
 /// continuous  no jump between neighboring colors;
-/// inverse     the inverse leads back.
+/// inverse     the round trip through the inverse is exact.
 [[nodiscard]] TONEWRIGHT_API std::vector<LawResult> check_laws(const ResolvedOperator& op);
 
 TONEWRIGHT_NAMESPACE_END

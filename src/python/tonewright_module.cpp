@@ -399,7 +399,7 @@ py::dict describe(const ParityRow& row) {
     py::dict d;
     d["operator"] = row.op;
     d["display"] = row.display;
-    d["backend"] = row.form;
+    d["backend"] = row.backend;
     d["max"] = row.max;
     d["p999"] = row.p999;
     d["mean"] = row.mean;

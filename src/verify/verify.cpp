@@ -144,10 +144,11 @@ class Comparison {
         }
     }
 
-    /// @param unit  relative rounding of the form, see ParityRow::max_beyond_rounding
-    /// @param loses_negatives  the form has a cube that sees negatives of the working primaries as
-    ///                         0: colors outside of them are shown, not held to the bound
-    /// @param answers_nan  the form has to show NaN as a color
+    /// @param unit  relative rounding of the backend, see ParityRow::max_beyond_rounding
+    /// @param loses_negatives  a 3D LUT of the backend takes negatives of the working primaries as
+    /// 0:
+    ///                         the bound does not apply to colors outside of these primaries
+    /// @param answers_nan  the backend must show NaN as a color
     void measure(const std::vector<float>& shown, double unit, bool loses_negatives,
                  bool answers_nan, ParityRow& row) const {
         std::vector<double> errors;
@@ -239,7 +240,7 @@ class Comparison {
         return allowance;
     }
 
-    /// The chain cut in two where a float32 form rounds and a cancelling matrix follows.
+    /// The chain, cut in two where a float32 backend rounds and a canceling matrix follows.
     struct RoundingPoint {
         ReferenceEngine before;
         ReferenceEngine after;
@@ -251,8 +252,8 @@ class Comparison {
     std::vector<RoundingPoint> rounding_points_;
 };
 
-/// What the structure of an inverse allows to 99.9 % of the colors, in code values; 0 where it has
-/// none of its own.
+/// Bound of the round trip for 99.9 % of the colors, in code values, by the structure of the
+/// inverse; 0 if the config has no inverse of its own.
 double round_trip_bound(const OCIO::ConstProcessorRcPtr& back, const ResolvedOperator& op) {
     // Inverse tables of 16384 entries; a curve that is steep next to white has few of them there.
     double bound = 1e-3;
@@ -276,8 +277,8 @@ double round_trip_bound(const OCIO::ConstProcessorRcPtr& back, const ResolvedOpe
     return bound;
 }
 
-/// OpenColorIO's built-in transform that the view's operator equals, on its display; null where
-/// there is none, or this OpenColorIO has it not.
+/// OpenColorIO's built-in transform that equals the view's operator, on the view's display; null if
+/// there is none, or if this OpenColorIO lacks it.
 OCIO::ConstProcessorRcPtr builtin_processor(const View& view) {
     const std::string style = builtin_style(view.op);
     const auto registry = OCIO::BuiltinTransformRegistry::Get();
@@ -296,7 +297,7 @@ OCIO::ConstProcessorRcPtr builtin_processor(const View& view) {
     return make_processor(ops);
 }
 
-/// Rows of the inverse from the config's output space, in the forms that applications have it.
+/// Adds rows for the inverse from the config's output space, as applications run it.
 template <class Add>
 void add_inverse_space(const OCIO::ConstConfigRcPtr& config, const View& view,
                        const std::string& space, const SampleSet& samples, bool with_gpu,
@@ -306,7 +307,7 @@ void add_inverse_space(const OCIO::ConstConfigRcPtr& config, const View& view,
     row.op = view.op.label;
     row.display = view.display;
     if (view.op.op->is_diagnostic) {
-        row.form = "and back";
+        row.backend = "inverse";
         row.note = "none: many colors are shown as one";
         add(row);
         return;
@@ -316,16 +317,17 @@ void add_inverse_space(const OCIO::ConstConfigRcPtr& config, const View& view,
     row.bound = round_trip_bound(back, view.op);
     row.lowering = "config: " + space;
     if (row.bound == 0) {
-        row.form = "and back";
-        row.note = "none: no table leads back, only OpenColorIO's own inversion of a cube";
+        row.backend = "inverse";
+        row.note =
+            "none: the config has no inverse table, and OpenColorIO's own inversion is coarse";
         add(row);
         return;
     }
-    // A fifth of the colors: two more passes through every form.
+    // A fifth of the colors, because every backend takes two more passes.
     const RoundTrip trip(view, samples, 5);
-    const auto measure = [&](const std::string& form, const RoundTrip::Inverse& run) {
+    const auto measure = [&](const std::string& backend, const RoundTrip::Inverse& run) {
         ParityRow measured = row;
-        measured.form = form;
+        measured.backend = backend;
         const auto [errors, is_finite] = trip.measure(run);
         measured.max = measured.max_all = errors.max;
         measured.p999 = measured.max_beyond_rounding = errors.p999;
@@ -337,12 +339,12 @@ void add_inverse_space(const OCIO::ConstConfigRcPtr& config, const View& view,
     for (const bool is_default : {false, true}) {
         const OcioCpu cpu(back,
                           is_default ? OCIO::OPTIMIZATION_DEFAULT : OCIO::OPTIMIZATION_LOSSLESS);
-        measure(is_default ? "back cpu default" : "back cpu lossless",
+        measure(is_default ? "inverse cpu default" : "inverse cpu lossless",
                 [&](const float* in, float* out, std::size_t n) { cpu.run_rgb(in, out, n); });
     }
     if (!with_gpu || !OcioGpu::unavailable_reason().empty()) return;
     const OcioGpu gpu(back);
-    measure("back gpu",
+    measure("inverse gpu",
             [&](const float* in, float* out, std::size_t n) { gpu.run_rgb(in, out, n); });
 }
 
@@ -521,33 +523,33 @@ VerifyResult verify(const VerifyOptions& options,
         const Lowered lowered = lower_to_ocio(pipeline, lower_options(*view.op.op));
         const bool is_hdr = find_display(view.display).is_hdr;
         const Bounds bounds = bounds_of(pipeline, lowered, is_hdr, declared);
-        const auto row_of = [&](const std::string& form) {
+        const auto row_of = [&](const std::string& backend) {
             ParityRow row;
             row.op = view.op.label;
             row.display = view.display;
-            row.form = form;
+            row.backend = backend;
             return row;
         };
         const auto add_row = [&](const ParityRow& row) {
             rows.push_back(row);
             if (on_row) on_row(rows.back());
         };
-        const auto add_note = [&](const std::string& form, const std::string& note) {
-            ParityRow row = row_of(form);
+        const auto add_note = [&](const std::string& backend, const std::string& note) {
+            ParityRow row = row_of(backend);
             row.note = note;
             add_row(row);
         };
-        const auto add = [&](const Comparison& compared, const std::string& form, double bound,
+        const auto add = [&](const Comparison& compared, const std::string& backend, double bound,
                              bool is_declared, bool mixed, const std::string& lowering,
                              const auto& run) {
-            ParityRow row = row_of(form);
+            ParityRow row = row_of(backend);
             row.lowering = lowering;
             row.bound = bound;
             row.is_mixed_metric = mixed;
             run();
-            const double unit = form == "ocio gpu" ? kGpuRounding : 0x1p-23;
-            compared.measure(shown, unit, form.starts_with("ocio") && lowered.loses_negatives, true,
-                             row);
+            const double unit = backend == "ocio gpu" ? kGpuRounding : 0x1p-23;
+            compared.measure(shown, unit, backend.starts_with("ocio") && lowered.loses_negatives,
+                             true, row);
             if (is_declared)
                 row.note += (row.note.empty() ? "" : "; ") + ("bound: " + declared.reason);
             add_row(row);
@@ -650,18 +652,18 @@ VerifyResult verify(const VerifyOptions& options,
 }
 
 std::string parity_heading() {
-    return fmt::format("{:<28} {:<10} {:<18} {:>8} {:>8} {:>8} {:>8} {:>10} {:>8}\n", "operator",
-                       "display", "form", "max", "99.9 %", "mean", "max all", "beyond f32",
+    return fmt::format("{:<28} {:<10} {:<20} {:>8} {:>8} {:>8} {:>8} {:>10} {:>8}\n", "operator",
+                       "display", "backend", "max", "99.9 %", "mean", "max all", "beyond f32",
                        "bound");
 }
 
 std::string format_row(const ParityRow& row) {
     if (row.bound == 0) {
-        return fmt::format("{:<28} {:<10} {:<18} {}\n", row.op, row.display, row.form, row.note);
+        return fmt::format("{:<28} {:<10} {:<20} {}\n", row.op, row.display, row.backend, row.note);
     }
     return fmt::format(
-        "{:<28} {:<10} {:<18} {:>8.1e} {:>8.1e} {:>8.1e} {:>8.1e} {:>10} {:>8.1e}  {}{}\n", row.op,
-        row.display, row.form, row.max, row.p999, row.mean, row.max_all,
+        "{:<28} {:<10} {:<20} {:>8.1e} {:>8.1e} {:>8.1e} {:>8.1e} {:>10} {:>8.1e}  {}{}\n", row.op,
+        row.display, row.backend, row.max, row.p999, row.mean, row.max_all,
         row.max_all <= row.bound ? "-" : fmt::format("{:.1e}", row.max_beyond_rounding), row.bound,
         row.is_ok ? "ok" : "FAILED", row.note.empty() ? "" : ", " + row.note);
 }

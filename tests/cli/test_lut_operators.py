@@ -236,7 +236,7 @@ def check_forms(report, command, scratch):
     done = subprocess.run([command, "verify", text, scratch / "one.cube", "--json", *([] if ALL else ["--quick"])],
                           capture_output=True, text=True, check=False)
     report.check("verify: all within their bounds", done.returncode == 0, done.stdout[-600:] + done.stderr)
-    forms = [row["form"] for row in json.loads(done.stdout)["rows"]] if done.stdout else []
+    forms = [row["backend"] for row in json.loads(done.stdout)["rows"]] if done.stdout else []
     report.check("verify: OpenColorIO and GLSL are rows", any("ocio cpu" in f for f in forms) and "glsl" in forms, str(forms))
 
 

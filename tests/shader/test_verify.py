@@ -54,7 +54,7 @@ class Checks:
         done = subprocess.run([self.tonewright, "verify", *(arguments or OPERATORS), "--quick", "--best-target", "--json"],
                               env=os.environ | environment, capture_output=True, text=True, check=False)
         found = json.loads(done.stdout) if done.stdout else {"rows": [], "not_executed": []}
-        rows = [row for row in found["rows"] if not row["form"].startswith(("simd", "ocio"))]
+        rows = [row for row in found["rows"] if not row["backend"].startswith(("simd", "ocio"))]
         return done.returncode, rows, {n["name"]: n["reason"] for n in found["not_executed"]}, done.stderr
 
 
@@ -83,8 +83,8 @@ def main(tonewright: str) -> int:
     dawn = dawn_environment(tonewright)
     wanted = {"c"} | ({"wgsl", "hlsl"} if dawn else set())
     code, rows, not_executed, messages = checks.verify(**dawn)
-    executed = {row["form"] for row in rows}
-    print("executed:", ", ".join(f"{row['form']} {row['max']:.1e} ({row['lowering']})" for row in rows
+    executed = {row["backend"] for row in rows}
+    print("executed:", ", ".join(f"{row['backend']} {row['max']:.1e} ({row['lowering']})" for row in rows
                                  if row["operator"] == "hable"))
     checks.check("every language is executed, or has a reason", code == 0 and wanted <= executed
                  and not executed & set(not_executed)

@@ -39,13 +39,13 @@ struct VerifyOptions {
     OperatorSet others;
 };
 
-/// One form of one view against the double reference, in display code values.
+/// Errors of one backend of one view against the double reference, in display code values.
 struct ParityRow {
     std::string op;
     std::string display;
     /// "simd AVX3", "ocio cpu lossless", "ocio cpu default", "ocio gpu", or a shader's language
-    std::string form;
-    /// Of OCIO forms "config" or "chain" and what was emitted; of shaders the compiler or driver.
+    std::string backend;
+    /// For OpenColorIO: "config" or "chain", and the operations. For shaders: compiler or driver.
     std::string lowering;
     /// Colors with all channels >= 0.
     double max = 0, p999 = 0, mean = 0;
@@ -57,7 +57,7 @@ struct ParityRow {
     /// rounding counts: the change of the exact result when each channel of the input, and of what
     /// enters each matrix with negative coefficients, moves by one float32 unit (2^-23 of its
     /// value; 2^-21 for the GPU, whose texture filtering rounds more often). Such matrices cancel,
-    /// which no float32 form can avoid.
+    /// which no float32 backend can avoid.
     double max_beyond_rounding = 0;
     double bound = 0;
     /// True where a matrix of the chain has negative coefficients.
@@ -66,7 +66,7 @@ struct ParityRow {
     /// compilers may take it that there is none.
     bool is_total = true;
     bool is_ok = true;
-    std::string note;  // why a form is missing, or the worst color of a failure
+    std::string note;  // why a backend is missing, or the worst color of a failure
 };
 
 /// A language or an application whose shaders are written but were not run.

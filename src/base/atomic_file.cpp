@@ -54,7 +54,7 @@ std::pair<std::string, std::string> name_parts(const fs::path& target) {
     return {target.stem().string().substr(0, 200), target.extension().string()};
 }
 
-/// That nobody else can guess.
+/// A name that no other program can guess.
 std::uint64_t random_bits() {
     std::uint64_t bits = 0;
     if (::getrandom(&bits, sizeof bits, 0) == static_cast<ssize_t>(sizeof bits)) return bits;
@@ -80,7 +80,7 @@ const std::string& machine_tag() {
 std::array<std::atomic<const char*>, 256> unfinished_names;
 static_assert(std::atomic<const char*>::is_always_lock_free);
 
-/// The signal handler is removing them: a file that is created after this would stay behind.
+/// The signal handler is removing the files: a file that is created after this would stay.
 std::atomic<bool> is_ending = false;
 /// FileCreations of all threads, and of this one.
 std::atomic<int> creations = 0;

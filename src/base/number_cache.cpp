@@ -25,7 +25,8 @@ namespace fs = std::filesystem;
 
 constexpr std::uintmax_t kLargestFolder = std::uintmax_t{256} << 20;
 constexpr std::string_view kEnding = ".numbers";
-/// Of the format of the file: the numbers of this processor, whose folder others may share.
+/// Version of the file's format. Its numbers have this processor's byte order, and machines may
+/// share the folder.
 constexpr std::string_view kBeginning = std::endian::native == std::endian::little
                                             ? "tonewright numbers 1\n"
                                             : "tonewright numbers 1 big-endian\n";

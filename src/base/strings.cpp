@@ -16,7 +16,8 @@ char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + '
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// Of inserting, dropping or replacing a letter. Other digits are another thing, not a slip.
+/// Cost of an inserted, dropped or replaced letter. Other digits mean another thing, not a typing
+/// error.
 std::size_t cost_of(char a, char b = ' ') { return is_digit(a) || is_digit(b) ? 2 : 1; }
 
 /// Damerau-Levenshtein distance (optimal string alignment): two letters that changed places are

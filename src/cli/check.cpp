@@ -61,7 +61,7 @@ int run_check(const Options& options) {
     } else {
         print_text(view, options, results);
     }
-    std::fflush(stdout);  // before the warnings, where both go to a terminal
+    std::fflush(stdout);  // before the warnings, if both go to a terminal
     if (!options.file.empty()) {
         const ResultLine line;
         PlotOptions plot;

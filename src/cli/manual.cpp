@@ -136,7 +136,7 @@ std::string files() {
            entry("\\fIPREFIX/share/doc/tonewright\\fR", "Documents, in Markdown.");
 }
 
-/// Of all pages of commands: the commands under the same title, and the general pages.
+/// For all pages of commands: the commands of the same group, and the general pages.
 std::string see_also(const HelpPage& program, const std::string& command) {
     std::vector<std::string> others;
     for (const HelpGroup& group : program.groups) {

@@ -485,9 +485,9 @@ class Checker {
         return compared(name, Kind::jumps, "").value_or(LawResult{name, Verdict::holds, "", {}});
     }
 
-    /// Compares what the operator makes of a color with what it makes of the color that its inverse
-    /// gives: where it shows many colors as one, any of them will do. Of a saturated color that a
-    /// clamp limits, a matrix behind the clamp has made another one.
+    /// Compares the displayed color with the color that its inverse shows. If the operator shows
+    /// many colors as one, any of them will do. A saturated color that a clamp limits is skipped,
+    /// because a matrix after the clamp has changed it.
     LawResult inverse() const {
         const std::string name = "inverse";
         std::optional<ReferenceEngine> back;
@@ -529,7 +529,7 @@ class Checker {
                     worst = std::max(worst, error);
                     if (error <= kHalfCode) continue;
                     return {name, Verdict::breaks,
-                            fmt::format("of {} at {}, the inverse makes {}, which is shown as {}, "
+                            fmt::format("the inverse of {} at {} is {}, which is shown as {}, "
                                         "not as {}",
                                         sweep.name, place(sweep.x[i]), rounded(scene[c][i], 4),
                                         rounded(again[c][i], 4), rounded(shown[c][i], 4)),

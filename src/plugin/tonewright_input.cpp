@@ -3,7 +3,7 @@
 // A picture file, tone mapped, as an image format of OpenImageIO: "shot.exr.tonewright?op=hable" is
 // shot.exr through Hable, in every program that reads through OpenImageIO.
 //
-// No exception leaves it, and nothing but what OpenImageIO asks a plugin for is exported.
+// It throws no exception, and exports only the symbols that OpenImageIO needs of a plugin.
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imageio.h>
 #include <OpenImageIO/strutil.h>
@@ -46,13 +46,13 @@ using OIIO::ROI;
 constexpr std::string_view kExtension = ".tonewright";
 using Arguments = std::map<std::string, std::string>;
 
-/// What a name stands for.
+/// Result of a name.
 struct Request {
     std::string picture;
     Arguments arguments;
 };
 
-/// Of the part before `?`: OpenImageIO looks there for the format, too.
+/// The part before `?`, where OpenImageIO looks for the format, too.
 bool has_extension(const std::string& name) {
     return OIIO::Strutil::iends_with(name.substr(0, name.find('?')),
                                      OIIO::string_view(kExtension.data(), kExtension.size()));
@@ -92,7 +92,7 @@ void read_request_file(const fs::path& path, Request& request) {
         if (text.empty() || text.front() == '#') continue;
         const std::size_t equals = text.find('=');
         if (equals == std::string_view::npos || equals == 0) {
-            throw FileError(fmt::format("{}: line {} is no setting; expected name=value",
+            throw FileError(fmt::format("{}: line {} is not a setting; expected name=value",
                                         path.string(), number));
         }
         const std::string name(OIIO::Strutil::strip(std::string(text.substr(0, equals))));
@@ -100,7 +100,7 @@ void read_request_file(const fs::path& path, Request& request) {
         if (name == "file") {
             request.picture = (path.parent_path() / value).string();
         } else if (!is_tonemap_argument(name)) {
-            throw FileError(fmt::format("{}: line {} sets something unknown; expected file, {}",
+            throw FileError(fmt::format("{}: line {} has an unknown name; expected file, {}",
                                         path.string(), number, tonemap_argument_choices()));
         } else {
             request.arguments.emplace(name, value);  // settings in the name take precedence
@@ -134,7 +134,7 @@ TonemapOptions parse_options(const Arguments& arguments, const ImageSpec& config
     TonemapOptions options;
     static const OperatorSet files(table_reader(picture_table_reader()));
     options.others = files;
-    // What an application sets for the format: `tonewright:op` and so on.
+    // Settings of an application for the format: `tonewright:op` and so on.
     constexpr std::string_view kPrefix = "tonewright:";
     for (const OIIO::ParamValue& hint : config.extra_attribs) {
         const std::string name(hint.name());
@@ -149,7 +149,7 @@ TonemapOptions parse_options(const Arguments& arguments, const ImageSpec& config
     return options;
 }
 
-/// A picture and what it is run through.
+/// A picture and its tonemapper.
 class TonemappedInput final : public ImageInput {
   public:
     TonemappedInput() = default;
@@ -200,7 +200,7 @@ class TonemappedInput final : public ImageInput {
     [[nodiscard]] int current_miplevel() const override { return miplevel_; }
     bool seek_subimage(int subimage, int miplevel) override {
         if (!picture_) return false;
-        // That there is none is how an application finds the last one: no error.
+        // Not an error: applications find the last subimage in this way.
         const std::lock_guard lock(mutex_);
         if (levels_.count({subimage, miplevel}) == 0 &&
             !picture_->seek_subimage(subimage, miplevel))
@@ -249,7 +249,7 @@ class TonemappedInput final : public ImageInput {
         ImageSpec result;
     };
 
-    /// Runs `step`; what it throws becomes the error of this reader.
+    /// Runs `step`; its exceptions become the error of this reader.
     template <class Step>
     bool guarded(const Step& step) noexcept {
         try {
@@ -269,7 +269,8 @@ class TonemappedInput final : public ImageInput {
         return false;
     }
 
-    /// Of the picture's own reader. @throws FileError
+    /// Throws the error of the picture's own reader.
+    /// @throws FileError
     void check(bool was_read) const {
         if (was_read) return;
         const std::string reported = picture_->geterror();
@@ -317,7 +318,7 @@ class TonemappedInput final : public ImageInput {
         return levels_.at({subimage, miplevel});
     }
 
-    /// That of a subimage, whose statistics are those of its full resolution.
+    /// The tonemapper of a subimage, with the statistics of its full resolution.
     const Tonemapper& tonemapper_of(int subimage) {
         if (!tonemapper_->takes_statistics()) return *tonemapper_;
         const std::lock_guard lock(mutex_);

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The compiled part of the Python module `tonewright`. Its __init__.py has the public functions:
-// they check types, so that wrong calls raise what Python raises, and pass options on by their
-// names.
+// they check types, so that wrong calls raise Python's usual exceptions, and pass options by name.
 //
-// OpenImageIO's own Python module and this one know each other's types (pybind11 shares them where
-// both were built with the same of it), so that an ImageBuf of the one goes into the other.
+// OpenImageIO's own Python module and this one share their types if both were built with the same
+// pybind11. Functions here then accept an ImageBuf of OpenImageIO's module.
 #include <OpenImageIO/imagebuf.h>
 #include <fmt/format.h>
 #include <pybind11/numpy.h>
@@ -114,13 +113,13 @@ PyObject* file_error_of(const std::string& message) {
 void set_error(PyObject* type, std::string message) {
     if (is_out_of_memory(message)) {
         type = PyExc_MemoryError;
-        // What stands first is the name of the file, or of the function.
+        // A message begins with the name of the file, or of the function.
         message = message.substr(0, message.find(": ")) + ": not enough memory";
     }
     PyErr_SetString(type, in_python(one_line(message)).c_str());
 }
 
-/// What reads .tone files and LUTs.
+/// The reader of .tone files and LUTs.
 const OperatorSet& operator_files() {
     static const OperatorSet files(table_reader(picture_table_reader(ocio_table_reader())));
     return files;
@@ -180,7 +179,7 @@ class PythonProgress {
     [[nodiscard]] OIIO::ProgressCallback callback() const {
         return function_.is_none() ? nullptr : &PythonProgress::call;
     }
-    /// What it raised goes on.
+    /// Its Python exception continues.
     void check() {
         if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
     }
@@ -234,7 +233,7 @@ ArrayPicture picture_of(const char* function, const py::array& given) {
                     "; expected (height, width) or (height, width, channels)");
     }
     const auto count = static_cast<int>(array.ndim() == 3 ? array.shape(2) : 1);
-    // Channels first, as in PyTorch: such an array would be taken for a picture of three rows.
+    // Channels first, as in PyTorch: such an array looks like a picture of three rows.
     if (count > 4 && (array.shape(0) == 3 || array.shape(0) == 4)) {
         throw Error(std::string(function) + ": array has the shape " + shape +
                     "; expected (height, width, channels), or axis=0");

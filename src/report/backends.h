@@ -8,7 +8,7 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// What one backend shows of some colors, in code values of the view's display.
+/// Output of one backend for some colors, in code values of the view's display.
 struct BackendResult {
     std::string name;
     /// Interleaved RGB; empty where the backend did not run.

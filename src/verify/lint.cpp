@@ -83,7 +83,8 @@ class Linter {
             }
         }
         if (!config_->isStrictParsingEnabled())
-            add(Level::note, "config", "strictparsing is off: pictures get a space by accident");
+            add(Level::note, "config",
+                "strictparsing is off: a word in a file name may set the wrong space");
     }
 
     /// @param is_unique  among all names of its kind
@@ -118,7 +119,7 @@ class Linter {
             for (std::size_t i = 0; i < space->getNumAliases(); ++i)
                 check_name(where, space->getAlias(i), &taken);
             if (!*space->getEncoding())
-                add(Level::note, where, "has no encoding: hosts guess what it is for");
+                add(Level::note, where, "has no encoding: applications guess its use");
         }
         for (int i = 0; i < config_->getNumLooks(); ++i) {
             const std::string look = config_->getLookNameByIndex(i);
@@ -134,7 +135,8 @@ class Linter {
         const auto want = [&](const char* role, Level level, const char* why) {
             if (!config_->hasRole(role)) add(level, std::string("role ") + role, why);
         };
-        want("scene_linear", Level::error, "is missing: no application knows where to compute");
+        want("scene_linear", Level::error,
+             "is missing: applications do not know the working space");
         want("aces_interchange", Level::warning,
              "is missing: this config's spaces cannot be exchanged with another's");
         want("cie_xyz_d65_interchange", Level::warning,

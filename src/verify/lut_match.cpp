@@ -21,7 +21,7 @@ namespace {
 
 constexpr const char* kSceneLinear = "scene-linear";
 
-/// What LUTs are made for; log2 as here, as in Blender's AgX and Filmic, and as T. Sobotka's AgX.
+/// Encodings of common LUTs; log2 as here, in Blender's AgX and Filmic, and in T. Sobotka's AgX.
 constexpr const char* kEncodings[] = {"acescct",
                                       "logc3",
                                       "logc4",
@@ -45,13 +45,13 @@ struct Candidate {
 /// Three planes.
 using Planes = std::array<std::vector<double>, 3>;
 
-/// What goes in -> light.
+/// Input of the LUT -> light.
 Pipeline decode_of(const std::string& encoding) {
     if (encoding == kSceneLinear) return {};
     return {curve_stage(parse_input_encoding(encoding).decode)};
 }
 
-/// What goes in: codes, or light for a table with a shaper.
+/// Inputs of the LUT: codes, or light for a LUT with a shaper.
 std::vector<float> samples_of(bool is_linear, std::size_t count) {
     SampleRandom random(23);
     std::vector<float> in;
@@ -77,7 +77,7 @@ struct Shown {
     }
 };
 
-/// What a pipeline makes of what goes in.
+/// A pipeline's results for the inputs.
 Planes planes_of(const Pipeline& stages, const std::vector<float>& in) {
     Planes planes;
     for (std::size_t i = 0; i < in.size(); ++i)
@@ -107,7 +107,7 @@ struct Input {
     const Shown* shown;
 };
 
-/// Of an operator with all inputs and displays, measured.
+/// Matches of an operator with all inputs and displays.
 std::vector<Candidate> candidates_of(const ResolvedOperator& op, const std::vector<Input>& inputs) {
     std::vector<Candidate> all;
     // A display's view of a space is the same for all encodings.
@@ -150,8 +150,8 @@ std::vector<ResolvedOperator> all_and_defects() {
     return all;
 }
 
-/// What candidates are sorted by. A table that does not reach the colors where a defect and the
-/// operator that was meant differ is the operator's; rounding must not decide against it.
+/// The sort key of candidates. If a LUT does not reach the colors where a defect and the intended
+/// operator differ, it counts as the operator's, and rounding must not decide against that.
 double rank(const LutMatch& match) {
     constexpr double kMargin = 1.5;
     return match.definition->is_defect() ? kMargin * match.mean : match.mean;

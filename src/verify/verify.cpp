@@ -43,7 +43,7 @@ class TemporaryConfig {
     PrivateFolder folder_;
 };
 
-/// Of a folder: the one that it has for any application.
+/// For a folder: its config for any application.
 std::string path_of_config(const std::string& given) {
     return fs::is_directory(given) ? given + "/config.ocio" : given;
 }
@@ -57,8 +57,7 @@ bool has_negative_coefficient(const Matrix3& m) {
     return false;
 }
 
-/// What the structure of a chain allows (DESIGN of the project, section 4), for display code
-/// values; what the operator declares instead.
+/// Bounds from the structure of a chain, for display code values; an operator may declare others.
 struct Bounds {
     double simd = 1e-6;
     double cpu = 3e-7;
@@ -387,7 +386,7 @@ OCIO::ConstProcessorRcPtr with_half_textures(const OCIO::ConstProcessorRcPtr& pr
     return make_processor(group);
 }
 
-/// What a config calls the operator as it is, or with a look; empty where it has other settings.
+/// The config's name for the operator with defaults or with a look; empty if it has other settings.
 std::string view_name(const ResolvedOperator& op) {
     if (op.label == op.op->id) return op.op->view;
     for (const Look& look : op.op->looks) {
@@ -435,7 +434,7 @@ double shader_bound(const Shader& shader, bool is_hdr) {
     // count as much: twice that.
     const double beyond = shader.errors.in_float > kTenBits ? 4 : 2;
     if (std::isfinite(shader.errors.vulkan_estimate)) return beyond * shader.errors.vulkan_estimate;
-    // Bounded by nothing but the display: a cancelled channel below PQ's steepest part.
+    // Bounded by nothing but the display: a canceled channel below PQ's steepest part.
     if (shader.errors.in_float > kTenBits) return 1;
     // Where first order has a pole: a logarithm near 1 may be 2^-21 off, which the exponent 78.84
     // of PQ makes 2.6e-5; without PQ, what float is enough for.
@@ -482,7 +481,7 @@ VerifyResult verify(const VerifyOptions& options,
         }
     }
 
-    // Shaders of ours do not read a config.
+    // Tonewright's shaders do not read a config.
     ShaderRuns shaders;
     if (options.with_gpu && !is_of_config) shaders = make_shader_runs(options.shaders);
 
@@ -626,7 +625,7 @@ VerifyResult verify(const VerifyOptions& options,
         for (const ShaderRuns::Of& shader_run : shaders.runs) {
             const ShaderLanguageInfo& language = shader_run.language;
             if (!language.holds_lattices && reads_lattice(view)) {
-                add_note(language.id, "none: it cannot hold the operator's lattice");
+                add_note(language.id, "none: it cannot store the operator's 3D LUT");
                 continue;
             }
             const ShaderRequest request = {.view = view, .language = language.language};

@@ -229,7 +229,7 @@ def check_forms(report, command, scratch):
         "--profile", "2.1")
     run("oiiotool", "--colorconfig", config / "config.ocio", scene, "--ociodisplay:from=lin_rec709", "sRGB", "Film", "-o",
         scratch / "ocio.exr")
-    # The half-LUTs of shaper and encodings: 3e-7 each, behind a LUT whose slope is about 1.5.
+    # The half-LUTs of shaper and encodings: 3e-7 each, after a LUT whose slope is about 1.5.
     report.compare("config: the view through oiiotool", read_picture(scratch / "ocio.exr")[0], wanted, 2e-6)
 
     # Every instruction set, OpenColorIO's CPU and GPU, llvmpipe's GLSL: verify holds each to its bound.

@@ -59,7 +59,7 @@ class Checks:
 
 
 def dawn_environment(tonewright: str) -> dict:
-    """What `verify` needs for WGSL and HLSL; nothing where that is missing, which Dawn() says."""
+    """The environment that `verify` needs for WGSL and HLSL; empty if Dawn() reports that it is missing."""
     try:
         return {"TONEWRIGHT_NODE_MODULES": str(Dawn(tonewright).modules), "VK_ICD_FILENAMES": str(SWIFTSHADER)}
     except SystemExit:
@@ -95,7 +95,7 @@ def main(tonewright: str) -> int:
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         own = {"TMPDIR": name}
-        # What is missing is said, and is no error.
+        # A missing program is reported, and is not an error.
         for environment, language, reason in (
                 ({"CC": str(folder / "none")}, "c", "no C compiler"),
                 ({"CC": "false"}, "c", "no C compiler"),
@@ -107,7 +107,7 @@ def main(tonewright: str) -> int:
             code, rows, not_executed, messages = checks.verify("hable", "--shaders", language, **own | environment)
             checks.check(f"{language} with {environment}", code == 0 and not rows
                          and not_executed.get(language, "").startswith(reason), (code, rows, not_executed, messages))
-        # What is wrong is found.
+        # Errors are found.
         for text, note in ((WRONG_CONSTANT, "worst at"), (NO_C, "error")):
             wrong = script(folder, "wrong_cc", text)
             code, rows, _, messages = checks.verify("hable", "--shaders", "c", CC=wrong, REAL_CC=compiler, **own)

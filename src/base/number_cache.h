@@ -9,9 +9,9 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// Where numbers that take seconds to compute are kept between runs: `tonewright` in
-/// $XDG_CACHE_HOME, else in ~/.cache. Empty where neither is an absolute path: nothing is kept.
-/// Users may delete the folder at any time.
+/// The folder of numbers that take seconds to compute: `tonewright` in $XDG_CACHE_HOME, else in
+/// ~/.cache. Empty if neither is an absolute path: nothing is stored. Users may delete the folder
+/// at any time.
 [[nodiscard]] TONEWRIGHT_API std::string cache_folder();
 
 /// The numbers that `make` computes, from the cache folder if it has them.

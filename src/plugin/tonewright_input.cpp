@@ -58,8 +58,8 @@ bool has_extension(const std::string& name) {
                                      OIIO::string_view(kExtension.data(), kExtension.size()));
 }
 
-/// While a thread opens the picture of a name. Whatever OpenImageIO makes of that picture's name,
-/// it must not be one that this format opens in turn: a text that names itself would never end.
+/// Set while a thread opens the picture of a name. The picture's name must not be one that this
+/// format opens: a text file that names itself would never end.
 class Opening {
   public:
     /// @throws Error
@@ -77,8 +77,9 @@ class Opening {
 };
 thread_local bool Opening::is_open_ = false;
 
-/// A file of lines `name=value`, of which `file` names the picture, beside it. Messages quote
-/// nothing from it: the name may lead to any file that the host can read and its user cannot.
+/// A file of lines `name=value`, of which `file` names the picture, relative to the file. Messages
+/// quote nothing from it, because the name may lead to a file that the host can read and its user
+/// cannot.
 void read_request_file(const fs::path& path, Request& request) {
     constexpr std::size_t kMostBytes = 1 << 16;
     std::istringstream file(read_file(path.string(), kMostBytes, [&](const std::string& reason) {
@@ -158,8 +159,8 @@ class TonemappedInput final : public ImageInput {
     TonemappedInput& operator=(const TonemappedInput&) = delete;
 
     [[nodiscard]] const char* format_name() const override { return "tonewright"; }
-    // Not "procedural": that is for pictures without a file, and OpenImageIO's programs would go on
-    // where the file is missing.
+    // Not "procedural", which is for pictures without a file: OpenImageIO's programs would continue
+    // if the file is missing.
     [[nodiscard]] int supports(OIIO::string_view feature) const override {
         return picture_ && feature != "thumbnail" && feature != "procedural" && feature != "ioproxy"
                    ? picture_->supports(feature)
@@ -245,7 +246,7 @@ class TonemappedInput final : public ImageInput {
   private:
     /// One picture of the file.
     struct Level {
-        ImageSpec source;  // what tonemap() looks at
+        ImageSpec source;  // the fields that tonemap() reads
         ImageSpec result;
     };
 
@@ -279,7 +280,7 @@ class TonemappedInput final : public ImageInput {
             reported.empty() ? "the file is truncated or damaged" : first_line(reported)));
     }
 
-    /// With the lock.
+    /// Called with the lock.
     void go_to(int subimage, int miplevel) {
         auto found = levels_.find({subimage, miplevel});
         if (found == levels_.end()) {

@@ -51,11 +51,11 @@ namespace {
 using OIIO::ImageBuf;
 using OIIO::ImageSpec;
 
-/// As the command line has it.
+/// As on the command line.
 std::string text_of(const py::handle& value) {
     if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "yes" : "no";
     std::string text = py::str(value);
-    // The system and messages end there.
+    // A zero byte ends texts for the system and in messages.
     if (text.find('\0') != std::string::npos) throw py::value_error("embedded null character");
     return text;
 }
@@ -92,14 +92,14 @@ void warn(const std::string& text) {
         throw py::error_already_set();
 }
 
-/// OpenImageIO and OpenEXR have words of their own for it.
+/// OpenImageIO and OpenEXR use other words for it.
 bool is_out_of_memory(const std::string& message) {
     const auto has = [&](const char* words) { return message.find(words) != std::string::npos; };
     return has("not enough memory") || has("no memory for") || has("bad_alloc") ||
            has("allocate memory");
 }
 
-/// OSError, or the one of its classes that a reason has.
+/// OSError, or its subclass for the reason.
 PyObject* file_error_of(const std::string& message) {
     for (const auto& [number, type] :
          {std::pair(ENOENT, PyExc_FileNotFoundError), std::pair(EACCES, PyExc_PermissionError),
@@ -109,7 +109,7 @@ PyObject* file_error_of(const std::string& message) {
     return PyExc_OSError;
 }
 
-/// @param type  where there was memory enough
+/// @param type  the exception, unless memory ran out
 void set_error(PyObject* type, std::string message) {
     if (is_out_of_memory(message)) {
         type = PyExc_MemoryError;
@@ -125,8 +125,7 @@ const OperatorSet& operator_files() {
     return files;
 }
 
-/// Tells what is wrong with the operator before anything is done, a file that cannot be read
-/// included.
+/// Reports errors of the operator first, also a file that cannot be read.
 void check_operator(const TonemapOptions& options) {
     const std::string caution =
         resolve_picture_operator(options.op, options.settings, options.look, options.others)
@@ -171,7 +170,7 @@ OIIO::TypeDesc pixel_type_of(const char* function, const py::array& array) {
                 "; expected float16, float32, float64, uint8, uint16 or uint32");
 }
 
-/// Calls a Python function from any thread, and stops where it raises.
+/// Calls a Python function from any thread, and stops if it raises.
 class PythonProgress {
   public:
     explicit PythonProgress(py::object function) : function_(std::move(function)) {}
@@ -217,9 +216,9 @@ ImageBuf tonemap_picture(const ImageBuf& source, const TonemapOptions& options, 
     throw Error(why);
 }
 
-/// An array as a picture, which looks at the array's memory.
+/// A picture that is a view of an array's memory.
 struct ArrayPicture {
-    /// Contiguous: the one that was given, or a copy.
+    /// Contiguous: the given array, or a copy.
     py::array array;
     ImageBuf picture;
 };
@@ -488,7 +487,7 @@ void tonemap_into_file(const std::string& in, const std::string& out, const std:
     if (write.alpha != WriteOptions::Alpha::keep) {
         if (options.unpremult == TonemapOptions::Unpremult::yes)
             throw Error("alpha is " + alpha + "; expected keep where color is divided by alpha");
-        // Where alpha plays no part, color is taken as it is.
+        // Without alpha, color is taken as it is.
         options.unpremult = TonemapOptions::Unpremult::no;
     }
     const OIIO::TypeDesc pixel_type =

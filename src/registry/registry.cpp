@@ -189,7 +189,8 @@ std::string parameter_name(const Operator& op, std::string_view text) {
     return std::string(text);
 }
 
-/// Puts a setting beside others. @throws Error  where they contradict each other
+/// Adds a setting to others.
+/// @throws Error  they contradict each other
 void add_setting(Settings& settings, const Operator& op, std::string_view name,
                  const std::string& value) {
     const auto [known, is_new] = settings.emplace(parameter_name(op, name), value);
@@ -301,7 +302,7 @@ std::string operator_text(const ResolvedOperator& op) {
         try {
             matters = !(params_of(others) == all);
         } catch (const Error&) {
-            // The others contradict each other without it.
+            // Without it, the others contradict each other.
         }
         if (matters) text += ":" + name + "=" + marked(value);
     }

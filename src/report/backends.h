@@ -13,7 +13,7 @@ struct BackendResult {
     std::string name;
     /// Interleaved RGB; empty where the backend did not run.
     std::vector<float> shown;
-    std::string reason = {};  // why it did not run
+    std::string reason = {};  // the reason why it did not run
 };
 
 /// The engine, OpenColorIO's CPU and GPU paths, and a LUT as applications interpolate it.

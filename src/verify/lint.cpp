@@ -196,7 +196,7 @@ class Linter {
             const std::string extension =
                 lowercase(std::filesystem::path(source).extension().string());
             const auto interpolation = file->getInterpolation();
-            // Whatever is in a .spi1d, it is no cube.
+            // A .spi1d file is never a 3D LUT.
             const bool may_be_cube = extension != ".spi1d" && extension != ".spimtx" &&
                                      source.find("curve") == std::string::npos;
             if (may_be_cube && interpolation != OCIO::INTERP_TETRAHEDRAL &&
@@ -209,13 +209,13 @@ class Linter {
     }
 
     void check_transforms() {
-        // OpenColorIO looks a space up among all others.
+        // OpenColorIO searches all other spaces for each.
         constexpr std::size_t kMostTried = 1000;
         std::size_t count = 0;
         if (spaces_.all().size() > kMostTried) {
             add(Level::warning, "config",
-                fmt::format("has {} color spaces: only the first {} were converted to "
-                            "scene_linear and back",
+                fmt::format("has {} color spaces: only the first {} were tested by a round "
+                            "trip through scene_linear",
                             spaces_.all().size(), kMostTried));
         }
         for (const OCIO::ConstColorSpaceRcPtr& space : spaces_.all()) {
@@ -224,7 +224,7 @@ class Linter {
             check_transform(where, space->getTransform(OCIO::COLORSPACE_DIR_FROM_REFERENCE));
             if (space->isData() || !config_->hasRole("scene_linear") || ++count > kMostTried)
                 continue;
-            // Both ways: a table that is not there, a matrix that has no inverse.
+            // Tests both directions: a missing table, or a matrix without an inverse.
             const auto build = [&](const char* from, const char* to, const char* way) {
                 try {
                     (void)config_->getProcessor(from, to)->getDefaultCPUProcessor();

@@ -56,7 +56,7 @@ std::vector<float> samples_of(bool is_linear, std::size_t count) {
     SampleRandom random(23);
     std::vector<float> in;
     for (std::size_t i = 0; i < count; ++i) {
-        // Every fourth is a gray.
+        // Every fourth color is gray.
         const double gray = random.uniform(0, 1);
         for (int c = 0; c < 3; ++c) {
             const double code = i % 4 == 0 ? gray : random.uniform(0, 1);
@@ -66,7 +66,7 @@ std::vector<float> samples_of(bool is_linear, std::size_t count) {
     return in;
 }
 
-/// Colors, and what a table makes of them.
+/// Colors, and a LUT's output for them.
 struct Shown {
     std::vector<float> in;
     std::vector<float> out;
@@ -99,7 +99,7 @@ void set_errors(LutMatch& match, const Planes& truth, const std::vector<float>& 
     match.mean = stats.mean;
 }
 
-/// An encoding of what goes in, and a few colors in it.
+/// An encoding of the input, and a few colors in it.
 struct Input {
     std::string encoding;
     std::vector<std::string> spaces;
@@ -133,7 +133,7 @@ std::vector<Candidate> candidates_of(const ResolvedOperator& op, const std::vect
     return all;
 }
 
-/// All operators, the known defects, and what those meant.
+/// All operators, the known defects, and the intended operators.
 std::vector<ResolvedOperator> all_and_defects() {
     std::vector<ResolvedOperator> all;
     std::set<std::string> labels;
@@ -175,7 +175,7 @@ std::vector<LutMatch> match_lut(const LutFile& table, const std::vector<std::str
     for (const std::string& text : operators)
         chosen.push_back(resolve_operator(text));
     if (operators.empty()) chosen = all_and_defects();
-    // Few colors tell which ones are worth more.
+    // A few colors select the candidates for the full comparison.
     const auto by_mean = [](const Candidate& a, const Candidate& b) {
         return rank(a.match) < rank(b.match);
     };

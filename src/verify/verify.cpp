@@ -30,7 +30,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A config in a folder of its own, gone with the object.
+/// A config in a temporary folder, which the destructor removes.
 class TemporaryConfig {
   public:
     TemporaryConfig(const std::vector<std::string>& views, const OperatorSet& others) {
@@ -65,7 +65,7 @@ struct Bounds {
     bool is_mixed_metric = false;
 };
 
-/// The largest value that a stage puts out, of inputs up to `largest` (and not below its negative).
+/// The largest output of a stage for inputs from -`largest` to `largest`.
 double largest_after(const Stage& stage, double largest) {
     const auto at = [&](const Expr& f) { return std::fabs(evaluate(f, largest)); };
     if (const auto* m = std::get_if<MatrixStage>(&stage)) {
@@ -87,8 +87,8 @@ double largest_after(const Stage& stage, double largest) {
 Bounds bounds_of(const Pipeline& pipeline, const Lowered& lowered, bool is_hdr,
                  const DeclaredBounds& declared) {
     Bounds b;
-    // Below 1 the error is one of float32 numbers around 1; above, it is in proportion to what the
-    // curve grows to before the display's clamp.
+    // Below 1, the error is that of float32 numbers around 1. Above, it grows with the curve, up to
+    // the display's clamp.
     double largest_input = 4096;
     const auto largest = [&](const Expr& f) { return std::max(1.0, evaluate(f, largest_input)); };
     const auto allow = [&](double cpu, double gpu) {
@@ -196,7 +196,7 @@ class Comparison {
         return std::min({v[0], v[1], v[2]}) >= 0;
     }
 
-    /// Worst channel's error less what is allowed for it.
+    /// Error of the worst channel, minus its allowance.
     [[nodiscard]] double excess(std::size_t i, const float* shown, const Vector3& allowed) const {
         double worst = 0;
         const Vector3 true_light = decode_({truth_[3 * i], truth_[3 * i + 1], truth_[3 * i + 2]});
@@ -260,8 +260,8 @@ double round_trip_bound(const OCIO::ConstProcessorRcPtr& back, const ResolvedOpe
     for (int i = 0; i < group->getNumTransforms(); ++i) {
         const OCIO::TransformRcPtr part = group->getTransform(i);
         if (const auto f = OCIO_DYNAMIC_POINTER_CAST<OCIO::FixedFunctionTransform>(part)) {
-            // Tables that OpenColorIO inverts, by default over half floats, in HSV; the ACES
-            // functions bring back what they have clipped in their own way.
+            // Tables that OpenColorIO inverts, by default over half floats, in HSV. The ACES
+            // functions invert clipped colors in their own way.
             bound = std::max(bound, f->getStyle() == OCIO::FIXED_FUNCTION_RGB_TO_HSV ? 3e-3 : 2e-2);
         }
         if (!OCIO_DYNAMIC_POINTER_CAST<OCIO::Lut3DTransform>(part)) continue;
@@ -351,13 +351,13 @@ double rounded_to_half(double x) {
     constexpr double largest = 65504;
     constexpr double smallest_normal = 0x1p-14;
     const double magnitude = std::min(std::fabs(x), largest);
-    // Eleven bits, or what is left of them below the normal numbers.
+    // Eleven bits, or fewer below the normal numbers.
     const double unit = std::exp2(std::floor(std::log2(std::max(magnitude, smallest_normal))) - 10);
     return std::copysign(std::nearbyint(magnitude / unit) * unit, x);
 }
 
-/// The processor with tables as Blender's viewport has them, which uploads every table as textures
-/// of half floats: a model, in which everything else is exact.
+/// A model of Blender's viewport, which uploads every table as textures of half floats; everything
+/// else is exact.
 OCIO::ConstProcessorRcPtr with_half_textures(const OCIO::ConstProcessorRcPtr& processor) {
     const OCIO::GroupTransformRcPtr group =
         processor->getOptimizedProcessor(OCIO::OPTIMIZATION_DEFAULT)->createGroupTransform();
@@ -395,7 +395,7 @@ std::string view_name(const ResolvedOperator& op) {
     return "";
 }
 
-/// The config's view of it on its display; empty where there is none.
+/// The config's view of the operator on its display; empty if there is none.
 std::string view_in_config(const OCIO::ConstConfigRcPtr& config, const View& view) {
     const std::string name = view_name(view.op);
     if (name.empty()) return "";
@@ -429,15 +429,14 @@ constexpr double kTenBits = 1.0 / 1023;
 constexpr double kGpuRounding = 0x1p-21;
 
 double shader_bound(const Shader& shader, bool is_hdr) {
-    // An estimate over probe colors; between them derivatives may be larger, and twice is what that
-    // is taken to be. Where float is not enough, errors are so large that terms of second order
-    // count as much: twice that.
+    // An estimate over the sample set; between samples, derivatives are assumed to be up to twice
+    // as large. If float is not enough, second-order terms count as much, so the factor is four.
     const double beyond = shader.errors.in_float > kTenBits ? 4 : 2;
     if (std::isfinite(shader.errors.vulkan_estimate)) return beyond * shader.errors.vulkan_estimate;
-    // Bounded by nothing but the display: a canceled channel below PQ's steepest part.
+    // Limited only by the display: a canceled channel below PQ's steepest part.
     if (shader.errors.in_float > kTenBits) return 1;
-    // Where first order has a pole: a logarithm near 1 may be 2^-21 off, which the exponent 78.84
-    // of PQ makes 2.6e-5; without PQ, what float is enough for.
+    // First order has a pole here: a logarithm near 1 may be off by 2^-21, which PQ's exponent
+    // 78.84 turns into 2.6e-5. Without PQ, float is enough.
     return is_hdr ? 2.6e-5 : 2e-6;
 }
 
@@ -454,7 +453,8 @@ SampleSet every_nth(const SampleSet& all, std::size_t n) {
 
 VerifyResult verify(const VerifyOptions& options,
                     const std::function<void(const ParityRow&)>& on_row) {
-    // The views of a config, on its displays; of nobody else's: its AgX may be another.
+    // The views of a config from Tonewright, on its displays. In other configs, a view such as AgX
+    // may be a different one.
     const bool is_of_config = options.operators.empty() && !options.config.empty();
     OCIO::ConstConfigRcPtr config;
     if (!options.config.empty()) config = read_config(path_of_config(options.config));
@@ -593,14 +593,14 @@ VerifyResult verify(const VerifyOptions& options,
         add(comparison, "ocio cpu default", bounds.cpu, declared.ocio_cpu > 0,
             bounds.is_mixed_metric, lowering, [&] { cpu(OCIO::OPTIMIZATION_DEFAULT); });
         if (const auto builtin = builtin_processor(view)) {
-            // Not our lowering: OpenColorIO's, in float32 throughout.
+            // OpenColorIO's own transform, in float32 throughout, not our lowering.
             add(comparison, "ocio builtin", 1e-3, false, true, builtin_style(view.op), [&] {
                 OcioCpu(builtin, OCIO::OPTIMIZATION_LOSSLESS)
                     .run_rgb(samples.rgb.data(), shown.data(), samples.size());
             });
         }
         if (is_of_config) {
-            // Bounded by nothing but the display: it is Blender's choice.
+            // Limited only by the display, because Blender chose the precision.
             add(comparison, "half textures", 1, false, false, lowering, [&] {
                 OcioCpu(with_half_textures(processor), OCIO::OPTIMIZATION_LOSSLESS)
                     .run_rgb(samples.rgb.data(), shown.data(), samples.size());

@@ -28,7 +28,7 @@ from operators.spaces import PRIMARIES, rgb_to_rgb
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "parity" / "clients"))
 from pictures import LIGHT, Report, evaluate, need_program, read_rgb, share_of  # noqa: E402
 
-# What is printed is rounded up to three digits: 1 % at most. The rest is for colors that another order of arithmetic
+# Printed numbers are rounded up to three digits: 1 % at most. The rest is for colors that another order of arithmetic
 # puts on the other side of an end of the encoding, or another compiler's order of near-black channels.
 REPRODUCED = 0.02
 # Errors that are less are of the numbers' own decimals.
@@ -56,7 +56,7 @@ class SplitMix64:
 
 
 def primaries_of(row, encoding):
-    """Of the light that goes in: the encoding's own, or others that the row names."""
+    """Primaries of the input light: the encoding's own, or others that the row names."""
     return PRIMARIES.get(row["input_space"].removeprefix("lin_"), encoding.primaries)
 
 

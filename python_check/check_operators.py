@@ -30,7 +30,7 @@ DISPLAY_LIGHT = {"rec1886": lambda code: code**2.4, "g22": lambda code: code**2.
 LUMINANCE, MAX, HUE = {"apply": "luminance"}, {"apply": "max"}, {"apply": "hue_preserving"}
 NONLINEAR = {**LUMINANCE, "color_correction": "nonlinear"}
 PRESERVING = {**LUMINANCE, "color_correction": "luminance_preserving"}
-# What every curve is run with.
+# Settings that every curve runs with.
 APPLY = [{"apply": "channels"}, LUMINANCE, MAX, HUE,
          {**NONLINEAR, "saturation": 0.6}, {**NONLINEAR, "saturation": 1.3, "saturation_from": "contrast"},
          {**PRESERVING, "saturation": 1.4}, {**PRESERVING, "saturation": 0.8, "saturation_from": "contrast"}]
@@ -254,7 +254,7 @@ def runs():
         for preset, settings in PRESETS.get(operator, {}).items():
             yield {"operator": operator, "preset": preset, "settings": settings, "display": "native"}
         # A view is the same code for every operator, but for its working primaries and kind of output: so only
-        # some of the displays and inputs, others for the next operator. (A process takes 0.2 s, whatever the colors.)
+        # some of the displays and inputs, others for the next operator. (A process takes 0.2 s for any number of colors.)
         full = operator in FULL_VIEWS
         for space in inputs if full else [inputs[number % len(inputs)]]:
             yield {"operator": operator, "input": space, "display": "linear", "exposure": 2}

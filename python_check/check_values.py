@@ -65,7 +65,7 @@ class Mapping:
 
 
 # The figures read Sobotka's LUT: 4096 entries of seven decimals, interpolated linearly, up to 1.4e-7 of the value
-# off the curve behind the looks. With such a table operators/ gives the figures to 12 digits (test_operators.py).
+# off the curve after the looks. With such a table operators/ gives the figures to 12 digits (test_operators.py).
 SOBOTKA = {"tolerance": 2e-7, "reason": "the figures read a LUT of 4096 seven-decimal entries"}
 # The published matrices and their published inverses are no exact pair, and their luminance row is not ours.
 XYY_4DIGIT = {"tolerance": 1e-3,
@@ -269,7 +269,7 @@ REASONS = {
     "hlg_oetf": "a display encoding, tested in tests/unit/color and test_check_values.py",
     "tony_mc_mapface": "left out: the operator is a LUT of 48^3 texels without a formula",
     "opendrt": "left out: its code is GPL-3.0, and the description in the dossier covers a part of its 60 parameters",
-    "filmic_blender": "left out: two LUTs without a formula, whose licence is unclear",
+    "filmic_blender": "left out: two LUTs without a formula, whose license is unclear",
 }
 
 

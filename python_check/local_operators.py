@@ -234,7 +234,7 @@ def checker(height, width, square, low, high):
 
 
 def fusion_picture():
-    """Of the check values."""
+    """For the check values."""
     y, x = np.mgrid[:64, :64]
     v = 0.02 * 2 ** (8 * x / 63)
     rgb = np.stack([v, 0.8 * v, v * (0.3 + 0.7 * y / 63)], -1)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What lookup tables are indexed with: the encodings of `tonewright bake --input-encoding`, from their makers' papers.
+"""Encodings of the input of LUTs: those of `tonewright bake --input-encoding`, from their makers' papers.
 
 ENCODINGS: name -> Encoding(encode, decode, primaries); light is scene-linear, 0.18 mid gray, codes are 0..1.
 """

@@ -30,7 +30,7 @@ COLORS = (BLACK, GRAY, SATURATED, BRIGHT, *EVERYWHERE)
 FEW = (GRAY, SATURATED, BRIGHT, MIXED, BEYOND)
 BLUE, RED, DARK_RED = (0.05, 0.1, 2), (6, 0.4, 0.3), (0.06, 0.004, 0.003)  # where glow and red modifier act
 HUES = (*COLORS, BLUE, RED, DARK_RED)
-# What picture formations move: saturated colors of every brightness, at their limits.
+# Colors that picture formations change: saturated ones of every brightness, at their limits.
 FORMED = (BLACK, GRAY, BLUE, RED, (0.02, 0.4, 0.05), (3, 0.2, 2.5), MIXED, BEYOND)
 STOPS = tuple((0.18 * 2.0**s,) * 3
               for s in (-8, -6.52, -5.48, -3, -2.5, -1.46, -0.4, 0.5, 1.53, 2.49, 4, 5.51, 6.55, 9))

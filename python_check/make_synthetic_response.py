@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the synthetic response curves of tests/data: nobody measured them, so they may be passed on.
+"""Writes the synthetic response curves of tests/data: they are not measured, so they may be distributed.
 
     python_check/make_synthetic_response.py [FOLDER]        (tests/data by default)
 

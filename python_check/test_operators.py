@@ -69,7 +69,7 @@ def check_rows():
 
 
 def check_parts():
-    """What the sources state about their own constants."""
+    """Statements of the sources about their own constants."""
     to_ap1 = operators.rgb_to_rgb("rec709", "ap1")
 
     def saturation(s):  # ACES: lerp from AP1 luminance
@@ -118,7 +118,7 @@ def hue(rgb):
 
 
 def check_apply():
-    """What each way to apply a curve promises, for every operator that has it, and for curves of known contrast."""
+    """Properties of each method to apply a curve, for every operator that has it, and for curves of known contrast."""
     rng = np.random.default_rng(7)
     rgb = 0.18 * 2.0 ** rng.uniform(-6, 6, (200, 3))
     scaled, hues = {}, {}

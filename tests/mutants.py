@@ -240,7 +240,7 @@ SCRIPTS = {
     "lut": ["cli.lut_files", "parity.luts", "parity.artifacts", "cli", "clients.tificc"],
     "image": ["cli.pictures", "cli.meter", "cli.compare", "cli.plot", "cli.sequences", "clients.plugin"],
 }
-# What a script needs that is less than everything.
+# The targets that a script needs, if it needs fewer than all.
 TARGETS = {"python_check.eval": "tonewright-cli", "bench.instructions": "tonewright_instructions"}
 # Files with the unit tests of a folder.
 UNITS = {

@@ -14,7 +14,7 @@ GTEST = re.compile(r"^.*: Skipped\n(.*)$", re.M)
 
 
 def reasons(output):
-    """What the output of a test says, each reason once and in order."""
+    """The reasons in a test's output, each once and in order."""
     lines = re.findall(r"^\s*skipped: (.*)$", output, re.M) + [line.strip() for line in GTEST.findall(output)]
     return list(dict.fromkeys(lines))
 

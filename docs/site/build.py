@@ -220,7 +220,7 @@ class Site:
                     rows.append((float(figures[-1]), other, figures))
         if not rows:
             return ""
-        text = [f"## Differences from other {op['dialects']}", "",
+        text = [f"## Differences from other {op['dialects']} operators", "",
                 "Differences in 8-bit code values and in ΔE ITP, over the sample set. "
                 "[Dialects](operators.md#dialects) has presets, too, and explains the figures.", "",
                 "| operator | max | 99.9 % | mean | ΔE ITP max | ΔE ITP mean |", "|---|---|---|---|---|---|"]

@@ -42,7 +42,7 @@ WORKING = {name: WORKING.get(name, "rec709") for name in OPERATORS}
 
 def view(operator, rgb, settings=None, look="", exposure=0.0, input="lin_rec709", display="srgb",
          reference_white=UNIT):
-    """What `tonewright eval` prints: input space -> working primaries -> exposure -> operator -> display.
+    """The numbers of `tonewright eval`: input space -> working primaries -> exposure -> operator -> display.
 
     For a display: settings that it decides are decided; code values are decoded; light is limited to [0, white] in its
     own primaries where the display holds them whole, converted to the display's primaries, limited to [0, white] there,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the operators share: the limit of scene-linear, luminance, and the ways a curve meets a color."""
+"""Functions that the operators share: the limit of scene-linear, luminance, and the ways a curve meets a color."""
 
 import numpy as np
 

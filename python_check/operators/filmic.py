@@ -56,7 +56,7 @@ def hejl_2015(rgb, white=11.2, apply="channels", **color):
 
 
 def aldridge(rgb, cutoff=0.025, apply="channels", **color):
-    """Cineon curve behind a softer cut: with t = 2 cutoff, x + (t - x) clamp01(t - x) 0.25 / cutoff - cutoff.
+    """Cineon curve after a softer cut: with t = 2 cutoff, x + (t - x) clamp01(t - x) 0.25 / cutoff - cutoff.
 
     Code values of a 2.2 power. For cutoff <= 0.5 the softer cut is (t - x)^2 / (4 cutoff) at black and never negative;
     above, max(., 0).

@@ -18,7 +18,7 @@ PRIMARIES = {
     "ap0": ((0.7347, 0.2653), (0.0, 1.0), (0.0001, -0.0770), ACES_WHITE),  # SMPTE ST 2065-1
     "ap1": ((0.713, 0.293), (0.165, 0.830), (0.128, 0.044), ACES_WHITE),  # Academy S-2014-004
 }
-# Of cameras: ARRI, "ALEXA Log C Curve", 2017, and "LogC4", 2022; Sony, "Technical Summary for S-Gamut3.Cine/S-Log3".
+# Cameras: ARRI, "ALEXA Log C Curve", 2017, and "LogC4", 2022; Sony, "Technical Summary for S-Gamut3.Cine/S-Log3".
 CAMERAS = {
     "awg3": ((0.6840, 0.3130), (0.2210, 0.8480), (0.0861, -0.1020), D65),
     "awg4": ((0.7347, 0.2653), (0.1424, 0.8576), (0.0991, -0.0308), D65),

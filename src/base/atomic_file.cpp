@@ -33,8 +33,8 @@ std::string reason_of(int error_number) { return std::generic_category().message
 
 namespace {
 
-/// Where the bytes go in the end: symbolic links are followed.
-/// @returns  empty, and the reason in `why`, when that is no place for a file.
+/// The final target, after symbolic links.
+/// @returns  empty, with the reason in `why`, if no file can be there
 fs::path resolve_target(const std::string& path, std::string& why) {
     std::error_code error;
     fs::path target = path;
@@ -54,7 +54,7 @@ std::pair<std::string, std::string> name_parts(const fs::path& target) {
     return {target.stem().string().substr(0, 200), target.extension().string()};
 }
 
-/// That nobody else can guess.
+/// A name that no other program can guess.
 std::uint64_t random_bits() {
     std::uint64_t bits = 0;
     if (::getrandom(&bits, sizeof bits, 0) == static_cast<ssize_t>(sizeof bits)) return bits;
@@ -80,14 +80,14 @@ const std::string& machine_tag() {
 std::array<std::atomic<const char*>, 256> unfinished_names;
 static_assert(std::atomic<const char*>::is_always_lock_free);
 
-/// The signal handler is removing them: a file that is created after this would stay behind.
+/// The signal handler is removing the files: a file that is created after this would stay.
 std::atomic<bool> is_ending = false;
 /// FileCreations of all threads, and of this one.
 std::atomic<int> creations = 0;
 thread_local int own_creations = 0;
 static_assert(std::atomic<int>::is_always_lock_free);
 
-/// Null where so many files are unfinished at once that this one would stay after a signal.
+/// Null if so many files are unfinished that this one could not be removed after a signal.
 std::atomic<const char*>* register_unfinished(const std::string& path) {
     auto name = std::make_unique<char[]>(path.size() + 1);
     std::copy(path.begin(), path.end(), name.get());
@@ -111,9 +111,9 @@ void end_by_signal(int number) {
     ::raise(number);
 }
 
-/// The parts of a temporary name: stem, machine, process, extension. Empty when it is none.
+/// The parts of a temporary name: stem, machine, process, extension. Empty for other names.
 std::vector<std::string> parts_of_temporary(const std::string& name) {
-    // <regex> costs five seconds of compiling, this one nothing.
+    // <regex> takes five seconds to compile; this function takes none.
     static const regex_t pattern = [] {
         regex_t compiled;
         (void)::regcomp(&compiled,
@@ -137,20 +137,20 @@ std::vector<std::string> parts_of_temporary(const std::string& name) {
 
 void remove_unfinished_files() noexcept {
     is_ending = true;
-    // This thread may have been stopped while it created a file, and goes on no more.
+    // This thread may have been stopped while it created a file; it does not continue.
     for (int i = 0; i < 1000 && creations > own_creations; ++i) {
         constexpr timespec kMillisecond = {0, 1'000'000};
         (void)::nanosleep(&kMillisecond, nullptr);
     }
     for (std::atomic<const char*>& place : unfinished_names) {
-        // Folders stay where something is in them.
+        // Folders that are not empty stay.
         if (const char* name = place.exchange(nullptr); name && ::unlink(name) != 0) ::rmdir(name);
     }
 }
 
 void remove_unfinished_files_on_signals() {
     for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
-        // nohup stays in force.
+        // nohup stays in effect.
         if (::signal(number, end_by_signal) == SIG_IGN) ::signal(number, SIG_IGN);
     }
     ::signal(SIGXFSZ, SIG_IGN);
@@ -231,7 +231,8 @@ int AtomicFile::keep() {
     if (::rename(path_.c_str(), target_.c_str()) != 0) return errno;
     path_.clear();
     release_unfinished(unfinished_);
-    // The new name is on the disk when its directory is. Some file systems cannot sync one.
+    // The new name is on the disk after its directory is synced. Some file systems cannot sync a
+    // directory.
     const fs::path folder = target_.has_parent_path() ? target_.parent_path() : fs::path(".");
     const int directory = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (directory >= 0) {

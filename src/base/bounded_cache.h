@@ -16,11 +16,11 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// Values that take long to make, by key. The cache keeps the keys that were asked for last.
+/// Values that take long to make, by key. The cache keeps the most recently used keys.
 ///
-/// Threads that ask for the same key share one computation. Threads that ask for other keys do not
-/// wait, because no value is made under the lock. A value lives as long as its last user, also
-/// after the cache has dropped it.
+/// Threads that need the same key share one computation. Threads that need other keys do not wait,
+/// because no value is made under the lock. A value lives as long as its last user, also after the
+/// cache has dropped it.
 template <class Key, class Value, class Equal = std::equal_to<Key>>
 class BoundedCache {
   public:

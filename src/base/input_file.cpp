@@ -47,7 +47,7 @@ std::string read_file(const std::string& path, std::size_t longest,
         }
     };
     std::string bytes;
-    // What is no file is not opened: opening a device may do something.
+    // Opens regular files only, because opening a device may have side effects.
     if (const std::string why = why_not_readable(path); !why.empty()) {
         fail(why);
         return bytes;

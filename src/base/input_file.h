@@ -17,10 +17,10 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// file ..." for a pipe, a device or a socket, which may have no end. Empty for a file, and where
 /// nothing is there.
 [[nodiscard]] TONEWRIGHT_API std::string why_no_file(const std::string& path);
-/// Why a file cannot be read: what why_no_file() says, or the system's reason. Empty if it can.
+/// The reason why a file cannot be read: that of why_no_file(), or the system's. Empty if it can.
 [[nodiscard]] TONEWRIGHT_API std::string why_not_readable(const std::string& path);
 /// For files that another library opens.
-/// @throws FileError  "read: <path>: <what why_no_file() says>"
+/// @throws FileError  "read: <path>: <reason of why_no_file()>"
 TONEWRIGHT_API void require_regular_file(const std::string& path);
 /// The whole file, opened so that a pipe cannot block it.
 /// @param longest  bytes

@@ -25,7 +25,8 @@ namespace fs = std::filesystem;
 
 constexpr std::uintmax_t kLargestFolder = std::uintmax_t{256} << 20;
 constexpr std::string_view kEnding = ".numbers";
-/// Of the format of the file: the numbers of this processor, whose folder others may share.
+/// Version of the file's format. Its numbers have this processor's byte order, and machines may
+/// share the folder.
 constexpr std::string_view kBeginning = std::endian::native == std::endian::little
                                             ? "tonewright numbers 1\n"
                                             : "tonewright numbers 1 big-endian\n";
@@ -66,7 +67,7 @@ std::optional<std::vector<double>> read(const fs::path& path, const std::string&
         return std::nullopt;
     std::vector<double> numbers(count);
     std::memcpy(numbers.data(), bytes.data(), bytes.size());
-    // Those that are used last go last.
+    // The most recently used come last.
     fs::last_write_time(path, fs::file_time_type::clock::now(), error);
     return numbers;
 }
@@ -105,7 +106,7 @@ void write(const fs::path& path, const std::string& key, const std::vector<doubl
         write_text_atomically(path.string(),
                               header_of(key, numbers.size(), check_sum(bytes)) + bytes);
     } catch (const std::exception&) {
-        return;  // the numbers are known all the same
+        return;  // the numbers are known anyway
     }
     drop_oldest(path.parent_path());
 }
@@ -117,7 +118,7 @@ std::string cache_folder() {
         const char* value = std::getenv(variable);
         return value ? fs::path(value) : fs::path();
     };
-    // As the XDG Base Directory Specification has it, a path that is not absolute is ignored.
+    // By the XDG Base Directory Specification, a relative path is ignored.
     if (const fs::path folder = from("XDG_CACHE_HOME"); folder.is_absolute())
         return (folder / "tonewright").string();
     if (const fs::path home = from("HOME"); home.is_absolute())

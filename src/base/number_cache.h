@@ -9,18 +9,18 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// Where numbers that take seconds to compute are kept between runs: `tonewright` in
-/// $XDG_CACHE_HOME, else in ~/.cache. Empty where neither is an absolute path: nothing is kept.
-/// Users may delete the folder at any time.
+/// The folder of numbers that take seconds to compute: `tonewright` in $XDG_CACHE_HOME, else in
+/// ~/.cache. Empty if neither is an absolute path: nothing is stored. Users may delete the folder
+/// at any time.
 [[nodiscard]] TONEWRIGHT_API std::string cache_folder();
 
-/// The numbers that `make` computes, from the cache folder if they are there.
+/// The numbers that `make` computes, from the cache folder if it has them.
 ///
-/// A file holds the key, the numbers and a check sum; a file that is damaged or of another key is
-/// ignored and replaced. The oldest files go when all are larger than 256 MiB together. A folder
-/// that cannot be written is no error.
-/// @param name  of the file, with the key's hash behind it: "hue_cube"
-/// @param key   all that the numbers depend on, the version of the algorithm included
+/// A file has the key, the numbers and a checksum; a file that is damaged or has another key is
+/// ignored and replaced. If all files exceed 256 MiB together, the oldest are removed. A folder
+/// without write permission is not an error.
+/// @param name  first part of the file name, before the key's hash: "hue_cube"
+/// @param key   everything that the numbers depend on, also the version of the algorithm
 [[nodiscard]] TONEWRIGHT_API std::vector<double> cached_numbers(
     const std::string& name, const std::string& key,
     const std::function<std::vector<double>()>& make);

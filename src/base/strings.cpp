@@ -16,11 +16,11 @@ char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + '
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// Of inserting, dropping or replacing a letter. Other digits are another thing, not a slip.
+/// Cost of an inserted, dropped or replaced letter. Other digits mean another thing, not a typing
+/// error.
 std::size_t cost_of(char a, char b = ' ') { return is_digit(a) || is_digit(b) ? 2 : 1; }
 
-/// Damerau-Levenshtein distance (optimal string alignment): two letters that changed places are
-/// one slip.
+/// Damerau-Levenshtein distance (optimal string alignment): two swapped letters are one error.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
     std::vector<std::vector<std::size_t>> rows(a.size() + 1,
                                                std::vector<std::size_t>(b.size() + 1));
@@ -59,8 +59,9 @@ std::string joined_words(std::string_view name) {
     return joined;
 }
 
-/// Bytes of the character that a text begins with; 0 where that is a control character or no UTF-8.
-/// Controls of two bytes (C1) and marks that change the direction of writing count as controls.
+/// Length in bytes of the character that a text begins with; 0 for a control character or a byte
+/// that is not UTF-8. Controls of two bytes (C1) and marks that change the direction of writing
+/// count as controls.
 std::size_t utf8_length(std::string_view text) {
     const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
     if (byte(0) < 0x80) return byte(0) >= 0x20 && byte(0) != 0x7f ? 1 : 0;
@@ -122,7 +123,7 @@ std::vector<std::string> likely_names(std::string_view name,
         return typed.size() > 1 && std::find(words.begin(), words.end(), typed) != words.end();
     };
     if (std::vector<std::string> found = first_of(has_word); !found.empty()) return found;
-    // People leave separators out, or put them in: `aces2` is the beginning of aces_20.
+    // People omit separators, or add them: `aces2` is the beginning of aces_20.
     const std::string joined = joined_words(typed);
     const auto joined_so = [&](const std::string& candidate) {
         return joined_words(candidate) == joined;

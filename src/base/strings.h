@@ -10,7 +10,7 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// Folds ASCII letters, whatever the locale.
+/// Folds ASCII letters, in every locale.
 [[nodiscard]] TONEWRIGHT_API std::string lowercase(std::string_view text);
 /// The extension of a path in lower case, with its dot; empty if there is none.
 [[nodiscard]] TONEWRIGHT_API std::string extension_of(const std::string& path);
@@ -19,9 +19,9 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// The first line of a library's message; "unknown error" for an empty one. A message about
 /// memory becomes "not enough memory".
 [[nodiscard]] TONEWRIGHT_API std::string first_line(std::string_view text);
-/// A library's message as one line, "not enough memory" as first_line() has it. Runs of blanks and
-/// line ends become one space, other control characters
-/// `?`, bytes of no UTF-8 `?`; what is beyond `longest` bytes becomes `...`.
+/// A library's message as one line, with "not enough memory" as in first_line(). Runs of blanks and
+/// line ends become one space; other control characters, and bytes that are not UTF-8, become `?`.
+/// Text beyond `longest` bytes becomes `...`.
 [[nodiscard]] TONEWRIGHT_API std::string one_line(std::string_view text,
                                                   std::size_t longest = 2000);
 /// Untrusted text, fit for a message of one line: every other byte than printable ASCII becomes
@@ -34,18 +34,18 @@ TONEWRIGHT_NAMESPACE_BEGIN
 
 /// A name as names are compared: in lower case, and runs of blanks, `-` and `_` are one `_`.
 [[nodiscard]] TONEWRIGHT_API std::string folded_name(std::string_view name);
-/// True where both names are the same once folded.
+/// True if both names are the same after folding.
 [[nodiscard]] TONEWRIGHT_API bool is_same_name(std::string_view a, std::string_view b);
 
-/// What a user can name: its id, and its other names.
+/// Something that a user can name: its id, and its other names.
 struct NamedChoice {
     std::string id;
     std::vector<std::string> names = {};
 };
-/// The choices that `name` is likely meant for, at most three, the first of them first: those that
-/// have it for a word ("p3" in display_p3), else those that begin with it, else the one that it is
-/// a slip of the fingers of. Of a slip, at most a third of the letters are wrong, and digits count
-/// twice: rec709 and rec2020 are two things.
+/// The choices that `name` probably means, at most three, the best first: those that contain it as
+/// a word ("p3" in display_p3), else those that begin with it, else the nearest typing error. In a
+/// typing error, at most a third of the letters are wrong, and digits count twice: rec709 and
+/// rec2020 are different things.
 [[nodiscard]] TONEWRIGHT_API std::vector<std::string> likely_names(
     std::string_view name, const std::vector<NamedChoice>& choices);
 /// The first of them, or empty.

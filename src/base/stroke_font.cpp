@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// A stroke font of our own for labels in pictures and plots: no font file has to be installed, and
+// A built-in stroke font for labels in pictures and plots: no font file has to be installed, and
 // every machine draws the same picture at any size.
 #include "base/stroke_font.h"
 

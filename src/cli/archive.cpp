@@ -43,7 +43,7 @@ std::string make_archive(const std::vector<GeneratedFile>& files) {
             zip_source_free(contents);
             throw Error("archive: " + file.path + ": " + zip_strerror(archive.get()));
         }
-        // 1980-01-01, the earliest that a ZIP can say, in its own numbers: the same bytes on every
+        // 1980-01-01, the earliest date of a ZIP, in the ZIP's own format: the same bytes on every
         // day and in every time zone.
         constexpr zip_uint16_t kMidnight = 0;
         constexpr zip_uint16_t kEarliest = (1 << 5) | 1;

@@ -39,8 +39,7 @@ struct Options : ViewOptions {
     std::string all;
 };
 
-/// @throws Error  for a file type that does not hold the numbers as they are: lossy, or of other
-///                depths.
+/// @throws Error  a file type that cannot store the numbers exactly: lossy, or of other depths
 void require_lut_picture(const std::string& path, int bits) {
     const std::string extension = extension_of(path);
     const bool is_tiff = extension == ".tif" || extension == ".tiff";
@@ -51,7 +50,7 @@ void require_lut_picture(const std::string& path, int bits) {
     }
 }
 
-/// What the application expects, where the user has not said otherwise.
+/// The application's settings, unless the user gives others.
 void take_from_host(Options& options, const LutApplication& host) {
     const auto is_given = [&](const char* option) { return options.given.contains(option); };
     if (!is_given("--input") && !is_given("--input-encoding"))
@@ -66,7 +65,8 @@ void take_from_host(Options& options, const LutApplication& host) {
                         host.id, host.size));
     }
     if (!is_given("--depth")) options.bits = host.bits;
-    // A view of one curve for each channel is exact as a 1D table, where its primaries can be had.
+    // A view of one curve for each channel is exact as a 1D table, if the application can convert
+    // to its primaries.
     if (host.takes_any_primaries && !options.three && is_per_channel(build_view(options.view())))
         return;
     if (!is_given("--size") && !is_given("--max-error") && !options.one) options.size = host.size;
@@ -78,7 +78,7 @@ void bake_one(Options& options) {
         throw Error(
             "bake: OPERATOR is missing; expected an id from `tonewright list`, or --all FOLDER");
     if (options.file.empty()) throw Error("bake: -o is missing; expected -o FILE");
-    // Told before minutes of work, and before what is expected of the name: a device has none.
+    // Reports the error before minutes of work, and before the check of the name.
     if (const std::string why = why_no_file(options.file); !why.empty())
         throw FileError(fmt::format("write: {}: {}", options.file, why));
     const LutApplication* host =

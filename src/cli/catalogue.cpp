@@ -26,7 +26,7 @@ namespace {
 // ---------------------------------------------------------------------------------------------
 // Variants of an operator, for plots and tables
 
-/// An operator as it is, with one of its presets, or with one of its looks.
+/// An operator with its defaults, with one of its presets, or with one of its looks.
 struct Variant {
     std::string label;  // `default`, `:preset`, `look id`
     std::string id;     // of an element of a plot: default, preset id, look-id
@@ -191,7 +191,7 @@ std::vector<DialectGroup> dialect_groups() {
         if (!is_dialect(op)) continue;
         std::vector<Dialect>& dialects = by_name[op.dialects];
         for (const Variant& v : variants_of(op)) {
-            if (!v.view.op.params.look().empty()) continue;  // meant to differ
+            if (!v.view.op.params.look().empty()) continue;  // differs on purpose
             const bool is_preset = v.label.front() == ':';
             dialects.push_back({letter_of(dialects.size()),
                                 op.id + (is_preset ? v.label : ""),
@@ -582,8 +582,8 @@ std::vector<GeneratedFile> make_catalogue() {
         add(op.id + ".svg", op.id, to_svg(plot_of(op)));
         const std::string plot_and_figures =
             fmt::format("![Curve of {}](curves/{}.svg)\n\n{}", op.title, op.id, measured_line(op));
-        page +=
-            fmt::format("<a id=\"{}\"></a>\n\n", op.id) + operator_section(op, plot_and_figures);
+        page += fmt::format("<a id=\"{}\"></a>\n\n", op.id) +
+                operator_section(op, plot_and_figures, true);
     }
     for (const Operator& op : local_operators())
         page += fmt::format("<a id=\"{}\"></a>\n\n", op.id) + operator_section(op);

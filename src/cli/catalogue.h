@@ -10,16 +10,19 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// An operator as a section of a Markdown page: what it is like, facts, parameters, presets, looks.
-/// @param after_character  lines to put under the sentence about its character.
+/// An operator as a section of a Markdown page: character, facts, parameters, presets, looks.
+/// @param after_character  lines after the sentence about its character
+/// @param is_in_docs       the page is beside choosing.md, which explains the parameters that all
+///                         tone curves share
 [[nodiscard]] std::string operator_section(const Operator& op,
-                                           std::string_view after_character = {});
+                                           std::string_view after_character = {},
+                                           bool is_in_docs = false);
 
 /// The operator catalogue: `operators.md`, and in `curves/` a plot of every operator and of every
 /// group of dialects, with a MANIFEST.csv. The same bytes on every run.
 [[nodiscard]] std::vector<GeneratedFile> make_catalogue();
 
-/// Writes it, and removes the plots in `folder`/curves that an earlier one had and it has not.
+/// Writes the page, and removes plots in `folder`/curves that are no longer used.
 /// @throws FileError
 void write_catalogue(const std::string& folder);
 

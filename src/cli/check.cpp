@@ -61,7 +61,7 @@ int run_check(const Options& options) {
     } else {
         print_text(view, options, results);
     }
-    std::fflush(stdout);  // before the warnings, where both go to a terminal
+    std::fflush(stdout);  // before the warnings, if both go to a terminal
     if (!options.file.empty()) {
         const ResultLine line;
         PlotOptions plot;
@@ -104,9 +104,9 @@ void add_check(CommandLine& program) {
     command.add_flag("--json", options->json, "print JSON").group(output);
     command.footer(
         "The laws: numbers are finite; brighter scenes are shown brighter; grays stay below the "
-        "output peak, reach white, begin at black and stay gray; there are no jumps; the inverse "
-        "leads back. A broken law is a warning, unless the operator declares it. With --strict, a "
-        "warning gives exit code 1.\n"
+        "output peak, reach white, begin at black and stay gray; there are no jumps; the round "
+        "trip through the inverse is exact. A broken law is a warning, unless the operator "
+        "declares it. With --strict, a warning gives exit code 1.\n"
         "Examples:\n"
         "  tonewright check my.tone\n"
         "  tonewright check hable:white=4 -o hable.svg");

@@ -26,7 +26,7 @@ inline constexpr ExitMeaning kExitMeanings[] = {
     {kFile, "a file could not be read or written"},
 };
 
-/// Options that most subcommands share: which operator, with what, in which view.
+/// Options that most subcommands share: operator, parameters, view.
 struct ViewOptions {
     std::string op;
     std::vector<std::string> set;
@@ -44,14 +44,14 @@ struct ViewOptions {
     [[nodiscard]] View view() const;
 };
 
-/// What reads the .tone files and LUTs that texts name as operators, for all commands.
+/// The reader of .tone files and LUTs as operators, for all commands.
 [[nodiscard]] const OperatorSet& operator_files();
-/// resolve_picture_operator() with these, and a warning where the operator has one: once a text.
+/// resolve_picture_operator() with these, and the operator's warning, once for each text.
 [[nodiscard]] ResolvedOperator resolve_for_command(const std::string& text,
                                                    const Settings& settings = {},
                                                    const std::string& look = {});
 
-/// Each subcommand lives in its own file and puts itself on the command line.
+/// Each subcommand has its own file and adds itself to the command line.
 void add_list(CommandLine& program);
 void add_eval(CommandLine& program);
 void add_apply(CommandLine& program);

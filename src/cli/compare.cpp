@@ -34,7 +34,7 @@ void add_compare(CommandLine& program) {
         .group(output);
     command
         .add("--input", options->input,
-             "color space of the input: a space, a display or `auto` (what the file says)")
+             "color space of the input: a space, a display or `auto`, as the file says")
         .value("SPACE")
         .suggest(suggest_source_colors)
         .show_default()
@@ -65,8 +65,8 @@ void add_compare(CommandLine& program) {
     const Option split =
         command
             .add("--split", options->split,
-                 "show two operators in one picture, the first up to this part of the width")
-            .value("PART")
+                 "show two operators in one picture; the first fills this fraction of the width")
+            .value("FRACTION")
             .range(0.0, 1.0);
     split.group(split_group);
     command.add_flag("--horizontal", options->is_horizontal, "split the height, the first on top")
@@ -80,8 +80,8 @@ void add_compare(CommandLine& program) {
         split.excludes(other);
     }
     command.footer(
-        "A sheet scales the scene in linear light before the operators; values that operators "
-        "measure come from the whole picture. A split has the pixels of `tonewright apply`.\n"
+        "A sheet scales the scene in linear light before the operators. Operators that measure "
+        "the picture measure all of it. A split has the pixels of `tonewright apply`.\n"
         "Examples:\n"
         "  tonewright compare render.exr -o sheet.png --false-color\n"
         "  tonewright compare render.exr hable:white=4 hable:white=11.2 -o sheet.jpg\n"

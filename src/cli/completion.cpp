@@ -19,7 +19,7 @@ const OptionTable* find_option(const CommandTable& command, const std::string& n
     return found == command.options.end() ? nullptr : &*found;
 }
 
-/// Files where the option declares nothing and its value is a file.
+/// Files, if the option declares no suggestions and its value is a file.
 Suggestions suggestions_for(const OptionTable& option, const TypedValue& typed) {
     if (option.suggest) return option.suggest(typed);
     Suggestions files;
@@ -29,7 +29,7 @@ Suggestions suggestions_for(const OptionTable& option, const TypedValue& typed) 
     return files;
 }
 
-/// `before` stands before the value in the same word: `--for=`.
+/// `before` comes before the value in the same word: `--for=`.
 Suggestions values_of(const OptionTable& option, TypedValue typed, std::string before) {
     if (option.separator != 0) {
         const std::size_t end = typed.text.rfind(option.separator) + 1;  // npos + 1 is 0
@@ -43,7 +43,7 @@ Suggestions values_of(const OptionTable& option, TypedValue typed, std::string b
     return all;
 }
 
-/// The words before the last one: which options and arguments they give, and what comes next.
+/// The options and arguments of the words before the last one, and the kind of the last one.
 class TypedCommand {
   public:
     TypedCommand(const CommandTable& command, const std::vector<std::string>& words)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What a shell offers behind the words that stand on a command line. The scripts of the shells ask
-// `tonewright complete`, so that they all offer the same.
+// Suggestions of a shell for the next word of a command line. The scripts of all shells ask
+// `tonewright complete`, so they suggest the same.
 #pragma once
 
 #include <functional>
@@ -16,13 +16,13 @@ TONEWRIGHT_NAMESPACE_BEGIN
 
 struct Suggestion {
     std::string word;
-    /// What the word means, for shells that show it; may be empty.
+    /// Description of the word, for shells that show it; may be empty.
     std::string meaning;
 };
 
 struct Suggestions {
     std::vector<Suggestion> words;
-    /// Names of files or of folders fit, too. The shell knows them.
+    /// Names of files or of folders are suggested, too. The shell completes them.
     bool has_files = false;
     bool has_folders = false;
 };
@@ -44,25 +44,25 @@ struct OptionTable {
     bool is_argument = false;
     bool has_value = false;
     bool may_repeat = false;
-    /// Between several values in one word; 0: one value a word.
+    /// Separator between several values in one word; 0: one value a word.
     char separator = 0;
     Suggest suggest = {};
 };
 
-/// A command: its help, and its options as completion and the manual need them.
+/// A command: its help, and its options for completion and the manual.
 struct CommandTable {
     std::string name;
     HelpPage page;
     std::vector<OptionTable> options;
 };
 
-/// What may stand in the place of the last word.
+/// Candidates for the last word.
 /// @param tables  the program and its commands
 /// @param words   without the name of the program; the last one may be empty
 [[nodiscard]] Suggestions complete(const std::vector<CommandTable>& tables,
                                    const std::vector<std::string>& words);
 
-/// A word a line, with its meaning behind a tab, then `:files` or `:folders`.
+/// One word a line, with a tab and its description, then `:files` or `:folders`.
 [[nodiscard]] std::string to_text(const Suggestions& suggestions);
 
 TONEWRIGHT_NAMESPACE_END

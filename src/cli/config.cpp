@@ -52,18 +52,18 @@ std::string counted(std::size_t count, std::string_view noun) {
     return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
-/// Empty: there is none.
+/// Empty: none.
 std::string text_of(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// In place, when everything has been checked; else the config stays as it was.
+/// Replaces the config after all checks; until then the old one stays.
 void replace_config(const std::string& path, const ExtendedConfig& changed, bool has_backup) {
     namespace fs = std::filesystem;
     const fs::path folder = fs::absolute(path).parent_path();
     std::vector<fs::path> written;
-    // Beside the config, whose relative paths it has; no name that somebody could have put there.
+    // Beside the config, so that its relative paths work. The name cannot be guessed.
     const fs::path trial = folder / fmt::format(".tonewright-{:08x}-{}", std::random_device()(),
                                                 fs::path(path).filename().string());
     const fs::path record = folder / changed.record.path;
@@ -92,7 +92,7 @@ void replace_config(const std::string& path, const ExtendedConfig& changed, bool
         for (const std::string& file : changed.unused_files)
             fs::remove(folder / file, ignored);
         if (changed.record.contents.empty()) fs::remove(record, ignored);
-        fs::remove(record.parent_path(), ignored);  // where nothing else is in it
+        fs::remove(record.parent_path(), ignored);  // if it is empty
     } catch (...) {
         std::error_code ignored;
         for (const fs::path& file : written)

@@ -44,7 +44,7 @@ double x_of(double stops) { return kLeft + kStop * (stops - kLowestStop); }
 /// Scene-linear 1, in stops from mid gray.
 const double kWhiteStops = std::log2(1 / 0.18);
 
-/// Where a graph is.
+/// Position of a graph.
 struct Graph {
     double top;  // of the scale's high end
     double height;
@@ -69,7 +69,7 @@ std::string px(double value) {
     return text == "-0" ? "0" : text;
 }
 
-/// Douglas and Peucker 1973, with the distance along y: which points a line needs.
+/// Douglas and Peucker 1973, with the distance along y: selects the points that a line needs.
 void mark_needed(const std::vector<double>& x, const std::vector<double>& y, std::size_t first,
                  std::size_t last, std::vector<bool>& is_needed) {
     constexpr double kTolerance = 0.2;
@@ -114,8 +114,8 @@ class Svg : public PlotSurface {
     void add(fmt::format_string<Args...> format, Args&&... args) {
         fmt::format_to(std::back_inserter(text_), format, std::forward<Args>(args)...);
     }
-    /// The strokes are what one sees. The words are there as well, unseen, for search, selection
-    /// and screen readers; they are seen where the font lacks a character.
+    /// The strokes draw the visible text. The words are there as well, invisible, for search,
+    /// selection and screen readers; they are visible where the font lacks a character.
     void text(Point at, const TextStyle& style, std::string_view words) override {
         const Lettering letters = lettering_of(style, words);
         if (letters.is_complete) {
@@ -264,7 +264,7 @@ void draw_lines(PlotSurface& surface, const std::vector<PlotLine>& lines, const 
     surface.end_group();
 }
 
-/// A label of several names goes on in the next row rather than beyond so many letters.
+/// A label of several names continues in the next row after this many letters.
 constexpr std::size_t kLegendLetters = 36;
 
 std::vector<std::string> wrapped(const std::string& label, std::size_t letters = kLegendLetters) {
@@ -305,8 +305,8 @@ std::string hex(const Vector3& code) {
     return text;
 }
 
-/// A row of patches; equal ones beside each other as one.
-/// @param with_half_ends  of the first patch its right half, of the last one its left half
+/// A row of patches; equal neighbors are one patch.
+/// @param with_half_ends  the first patch has its right half only, the last one its left half
 void draw_patches(PlotSurface& surface, std::span<const Vector3> codes, Point left, double width,
                   bool with_half_ends) {
     std::vector<Patch> row;
@@ -335,7 +335,7 @@ void draw_sweeps(PlotSurface& surface, const std::vector<PatchRow>& sweeps, doub
     surface.begin_patches(kPatchRow);
     double y = top + kPatchRow / 2;
     for (const PatchRow& row : sweeps) {
-        // Patches are centered on their stops: of the first and the last there is half.
+        // Patches are centered on their stops, so the first and the last are half patches.
         draw_patches(surface, row.codes, {kLeft - kStop / 2, y}, kStop, true);
         y += kPatchRow + 2;
     }
@@ -361,8 +361,8 @@ void draw_axis(PlotSurface& surface, double top) {
     surface.text({kRight + 16, top + 31}, kPlain, "scene");
 }
 
-/// More lines than can be told apart in one graph, and a legend that would lie on them: each line
-/// then has a small graph of its own, with the first line behind it, in place of a legend.
+/// Too many lines for one graph and its legend: each line gets a small graph of its own, with the
+/// first line in the background, instead of a legend.
 constexpr std::size_t kMostLinesInside = 6;
 
 /// A grid of small graphs, one for each line with a label.
@@ -447,7 +447,7 @@ class SmallGraphs {
     std::vector<std::size_t> label_rows_;  // of each row of graphs
 };
 
-/// Where the parts of a plot are.
+/// Positions of the parts of a plot.
 struct Layout {
     Graph upper;
     Graph lower;
@@ -580,7 +580,7 @@ Lettering lettering_of(const PlotSurface::TextStyle& style, std::string_view wor
     }
     letters.is_complete = std::all_of(letters.ascii.begin(), letters.ascii.end(),
                                       [](char c) { return c >= ' ' && c <= '~'; });
-    // Of Helvetica, whose capitals are 0.72 of its size.
+    // Helvetica's capitals are 0.72 of its size.
     letters.cap_height = 0.72 * (style.is_heading ? 13 : 11);
     letters.extra_width = style.is_heading ? 0.6 : 0;
     return letters;
@@ -595,7 +595,7 @@ void draw(const CurvePlot& plot, PlotSurface& surface) {
     surface.text({kRight, 20}, kAtEnd, plot.subtitle);
     surface.text({kLeft - 5, 28}, kAtEnd, upper.scale.left_heading);
     surface.text({kRight + 5, 28}, kPlain, upper.scale.right_heading);
-    // Above the frame, where no curve is: the marks stand over the two vertical lines.
+    // Above the frame, where no curve is: the marks are above the two vertical lines.
     constexpr double kOverLine = 22;
     for (const PlotMark& mark : plot.marks) {
         const bool is_first = mark.stops <= 0;

@@ -8,13 +8,13 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// Where the lines of a plot have their values: stops from mid gray, -10..+10, half a pixel apart.
+/// Stops from mid gray of the points of a plot's lines: -10..+10, half a pixel apart.
 [[nodiscard]] const std::vector<double>& plot_stops();
 
 /// One line of a plot.
 struct PlotLine {
-    std::string id;     // of its element; one of a kind in its plot
-    std::string label;  // in the legend; empty: not there
+    std::string id;     // of its element; unique in the plot
+    std::string label;  // in the legend; empty: left out
     std::string color;
     double width = 1.5;
     std::string dashes;          // of SVG's stroke-dasharray; empty: a solid line
@@ -28,7 +28,7 @@ struct PlotTick {
     std::string right;  // empty: none
 };
 
-/// What a graph has at its sides.
+/// Numbers and texts at the sides of a graph.
 struct PlotScale {
     double low = 0;
     double high = 1;
@@ -36,10 +36,10 @@ struct PlotScale {
     std::vector<PlotTick> ticks = {};  // empty: one every step, at the left
     std::string left_heading = "code";
     std::string right_heading = "light";
-    std::string quantity = "code value";  // what its values are
+    std::string quantity = "code value";  // meaning of the values
 };
 
-/// A point of a line, with words above the graph.
+/// A point of a line, with a text above the graph.
 struct PlotMark {
     double stops;
     double value;
@@ -52,21 +52,21 @@ struct PatchRow {
     std::vector<Vector3> codes;
 };
 
-/// What a plot is shown on: lines and words have colors that are readable there.
+/// The background of a plot: lines and text have colors that are readable on it.
 enum class PlotTheme : unsigned char { light, dark };
 
-/// What displays show over stops. Empty parts are left out.
+/// Displayed values over stops. Empty parts are left out.
 struct CurvePlot {
     PlotTheme theme = PlotTheme::light;
     std::string title;
     std::string subtitle;
-    /// Without ticks: sRGB code values, with their light at the right.
+    /// Without ticks: sRGB code values, with their display-linear values at the right.
     PlotScale scale;
     bool names_grays = false;  // above the lines at mid gray and white, where no marks are
-    /// With labels: a legend where tone curves are low, in the graph at the left; for more than six
-    /// lines small graphs, one for each.
+    /// With labels: a legend in an empty part of the graph, at the left; with more than six lines,
+    /// a small graph for each.
     std::vector<PlotLine> lines;
-    /// At most one up to mid gray and one above: their words stand side by side.
+    /// At most one up to mid gray and one above, because their labels are side by side.
     std::vector<PlotMark> marks;
     /// A second, lower graph over the same stops.
     std::string lower_heading;
@@ -82,7 +82,7 @@ struct PatchBlock {
     std::vector<std::string> columns;
 };
 
-/// Rows of patches: what several operators make of the same colors.
+/// Rows of patches: the same colors through several operators.
 struct PatchChart {
     std::string title;
     std::string subtitle;
@@ -90,17 +90,17 @@ struct PatchChart {
     std::vector<PatchRow> rows;  // each with the patches of all blocks
 };
 
-/// The plot as an SVG file of its own: no script, no font, no link; the same bytes on every run.
-/// A line has as few points as keep it within a fifth of a pixel of its values.
-/// @param width  at which it is shown where nothing else says so
+/// The plot as a standalone SVG file: no script, no font, no link; the same bytes on every run. A
+/// line has the fewest points that keep it within a fifth of a pixel of its values.
+/// @param width  default width on a page
 [[nodiscard]] std::string to_svg(const CurvePlot& plot, double width = 640);
 [[nodiscard]] std::string to_svg(const PatchChart& chart);
 /// The plot as a PDF file of one page, in vectors.
 /// @param width  of the page, in pixels of 1/96 inch
 [[nodiscard]] std::string to_pdf(const CurvePlot& plot, double width = 640);
 
-/// Color `index` of a set that stays apart for color-blind readers too (Okabe and Ito 2008), and
-/// the dashes of its line: from the ninth on the colors come again, dashed.
+/// Color `index` of a set that color-blind readers can tell apart (Okabe and Ito 2008), and the
+/// dashes of its line: from the ninth on, the colors repeat, dashed.
 [[nodiscard]] std::string line_color(std::size_t index, PlotTheme theme = PlotTheme::light);
 [[nodiscard]] std::string line_dashes(std::size_t index);
 

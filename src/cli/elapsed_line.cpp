@@ -16,7 +16,7 @@ ElapsedLine::ElapsedLine(const std::string& what, int terminal) {
     try {
         thread_ = std::thread([this, what, terminal] { run(what, terminal); });
     } catch (const std::system_error&) {
-        // No more threads are to be had: the work goes on without the line.
+        // If there are no more threads, the work continues without the line.
     }
 }
 

@@ -10,11 +10,11 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// What takes longer than two seconds says so on a terminal, with the seconds: "config: 12 s". The
-/// line goes away with this. With --quiet there is none.
+/// On a terminal, shows the seconds of work that takes longer than two: "config: 12 s". The
+/// destructor clears the line. With --quiet there is none.
 class ElapsedLine {
   public:
-    /// @param what      is under way
+    /// @param what      the work in progress
     /// @param terminal  a file descriptor, or -1
     explicit ElapsedLine(const std::string& what, int terminal = 2);
     ~ElapsedLine();

@@ -32,7 +32,7 @@ struct Options : ViewOptions {
     LutOptions lut;
 };
 
-/// The three numbers of a line, or none where it is blank or a comment.
+/// The three numbers of a line, or none if it is blank or a comment.
 /// @throws Error
 std::optional<Vector3> parse_line(std::string_view whole, std::size_t number) {
     std::string_view line = whole.substr(0, whole.find('#'));
@@ -49,7 +49,8 @@ std::optional<Vector3> parse_line(std::string_view whole, std::size_t number) {
             line.remove_prefix(1);  // from_chars takes no plus sign
         }
         const auto result = std::from_chars(line.data(), line.data() + line.size(), value);
-        // A number too large for double is infinite, and too small is 0: what printf-ed data means.
+        // A number too large for double is infinite, and one too small is 0, as printf() prints
+        // such data.
         if (result.ec == std::errc::result_out_of_range) {
             value = std::strtod(std::string(line.data(), result.ptr).c_str(), nullptr);
         } else if (result.ec != std::errc()) {
@@ -77,19 +78,19 @@ std::optional<Vector3> parse_line(std::string_view whole, std::size_t number) {
     return values;
 }
 
-/// Colors in, colors out: `count` triplets.
+/// Maps `count` triplets.
 using ColorMap = std::function<void(const double* in, double* out, std::size_t count)>;
 
-/// Standard input as triplets, one a line; comma or space between; `#` begins a comment. What has
-/// arrived is answered before more is read, so that a program can ask and wait for the answer.
+/// Standard input as triplets, one a line, separated by commas or spaces; `#` begins a comment. It
+/// answers the received lines before it reads more, so that a program can wait for each answer.
 class LineEvaluator {
   public:
     LineEvaluator(ColorMap map, int digits) : map_(std::move(map)), digits_(digits) {}
 
-    /// Until the end of standard input. What comes before a line that is wrong is answered.
+    /// Runs until the end of standard input. Lines before a wrong line are answered.
     void run() {
         std::vector<char> block(std::size_t{1} << 20);
-        std::string rest;  // a line that has not ended yet
+        std::string rest;  // an incomplete line
         while (const std::size_t count = read_some(block)) {
             std::string_view text(block.data(), count);
             for (std::size_t end = text.find('\n'); end != std::string_view::npos;
@@ -109,7 +110,8 @@ class LineEvaluator {
   private:
     static constexpr std::size_t kLongestLine = 1 << 16;
 
-    /// Blocks until there is something. @returns  0 at the end
+    /// Blocks until there is input.
+    /// @returns  0 at the end
     static std::size_t read_some(std::vector<char>& block) {
         while (true) {
             const ssize_t count = ::read(STDIN_FILENO, block.data(), block.size());
@@ -154,7 +156,7 @@ class LineEvaluator {
     std::vector<double> colors_;
 };
 
-/// Of an engine that takes floats.
+/// For an engine that takes floats.
 ColorMap through_floats(std::function<void(const float*, float*, std::size_t)> run) {
     return [run = std::move(run)](const double* in, double* out, std::size_t count) {
         const std::vector<float> from(in, in + 3 * count);

@@ -15,8 +15,8 @@ Vector3 luminance_weights(const Primaries& primaries) {
     return primaries == kRec709 ? kRec709Weights : rgb_to_xyz(primaries)[1];
 }
 
-/// The view, and then the code value of the gray that has the luminance of the color it shows: for
-/// a neutral color its own.
+/// The view, followed by the code value of the gray with the same luminance; a neutral color keeps
+/// its own.
 Pipeline with_gray_level(const View& view) {
     const Display& display = find_display(view.display);
     const Vector3 weights = luminance_weights(display.primaries);

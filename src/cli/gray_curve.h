@@ -16,12 +16,12 @@ inline constexpr double kMidGray = 0.18;
 /// Red, green and blue.
 using Planes = std::array<std::vector<double>, 3>;
 
-/// What a pipeline makes of `color` times each number of `exposures`, in double.
+/// The pipeline's result for `color` times each number of `exposures`, in double.
 [[nodiscard]] Planes codes_of(const Pipeline& pipeline, const Vector3& color,
                               std::span<const double> exposures);
 
-/// The code value that each scene-linear gray is shown with on the view's display: where what is
-/// shown is not gray, that of the gray with the same luminance.
+/// Code value of each scene-linear gray on the view's display. If the result is tinted, that of the
+/// gray with the same luminance.
 [[nodiscard]] std::vector<double> gray_codes(const View& view, std::span<const double> scene);
 [[nodiscard]] double gray_code(const View& view, double scene);
 
@@ -30,10 +30,10 @@ using Planes = std::array<std::vector<double>, 3>;
 
 [[nodiscard]] double largest_difference(const std::vector<double>& a, const std::vector<double>& b);
 
-/// Lines that no eye can tell apart, in code values.
+/// Largest difference of lines that look the same, in code values.
 inline constexpr double kSameLine = 0.001;
 
-/// Adds a line, or a name to the label of the one that it would lie on.
+/// Adds a line, or adds a name to the label of a line that looks the same.
 void add_line(std::vector<PlotLine>& lines, PlotLine line, const std::string& short_name);
 
 TONEWRIGHT_NAMESPACE_END

@@ -34,7 +34,7 @@ Json from_library(const Library& library) {
     switch (library.type()) {
         case Library::value_t::boolean:
             return library.get<bool>();
-        // Json(int64) of what is written is read as uint64 where it is not negative.
+        // Written Json(int64) is read as uint64 if it is not negative.
         case Library::value_t::number_integer:
             return library.get<std::int64_t>();
         case Library::value_t::number_unsigned:

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// A JSON value of our own: nlohmann/json.hpp costs every file that includes it seconds of compile
-// time, and json.cpp alone includes it.
+// A JSON value. Only json.cpp includes nlohmann/json.hpp, which takes seconds to compile.
 #pragma once
 
 #include <array>
@@ -21,8 +20,8 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// What Json::parse() throws for a text that is not JSON, and the readers of Json for a value of
-/// another kind than they expect.
+/// Thrown by Json::parse() for text that is not JSON, and by the readers of Json for a value of
+/// another kind.
 class JsonError : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
@@ -35,7 +34,7 @@ class Json {
     using Member = std::pair<std::string, Json>;
     using Object = std::vector<Member>;
 
-    // What the compiler could write is in json.cpp: inlined into every table it is slow to compile.
+    // Defined in json.cpp, because inlined into every table they are slow to compile.
     Json();  // null
     Json(const Json& other);
     Json(Json&& other) noexcept;
@@ -69,10 +68,10 @@ class Json {
 
     /// Appends to an array; null becomes one.
     void push_back(Json value);
-    /// Appends a member to an object, which has none of this name; null becomes an object.
+    /// Appends a member to an object, which has no member of this name yet; null becomes an object.
     void add(std::string name, Json value);
 
-    /// @throws JsonError  the value is of another kind; there is no such member
+    /// @throws JsonError  the value is of another kind, or there is no such member
     [[nodiscard]] const Json& at(std::string_view name) const;
     [[nodiscard]] const Object& members() const;
     void get_to(std::int64_t& to) const;

@@ -46,7 +46,7 @@ std::string_view kind_name(Kind kind) {
     return "text";
 }
 
-/// The operator's own warnings and what follows from its deviations.
+/// The operator's own warnings, and those from its deviations.
 std::vector<std::string> all_warnings(const Operator& op) {
     std::vector<std::string> all = op.warnings;
     for (const DocumentedDifference& d : op.deviations)
@@ -99,7 +99,7 @@ Json to_json(const Operator& op) {
             {"view", op.view},
             {"character", op.character},
             {"source", op.source},
-            {"licence", op.licence},
+            {"license", op.license},
             {"working_primaries", op.working.name},
             {"negatives", op.negatives},
             {"output", output_of(op)},
@@ -154,6 +154,21 @@ std::string help_of(const ParameterSpec& p) {
     return p.from_display ? p.help + "; where it is not set, --display decides" : p.help;
 }
 
+/// The help of a parameter that all tone curves share, as a link to docs/choosing.md; empty for
+/// other parameters.
+std::string_view link_to_choosing(const Operator& op, std::string_view parameter) {
+    const auto has = [&](std::string_view name) {
+        return std::any_of(op.parameters.begin(), op.parameters.end(),
+                           [&](const ParameterSpec& p) { return p.name == name; });
+    };
+    if (!has("apply") || !has("color_correction")) return {};
+    if (parameter == "apply")
+        return "[how the curve treats color](choosing.md#how-a-curve-treats-color)";
+    const bool is_shared = parameter == "color_correction" || parameter == "saturation" ||
+                           parameter == "saturation_from";
+    return is_shared ? "[color correction](choosing.md#color-correction)" : "";
+}
+
 /// "AgX; others: agx_minimal, agx_sobotka".
 std::string dialects_of(const Operator& op) {
     std::string ids;
@@ -164,12 +179,12 @@ std::string dialects_of(const Operator& op) {
     return op.dialects + (ids.empty() ? "" : "; others: " + ids);
 }
 
-constexpr const char* kDiagnostic = "shows what is in a picture, not a picture";
-constexpr const char* kLocal = "pictures only, no LUT or config can hold it";
+constexpr const char* kDiagnostic = "shows facts about a picture, such as its exposure";
+constexpr const char* kLocal = "pictures only; LUTs and configs cannot contain it";
 
 void print_operator(const Operator& op) {
     fmt::print("{}: {}\n  {}\n", op.id, op.title, op.character);
-    fmt::print("  source      {}\n  license     {}\n", op.source, op.licence);
+    fmt::print("  source      {}\n  license     {}\n", op.source, op.license);
     if (op.is_local()) {
         fmt::print("  local       {}\n", kLocal);
     } else {
@@ -194,7 +209,7 @@ void print_operator(const Operator& op) {
         fmt::print("  note        {}\n", w);
 }
 
-/// A name, and words behind it that go on below each other where the line is full.
+/// A name, and a text after it that is wrapped into lines of the same indentation.
 void print_entry(const std::string& name, std::size_t name_width,
                  const std::vector<std::string>& words) {
     constexpr std::size_t kLine = 100;
@@ -238,11 +253,15 @@ void print_overview() {
 
 }  // namespace
 
-std::string operator_section(const Operator& op, std::string_view after_character) {
+std::string operator_section(const Operator& op, std::string_view after_character,
+                             bool is_in_docs) {
+    std::string character = op.character;
+    if (!character.empty() && character[0] >= 'a' && character[0] <= 'z')
+        character[0] = static_cast<char>(character[0] - 'a' + 'A');
     std::string text =
-        fmt::format("## {} (`{}`)\n\n{}.\n\n{}", op.title, op.id, op.character, after_character);
+        fmt::format("## {} (`{}`)\n\n{}.\n\n{}", op.title, op.id, character, after_character);
     text += fmt::format("* Source: {} ({})\n* Works in: {}; output: {}\n* Negatives: {}\n",
-                        op.source, op.licence, op.working.name, output_of(op), op.negatives);
+                        op.source, op.license, op.working.name, output_of(op), op.negatives);
     text += op.is_local() ? fmt::format("* Local: {}\n", kLocal)
                           : fmt::format("* View of the config: `{}`\n", op.view);
     if (!op.dialects.empty()) text += fmt::format("* Dialect of {}\n", dialects_of(op));
@@ -252,8 +271,9 @@ std::string operator_section(const Operator& op, std::string_view after_characte
     if (!op.parameters.empty()) {
         text += "\n| parameter | default | range | |\n|---|---|---|---|\n";
         for (const ParameterSpec& p : op.parameters) {
+            const std::string_view link = is_in_docs ? link_to_choosing(op, p.name) : "";
             text += fmt::format("| `{}` | {} | {} | {} |\n", p.name, default_of(p), range_of(p),
-                                help_of(p));
+                                link.empty() ? help_of(p) : link);
         }
     }
     if (!op.presets.empty() || !op.looks.empty()) text += "\n";
@@ -396,8 +416,10 @@ void add_list(CommandLine& program) {
     definition.group(contents);
     const Option hosts =
         command
-            .add_flag("--hosts", options->hosts,
-                      "applications that read LUTs, what each expects, and how to load a LUT there")
+            .add_flag(
+                "--hosts", options->hosts,
+                "list applications that read LUTs, the LUT that each expects, and how to load "
+                "it")
             .excludes(markdown)
             .excludes(views)
             .excludes(definition);

@@ -28,11 +28,11 @@ LutFile open_lut(const std::string& path, const std::string& interpolation,
 
 namespace {
 
-/// Where a file of ours has its text.
-/// @throws FileError  what is no file, and may have no end
+/// The part of a file from Tonewright that has its text.
+/// @throws FileError  not a regular file, which may have no end
 std::string text_of_lut(const LutOptions& options) {
     require_regular_file(options.file);
-    // Our text stands at the beginning, but behind the table in a device link.
+    // Our text is at the beginning, but in a device link it comes after the table.
     constexpr std::size_t kBeginning = 1U << 16U;
     const std::string extension = extension_of(options.file);
     const bool is_link = extension == ".icc" || extension == ".icm";
@@ -43,7 +43,7 @@ std::string text_of_lut(const LutOptions& options) {
     return contents;
 }
 
-/// What stands before the LUT, with --input-encoding.
+/// The stages before the LUT, with --input-encoding.
 const InputSpace& space_before(const LutOptions& options, const InputEncoding& encoding) {
     return find_input_space(options.space.empty() ? encoding.default_input : options.space);
 }

@@ -20,24 +20,23 @@ struct LutOptions {
 };
 
 /// @param read_picture  reads a LUT that is a picture
-/// @throws Error      for trilinear where there is no such
-/// @throws FileError  for a file that is missing or malformed
+/// @throws Error      trilinear interpolation for a LUT without it
+/// @throws FileError  a file that is missing or malformed
 [[nodiscard]] LutFile open_lut(const std::string& path, const std::string& interpolation,
                                const std::function<Lut(const std::string&)>& read_picture);
 
-/// The display whose code values come out, or `linear`, where the file itself says so.
+/// The display of the output's code values, or `linear`, if the file states it.
 [[nodiscard]] std::optional<std::string> stated_display(const LutOptions& options);
 
-/// Without --input-encoding: what the file itself says that goes in, in one line on stderr; where
-/// it says nothing, a warning that colors go in as they are. With it: a warning where the file says
-/// otherwise.
+/// Without --input-encoding: prints the input that the file states, in one line on stderr, or warns
+/// that colors are passed unchanged. With it: warns if the file states another.
 [[nodiscard]] LutOptions with_stated_input(const LutOptions& options, const std::string& input);
 
-/// What stands before the LUT: light of `input`, with --exposure, as --input-encoding in the
-/// primaries of --lut-space. Empty without --input-encoding, and for `none`: colors go in as they
-/// are.
+/// The stages before the LUT: light of `input` with --exposure, encoded by --input-encoding in the
+/// primaries of --lut-space. Empty without --input-encoding, and for `none`: colors are passed
+/// unchanged.
 /// @param command  its name, for the message
-/// @throws Error  unknown names; --input, --exposure or --lut-space without --input-encoding.
+/// @throws Error  unknown names; --input, --exposure or --lut-space without --input-encoding
 [[nodiscard]] Pipeline before_lut(const char* command, const LutOptions& options,
                                   const ViewOptions& view, const SourceColor& input);
 
@@ -47,7 +46,7 @@ struct LutOptions {
 void take_lut_options(const char* command, const LutOptions& options, ViewOptions& view,
                       bool has_lut_option);
 
-/// Throws what before_lut() will throw, before pictures are read.
+/// Throws the errors of before_lut() before pictures are read.
 void check_lut_options(const char* command, const LutOptions& options, const ViewOptions& view,
                        const SourceColor& input);
 

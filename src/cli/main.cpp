@@ -27,10 +27,10 @@ namespace {
 
 std::terminate_handler default_handler = nullptr;
 std::atomic<bool> has_failed_to_allocate = false;
-int messages = -1;  // stderr, which is turned off while OpenImageIO writes into it
+int messages = -1;  // stderr, which is off while OpenImageIO writes to it
 
-/// Where a function that must not throw is compiled into its caller, GCC 12 ends the process
-/// without telling the handler which exception it was.
+/// If a function that must not throw is inlined, GCC 12 ends the process without passing the
+/// exception to the handler.
 bool is_about_memory_now() {
     try {
         if (const std::exception_ptr exception = std::current_exception())
@@ -43,11 +43,11 @@ bool is_about_memory_now() {
     return has_failed_to_allocate;
 }
 
-/// Memory that is missing in a function that must not throw, or while another exception is
-/// handled, ends the process like any other missing memory. Nothing here takes memory.
+/// If memory runs out in a function that must not throw, or while another exception is handled, the
+/// process ends as for any other lack of memory. Nothing here allocates.
 [[noreturn]] void end_without_memory() {
     if (is_about_memory_now()) {
-        // One line, however many threads come here.
+        // Prints one line, also if several threads come here.
         static std::atomic_flag is_ending = ATOMIC_FLAG_INIT;
         while (is_ending.test_and_set())
             ::pause();
@@ -60,7 +60,7 @@ bool is_about_memory_now() {
     std::abort();
 }
 
-/// Before the program's own static objects: those of CLI11 take memory.
+/// Before the program's own static objects, because those of CLI11 allocate.
 [[gnu::constructor(101)]] void handle_missing_memory() {
     messages = ::fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
     default_handler = std::set_terminate(end_without_memory);
@@ -118,7 +118,7 @@ int run(int argc, char** argv) {
         }
         if (std::fflush(stdout) != 0) return report("write: standard output: cannot write", kFile);
         return exit_code;
-    } catch (const std::system_error& e) {  // what printing throws, and a thread that has no stack
+    } catch (const std::system_error& e) {  // exceptions of printing, and a thread without a stack
         if (e.code() == std::errc::resource_unavailable_try_again)
             return report(command + "not enough memory or threads", kFile);
         return report("write: standard output: " + e.code().message(), kFile);
@@ -143,7 +143,7 @@ TONEWRIGHT_NAMESPACE_END
 int main(int argc, char** argv) {
     tonewright::remove_unfinished_files_on_signals();
     const int exit_code = tonewright::run(argc, argv);
-    // OpenImageIO 2.4 stops in a destructor where an exception passed a lock of its cache.
+    // OpenImageIO 2.4 hangs in a destructor after an exception passed a lock of its cache.
     if (tonewright::is_out_of_memory) ::_exit(exit_code);
     return exit_code;
 }

@@ -19,7 +19,7 @@ namespace {
 struct Variable {
     std::string names;
     std::string text;
-    /// That read it; empty: all.
+    /// The commands that read it; empty: all.
     std::vector<std::string> commands;
 };
 
@@ -39,6 +39,9 @@ const std::vector<Variable>& variables() {
          with_fits},
         {"HOME", "Home folder. Without it and XDG_CACHE_HOME, the command keeps no fits.",
          with_fits},
+        {"SOURCE_DATE_EPOCH",
+         "Date of pictures that have none, in seconds since 1970, for reproducible files.",
+         {"apply", "compare", "sheet", "chart", "bake"}},
         {"TMPDIR", "Folder for temporary copies of LUT files (default: `/tmp`).", with_luts},
         {"OIIO_LIBRARY_PATH",
          "Folders with OpenImageIO's plugins for more formats, separated by colons.",
@@ -133,7 +136,7 @@ std::string files() {
            entry("\\fIPREFIX/share/doc/tonewright\\fR", "Documents, in Markdown.");
 }
 
-/// Of all pages of commands: the commands under the same title, and the general pages.
+/// For all pages of commands: the commands of the same group, and the general pages.
 std::string see_also(const HelpPage& program, const std::string& command) {
     std::vector<std::string> others;
     for (const HelpGroup& group : program.groups) {

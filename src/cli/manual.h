@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The manual pages, of the text that `--help` prints. The build asks `tonewright manual` for them.
+// The manual pages, from the text of `--help`. The build runs `tonewright manual` to write them.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ struct ManualSource {
     std::vector<CommandTable> tables;
     /// Path of the document that has the reference of .tone files, in Markdown.
     std::string reference;
-    /// Of all pages: `2026-01-31`.
+    /// Date of all pages: `2026-01-31`.
     std::string date;
 };
 

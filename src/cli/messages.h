@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What the command tells its user on stderr: one line each.
+// Messages of the command on stderr: one line each.
 #pragma once
 
 #include <chrono>
@@ -10,30 +10,30 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// Of all commands.
+/// Options of all commands.
 struct MessageOptions {
     bool is_strict = false;
     bool is_quiet = false;
     bool is_verbose = false;
 };
 
-/// The options of this process. The module of the picture commands has its own: the program hands
-/// them over when it loads the module.
+/// The options of this process. The module of the picture commands has its own: the program passes
+/// them when it loads the module.
 [[nodiscard]] MessageOptions& message_options();
 
-/// `tonewright: TEXT` on stderr, on one line whatever the text holds.
+/// Prints `tonewright: TEXT` on stderr, always on one line.
 void print_message(const std::string& text);
 
 /// Lines of a file that a message is about, on stderr.
 void print_excerpt(const std::string& lines);
 
-/// What a command did, on stderr, on one line; not with --quiet.
+/// Prints the result of a command on stderr, on one line; not with --quiet.
 void print_result(const std::string& text);
 
-/// What a command did, for people: on a terminal or with --verbose, not with --quiet.
+/// The result line of a command, for people: on a terminal or with --verbose, not with --quiet.
 [[nodiscard]] bool says_what_was_done();
 
-/// For commands that write one thing. Measures the time from when it is made.
+/// For commands that write one thing. Measures the time since its construction.
 class ResultLine {
   public:
     /// `tonewright: TEXT, 1.23 s` on stderr, where says_what_was_done()
@@ -43,8 +43,8 @@ class ResultLine {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// `tonewright: warning: TEXT`, where a result may not be what the user means. Call it before the
-/// result is written.
+/// `tonewright: warning: TEXT`, if a result may differ from the user's intention. Call it before
+/// the result is written.
 /// @throws std::runtime_error  --strict was given
 void warn(const std::string& text);
 

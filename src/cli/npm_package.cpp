@@ -119,7 +119,7 @@ the operators that are not imported.
 |---|---|---|
 )";
 
-/// As a template literal takes it.
+/// Escaped for a template literal.
 std::string template_literal(const std::string& text) {
     std::string quoted = "`\n";
     for (const char c : text) {
@@ -207,7 +207,7 @@ class Package {
     }
 
   private:
-    /// What GLSL and WGSL have in common, as properties. Looks share lattices: each is one file.
+    /// Properties that GLSL and WGSL share. Looks share 3D LUTs: each is one file.
     std::string facts(const NpmOperator& op, const std::string& id) {
         std::string lattices;
         for (const ShaderTexture& texture : op.glsl.textures) {

@@ -10,8 +10,7 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// An operator as the package exports it. The name of the export is that of the function without
-/// `tw_`.
+/// An operator in the package. The name of its export is that of the function without `tw_`.
 struct NpmOperator {
     std::string title;
     Shader glsl;  // GLSL ES

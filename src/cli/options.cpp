@@ -25,7 +25,7 @@ namespace {
 
 constexpr const char* kGeneralOptions = "General options";
 
-/// The kind of number that an option's value is; void for a text.
+/// The type of an option's number; void for a text.
 template <class Value>
 struct NumberOf {
     using Type = void;
@@ -54,12 +54,12 @@ std::string argument_name(const CLI::Option& option) {
     return name;
 }
 
-/// `IN`, or `IN...` where several are taken.
+/// `IN`, or `IN...` for several.
 std::string argument_usage(const CLI::Option& option) {
     return argument_name(option) + (option.get_items_expected_max() > 1 ? "..." : "");
 }
 
-/// As messages call it: `--size`, or `OPERATOR` for an argument.
+/// Name in messages: `--size`, or `OPERATOR` for an argument.
 std::string name_of(const CLI::Option& option) {
     return option.get_positional() ? argument_name(option) : option.get_name();
 }
@@ -101,13 +101,13 @@ std::string value_name(const CLI::Option& option, const OptionHelps& helps) {
     return found == helps.end() || found->second.value.empty() ? "VALUE" : found->second.value;
 }
 
-/// What to type: `--size N`, `--exact`.
+/// The text to type: `--size N`, `--exact`.
 std::string usage_of(const CLI::Option& option, const OptionHelps& helps) {
     if (option.get_positional() || option.get_items_expected_max() == 0) return name_of(option);
     return name_of(option) + " " + value_name(option, helps);
 }
 
-/// How messages about a given option begin: `apply: --size is 3`, `apply: --exact is given`.
+/// Beginning of messages about a given option: `apply: --size is 3`, `apply: --exact is given`.
 std::string given_of(const CLI::App& command, const CLI::Option& option) {
     std::string text = subject_of(command, option) + " is ";
     if (option.get_items_expected_max() == 0) return text + "given";
@@ -177,13 +177,13 @@ HelpEntry HelpFormatter::entry_of(const CLI::Option& option) const {
     entry.text = option.get_description();
     std::string facts = option.get_default_str();
     if (!facts.empty()) facts.insert(0, "default ");
-    constexpr double kMostShown = 1 << 16;  // a limit that nobody meets is no help
+    constexpr double kMostShown = 1 << 16;  // a limit that no user reaches does not help
     if (help.limits && help.limits->second < kMostShown) {
         facts += fmt::format("{}{}..{}", facts.empty() ? "" : "; ", help.limits->first,
                              help.limits->second);
     }
     if (facts.empty()) return entry;
-    // Behind a default that the text states itself.
+    // After a default that is in the text.
     if (entry.text.ends_with(')') && entry.text.find(" (default") != std::string::npos) {
         entry.text.back() = ';';
         entry.text += " " + facts + ")";
@@ -214,7 +214,7 @@ HelpPage HelpFormatter::page_of(const CLI::App& app, const std::string& name) co
         const std::string argument = argument_usage(*option);
         page.usage += option->get_required() ? " " + argument : " [" + argument + "]";
     }
-    // What every command has comes last.
+    // Options of all commands come last.
     const auto is_general = [](const CLI::Option* option) {
         return option->get_group() == kGeneralOptions;
     };
@@ -319,14 +319,13 @@ const Option& Option::excludes(const Option& other) const {
     return *this;
 }
 
-/// Values are checked here, with messages of ours, before CLI11 converts them with messages of its
-/// own.
+/// Values are checked here, with Tonewright's messages, before CLI11 converts them with its own.
 template <class Value>
 Option Command::add_option(const std::string& name, Value& value, const std::string& help) const {
     using Number = typename NumberOf<Value>::Type;
     CLI::Option* option = app_->add_option(name, value, help);
     const auto check = [app = app_, option, helps = helps_](std::string& text) {
-        // CLI11 takes the next word for the value, an option, too.
+        // CLI11 takes the next word as the value, even an option.
         if (!option->get_positional() && is_option(*app, text))
             throw missing_value(*app, *option, *helps);
         if constexpr (!std::is_void_v<Number>)
@@ -466,7 +465,7 @@ std::vector<CommandTable> CommandLine::tables() const {
 
 namespace {
 
-/// What to type for the help that has all options.
+/// The command that prints all options.
 std::string help_command(const CLI::App& command) {
     return fmt::format("`tonewright {} --help-all`", command.get_name());
 }
@@ -488,7 +487,7 @@ std::optional<std::string> unknown_option(const CLI::App& command) {
                        help_command(command), did_you_mean(typed, known));
 }
 
-/// An option or argument that is missing, or that cannot stand beside another.
+/// An option or argument that is missing, or that excludes another.
 std::optional<std::string> unmet_requirement(const CLI::App& command, const OptionHelps& helps) {
     const std::vector<const CLI::Option*> options = command.get_options();
     const auto contains = [](const std::set<CLI::Option*>& list, const CLI::Option* option) {
@@ -545,8 +544,8 @@ std::optional<std::string> unexpected_argument(const CLI::App& command) {
         arguments.empty() ? "options" : fmt::format("one {}", fmt::join(arguments, " ")));
 }
 
-/// What is wrong with a command line that CLI11 refuses, in our words. The state of its options
-/// tells what happened: its exceptions hold finished sentences only.
+/// The error of a command line that CLI11 refuses, in our words. It follows from the state of the
+/// options, because CLI11's exceptions contain finished sentences only.
 /// @param last_word  of the command line
 Error usage_error(const CLI::App& command, const OptionHelps& helps, const std::string& last_word,
                   const CLI::ParseError& error) {
@@ -592,7 +591,7 @@ int CommandLine::run(int argc, char** argv) {
     }
     const std::string last = words.back();
     try {
-        std::reverse(words.begin(), words.end());  // as CLI11 takes them
+        std::reverse(words.begin(), words.end());  // in CLI11's order
         app_->parse(std::move(words));
     } catch (const CLI::Success& e) {
         return app_->exit(e);  // --help, --version

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// CLI11 behind a narrow interface: its header costs every file that includes it seconds of compile
-// time, and options.cpp alone includes it.
+// A narrow interface to CLI11. Only options.cpp includes its header, which takes seconds to
+// compile.
 #pragma once
 
 #include <functional>
@@ -24,13 +24,13 @@ class Option;
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// What the help and the messages say of an option, besides its names and its text.
+/// Facts about an option for the help and the messages, besides its names and its text.
 struct OptionHelp {
     std::string value;
-    /// Of a number: the lowest and the highest that it can be.
+    /// Lowest and highest value of a number.
     std::optional<std::pair<double, double>> limits;
     bool is_common = false;
-    /// What a shell offers as the value. Null: nothing, or files where the value is one.
+    /// Suggestions for the value. Null: none, or files if the value is one.
     Suggest suggest = {};
 };
 using OptionHelps = std::map<const CLI::Option*, OptionHelp>;
@@ -43,23 +43,23 @@ class Option {
         : app_(app), option_(option), helps_(helps) {}
 
     const Option& required() const;
-    /// What stands for the value in the help, such as `FILE`.
+    /// The word for the value in the help, such as `FILE`.
     const Option& value(const std::string& name) const;
     /// The help shows the value that the variable has now.
     const Option& show_default() const;
     const Option& show_default(const std::string& text) const;
     const Option& describe(const std::string& help) const;
-    /// The title in the help under which the option stands.
+    /// The title of its group in the help.
     const Option& group(const std::string& title) const;
     /// The lowest and the highest number that the value can be.
     const Option& range(double low, double high) const;
     const Option& choices(const std::vector<std::string>& texts) const;
     const Option& choices(const std::vector<int>& numbers) const;
-    /// Of a list: each occurrence takes one value, so that positional arguments may follow.
+    /// For a list: each occurrence takes one value, so that positional arguments may follow.
     const Option& one_value_each() const;
-    /// Of a list: one occurrence may hold several values with `separator` between them.
+    /// For a list: one occurrence may have several values with `separator` between them.
     const Option& separated_by(char separator) const;
-    /// What a shell offers as the value. choices() declares it, too.
+    /// Suggestions of a shell for the value. choices() also declares them.
     const Option& suggest(Suggest suggest) const;
     const Option& suggest(const std::vector<std::string>& words) const;
     const Option& needs(const Option& other) const;
@@ -71,14 +71,14 @@ class Option {
     OptionHelps* helps_;
 };
 
-/// One subcommand. A handle, as Option is.
+/// One subcommand. A handle, like Option.
 class Command {
   public:
     Command(CLI::App* app, int* exit_code, OptionHelps* helps)
         : app_(app), exit_code_(exit_code), helps_(helps) {}
 
-    // The variable keeps its value where the option is not given; it must live until the command
-    // line has run.
+    // The variable keeps its value if the option is not given. It must live until the command line
+    // has run.
     Option add(const std::string& name, std::string& value, const std::string& help) const;
     Option add(const std::string& name, int& value, const std::string& help) const;
     Option add(const std::string& name, double& value, const std::string& help) const;
@@ -129,9 +129,9 @@ class CommandLine {
     /// The program itself, under its own name, and its commands in the order of the help.
     [[nodiscard]] std::vector<CommandTable> tables() const;
 
-    /// Parses the arguments and runs the command that they name, or prints help or the version.
+    /// Parses the arguments and runs their command, or prints help or the version.
     /// @returns      the command's exit code
-    /// @throws Error wrong usage, and everything that the command throws
+    /// @throws Error wrong usage, and the command's exceptions
     int run(int argc, char** argv);
 
   private:

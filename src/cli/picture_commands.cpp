@@ -24,29 +24,29 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-// Functions that are bound when they are first called save an eighth of the time.
+// Binding functions at their first call saves an eighth of the time.
 constexpr int kBinding = RTLD_LAZY | RTLD_LOCAL;
 
-/// Of `ulimit -v`, in MB.
+/// The limit of `ulimit -v`, in MB.
 std::optional<double> address_limit() {
     struct rlimit limit {};
     if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return {};
     return static_cast<double>(limit.rlim_cur) / 1e6;
 }
 
-/// What the loader says when it has no addresses for a library.
+/// The loader's message if it has no addresses for a library.
 bool is_about_memory(std::string_view reason) {
     return reason.find("failed to map segment") != reason.npos ||
            reason.find("annot allocate memory") != reason.npos;
 }
 
-/// Static objects of the libraries below OpenImageIO start threads and take memory without asking
-/// whether they got them. Where addresses are limited, loading can therefore abort the process,
-/// crash or wait forever, with all signals blocked; a process of its own finds out.
+/// Static objects of the libraries below OpenImageIO start threads and allocate without checks. If
+/// the address space is limited, loading can therefore abort the process, crash or wait forever,
+/// with all signals blocked. A separate process tries it first.
 bool survives_loading(const std::string& path) {
-    // Loading takes 0.2 s of a processor, which other programs may hold back for long.
+    // Loading takes 0.2 s of processor time, and other programs may delay it.
     constexpr std::chrono::seconds kLongest{60};
-    // What a second process may take more than the first: stacks and arenas of its threads.
+    // Additional memory of a second process: stacks and arenas of its threads.
     constexpr rlim_t kHeadroom = rlim_t{32} << 20U;
     const pid_t parent = ::getpid();
     const pid_t child = ::fork();
@@ -62,12 +62,12 @@ bool survives_loading(const std::string& path) {
         if (const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC); nowhere >= 0)
             (void)::dup2(nowhere, STDERR_FILENO);
         void* const module = ::dlopen(path.c_str(), kBinding);
-        // Where it fails in order, the second try says why.
+        // If it fails again, the second try reports the reason.
         ::_exit(module || !is_about_memory(::dlerror()) ? 0 : 1);
     }
     if (child < 0) return false;
     const auto end = std::chrono::steady_clock::now() + kLongest;
-    int status = 0;  // stays where the caller ignores how children end
+    int status = 0;  // remains if the caller ignores the exit of children
     while (::waitpid(child, &status, WNOHANG) == 0) {
         if (std::chrono::steady_clock::now() > end) (void)::kill(child, SIGKILL);
         std::this_thread::sleep_for(std::chrono::milliseconds(1));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The seam between the program and OpenImageIO. OpenImageIO brings some 250 shared libraries, which
-// take a fifth of a second to load. So everything that reads or writes a picture is in a module of
-// its own (the folder pictures/), and the program loads it when a command needs a picture.
+// The interface between the program and OpenImageIO. OpenImageIO loads some 250 shared libraries,
+// which takes a fifth of a second. Everything that reads or writes a picture is therefore in a
+// module (the folder pictures/), which the program loads when a command needs a picture.
 #pragma once
 
 #include <string>
@@ -51,12 +51,12 @@ class PictureCommands {
 };
 
 /// Loads the module at the first call.
-/// @throws FileError  it is not there, cannot be loaded, or is of another build
+/// @throws FileError  it is missing, cannot be loaded, or is from another build
 [[nodiscard]] const PictureCommands& picture_commands();
 
 /// Entry point of the module.
 /// @param build   kPictureCommandsBuild of the program
-/// @returns       null where the module was built from another interface or version
+/// @returns       null if the module was built with another interface or version
 extern "C" const PictureCommands* tonewright_picture_commands(const char* build);
 inline constexpr const char* kPictureCommandsEntry = "tonewright_picture_commands";
 /// The release, and the number of this interface: increase it with every change of the interface

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What the commands that read or write pictures are asked to do. No type of OpenImageIO is here:
-// the program fills these in, and the picture commands, which it loads, act on them.
+// Options of the commands that read or write pictures. They use no type of OpenImageIO: the program
+// fills them in, and the picture commands, which it loads, run with them.
 #pragma once
 
 #include <optional>
@@ -13,12 +13,11 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// Which part of a picture is read, how its alpha is understood, by how many threads, and how long
-/// it may take.
+/// How pictures are read: subimage, alpha, threads, time limit.
 struct PictureInput {
     int subimage = 0;
     int threads = 0;
-    /// Seconds; each picture then has a process of its own. 0: no limit.
+    /// Seconds; each picture then has its own process. 0: no limit.
     double timeout = 0;
     bool unpremult = false;
     bool no_unpremult = false;
@@ -26,7 +25,7 @@ struct PictureInput {
     std::optional<double> max_pixels = {};
 };
 
-/// What `apply` does with the frames of a shot.
+/// Treatment of the frames of a shot by `apply`.
 struct FrameOptions {
     std::string frames;
     std::string missing = "error";
@@ -34,7 +33,7 @@ struct FrameOptions {
     int jobs = 0;
 };
 
-/// How pictures are metered, and which exposure follows.
+/// Metering, and the exposure that follows.
 struct ExposureOptions {
     /// Empty: no metering.
     std::string method;
@@ -50,7 +49,7 @@ struct ExposureOptions {
     std::string limits = "-20,20";
 };
 
-/// How the exposure of a shot follows its light.
+/// Adaptation of the exposure over a shot.
 struct ShotOptions {
     bool adapt = false;
     std::string form = "exponential";
@@ -63,7 +62,7 @@ struct ShotOptions {
 };
 
 struct ApplyOptions : ViewOptions {
-    /// As the command line has them: pictures, folders, @lists; without -o the last is the output.
+    /// As on the command line: pictures, folders, @lists; without -o the last is the output.
     std::vector<std::string> pictures;
     /// -o: a file, or a folder.
     std::string output;
@@ -137,7 +136,7 @@ struct ReportPictureOptions {
     /// A larger picture is made smaller.
     int width = 960;
     std::optional<double> max_pixels = {};
-    /// Operators that look at a pixel's surroundings, which the page cannot run.
+    /// Local operators, which the page cannot run.
     std::vector<std::string> local_operators;
 };
 struct ReportPicture {
@@ -146,7 +145,7 @@ struct ReportPicture {
     int height = 0;
     std::string exr;         // scene-linear Rec.709 in half floats
     std::vector<float> rgb;  // the same
-    /// What local operators show of it on sRGB, as PNG, in the order of the options.
+    /// Output of local operators on sRGB, as PNG, in the order of the options.
     std::vector<std::string> shown;
 };
 

@@ -21,18 +21,18 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// What the plot has upwards.
+/// The vertical axis of the plot.
 enum class Quantity : unsigned char { code, light, log };
 
 Quantity parse_quantity(const std::string& text) {
     return static_cast<Quantity>(find_choice("plot: --y", text, {"code", "light", "log"}));
 }
 
-/// Light 1: white in percent, and as HDR displays show it in cd/m2.
+/// Display-linear 1: white in percent, or cd/m2 on HDR displays.
 constexpr double kUnit = 100;
 static_assert(kUnit == kReferenceWhite);
 
-// Numbers at the two sides stand at least so far apart, of the graph's height.
+// Smallest distance between numbers on the two sides, as a fraction of the graph's height.
 constexpr double kTickDistance = 0.055;
 
 std::vector<double> decades(double lowest, double highest) {
@@ -42,8 +42,8 @@ std::vector<double> decades(double lowest, double highest) {
     return all;
 }
 
-/// A display's numbers: code values, and the light that they stand for in percent of white, or in
-/// cd/m2 where it is an HDR display.
+/// A display's numbers: code values, and their light in percent of white, or in cd/m2 on an HDR
+/// display.
 class Readings {
   public:
     Readings(const Display& display, Quantity quantity) : display_(display), quantity_(quantity) {}
@@ -62,7 +62,7 @@ class Readings {
     [[nodiscard]] double code_of(double light) const {
         return codes_of(display_.encode, {1, 1, 1}, {{light / kUnit}})[0][0];
     }
-    /// What the plot shows of code values. Logarithms end where the scale does.
+    /// The plotted value of a code value. Logarithms end at the ends of the scale.
     [[nodiscard]] std::vector<double> values_of(const std::vector<double>& codes) const {
         if (quantity_ == Quantity::code) return codes;
         std::vector<double> values = light_of(codes);
@@ -87,7 +87,7 @@ class Readings {
     Quantity quantity_;
 };
 
-/// At the right, where there is room.
+/// At the right, if there is room.
 void Readings::add_codes(PlotScale& scale) const {
     const std::vector<double> codes = {0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1};
     const std::vector<double> values = values_of(codes);
@@ -141,7 +141,7 @@ PlotScale Readings::scale(double brightest) const {
     return scale;
 }
 
-/// `--set` and `--look` are for all; what an operator's own text says comes first.
+/// `--set` and `--look` apply to all operators; an operator's own settings take precedence.
 View view_of(const PlotOptions& options, const std::string& text) {
     const ResolvedOperator own = resolve_operator(text, {}, {}, operator_files());
     Settings settings = own.settings;
@@ -167,7 +167,7 @@ std::string fit_title(const std::string& title, std::size_t words) {
     return title.size() <= longest ? title : title.substr(0, longest - 2) + "...";
 }
 
-/// Colors and dashes that stay apart.
+/// Distinct colors and dashes.
 constexpr std::size_t kMostLines = 24;
 
 CurvePlot plot_of(const PlotOptions& options) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Plots as PDF 1.4 files (Adobe, "PDF Reference", third edition), in vectors. The fonts are of the
-// fourteen that every reader has, so that none is embedded; nothing names the time, so that the
-// bytes are the same on every run.
+// Plots as PDF 1.4 files (Adobe, "PDF Reference", third edition), in vectors. The fonts are among
+// the fourteen that every reader has, so none is embedded. The file has no date, so the bytes are
+// the same on every run.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -67,7 +67,7 @@ std::vector<Run> runs_of(std::string_view words, int& advance) {
         }
         const auto byte = static_cast<unsigned char>(words.front());
         const bool is_ascii = byte >= 32 && byte < 127;
-        if (is_ascii || byte >= 0xC0) {  // of other characters one ? for all bytes
+        if (is_ascii || byte >= 0xC0) {  // for each other character one ?, not one for each byte
             const char c = is_ascii ? words.front() : '?';
             add("F", c, kHelvetica.at(static_cast<std::size_t>(c - 32)));
         }

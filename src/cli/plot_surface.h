@@ -26,13 +26,13 @@ struct PlotColors {
 };
 [[nodiscard]] const PlotColors& colors_of(PlotTheme theme);
 
-/// What a plot is drawn on: an SVG file, a PDF file, or pixels.
+/// The target of a plot: an SVG file, a PDF file, or pixels.
 class PlotSurface {
   public:
     enum class Anchor : unsigned char { start, middle, end };
     struct TextStyle {
         Anchor anchor = Anchor::start;
-        bool has_halo = false;  // of the page's color, where lines may be behind the words
+        bool has_halo = false;  // in the page's color, in front of lines
         bool is_heading = false;
     };
     enum class Rule : unsigned char { grid, mark, tick };
@@ -60,7 +60,7 @@ class PlotSurface {
     virtual void rules(Rule kind, std::span<const Segment> segments) = 0;
     virtual void frame(Frame kind, Point top_left, double width, double height) = 0;
     virtual void dot(Point center) = 0;
-    /// What a line looks like, in a legend.
+    /// The appearance of a line, for a legend.
     virtual void sample(const PlotLine& line, Point from, double length) = 0;
 
     /// Lines of data come between begin_lines() and end_group().
@@ -83,10 +83,10 @@ struct Lettering {
     double extra_width = 0;
 };
 [[nodiscard]] Lettering lettering_of(const PlotSurface::TextStyle& style, std::string_view words);
-/// Of the page's color around words on lines, both sides together.
+/// Width of the page's color around words on lines, both sides together.
 inline constexpr double kHaloWidth = 3;
 
-/// Draws all of the plot; the page behind it is the surface's own.
+/// Draws the whole plot. The surface has its own background.
 void draw(const CurvePlot& plot, PlotSurface& surface);
 [[nodiscard]] double height_of(const CurvePlot& plot);
 

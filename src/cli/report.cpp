@@ -118,7 +118,7 @@ class PageContents {
     std::string write() {
         const std::vector<std::string> names =
             options_.pictures.empty() ? std::vector<std::string>{""} : options_.pictures;
-        // Before anything that takes long: a picture that cannot be read ends the command at once.
+        // First, because a picture that cannot be read should end the command at once.
         for (const std::string& path : names)
             add_picture(path);
         Json operators = Json::array();
@@ -209,7 +209,8 @@ class PageContents {
         return entry;
     }
 
-    /// As a .tone file, null of an operator with tables or branches that such a file cannot hold.
+    /// The text of a .tone file; null for an operator with tables or branches that such a file
+    /// cannot express.
     static Json definition_or_null(const ResolvedOperator& op) {
         try {
             return definition_of(op);
@@ -227,8 +228,8 @@ class PageContents {
         return title;
     }
 
-    /// What the operator makes for an HDR display, as light of which 1 is white, for WebGPU; null
-    /// where it makes nothing brighter.
+    /// The operator's HDR version for WebGPU, as light of which 1 is white; null if it does not
+    /// exceed white.
     Json hdr_json(const ResolvedOperator& op, const std::vector<std::string>& uniforms) {
         // Light of Rec.709 with channels below 0 and above 1, as far as P3 and 1000 cd/m2 reach.
         const ResolvedOperator shown = resolve_for_display(op, {kP3D65, true, 1000});
@@ -257,7 +258,7 @@ class PageContents {
                 {"textures", textures_json(wgsl, reference)}};
     }
 
-    /// Settings that the display decided, as `--set` takes them.
+    /// Settings that the display decided, in the syntax of `--set`.
     static Json settings_of(const ResolvedOperator& op) {
         Json settings = Json::array();
         for (const ParameterSpec& spec : op.op->parameters) {
@@ -297,7 +298,7 @@ class PageContents {
         return textures;
     }
 
-    /// Looks share lattices: each is one file. The page computes those that have a formula.
+    /// Looks share 3D LUTs: each is one file. The page computes those that have a formula.
     Json texture_json(const ShaderTexture& texture, bool has_formula) {
         std::string rgb;
         for (std::size_t i = 0; i < texture.rgba.size(); ++i) {
@@ -312,7 +313,7 @@ class PageContents {
                 {"has_formula", has_formula}};
     }
 
-    /// The file of the differences, null where nothing was measured.
+    /// The file of the differences; null if nothing was measured.
     Json measured_json(const View& view, std::size_t picture, std::size_t op) {
         const bool is_measuring = std::any_of(
             view.op.op->parameters.begin(), view.op.op->parameters.end(),

@@ -42,8 +42,8 @@ std::vector<std::string> cells_of(std::string_view row) {
     return cells;
 }
 
-/// The first column names the entries of a list. A third column stands behind the second one, after
-/// its heading.
+/// The first column has the entries of a list. A third column follows the second one, after its
+/// heading.
 std::string list_of_table(const std::vector<std::string>& rows) {
     std::string list;
     const std::vector<std::string> headings = cells_of(rows[0]);

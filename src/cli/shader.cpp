@@ -72,14 +72,14 @@ ShaderTables tables_of(const Options& options) {
 std::vector<std::string> languages_of(const std::string& extension) {
     std::vector<std::string> ids;
     for (const ShaderLanguageInfo& language : shader_languages()) {
-        // `.glsl` is first of all GLSL, and GLSL ES where one asks for it.
+        // `.glsl` means GLSL; GLSL ES needs --language.
         if ("." + language.id == extension) return {language.id};
         if (language.extension == extension) ids.push_back(language.id);
     }
     return ids;
 }
 
-/// What --language says, else the extension of the file.
+/// The language of --language, else of the file's extension.
 const ShaderLanguageInfo& language_of(const Options& options) {
     const std::string extension = extension_of(options.file);
     const std::vector<std::string> ids = languages_of(extension);

@@ -38,7 +38,7 @@ void add_view_options(const Command& command, ViewOptions& options) {
         .group(color);
     command
         .add("--reference-white", options.reference_white,
-             "luminance of scene-linear 1.0 on HDR displays (ITU-R BT.2408: 203)")
+             "luminance of scene-linear 1.0 on HDR displays; ITU-R BT.2408 has 203")
         .value("CD/M2")
         .show_default()
         .group(color);
@@ -47,7 +47,8 @@ void add_view_options(const Command& command, ViewOptions& options) {
 void add_lut_input_options(const Command& command, LutOptions& options, const char* group) {
     command
         .add("--input-encoding", options.encoding,
-             "encoding that the LUT expects (see `bake --help`) or `none` (default: its header's)")
+             "encoding that the LUT expects (see `bake --help`), or `none` (default: that of the "
+             "LUT's header)")
         .value("NAME")
         .suggest(suggest_encodings)
         .group(group);
@@ -70,7 +71,7 @@ void add_lut_options(const Command& command, LutOptions& options, const Option& 
     add_lut_input_options(command, options, group);
     command
         .add("--interpolation", options.interpolation,
-             "between grid points: tetrahedral, trilinear, or auto (what the file says)")
+             "between grid points: tetrahedral, trilinear, or auto, as the file says")
         .value("NAME")
         .suggest({"tetrahedral", "trilinear", "auto"})
         .show_default()
@@ -108,9 +109,9 @@ void add_picture_input(const Command& command, PictureInput& options) {
     add_max_pixels(command, options.max_pixels).group(group);
     const Option yes =
         command.add_flag("--unpremult", options.unpremult,
-                         "divide color by alpha first (default: as the picture's alpha is stored)");
+                         "divide color by alpha first (default: if the alpha is associated)");
     yes.group(group);
-    command.add_flag("--no-unpremult", options.no_unpremult, "do not divide color by alpha")
+    command.add_flag("--no-unpremult", options.no_unpremult, "do not un-premultiply color")
         .group(group)
         .excludes(yes);
 }
@@ -124,7 +125,7 @@ void add_exposure_options(const Command& command, ExposureOptions& options, cons
         return option;
     };
     add("--key", options.key, "VALUE",
-        "what the metered luminance becomes, or `auto` (default 0.18; 1 with `max`)");
+        "target for the metered luminance, or `auto` (default 0.18; 1 with `max`)");
     add("--compensation", options.compensation, "STOPS", "stops on top of the metered exposure")
         .show_default();
     add("--exposure-limits", options.limits, "LOW,HIGH",
@@ -180,7 +181,7 @@ void add_shot_options(const Command& command, ShotOptions& options, const Option
         "exposure of the first frame (default: its metered exposure)", adapt);
     add("--fps", options.fps, "N", "frames per second", adapt).show_default();
     add("--meter-frames", options.meter_frames, "RANGE",
-        "frames of the whole shot, where --frames names a part of it", frames);
+        "frames of the whole shot, if --frames names only some of them", frames);
     command
         .add("--meter-cache", options.cache,
              "file that keeps metered luminances; changed frames are metered again")

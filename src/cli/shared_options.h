@@ -37,8 +37,8 @@ Option add_max_pixels(const Command& command, std::optional<double>& value);
 /// --max-pixels, --subimage, --threads, --timeout, --unpremult, --no-unpremult.
 void add_picture_input(const Command& command, PictureInput& options);
 
-/// --delta, --percentiles, --key, ... and --meter-region.
-/// @param method  the option that says how to meter, which they need; null: they need none.
+/// Adds --delta, --percentiles, --key, ... and --meter-region.
+/// @param method  the option of the metering method, which they need; null: they need none
 void add_exposure_options(const Command& command, ExposureOptions& options, const Option* method);
 
 /// --adapt, --fps, ..., --meter-frames, --meter-cache.

@@ -13,7 +13,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// Of an id, without exceptions: the user is still typing.
+/// Finds an id without exceptions, because the user is still typing.
 const Operator* operator_of(std::string_view text) {
     const std::string_view id = text.substr(0, text.find(':'));
     for (const std::vector<Operator>* operators : {&all_operators(), &local_operators()}) {
@@ -24,7 +24,7 @@ const Operator* operator_of(std::string_view text) {
     return nullptr;
 }
 
-/// Null: the command line names none.
+/// Null: the command line has none.
 const Operator* named_operator(const TypedValue& typed) {
     for (const char* name : {"--operator", "OPERATOR", "OPERATORS"}) {
         const auto found = typed.others.find(name);

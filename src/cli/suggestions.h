@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What a shell offers as the value of an option.
+// Suggestions of a shell for the value of an option.
 #pragma once
 
 #include "cli/completion.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// Operators, and behind `operator:` their presets, parameters and looks. Files, too.
+/// Operators, and after `operator:` their presets, parameters and looks. Also files.
 [[nodiscard]] Suggestions suggest_operators(const TypedValue& typed);
-/// Of the operator that the command line names, else of all.
+/// For the operator on the command line, else for all.
 [[nodiscard]] Suggestions suggest_looks(const TypedValue& typed);
 /// `NAME=` and `NAME=VALUE`, of the operator that the command line names.
 [[nodiscard]] Suggestions suggest_settings(const TypedValue& typed);
@@ -20,7 +20,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// Without them.
 [[nodiscard]] Suggestions suggest_config_displays(const TypedValue& typed);
 [[nodiscard]] Suggestions suggest_spaces(const TypedValue& typed);
-/// What pictures come in: spaces, displays and `auto`.
+/// Names for --input of pictures: spaces, displays and `auto`.
 [[nodiscard]] Suggestions suggest_source_colors(const TypedValue& typed);
 [[nodiscard]] Suggestions suggest_encodings(const TypedValue& typed);
 [[nodiscard]] Suggestions suggest_lut_formats(const TypedValue& typed);

@@ -22,7 +22,7 @@ int column_of(double stops) {
     return static_cast<int>(std::lround((stops - kLowest) / (kHighest - kLowest) * (kColumns - 1)));
 }
 
-/// Dots, of which a character has several.
+/// Dots; a character has several.
 class Dots {
   public:
     explicit Dots(TerminalText text)

@@ -11,7 +11,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 
 enum class TerminalText : unsigned char { ascii, utf8 };
 
-/// Whether the locale of the environment has UTF-8.
+/// True if the locale of the environment has UTF-8.
 [[nodiscard]] TerminalText terminal_text();
 
 /// A tone curve in text, at most 80 columns and 20 lines, each with its end.

@@ -50,8 +50,8 @@ void print_lint(const std::vector<LintFinding>& findings) {
                count[LintFinding::Level::warning], count[LintFinding::Level::note]);
 }
 
-/// What a lookup table is. Nearer than a hundredth in the mean it is that operator; what is left is
-/// between its nodes.
+/// Prints the operator of a LUT. If the mean difference is below 0.01, the LUT is that operator;
+/// the rest is the error between its nodes.
 void print_matches(const std::string& path, const std::vector<LutMatch>& matches, bool as_json) {
     if (as_json) {
         Json all = Json::array();
@@ -70,7 +70,7 @@ void print_matches(const std::string& path, const std::vector<LutMatch>& matches
         return;
     }
     constexpr double kSame = 1e-2;
-    // To say that a table is wrong takes more: a code of 8 bits.
+    // A defect needs a closer match: one 8-bit code.
     constexpr double kSameDefect = 1.0 / 255;
     const LutMatch& best = matches.front();
     const Operator& op = *best.definition;
@@ -94,7 +94,7 @@ void print_matches(const std::string& path, const std::vector<LutMatch>& matches
     }
 }
 
-/// Codes of 8 bits, two digits.
+/// 8-bit codes, two digits.
 std::string codes_text(double error) {
     const double codes = 255 * error;
     return codes < 1e-4 ? "<0.0001" : fmt::format("{:.2g}", codes);
@@ -117,13 +117,13 @@ void print_summary(const std::vector<ParityRow>& rows) {
         });
         std::string codes;
         std::string values;
-        for (const char* form : {"simd", "ocio cpu default", "ocio gpu"}) {
+        for (const char* backend : {"simd", "ocio cpu default", "ocio gpu"}) {
             const auto row = std::find_if(
-                first, last, [&](const ParityRow& r) { return r.form.starts_with(form); });
+                first, last, [&](const ParityRow& r) { return r.backend.starts_with(backend); });
             if (row == last || row->bound == 0) {
                 codes += fmt::format("{:<18}", "-");
                 values += fmt::format("{:>9}", "-");
-                if (row != last) notes = row->form + ": " + row->note + "\n";
+                if (row != last) notes = row->backend + ": " + row->note + "\n";
                 continue;
             }
             codes += fmt::format("{:<9}{:<9}", codes_text(row->max), codes_text(row->mean));
@@ -177,7 +177,7 @@ int run_verify(Options& options) {
     }
     if (!options.picture.empty())
         verify_options.picture = picture_commands().read_pixels(options.picture);
-    bool has_heading = false;  // not before the names have proved good
+    bool has_heading = false;  // only after the names have been checked
     const auto print = [&](const ParityRow& row) {
         if (options.json || options.summary) return;
         if (!has_heading) fmt::print("{}", parity_heading());
@@ -186,7 +186,7 @@ int run_verify(Options& options) {
         std::fflush(stdout);
     };
     const VerifyResult result = [&] {
-        // Rows on the terminal show how far it is.
+        // Rows on the terminal show the progress.
         const bool has_rows = !options.json && !options.summary && ::isatty(STDOUT_FILENO) != 0;
         const ElapsedLine line("verify", has_rows ? -1 : STDERR_FILENO);
         return verify(verify_options, print);
@@ -222,7 +222,7 @@ int run_verify(Options& options) {
 Json to_json(const ParityRow& row) {
     return {{"operator", row.op},
             {"display", row.display},
-            {"form", row.form},
+            {"backend", row.backend},
             {"lowering", row.lowering},
             {"max", row.max},
             {"p999", row.p999},
@@ -250,12 +250,12 @@ void add_verify(CommandLine& program) {
         .suggest(suggest_operators);
     command
         .add("--config", options->verify.config,
-             "config file or its folder, from Tonewright or not (default: a new config)")
+             "config file or its folder, also one of other software (default: a new config)")
         .value("CONFIG")
         .group(what);
     command
         .add("--lut", options->lut,
-             "LUT file: find the operator and input encoding that made it, and its error")
+             "LUT file: find the operator and the input encoding that made it, and the error")
         .value("FILE")
         .group(what);
     command

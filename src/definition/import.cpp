@@ -191,7 +191,7 @@ class Stages {
         return true;
     }
 
-    /// The values with other nodes for some. What has a name keeps it.
+    /// The values with other nodes for some of them. Named parts keep their names.
     std::vector<Expr> moved(const std::vector<Expr>& values, Moved done) {
         for (const Expr& e : nodes_of(values)) {
             if (!done.contains(e.node())) {
@@ -234,7 +234,7 @@ class Stages {
     std::vector<Expr> kept_;
 };
 
-/// What the function ends with, where that is how a display's code values are made of light.
+/// The last operation of the function, if it encodes light for a display.
 std::string encoding_of(const GlslFunction& function) {
     for (const Expr& e : nodes_of(function.values)) {
         const bool is_srgb = e.op() == ExprOp::multiply &&

@@ -51,7 +51,7 @@ std::string described(const Value& value) {
     return "a table of " + std::to_string(value.members.size());
 }
 
-/// The members of a table, each of which has to be known.
+/// The members of a table; an unknown one is an error.
 class Table {
   public:
     /// @param what  the table in messages: "[parameter.k]"; empty for the file
@@ -98,7 +98,7 @@ class Table {
     }
     [[nodiscard]] const std::vector<Value>& members() const { return value_.members; }
 
-    /// One line of text; `negatives` and others stand in tables of docs.
+    /// One line of text, because docs put `negatives` and others into tables.
     static std::string text_of(const Value& value, const std::string& key) {
         if (value.kind != Value::Kind::text)
             fail(value.at, key + " is " + described(value) + "; expected text in quotes");
@@ -185,7 +185,7 @@ class Reader {
                  "view is " + printable(op_.view) + "; expected at most 63 bytes");
         op_.character = line(file, "character", "");
         op_.source = line(file, "source", "");
-        op_.licence = line(file, "license", "");
+        op_.license = line(file, "license", "");
         op_.negatives = line(file, "negatives", "");
         if (const Value* warnings = file.find("warnings")) {
             if (warnings->kind != Value::Kind::array)
@@ -324,7 +324,7 @@ class Reader {
         }
         for (const char* key : {"min", "max", "from_picture"}) {
             if (const Value* value = table.find(key))
-                fail(value->at, std::string(key) + " stands beside choices; expected one of them");
+                fail(value->at, std::string(key) + " is given with choices; expected one of them");
         }
         (void)table.require("default");
         spec.default_choice = spec.choices[table.choice("default", spec.choices)];
@@ -422,7 +422,7 @@ class Reader {
         if (const Value* power = table.find("power")) {
             op_.code_power = Table::number_of(*power, "power");
             if (op_.output != OutputKind::code_value)
-                fail(power->at, "power stands without kind = \"code_value\"; expected both");
+                fail(power->at, "power is given without kind = \"code_value\"; expected both");
             if (op_.code_power < 0.1 || op_.code_power > 10)
                 fail(power->at, "power is " + described(*power) + "; expected [0.1, 10]");
         }
@@ -443,14 +443,14 @@ class Reader {
             fail(value.at, e.what());
         }
         if (op_.output != OutputKind::code_value)
-            fail(value.at, "display stands without kind = \"code_value\"; expected both");
+            fail(value.at, "display is given without kind = \"code_value\"; expected both");
         if (const Value* power = output.find("power"))
-            fail(power->at, "power stands beside display; expected one of them");
+            fail(power->at, "power is given with display; expected one of them");
         const Value* const primaries = file.find("primaries");
         for (const Value& member : primaries ? primaries->members : std::vector<Value>{}) {
             if (member.key == "output")
                 fail(member.at,
-                     "output stands beside the display of [output]; expected one of them");
+                     "output is given with the display of [output]; expected one of them");
         }
         op_.display = [id = display->id](const Params&) { return id; };
         recipe_->output_primaries = display->primaries;
@@ -459,7 +459,7 @@ class Reader {
 
     // -- Stages
 
-    /// Where a byte of a text value stands in the file: in the line of the file that has its line.
+    /// The position in the file of a byte of a text value, found by its line.
     [[nodiscard]] TextPosition in_file(const Value& value, TextPosition in_text) const {
         const auto line_of = [](std::string_view text, std::size_t number) {
             for (; number > 1 && !text.empty(); --number)
@@ -679,11 +679,11 @@ class Reader {
         if (const Value* inverse = table.find("inverse")) {
             stage.inverse = one_or_three(*inverse, "inverse", scope);
             if (apply != 0)
-                fail(inverse->at, "inverse stands beside apply; expected it with channels alone");
+                fail(inverse->at, "inverse is given with apply; expected it with channels only");
         }
         if (apply == 0) {
             if (const Value* weights = table.find("weights"))
-                fail(weights->at, "weights stand without apply = \"luminance\"; expected both");
+                fail(weights->at, "weights are given without apply = \"luminance\"; expected both");
             return;
         }
         if (stage.f.size() != 1) {
@@ -696,7 +696,8 @@ class Reader {
     void read_norm(StageRecipe& stage, const Table& table, bool is_max) const {
         stage.norm = is_max ? ToneScaleStage::Norm::max_rgb : ToneScaleStage::Norm::luminance;
         if (const Value* weights = table.find("weights")) {
-            if (is_max) fail(weights->at, "weights stand beside max; expected them with luminance");
+            if (is_max)
+                fail(weights->at, "weights are given with max; expected them with luminance");
             const auto& items = Table::items_of(*weights, "weights", 3);
             for (std::size_t i = 0; i < 3; ++i)
                 stage.weights.at(i) = Table::number_of(items[i], "weights");

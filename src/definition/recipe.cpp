@@ -15,7 +15,7 @@ namespace {
 
 using Kind = StageRecipe::Kind;
 
-/// What follows expressions by recursion has room for many times as many, on every thread's stack.
+/// Recursion over expressions has room for many times as many, on every thread's stack.
 constexpr std::size_t kDeepestOperator = 2000;
 
 /// Values of all parameters that are not live, of choices and of the look.

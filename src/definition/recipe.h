@@ -44,14 +44,14 @@ struct StageRecipe {
     TextPosition at;
 };
 
-/// What a .tone file says beside the data of the Operator.
+/// Contents of a .tone file beside the data of the Operator.
 struct OperatorRecipe {
     std::vector<StageRecipe> stages;
     std::vector<StageRecipe> inverse;
     std::optional<Expr> peak;
     Primaries output_primaries{};
     std::vector<ParameterSpec> parameters;
-    /// Of temporaries.
+    /// For temporaries.
     std::vector<PartNames::Entry> names;
     std::vector<std::string> looks;
 };
@@ -59,7 +59,7 @@ struct OperatorRecipe {
 /// The name of the uniform of an operator's look.
 inline constexpr const char* kLookName = "look";
 
-/// What gives no finite number: the message, and the place of the stage.
+/// An error of a stage that gives no finite number: the message, and the position of the stage.
 class StageError : public Error {
   public:
     StageError(TextPosition where, const std::string& message) : Error(message), at(where) {}

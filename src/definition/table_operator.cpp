@@ -34,7 +34,7 @@ ParameterSpec text_with_default(std::string name, std::string value, std::string
     return spec;
 }
 
-/// What the setting or the file says, or what is likely.
+/// The setting, else the file's value, else the likely one.
 std::string display_of(const TableFile& table, const Params& params) {
     const std::string& given = params.text("output");
     const std::string name = given.empty() ? table.likely_display : given;
@@ -57,7 +57,7 @@ std::string caution_of(const TableFile& table, const std::string& path, const Pa
             "input; `none` keeps them unchanged)");
     }
     if (params.text("output").empty()) {
-        add("what comes out is unknown and taken for " + table.likely_display +
+        add("the output is unknown and assumed to be " + table.likely_display +
             " (set output to a display or `linear`)");
     }
     add(table.note);
@@ -107,7 +107,7 @@ std::shared_ptr<const Operator> operator_of_table(const TableFile& file, const s
     op.view = op.title.substr(0, kLongestName);
     op.character = table->description;
     op.source = std::filesystem::path(path).filename().string();
-    op.licence = "not stated";
+    op.license = "not stated";
     op.negatives = "limited by the LUT";
     op.file = path;
     op.parameters = {

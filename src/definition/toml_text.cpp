@@ -40,7 +40,8 @@ constexpr std::size_t kMostDots = 32;
 
 bool is_ascii(char c) { return static_cast<unsigned char>(c) < 0x80; }
 
-/// The place behind the string that begins at `begin`; the end of the text where it has no end.
+/// The position after the string that begins at `begin`; the end of the text if the string has no
+/// end.
 std::size_t end_of_string(std::string_view text, std::size_t begin) {
     const char quote = text[begin];
     const std::string three(3, quote);
@@ -48,14 +49,14 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
     const std::string_view end = is_long ? std::string_view(three) : text.substr(begin, 1);
     for (std::size_t i = begin + end.size(); i < text.size(); ++i) {
         if (quote == '"' && text[i] == '\\') {
-            // What follows is an escape, or blanks up to the end of the line.
+            // An escape follows, or blanks up to the end of the line.
             const std::size_t next = std::min(text.find_first_not_of(" \t", i + 1), text.size());
             if (next < text.size() && !is_ascii(text[next]))
                 throw TomlError(position_at(text, i),
                                 "escape is not ASCII; expected \\n, \\t, ...");
             ++i;
         } else if (text[i] == '\n' && !is_long) {
-            return i;  // the library says that it has no end
+            return i;  // the library reports that it has no end
         } else if (text.substr(i, end.size()) == end) {
             i += end.size();
             // """a""""": up to two more belong to it.
@@ -67,9 +68,8 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
     return text.size();
 }
 
-/// What stands outside of quotes and comments is ASCII, and has few dots in one key: a.b.c = 1
-/// makes a table in a table. The library makes as many as there are dots, whether they fit on the
-/// stack or not.
+/// Outside quotes and comments, only ASCII is allowed, and few dots in a key: a.b.c = 1 makes a
+/// table in a table. The library recurses for each dot without checking the stack.
 void check_keys(std::string_view text) {
     std::size_t dots = 0;
     for (std::size_t i = 0; i < text.size(); ++i) {
@@ -176,7 +176,7 @@ TomlValue parse_toml(std::string_view text) {
     } catch (const toml::parse_error& e) {
         throw TomlError(position_of(e.source()), one_line(e.description(), 300));
     } catch (const FailedAssertion&) {
-        throw TomlError({failing_line(text), 1}, "line is no TOML; expected a key or a value");
+        throw TomlError({failing_line(text), 1}, "line is not TOML; expected a key or a value");
     }
 }
 

@@ -21,12 +21,12 @@ struct TomlValue {
     std::string text = {};
     std::vector<TomlValue> items = {};
     std::vector<TomlValue> members = {};  // of a table, in the order of the file
-    // Of a member:
+    // For a member:
     std::string key = {};
     TextPosition key_at = {};
 };
 
-/// What is wrong with a file, and where.
+/// An error of a file, with its position.
 class TomlError : public Error {
   public:
     TomlError(TextPosition where, const std::string& message) : Error(message), at(where) {}

@@ -103,7 +103,7 @@ class Writer {
         text_line("view", op_.view);
         text_line("character", op_.character);
         text_line("source", op_.source);
-        text_line("license", op_.licence);
+        text_line("license", op_.license);
         text_line("negatives", op_.negatives);
         std::string warnings;
         for (const std::string& warning : op_.warnings)
@@ -164,7 +164,7 @@ class Writer {
         line("max", number(spec.max));
         text_line("unit", spec.unit);
         text_line("doc", spec.help);
-        // Which number of the picture a function takes: the one that it returns.
+        // The statistic that the function returns.
         if (spec.from_picture) {
             const SceneStatistics statistics = {0.25, 0.5, 0.125, 0.75, {}, {}};
             const double value = spec.from_picture(statistics);

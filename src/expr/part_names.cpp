@@ -29,7 +29,7 @@ void PartNames::add(std::string_view name, const Expr& part) {
     const auto [known, is_new] = innermost->place_.emplace(part.node(), innermost->all_.size());
     if (is_new) {
         innermost->all_.push_back({part, std::string(name)});
-    } else if (!part.is_constant()) {  // two names may stand for one number
+    } else if (!part.is_constant()) {  // two names may have one number
         innermost->all_[known->second].name = name;
     }
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What the readers of formulas and of shaders have in common: characters, numbers, operators,
-// truth.
+// Characters, numbers, operators and truth values, for the readers of formulas and of shaders.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +15,7 @@ inline bool is_letter(char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
 }
 inline bool is_digit(char c) { return c >= '0' && c <= '9'; }
-/// True for a byte of a UTF-8 character behind its first.
+/// True for a byte of a UTF-8 character after its first byte.
 inline bool is_continuation(char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; }
 /// The character that the text begins with, as messages name it: `a` or U+00B2.
 [[nodiscard]] std::string first_character_name(std::string_view text);
@@ -41,7 +40,7 @@ enum Precedence : unsigned char {
     kProduct,
     kSign
 };
-/// Of an operator between two operands, as in C: `&&`. kNone: it is no such operator.
+/// The binary operator of this text, as in C: `&&`. kNone: not an operator.
 [[nodiscard]] Precedence precedence_of(std::string_view sign);
 
 Expr log10(const Expr& a);

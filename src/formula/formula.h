@@ -13,7 +13,7 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// Where something stands in a text. Lines and columns begin with 1; a column is a character.
+/// A position in a text. Lines and columns begin with 1; a column is a character.
 struct TextPosition {
     std::size_t line = 1;
     std::size_t column = 1;
@@ -31,10 +31,10 @@ class TONEWRIGHT_API FormulaError : public Error {
     TextPosition at;
 };
 
-/// What a name stands for.
+/// Meaning of a name.
 struct FormulaValue {
     Expr value;
-    /// Of operations that depend on each other, at least as many as the expression has.
+    /// Number of operations that depend on each other; at least as many as the expression has.
     int depth = 1;
 };
 
@@ -61,7 +61,7 @@ inline constexpr int kDeepestBrackets = 200;  // brackets, signs and `?:` inside
 /// Lines that set temporaries, without a value. They are added to the scope.
 /// @throws FormulaError
 TONEWRIGHT_API void parse_temporaries(std::string_view text, FormulaScope& scope);
-/// True where parse_formula() reads the text as a name.
+/// True if parse_formula() reads the text as a name.
 [[nodiscard]] TONEWRIGHT_API bool is_formula_name(std::string_view text);
 /// True for the name of a function: `pow`.
 [[nodiscard]] TONEWRIGHT_API bool is_formula_function(std::string_view name);

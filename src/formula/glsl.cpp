@@ -25,7 +25,7 @@ using Value = GlslValue;
 
 constexpr const char* kTypes = "float, vec2, vec3, vec4, mat3, int, bool or HLSL's names of them";
 constexpr std::size_t kMostCalls = 64;  // inside each other
-/// Of numbers and colors alike: what folds into a number takes time, too.
+/// For numbers and colors, because folding into a number takes time, too.
 constexpr int kMostSteps = 20 * kMostOperations;
 
 Precedence precedence_of(const Token& token) {
@@ -74,7 +74,7 @@ struct Function {
     [[nodiscard]] bool takes(std::size_t count) const {
         return needed() <= count && count <= arguments.size();
     }
-    /// `float f(float)` or `vec3 f(vec3)`, with numbers behind.
+    /// `float f(float)` or `vec3 f(vec3)`, with further numbers.
     [[nodiscard]] bool is_candidate() const {
         if (refusal || !returns || arguments.empty() || arguments[0].type != returns) return false;
         const bool is_rest_scalar =
@@ -95,12 +95,12 @@ struct Variable {
 struct Global {
     std::optional<Variable> variable;
     std::optional<Refusal> refusal;
-    /// Of a uniform, which is a parameter.
+    /// Value of a uniform, which is a parameter.
     std::optional<Type> uniform;
     Token at;
 };
 
-/// What happens inside one branch.
+/// State inside one branch.
 struct Changes {
     std::size_t variables;  // as many were there before
     std::map<std::size_t, Variable> old;
@@ -458,7 +458,7 @@ class Parser {
         for (const Function& function : functions_) {
             if (!name.empty() && function.name.text == name) any = &function;
         }
-        // Of two functions of this name, the one for colors.
+        // If two functions have this name, the one for colors.
         for (const Function* function : candidates) {
             if (function->name.text != name) continue;
             if (!chosen || function->returns->size >= chosen->returns->size) chosen = function;
@@ -664,7 +664,7 @@ class Parser {
         bool is_done = false;
     };
 
-    /// One side of an if: what it changes, which is undone.
+    /// One side of an if: its assignments, which are undone.
     Branch run_branch(bool is_there, const Token& at) {
         Branch result;
         if (!is_there) return result;
@@ -784,7 +784,7 @@ class Parser {
         end_statement();
     }
 
-    /// What stands behind the = of a declaration.
+    /// The value after the = of a declaration.
     Value initial(const Type& type) {
         const Token at = token();
         if (!at.is("{")) {
@@ -826,7 +826,7 @@ class Parser {
         Variable variable = variables_[*index];
         if (variable.is_const)
             fail(name.begin, "name " + printable(name.text) + " is const; expected a variable");
-        // Which of its components.
+        // Indices of the components.
         std::vector<std::size_t> places;
         for (std::size_t i = 0; i < variable.value.e.size(); ++i)
             places.push_back(i);

@@ -21,8 +21,8 @@ struct GlslParameter {
     TextPosition at;
 };
 
-/// A matrix of numbers times a color. What follows reads the product as inputs 3k, 3k + 1, 3k + 2,
-/// where k is 1 for the first product.
+/// A matrix of numbers times a color. Later expressions read the product as inputs 3k, 3k + 1, 3k +
+/// 2, where k is 1 for the first product.
 struct GlslProduct {
     std::array<std::array<double, 3>, 3> matrix{};
     std::array<Expr, 3> color;
@@ -52,7 +52,7 @@ struct GlslFunction {
 };
 
 struct GlslSettings {
-    /// Of the function; empty: the last one that no other calls.
+    /// Name of the function; empty: the last one that no other function calls.
     std::string function;
     /// Values of further arguments and uniforms. Those that the shader does not have are ignored.
     std::map<std::string, double, std::less<>> parameters;
@@ -62,7 +62,7 @@ struct GlslSettings {
 
 inline constexpr std::size_t kLongestShader = kLongestFormula;  // bytes
 
-/// A function of straight-line GLSL or HLSL. docs/tone_files.md says what it may have.
+/// Reads a function of straight-line GLSL or HLSL; docs/tone_files.md lists what is supported.
 /// @throws FormulaError
 [[nodiscard]] TONEWRIGHT_API GlslFunction parse_glsl(std::string_view text,
                                                      const GlslSettings& settings);

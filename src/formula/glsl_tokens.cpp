@@ -17,7 +17,7 @@ using Token = GlslToken;
 using Kind = Token::Kind;
 using Tokens = std::vector<Token>;
 
-/// Of a text, and of all that macros make of it.
+/// For a text, and for all expansions of macros.
 constexpr std::size_t kMostTokens = std::size_t{1} << 20U;
 constexpr int kDeepestMacro = 64;
 

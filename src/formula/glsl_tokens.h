@@ -12,7 +12,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 struct GlslToken {
     enum class Kind : unsigned char { end, number, name, sign };
     Kind kind = Kind::end;
-    /// Of the byte in the text; of a macro's token, where the macro is used.
+    /// Position in the text; for a macro's token, the use of the macro.
     std::size_t begin = 0;
     std::string_view text;
 

@@ -214,7 +214,7 @@ Value transpose(const std::string& what, const Values& in) {
     return each(in[0].type, in[0].depth, [&](std::size_t i) { return in[0].e[i % n * n + i / n]; });
 }
 
-/// Of HLSL; GLSL's * of matrices.
+/// HLSL's mul(), and GLSL's * of matrices.
 Value mul(const std::string& what, const Values& in) {
     const Value &a = in[0], &b = in[1];
     if (a.type.is_scalar() || b.type.is_scalar()) return glsl_binary("*", a, b);

@@ -18,7 +18,7 @@ struct GlslType {
     enum class Base : unsigned char { boolean, integer, number };
     Base base = Base::number;
     std::size_t size = 1;    // components of a vector; rows and columns of a matrix
-    bool is_matrix = false;  // its components stand row by row
+    bool is_matrix = false;  // components are row by row
     bool is_hlsl = false;    // of a matrix: its constructor takes rows, mul() multiplies
 
     [[nodiscard]] std::size_t components() const { return is_matrix ? size * size : size; }
@@ -38,7 +38,7 @@ struct GlslValue {
     int depth = 1;  // of operations that depend on each other, at least as many as there are
 };
 
-/// What a function or operator does not take. The parser knows where.
+/// An argument that a function or operator does not accept. The parser knows the position.
 class GlslMisuse : public Error {
   public:
     using Error::Error;
@@ -54,7 +54,7 @@ class GlslMisuse : public Error {
                                     const GlslValue& no);
 /// `vec3(...)`: the parts one after the other, or one number for all components.
 [[nodiscard]] GlslValue glsl_construct(const GlslType& type, const std::vector<GlslValue>& parts);
-/// A value where another type stands: numbers become vectors, integers numbers.
+/// A value as another type: numbers become vectors, integers numbers.
 [[nodiscard]] GlslValue glsl_convert(const GlslValue& value, const GlslType& type);
 
 /// True for a function of GLSL or HLSL that is read.
@@ -63,7 +63,7 @@ class GlslMisuse : public Error {
 [[nodiscard]] GlslValue glsl_call(std::string_view name, const std::vector<GlslValue>& in);
 /// Why a function is not read, or an empty text.
 [[nodiscard]] std::string why_no_glsl_function(std::string_view name);
-/// Of all functions, for messages.
+/// Names of all functions, for messages.
 [[nodiscard]] std::vector<std::string> glsl_functions();
 
 TONEWRIGHT_NAMESPACE_END

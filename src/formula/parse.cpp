@@ -115,10 +115,11 @@ class Parser {
             end_line();
             while (token_.kind == Kind::line_end)
                 next();
-            if (!has_value) fail(begin, "line is no assignment; expected name = expression");
+            if (!has_value) fail(begin, "line is not an assignment; expected name = expression");
             if (token_.kind != Kind::end) {
                 fail(begin,
-                     "line sets nothing, and others follow it; expected name = expression, and one "
+                     "line has no name, and more lines follow it; expected name = expression, and "
+                     "one "
                      "value in the last line");
             }
             return value;
@@ -291,7 +292,7 @@ class Parser {
         }
     }
 
-    /// Skips a line break before an operator that can only go on with what stands before it.
+    /// Skips a line break before an operator that continues the line before it.
     void join_lines() {
         if (token_.kind != Kind::line_end || token_.text == ";") return;
         const std::size_t at = at_;

@@ -18,12 +18,12 @@ class BatchQueue {
     void push(T thing) {
         {
             const std::lock_guard lock(mutex_);
-            if (cancelled_) return;
+            if (canceled_) return;
             things_.push_back(std::move(thing));
         }
         changed_.notify_one();
     }
-    /// Waits for a thing. @returns  nothing when the queue is closed and empty, or cancelled.
+    /// Waits for a thing. @returns  nothing when the queue is closed and empty, or canceled.
     std::optional<T> pop() {
         std::unique_lock lock(mutex_);
         changed_.wait(lock, [&] { return closed_ || !things_.empty(); });
@@ -40,13 +40,13 @@ class BatchQueue {
         }
         changed_.notify_all();
     }
-    /// What is in it, and what comes, is not wanted any more.
+    /// Discards the contents, and everything that comes later.
     void cancel() {
         {
             const std::lock_guard lock(mutex_);
             things_.clear();
             closed_ = true;
-            cancelled_ = true;
+            canceled_ = true;
         }
         changed_.notify_all();
     }
@@ -56,7 +56,7 @@ class BatchQueue {
     std::condition_variable changed_;
     std::deque<T> things_;
     bool closed_ = false;
-    bool cancelled_ = false;
+    bool canceled_ = false;
 };
 
 TONEWRIGHT_NAMESPACE_END

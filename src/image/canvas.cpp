@@ -11,7 +11,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// Bytes 10xxxxxx go on with a UTF-8 character whose first byte was drawn.
+/// Bytes 10xxxxxx continue a UTF-8 character whose first byte was drawn.
 bool continues_character(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }
 
 double squared_distance(double px, double py, const Stroke& s) {
@@ -36,7 +36,7 @@ void Canvas::text(std::string_view text, double x, double baseline, double cap_h
     const double unit = cap_height / kCapHeight;  // pixels
     if (align == Align::center) x -= text_width(text, cap_height) / 2;
     if (align == Align::right) x -= text_width(text, cap_height);
-    // Thinner than a pixel, strokes would fade away.
+    // Thinner strokes than a pixel would disappear.
     const double half_width = (std::max(kStrokeWidth * unit, 1.0) + extra_width) / 2;
     const double around = 1 + extra_width / 2;
     for (const char c : text) {
@@ -69,7 +69,7 @@ void Canvas::text(std::string_view text, double x, double baseline, double cap_h
 }
 
 void Canvas::strokes(std::span<const Stroke> lines, double width, const Rgb& color) {
-    // Of each pixel the nearest line counts.
+    // For each pixel, the nearest line counts.
     struct Box {
         int x0, y0, x1, y1;
     };

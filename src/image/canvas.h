@@ -21,8 +21,8 @@ inline Rgb gray_of(double value) {
     return {v, v, v};
 }
 
-/// A float RGB picture in memory that one can draw on. Coordinates are pixels; (0, 0) is the top
-/// left corner of the first pixel, whose center is (0.5, 0.5). What lies outside is not drawn.
+/// A float RGB picture in memory, for drawing. Coordinates are pixels; (0, 0) is the top left
+/// corner of the first pixel, whose center is (0.5, 0.5). Drawing outside has no effect.
 class TONEWRIGHT_API Canvas {
   public:
     Canvas(int width, int height, const Rgb& fill);
@@ -50,9 +50,9 @@ class TONEWRIGHT_API Canvas {
     }
 
     enum class Align : unsigned char { left, center, right };
-    /// Draws one line of text (printable ASCII; `?` for each other character), antialiased.
-    /// `x` is where `align` says, `baseline` the line that the letters stand on, `cap_height` the
-    /// height of capitals. Strokes are `extra_width` pixels wider than the font has them.
+    /// Draws one line of text (printable ASCII; `?` for each other character), antialiased. `align`
+    /// gives the meaning of `x`, `baseline` is the line below the letters, `cap_height` the height
+    /// of capitals. `extra_width` makes the strokes wider, in pixels.
     void text(std::string_view text, double x, double baseline, double cap_height, const Rgb& color,
               Align align = Align::left, double extra_width = 0);
     /// Draws lines as one shape with round ends, antialiased: where they meet or cross nothing is
@@ -70,7 +70,7 @@ class TONEWRIGHT_API Canvas {
 
 /// Width of a line of text in pixels.
 [[nodiscard]] TONEWRIGHT_API double text_width(std::string_view text, double cap_height);
-/// The text, or its longest beginning that fits into `width` with "..." behind it.
+/// The text, or its longest beginning that fits into `width` with "..." after it.
 [[nodiscard]] TONEWRIGHT_API std::string fit_text(std::string_view text, double cap_height,
                                                   double width);
 

@@ -25,7 +25,7 @@ constexpr double kMargin = 24;
 constexpr double kColumn = 484;  // width of each of three columns
 constexpr double kColumnStep = 502;
 
-// Below mid gray by a few stops: patches stand out, and no operator makes it black.
+// A few stops below mid gray: patches are distinct from it, and no operator makes it black.
 const Rgb kBackground = gray_of(0.018);
 const Rgb kTitle = gray_of(0.32);
 const Rgb kLabel = gray_of(0.16);
@@ -41,7 +41,7 @@ Rgb scaled(const Rgb& c, double factor) {
     return {c[0] * f, c[1] * f, c[2] * f};
 }
 
-/// Draws with the coordinates of the sheet.
+/// Draws in the coordinates of the sheet.
 class Sheet {
   public:
     Sheet(int width, int height)
@@ -64,7 +64,7 @@ class Sheet {
     void text(std::string_view text, double x, double baseline, double cap_height, const Rgb& color,
               Canvas::Align align = Canvas::Align::left) {
         const double size = cap_height * text_scale_;
-        if (size < 4.5) return;  // could not be read
+        if (size < 4.5) return;  // too small to read
         canvas_.text(text, x * sx_, baseline * sy_, size, color, align);
     }
     void title(std::string_view title, double x, double baseline) {
@@ -98,7 +98,7 @@ void draw_stop_ramp(Sheet& sheet, double top) {
         sheet.fill(x, top, x + step, top + 58, gray_of(stops(i - kStops)));
         sheet.label(signed_number(i - kStops), x + step / 2, top + 118);
     }
-    // A step's value is met below its middle.
+    // The ramp reaches the value of a step below the middle of the step.
     sheet.paint(left, top + 58, right, top + 102,
                 [&](double u, double) { return gray_of(stops(u * kCount - 0.5 - kStops)); });
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The two pictures of the test chart: a ray-traced still life, and a sunset. Their task is to be
-// looked at: highlights that roll off, saturated lights, glows, and dark places beside bright ones.
+// The two pictures of the test chart: a ray-traced still life, and a sunset. They show highlights
+// that roll off, saturated lights, glows, and dark areas beside bright ones.
 #include "image/chart_scene.h"
 
 #include <algorithm>
@@ -53,7 +53,7 @@ const std::array<Sphere, 9> kSpheres = {{
     {{0.0, 0.58, -0.35}, 0.58, {0.02, 0.012, 0.003}, {1.0, 0.70, 0.29}, 500, 700, {}},
     {{1.25, 0.58, -0.2}, 0.58, {0.010, 0.07, 0.46}, {0.05, 0.05, 0.05}, 240, 1800, {}},
     {{2.5, 0.58, 0.15}, 0.58, {0.0, 0.0, 0.0}, {0.85, 0.86, 0.87}, 500, 2500, {}},
-    // Above and behind, shining: red, green, blue, and the magenta of a neon tube.
+    // Emissive spheres above and at the back: red, green, blue, and the magenta of a neon tube.
     {{-2.0, 1.72, 0.9}, 0.42, {}, {}, 0, 1, lamp(0)},
     {{-0.68, 1.86, 1.1}, 0.42, {}, {}, 0, 1, lamp(1)},
     {{0.68, 1.86, 1.1}, 0.42, {}, {}, 0, 1, lamp(2)},
@@ -61,7 +61,7 @@ const std::array<Sphere, 9> kSpheres = {{
 }};
 
 const Vec kToKey = normalize({-0.55, 0.95, -0.75});
-/// What a white matt surface sends on, facing the key light; and under the open sky.
+/// Light from a white matt surface that faces the key light, and under the open sky.
 const Vec kKey = {2.3, 2.15, 1.9};
 const Vec kSky = {0.05, 0.065, 0.09};
 
@@ -90,7 +90,7 @@ double key_light_at(const Vec& point) {
     return light;
 }
 
-/// Part of the sky over a surface that the spheres leave free.
+/// Fraction of the sky over a surface that the spheres do not cover.
 double sky_at(const Vec& point, const Vec& normal) {
     double open = 1;
     for (const Sphere& s : kSpheres) {
@@ -103,7 +103,7 @@ double sky_at(const Vec& point, const Vec& normal) {
     return open;
 }
 
-/// Light that a matt surface sends on: key, sky, and the shining spheres.
+/// Reflected light of a matt surface: key, sky, and the emissive spheres.
 Vec matt_light(const Vec& point, const Vec& normal) {
     const double toward_key = std::max(0.0, dot(normal, kToKey));
     Vec light = 0.5 * (1 + normal.y) * sky_at(point, normal) * kSky;
@@ -114,7 +114,7 @@ Vec matt_light(const Vec& point, const Vec& normal) {
         const double d2 = dot(to, to);
         if (d2 < s.radius * s.radius * 1.0001) continue;
         const double facing = std::max(0.0, dot(normal, to) / std::sqrt(d2));
-        // Its disc is 4/7 as bright as its center, on the average.
+        // On average, its disc is 4/7 as bright as its center.
         light = light + facing * s.radius * s.radius / d2 * 4 / 7 * s.emission;
     }
     return light;
@@ -124,7 +124,7 @@ Vec backdrop(const Vec& direction) {
     const double up = std::max(0.0, direction.y);
     Vec wall =
         blend({0.030, 0.028, 0.032}, {0.004, 0.005, 0.009}, std::sqrt(std::min(1.0, 2.2 * up)));
-    // A soft box behind the camera: what mirrors have to show.
+    // A soft box behind the camera, which mirrors show.
     if (direction.z < 0) {
         const double box = smooth(0.36, 0.30, std::fabs(direction.x - 0.35)) *
                            smooth(0.22, 0.17, std::fabs(direction.y - 0.62));
@@ -150,7 +150,7 @@ Vec trace(const Vec& from, const Vec& direction, int depth) {
         const double fog = 1 - std::exp(-0.0035 * t * t);
         const Vec horizon = backdrop({direction.x, 0, direction.z});
         const Vec matt = 0.065 * matt_light(point, {0, 1, 0});
-        // Polished a little: things have a dim image in the floor, but none of the small
+        // A little polished: the floor shows a dim image of objects, but none of the small
         // highlights.
         Vec image{};
         if (depth > 0) {

@@ -14,7 +14,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// What can be said about the numbers of a result.
+/// Facts about the numbers of a result.
 struct Claim {
     std::string color_space;  // empty: nothing
     Primaries primaries;
@@ -23,7 +23,7 @@ struct Claim {
 constexpr std::string_view kGamma = "Gamma";
 
 Claim power_claim(double exponent, const Primaries& primaries) {
-    // OIIO parses the number, and its writers (PNG's gAMA) want the point: "Gamma2.0".
+    // OIIO parses the number, and its writers (PNG's gAMA) need the point: "Gamma2.0".
     std::string number = shortest(exponent);
     if (number.find('.') == std::string::npos) number += ".0";
     return {std::string(kGamma) + number, primaries};
@@ -57,7 +57,7 @@ double power_of(std::string_view name) {
     return error == std::errc() && stop == end && power >= 0.1 && power <= 10 ? power : 0;
 }
 
-/// `chromaticities`, or those of Rec.709 where there are none.
+/// `chromaticities`, or those of Rec.709 if there are none.
 Primaries primaries_of(const OIIO::ImageSpec& spec) {
     const OIIO::ParamValue* xy =
         spec.find_attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8));
@@ -67,14 +67,14 @@ Primaries primaries_of(const OIIO::ImageSpec& spec) {
     return {"chromaticities", {p[0], p[1]}, {p[2], p[3]}, {p[4], p[5]}, {p[6], p[7]}};
 }
 
-/// What viewers take the colors of a file for that does not say what they are, or cannot be
-/// written to say it by OpenImageIO.
+/// The color that viewers assume for a file that does not state one, or for which OpenImageIO
+/// cannot write it.
 struct FormatColor {
     std::string_view format;
     std::string_view title;
     bool has_icc = false;
-    bool has_power = false;  // says the power of its code values
-    // Applications presume linear light, whatever attributes say; else they presume sRGB.
+    bool has_power = false;  // the power of its code values
+    // For some formats, applications always assume linear light; for others, sRGB.
     bool is_linear = false;
 };
 constexpr std::array kFormats = {
@@ -120,7 +120,7 @@ Claim claim_of_operator(const ResolvedOperator& op) {
 void tag(const Claim& claim, OIIO::ImageSpec& spec) {
     tag_as_unknown(spec);
     if (!claim.color_space.empty()) spec.attribute("oiio:ColorSpace", claim.color_space);
-    if (claim.primaries == kRec709) return;  // what OpenEXR files without the attribute have
+    if (claim.primaries == kRec709) return;  // the value of OpenEXR files without the attribute
     const Primaries& p = claim.primaries;
     std::array<float, 8> xy{};
     std::size_t i = 0;
@@ -134,9 +134,10 @@ void tag(const Claim& claim, OIIO::ImageSpec& spec) {
 }  // namespace
 
 void tag_as_unknown(OIIO::ImageSpec& spec) {
-    // Regular expressions, letters' case apart. Each of these described the source; where a writer
-    // prefers one of them to oiio:ColorSpace (DPX does), the file would lie. oiio:Gamma repeats the
-    // name "GammaX.Y", is deprecated, and makes OIIO's TGA writer divide by a power of alpha.
+    // Regular expressions, ignoring case. Each of these attributes described the source. If a
+    // writer prefers one of them to oiio:ColorSpace (as DPX does), the file would be wrong.
+    // oiio:Gamma repeats the name "GammaX.Y", is deprecated, and makes OIIO's TGA writer divide by
+    // a power of alpha.
     for (const char* stale : {
              "oiio:ColorSpace",
              "oiio:Gamma",
@@ -223,14 +224,13 @@ ColorDescription describe_color(const OIIO::ImageSpec& spec, std::string_view fo
     const bool is_said =
         row->has_power && color->curve && !color->curve->is_srgb && color->primaries == kRec709;
     if (is_presumed || is_said) return {};
-    said.missing =
-        row->is_linear
-            ? fmt::format(
-                  "most applications read {} as linear light, but the file holds code "
-                  "values of {}; for linear light, use --display linear",
-                  row->title, color->name)
-            : fmt::format("{} does not say that its colors are {}: viewers take them for sRGB",
-                          row->title, color->name);
+    said.missing = row->is_linear
+                       ? fmt::format(
+                             "most applications read {} as linear light, but the file holds code "
+                             "values of {}; for linear light, use --display linear",
+                             row->title, color->name)
+                       : fmt::format("{} does not say that its colors are {}: viewers assume sRGB",
+                                     row->title, color->name);
     return said;
 }
 

@@ -13,28 +13,27 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// Makes the metadata say what a picture holds after `view`: sets `oiio:ColorSpace`, and
-/// `chromaticities` where they are not those of Rec.709, and removes whatever described the
-/// source's colors.
+/// Sets the metadata of a picture after `view`: `oiio:ColorSpace`, and `chromaticities` if they are
+/// not those of Rec.709. Removes the description of the source's colors.
 TONEWRIGHT_API void tag_as_result_of(const View& view, OIIO::ImageSpec& spec);
 /// @param display  id of a display, or `linear`
 TONEWRIGHT_API void tag_as_shown_on(std::string_view display, OIIO::ImageSpec& spec);
-/// Removes it, and says nothing: nobody knows what the colors are now.
+/// Removes the description of the colors, because they are unknown now.
 TONEWRIGHT_API void tag_as_unknown(OIIO::ImageSpec& spec);
 
-/// What the metadata of a picture says of its colors, as far as files can say it.
+/// The color in the metadata of a picture, as far as files can store it.
 struct TaggedColor {
     std::string name;  // "sRGB", "Gamma 2.4", "linear light", or the title of a display
     Primaries primaries;
-    /// Of an SDR display, or of linear light.
+    /// For an SDR display, or linear light.
     std::optional<IccCurve> curve = {};
-    /// Of an HDR display.
+    /// For an HDR display.
     std::optional<CodePoints> code_points = {};
 };
 /// From `oiio:ColorSpace` and `chromaticities`. None where they say nothing that is known.
 [[nodiscard]] TONEWRIGHT_API std::optional<TaggedColor> tagged_color(const OIIO::ImageSpec& spec);
 
-/// How a file of some format says what its colors are.
+/// How the files of a format state their colors.
 struct ColorDescription {
     std::string icc;    // a profile; empty: none
     std::string chunk;  // of PNG; empty: none

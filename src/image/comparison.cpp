@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What pictures of the same scene are compared with: small scenes, splits, differences.
+// Comparisons of pictures of the same scene: small scenes, splits, differences.
 #include "image/comparison.h"
 
 #include <OpenImageIO/imagebufalgo.h>
@@ -28,7 +28,7 @@ using OIIO::ImageBuf;
 using OIIO::ImageSpec;
 using OIIO::ROI;
 
-/// Of the channels of a picture its color, and alpha behind it.
+/// The color channels of a picture, and alpha after them.
 std::vector<int> color_and_alpha(const ImageSpec& spec) {
     std::vector<int> channels(static_cast<std::size_t>(std::min(spec.nchannels, 4)));
     for (std::size_t c = 0; c < channels.size(); ++c)
@@ -39,8 +39,8 @@ std::vector<int> color_and_alpha(const ImageSpec& spec) {
     return channels;
 }
 
-/// A part of the display window in memory, as the first step of the engines makes it. The window
-/// begins at 0, 0.
+/// Part of the display window in memory, after the first step of the engines. The window begins at
+/// 0, 0.
 ImageBuf shown_scene(const ImageBuf& picture, const ROI& part) {
     const ROI window = shown_window(picture);
     const std::vector<int> channels = color_and_alpha(picture.spec());
@@ -82,8 +82,8 @@ ImageBuf shown_scene(const ImageBuf& picture, const ROI& part) {
     return scene;
 }
 
-/// The whole window, of the pixels that a picture has of it: a small picture in a large window
-/// takes the memory of a small picture.
+/// The part of the window that has pixels, so that a small picture in a large window needs little
+/// memory.
 ImageBuf shrink(const ImageBuf& picture, const PictureSize& size) {
     const ROI window = shown_window(picture);
     ROI part = OIIO::roi_intersection(window, picture.roi());
@@ -101,7 +101,7 @@ ImageBuf shrink(const ImageBuf& picture, const PictureSize& size) {
     spec.height = spec.full_height = size.height;
     ImageBuf small(spec);
     if (is_empty) return small;
-    // Where the filter, three pixels of the result wide, reaches the part.
+    // The pixels that the filter, three pixels of the result wide, needs for the part.
     const auto reach = [](int from, int to, int window_length, int length) {
         const double scale = static_cast<double>(length) / window_length;
         return std::pair(std::max(static_cast<int>(std::floor(from * scale)) - 2, 0),
@@ -110,8 +110,8 @@ ImageBuf shrink(const ImageBuf& picture, const PictureSize& size) {
     const ROI from = scene.roi();
     const auto [left, right] = reach(from.xbegin, from.xend, window.width(), size.width);
     const auto [top, bottom] = reach(from.ybegin, from.yend, window.height(), size.height);
-    // For a whole picture the filter looks at each pixel nine times; for a few pixels of a large
-    // window it looks at black for minutes.
+    // For a whole picture, the filter reads each pixel nine times. For a few pixels of a large
+    // window, it would read black for minutes.
     const double taps = 9.0 * (right - left) * (bottom - top) * window.width() / size.width *
                         window.height() / size.height;
     if (taps > 2e8 + 40 * static_cast<double>(from.npixels())) {
@@ -125,7 +125,7 @@ ImageBuf shrink(const ImageBuf& picture, const PictureSize& size) {
     return small;
 }
 
-/// Every pixel as often as fits.
+/// Repeats every pixel as often as it fits.
 ImageBuf enlarge(const ImageBuf& scene, const PictureSize& size) {
     ImageSpec spec = scene.spec();
     spec.width = spec.full_width = size.width;
@@ -158,7 +158,7 @@ std::span<const Rgb> pixels_of(const ImageBuf& rgb) {
             static_cast<std::size_t>(rgb.spec().image_pixels())};
 }
 
-/// Title and detail of a side, and how much room they take.
+/// Title and detail of a side, and their size.
 struct Caption {
     const SplitLabel& label;
     double cap;
@@ -251,7 +251,8 @@ ImageBuf make_split(const ImageBuf& before, const ImageBuf& after, const SplitOp
         }
     }
     if (options.has_labels) {
-        // Light, between dark edges: seen on everything. None where only one picture is shown.
+        // A light line between dark edges, visible on everything. None if only one picture is
+        // shown.
         const int thickness =
             std::max(1, static_cast<int>(std::lround(std::min(width, height) / 700.0)));
         if (edge > 0 && edge < (is_horizontal ? height : width)) {

@@ -36,7 +36,7 @@ struct SplitOptions {
     SplitLabel before;
     SplitLabel after;
     std::string remark;  // of both, where there is room
-    /// Of the width or height, [0, 1]: how much of `before` is shown.
+    /// Fraction of the width or height that shows `before`, [0, 1].
     double position = 0.5;
     /// Before above after, not left of it.
     bool is_horizontal = false;
@@ -47,8 +47,8 @@ struct SplitOptions {
 /// Where the second picture begins: the nearest pixel boundary.
 [[nodiscard]] TONEWRIGHT_API int split_at(int length, double position);
 
-/// Two display pictures in one: the first up to a line, then the second. All pixels but those of
-/// the line are theirs.
+/// Two display pictures in one: the first up to a line, then the second. All pixels except those of
+/// the line are unchanged.
 /// @throws Error  pictures of different sizes; position out of range
 [[nodiscard]] TONEWRIGHT_API OIIO::ImageBuf make_split(const OIIO::ImageBuf& before,
                                                        const OIIO::ImageBuf& after,

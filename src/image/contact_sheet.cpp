@@ -38,8 +38,8 @@ void run_in_place(const ReferenceEngine& engine, float* pixels, int count) {
 
 /// The picture at its size in the sheet, sRGB code values, float RGB.
 ///
-/// Averages of light are wanted, not of code values: else thin bright lines and fine patterns
-/// become darker when the picture shrinks.
+/// It averages light, not code values, because thin bright lines and fine patterns would otherwise
+/// become darker.
 ImageBuf shrink(const ImageBuf& picture, const PictureSize& size) {
     static const Expr x = Expr::input();
     static const ReferenceEngine to_light({curve_stage(srgb_decode(x))});
@@ -58,7 +58,7 @@ ImageBuf shrink(const ImageBuf& picture, const PictureSize& size) {
     return small;
 }
 
-/// Words over the sheet, patches under it.
+/// Texts above the sheet, patches below it.
 class Surround {
   public:
     Surround(const SheetAnnotations& words, int cell_width, int margin, int width)
@@ -105,7 +105,8 @@ class Surround {
         canvas.text(fit_text(words_.legend_heading, cap, width_), margin_, patches_top - 0.8 * cap,
                     cap, gray_of(kSheetDimText));
         const auto count = static_cast<int>(words_.legend.size());
-        // All labels have the room of the widest, or every second or third is there.
+        // All labels get the width of the widest; if they do not fit, only every second or third is
+        // drawn.
         double widest = 0;
         for (const auto& [label, color] : words_.legend)
             widest = std::max(widest, text_width(label, cap) + cap);
@@ -147,7 +148,7 @@ PictureSize fitted_size(const ImageBuf& picture, int width) {
         static_cast<double>(picture.spec().get_float_attribute("PixelAspectRatio", 1));
     const double aspect =
         window.width() * (pixel_aspect > 0 ? pixel_aspect : 1.0) / window.height();
-    constexpr double kMost = 1e6;  // more than any sheet has, and sums of 10,000 are no overflow
+    constexpr double kMost = 1e6;  // more than any sheet has; sums of 10,000 do not overflow
     const double height = std::clamp(width / aspect, 1.0, kMost);
     return {width, static_cast<int>(std::lround(height))};
 }
@@ -207,15 +208,15 @@ ImageBuf filtered_down(const ImageBuf& picture, const PictureSize& size) {
 #endif
 }
 
-ImageBuf make_contact_sheet(const std::vector<std::pair<std::string, ImageBuf>>& labelled,
+ImageBuf make_contact_sheet(const std::vector<std::pair<std::string, ImageBuf>>& labeled,
                             int columns, int cell_width, const SheetAnnotations& around) {
-    check_range("number of pictures", static_cast<int>(labelled.size()), 1, 10000);
+    check_range("number of pictures", static_cast<int>(labeled.size()), 1, 10000);
     check_range("columns", columns, 1, 10000);
     check_range("cell width", cell_width, 16, 16384);
-    columns = std::min(columns, static_cast<int>(labelled.size()));
+    columns = std::min(columns, static_cast<int>(labeled.size()));
 
     std::vector<PictureSize> sizes;
-    for (const auto& [label, picture] : labelled) {
+    for (const auto& [label, picture] : labeled) {
         if (!picture.initialized() || picture.deep()) {
             throw Error(fmt::format("contact sheet: picture of {} is {}; expected flat pixels",
                                     label, picture.deep() ? "deep" : "missing"));
@@ -225,7 +226,7 @@ ImageBuf make_contact_sheet(const std::vector<std::pair<std::string, ImageBuf>>&
     const double cap_height = std::clamp(cell_width / 32.0, 7.0, 20.0);
     const int margin = std::max(4, static_cast<int>(std::lround(cell_width / 20.0)));
     const double second_height = std::max(7.0, 0.8 * cap_height);
-    const bool has_second = std::any_of(labelled.begin(), labelled.end(), [](const auto& cell) {
+    const bool has_second = std::any_of(labeled.begin(), labeled.end(), [](const auto& cell) {
         return cell.first.find('\n') != std::string::npos;
     });
     const int first_height = static_cast<int>(std::lround(2.2 * cap_height));
@@ -235,7 +236,7 @@ ImageBuf make_contact_sheet(const std::vector<std::pair<std::string, ImageBuf>>&
     const Surround surround(around, cell_width, margin, width);
 
     // Each row is as high as its tallest picture.
-    const int rows = (static_cast<int>(labelled.size()) + columns - 1) / columns;
+    const int rows = (static_cast<int>(labeled.size()) + columns - 1) / columns;
     std::vector<int> row_top;
     std::vector<int> row_height;
     int height = margin + surround.top();
@@ -257,13 +258,13 @@ ImageBuf make_contact_sheet(const std::vector<std::pair<std::string, ImageBuf>>&
     }
 
     Canvas canvas(width, height, gray_of(kSheetBackground));
-    for (std::size_t i = 0; i < labelled.size(); ++i) {
+    for (std::size_t i = 0; i < labeled.size(); ++i) {
         const auto r = i / static_cast<std::size_t>(columns);
         const int left = margin + static_cast<int>(i % static_cast<std::size_t>(columns)) *
                                       (cell_width + margin);
         const PictureSize& size = sizes[i];
         const int top = row_top[r] + (row_height[r] - size.height) / 2;
-        const ImageBuf small = shrink(labelled[i].second, size);
+        const ImageBuf small = shrink(labeled[i].second, size);
         const auto* pixels = static_cast<const float*>(small.localpixels());
         canvas.paint(left, top, left + size.width, top + size.height, [&](double, double) {
             const Rgb color = {pixels[0], pixels[1], pixels[2]};  // row by row, as they come
@@ -271,7 +272,7 @@ ImageBuf make_contact_sheet(const std::vector<std::pair<std::string, ImageBuf>>&
             return color;
         });
         const double baseline = row_top[r] + row_height[r] + 0.45 * first_height + cap_height / 2;
-        const std::string& label = labelled[i].first;
+        const std::string& label = labeled[i].first;
         const std::size_t line_break = std::min(label.find('\n'), label.size());
         canvas.text(fit_text(label.substr(0, line_break), cap_height, cell_width),
                     left + cell_width / 2.0, baseline, cap_height, gray_of(kSheetText),

@@ -6,7 +6,7 @@
 #include <cstring>
 
 #if defined(__GNUC__) && !defined(__clang__)
-// GCC's AVX-512 header hands an undefined vector to instructions that do not read it.
+// GCC's AVX-512 header passes an undefined vector to instructions that do not read it.
 #pragma GCC diagnostic ignored "-Wuninitialized"
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif
@@ -38,13 +38,13 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Below AVX2, Highway computes what the instructions do, which is no faster than a table.
+// Below AVX2, Highway emulates the instructions, which is no faster than a table.
 #if HWY_TARGET <= HWY_AVX2
 
 using Floats = hn::ScalableTag<float>;
 using Halves = hn::Rebind<hwy::float16_t, Floats>;
 
-/// convert(from, to) of whole vectors; what is left goes through buffers of one.
+/// convert(from, to) for whole vectors; the rest goes through buffers of one vector.
 template <class From, class To, class F>
 HWY_INLINE void in_vectors(const From* from, To* to, std::size_t count, F convert) {
     const std::size_t lanes = hn::Lanes(Floats());

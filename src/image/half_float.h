@@ -18,10 +18,11 @@ struct HalfKernels {
 /// For each instruction set of this machine, best first.
 [[nodiscard]] const std::vector<HalfKernels>& half_kernels();
 
-/// Half floats, as their 16 bits, that processors convert themselves: nearest, ties to even, beyond
-/// the range infinity. Numbers follow each other in memory, which may have any alignment.
+/// Conversion between floats and the 16 bits of half floats by instructions of the processor:
+/// nearest, ties to even, beyond the range infinity. Numbers are contiguous in memory, with any
+/// alignment.
 /// @param with   the functions of one instruction set
-/// @returns  false, with nothing done, where the processor has no such instructions (before AVX2).
+/// @returns  false, with nothing done, if the processor lacks such instructions (before AVX2)
 [[nodiscard]] bool half_to_float(const void* from, float* to, std::size_t count,
                                  const HalfKernels& with = half_kernels().front()) noexcept;
 [[nodiscard]] bool float_to_half(const float* from, void* to, std::size_t count,

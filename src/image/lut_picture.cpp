@@ -15,14 +15,14 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// The node that a pixel holds, of a cube of n points a side; red fastest.
+/// The node of a pixel, for a 3D LUT of n points a side; red fastest.
 std::size_t node_of(LutFormat format, int n, int width, int x, int y) {
     const int green = format == LutFormat::strip_up ? n - 1 - y : y;
     const int node = format == LutFormat::hald ? y * width + x : (x / n * n + green) * n + x % n;
     return static_cast<std::size_t>(node);
 }
 
-/// Nothing else in the file tells a strip from one that stands on its head.
+/// Nothing else in the file distinguishes a strip from an upside-down one.
 constexpr const char* kGreenUp = "3D LUT as a strip, green from the bottom up";
 
 constexpr int kLargestLevel = 16;
@@ -50,7 +50,7 @@ Layout layout_of(const std::string& path, int width, int height) {
 Lut read_lut_picture(const std::string& path) {
     {
         const auto in = open_picture(path);
-        // Before there is room for its pixels.
+        // Checked before memory is allocated for its pixels.
         (void)layout_of(path, in->spec().width, in->spec().height);
     }
     const OIIO::ImageBuf picture = read_image(path);
@@ -90,13 +90,13 @@ Lut read_lut_picture(const std::string& path) {
 }
 
 OIIO::ImageBuf make_lut_picture(const Lut& lut, LutFormat format) {
-    if (!is_picture_format(format)) throw Error("lut: format is no picture");
+    if (!is_picture_format(format)) throw Error("lut: format is not a picture");
     const int n = lut.size;
     const int level = static_cast<int>(std::lround(std::sqrt(n)));
     const int width = format == LutFormat::hald ? n * level : n * n;
     const int height = format == LutFormat::hald ? n * level : n;
     OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::FLOAT);
-    // Numbers, not light: no program is to convert them.
+    // Numbers, not light, so that no program converts them.
     spec.attribute("oiio:ColorSpace", "Raw");
     if (format == LutFormat::strip_up) spec.attribute("ImageDescription", kGreenUp);
     OIIO::ImageBuf picture(spec);

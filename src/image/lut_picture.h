@@ -7,15 +7,15 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// A cube as a picture of its nodes. `hald`: n = level^2 points a side in a square of level^3
+/// A 3D LUT as a picture of its nodes. `hald`: n = level^2 points a side in a square of level^3
 /// pixels a side, red fastest, then green, then blue, line by line. `strip`: n pictures of n x n
 /// side by side, blue from one to the next, red to the right, green downwards.
-/// @throws Error  for another format.
+/// @throws Error  another format
 [[nodiscard]] TONEWRIGHT_API OIIO::ImageBuf make_lut_picture(const Lut& lut, LutFormat format);
 
-/// The cube of such a picture: its size tells which of the two it is.
+/// The 3D LUT of such a picture: its size distinguishes the two layouts.
 /// @throws FileError  missing, truncated, of another size (before its pixels are read), with alpha
-///                    below 1, NaN or infinities.
+///                    below 1, NaN or infinities
 [[nodiscard]] TONEWRIGHT_API Lut read_lut_picture(const std::string& path);
 
 /// Reads LUTs that are pictures for load_operator(). Other files go to `next`. @see table_reader()

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Metering of pictures and files, exposures from it, and how they follow the light of a shot.
+// Metering of pictures and files, the exposure that follows, and adaptation over the frames of a
+// shot.
 #include "tonewright/meter.h"
 
 #include <fmt/format.h>
@@ -62,7 +63,7 @@ void require_pixels(const ImageSpec& spec, const MeterOptions& options) {
         r.xbegin, r.ybegin, r.width(), r.height(), spec.x, spec.y, spec.width, spec.height));
 }
 
-/// Of the whole picture, in memory.
+/// Meters a whole picture in memory.
 PicturePass pass_over(const ImageBuf& src, const MeterOptions& options) {
     return [&src, window = measured_window(src.spec(), options)](SceneMeter& meter) {
         if (!is_empty(window)) meter.add(src, window);
@@ -117,7 +118,7 @@ SceneMeter measure_file(const std::string& path, const MeterOptions& options,
         const int step =
             rows_of_batch(spec.scanline_bytes(), reader.row_step(), spec.height, batch_bytes);
         std::vector<std::byte> pixels(spec.scanline_bytes() * static_cast<std::size_t>(step));
-        // Batches begin at multiples of the step: tiles are read as a whole.
+        // Batches begin at multiples of the step, because tiles are read as a whole.
         for (int y = spec.y + (window.ybegin - spec.y) / step * step; y < window.yend; y += step) {
             const int yend = std::min(y + step, spec.y + spec.height);
             reader.read_rows(y, yend, pixels.data());
@@ -132,7 +133,7 @@ SceneMeter measure_file(const std::string& path, const MeterOptions& options,
 
 SceneStatistics measure_scene(const ImageBuf& src, std::string_view input,
                               TonemapOptions::Unpremult unpremult, ROI roi, int nthreads) {
-    (void)source_color({}, input);  // a wrong name is told before a picture is opened
+    (void)source_color({}, input);  // reports a wrong name before it opens a picture
     check_source(src);
     MeterOptions options;
     options.input = input;

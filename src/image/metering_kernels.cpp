@@ -2,9 +2,9 @@
 //
 // Metering, once for each instruction set.
 //
-// Logarithms are not computed pixel by pixel: the sum of the logarithms of a span is the logarithm
-// of a product, whose exponent is added up apart from its mantissa. One rounding of 2^-53 for each
-// pixel, none of them of the size of a logarithm.
+// The sum of the logarithms of a span is the logarithm of a product. Its exponent is summed
+// separately from its mantissa. Each pixel adds one rounding of 2^-53, much less than the rounding
+// of a logarithm.
 #include "image/metering_kernels.h"
 
 #include <algorithm>
@@ -41,8 +41,8 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Every sum has this many lanes. Where a vector has fewer, the span is gone through once for each
-/// part of them, so that the same numbers meet everywhere.
+/// Every sum has this many lanes. If a vector has fewer, the span is read once for each part of the
+/// lanes, so that the same numbers are added everywhere.
 constexpr std::size_t kLanes = 8;
 using DD = hn::CappedTag<double, kLanes>;
 using DF = hn::Rebind<float, DD>;
@@ -108,7 +108,7 @@ bool are_plain(const float* pixels, int channels, std::size_t count, bool has_al
     const auto fourth = hn::Set(du, channels == 4 ? 3U : 4U);
     const auto is_fourth =
         hn::RebindMask(d, hn::Eq(hn::And(hn::Iota(du, 0), hn::Set(du, 3U)), fourth));
-    // The bits of what must be 0: x - x, which is NaN for NaN and infinities, or alpha - 1.
+    // Bits that must be 0: those of x - x, which is NaN for NaN and infinities, or of alpha - 1.
     auto wrong = hn::Zero(d);
     for (; i + lanes <= all; i += lanes) {
         const auto x = hn::LoadU(d, pixels + i);
@@ -201,7 +201,7 @@ struct PackedBlock {
 template <std::size_t kChannels>
 class PackedPixels {
   public:
-    /// The last block is copied where it is not whole, to be read as if it were.
+    /// An incomplete last block is copied, so that it can be read as a whole.
     PackedPixels(const float* pixels, std::size_t count)
         : pixels_(pixels), whole_(count / kBlock * kBlock) {
         if (whole_ < count)
@@ -230,7 +230,7 @@ HWY_INLINE void add_up(const Pixels& pixels, std::size_t count, const Weighing& 
     const auto limit = [](VD x, double least) HWY_ATTR {
         return hn::Min(hn::Max(x, hn::Set(DD(), least)), hn::Set(DD(), kHalfMax));
     };
-    // For each of the eight lanes, wherever it was.
+    // For each of the eight lanes, in any vector.
     std::array<std::array<double, kLanes>, 3> sum, lost, top;
     std::array<double, kLanes> maximum, minimum, lit, lit_mantissa, delta_mantissa;
     std::array<std::uint64_t, kLanes> lit_exponent, delta_exponent;

@@ -8,14 +8,14 @@
 
 #include "tonewright/pipeline.h"
 
-/// What metering does to every pixel, as vector code. Sums go into eight lanes on every instruction
-/// set, without fused operations: the results are the same bits on all of them.
+/// Metering of every pixel, as vector code. Sums go into eight lanes on every instruction set,
+/// without fused operations, so the results are the same bits on all of them.
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace light {
 
-/// Pixels that are worked on at a time: four double planes of them stay in the first-level cache.
+/// Pixels that are processed at a time: four double planes of them stay in the first-level cache.
 inline constexpr std::size_t kSpan = 512;
-/// Planes hold whole blocks of this many pixels.
+/// Planes have whole blocks of this many pixels.
 inline constexpr std::size_t kBlock = 64;
 
 [[nodiscard]] constexpr std::size_t padded(std::size_t count) {
@@ -36,18 +36,18 @@ struct Kernels;
 void split(const float* pixels, int channels, std::size_t count, Planes& to,
            const Kernels& with = best_kernels()) noexcept;
 
-/// What is special among the pixels.
+/// Special values among the pixels.
 struct Kinds {
     bool all_finite;  // r, g, b
     bool all_cover;   // alpha is finite and not 0
     bool all_opaque;  // alpha is 1
 };
-/// Fills the last block up. Without `has_alpha` all are opaque.
+/// Fills the last block. Without `has_alpha`, all pixels are opaque.
 [[nodiscard]] Kinds kinds(Planes& planes, std::size_t count, bool has_alpha,
                           const Kernels& with = best_kernels()) noexcept;
 
-/// True where nothing is: all of interleaved floats are finite, and opaque.
-/// @param channels  3 or 4; without `has_alpha` a fourth says nothing.
+/// True if all interleaved floats are finite, and opaque.
+/// @param channels  3 or 4; without `has_alpha`, the fourth is ignored.
 [[nodiscard]] bool are_plain(const float* pixels, int channels, std::size_t count, bool has_alpha,
                              const Kernels& with = best_kernels()) noexcept;
 
@@ -61,13 +61,13 @@ struct Product {
     std::int64_t exponent = 0;
 };
 
-/// A sum and what its roundings lost.
+/// A sum and its rounding error.
 struct CompensatedSum {
     double sum = 0;
     double lost = 0;
 };
 
-/// What a span adds up to.
+/// Sums of a span.
 struct SpanLight {
     std::array<CompensatedSum, 3> rgb;
     Vector3 maximum_rgb{};
@@ -77,17 +77,17 @@ struct SpanLight {
     Product lit;         // of luminances above 0
     Product with_delta;  // of luminances and delta
 };
-/// How colors count.
+/// How colors are metered.
 struct Weighing {
-    const Matrix3* to_rec709;  // null: they are of Rec.709
+    const Matrix3* to_rec709;  // null: colors are in Rec.709
     double delta;              // added to luminances inside the logarithm, [1e-12, 1]
 };
-/// Of colors without NaN, which become colors of Rec.709, [0, kHalfMax].
+/// For colors without NaN, which become colors of Rec.709, [0, kHalfMax].
 /// @param luminance  of each pixel
 [[nodiscard]] SpanLight add_up(Planes& planes, std::size_t count, const Weighing& weighing,
                                std::array<double, kSpan>& luminance,
                                const Kernels& with = best_kernels()) noexcept;
-/// The same of interleaved floats, to the same bits.
+/// The same for interleaved floats, with the same bits.
 [[nodiscard]] SpanLight add_up(const float* pixels, int channels, std::size_t count,
                                const Weighing& weighing, std::array<double, kSpan>& luminance,
                                const Kernels& with = best_kernels()) noexcept;

@@ -19,29 +19,28 @@
 #include "tonewright/error.h"
 #include "tonewright/image_io.h"
 
-/// Picture files, read and written some rows at a time, whole or not at all.
+/// Picture files, a few rows at a time. Reading and writing succeed completely or fail.
 TONEWRIGHT_NAMESPACE_BEGIN
 
 /// `DateTime` of pictures that have none: that of the environment variable SOURCE_DATE_EPOCH, UTC
 /// (reproducible-builds.org/specs/source-date-epoch). Empty: it is not set.
-/// @throws Error  it is no number of seconds since 1970
+/// @throws Error  it is not a number of seconds since 1970
 [[nodiscard]] TONEWRIGHT_API std::string source_date();
 /// As `DateTime` has it, UTC.
 [[nodiscard]] TONEWRIGHT_API std::string date_text(std::time_t seconds);
 
-/// Of a picture that is our own: any number of pixels.
+/// No limit, for a picture of our own.
 inline constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
-/// Opens a picture, or a name that one of OpenImageIO's readers makes one of.
+/// Opens a picture, or a name that one of OpenImageIO's readers accepts.
 /// @throws FileError  missing, unreadable, a folder, a pipe, of unknown format, or of a format
-/// whose
-///                    reader decodes more pixels than `max_pixels` while it opens. One line.
+///                    whose reader decodes more pixels than `max_pixels` while it opens. One line.
 [[nodiscard]] TONEWRIGHT_API std::unique_ptr<OIIO::ImageInput> open_picture(
     const std::string& path, const OIIO::ImageSpec* config = nullptr,
     double max_pixels = kMaxPixels);
 
-/// Runs `step`, which works on a picture whose options were checked before: what is wrong now, the
-/// picture is.
+/// Runs `step` on a picture whose options were checked before: its errors are errors of the
+/// picture.
 /// @throws FileError  "<path>: <reason>"
 template <class Step>
 decltype(auto) about_picture(const std::string& path, const Step& step) {
@@ -59,8 +58,8 @@ decltype(auto) about_picture(const std::string& path, const Step& step) {
 /// Reads a picture from top to bottom or in any other order of rows. Full resolution, in the pixel
 /// type of the file.
 ///
-/// Stricter than ImageBuf: whatever the reader reports is an error, so that a truncated file is
-/// never a half-black picture. Nothing goes through OIIO's cache.
+/// Stricter than ImageBuf: every report of the reader is an error, so a truncated file never gives
+/// a half-black picture. Nothing goes through OIIO's cache.
 class TONEWRIGHT_API PictureReader {
   public:
     /// @param nthreads  0: OIIO's `threads` attribute.
@@ -72,15 +71,15 @@ class TONEWRIGHT_API PictureReader {
     PictureReader(const PictureReader&) = delete;
     PictureReader& operator=(const PictureReader&) = delete;
 
-    /// Of the picture as an ImageBuf in memory has it.
+    /// As in an ImageBuf in memory.
     [[nodiscard]] const OIIO::ImageSpec& spec() const { return spec_; }
     /// Rows are read in multiples of this, from the first one on: the height of a tile, or 1.
     [[nodiscard]] int row_step() const;
     /// Reads rows [ybegin, yend) of all channels, interleaved and packed.
     /// @throws FileError  truncated or damaged.
     void read_rows(int ybegin, int yend, std::byte* to);
-    /// All of it, volumes too.
-    /// @throws FileError  truncated or damaged, or too large for the memory.
+    /// Reads the whole picture, also volumes.
+    /// @throws FileError  truncated or damaged, or too large for the memory
     [[nodiscard]] OIIO::ImageBuf read_all();
 
   private:
@@ -92,12 +91,12 @@ class TONEWRIGHT_API PictureReader {
     OIIO::ImageSpec spec_;
 };
 
-/// Bytes that are read, worked on and written at a time.
+/// Bytes that are read, processed and written at a time.
 inline constexpr std::size_t kBatchBytes = std::size_t{16} << 20;
 
-/// Rows of a batch: at least 64 (formats compress up to 32 rows together, OpenEXR's threads one
-/// such block each), a multiple of `step`, and no more than the picture has.
-/// @param step    what row_step() says; height at most
+/// Rows of a batch: at least 64 (formats compress up to 32 rows together, and each thread of
+/// OpenEXR takes one such block), a multiple of `step`, and at most the rows of the picture.
+/// @param step    the result of row_step(), at most `height`
 /// @param height  rows of the picture
 [[nodiscard]] TONEWRIGHT_API int rows_of_batch(std::size_t bytes_per_row, int step, int height,
                                                std::size_t batch_bytes = kBatchBytes);
@@ -106,35 +105,34 @@ inline constexpr std::size_t kBatchBytes = std::size_t{16} << 20;
 [[nodiscard]] TONEWRIGHT_API OIIO::ImageSpec spec_of_rows(const OIIO::ImageSpec& picture,
                                                           int ybegin, int yend);
 
-/// Reads a picture to its end and keeps nothing of it.
-/// @throws FileError  when it is not whole.
+/// Reads a picture to its end and discards it.
+/// @throws FileError  it is not complete
 TONEWRIGHT_API void check_is_complete(PictureReader& reader);
 
-/// Writes a picture from its first row to its last under a temporary name, and gives it its own
-/// when it is complete. @see write_image_atomically for what becomes of a picture on the way.
+/// Writes a picture from its first row to its last under a temporary name, and renames it when it
+/// is complete. @see write_image_atomically
 class TONEWRIGHT_API PictureWriter {
   public:
-    /// Touches nothing yet.
-    /// @param nthreads  0: OIIO's `threads` attribute.
-    /// @throws FileError  unknown extension, or a place for no file.
-    /// @throws Error      compression or quality that the format does not have.
+    /// Changes nothing yet.
+    /// @param nthreads  0: OIIO's `threads` attribute
+    /// @throws FileError  unknown extension, or a path where no file can be
+    /// @throws Error      compression or quality that the format does not have
     explicit PictureWriter(const std::string& path, WriteOptions options = {}, int nthreads = 0);
-    /// Removes what is not finished.
+    /// Removes an unfinished file.
     ~PictureWriter();
     PictureWriter(const PictureWriter&) = delete;
     PictureWriter& operator=(const PictureWriter&) = delete;
 
-    /// What the file says of a picture: its size, and its pixel type where the format can be asked
-    /// without a file (else UNKNOWN). Touches nothing.
+    /// The size of a picture in a file, and its pixel type if the format can be asked without a
+    /// file (else UNKNOWN). Changes nothing.
     /// @throws FileError
     [[nodiscard]] OIIO::ImageSpec file_spec(const OIIO::ImageSpec& picture);
     /// @param picture  the spec of all rows together.
     /// @throws FileError
     void open(const OIIO::ImageSpec& picture);
-    /// Once open: the pixel type that rows are best handed over in, half or float. Both give the
-    /// same file.
+    /// After opening: the better pixel type for the rows, half or float. Both give the same file.
     [[nodiscard]] OIIO::TypeDesc row_type() const;
-    /// Once open: the format wants the last row first.
+    /// After opening: true if the format takes the last row first.
     [[nodiscard]] bool is_bottom_up() const;
     /// The next rows of the picture, or the picture.
     /// @throws FileError
@@ -151,7 +149,7 @@ class TONEWRIGHT_API PictureWriter {
     [[nodiscard]] OIIO::ImageBuf checked(OIIO::ImageBuf&& changed) const;
     [[nodiscard]] std::string_view format() const;
     void check_compression() const;
-    /// What the file cannot be, in one warning.
+    /// Limitations of the file, in one warning.
     void warn_of_limits(const OIIO::ImageSpec& wanted, const std::string& missing) const;
     void watch_cover(const OIIO::ImageBuf& rows);
     void warn_without_cover() const;
@@ -162,13 +160,13 @@ class TONEWRIGHT_API PictureWriter {
     WriteOptions options_;
     std::vector<int> channels_;        // to write; empty: all
     int alpha_ = -1;                   // of those that are written
-    bool watches_cover_ = false;       // a picture without cover is a warning
+    bool watches_cover_ = false;       // warns if alpha is 0 everywhere
     bool has_cover_ = false;           // alpha is not 0 everywhere
     std::optional<OIIO::ROI> window_;  // to write; none: all of the picture
     bool divides_by_alpha_ = false;
     int last_row_ = 0;  // of the picture, exclusive
     int next_row_ = 0;  // of the window, or of the picture
-    // In this order: the writer, when it ends, writes to the proxy, which writes to the file.
+    // The order matters: at its end, the writer writes to the proxy, which writes to the file.
     std::unique_ptr<AtomicFile> temporary_;
     std::unique_ptr<FileProxy> proxy_;  // null: OIIO opens the file itself
     std::unique_ptr<OIIO::ImageOutput> out_;

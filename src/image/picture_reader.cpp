@@ -25,9 +25,8 @@ using OIIO::ImageBuf;
     throw FileError(fmt::format("{}: cannot read: {}", path, reason));
 }
 
-/// OpenImageIO's reader delivers whatever its memory holds for what a truncated file lacks. SMPTE
-/// ST 268:2003, table 1 (offsets in bytes), where the pixels of the first element are not
-/// compressed.
+/// If a file is truncated, OpenImageIO's reader delivers the previous contents of its memory. SMPTE
+/// ST 268:2003, table 1 (offsets in bytes), if the pixels of the first element are not compressed.
 void check_dpx_size(const std::string& path) {
     std::array<unsigned char, 808> header{};
     std::ifstream file(path, std::ios::binary);
@@ -108,7 +107,7 @@ void check_jpeg2000_size(const std::string& path, double max_pixels) {
         std::uint64_t at = 0;
         std::uint64_t type = kSignature;
         while (type != kCodestream) {
-            // A box that lasts to the end of the file, or one without its own head.
+            // A box that extends to the end of the file, or one without its own header.
             if (first == 1) first = number(8);
             if (first < 8 || first > INT64_MAX - at) return;
             at += first;
@@ -125,14 +124,14 @@ void check_jpeg2000_size(const std::string& path, double max_pixels) {
     const auto bottom = static_cast<double>(number(4));
     const auto left = static_cast<double>(number(4));
     const auto top = static_cast<double>(number(4));
-    if (!file) return;  // the reader says what is wrong
+    if (!file) return;  // the reader has the reason
     const double width = std::max(right - left, 0.0);
     const double height = std::max(bottom - top, 0.0);
     if (width * height > max_pixels) refuse_size(path, width, height, max_pixels);
 }
 
-/// In one line, why a picture could not be opened.
-/// @param reported  what OpenImageIO says
+/// The reason why a picture could not be opened, in one line.
+/// @param reported  OpenImageIO's message
 std::string why_not_open(const std::string& path, const std::string& reported) {
     if (std::string why = why_not_readable(path); !why.empty()) return why;
     std::error_code error;
@@ -140,21 +139,21 @@ std::string why_not_open(const std::string& path, const std::string& reported) {
     return first_line(reported);
 }
 
-/// OpenImageIO 2.4 keeps errors by the address of a reader and by thread. Those of a reader that
-/// another thread destroyed are still there for the next one at its address.
+/// OpenImageIO 2.4 stores errors by the address of a reader and by thread. If another thread
+/// destroys a reader, its errors remain for the next reader at that address.
 void forget_errors(const OIIO::ImageInput& in) { (void)in.geterror(); }
 
 }  // namespace
 
 std::unique_ptr<OIIO::ImageInput> open_picture(const std::string& path,
                                                const OIIO::ImageSpec* config, double max_pixels) {
-    // A reader would wait for ever for the end of a pipe. A name without a file may be one that a
+    // A reader would wait forever for the end of a pipe. A name without a file may be one that a
     // reader understands: "shot.exr.tonewright?op=hable".
     if (const std::string why = why_no_file(path); !why.empty()) cannot_read(path, why);
     check_jpeg2000_size(path, max_pixels);
     std::unique_ptr<OIIO::ImageInput> in;
     if (path.find('?') != std::string::npos && why_not_readable(path).empty()) {
-        // OpenImageIO would take what follows the ? for arguments of a reader.
+        // OpenImageIO would take the text after the ? as arguments of a reader.
         const std::string extension = extension_of(path);
         in = OIIO::ImageInput::create(extension.empty() ? extension : extension.substr(1));
         if (in) forget_errors(*in);
@@ -170,8 +169,8 @@ std::unique_ptr<OIIO::ImageInput> open_picture(const std::string& path,
 
 PictureReader::PictureReader(const std::string& path, int nthreads, int subimage, double max_pixels)
     : path_(path), subimage_(subimage), in_(open_picture(path, nullptr, max_pixels)) {
-    // Not through ImageBuf: it asks the shared cache, which may know an older file of this name,
-    // and it passes over errors that a reader reports while it delivers pixels.
+    // ImageBuf is not used: it asks the shared cache, which may have an older file of this name,
+    // and it ignores errors that a reader reports while it delivers pixels.
     in_->threads(nthreads);
     if (!in_->seek_subimage(subimage, 0))
         cannot_read(path, fmt::format("it has no subimage {}; the first is 0", subimage));
@@ -188,7 +187,7 @@ PictureReader::PictureReader(const std::string& path, int nthreads, int subimage
     std::error_code error;
     const auto bytes = static_cast<double>(std::filesystem::file_size(path, error));
     if (error) return;  // no regular file
-    // The densest compressions of black (DWAB of wide rows) have some 300,000 bytes in one.
+    // The densest compressions of black (DWAB of wide rows) compress 300,000 bytes to one.
     constexpr double kDensest = 1e6;
     constexpr double kHarmless = 64 << 20;
     const double claimed = pixels * static_cast<double>(spec_.pixel_bytes());
@@ -206,7 +205,7 @@ int PictureReader::row_step() const { return std::max(spec_.tile_height, 1); }
 void PictureReader::check(bool was_read) const {
     if (was_read && !in_->has_error()) return;
     const std::string reported = in_->geterror();
-    // Readers of DPX and PNM say nothing about a file that ends too early.
+    // Readers of DPX and PNM do not report a file that ends too early.
     cannot_read(path_,
                 reported.empty() ? "the file is truncated or damaged" : first_line(reported));
 }
@@ -214,7 +213,7 @@ void PictureReader::check(bool was_read) const {
 void PictureReader::read_rows(int ybegin, int yend, std::byte* to) {
     const OIIO::ImageSpec& s = spec_;
     forget_errors(*in_);
-    // This reader delivers less than it says, without a word.
+    // This reader delivers less than it declares, without an error.
     if (std::string_view(in_->format_name()) == "dpx")
         std::fill_n(to, s.scanline_bytes() * static_cast<std::size_t>(yend - ybegin), std::byte{});
     check(s.tile_width > 0
@@ -224,7 +223,7 @@ void PictureReader::read_rows(int ybegin, int yend, std::byte* to) {
 }
 
 ImageBuf PictureReader::read_all() {
-    // Cleared: some readers deliver less than they say.
+    // Cleared, because some readers deliver less than they declare.
     ImageBuf image(spec_, OIIO::InitializePixels::Yes);
     if (!image.localpixels()) {
         cannot_read(path_,

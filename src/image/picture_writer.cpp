@@ -39,7 +39,7 @@ using OIIO::ImageBuf;
 using OIIO::ImageSpec;
 using OIIO::ROI;
 
-/// The channels that a format takes: all (empty), or color and alpha, or color.
+/// The channels that a format accepts: all (empty), or color and alpha, or color.
 std::vector<int> channels_to_write(const ImageSpec& spec, const OIIO::ImageOutput& out,
                                    bool leaves_out_alpha) {
     const bool takes_alpha = out.supports("alpha") != 0;
@@ -54,8 +54,8 @@ std::vector<int> channels_to_write(const ImageSpec& spec, const OIIO::ImageOutpu
     return channels;
 }
 
-/// Compressions of the formats that have several, or a quality, as OpenImageIO names them. Its
-/// writers take an unknown name for the default and say nothing.
+/// Compressions of the formats that have several, or a quality, by OpenImageIO's names. Its writers
+/// silently replace an unknown name by the default.
 struct FormatCompressions {
     std::string_view format;
     std::vector<std::string> names;
@@ -79,8 +79,8 @@ const FormatCompressions* compressions_of(std::string_view format) {
     return found == all.end() ? nullptr : &*found;
 }
 
-/// Nothing but heif files have it: the codec is not said by the name. ISO/IEC 14496-12, 4.3: the
-/// brand of a file stands in its box `ftyp`.
+/// Only heif files need this check, because the name does not state the codec. ISO/IEC 14496-12,
+/// 4.3: the brand of a file is in its box `ftyp`.
 std::string brand_of(const fs::path& path) {
     std::ifstream file(path, std::ios::binary);
     std::array<char, 12> start{};
@@ -96,8 +96,9 @@ std::string title_of(const OIIO::TypeDesc& type) {
 
 }  // namespace
 
-/// What OIIO's writers write to. They do not look whether their last bytes reached the disk (PNG at
-/// none), and libjpeg ends the process when one did not. So this takes everything, and remembers.
+/// The file of OIIO's writers. They do not check whether their last bytes reached the disk (PNG:
+/// none of them), and libjpeg ends the process after a failed write. This file therefore accepts
+/// everything, and remembers the first error.
 class PictureWriter::FileProxy final : public OIIO::Filesystem::IOProxy {
   public:
     explicit FileProxy(AtomicFile& target) : IOProxy(target.path().string(), Write) {
@@ -115,8 +116,7 @@ class PictureWriter::FileProxy final : public OIIO::Filesystem::IOProxy {
     FileProxy(const FileProxy&) = delete;
     FileProxy& operator=(const FileProxy&) = delete;
 
-    /// Puts `bytes` between those that the writer writes before and behind `place`, which it
-    /// passes once.
+    /// Inserts `bytes` at `place`, which the writer passes once.
     void insert(std::size_t place, std::string bytes) {
         place_ = static_cast<int64_t>(place);
         inserted_ = std::move(bytes);
@@ -153,9 +153,10 @@ class PictureWriter::FileProxy final : public OIIO::Filesystem::IOProxy {
     }
     [[nodiscard]] std::size_t size() const override { return static_cast<std::size_t>(size_); }
 
-    /// What went wrong so far: an errno, or 0.
+    /// The first error: an errno, or 0.
     [[nodiscard]] int error_number() const { return errno_; }
-    /// Hands everything to the system. @returns  0 or an errno.
+    /// Passes everything to the system.
+    /// @returns  0 or an errno
     [[nodiscard]] int finish() {
         if (!file_) return errno_;
         if (std::fclose(std::exchange(file_, nullptr)) != 0 && !errno_) errno_ = errno;
@@ -277,12 +278,12 @@ ImageSpec PictureWriter::plan(const ImageSpec& picture) {
     ImageSpec spec = picture;
     spec.tile_width = spec.tile_height = spec.tile_depth = 0;  // those of the file it came from
     spec.channelformats.clear();
-    // One level alone is no texture: OpenEXR's writer would wait for the others.
+    // A single level is not a texture: OpenEXR's writer would wait for the others.
     if (spec.get_string_attribute("textureformat") == "Plain Texture")
         spec.erase_attribute("textureformat");
     channels_ = channels_to_write(spec, *out_, options_.alpha == WriteOptions::Alpha::ignore);
     if (!channels_.empty()) {
-        // One pixel shows what becomes of names and places of channels.
+        // One pixel shows the format's names and order of channels.
         ImageSpec pixel = spec;
         pixel.width = pixel.height = pixel.depth = 1;
         const ImageBuf kept = checked(OIIO::ImageBufAlgo::channels(
@@ -294,8 +295,7 @@ ImageSpec PictureWriter::plan(const ImageSpec& picture) {
         spec = std::move(pixel);
     }
 
-    // What a viewer shows of a picture is its display window. Formats that have none hold just
-    // that.
+    // Viewers show the display window. Formats without data windows store only that.
     const ROI window = picture.roi_full();
     const ROI data = picture.roi();
     last_row_ = data.yend;
@@ -320,13 +320,13 @@ ImageSpec PictureWriter::plan(const ImageSpec& picture) {
         spec.depth = spec.full_depth = window.depth();
     }
 
-    // PNG wants color that is not multiplied by alpha. OIIO's writer divides integers, rounding
-    // down, and for "Gamma2.2" and its like it divides by a power of alpha: 0.25 of 0.5 becomes 1.
+    // PNG needs un-premultiplied color. OIIO's writer divides integers, rounding down, and for
+    // "Gamma2.2" and similar spaces it divides by a power of alpha: 0.25 of 0.5 becomes 1.
     divides_by_alpha_ = format() == "png" && spec.alpha_channel >= 0 &&
                         spec.get_int_attribute("oiio:UnassociatedAlpha", 0) == 0;
     if (divides_by_alpha_) spec.attribute("oiio:UnassociatedAlpha", 1);
     alpha_ = spec.alpha_channel < spec.nchannels ? spec.alpha_channel : -1;
-    // OpenEXR's viewers show light without cover, and elements such as flames have nothing else.
+    // OpenEXR's viewers show color with zero alpha, and elements such as flames have nothing else.
     watches_cover_ =
         alpha_ >= 0 && options_.alpha == WriteOptions::Alpha::keep && format() != "openexr";
 
@@ -356,7 +356,7 @@ ImageSpec PictureWriter::file_spec(const ImageSpec& picture) {
         spec.format = OIIO::TypeUnknown;
         return spec;
     }
-    // Formats have not every type. One pixel in memory shows what they make of it.
+    // Formats lack some types. One pixel in memory shows the replacement.
     std::vector<unsigned char> memory;
     OIIO::Filesystem::IOVecOutput proxy(memory);
     const std::string name = temporary_->path().string();
@@ -374,7 +374,7 @@ ImageSpec PictureWriter::file_spec(const ImageSpec& picture) {
 void PictureWriter::open(const ImageSpec& picture) {
     if (const int error = temporary_->check_target()) fail(reason_of(error));
     ImageSpec spec = plan(picture);
-    // These writers put in the time of writing.
+    // These writers record the time of writing.
     if (format() == "openexr" || format() == "tiff" || format() == "dpx") {
         if (const std::string date = source_date();
             !date.empty() && !spec.find_attribute("DateTime"))
@@ -386,8 +386,8 @@ void PictureWriter::open(const ImageSpec& picture) {
                        OIIO::TypeDesc(OIIO::TypeDesc::UINT8, static_cast<int>(color.icc.size())),
                        color.icc.data());
     }
-    // libtiff reads its own directories back when there is an EXIF one (a picture marked sRGB has),
-    // and a proxy for writing cannot be read: the file would lack its first directory.
+    // libtiff reads its own directories again if there is an EXIF directory (as in a picture tagged
+    // sRGB), and a proxy for writing cannot be read: the file would lack its first directory.
     std::string name = temporary_->path().string();
     if (out_->supports("ioproxy") && format() != "tiff") {
         proxy_ = std::make_unique<FileProxy>(*temporary_);
@@ -396,7 +396,7 @@ void PictureWriter::open(const ImageSpec& picture) {
         out_->set_ioproxy(proxy_.get());
         name = fs::path(path_).filename().string();
     } else {
-        // So that it opens this file and no link that somebody put there.
+        // Opens this file, and not a link that another program put there.
         const int file = temporary_->create();
         if (file < 0) fail(reason_of(errno));
         ::close(file);
@@ -482,7 +482,7 @@ void PictureWriter::write_rows(const ImageBuf& rows) {
         write_part(*fitted);
         return;
     }
-    // Black above the first row and below the last goes with them, some rows at a time.
+    // Adds the black rows above the first and below the last, some at a time.
     const int data_end = rows.roi().yend;
     const int end = data_end == last_row_ ? window_->yend : std::min(data_end, window_->yend);
     const std::size_t row_bytes = static_cast<std::size_t>(window_->width()) *
@@ -542,7 +542,7 @@ void PictureWriter::finish() {
         options_.warn(
             "the file contains HEVC (HEIC), not AV1, because this OpenImageIO cannot write AVIF");
     if (const int error = temporary_->keep()) fail(reason_of(error));
-    // Who reads the file through OIIO's shared cache gets the new one.
+    // Readers that use OIIO's shared cache get the new file.
     auto cache = OIIO::ImageCache::create(true);  // a pointer, or since 3.0 a shared one
     cache->invalidate(OIIO::ustring(path_));
     OIIO::ImageCache::destroy(cache);

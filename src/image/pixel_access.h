@@ -7,12 +7,12 @@
 
 #include "tonewright/version.h"
 
-/// Access to one channel of interleaved pixels of any type. Types are converted at the edge only,
-/// so that there is one kernel inside, not one for each pair of pixel types.
+/// Access to one channel of interleaved pixels of any type. Types are converted here only, so that
+/// one kernel serves all pairs of pixel types.
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// How the values of one pixel type are read and written. Conversions are OIIO's: integers stand
-/// for [0, 1] (or [-1, 1]), rounded and clamped when written.
+/// Reading and writing of one pixel type. Conversions are OIIO's: integers represent [0, 1] (or
+/// [-1, 1]), rounded and clamped when written.
 struct PixelAccess {
     /// `stride` is the distance between pixels in bytes; `count` values are read or written.
     void (*load_float)(const std::byte* from, std::ptrdiff_t stride, float* to,
@@ -23,15 +23,15 @@ struct PixelAccess {
                         std::size_t count) noexcept;
     void (*store_double)(const double* from, std::byte* to, std::ptrdiff_t stride,
                          std::size_t count) noexcept;
-    /// The same of values that follow each other in memory, as fast as it gets.
+    /// A fast path for values that are contiguous in memory.
     void (*run_to_float)(const std::byte* from, float* to, std::size_t count) noexcept;
     void (*run_from_float)(const float* from, std::byte* to, std::size_t count) noexcept;
-    /// Bits of one value moved as they are.
+    /// Copies the bits of one value.
     void (*copy)(const std::byte* from, std::ptrdiff_t from_stride, std::byte* to,
                  std::ptrdiff_t to_stride, std::size_t count) noexcept;
 };
 
-/// Null for a type that OIIO has no pixels of (64-bit integers, strings, pointers).
+/// Null for types that cannot be pixels (64-bit integers, strings, pointers).
 [[nodiscard]] const PixelAccess* pixel_access(const OIIO::TypeDesc& type) noexcept;
 
 TONEWRIGHT_NAMESPACE_END

@@ -11,7 +11,7 @@ void append_big_endian(std::string& to, std::uint32_t value) {
         to += static_cast<char>(value >> shift & 255U);
 }
 
-/// ISO 3309, as W3C PNG (third edition), 5.5 has it.
+/// ISO 3309, as in W3C PNG (third edition), 5.5.
 std::uint32_t checksum(std::string_view bytes) {
     std::uint32_t crc = 0xFFFFFFFFU;
     for (const char byte : bytes) {

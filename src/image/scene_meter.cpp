@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What operators ask of a whole picture, and what meters do: one pass for both.
+// One pass for the statistics of operators and for metering.
 //
-// Every row is summed by itself, from left to right, and the rows from top to bottom: whichever
-// threads they were on, the sums are the same to the last bit. Sums are compensated, so that a row
-// of a million pixels loses nothing. Pixels that do not count, or that only statistics count, are
-// rare and taken out of a span before the vector code runs.
+// Each row is summed from left to right, and then the rows from top to bottom, so threads change no
+// bit of the sums. Sums are compensated, so that a row of a million pixels loses no precision.
+// Pixels that do not count, or that only statistics count, are rare. They are removed from a span
+// before the vector code runs.
 #include "image/scene_meter.h"
 
 #include <OpenImageIO/imagebufalgo_util.h>
@@ -33,7 +33,7 @@ using OIIO::ImageBuf;
 using OIIO::ROI;
 
 /// A. Neumaier, "Rundungsfehleranalyse einiger Verfahren zur Summation endlicher Summen", ZAMM 54
-/// (1974): the rounding errors are summed beside the sum.
+/// (1974): rounding errors are summed separately.
 class Sum {
   public:
     void add(double x) noexcept {
@@ -135,7 +135,7 @@ struct Light {
     }
 };
 
-/// Of a row, or of all.
+/// Of one row, or of all.
 struct Measured {
     Light finite;
     Light limited;  // pixels with NaN or infinities, which only statistics count
@@ -157,11 +157,12 @@ struct Measured {
 /// Luminances below are black to the histogram.
 constexpr double kHistogramBlack = 1e-6;
 
-/// The bins of a histogram, found without a logarithm: a table by exponent and first digits, and
-/// the next edge where one is within such a step.
+/// The bins of a histogram, without logarithms: a table by exponent and first digits, and the next
+/// edge if one is within such a step.
 class Bins {
   public:
-    /// Several counters of each bin: neighbors are often alike, and one would wait for the other.
+    /// Several counters for each bin: neighbors are often in the same bin, and one increment would
+    /// wait for the other.
     static constexpr std::size_t kCopies = 4;
 
     explicit Bins(const MeterOptions& options) {
@@ -175,7 +176,7 @@ class Bins {
             edges_[static_cast<std::size_t>(i)] = std::max(
                 std::exp2(options.histogram_min + range * (i - 1) / (last - 1)), kHistogramBlack);
         }
-        // As few digits as tell the edges apart: the table shares the cache with pixels.
+        // As few digits as distinguish the edges, because the table shares the cache with pixels.
         for (digits_ = kFewestDigits; digits_ < kMostDigits; ++digits_) {
             if (!has_narrow_bin()) break;
         }
@@ -224,7 +225,7 @@ class Bins {
     static constexpr double kFirst = 0x1p-20;
     static_assert(kHistogramBlack > kFirst);
 
-    /// Bits that rise with luminances, from those of kFirst on.
+    /// Bits that increase with luminance, starting with those of kFirst.
     static std::int64_t place_of(double luminance) noexcept {
         return std::max(
             std::bit_cast<std::int64_t>(luminance) - std::bit_cast<std::int64_t>(kFirst),
@@ -254,11 +255,11 @@ class Bins {
     bool has_narrow_ = false;
 };
 
-/// How a picture is measured.
+/// Settings of the measurement.
 struct Plan {
     MeterOptions options;
     SceneMeter::Figures figures;
-    ChannelLayout layout;  // its alpha: -1 where alpha plays no part
+    ChannelLayout layout;  // its alpha: -1 if alpha is ignored
     bool divides;
     bool converts;
     Matrix3 to_rec709;
@@ -339,7 +340,7 @@ class RowMeter {
               std::size_t n) const noexcept {
         access_.load_double(source.pixels + channel * size_, source.stride, to.data(), n);
     }
-    /// RGB or RGBA as floats that follow each other, of floats or halves; else null.
+    /// Contiguous RGB or RGBA floats, from floats or halves; otherwise null.
     const float* packed_floats(const SpanSource& source, std::size_t n) noexcept {
         const bool is_half = type_ == OIIO::TypeHalf;
         if ((type_ != OIIO::TypeFloat && !is_half) || plan_.layout.is_gray ||
@@ -354,8 +355,9 @@ class RowMeter {
         return floats_.data();
     }
 
-    /// Moves the pixels that count to the front, and those that only statistics count apart.
-    /// @returns  how many count
+    /// Moves the counted pixels to the front, and those that only statistics count to a separate
+    /// buffer.
+    /// @returns  the number of counted pixels
     std::size_t sort_out(std::size_t n, bool has_alpha, Measured& row, std::size_t& limited) {
         std::size_t counted = 0;
         for (std::size_t i = 0; i < n; ++i) {
@@ -380,7 +382,7 @@ class RowMeter {
                 limited_[c][limited] = sanitize(color[c] / (plan_.divides ? alpha : 1));
             ++limited;
         }
-        // Alpha is divided by in whole blocks.
+        // Divides by alpha in whole blocks.
         std::fill(planes_[3].begin() + static_cast<std::ptrdiff_t>(counted), planes_[3].end(), 1);
         return counted;
     }
@@ -415,7 +417,7 @@ class RowMeter {
     std::vector<std::uint64_t> counts_;  // of the histogram
 };
 
-/// 2^(mean log2) of the bins, each weighted with what is between the percentiles of it.
+/// 2^(mean log2) of the bins, each weighted with its pixels between the percentiles.
 double average_of_bins(const std::vector<std::uint64_t>& histogram, const MeterOptions& options) {
     std::uint64_t all = 0;
     for (std::size_t i = 1; i < histogram.size(); ++i)
@@ -454,15 +456,15 @@ double luminance_at(const std::vector<std::uint64_t>& histogram, double rank,
                      options.histogram_min);
 }
 
-/// Puts the value that has `rank` others before it there, and smaller ones before it.
+/// Partially sorts: the value of this rank is at its position, and smaller ones are before it.
 double select(std::vector<double>& values, std::size_t from, std::size_t rank) {
     const auto at = [&](std::size_t i) { return values.begin() + static_cast<std::ptrdiff_t>(i); };
     std::nth_element(at(from), at(rank), values.end());
     return values[rank];
 }
 
-/// 2^(mean log2) of the luminances between the percentiles; those at the ends with the part of them
-/// that is between.
+/// 2^(mean log2) of the luminances between the percentiles; those at the ends count by their
+/// fraction between them.
 double average_of_luminances(std::vector<double> values, const MeterOptions& options) {
     const auto n = static_cast<double>(values.size());
     const double low = n * options.low_percentile / 100;
@@ -471,7 +473,7 @@ double average_of_luminances(std::vector<double> values, const MeterOptions& opt
     const auto end = static_cast<std::size_t>(std::ceil(high));
     if (first > 0) (void)select(values, 0, first);
     if (end < values.size()) (void)select(values, first, end);
-    // The smallest and the largest may count in part.
+    // The smallest and the largest may count partially.
     std::nth_element(values.begin() + static_cast<std::ptrdiff_t>(first),
                      values.begin() + static_cast<std::ptrdiff_t>(first),
                      values.begin() + static_cast<std::ptrdiff_t>(end));
@@ -587,7 +589,7 @@ Metering SceneMeter::metering() const {
     if (options.exact) {
         m.histogram_average = average_of_luminances(all.kept, options);
         std::vector<double> values = all.kept;
-        std::size_t sorted = 0;  // what is before is smaller
+        std::size_t sorted = 0;  // the values before it are smaller
         for (const double percent : Metering::kPercents) {
             const double wanted = static_cast<double>(values.size()) * percent / 100;
             const std::size_t rank = std::min(static_cast<std::size_t>(wanted), values.size() - 1);

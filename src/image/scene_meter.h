@@ -16,11 +16,11 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// the last bit.
 class TONEWRIGHT_API SceneMeter {
   public:
-    /// Whether pixels without cover are left out. Where that leaves none (a channel that was never
-    /// written, or light alone), a second pass ignores cover.
+    /// Leaves out pixels whose alpha is 0 or not finite. If no pixel is left (a channel that was
+    /// never written, or emission only), a second pass ignores alpha.
     enum class Cover : unsigned char { counts, ignored };
     static constexpr std::array kTries = {Cover::counts, Cover::ignored};
-    /// Statistics alone cost less.
+    /// Statistics only, which is faster.
     enum class Figures : unsigned char { statistics, all };
 
     /// @param spec    of the picture
@@ -33,7 +33,7 @@ class TONEWRIGHT_API SceneMeter {
 
     /// @throws Error  the pixels cannot be read.
     void add(const OIIO::ImageBuf& picture, const OIIO::ROI& roi);
-    /// Some pixels have cover.
+    /// True if some pixels have an alpha that is finite and not 0.
     [[nodiscard]] bool has_cover() const;
     [[nodiscard]] SceneStatistics statistics() const;
     [[nodiscard]] Metering metering() const;
@@ -43,15 +43,15 @@ class TONEWRIGHT_API SceneMeter {
     std::unique_ptr<State> state_;
 };
 
-/// Hands all parts of a picture to a meter. Called again where cover has to be ignored.
+/// Passes all parts of a picture to a meter. Called again if alpha must be ignored.
 using PicturePass = std::function<void(SceneMeter&)>;
 [[nodiscard]] TONEWRIGHT_API SceneMeter measure_picture(const OIIO::ImageSpec& spec,
                                                         const MeterOptions& options,
                                                         SceneMeter::Figures figures, int nthreads,
                                                         const PicturePass& pass);
 
-/// Of a file, or of the rows of a region of it.
-/// @throws Error  without the file's name, but for FileError
+/// Meters a file, or the rows of a region of it.
+/// @throws Error  without the file's name, unless it is a FileError
 [[nodiscard]] TONEWRIGHT_API SceneMeter measure_file(const std::string& path,
                                                      const MeterOptions& options,
                                                      SceneMeter::Figures figures, int nthreads,

@@ -45,7 +45,7 @@ bool is_done(const Tonemapper& tonemapper, const FrameFiles& frame,
         check_is_complete(result);
         return true;
     } catch (const std::exception&) {
-        return false;  // whatever it is, it is told when the frame is made
+        return false;  // the frame itself reports every error
     }
 }
 
@@ -103,7 +103,7 @@ void tonemap_files(const Tonemapper& tonemapper, std::vector<FrameFiles>& frames
         for (std::size_t job = 1; job < jobs; ++job)
             others.emplace_back(work, job);
     } catch (const std::system_error&) {
-        // No more threads are to be had: these do the work.
+        // If no more threads can be started, the existing ones do the work.
     }
     work(0);
 }

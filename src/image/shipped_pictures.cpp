@@ -22,7 +22,7 @@ namespace {
 
 using OIIO::ImageBuf;
 
-// Small enough for a table of ten columns; hues and stops can still be told apart.
+// Small enough for a table of ten columns; hues and stops are still distinct.
 constexpr int kThumbnailWidth = 96;
 constexpr int kThumbnailHeight = 54;
 // The chart is drawn larger and averaged: thin lines and steps keep their light.
@@ -61,7 +61,7 @@ std::vector<float> small_chart() {
     return small;
 }
 
-/// What an sRGB screen shows of the chart through the LUT, as its application interpolates.
+/// The chart through the LUT on an sRGB screen, with the interpolation of its application.
 ImageBuf make_thumbnail(const ShippedLut& shipped, const std::vector<float>& light) {
     const LutRequest& request = shipped.request;
     const ReferenceEngine encode(

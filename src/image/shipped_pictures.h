@@ -8,9 +8,8 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// The files of the LUTs, those that are pictures and the thumbnails included: what a picture
-/// format's `contents` lack is filled in.
-/// @throws Error  when OpenImageIO cannot write PNG.
+/// Fills in the `contents` of LUTs that are pictures, and the thumbnails.
+/// @throws Error  OpenImageIO cannot write PNG
 [[nodiscard]] TONEWRIGHT_API std::vector<GeneratedFile> make_shipped_files(
     std::vector<ShippedLut>& luts);
 

@@ -26,12 +26,12 @@ int find_alpha(const OIIO::ImageSpec& spec) {
     return -1;
 }
 
-/// The attributes that say what a picture's numbers are.
+/// The attributes that state a picture's color.
 constexpr std::array kColorMetadata = {"oiio:UnassociatedAlpha", "oiio:ColorSpace",
                                        "colorInteropID", "acesImageContainerFlag",
                                        "chromaticities"};
 
-/// Names that say nothing of a picture's color.
+/// Names that state no color.
 bool is_no_name(std::string_view name) {
     constexpr std::array kNone = {"", "scene_linear", "unknown", "raw", "data"};
     return std::any_of(kNone.begin(), kNone.end(), [&](const char* none) {
@@ -45,7 +45,7 @@ SourceColor color_of_chromaticities(const float* floats) {
     std::copy_n(floats, xy.size(), xy.begin());
     const Primaries primaries = {
         "chromaticities", {xy[0], xy[1]}, {xy[2], xy[3]}, {xy[4], xy[5]}, {xy[6], xy[7]}};
-    // The file has floats: those of a known space are that space.
+    // The file has floats, so primaries near those of a known space count as that space.
     constexpr double kRounding = 1e-6;
     const auto is_near = [](const Chromaticity& a, const Chromaticity& b) {
         return std::fabs(a.x - b.x) <= kRounding && std::fabs(a.y - b.y) <= kRounding;
@@ -63,7 +63,7 @@ SourceColor color_of_chromaticities(const float* floats) {
         text += fmt::format("{}{}", i > 0 ? "," : "", floats[i]);
         if (!(std::fabs(floats[i]) <= 10)) are_numbers = false;
     }
-    // Three primaries on a line make no colors, and a white without luminance no white.
+    // Three primaries on a line give no colors, and a white without luminance is not white.
     const double area =
         (primaries.green.x - primaries.red.x) * (primaries.blue.y - primaries.red.y) -
         (primaries.blue.x - primaries.red.x) * (primaries.green.y - primaries.red.y);

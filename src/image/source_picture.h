@@ -12,24 +12,24 @@
 #include "tonewright/tonemap.h"
 #include "tonewright/view.h"
 
-/// Pictures that are read span by span, whatever their pixel type, in memory or in OIIO's cache.
+/// Pictures of any pixel type that are read span by span, in memory or in OIIO's cache.
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// Pixels that are worked on at a time: four float planes of them are 16 KiB and stay in the L1
+/// Pixels that are processed at a time: four float planes of them are 16 KiB and stay in the L1
 /// cache.
 inline constexpr std::size_t kSpan = 1024;
 
-/// What is wrong with a picture itself. Who knows its file puts the name before it.
+/// An error of the picture itself. The code that knows its file adds the name.
 class TONEWRIGHT_API PictureError : public FileError {
   public:
     using FileError::FileError;
 };
 
-/// Some of OIIO's readers (FITS) leave out the names of channels, which OIIO's own functions then
-/// stumble over: gives them OIIO's defaults. An alpha or depth channel that is not there is none.
+/// Some of OIIO's readers (FITS) leave out channel names, and OIIO's own functions then fail: this
+/// gives them OIIO's default names. An alpha or depth channel without a channel is removed.
 TONEWRIGHT_API void complete_channel_names(OIIO::ImageSpec& spec);
 
-/// Which channels are color and alpha. By position, not by name.
+/// Channels of color and alpha, by position, not by name.
 struct ChannelLayout {
     bool is_gray = false;  // channel 0 alone is color, else 0, 1, 2
     int alpha = -1;        // -1: none
@@ -39,22 +39,19 @@ struct ChannelLayout {
 ///                       luminance and chroma (Y, RY, BY) instead of color.
 [[nodiscard]] TONEWRIGHT_API ChannelLayout channel_layout(const OIIO::ImageSpec& spec);
 
-/// True when color has to be divided by alpha to be a color.
+/// True if color must be un-premultiplied.
 [[nodiscard]] TONEWRIGHT_API bool divides_by_alpha(const OIIO::ImageSpec& spec,
                                                    TonemapOptions::Unpremult unpremult);
 
-/// What the numbers of a picture mean.
+/// The color of a picture's numbers.
 ///
-/// @param input    a name (@see find_source_color), or `auto`: what the picture says. That is
-///                 `oiio:ColorSpace`, where it is another one than the linear Rec.709 that readers
-///                 presume; else `colorInteropID`; else ACES2065-1 where `acesImageContainerFlag`
-///                 is set; else linear light of its `chromaticities`; else linear Rec.709.
-/// @throws Error         `input` is an unknown name.
-/// @throws PictureError  the picture has a name that is unknown, or impossible chromaticities.
+/// @param input    a name (@see find_source_color), or `auto`: @see TonemapOptions::input
+/// @throws Error         `input` is an unknown name
+/// @throws PictureError  the picture has an unknown name, or impossible chromaticities
 [[nodiscard]] TONEWRIGHT_API SourceColor source_color(const OIIO::ImageSpec& spec,
                                                       std::string_view input);
 
-/// Only what these functions look at: rows have no use for the texts of their picture.
+/// Only the fields that these functions read, because rows do not need the texts of their picture.
 [[nodiscard]] TONEWRIGHT_API OIIO::ImageSpec with_color_metadata_alone(const OIIO::ImageSpec& spec);
 
 /// @param what    "source" or "destination"
@@ -65,12 +62,12 @@ TONEWRIGHT_API void check_pixel_type(const char* what, const OIIO::TypeDesc& typ
 /// @throws Error  no picture, or one that cannot be read, or deep, or of a type without pixels.
 TONEWRIGHT_API void check_source(const OIIO::ImageBuf& source);
 
-/// After a pass over it: a cached picture is read as it is worked on, and its cache reports through
-/// the picture.
-/// @throws Error  with the reader's message.
+/// Call it after a pass: a cached picture is read during the pass, and its cache reports errors
+/// through the picture.
+/// @throws Error  with the reader's message
 TONEWRIGHT_API void check_was_read(const OIIO::ImageBuf& source, bool is_complete);
 
-/// Where the pixels of a span are.
+/// Position of a span's pixels in memory.
 struct SpanSource {
     const std::byte* pixels;  // null: outside the data window, black
     std::ptrdiff_t stride;    // bytes from pixel to pixel
@@ -80,8 +77,8 @@ struct SpanSource {
 TONEWRIGHT_API void load_color(const OIIO::TypeDesc& type, bool is_gray, const SpanSource& source,
                                const std::array<float*, 3>& rgb, std::size_t n) noexcept;
 
-/// What color is divided by: alpha, and 1 where there is nothing to divide by (0 or not finite).
-/// @param covers  null, or gets 1 where alpha is a divisor, else 0
+/// The divisor of color: alpha, or 1 if alpha is 0 or not finite.
+/// @param covers  null, or gets 1 where alpha is the divisor, else 0
 TONEWRIGHT_API void load_divisor(const OIIO::TypeDesc& type, int alpha, const SpanSource& source,
                                  float* to, std::uint8_t* covers, std::size_t n) noexcept;
 
@@ -96,9 +93,9 @@ class TONEWRIGHT_API SpanReader {
         }
     }
 
-    /// Pixels in memory are read where they are; those of a cached picture are fetched as they are.
-    /// @param n  at most kSpan pixels, all inside the data window.
-    /// @returns  false when the picture could not be read.
+    /// Uses pixels in memory directly; fetches those of a cached picture.
+    /// @param n  at most kSpan pixels, all inside the data window
+    /// @returns  false if the picture could not be read
     bool locate(int x, int y, int z, std::size_t n, SpanSource& source) {
         if (picture_.localpixels()) {
             source = {static_cast<const std::byte*>(picture_.pixeladdr(x, y, z)),

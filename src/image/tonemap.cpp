@@ -2,13 +2,11 @@
 //
 // tonemap() on OpenImageIO pictures.
 //
-// A picture is worked on in spans of at most kSpan pixels of one row: channels are gathered into
-// planar float, whatever the pixel type, run through the engine, and scattered into the
-// destination. No pixel type is known to the kernel.
+// A picture is processed in spans of at most kSpan pixels of one row: channels of any pixel type
+// are gathered into planar float, run through the engine, and scattered into the destination.
 //
-// Views are compiled once, whatever the exposure and the statistics that operators take from each
-// picture: both are uniforms. Where an operator needs its statistics as constants, it is compiled
-// anew for each picture.
+// Views are compiled once for all exposures and statistics, because both are uniforms. An operator
+// that needs its statistics as constants is compiled again for each picture.
 #include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imagebufalgo_util.h>
 #include <fmt/format.h>
@@ -50,7 +48,7 @@ struct CopiedChannel {
     int to;
 };
 
-/// Which channel of the source goes where.
+/// Maps channels of the source to the destination.
 struct ChannelPlan {
     bool gray_source = false;  // channel 0 alone is color
     bool gray_result = false;
@@ -60,8 +58,8 @@ struct ChannelPlan {
 
 [[noreturn]] void fail(const std::string& message) { throw Error(message); }
 
-/// Gives the picture the message of the exception that is being handled; callers' functions may
-/// throw anything. Without the memory for a message the picture has none.
+/// Sets the message of the current exception as the picture's error; functions of callers may throw
+/// anything. Without memory for a message, the error is empty.
 /// @returns  false
 bool report_thrown(ImageBuf& dst, const char* prefix = "tonemap: ") noexcept {
     try {
@@ -101,7 +99,7 @@ ResolvedOperator operator_of(const TonemapOptions& options) {
     return resolve_picture_operator(options.op, options.settings, options.look, options.others);
 }
 
-/// The same options, with what the operator's text says in their own places.
+/// The same options, with the operator's text split into its parts.
 TonemapOptions in_places(TonemapOptions options) {
     const ResolvedOperator op = operator_of(options);
     options.op = op.name();
@@ -115,18 +113,18 @@ View view_of(const TonemapOptions& options, const Settings& settings, const Sour
                      source, options.exposure_stops, options.display, options.reference_white);
 }
 
-/// True when a picture decides on some of the operator's parameters.
+/// True if some of the operator's parameters come from a picture.
 bool depends_on_picture(const TonemapOptions& options) {
     return options.statistics == TonemapOptions::Statistics::from_picture &&
            settings_for_picture(operator_of(options), {}).size() > options.settings.size();
 }
 
-/// Planar colors with strides, as SimdEngine::run() has them. In and out may be the same.
+/// Planar colors with strides, as in SimdEngine::run(). In and out may be the same.
 using PlanarMap = std::function<void(const std::array<const float*, 3>& in,
                                      std::ptrdiff_t in_stride, const std::array<float*, 3>& out,
                                      std::ptrdiff_t out_stride, std::size_t count)>;
 
-/// Tells how much of a picture is done, from one thread at a time, and hears when to stop.
+/// Reports the progress of a picture, from one thread at a time, and receives the request to stop.
 class Progress {
   public:
     Progress(OIIO::ProgressCallback callback, void* data) : callback_(callback), data_(data) {}
@@ -153,15 +151,15 @@ class Progress {
     std::atomic<bool> stopped_ = false;
 };
 
-/// What is done to a picture.
+/// The operations on a picture.
 struct PictureMap {
     PlanarMap run;
-    /// A gray picture stays one.
+    /// A gray picture stays gray.
     bool keeps_gray = false;
     /// In messages.
     std::string label;
     TonemapOptions::Unpremult unpremult = TonemapOptions::Unpremult::automatic;
-    /// Not null: color of the data window, which is taken instead of the source's.
+    /// Not null: replaces the color of the source in the data window.
     const ScenePlanes* light = nullptr;
 };
 
@@ -169,7 +167,7 @@ struct PictureMap {
 void run_picture(const PictureMap& with, ImageBuf& dst, const ImageBuf& src, ROI roi, int nthreads,
                  Progress& progress);
 
-/// What a local operator begins with: light of Rec.709, not negative.
+/// The input of a local operator: light of Rec.709, not negative.
 Pipeline light_stages(const View& view) {
     Pipeline stages = view.input_decode;
     stages.emplace_back(MatrixStage{rgb_to_rgb(view.input_primaries, kRec709)});
@@ -177,8 +175,8 @@ Pipeline light_stages(const View& view) {
     return stages;
 }
 
-/// Exposures that a program takes as a number, up and down, in stops: what light they make of a
-/// picture is the domain of its curves. Beyond, and without exposure, a program has its own.
+/// Range of exposures, up and down, in stops, that a program takes as a number; it extends the
+/// domain of its curves. Exposures beyond it, and exposure 0, have their own programs.
 constexpr double kMostLiveStops = 16;
 
 bool is_live_exposure(double stops) { return stops != 0 && std::fabs(stops) <= kMostLiveStops; }
@@ -187,7 +185,7 @@ bool is_exposure_live(const View& view) {
     return is_live_exposure(view.exposure_stops) && !view.op.op->is_local();
 }
 
-/// What the engine has to do: behind a local operator, the display.
+/// The engine's part: after a local operator, the display.
 Pipeline engine_stages(View view, const LiveUniforms& uniforms) {
     if (view.op.op->is_local()) {
         view.input_primaries = kRec709;
@@ -204,10 +202,10 @@ LiveUniforms with_exposure(LiveUniforms uniforms, const View& view) {
     return uniforms;
 }
 
-/// What a picture is run through.
+/// The programs that a picture passes.
 struct Prepared {
-    /// With a program for all exposures that are live, if the view's own is, and for all values of
-    /// the statistics that are.
+    /// A program for all live exposures, unless the view's own is fixed, and for all live
+    /// statistics.
     Prepared(View v, const LiveUniforms& statistics)
         : view(std::move(v)),
           uniforms(with_exposure(statistics, view)),
@@ -223,9 +221,9 @@ struct Prepared {
         if (program.to_light) to_light.emplace(program.to_light->with_uniforms({}));
     }
 
-    /// Whether a gray picture stays one; at all exposures that are live.
+    /// True if a gray picture stays gray, at all live exposures.
     [[nodiscard]] bool keeps_gray() const {
-        // Looked up when a picture is gray, which few are. Threads find the same.
+        // Computed only for gray pictures, which are rare. All threads get the same result.
         Known known = *keeps_gray_;
         if (known == Known::nothing) {
             View any = view;
@@ -239,7 +237,7 @@ struct Prepared {
     View view;
     LiveUniforms uniforms;
     SimdEngine engine;
-    /// Of a local operator: what comes before it. `engine` comes behind it.
+    /// With a local operator: the stages before it. `engine` has those after it.
     std::optional<SimdEngine> to_light;
 
   private:
@@ -265,7 +263,7 @@ struct Tonemapper::State {
           depends_on_picture(tonewright::depends_on_picture(options)),
           programs_(std::make_shared<Programs>(kMostPrepared)) {
         if (depends_on_picture) statistics_ = live_statistics(operator_of(options));
-        // Tells what is wrong with the options before there is a picture.
+        // Reports wrong options before there is a picture.
         is_local =
             view_of(options, options.settings, source_color({}, options.input)).op.op->is_local();
     }
@@ -288,12 +286,12 @@ struct Tonemapper::State {
         options.settings = settings_for_picture(op, statistics);
         options.statistics = TonemapOptions::Statistics::defaults;
         depends_on_picture = false;
-        // Tells what is wrong with the statistics.
+        // Reports wrong statistics.
         (void)operator_of(options);
     }
 
     TonemapOptions options;
-    /// Prepared anew with each picture's statistics.
+    /// Made again with each picture's statistics.
     bool depends_on_picture;
     bool is_local = false;
 
@@ -346,8 +344,8 @@ class RowRunner {
         }
     }
 
-    /// Ends early when it is told to stop.
-    /// @returns  false when the source could not be read.
+    /// Ends early if the caller stops it.
+    /// @returns  false if the source could not be read
     bool run(const ROI& roi, Progress& progress) {
         const ROI window = src_.roi();
         for (int z = roi.zbegin; z < roi.zend; ++z) {
@@ -404,7 +402,7 @@ class RowRunner {
             copy(source, channel, to, to_stride, n);
     }
 
-    /// All channels of the source as floats where that is done in one go, else as they are.
+    /// All channels of the source as floats, if one conversion can do this; otherwise unchanged.
     struct FloatSpan {
         SpanSource source;
         OIIO::TypeDesc type;
@@ -420,8 +418,8 @@ class RowRunner {
                 OIIO::TypeFloat};
     }
 
-    /// Interleaved floats need no planes: the engine reads and writes the pictures, or what was
-    /// converted of them.
+    /// Interleaved floats need no planes: the engine reads and writes the pictures or their
+    /// converted copies.
     bool run_interleaved(const FloatSpan& from, const float* alpha, std::byte* to,
                          std::ptrdiff_t to_stride, std::size_t n) {
         constexpr std::ptrdiff_t kFloat = sizeof(float);
@@ -454,7 +452,7 @@ class RowRunner {
             std::copy_n(&light_->rgb[c][first], n, rgb[c]);
     }
 
-    /// The alpha to divide by; null where there is none, or nothing but 1.
+    /// The alpha to divide by; null if there is none, or if it is 1 everywhere.
     const float* load_alpha(const FloatSpan& from, std::size_t n) noexcept {
         if (plan_.alpha < 0 || !from.source.pixels) return nullptr;
         float* alpha = planes_.data() + 3 * kSpan;
@@ -519,8 +517,8 @@ class RowRunner {
     std::ptrdiff_t src_size_;
     std::ptrdiff_t dst_size_;
     std::vector<float> planes_;  // r, g, b (, alpha)
-    /// All channels of a span, converted in one go. Empty: for none that are as they are, or too
-    /// many for the first-level cache.
+    /// All channels of a span, converted together. Empty if no conversion is needed, or if they are
+    /// too many for the first-level cache.
     static constexpr std::size_t kMostChannels = 8;
     std::vector<float> from_, to_;
     std::vector<double> wide_;  // copied channels whose type changes; double holds every type
@@ -545,7 +543,7 @@ void run_picture(const PictureMap& with, ImageBuf& dst, const ImageBuf& src, ROI
             roi.chbegin, roi.chend, color_count));
     }
 
-    // A gray result takes one channel, unless the destination has a place for three.
+    // A gray result takes one channel, unless the destination has three.
     const bool wide_destination = dst.initialized() && dst.nchannels() >= 3;
     plan.gray_result = plan.gray_source && with.keeps_gray && !wide_destination;
     if (dst.initialized() && !plan.gray_result && dst.nchannels() < 3) {
@@ -585,7 +583,7 @@ void run_picture(const PictureMap& with, ImageBuf& dst, const ImageBuf& src, ROI
             }
         });
         if (error) std::rethrow_exception(error);
-        if (progress.stopped()) fail("cancelled");
+        if (progress.stopped()) fail("canceled");
         check_was_read(src, !unreadable);
     }
 }
@@ -608,7 +606,7 @@ void Tonemapper::State::run(ImageBuf& dst, const ImageBuf& src, ROI roi, int nth
         }
         return;
     }
-    // Of the whole picture, whatever the region: its parts must fit together.
+    // Statistics of the whole picture, so that regions match.
     const SceneStatistics statistics =
         measure_scene(src, options.input, options.unpremult, {}, nthreads);
     State(*this, statistics).run(dst, src, roi, nthreads, progress);
@@ -624,7 +622,7 @@ std::shared_ptr<const Prepared> Tonemapper::State::prepared_for(const SourceColo
         const std::shared_ptr<const Prepared> compiled = programs_->get(program, [&] {
             return Prepared(view_of(options, options.settings, source), statistics_);
         });
-        // Making a view takes longer than all the rest: only another one's statistics need it.
+        // Making a view takes longer than all other steps, so only other statistics need a new one.
         View view =
             statistics_.empty() ? compiled->view : view_of(options, options.settings, source);
         view.exposure_stops = options.exposure_stops;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Files into files. A picture goes through in batches of rows: while one is tone mapped the next is
-// read and the one before is written, each step in a thread of its own. Few batches are under way
-// at a time, so that the memory does not grow with the picture.
+// Tone mapping from file to file, in batches of rows. One thread reads the next batch, one tone
+// maps, and one writes the previous batch. The number of batches is small, so memory does not grow
+// with the picture.
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
@@ -39,7 +39,7 @@ void run(const Tonemapper& tonemapper, ImageBuf& to, const ImageBuf& from, int n
     if (!tonemapper(to, from, {}, nthreads)) throw Error(one_line(to.geterror()));
 }
 
-/// How the result was made. No date and no machine: the same run makes the same bytes.
+/// Provenance of the result, without date and machine: the same run writes the same bytes.
 void say_how(ImageSpec& picture, const TonemapOptions& options) {
     const ResolvedOperator op =
         resolve_picture_operator(options.op, options.settings, options.look, options.others);
@@ -56,7 +56,7 @@ void say_how(ImageSpec& picture, const TonemapOptions& options) {
 }
 
 /// A picture without a date gets that of SOURCE_DATE_EPOCH, or its file's: writers of EXR, TIFF and
-/// DPX would put in the time, and the same run could not make the same bytes again.
+/// DPX would record the current time, and a second run would give other bytes.
 void give_date(ImageSpec& picture, const std::string& path) {
     if (picture.find_attribute("DateTime")) return;
     std::string date = source_date();
@@ -74,7 +74,7 @@ int thread_count(int nthreads) {
 }
 
 ImageSpec result_spec(const Tonemapper& tonemapper, const ImageSpec& source) {
-    // That of one pixel, only larger.
+    // The spec of a one-pixel result, with the size of the picture.
     ImageSpec pixel = spec_of_rows(source, source.y, source.y + 1);
     pixel.width = 1;
     ImageBuf result;
@@ -94,7 +94,7 @@ struct Batch {
     std::vector<std::byte> result;
 };
 
-/// One picture on its way from file to file.
+/// One picture between two files.
 class FilePass {
   public:
     FilePass(const Tonemapper& tonemapper, PictureReader& reader, PictureWriter& writer,
@@ -225,7 +225,8 @@ void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, con
                         const WriteOptions& write, int nthreads, std::size_t batch_bytes,
                         int subimage, double max_pixels) {
     nthreads = thread_count(nthreads);
-    PictureWriter writer(out, write, nthreads);  // a wrong name is told before a large file is read
+    PictureWriter writer(out, write,
+                         nthreads);  // reports a wrong name before it reads a large file
     PictureReader reader(in, nthreads, subimage, max_pixels);
     check_pixel_type("source", reader.spec().format);
     (void)channel_layout(reader.spec());

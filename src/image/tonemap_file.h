@@ -11,10 +11,10 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// The threads that a count stands for: 0 is OIIO's `threads` attribute, there 0 is all cores.
+/// The number of threads: 0 is OIIO's `threads` attribute, whose 0 is all cores.
 [[nodiscard]] TONEWRIGHT_API int thread_count(int nthreads);
 
-/// What the result of a picture will be, untiled, without its pixels.
+/// The size, channels and metadata of a picture's result, untiled, without its pixels.
 /// @throws Error  a picture that cannot be tone mapped
 [[nodiscard]] TONEWRIGHT_API OIIO::ImageSpec result_spec(const Tonemapper& tonemapper,
                                                          const OIIO::ImageSpec& source);
@@ -26,8 +26,8 @@ TONEWRIGHT_API void tonemap_in_batches(const Tonemapper& tonemapper, const std::
                                        int nthreads, std::size_t batch_bytes, int subimage = 0,
                                        double max_pixels = kMaxPixels);
 
-/// That no output replaces what is read, through links either: each its own picture with
-/// --in-place, another's never.
+/// Checks that no output replaces an input, also through links. With --in-place, a picture may
+/// replace itself, but never another.
 /// @param command  its name, for the message
 /// @throws Error
 TONEWRIGHT_API void check_overwriting(const std::string& command,

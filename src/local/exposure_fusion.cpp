@@ -447,7 +447,7 @@ Operator define_exposure_fusion() {
     op.source =
         "Wronski, Exposure Fusion - local tonemapping for real-time rendering, 2022; Mertens, "
         "Kautz, Van Reeth, Exposure Fusion, Pacific Graphics 2007; curve: Hill's ACES fit";
-    op.licence = "MIT";
+    op.license = "MIT";
     op.negatives = kLocalNegatives;
     op.parameters = {
         number_parameter("exposure", "", 0.7, 0.001, 1000,

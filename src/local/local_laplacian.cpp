@@ -410,7 +410,7 @@ Operator define_local_laplacian() {
     op.source =
         "Paris, Hasinoff, Kautz, Local Laplacian Filters, SIGGRAPH 2011; Aubry, Paris, Hasinoff, "
         "Kautz, Durand, Fast Local Laplacian Filters, ACM TOG 33(5), 2014";
-    op.licence = "published formula";
+    op.license = "published formula";
     op.negatives = kLocalNegatives;
     op.parameters = {
         number_parameter(

@@ -246,7 +246,7 @@ Operator define_reinhard_local() {
     op.source =
         "Reinhard, Stark, Shirley, Ferwerda, Photographic Tone Reproduction for Digital Images, "
         "SIGGRAPH 2002, eq. 1-9";
-    op.licence = "published formula";
+    op.license = "published formula";
     op.negatives = kLocalNegatives;
     op.dialects = "Reinhard";
     op.parameters = {

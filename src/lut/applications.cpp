@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What applications expect of a LUT. Sources: their manuals, unless an entry names another source.
+// The LUTs that applications expect. Sources: their manuals, unless an entry names another source.
 #include "base/strings.h"
 #include "tonewright/lut.h"
 #include "tonewright/lut_applications.h"

@@ -36,7 +36,7 @@ struct CubeProblem {
     /// Scene-linear >= 0 -> value of the nodes: a smooth unclipped code whose distances are nearly
     /// perceptual.
     Pipeline pipeline;
-    /// Of the light.
+    /// In scene-linear light.
     Primaries primaries = kRec709;
     /// Range of visible codes: a stage after the 3D LUT clips values outside.
     double lo = -kInfinity;
@@ -54,7 +54,7 @@ struct CubeProblem {
 struct CubeFitOptions {
     /// Twice as many improve the error by a few percent.
     double samples_per_node = 10;
-    /// Of 64 bytes.
+    /// A cache line of 64 bytes.
     std::size_t largest_sample_count = 4000000;
     /// 0: one per hardware thread. The nodes do not depend on it.
     unsigned thread_count = 0;

@@ -34,7 +34,7 @@ struct HueCube {
 
     /// Axes -> axes whose value is in [0, 1].
     double gain = 1;
-    // Of hue, saturation and value, in turn:
+    // For hue, saturation and value, in this order:
     Table3 spread;  // hue -> a monotone sum of hue and the cusp's value; value -> stops
     AffineStep less_sum;
     Table3 back;  // the sum -> hue
@@ -52,7 +52,7 @@ struct HueCube {
 
 struct HueCubeOptions {
     int edge = 65;
-    /// Of the light.
+    /// In scene-linear light.
     Primaries primaries = kRec709;
     /// Samples for each node.
     double samples_per_node = 8;

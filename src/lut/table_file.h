@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// LUT files as stages, for operators that have them.
+// LUT files as stages of operators.
 #pragma once
 
 #include <functional>

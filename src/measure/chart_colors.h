@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The colors that the test chart is drawn with and that LUTs are measured along.
+// The colors of the test chart, which LUTs are measured along.
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// Hue in [0, 1): red, yellow, green, cyan, blue, magenta. The largest channel is `value`.
 [[nodiscard]] TONEWRIGHT_API Vector3 hue_color(double hue, double saturation, double value);
 
-/// Of the chart's gradients of exposure: gray, the light skin of the ColorChecker, orange, a deep
-/// blue lamp. Scene-linear Rec.709.
+/// Colors of the chart's gradients of exposure: gray, the light skin of the ColorChecker, orange, a
+/// deep blue lamp. Scene-linear Rec.709.
 inline constexpr std::array<Vector3, 4> kGradientTints = {
     {{1, 1, 1}, {1, 0.56, 0.42}, {1, 0.25, 0.02}, {0.06, 0.10, 1}}};
 

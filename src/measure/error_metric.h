@@ -10,7 +10,7 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// Errors over a set of colors; of each color the worst channel counts.
+/// Errors over a set of colors; for each color, the worst channel counts.
 struct ErrorStats {
     double max = 0;
     double p999 = 0;  // 99.9th percentile
@@ -41,8 +41,8 @@ struct ErrorStats {
 [[nodiscard]] TONEWRIGHT_API std::vector<double> delta_e_itp(std::span<const double> ictcp_a,
                                                              std::span<const double> ictcp_b);
 
-/// Two significant digits, rounded up, so that what is printed is never less than what was
-/// measured.
+/// Two significant digits, rounded up, so that the printed number is never less than the measured
+/// one.
 [[nodiscard]] TONEWRIGHT_API std::string rounded_up(double value);
 
 TONEWRIGHT_NAMESPACE_END

@@ -24,15 +24,15 @@ using Planes = std::array<std::vector<double>, 3>;
 
 constexpr double kMidGray = 0.18;
 
-/// A step of an 8-bit picture, of the mean of the channels. Where a gamut's limit takes one channel
-/// of a saturated color down while the others rise, less than that is lost.
+/// One step of an 8-bit picture, for the mean of the channels. If a gamut's limit lowers one
+/// channel of a saturated color while the others rise, the loss is smaller.
 constexpr double kStep = 1.0 / 255;
 /// Half a code of 10 bits.
 constexpr double kHalfCode = 0.5 / 1023;
 
 /// Colors along a line.
 struct Sweep {
-    std::string name;  // of its color: "grays", "red"
+    std::string name;  // the name of its color: "grays", "red"
     Vector3 color{};   // times x
     std::vector<double> x;
     Vector3 from{};  // added
@@ -149,9 +149,9 @@ std::optional<Jump> find_jump(const ReferenceEngine& engine, const Sweep& sweep)
     struct Interval {
         double a, b;
         Vector3 at_a, at_b;
-        std::size_t channel;  // that differs most
+        std::size_t channel;  // with the largest difference
         [[nodiscard]] double difference() const { return std::fabs(at_b[channel] - at_a[channel]); }
-        /// Below it the formula's own rounding, or what no picture shows.
+        /// Smaller jumps are the formula's own rounding, or invisible.
         [[nodiscard]] bool is_step() const {
             return difference() >
                    kNoise * std::max({1.0, std::fabs(at_a[channel]), std::fabs(at_b[channel])});
@@ -260,8 +260,9 @@ class Checker {
     }
 
   private:
-    /// The verdict on what is measured and what is declared of one kind. Empty: neither.
-    /// @param words  what breaks, where nothing is declared
+    /// The verdict from the measured and the declared difference of one kind. Empty: neither
+    /// exists.
+    /// @param words  description of the break, if nothing is declared
     [[nodiscard]] std::optional<LawResult> compared(const std::string& law, Kind kind,
                                                     const std::string& words,
                                                     std::optional<double> x = {}) const {
@@ -362,7 +363,7 @@ class Checker {
                (from == to ? "" : " to " + to) + " stops from mid gray)";
     }
 
-    /// Between -6 and +3 stops every operator has to rise, from where its black ends.
+    /// Between -6 and +3 stops, every operator must rise above the end of its black.
     std::optional<std::pair<double, double>> flat_part() const {
         const auto crushed = measured_.find(Kind::crushes_black);
         std::vector<double> x;
@@ -372,9 +373,9 @@ class Checker {
         }
         const Planes out = run(subject_.srgb(), kGray, x);
         for (std::size_t i = 0; i + 1 < x.size(); ++i) {
-            // A look may take one channel of a gray down while the gray as a whole gets brighter.
+            // A look may lower one channel of a gray while the gray as a whole gets brighter.
             const auto code = [&](std::size_t k) { return out[0][k] + out[1][k] + out[2][k]; };
-            // A clamped operator has arrived at white.
+            // A clamped operator has reached white.
             if (code(i) < 3 - kNoise && code(i) >= code(i + 1)) return std::pair{x[i], x[i + 1]};
         }
         return std::nullopt;
@@ -485,9 +486,9 @@ class Checker {
         return compared(name, Kind::jumps, "").value_or(LawResult{name, Verdict::holds, "", {}});
     }
 
-    /// Compares what the operator makes of a color with what it makes of the color that its inverse
-    /// gives: where it shows many colors as one, any of them will do. Of a saturated color that a
-    /// clamp limits, a matrix behind the clamp has made another one.
+    /// Compares the displayed color with the color that its inverse shows. If the operator shows
+    /// many colors as one, any of them will do. A saturated color that a clamp limits is skipped,
+    /// because a matrix after the clamp has changed it.
     LawResult inverse() const {
         const std::string name = "inverse";
         std::optional<ReferenceEngine> back;
@@ -513,7 +514,7 @@ class Checker {
             const Planes again = run(subject_.native(), scene);
             const auto is_limited = [&](std::size_t i) {
                 for (std::size_t c = 0; c < 3; ++c) {
-                    // Engines limit what they take in.
+                    // Engines limit their input.
                     if (std::fabs(shown[c][i]) > kHalfMax) return true;
                     const double size = std::max(1.0, std::fabs(shown[c][i]));
                     const bool is_same = std::fabs(free[c][i] - shown[c][i]) <= 1e-12 * size;
@@ -529,7 +530,7 @@ class Checker {
                     worst = std::max(worst, error);
                     if (error <= kHalfCode) continue;
                     return {name, Verdict::breaks,
-                            fmt::format("of {} at {}, the inverse makes {}, which is shown as {}, "
+                            fmt::format("the inverse of {} at {} is {}, which is shown as {}, "
                                         "not as {}",
                                         sweep.name, place(sweep.x[i]), rounded(scene[c][i], 4),
                                         rounded(again[c][i], 4), rounded(shown[c][i], 4)),
@@ -537,13 +538,13 @@ class Checker {
                 }
             }
         }
-        return {name, Verdict::holds, "leads back within " + rounded(worst, 1), {}};
+        return {name, Verdict::holds, "round trip within " + rounded(worst, 1), {}};
     }
 
     Subject subject_;
     Differences measured_;
     Differences declared_;
-    bool has_defaults_;  // what is declared is true of them
+    bool has_defaults_;  // declared differences hold for the defaults
 };
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// What every tone curve is expected to do: the law tests hold the built-in operators to it, and
-// `tonewright check` says where an operator departs from it.
+// The laws of tone curves. The law tests check the built-in operators, and `tonewright check`
+// reports broken laws of any operator.
 #pragma once
 
 #include <map>
@@ -14,10 +14,10 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// A thousandth of a code of 10 bits: falls below it are no fall. AgX needs it: the rows of its
-/// inset matrix, as printed, sum to 1.00014, 0.99996 and 0.99995, so gray's channels meet the
-/// shaper's end 1.6e-5 of its length apart, and a matrix behind the curve takes 0.1 to 0.3 of the
-/// slope there from the others.
+/// A thousandth of a 10-bit code: smaller falls do not count. AgX needs it: the rows of its inset
+/// matrix, as printed, sum to 1.00014, 0.99996 and 0.99995, so the channels of a gray reach the
+/// shaper's end 1.6e-5 of its length apart, and a matrix after the curve subtracts 0.1 to 0.3 of
+/// the others' slope there.
 inline constexpr double kNoise = 1e-6;
 
 /// -16..+16 stops about mid gray, in steps of 1/64.
@@ -25,12 +25,12 @@ inline constexpr double kNoise = 1e-6;
 
 using Differences = std::map<DocumentedDifference::Kind, double>;
 
-/// What an operator does with black, grays and white: measured, as DocumentedDifference defines it.
+/// Black, grays and white of an operator, measured as DocumentedDifference defines them.
 [[nodiscard]] TONEWRIGHT_API Differences measured_differences(const ResolvedOperator& op);
-/// What the operator declares for its preset and look.
+/// Differences that the operator declares for its preset and look.
 [[nodiscard]] TONEWRIGHT_API Differences declared_differences(const ResolvedOperator& op);
 
-/// What an operator has to say to one law.
+/// Result of one law.
 struct LawResult {
     enum class Verdict : unsigned char { holds, as_declared, breaks, does_not_apply };
     std::string law;  // "monotone"
@@ -51,7 +51,7 @@ struct LawResult {
 /// black       black is 0, and grays above -8 stops are not shown as black;
 /// gray        grays have no tint;
 /// continuous  no jump between neighboring colors;
-/// inverse     the inverse leads back.
+/// inverse     the round trip through the inverse is exact.
 [[nodiscard]] TONEWRIGHT_API std::vector<LawResult> check_laws(const ResolvedOperator& op);
 
 TONEWRIGHT_NAMESPACE_END

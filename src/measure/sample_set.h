@@ -9,7 +9,7 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// Which part of the sample set a color belongs to.
+/// Part of the sample set that a color belongs to.
 enum class SampleKind : unsigned char {
     gray,        // R = G = B, -12..+12 stops around 0.18, and black
     lattice,     // gamut lattices of Rec.709, Rec.2020 and AP1 at five exposures

@@ -10,7 +10,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 
 /// Record of the entries that `--into` added to a config, in a file beside the config's tables. It
-/// is enough to remove them again, whatever else has changed in the config since.
+/// allows their removal after other changes of the config.
 struct AddedRecord {
     /// A text in the config, and the text before it.
     struct Piece {

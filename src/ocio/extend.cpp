@@ -247,7 +247,7 @@ ExtendedConfig reduce_config(const std::string& path) {
 ExtendedConfig extend_config(const std::string& path, const ConfigOptions& given, bool is_updated) {
     std::string text = read_config_text(path);
     ConfigOptions options = given;
-    // Who adds an operator to a config of their own wants that one.
+    // A user who adds an operator to a config wants that one only.
     if (given.views.empty() && !given.custom.empty()) options.views = {"none"};
     AddedRecord record;
     std::vector<std::string> replaced;

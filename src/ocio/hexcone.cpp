@@ -224,7 +224,7 @@ HexconeColumns columns_of(const HexconeStage& stage, double hi) {
     if (!std::isfinite(evaluate(stage.value, top)) || !std::isfinite(evaluate(stage.chroma, top)))
         top = hi;
     const auto light = [&](double x) { return std::min(stops.light(x / kStop), top); };
-    // Below the smallest half float p is a straight line to 0, which has no saturation.
+    // Below the smallest half float, p is a straight line to 0, which has no saturation.
     const auto seen = [&](double x) { return std::max(light(x), kSmallestHalf); };
     HexconeColumns result = {stops, map(halves(), light), map(map(halves(), light), stage.value),
                              Column(kHalfCount, kAllLost)};

@@ -44,7 +44,7 @@ constexpr std::array<SpaceId, 15> kSpaces = {{
 }};
 
 struct OutputId {
-    std::string_view style;  // behind kStyle
+    std::string_view style;  // after kStyle
     std::string_view display;
     std::string_view version;
     std::string_view output;

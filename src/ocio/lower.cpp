@@ -219,7 +219,7 @@ class Lowering {
         domain_ = {};
     }
 
-    /// @param behind  clamp of the result: the 3D LUT is free outside it
+    /// @param behind  the clamp after it: the 3D LUT is free outside the clamp's interval
     void emit_cube(const CrossTalkStage& stage, const ClampStage& behind, bool is_fitted) {
         result_.loses_negatives = result_.loses_negatives || !(domain_.lo >= 0);
         const double top = cross_talk_top(stage, behind, domain_.hi, is_fitted);

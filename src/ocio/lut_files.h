@@ -42,7 +42,7 @@ class LutFiles {
         /// OpenColorIO may have to invert them, because there are no separate inverse transforms.
         bool is_inverted = true;
         bool is_inverse = false;   // of a view
-        bool makes_codes = false;  // of a display or texture: nothing is behind them
+        bool makes_codes = false;  // of a display or texture, without stages after them
     };
 
     /// The transforms of the operations, with one file per table.

@@ -791,8 +791,8 @@ ConfigModel make_config_model(const ConfigOptions& options) {
                             nullptr,
                             "",
                             "ocio:lin_ciexyzd65_display"});
-    // Adds all display spaces, whatever displays are chosen, because pictures may be in their code
-    // values.
+    // Adds all display spaces, also those of displays that are left out, because pictures may be in
+    // their code values.
     for (const Display& display : all_displays()) {
         std::vector<std::string> aliases = {display.title + kDisplaySuffix};
         aliases.insert(aliases.end(), display.aliases.begin(), display.aliases.end());

@@ -50,7 +50,7 @@ const std::vector<BuiltinRow>& builtin_rows() {
 }
 
 std::string builtin_style(const ResolvedOperator& op) {
-    if (!op.op->file.empty()) return "";  // whatever its id
+    if (!op.op->file.empty()) return "";  // for any id
     for (const BuiltinRow& row : builtin_rows()) {
         if (row.op == op.op->id && resolve_operator(row.op, row.settings).params == op.params)
             return kBuiltinPrefix + std::string(row.style);

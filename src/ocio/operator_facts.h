@@ -16,7 +16,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 struct BuiltinRow {
     std::string_view op;
     Settings settings;       // the others are the defaults
-    std::string_view style;  // behind kBuiltinPrefix
+    std::string_view style;  // after kBuiltinPrefix
 };
 inline constexpr const char* kBuiltinPrefix = "ACES-OUTPUT - ACES2065-1_to_CIE-XYZ-D65 - ";
 [[nodiscard]] TONEWRIGHT_API const std::vector<BuiltinRow>& builtin_rows();

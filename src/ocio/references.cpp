@@ -153,7 +153,7 @@ class ReferenceWalk {
         try {
             require_regular_file(config_.getCurrentContext()->resolveFileLocation(source.c_str()));
         } catch (const OCIO::Exception&) {
-            return;  // missing: OpenColorIO says so where it is needed
+            return;  // missing: OpenColorIO reports it at its use
         } catch (const FileError& e) {
             throw FileError(fmt::format("{} ({} uses it as a LUT)", e.what(), path_));
         }

@@ -206,7 +206,8 @@ void YamlText::append_to_flow(const YAML::Node& collection, const std::string& i
         at = std::min(at, text_.size());
     }
     int depth = 0;
-    char last = 0;  // the last character that is no blank and in no comment, and what is behind it
+    char last =
+        0;  // the last character that is neither blank nor in a comment, and the rest of the line
     std::size_t behind = at;
     for (; at < text_.size(); ++at) {
         const char c = text_[at];

@@ -324,7 +324,7 @@ std::vector<Operator> define_aces_13() {
     op.source =
         "Academy of Motion Picture Arts and Sciences, aces-dev 1.3: RRT 1.0.3, ODT and RRTODT, "
         "LMT.Academy.ReferenceGamutCompress; OpenColorIO 2.1, built-in transforms ACES-OUTPUT";
-    op.licence =
+    op.license =
         "Academy (free to use with its notice), BSD-3-Clause; formulas and constants only; none of "
         "their code is used";
     op.negatives =

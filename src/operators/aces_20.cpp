@@ -96,7 +96,7 @@ struct Opponent {
     T achromatic, a, b;
 };
 
-/// Of a cone's x >= 0.
+/// For a cone's x >= 0.
 template <class T>
 T cone_response(const T& x) {
     const T y = pow(x, kConePower);
@@ -122,7 +122,7 @@ T signed_cone_of_response(const T& response) {
     return select(less(response, 0), -x, x);
 }
 
-/// Of cones behind their compression.
+/// For cones after their compression.
 template <class T>
 Opponent<T> opponent_of(const std::array<T, 3>& responses) {
     const std::array<T, 3> v = transform(kOpponent, responses);
@@ -902,7 +902,7 @@ std::vector<Operator> define_aces_20() {
     op.source =
         "Academy of Motion Picture Arts and Sciences, ACES 2: aces-core, "
         "Lib.Academy.OutputTransform, Lib.Academy.Tonescale; OpenColorIO 2.4.2, ACES2";
-    op.licence =
+    op.license =
         "Academy license (aces-core), BSD-3-Clause (OpenColorIO); none of their code is used";
     op.negatives = "clamped at 0 in AP1, before the first non-linear step";
     op.dialects = "ACES";

@@ -39,7 +39,7 @@ Operator narkowicz() {
     op.character =
         "five constants, high contrast; about a stop brighter than ACES unless the prescale is 0.6";
     op.source = "K. Narkowicz, ACES Filmic Tone Mapping Curve, 2016";
-    op.licence = "public domain (CC0), MIT";
+    op.license = "public domain (CC0), MIT";
     op.dialects = "ACES";
     op.negatives = kNegativesClampAtZero;
     op.parameters = with_apply(
@@ -79,7 +79,7 @@ Operator hill() {
     op.view = "ACES Hill";
     op.character = "close to ACES 1 SDR, including desaturated highlights; darker than Narkowicz";
     op.source = "S. Hill, ACES.hlsl of BakingLab, 2016; gains of Godot and three.js";
-    op.licence = "MIT";
+    op.license = "MIT";
     op.dialects = "ACES";
     op.negatives = kNegativesClampAtZero;
     op.parameters = {
@@ -184,7 +184,7 @@ Operator filament() {
         "glow and red modifier of the RRT before a fitted curve; whites turn reddish, because its "
         "conversions are not adapted";
     op.source = "Google Filament, ToneMapper.cpp: ACES, ACESLegacy";
-    op.licence = "Apache-2.0; formula and constants only; none of its code is used";
+    op.license = "Apache-2.0; formula and constants only; none of its code is used";
     op.dialects = "ACES";
     op.negatives = kNegativesClampAtZero;
     op.working = kRec2020;

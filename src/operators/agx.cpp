@@ -107,7 +107,7 @@ Operator sobotka() {
         "low contrast, bright colors fade to white; keeps detail in saturated blues and neon "
         "colors where others clip";
     op.source = "T. Sobotka, AgX configuration for OpenColorIO (SB2383), 2022";
-    op.licence = "formula and constants only; none of its files is used";
+    op.license = "formula and constants only; none of its files is used";
     op.dialects = "AgX";
     op.negatives = kNegativesClampAtZero;
     op.output = OutputKind::code_value;
@@ -140,7 +140,7 @@ Operator minimal() {
         "AgX for shaders: polynomial sigmoid, and the inverse of the inset after it; more "
         "saturated than Sobotka's";
     op.source = "B. Wrensch, Minimal AgX Implementation, 2023; order 7: Filament ToneMapper.cpp";
-    op.licence = "MIT";
+    op.license = "MIT";
     op.dialects = "AgX";
     op.negatives = kNegativesClampAtZero;
     op.output = OutputKind::code_value;
@@ -218,7 +218,7 @@ Operator threejs() {
         "Blender's matrices with Sobotka's curve: soft and pale; mid gray at display-linear 0.21, "
         "brighter than Blender's AgX";
     op.source = "three.js, tonemapping_pars_fragment: AgXToneMapping; after Filament";
-    op.licence = "MIT";
+    op.license = "MIT";
     op.dialects = "AgX";
     op.negatives =
         "kept by the matrix to Rec.2020 and the inset; then limited to the lower end of the "
@@ -264,9 +264,9 @@ Operator filament() {
     op.title = "AgX (Filament)";
     op.view = "AgX Filament";
     op.character =
-        "three.js's AgX in Rec.2020 with the polynomial of order 7: white at display-linear 0.96";
+        "AgX of three.js in Rec.2020 with the polynomial of order 7: white at display-linear 0.96";
     op.source = "Google Filament, ToneMapper.cpp: AgxToneMapper";
-    op.licence = "Apache-2.0; formula and constants only; none of its code is used";
+    op.license = "Apache-2.0; formula and constants only; none of its code is used";
     op.dialects = "AgX";
     op.negatives = kNegativesClampAtZero;
     op.working = kRec2020;
@@ -315,7 +315,7 @@ Operator godot44() {
         "polynomial for Blender's sigmoid, decoded with the power 2.4: mid gray kept, soft "
         "highlights";
     op.source = "Godot Engine 4.4, tonemap.glsl: tonemap_agx";
-    op.licence = "MIT";
+    op.license = "MIT";
     op.dialects = "AgX";
     op.negatives = "set to 2e-10, before the first matrix";
     op.warnings = {"grays get darker by 4e-6 at scene-linear 16.3, where the shaper ends"};
@@ -357,7 +357,7 @@ Operator godot() {
         "AgX without a logarithm: keeps mid gray; adjustable contrast, white and peak, suitable "
         "for HDR";
     op.source = "Godot Engine 4.6, tonemap.glsl: tonemap_agx; curve by allenwp";
-    op.licence = "MIT";
+    op.license = "MIT";
     op.dialects = "AgX";
     op.negatives = kNegativesClampAtZero;
     op.parameters = {

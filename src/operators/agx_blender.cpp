@@ -252,7 +252,7 @@ Vector3 weights_of(const Primaries& gamut, const Vector3& weights) {
     return out;
 }
 
-/// The formula up to the guard rail of the limit, behind a look's stages: one channel-mixing stage,
+/// The formula up to the guard rail of the limit, after a look's stages: one channel-mixing stage,
 /// so that a 3D LUT samples it once. It accepts channels below 0.
 Pipeline sdr_formula(const Pipeline& look, const Primaries& limit) {
     Pipeline chain =
@@ -567,7 +567,7 @@ std::vector<Operator> define_agx_blender() {
     op.source =
         "E. Chow, AgX and AgX_LUT_Gen, github.com/EaryChow; Blender 5.2, config.ocio: AgX, AgX - "
         "HDR 1000 nits and their looks";
-    op.licence = "formula and constants only; none of its files or code is used";
+    op.license = "formula and constants only; none of its files or code is used";
     op.dialects = "AgX";
     op.negatives =
         "colors outside Rec.2020 are lifted until no channel is below 0, then scaled to compensate "

@@ -70,7 +70,7 @@ std::vector<Operator> define_camera_response() {
     op.source =
         "M. Grossberg, S. Nayar, What is the Space of Camera Response Functions?, CVPR 2003; 64, "
         "Tone Mapping, 64.github.io";
-    op.licence = "published method; no measured curves are included";
+    op.license = "published method; no measured curves are included";
     op.bounds = {.ocio_cpu = 1e-6,
                  .ocio_gpu = 3e-6,
                  .reason = "straight lines between the samples, so the slope jumps at each sample"};

@@ -21,7 +21,7 @@ std::vector<Operator> define_clamp() {
     op.view = "Standard";
     op.character = "hard clip at 1: exact below, flat with shifted hues above";
     op.source = "common practice";
-    op.licence = "public domain";
+    op.license = "public domain";
     op.negatives = "clamped at 0";
     op.build = [](const Params&) -> Pipeline { return {ClampStage{0, 1}}; };
     return {op};

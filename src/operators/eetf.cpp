@@ -161,7 +161,7 @@ Operator bt2390() {
         "HDR masters on a display with a lower peak: unchanged below a knee, then a spline in PQ; "
         "darker than scene operators";
     op.source = "Report ITU-R BT.2390, EETF; knee and black of libplacebo, tone_mapping.c: bt2390";
-    op.licence = "published formula; libplacebo: LGPL-2.1+, formula only, none of its code is used";
+    op.license = "published formula; libplacebo: LGPL-2.1+, formula only, none of its code is used";
     op.parameters = with_limits({
         number_parameter("knee_offset", "", 0.5, 0.5, 2,
                          "o of the knee (1 + o) mx - o: 0.5 in the Report, 1 in libplacebo"),
@@ -208,7 +208,7 @@ Operator bt2446a() {
         "HDR masters of 1000 cd/m2 for SDR television: one smooth curve over the whole range, low "
         "contrast";
     op.source = "Report ITU-R BT.2446, method A, its tone mapping curve";
-    op.licence = "published formula";
+    op.license = "published formula";
     op.parameters = with_limits({});
     // 1.0770 Y and -1.1510 Y^2 + 2.7811 Y - 0.6302 differ at Y = 0.7399.
     op.deviations = {{DocumentedDifference::Kind::jumps, 0.00104, ""}};
@@ -265,7 +265,7 @@ Operator spline() {
         "HDR masters on a display with a lower peak, about a pivot that follows the scene average; "
         "adjustable contrast";
     op.source = "libplacebo, tone_mapping.c: spline, its default";
-    op.licence = "LGPL-2.1+; formula only, none of its code is used";
+    op.license = "LGPL-2.1+; formula only, none of its code is used";
     op.parameters = with_limits({
         number_parameter("contrast", "", 0.5, 0, 1.5,
                          "contrast about the pivot; 1 keeps its slope at 1"),

@@ -50,7 +50,7 @@ Operator linear() {
     op.character =
         "contrast and colors of the scene, then a clip; dark if the picture has bright highlights";
     op.source = "common practice; division by the maximum in 64, Tone Mapping, 64.github.io";
-    op.licence = "common practice";
+    op.license = "common practice";
     op.negatives = kNegativesClampAtZero;
     op.parameters = with_apply(
         "channels", {maximum_luminance("divisor", 4, 1e-6, "scene value shown as display white")});
@@ -72,7 +72,7 @@ Operator exponential() {
         "steep in the shadows, soft above the average, never clips a gray; bright, with flat "
         "highlights";
     op.source = std::string("1 - exp(-L/Lavg) as in ") + kZeltner;
-    op.licence = "published formula (program: MIT)";
+    op.license = "published formula (program: MIT)";
     op.negatives = kNegativesClampAtZero;
     op.parameters = with_apply(
         "luminance",
@@ -95,7 +95,7 @@ Operator logarithmic() {
     op.character =
         "equal steps for equal ratios: opens shadows, low contrast everywhere, dark midtones";
     op.source = std::string("log10(1 + p L)/log10(1 + p Lmax) as in ") + kZeltner;
-    op.licence = "published formula (program: MIT)";
+    op.license = "published formula (program: MIT)";
     op.negatives = kNegativesClampAtZero;
     op.parameters = with_apply(
         "luminance",
@@ -122,7 +122,7 @@ Operator log_tonemap() {
     op.source =
         "T. Madams, Why Reinhard desaturates my blacks, imdoingitwrong.wordpress.com, 2010-08-19, "
         "comment 9";
-    op.licence = "published formula";
+    op.license = "published formula";
     op.negatives = kNegativesClampAtZero;
     op.parameters = with_apply(
         "luminance", {maximum_luminance("limit", 16, 0.001, "scene value shown as display white"),
@@ -154,7 +154,7 @@ Operator exponentiation() {
     op.character =
         "a power of the scene: reduces every contrast by the same factor; lifts shadows, flat";
     op.source = std::string("(L/Lmax)^p as in ") + kZeltner;
-    op.licence = "published formula (program: MIT)";
+    op.license = "published formula (program: MIT)";
     op.negatives = kNegativesClampAtZero;
     op.parameters = with_apply(
         "luminance",

@@ -43,7 +43,7 @@ std::vector<Operator> define_false_color() {
         "one color per stop: gray at mid gray, blue to purple below, yellow to red above, white "
         "from 7 stops";
     op.source = "Tonewright";
-    op.licence = "Apache-2.0";
+    op.license = "Apache-2.0";
     op.negatives = kNegativesClampAtZero;
     op.is_diagnostic = true;
     op.deviations = {{DocumentedDifference::Kind::crushes_black, 0.0018, ""},

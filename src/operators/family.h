@@ -48,7 +48,7 @@ inline Operator defect_of(std::string meant, std::string id, std::string source,
     Operator op;
     op.id = std::move(id);
     op.source = std::move(source);
-    op.licence = "formula and constants only; none of its code is used";
+    op.license = "formula and constants only; none of its code is used";
     op.negatives = kNegativesClampAtZero;
     op.defect = std::move(defect);
     op.meant = std::move(meant);

@@ -67,7 +67,7 @@ Operator hejl_burgess_dawson() {
     op.source =
         "J. Hejl, R. Burgess-Dawson, in J. Hable, Filmic Tonemapping Operators, filmicworlds.com, "
         "2010-05-05";
-    op.licence = "published formula";
+    op.license = "published formula";
     op.negatives = kNegativesClampAtZero;
     op.output = OutputKind::code_value;
     op.code_power = kBakedPower;
@@ -92,7 +92,7 @@ Operator hejl_2015() {
     op.source =
         "J. Hejl, twitter.com/jimhejl/status/633777619998130176, 2015, as in M. Pettineo's "
         "BakingLab, ToneMapping.hlsl";
-    op.licence = "published formula (BakingLab: MIT)";
+    op.license = "published formula (BakingLab: MIT)";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Hejl";
     op.parameters =
@@ -121,7 +121,7 @@ Operator aldridge() {
     op.source =
         "G. Aldridge, Approximating Film with Tonemapping, iwasbeingirony.blogspot.com, "
         "2010-04-19, as in T. Zeltner, Tone Mapper, github.com/tizian/tonemapper";
-    op.licence = "published formula (program: MIT)";
+    op.license = "published formula (program: MIT)";
     op.negatives = kNegativesClampAtZero;
     op.output = OutputKind::code_value;
     op.code_power = kBakedPower;
@@ -183,7 +183,7 @@ Operator lottes() {
     op.character =
         "separate contrast and shoulder, fixed mid gray and white: bright midtones, deep blacks";
     op.source = "T. Lottes, Advanced Techniques and Optimization of HDR Color Pipelines, GDC 2016";
-    op.licence = "published formula";
+    op.license = "published formula";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Lottes";
     op.parameters = with_apply(
@@ -238,7 +238,7 @@ Operator filament_generic() {
     op.character = "Lottes without the shoulder parameter: its upper bound is a little above white";
     op.source =
         "Filament, filament/src/ToneMapper.cpp, GenericToneMapper, github.com/google/filament";
-    op.licence = "Apache-2.0";
+    op.license = "Apache-2.0";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Lottes";
     op.parameters = with_apply(
@@ -263,7 +263,7 @@ Operator ue3() {
     op.view = "Unreal 3";
     op.character = "Reinhard's shape in code values: bright, low contrast, no toe; white at 8.2";
     op.source = "Unreal Engine 3 documentation, Color Grading; R. Guy, shadertoy llXyWr";
-    op.licence = "published formula";
+    op.license = "published formula";
     op.negatives = kNegativesClampAtZero;
     op.output = OutputKind::code_value;
     op.code_power = kBakedPower;
@@ -310,7 +310,7 @@ Operator day() {
         "manual black, white, crossover and two strengths; dark with hard blacks by default";
     op.source =
         "M. Day, An efficient and user-friendly tone mapping operator, Insomniac Games, 2012";
-    op.licence = "published formula";
+    op.license = "published formula";
     op.bounds = {.ocio_gpu = 3e-6, .reason = "steep slope just above black"};
     op.negatives = kNegativesClampAtZero;
     op.parameters = with_apply(
@@ -347,7 +347,7 @@ Operator schlick() {
     op.source =
         "C. Schlick, Quantization Techniques for Visualization of High Dynamic Range Pictures, "
         "Eurographics Workshop on Rendering, 1994";
-    op.licence = "published formula";
+    op.license = "published formula";
     op.negatives = kNegativesClampAtZero;
     op.parameters = with_apply(
         "luminance",
@@ -380,7 +380,7 @@ Operator toe() {
         "Tonewright, after T. Madams, Why Reinhard desaturates my blacks, "
         "imdoingitwrong.wordpress.com, 2010-08-19, which describes the toes of two games without a "
         "formula";
-    op.licence = "Apache-2.0";
+    op.license = "Apache-2.0";
     op.negatives = kNegativesClampAtZero;
     op.parameters = with_apply(
         "channels",

@@ -104,7 +104,7 @@ std::vector<Operator> define_frostbite() {
     op.source =
         "A. Fry, High Dynamic Range Color Grading and Display in Frostbite, GDC 2017; constants of "
         "T. Stachowiak's shadertoy";
-    op.licence = "published formula; none of its code is used";
+    op.license = "published formula; none of its code is used";
     op.negatives = kNegativesClampAtZero;
     op.bounds = {.cube = 1.2e-2, .reason = "3D LUT: chroma falls to 0 within a stop about white"};
     op.parameters = {number_parameter("linear_end", "scene-linear", 0.25, 0.01, 0.99,

@@ -108,7 +108,7 @@ std::vector<Operator> define_gt7() {
     op.source =
         "Yasutomi, Suzuki, Uchimura, Driving Toward Reality: Physically Based Tone Mapping and "
         "Perceptual Fidelity in Gran Turismo 7, SIGGRAPH 2025; gt7_tone_mapping.cpp 1.0";
-    op.licence = "MIT";
+    op.license = "MIT";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Gran Turismo";
     op.bounds = {.cube = 0.26, .reason = "3D LUT: highlights lose their chroma within 1.4 stops"};

@@ -71,7 +71,7 @@ Operator uncharted() {
     op.character =
         "strong toe, long soft shoulder: high contrast and dark, the look of games in 2010";
     op.source = "J. Hable, Filmic Tonemapping Operators, filmicworlds.com, 2010-05-05";
-    op.licence = "published formula (code on the page: public domain)";
+    op.license = "published formula (code on the page: public domain)";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Hable";
     // D and F stay away from 0, because their product is the curve's denominator at black.
@@ -131,7 +131,7 @@ Operator gdc() {
     op.view = "Hable GDC";
     op.character = "Hable with the constants of the slides: darker, with more contrast in the toe";
     op.source = "J. Hable, Uncharted 2: HDR Lighting, GDC 2010";
-    op.licence = "published formula";
+    op.license = "published formula";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Hable";
     op.parameters = with_apply("channels", {white(), exposure_bias(1)});
@@ -225,7 +225,7 @@ Operator piecewise() {
     op.source =
         "J. Hable, Filmic Tonemapping with Piecewise Power Curves, filmicworlds.com, 2017-03-26; "
         "github.com/johnhable/fw-public";
-    op.licence = "CC0-1.0";
+    op.license = "CC0-1.0";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Hable";
     op.parameters = with_apply(

@@ -83,7 +83,7 @@ Operator khronos() {
         "product colors match their materials, minus a reflection of 0.04; compresses only "
         "highlights, which fade to white";
     op.source = "Khronos Group, Khronos PBR Neutral Tone Mapper, 2024: pbrNeutral.glsl";
-    op.licence = "Apache-2.0 (code), CC-BY-4.0 (text)";
+    op.license = "Apache-2.0 (code), CC-BY-4.0 (text)";
     op.dialects = "PBR Neutral";
     op.negatives = kNegativesClampAtZero;
     op.parameters = neutral_parameters();
@@ -101,7 +101,7 @@ Operator filament() {
         "Khronos PBR Neutral with highlights mixed towards 1: brighter above the start of the "
         "compression";
     op.source = "Google Filament, ToneMapper.cpp: PBRNeutralToneMapper";
-    op.licence = "Apache-2.0; formula and constants only; none of its code is used";
+    op.license = "Apache-2.0; formula and constants only; none of its code is used";
     op.dialects = "PBR Neutral";
     op.negatives = kNegativesClampAtZero;
     op.parameters = neutral_parameters();

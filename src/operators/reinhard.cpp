@@ -56,7 +56,7 @@ Operator simple() {
     op.source =
         "Reinhard, Stark, Shirley, Ferwerda, Photographic Tone Reproduction for Digital Images, "
         "SIGGRAPH 2002, eq. 3";
-    op.licence = "published formula";
+    op.license = "published formula";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Reinhard";
     op.parameters = with_apply("channels");
@@ -82,7 +82,7 @@ Operator extended() {
     op.source =
         "Reinhard, Stark, Shirley, Ferwerda, Photographic Tone Reproduction for Digital Images, "
         "SIGGRAPH 2002, eq. 4";
-    op.licence = "published formula";
+    op.license = "published formula";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Reinhard";
     op.parameters =
@@ -111,7 +111,7 @@ Operator nebula() {
     op.source =
         "Nebula engine, post on HDR, after Reinhard, Stark, Shirley, Ferwerda, Photographic Tone "
         "Reproduction for Digital Images, SIGGRAPH 2002, eq. 2 and 4";
-    op.licence = "published formula";
+    op.license = "published formula";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Reinhard";
     op.parameters = with_apply(
@@ -163,7 +163,7 @@ Operator jodie() {
         "luminance Reinhard in the shadows, per channel in the highlights: bright colors fade to "
         "white";
     op.source = "Jodie, shadertoy 4dBcD1, 2017: blend of eq. 3 on luminance and on channels";
-    op.licence = "published formula";
+    op.license = "published formula";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Reinhard";
     op.build = [](const Params&) -> Pipeline {
@@ -187,7 +187,7 @@ Operator constant_luminance() {
         "luminance Reinhard that moves the excess of a channel to the other two: bright colors get "
         "paler instead of darker";
     op.source = "64, code/tonemapping of github.com/64/64.github.io (not in the article)";
-    op.licence = "MIT";
+    op.license = "MIT";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Reinhard";
     op.warnings = {
@@ -235,7 +235,7 @@ Operator devlin() {
     op.source =
         "E. Reinhard, K. Devlin, Dynamic Range Reduction Inspired by Photoreceptor Physiology, "
         "IEEE Transactions on Visualization and Computer Graphics 11(1), 2005";
-    op.licence = "published formula";
+    op.license = "published formula";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Reinhard";
     const auto mean = [](std::string name, std::string statistic, std::string help,

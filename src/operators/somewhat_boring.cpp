@@ -49,7 +49,7 @@ std::vector<Operator> define_somewhat_boring() {
         "contrast";
     op.source =
         "T. Stachowiak, Somewhat boring display transform, in Bevy: tonemapping_shared.wgsl";
-    op.licence = "MIT or Apache-2.0";
+    op.license = "MIT or Apache-2.0";
     op.negatives = kNegativesClampAtZero;
     op.bounds = {.cube = 1.4e-2, .reason = "3D LUT: the slope jumps where the desaturation starts"};
     op.deviations = {{DocumentedDifference::Kind::never_reaches_white, 0.97, ""}};

@@ -69,7 +69,7 @@ Operator drago() {
     op.source =
         "F. Drago, K. Myszkowski, T. Annen, N. Chiba, Adaptive Logarithmic Mapping for Displaying "
         "High Contrast Scenes, Computer Graphics Forum 22(3), Eurographics 2003, eq. 4";
-    op.licence = "published formula";
+    op.license = "published formula";
     op.negatives = kNegativesClampAtZero;
     op.parameters = with_apply(
         "luminance",
@@ -113,7 +113,7 @@ Operator ward() {
     op.source =
         "G. Ward, A Contrast-Based Scalefactor for Luminance Display, Graphics Gems IV, 1994, "
         "pp. 415-421";
-    op.licence = "published formula";
+    op.license = "published formula";
     op.negatives = kNegativesClampAtZero;
     op.parameters = with_apply("luminance", {display_max(80), log_average(0.5)});
     op.warnings = {kScenesAreLuminances};
@@ -151,7 +151,7 @@ Operator tumblin_rushmeier() {
     op.source =
         "J. Tumblin, H. Rushmeier, Tone Reproduction for Realistic Images, IEEE Computer Graphics "
         "and Applications 13(6), 1993, pp. 42-48";
-    op.licence = "published formula";
+    op.license = "published formula";
     op.negatives = kNegativesClampAtZero;
     op.parameters = with_apply("luminance",
                                {display_max(80),
@@ -273,7 +273,7 @@ Operator ferwerda() {
     op.source =
         "J. Ferwerda, S. Pattanaik, P. Shirley, D. Greenberg, A Model of Visual Adaptation for "
         "Realistic Image Synthesis, SIGGRAPH 1996";
-    op.licence = "published formula";
+    op.license = "published formula";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Ferwerda";
     op.parameters = fixed_parameters(rod_parameters());
@@ -298,7 +298,7 @@ Operator durand_dorsey_rods() {
     op.source =
         "F. Durand, J. Dorsey, Interactive Tone Mapping, Eurographics Workshop on "
         "Rendering, 2000";
-    op.licence = "published formula";
+    op.license = "published formula";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Ferwerda";
     op.parameters = rod_parameters();

@@ -41,7 +41,7 @@ Operator gran_turismo() {
     op.view = "Gran Turismo";
     op.character = "unchanged midtones, short toe and exponential shoulder; clean and bright";
     op.source = "H. Uchimura, HDR Theory and Practice, CEDEC 2017";
-    op.licence = "published formula";
+    op.license = "published formula";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Gran Turismo";
     // Slope 0 and the ends of m and l make the formula divide by 0, so the ranges exclude them.

@@ -96,7 +96,7 @@ std::vector<Operator> define_unreal() {
         "ACES look with adjustable toe and shoulder, fixed mid gray; its white is a little above "
         "display white";
     op.source = "Epic Games, FilmToneMap of TonemapCommon.ush, Unreal Engine 4.15 and later";
-    op.licence = "Epic EULA; formula and constants as facts; none of its code is used";
+    op.license = "Epic EULA; formula and constants as facts; none of its code is used";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Unreal";
     op.bounds = {.cube = 7e-3,

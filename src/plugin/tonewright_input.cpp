@@ -3,7 +3,7 @@
 // A picture file, tone mapped, as an image format of OpenImageIO: "shot.exr.tonewright?op=hable" is
 // shot.exr through Hable, in every program that reads through OpenImageIO.
 //
-// No exception leaves it, and nothing but what OpenImageIO asks a plugin for is exported.
+// It throws no exception, and exports only the symbols that OpenImageIO needs of a plugin.
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imageio.h>
 #include <OpenImageIO/strutil.h>
@@ -46,20 +46,20 @@ using OIIO::ROI;
 constexpr std::string_view kExtension = ".tonewright";
 using Arguments = std::map<std::string, std::string>;
 
-/// What a name stands for.
+/// Result of a name.
 struct Request {
     std::string picture;
     Arguments arguments;
 };
 
-/// Of the part before `?`: OpenImageIO looks there for the format, too.
+/// The part before `?`, where OpenImageIO looks for the format, too.
 bool has_extension(const std::string& name) {
     return OIIO::Strutil::iends_with(name.substr(0, name.find('?')),
                                      OIIO::string_view(kExtension.data(), kExtension.size()));
 }
 
-/// While a thread opens the picture of a name. Whatever OpenImageIO makes of that picture's name,
-/// it must not be one that this format opens in turn: a text that names itself would never end.
+/// Set while a thread opens the picture of a name. The picture's name must not be one that this
+/// format opens: a text file that names itself would never end.
 class Opening {
   public:
     /// @throws Error
@@ -77,8 +77,9 @@ class Opening {
 };
 thread_local bool Opening::is_open_ = false;
 
-/// A file of lines `name=value`, of which `file` names the picture, beside it. Messages quote
-/// nothing from it: the name may lead to any file that the host can read and its user cannot.
+/// A file of lines `name=value`, of which `file` names the picture, relative to the file. Messages
+/// quote nothing from it, because the name may lead to a file that the host can read and its user
+/// cannot.
 void read_request_file(const fs::path& path, Request& request) {
     constexpr std::size_t kMostBytes = 1 << 16;
     std::istringstream file(read_file(path.string(), kMostBytes, [&](const std::string& reason) {
@@ -92,7 +93,7 @@ void read_request_file(const fs::path& path, Request& request) {
         if (text.empty() || text.front() == '#') continue;
         const std::size_t equals = text.find('=');
         if (equals == std::string_view::npos || equals == 0) {
-            throw FileError(fmt::format("{}: line {} is no setting; expected name=value",
+            throw FileError(fmt::format("{}: line {} is not a setting; expected name=value",
                                         path.string(), number));
         }
         const std::string name(OIIO::Strutil::strip(std::string(text.substr(0, equals))));
@@ -100,7 +101,7 @@ void read_request_file(const fs::path& path, Request& request) {
         if (name == "file") {
             request.picture = (path.parent_path() / value).string();
         } else if (!is_tonemap_argument(name)) {
-            throw FileError(fmt::format("{}: line {} sets something unknown; expected file, {}",
+            throw FileError(fmt::format("{}: line {} has an unknown name; expected file, {}",
                                         path.string(), number, tonemap_argument_choices()));
         } else {
             request.arguments.emplace(name, value);  // settings in the name take precedence
@@ -134,7 +135,7 @@ TonemapOptions parse_options(const Arguments& arguments, const ImageSpec& config
     TonemapOptions options;
     static const OperatorSet files(table_reader(picture_table_reader()));
     options.others = files;
-    // What an application sets for the format: `tonewright:op` and so on.
+    // Settings of an application for the format: `tonewright:op` and so on.
     constexpr std::string_view kPrefix = "tonewright:";
     for (const OIIO::ParamValue& hint : config.extra_attribs) {
         const std::string name(hint.name());
@@ -149,7 +150,7 @@ TonemapOptions parse_options(const Arguments& arguments, const ImageSpec& config
     return options;
 }
 
-/// A picture and what it is run through.
+/// A picture and its tonemapper.
 class TonemappedInput final : public ImageInput {
   public:
     TonemappedInput() = default;
@@ -158,8 +159,8 @@ class TonemappedInput final : public ImageInput {
     TonemappedInput& operator=(const TonemappedInput&) = delete;
 
     [[nodiscard]] const char* format_name() const override { return "tonewright"; }
-    // Not "procedural": that is for pictures without a file, and OpenImageIO's programs would go on
-    // where the file is missing.
+    // Not "procedural", which is for pictures without a file: OpenImageIO's programs would continue
+    // if the file is missing.
     [[nodiscard]] int supports(OIIO::string_view feature) const override {
         return picture_ && feature != "thumbnail" && feature != "procedural" && feature != "ioproxy"
                    ? picture_->supports(feature)
@@ -200,7 +201,7 @@ class TonemappedInput final : public ImageInput {
     [[nodiscard]] int current_miplevel() const override { return miplevel_; }
     bool seek_subimage(int subimage, int miplevel) override {
         if (!picture_) return false;
-        // That there is none is how an application finds the last one: no error.
+        // Not an error: applications find the last subimage in this way.
         const std::lock_guard lock(mutex_);
         if (levels_.count({subimage, miplevel}) == 0 &&
             !picture_->seek_subimage(subimage, miplevel))
@@ -245,11 +246,11 @@ class TonemappedInput final : public ImageInput {
   private:
     /// One picture of the file.
     struct Level {
-        ImageSpec source;  // what tonemap() looks at
+        ImageSpec source;  // the fields that tonemap() reads
         ImageSpec result;
     };
 
-    /// Runs `step`; what it throws becomes the error of this reader.
+    /// Runs `step`; its exceptions become the error of this reader.
     template <class Step>
     bool guarded(const Step& step) noexcept {
         try {
@@ -269,7 +270,8 @@ class TonemappedInput final : public ImageInput {
         return false;
     }
 
-    /// Of the picture's own reader. @throws FileError
+    /// Throws the error of the picture's own reader.
+    /// @throws FileError
     void check(bool was_read) const {
         if (was_read) return;
         const std::string reported = picture_->geterror();
@@ -278,7 +280,7 @@ class TonemappedInput final : public ImageInput {
             reported.empty() ? "the file is truncated or damaged" : first_line(reported)));
     }
 
-    /// With the lock.
+    /// Called with the lock.
     void go_to(int subimage, int miplevel) {
         auto found = levels_.find({subimage, miplevel});
         if (found == levels_.end()) {
@@ -317,7 +319,7 @@ class TonemappedInput final : public ImageInput {
         return levels_.at({subimage, miplevel});
     }
 
-    /// That of a subimage, whose statistics are those of its full resolution.
+    /// The tonemapper of a subimage, with the statistics of its full resolution.
     const Tonemapper& tonemapper_of(int subimage) {
         if (!tonemapper_->takes_statistics()) return *tonemapper_;
         const std::lock_guard lock(mutex_);

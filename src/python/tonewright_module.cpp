@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The compiled part of the Python module `tonewright`. Its __init__.py has the public functions:
-// they check types, so that wrong calls raise what Python raises, and pass options on by their
-// names.
+// they check types, so that wrong calls raise Python's usual exceptions, and pass options by name.
 //
-// OpenImageIO's own Python module and this one know each other's types (pybind11 shares them where
-// both were built with the same of it), so that an ImageBuf of the one goes into the other.
+// OpenImageIO's own Python module and this one share their types if both were built with the same
+// pybind11. Functions here then accept an ImageBuf of OpenImageIO's module.
 #include <OpenImageIO/imagebuf.h>
 #include <fmt/format.h>
 #include <pybind11/numpy.h>
@@ -52,11 +51,11 @@ namespace {
 using OIIO::ImageBuf;
 using OIIO::ImageSpec;
 
-/// As the command line has it.
+/// As on the command line.
 std::string text_of(const py::handle& value) {
     if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "yes" : "no";
     std::string text = py::str(value);
-    // The system and messages end there.
+    // A zero byte ends texts for the system and in messages.
     if (text.find('\0') != std::string::npos) throw py::value_error("embedded null character");
     return text;
 }
@@ -93,14 +92,14 @@ void warn(const std::string& text) {
         throw py::error_already_set();
 }
 
-/// OpenImageIO and OpenEXR have words of their own for it.
+/// OpenImageIO and OpenEXR use other words for it.
 bool is_out_of_memory(const std::string& message) {
     const auto has = [&](const char* words) { return message.find(words) != std::string::npos; };
     return has("not enough memory") || has("no memory for") || has("bad_alloc") ||
            has("allocate memory");
 }
 
-/// OSError, or the one of its classes that a reason has.
+/// OSError, or its subclass for the reason.
 PyObject* file_error_of(const std::string& message) {
     for (const auto& [number, type] :
          {std::pair(ENOENT, PyExc_FileNotFoundError), std::pair(EACCES, PyExc_PermissionError),
@@ -110,24 +109,23 @@ PyObject* file_error_of(const std::string& message) {
     return PyExc_OSError;
 }
 
-/// @param type  where there was memory enough
+/// @param type  the exception, unless memory ran out
 void set_error(PyObject* type, std::string message) {
     if (is_out_of_memory(message)) {
         type = PyExc_MemoryError;
-        // What stands first is the name of the file, or of the function.
+        // A message begins with the name of the file, or of the function.
         message = message.substr(0, message.find(": ")) + ": not enough memory";
     }
     PyErr_SetString(type, in_python(one_line(message)).c_str());
 }
 
-/// What reads .tone files and LUTs.
+/// The reader of .tone files and LUTs.
 const OperatorSet& operator_files() {
     static const OperatorSet files(table_reader(picture_table_reader(ocio_table_reader())));
     return files;
 }
 
-/// Tells what is wrong with the operator before anything is done, a file that cannot be read
-/// included.
+/// Reports errors of the operator first, also a file that cannot be read.
 void check_operator(const TonemapOptions& options) {
     const std::string caution =
         resolve_picture_operator(options.op, options.settings, options.look, options.others)
@@ -172,7 +170,7 @@ OIIO::TypeDesc pixel_type_of(const char* function, const py::array& array) {
                 "; expected float16, float32, float64, uint8, uint16 or uint32");
 }
 
-/// Calls a Python function from any thread, and stops where it raises.
+/// Calls a Python function from any thread, and stops if it raises.
 class PythonProgress {
   public:
     explicit PythonProgress(py::object function) : function_(std::move(function)) {}
@@ -180,7 +178,7 @@ class PythonProgress {
     [[nodiscard]] OIIO::ProgressCallback callback() const {
         return function_.is_none() ? nullptr : &PythonProgress::call;
     }
-    /// What it raised goes on.
+    /// Its Python exception continues.
     void check() {
         if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
     }
@@ -218,9 +216,9 @@ ImageBuf tonemap_picture(const ImageBuf& source, const TonemapOptions& options, 
     throw Error(why);
 }
 
-/// An array as a picture, which looks at the array's memory.
+/// A picture that is a view of an array's memory.
 struct ArrayPicture {
-    /// Contiguous: the one that was given, or a copy.
+    /// Contiguous: the given array, or a copy.
     py::array array;
     ImageBuf picture;
 };
@@ -234,7 +232,7 @@ ArrayPicture picture_of(const char* function, const py::array& given) {
                     "; expected (height, width) or (height, width, channels)");
     }
     const auto count = static_cast<int>(array.ndim() == 3 ? array.shape(2) : 1);
-    // Channels first, as in PyTorch: such an array would be taken for a picture of three rows.
+    // Channels first, as in PyTorch: such an array looks like a picture of three rows.
     if (count > 4 && (array.shape(0) == 3 || array.shape(0) == 4)) {
         throw Error(std::string(function) + ": array has the shape " + shape +
                     "; expected (height, width, channels), or axis=0");
@@ -399,7 +397,7 @@ py::dict describe(const ParityRow& row) {
     py::dict d;
     d["operator"] = row.op;
     d["display"] = row.display;
-    d["backend"] = row.form;
+    d["backend"] = row.backend;
     d["max"] = row.max;
     d["p999"] = row.p999;
     d["mean"] = row.mean;
@@ -489,7 +487,7 @@ void tonemap_into_file(const std::string& in, const std::string& out, const std:
     if (write.alpha != WriteOptions::Alpha::keep) {
         if (options.unpremult == TonemapOptions::Unpremult::yes)
             throw Error("alpha is " + alpha + "; expected keep where color is divided by alpha");
-        // Where alpha plays no part, color is taken as it is.
+        // Without alpha, color is taken as it is.
         options.unpremult = TonemapOptions::Unpremult::no;
     }
     const OIIO::TypeDesc pixel_type =

@@ -13,7 +13,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// What a name stands for.
+/// Result of a name.
 struct NamedOperator {
     const Operator* op = nullptr;
     const Preset* preset = nullptr;
@@ -56,7 +56,7 @@ const NamedOperators& operators_by_name() {
     return all;
 }
 
-/// What people look for, and we have no operator for: docs/choosing.md says why.
+/// Operators that people look for and that are not available; docs/choosing.md has the reasons.
 struct AbsentOperator {
     const char* name;
     const char* note;
@@ -141,7 +141,7 @@ std::vector<std::string> parts_of(std::string_view text) {
     return parts;
 }
 
-/// True where the path of a file may end here, at the end of an extension.
+/// True if the path of a file may end here, at the end of an extension.
 bool is_end_of_path(std::string_view text, std::size_t end) {
     constexpr std::string_view kExtension = ".tone";
     if (end < text.size() && text[end] != ':' &&
@@ -181,7 +181,7 @@ std::string marked(std::string_view value) {
     return text;
 }
 
-/// The parameter's own name, or the text where there is none: resolve() says so.
+/// The parameter's own name; or the text if there is none, and resolve() reports it.
 std::string parameter_name(const Operator& op, std::string_view text) {
     for (const ParameterSpec& spec : op.parameters) {
         if (is_same_name(spec.name, text)) return spec.name;
@@ -189,7 +189,8 @@ std::string parameter_name(const Operator& op, std::string_view text) {
     return std::string(text);
 }
 
-/// Puts a setting beside others. @throws Error  where they contradict each other
+/// Adds a setting to others.
+/// @throws Error  they contradict each other
 void add_setting(Settings& settings, const Operator& op, std::string_view name,
                  const std::string& value) {
     const auto [known, is_new] = settings.emplace(parameter_name(op, name), value);
@@ -207,7 +208,7 @@ void set_look(std::string& look, const Operator& op, std::string_view wanted) {
 
 ResolvedOperator resolve_text(std::string_view text, const Settings& settings,
                               std::string_view look, bool takes_local, const OperatorSet& others) {
-    // Behind a path stands what stands behind a name.
+    // A path is followed by the same settings as a name.
     const std::size_t length = file_length(text);
     std::string rest(text.substr(length));
     if (length > 0 && !rest.empty() && rest.front() != ':') rest.insert(0, ":");
@@ -301,7 +302,7 @@ std::string operator_text(const ResolvedOperator& op) {
         try {
             matters = !(params_of(others) == all);
         } catch (const Error&) {
-            // The others contradict each other without it.
+            // Without it, the others contradict each other.
         }
         if (matters) text += ":" + name + "=" + marked(value);
     }

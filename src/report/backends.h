@@ -8,12 +8,12 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// What one backend shows of some colors, in code values of the view's display.
+/// Output of one backend for some colors, in code values of the view's display.
 struct BackendResult {
     std::string name;
     /// Interleaved RGB; empty where the backend did not run.
     std::vector<float> shown;
-    std::string reason = {};  // why it did not run
+    std::string reason = {};  // the reason why it did not run
 };
 
 /// The engine, OpenColorIO's CPU and GPU paths, and a LUT as applications interpolate it.

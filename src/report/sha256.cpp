@@ -9,7 +9,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// The first 32 bits behind the point of `root` of the first primes.
+/// The first 32 bits of the fractional part of `root` of the first primes.
 template <std::size_t N, class Root>
 std::array<std::uint32_t, N> fractions_of_primes(const Root& root) {
     std::array<std::uint32_t, N> result{};

@@ -33,7 +33,7 @@ struct LanguageFacts {
     /// Declaration of a 3D texture with {name} and {binding}; empty if textures must be arguments.
     const char* texture;
     const char* fetch;  // of a texture's {name} at {x}, {y}, {z}: a color, or more than that
-    const char* color_of_fetch;  // behind it
+    const char* color_of_fetch;  // after it
     /// Comments on how to create the texture from its file. {name}, {width}, {height}, {depth},
     /// {pitch}.
     const char* loader;

@@ -19,7 +19,7 @@ struct ScalarFunction {
     Interval input = {};
 };
 
-/// A function of a color. Inputs 0, 1, 2 are its channels; input 3 + i is what calls[i] returns.
+/// A function of a color. Inputs 0, 1, 2 are its channels; input 3 + i is the result of calls[i].
 struct ColorFunction {
     struct Call {
         std::size_t function;  // index of a scalar function

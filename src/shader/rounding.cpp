@@ -9,7 +9,7 @@ namespace {
 
 double largest(const Interval& x) { return std::max(std::fabs(x.lo), std::fabs(x.hi)); }
 
-/// Of log2(a), whose value is at most this large.
+/// For log2(a), whose value is at most this large.
 double error_of_log2(const Interval& a, double value) {
     const double relative = 3 * 2 * kHalfUlp * value;
     return a.lo <= 2 && a.hi >= 0.5 ? std::max(relative, 0x1p-21) : relative;

@@ -393,7 +393,7 @@ std::string header(const ShaderRequest& request, const Shader& shader,
     };
     add("Operator", operator_text(view.op));
     add("Source", op.source);
-    add("License", op.licence + "; this text: Apache-2.0");
+    add("License", op.license + "; this text: Apache-2.0");
     add("Settings", settings_text(view.op, request.uniforms));
     const bool has_exposure = std::find(request.uniforms.begin(), request.uniforms.end(),
                                         kExposureUniform) != request.uniforms.end();

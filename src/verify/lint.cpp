@@ -83,7 +83,8 @@ class Linter {
             }
         }
         if (!config_->isStrictParsingEnabled())
-            add(Level::note, "config", "strictparsing is off: pictures get a space by accident");
+            add(Level::note, "config",
+                "strictparsing is off: a word in a file name may set the wrong space");
     }
 
     /// @param is_unique  among all names of its kind
@@ -118,7 +119,7 @@ class Linter {
             for (std::size_t i = 0; i < space->getNumAliases(); ++i)
                 check_name(where, space->getAlias(i), &taken);
             if (!*space->getEncoding())
-                add(Level::note, where, "has no encoding: hosts guess what it is for");
+                add(Level::note, where, "has no encoding: applications guess its use");
         }
         for (int i = 0; i < config_->getNumLooks(); ++i) {
             const std::string look = config_->getLookNameByIndex(i);
@@ -134,7 +135,8 @@ class Linter {
         const auto want = [&](const char* role, Level level, const char* why) {
             if (!config_->hasRole(role)) add(level, std::string("role ") + role, why);
         };
-        want("scene_linear", Level::error, "is missing: no application knows where to compute");
+        want("scene_linear", Level::error,
+             "is missing: applications do not know the working space");
         want("aces_interchange", Level::warning,
              "is missing: this config's spaces cannot be exchanged with another's");
         want("cie_xyz_d65_interchange", Level::warning,
@@ -194,7 +196,7 @@ class Linter {
             const std::string extension =
                 lowercase(std::filesystem::path(source).extension().string());
             const auto interpolation = file->getInterpolation();
-            // Whatever is in a .spi1d, it is no cube.
+            // A .spi1d file is never a 3D LUT.
             const bool may_be_cube = extension != ".spi1d" && extension != ".spimtx" &&
                                      source.find("curve") == std::string::npos;
             if (may_be_cube && interpolation != OCIO::INTERP_TETRAHEDRAL &&
@@ -207,13 +209,13 @@ class Linter {
     }
 
     void check_transforms() {
-        // OpenColorIO looks a space up among all others.
+        // OpenColorIO searches all other spaces for each.
         constexpr std::size_t kMostTried = 1000;
         std::size_t count = 0;
         if (spaces_.all().size() > kMostTried) {
             add(Level::warning, "config",
-                fmt::format("has {} color spaces: only the first {} were converted to "
-                            "scene_linear and back",
+                fmt::format("has {} color spaces: only the first {} were tested by a round "
+                            "trip through scene_linear",
                             spaces_.all().size(), kMostTried));
         }
         for (const OCIO::ConstColorSpaceRcPtr& space : spaces_.all()) {
@@ -222,7 +224,7 @@ class Linter {
             check_transform(where, space->getTransform(OCIO::COLORSPACE_DIR_FROM_REFERENCE));
             if (space->isData() || !config_->hasRole("scene_linear") || ++count > kMostTried)
                 continue;
-            // Both ways: a table that is not there, a matrix that has no inverse.
+            // Tests both directions: a missing table, or a matrix without an inverse.
             const auto build = [&](const char* from, const char* to, const char* way) {
                 try {
                     (void)config_->getProcessor(from, to)->getDefaultCPUProcessor();

@@ -21,7 +21,7 @@ namespace {
 
 constexpr const char* kSceneLinear = "scene-linear";
 
-/// What LUTs are made for; log2 as here, as in Blender's AgX and Filmic, and as T. Sobotka's AgX.
+/// Encodings of common LUTs; log2 as here, in Blender's AgX and Filmic, and in T. Sobotka's AgX.
 constexpr const char* kEncodings[] = {"acescct",
                                       "logc3",
                                       "logc4",
@@ -45,18 +45,18 @@ struct Candidate {
 /// Three planes.
 using Planes = std::array<std::vector<double>, 3>;
 
-/// What goes in -> light.
+/// Input of the LUT -> light.
 Pipeline decode_of(const std::string& encoding) {
     if (encoding == kSceneLinear) return {};
     return {curve_stage(parse_input_encoding(encoding).decode)};
 }
 
-/// What goes in: codes, or light for a table with a shaper.
+/// Inputs of the LUT: codes, or light for a LUT with a shaper.
 std::vector<float> samples_of(bool is_linear, std::size_t count) {
     SampleRandom random(23);
     std::vector<float> in;
     for (std::size_t i = 0; i < count; ++i) {
-        // Every fourth is a gray.
+        // Every fourth color is gray.
         const double gray = random.uniform(0, 1);
         for (int c = 0; c < 3; ++c) {
             const double code = i % 4 == 0 ? gray : random.uniform(0, 1);
@@ -66,7 +66,7 @@ std::vector<float> samples_of(bool is_linear, std::size_t count) {
     return in;
 }
 
-/// Colors, and what a table makes of them.
+/// Colors, and a LUT's output for them.
 struct Shown {
     std::vector<float> in;
     std::vector<float> out;
@@ -77,7 +77,7 @@ struct Shown {
     }
 };
 
-/// What a pipeline makes of what goes in.
+/// A pipeline's results for the inputs.
 Planes planes_of(const Pipeline& stages, const std::vector<float>& in) {
     Planes planes;
     for (std::size_t i = 0; i < in.size(); ++i)
@@ -99,7 +99,7 @@ void set_errors(LutMatch& match, const Planes& truth, const std::vector<float>& 
     match.mean = stats.mean;
 }
 
-/// An encoding of what goes in, and a few colors in it.
+/// An encoding of the input, and a few colors in it.
 struct Input {
     std::string encoding;
     std::vector<std::string> spaces;
@@ -107,7 +107,7 @@ struct Input {
     const Shown* shown;
 };
 
-/// Of an operator with all inputs and displays, measured.
+/// Matches of an operator with all inputs and displays.
 std::vector<Candidate> candidates_of(const ResolvedOperator& op, const std::vector<Input>& inputs) {
     std::vector<Candidate> all;
     // A display's view of a space is the same for all encodings.
@@ -133,7 +133,7 @@ std::vector<Candidate> candidates_of(const ResolvedOperator& op, const std::vect
     return all;
 }
 
-/// All operators, the known defects, and what those meant.
+/// All operators, the known defects, and the intended operators.
 std::vector<ResolvedOperator> all_and_defects() {
     std::vector<ResolvedOperator> all;
     std::set<std::string> labels;
@@ -150,8 +150,8 @@ std::vector<ResolvedOperator> all_and_defects() {
     return all;
 }
 
-/// What candidates are sorted by. A table that does not reach the colors where a defect and the
-/// operator that was meant differ is the operator's; rounding must not decide against it.
+/// The sort key of candidates. If a LUT does not reach the colors where a defect and the intended
+/// operator differ, it counts as the operator's, and rounding must not decide against that.
 double rank(const LutMatch& match) {
     constexpr double kMargin = 1.5;
     return match.definition->is_defect() ? kMargin * match.mean : match.mean;
@@ -175,7 +175,7 @@ std::vector<LutMatch> match_lut(const LutFile& table, const std::vector<std::str
     for (const std::string& text : operators)
         chosen.push_back(resolve_operator(text));
     if (operators.empty()) chosen = all_and_defects();
-    // Few colors tell which ones are worth more.
+    // A few colors select the candidates for the full comparison.
     const auto by_mean = [](const Candidate& a, const Candidate& b) {
         return rank(a.match) < rank(b.match);
     };

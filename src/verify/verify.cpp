@@ -30,7 +30,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A config in a folder of its own, gone with the object.
+/// A config in a temporary folder, which the destructor removes.
 class TemporaryConfig {
   public:
     TemporaryConfig(const std::vector<std::string>& views, const OperatorSet& others) {
@@ -43,7 +43,7 @@ class TemporaryConfig {
     PrivateFolder folder_;
 };
 
-/// Of a folder: the one that it has for any application.
+/// For a folder: its config for any application.
 std::string path_of_config(const std::string& given) {
     return fs::is_directory(given) ? given + "/config.ocio" : given;
 }
@@ -57,8 +57,7 @@ bool has_negative_coefficient(const Matrix3& m) {
     return false;
 }
 
-/// What the structure of a chain allows (DESIGN of the project, section 4), for display code
-/// values; what the operator declares instead.
+/// Bounds from the structure of a chain, for display code values; an operator may declare others.
 struct Bounds {
     double simd = 1e-6;
     double cpu = 3e-7;
@@ -66,7 +65,7 @@ struct Bounds {
     bool is_mixed_metric = false;
 };
 
-/// The largest value that a stage puts out, of inputs up to `largest` (and not below its negative).
+/// The largest output of a stage for inputs from -`largest` to `largest`.
 double largest_after(const Stage& stage, double largest) {
     const auto at = [&](const Expr& f) { return std::fabs(evaluate(f, largest)); };
     if (const auto* m = std::get_if<MatrixStage>(&stage)) {
@@ -88,8 +87,8 @@ double largest_after(const Stage& stage, double largest) {
 Bounds bounds_of(const Pipeline& pipeline, const Lowered& lowered, bool is_hdr,
                  const DeclaredBounds& declared) {
     Bounds b;
-    // Below 1 the error is one of float32 numbers around 1; above, it is in proportion to what the
-    // curve grows to before the display's clamp.
+    // Below 1, the error is that of float32 numbers around 1. Above, it grows with the curve, up to
+    // the display's clamp.
     double largest_input = 4096;
     const auto largest = [&](const Expr& f) { return std::max(1.0, evaluate(f, largest_input)); };
     const auto allow = [&](double cpu, double gpu) {
@@ -144,10 +143,11 @@ class Comparison {
         }
     }
 
-    /// @param unit  relative rounding of the form, see ParityRow::max_beyond_rounding
-    /// @param loses_negatives  the form has a cube that sees negatives of the working primaries as
-    ///                         0: colors outside of them are shown, not held to the bound
-    /// @param answers_nan  the form has to show NaN as a color
+    /// @param unit  relative rounding of the backend, see ParityRow::max_beyond_rounding
+    /// @param loses_negatives  a 3D LUT of the backend takes negatives of the working primaries as
+    /// 0:
+    ///                         the bound does not apply to colors outside of these primaries
+    /// @param answers_nan  the backend must show NaN as a color
     void measure(const std::vector<float>& shown, double unit, bool loses_negatives,
                  bool answers_nan, ParityRow& row) const {
         std::vector<double> errors;
@@ -196,7 +196,7 @@ class Comparison {
         return std::min({v[0], v[1], v[2]}) >= 0;
     }
 
-    /// Worst channel's error less what is allowed for it.
+    /// Error of the worst channel, minus its allowance.
     [[nodiscard]] double excess(std::size_t i, const float* shown, const Vector3& allowed) const {
         double worst = 0;
         const Vector3 true_light = decode_({truth_[3 * i], truth_[3 * i + 1], truth_[3 * i + 2]});
@@ -239,7 +239,7 @@ class Comparison {
         return allowance;
     }
 
-    /// The chain cut in two where a float32 form rounds and a cancelling matrix follows.
+    /// The chain, cut in two where a float32 backend rounds and a canceling matrix follows.
     struct RoundingPoint {
         ReferenceEngine before;
         ReferenceEngine after;
@@ -251,8 +251,8 @@ class Comparison {
     std::vector<RoundingPoint> rounding_points_;
 };
 
-/// What the structure of an inverse allows to 99.9 % of the colors, in code values; 0 where it has
-/// none of its own.
+/// Bound of the round trip for 99.9 % of the colors, in code values, by the structure of the
+/// inverse; 0 if the config has no inverse of its own.
 double round_trip_bound(const OCIO::ConstProcessorRcPtr& back, const ResolvedOperator& op) {
     // Inverse tables of 16384 entries; a curve that is steep next to white has few of them there.
     double bound = 1e-3;
@@ -260,8 +260,8 @@ double round_trip_bound(const OCIO::ConstProcessorRcPtr& back, const ResolvedOpe
     for (int i = 0; i < group->getNumTransforms(); ++i) {
         const OCIO::TransformRcPtr part = group->getTransform(i);
         if (const auto f = OCIO_DYNAMIC_POINTER_CAST<OCIO::FixedFunctionTransform>(part)) {
-            // Tables that OpenColorIO inverts, by default over half floats, in HSV; the ACES
-            // functions bring back what they have clipped in their own way.
+            // Tables that OpenColorIO inverts, by default over half floats, in HSV. The ACES
+            // functions invert clipped colors in their own way.
             bound = std::max(bound, f->getStyle() == OCIO::FIXED_FUNCTION_RGB_TO_HSV ? 3e-3 : 2e-2);
         }
         if (!OCIO_DYNAMIC_POINTER_CAST<OCIO::Lut3DTransform>(part)) continue;
@@ -276,8 +276,8 @@ double round_trip_bound(const OCIO::ConstProcessorRcPtr& back, const ResolvedOpe
     return bound;
 }
 
-/// OpenColorIO's built-in transform that the view's operator equals, on its display; null where
-/// there is none, or this OpenColorIO has it not.
+/// OpenColorIO's built-in transform that equals the view's operator, on the view's display; null if
+/// there is none, or if this OpenColorIO lacks it.
 OCIO::ConstProcessorRcPtr builtin_processor(const View& view) {
     const std::string style = builtin_style(view.op);
     const auto registry = OCIO::BuiltinTransformRegistry::Get();
@@ -296,7 +296,7 @@ OCIO::ConstProcessorRcPtr builtin_processor(const View& view) {
     return make_processor(ops);
 }
 
-/// Rows of the inverse from the config's output space, in the forms that applications have it.
+/// Adds rows for the inverse from the config's output space, as applications run it.
 template <class Add>
 void add_inverse_space(const OCIO::ConstConfigRcPtr& config, const View& view,
                        const std::string& space, const SampleSet& samples, bool with_gpu,
@@ -306,7 +306,7 @@ void add_inverse_space(const OCIO::ConstConfigRcPtr& config, const View& view,
     row.op = view.op.label;
     row.display = view.display;
     if (view.op.op->is_diagnostic) {
-        row.form = "and back";
+        row.backend = "inverse";
         row.note = "none: many colors are shown as one";
         add(row);
         return;
@@ -316,16 +316,17 @@ void add_inverse_space(const OCIO::ConstConfigRcPtr& config, const View& view,
     row.bound = round_trip_bound(back, view.op);
     row.lowering = "config: " + space;
     if (row.bound == 0) {
-        row.form = "and back";
-        row.note = "none: no table leads back, only OpenColorIO's own inversion of a cube";
+        row.backend = "inverse";
+        row.note =
+            "none: the config has no inverse table, and OpenColorIO's own inversion is coarse";
         add(row);
         return;
     }
-    // A fifth of the colors: two more passes through every form.
+    // A fifth of the colors, because every backend takes two more passes.
     const RoundTrip trip(view, samples, 5);
-    const auto measure = [&](const std::string& form, const RoundTrip::Inverse& run) {
+    const auto measure = [&](const std::string& backend, const RoundTrip::Inverse& run) {
         ParityRow measured = row;
-        measured.form = form;
+        measured.backend = backend;
         const auto [errors, is_finite] = trip.measure(run);
         measured.max = measured.max_all = errors.max;
         measured.p999 = measured.max_beyond_rounding = errors.p999;
@@ -337,12 +338,12 @@ void add_inverse_space(const OCIO::ConstConfigRcPtr& config, const View& view,
     for (const bool is_default : {false, true}) {
         const OcioCpu cpu(back,
                           is_default ? OCIO::OPTIMIZATION_DEFAULT : OCIO::OPTIMIZATION_LOSSLESS);
-        measure(is_default ? "back cpu default" : "back cpu lossless",
+        measure(is_default ? "inverse cpu default" : "inverse cpu lossless",
                 [&](const float* in, float* out, std::size_t n) { cpu.run_rgb(in, out, n); });
     }
     if (!with_gpu || !OcioGpu::unavailable_reason().empty()) return;
     const OcioGpu gpu(back);
-    measure("back gpu",
+    measure("inverse gpu",
             [&](const float* in, float* out, std::size_t n) { gpu.run_rgb(in, out, n); });
 }
 
@@ -350,13 +351,13 @@ double rounded_to_half(double x) {
     constexpr double largest = 65504;
     constexpr double smallest_normal = 0x1p-14;
     const double magnitude = std::min(std::fabs(x), largest);
-    // Eleven bits, or what is left of them below the normal numbers.
+    // Eleven bits, or fewer below the normal numbers.
     const double unit = std::exp2(std::floor(std::log2(std::max(magnitude, smallest_normal))) - 10);
     return std::copysign(std::nearbyint(magnitude / unit) * unit, x);
 }
 
-/// The processor with tables as Blender's viewport has them, which uploads every table as textures
-/// of half floats: a model, in which everything else is exact.
+/// A model of Blender's viewport, which uploads every table as textures of half floats; everything
+/// else is exact.
 OCIO::ConstProcessorRcPtr with_half_textures(const OCIO::ConstProcessorRcPtr& processor) {
     const OCIO::GroupTransformRcPtr group =
         processor->getOptimizedProcessor(OCIO::OPTIMIZATION_DEFAULT)->createGroupTransform();
@@ -385,7 +386,7 @@ OCIO::ConstProcessorRcPtr with_half_textures(const OCIO::ConstProcessorRcPtr& pr
     return make_processor(group);
 }
 
-/// What a config calls the operator as it is, or with a look; empty where it has other settings.
+/// The config's name for the operator with defaults or with a look; empty if it has other settings.
 std::string view_name(const ResolvedOperator& op) {
     if (op.label == op.op->id) return op.op->view;
     for (const Look& look : op.op->looks) {
@@ -394,7 +395,7 @@ std::string view_name(const ResolvedOperator& op) {
     return "";
 }
 
-/// The config's view of it on its display; empty where there is none.
+/// The config's view of the operator on its display; empty if there is none.
 std::string view_in_config(const OCIO::ConstConfigRcPtr& config, const View& view) {
     const std::string name = view_name(view.op);
     if (name.empty()) return "";
@@ -428,15 +429,14 @@ constexpr double kTenBits = 1.0 / 1023;
 constexpr double kGpuRounding = 0x1p-21;
 
 double shader_bound(const Shader& shader, bool is_hdr) {
-    // An estimate over probe colors; between them derivatives may be larger, and twice is what that
-    // is taken to be. Where float is not enough, errors are so large that terms of second order
-    // count as much: twice that.
+    // An estimate over the sample set; between samples, derivatives are assumed to be up to twice
+    // as large. If float is not enough, second-order terms count as much, so the factor is four.
     const double beyond = shader.errors.in_float > kTenBits ? 4 : 2;
     if (std::isfinite(shader.errors.vulkan_estimate)) return beyond * shader.errors.vulkan_estimate;
-    // Bounded by nothing but the display: a cancelled channel below PQ's steepest part.
+    // Limited only by the display: a canceled channel below PQ's steepest part.
     if (shader.errors.in_float > kTenBits) return 1;
-    // Where first order has a pole: a logarithm near 1 may be 2^-21 off, which the exponent 78.84
-    // of PQ makes 2.6e-5; without PQ, what float is enough for.
+    // First order has a pole here: a logarithm near 1 may be off by 2^-21, which PQ's exponent
+    // 78.84 turns into 2.6e-5. Without PQ, float is enough.
     return is_hdr ? 2.6e-5 : 2e-6;
 }
 
@@ -453,7 +453,8 @@ SampleSet every_nth(const SampleSet& all, std::size_t n) {
 
 VerifyResult verify(const VerifyOptions& options,
                     const std::function<void(const ParityRow&)>& on_row) {
-    // The views of a config, on its displays; of nobody else's: its AgX may be another.
+    // The views of a config from Tonewright, on its displays. In other configs, a view such as AgX
+    // may be a different one.
     const bool is_of_config = options.operators.empty() && !options.config.empty();
     OCIO::ConstConfigRcPtr config;
     if (!options.config.empty()) config = read_config(path_of_config(options.config));
@@ -480,7 +481,7 @@ VerifyResult verify(const VerifyOptions& options,
         }
     }
 
-    // Shaders of ours do not read a config.
+    // Tonewright's shaders do not read a config.
     ShaderRuns shaders;
     if (options.with_gpu && !is_of_config) shaders = make_shader_runs(options.shaders);
 
@@ -521,33 +522,33 @@ VerifyResult verify(const VerifyOptions& options,
         const Lowered lowered = lower_to_ocio(pipeline, lower_options(*view.op.op));
         const bool is_hdr = find_display(view.display).is_hdr;
         const Bounds bounds = bounds_of(pipeline, lowered, is_hdr, declared);
-        const auto row_of = [&](const std::string& form) {
+        const auto row_of = [&](const std::string& backend) {
             ParityRow row;
             row.op = view.op.label;
             row.display = view.display;
-            row.form = form;
+            row.backend = backend;
             return row;
         };
         const auto add_row = [&](const ParityRow& row) {
             rows.push_back(row);
             if (on_row) on_row(rows.back());
         };
-        const auto add_note = [&](const std::string& form, const std::string& note) {
-            ParityRow row = row_of(form);
+        const auto add_note = [&](const std::string& backend, const std::string& note) {
+            ParityRow row = row_of(backend);
             row.note = note;
             add_row(row);
         };
-        const auto add = [&](const Comparison& compared, const std::string& form, double bound,
+        const auto add = [&](const Comparison& compared, const std::string& backend, double bound,
                              bool is_declared, bool mixed, const std::string& lowering,
                              const auto& run) {
-            ParityRow row = row_of(form);
+            ParityRow row = row_of(backend);
             row.lowering = lowering;
             row.bound = bound;
             row.is_mixed_metric = mixed;
             run();
-            const double unit = form == "ocio gpu" ? kGpuRounding : 0x1p-23;
-            compared.measure(shown, unit, form.starts_with("ocio") && lowered.loses_negatives, true,
-                             row);
+            const double unit = backend == "ocio gpu" ? kGpuRounding : 0x1p-23;
+            compared.measure(shown, unit, backend.starts_with("ocio") && lowered.loses_negatives,
+                             true, row);
             if (is_declared)
                 row.note += (row.note.empty() ? "" : "; ") + ("bound: " + declared.reason);
             add_row(row);
@@ -592,14 +593,14 @@ VerifyResult verify(const VerifyOptions& options,
         add(comparison, "ocio cpu default", bounds.cpu, declared.ocio_cpu > 0,
             bounds.is_mixed_metric, lowering, [&] { cpu(OCIO::OPTIMIZATION_DEFAULT); });
         if (const auto builtin = builtin_processor(view)) {
-            // Not our lowering: OpenColorIO's, in float32 throughout.
+            // OpenColorIO's own transform, in float32 throughout, not our lowering.
             add(comparison, "ocio builtin", 1e-3, false, true, builtin_style(view.op), [&] {
                 OcioCpu(builtin, OCIO::OPTIMIZATION_LOSSLESS)
                     .run_rgb(samples.rgb.data(), shown.data(), samples.size());
             });
         }
         if (is_of_config) {
-            // Bounded by nothing but the display: it is Blender's choice.
+            // Limited only by the display, because Blender chose the precision.
             add(comparison, "half textures", 1, false, false, lowering, [&] {
                 OcioCpu(with_half_textures(processor), OCIO::OPTIMIZATION_LOSSLESS)
                     .run_rgb(samples.rgb.data(), shown.data(), samples.size());
@@ -624,7 +625,7 @@ VerifyResult verify(const VerifyOptions& options,
         for (const ShaderRuns::Of& shader_run : shaders.runs) {
             const ShaderLanguageInfo& language = shader_run.language;
             if (!language.holds_lattices && reads_lattice(view)) {
-                add_note(language.id, "none: it cannot hold the operator's lattice");
+                add_note(language.id, "none: it cannot store the operator's 3D LUT");
                 continue;
             }
             const ShaderRequest request = {.view = view, .language = language.language};
@@ -650,18 +651,18 @@ VerifyResult verify(const VerifyOptions& options,
 }
 
 std::string parity_heading() {
-    return fmt::format("{:<28} {:<10} {:<18} {:>8} {:>8} {:>8} {:>8} {:>10} {:>8}\n", "operator",
-                       "display", "form", "max", "99.9 %", "mean", "max all", "beyond f32",
+    return fmt::format("{:<28} {:<10} {:<20} {:>8} {:>8} {:>8} {:>8} {:>10} {:>8}\n", "operator",
+                       "display", "backend", "max", "99.9 %", "mean", "max all", "beyond f32",
                        "bound");
 }
 
 std::string format_row(const ParityRow& row) {
     if (row.bound == 0) {
-        return fmt::format("{:<28} {:<10} {:<18} {}\n", row.op, row.display, row.form, row.note);
+        return fmt::format("{:<28} {:<10} {:<20} {}\n", row.op, row.display, row.backend, row.note);
     }
     return fmt::format(
-        "{:<28} {:<10} {:<18} {:>8.1e} {:>8.1e} {:>8.1e} {:>8.1e} {:>10} {:>8.1e}  {}{}\n", row.op,
-        row.display, row.form, row.max, row.p999, row.mean, row.max_all,
+        "{:<28} {:<10} {:<20} {:>8.1e} {:>8.1e} {:>8.1e} {:>8.1e} {:>10} {:>8.1e}  {}{}\n", row.op,
+        row.display, row.backend, row.max, row.p999, row.mean, row.max_all,
         row.max_all <= row.bound ? "-" : fmt::format("{:.1e}", row.max_beyond_rounding), row.bound,
         row.is_ok ? "ok" : "FAILED", row.note.empty() ? "" : ", " + row.note);
 }

@@ -36,7 +36,7 @@ JPEG_MEAN = 1 / 255
 
 
 def blocks(page):
-    """(words behind the fence, the text) of each block of code."""
+    """(words after the fence, the text) of each block of code."""
     return re.findall(r"^```([^`\n]*)\n(.*?)^```$", page, re.S | re.M)
 
 

@@ -216,7 +216,7 @@ def check_page(report, folder, operators, groups):
     for op in operators:
         name = op["id"]
         text = section(page, name) if f'<a id="{name}"></a>' in page else ""
-        wanted = [f"## {op['title']} (`{name}`)", op["character"], op["source"], op["licence"], op["negatives"],
+        wanted = [f"## {op['title']} (`{name}`)", op["character"][0].upper() + op["character"][1:], op["source"], op["license"], op["negatives"],
                   op["output"], op["working_primaries"], f"`{op['view']}`", f"(curves/{name}.svg)",
                   "* Measured on sRGB"]
         wanted += op["warnings"] + [f"| `{p['name']}` |" for p in op["parameters"]]
@@ -335,7 +335,7 @@ def check_operator(report, command, folder, page, operator):
     first, levels, known, sides, *rest = evaluate_all(command, [name], [
         of_scene(plot.lines.get("default", (none,))[0], np.ones(3)), of_scene(grid, np.ones(3)),
         np.array([[MID_GRAY] * 3, [1] * 3]),
-        # One digit behind the point; where a curve jumps, only the sides are known.
+        # One digit after the point; where a curve jumps, only the sides are known.
         of_scene([stops + side for _, stops, _ in ends for side in (-0.051, 0.051)], np.ones(3)),
         *(of_scene(whole, color) for color in patch_colors),
         *(of_scene(plot.lines[channel][0], color) for channel, _, color in channels)])
@@ -455,7 +455,7 @@ def check_distances(report, command, page, group, a, b):
 
 
 def check_committed(report, folder):
-    """The files of docs/ are what the command writes; `./run artifacts` writes them anew."""
+    """The files of docs/ equal those that the command writes. `./run artifacts` writes them again."""
     committed = PROJECT / "docs"
     if not (committed / "curves").is_dir():
         print("skipped: docs/curves is not in the source folder; `./run artifacts` writes it")

@@ -53,7 +53,7 @@ BROKEN = {
             "continuous", None, "colors between yellow and green jump"),
     # 1.1 x: the curve makes 1.1 x/(1.1 x + 1) of it.
     "lost": ('[[stage]]\ncurve = "max(x, 0)/(max(x, 0) + 1)"\ninverse = "1.1*x/(1 - x)"\n', "inverse", None,
-             "the inverse makes"),
+             "the inverse of"),
     # (r - 2 g)^2 - r b/10 is negative for many colors, but for no gray and no primary.
     "imaginary": (CLAMP + '[[stage]]\ncross_talk = ["sqrt((r - 2*g)*(r - 2*g) - 0.1*r*b)", "g", "b"]\n', "finite", None,
                   "no finite number"),
@@ -93,7 +93,7 @@ def check_broken(report, command, folder):
         report.check(f"{name}: --strict", code == CHECK_FAILED and len(err.splitlines()) == 1, f"{code} {err}")
     others = {name: [law for law, r in laws_of(command, folder / f"{name}.tone").items()
                      if r["verdict"] == "breaks" and law not in (BROKEN[name][1], "white")] for name in BROKEN}
-    # Of grays, the last has sqrt(0.9) x beside x, without end.
+    # For grays, the last one has sqrt(0.9) x beside x, without a limit.
     report.check("no other law breaks", {k: v for k, v in others.items() if v} == {"imaginary": ["bounded", "gray"]}, others)
     step = laws_of(command, folder / "step.tone")["continuous"]
     report.check("a jump is bisected to the last bits", abs(step["x"] - 0.5) < 1e-15, step["x"])

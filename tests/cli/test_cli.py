@@ -55,7 +55,7 @@ def call(command, arguments, stdin="", folder=None, prefix=()):
 
 
 # --------------------------------------------------------------------------------------------------
-# What works
+# Commands that work
 
 
 def check_help(report, command):
@@ -118,7 +118,7 @@ def check_list(report, command):
                      "takes it from the picture: mean luminance" in run(command, "list", "exponential", *form)
                      and "exceeds white without limit" in run(command, "list", "reinhard_extended", *form)
                      and "agx_minimal" in run(command, "list", "agx_sobotka", *form)
-                     and "not a picture" in run(command, "list", "false_color", *form))
+                     and "shows facts about a picture" in run(command, "list", "false_color", *form))
     text = run(command, "list", "hable")
     report.check("list OPERATOR", "Uncharted" in text and "--set white=11.2" in text, text)
     report.check("list OPERATOR --markdown", run(command, "list", "hable", "--markdown") in markdown)
@@ -731,7 +731,7 @@ def check_verify(report, command, scratch, folder, picture):
 
 
 # --------------------------------------------------------------------------------------------------
-# What does not work
+# Commands that fail
 
 
 def make_bad_pictures(scratch, picture):
@@ -751,7 +751,7 @@ def make_bad_pictures(scratch, picture):
 
 
 def command_line_errors(picture):
-    """What the parser of the command line refuses: (arguments, words of the message)."""
+    """Errors of the command line parser: (arguments, words of the message)."""
     apply = ["apply", picture, "out.png"]
     return [
         ([*apply, "--max-pixels", "x"], "apply: --max-pixels is x; expected a number in [1, 1000000000000]"),
@@ -780,7 +780,7 @@ def command_line_errors(picture):
         ([*apply, "--operator", "hable", "--lut", "x.cube"], "apply: --operator and --lut are given; expected one of them"),
         (["apply", picture, picture, "-o", "o.png"], "apply: -o is o.png; expected a folder; --format"),
         (["eval", "hable", "--lut", "x.cube"], "eval: OPERATOR and --lut are given; expected one of them"),
-        # An option that does not exist is told before what is missing.
+        # An unknown option is reported before a missing one.
         (["chart", "--widht", "640"], "chart: option is --widht; `tonewright chart --help-all`; did you mean --width?"),
         ([*apply, "-z"], "apply: option is -z; expected one of"),
         (["list", "hable", "agx"], "list: argument is agx; expected one OPERATOR only"),

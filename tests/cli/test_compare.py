@@ -32,7 +32,7 @@ def scene():
 
 
 class Bench:
-    """What all checks share: the command, a folder, a picture in it, and what `apply` makes of it."""
+    """Data of all checks: the command, a folder, a picture in it, and the output of `apply`."""
 
     def __init__(self, report, command, folder):
         self.report, self.command, self.folder = report, command, folder
@@ -112,7 +112,7 @@ def check_titles(bench):
 
 
 def check_pictures(bench):
-    """Full size, whatever the cells; the files are those of `apply`."""
+    """Full size for any size of cells; the files are those of `apply`."""
     cells = {"hable": ["hable"], "agx_blender:look=punchy": ["agx_blender", "--look", "punchy"], "drago": ["drago"]}
     folder = bench.folder / "whole"
     bench.compared("--cell-width", 16, *cells, "--pictures", folder, "--exposure", "1")

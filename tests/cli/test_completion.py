@@ -80,7 +80,7 @@ def main():
         environment = {**os.environ, "PATH": f"{folder}:{os.environ['PATH']}", "ZDOTDIR": home, "TERM": "dumb"}
         for shell in shells:
             for line, wanted in LINES.items():
-                # Bash replaces what stands behind the last `:` or `=`.
+                # Bash replaces the text after the last `:` or `=`.
                 word = re.split("[:=]", wanted)[-1] if shell is bash else wanted
                 done = subprocess.run(shell(line), cwd=ROOT, env=environment, capture_output=True, text=True, check=False,
                                       timeout=60)

@@ -111,7 +111,7 @@ def check_examples(report, command, scratch, python, plugin):
     done = subprocess.run([command, "verify", SOFT, "--json"], capture_output=True, text=True, check=False)
     report.check("verify: all within their bounds", done.returncode == 0, done.stdout[-600:] + done.stderr)
     rows = json.loads(done.stdout) if done.returncode == 0 else []
-    forms = {str(row.get("form", row)): row for row in (rows if isinstance(rows, list) else rows.get("rows", []))}
+    forms = {str(row.get("backend", row)): row for row in (rows if isinstance(rows, list) else rows.get("rows", []))}
     report.check("verify: OpenColorIO's CPU and GLSL are rows",
                  any("ocio" in f for f in forms) and any("glsl" in f for f in forms), str(forms)[:500])
 

@@ -35,7 +35,7 @@ def help_of(command, *arguments, columns=None):
 
 
 def on_terminal(command, *arguments, columns):
-    """What the command prints on a terminal of this width."""
+    """The command's output on a terminal of this width."""
     ours, theirs = pty.openpty()
     fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 50, columns, 0, 0))
     environment = {k: v for k, v in os.environ.items() if k != "COLUMNS"}

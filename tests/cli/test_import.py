@@ -25,7 +25,7 @@ from pictures import Report, run, skip  # noqa: E402
 
 SHADERS = TESTS / "data" / "glsl"
 # Rounding of a few dozen operations in double precision; the sums of AgX' polynomial and matrices cancel a hundredfold.
-# Of numbers above 1 it is relative.
+# It is relative for numbers above 1.
 ROUNDING = 1e-12
 LOTTES = ["--parameter", "hdrMax=8", "--parameter", "midIn=0.18", "--parameter", "midOut=0.267"]
 # (shader, options of import, operator that it must equal, stages)
@@ -48,7 +48,7 @@ BUILT_IN = [
     ("reinhard_jodie.glsl", [], "reinhard_jodie", "clamp, cross-talk"),
     ("reinhard_gamma.glsl", ["--encoded", "gamma22", "--parameter", "exposure=1,0.01,100"], "reinhard", "clamp, curve"),
 ]
-# Of glsl-tone-map: (shader, options, operator, largest light that both show, why they may differ)
+# Functions of glsl-tone-map: (shader, options, operator, largest light that both show, why they may differ)
 PACKAGE = [
     ("aces.glsl", [], "aces_narkowicz", np.inf, ""),
     ("agx.glsl", ["--function", "agx"], "agx_threejs", 1, "the package ends with a clamp to [0, 1]"),
@@ -111,7 +111,7 @@ def check_parameters(report, command, folder):
     to = folder / "hejl.tone"
     imported(command, SHADERS / "hejl_2015.hlsl", [], to)
     compare(report, command, "a default argument is a parameter", f"{to}:whitePt=4", "hejl_2015:white=4")
-    # What limits a logarithm becomes a stage, unless floats make 0 of the limit.
+    # The limit of a logarithm becomes a stage, unless it is 0 in float.
     for limit, stages in ((-12, "clamp, clamp, curve"), (-2000, "clamp, curve")):
         (folder / "log.glsl").write_text(f"float f(float x) {{ return max(log2(x), {limit}.0)/20.0 + 100.0; }}\n")
         _, text = imported(command, folder / "log.glsl", [], folder / "log.tone")

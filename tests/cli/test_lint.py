@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What `tonewright verify --config` says of a config: each fault that a config can have, in one that has no other.
+"""Findings of `tonewright verify --config`: each fault that a config can have, in one that has no other.
 
     python3 tests/cli/test_lint.py build/release/bin/tonewright
 
@@ -87,7 +87,7 @@ RAW_VIEW = "    - !<View> {name: Raw, colorspace: raw}\n"
 
 
 def space(name, transform):
-    """A color space behind the others."""
+    """Adds a color space after the others."""
     return f"  - !<ColorSpace> {{name: {name}, encoding: log, {transform}}}\n"
 
 
@@ -169,7 +169,7 @@ def main():
         code, found, err = lint(command, folder, shared)
         errors = [f for f in found if f["level"] != "note"]
         report.check("spaces that share others", code == 0 and not errors, f"{code} {found} {err}")
-        # What OpenColorIO itself has to say: once, as a message of the command.
+        # OpenColorIO's own messages appear once, as messages of the command.
         text = GOOD.replace(LAST, LAST.replace("encoding: data", "encoding: data, surprise: 1") + through("a", "aces"))
         code, found, err = lint(command, folder, text)
         report.check("OpenColorIO's own warning", code == 0 and err.count("\n") == 1 and "surprise" in err

@@ -550,7 +550,7 @@ def check_noise(report, command, folder):
 
 
 def check_paths(report, command, folder):
-    """What is no file at all, or too large a one."""
+    """Paths that are not files, and files that are too large."""
     (folder / "folder.cube").mkdir()
     os.mkfifo(folder / "pipe.cube")
     with open(folder / "ten_gigabytes.cube", "wb") as file:
@@ -570,7 +570,7 @@ def check_paths(report, command, folder):
 
 
 # --------------------------------------------------------------------------------------------------
-# What LUTs do
+# Output of LUTs
 
 
 def evaluate_lut(command, path, colors, *arguments):

@@ -229,14 +229,14 @@ def check_forms(report, command, scratch):
         "--profile", "2.1")
     run("oiiotool", "--colorconfig", config / "config.ocio", scene, "--ociodisplay:from=lin_rec709", "sRGB", "Film", "-o",
         scratch / "ocio.exr")
-    # The half-LUTs of shaper and encodings: 3e-7 each, behind a LUT whose slope is about 1.5.
+    # The half-LUTs of shaper and encodings: 3e-7 each, after a LUT whose slope is about 1.5.
     report.compare("config: the view through oiiotool", read_picture(scratch / "ocio.exr")[0], wanted, 2e-6)
 
     # Every instruction set, OpenColorIO's CPU and GPU, llvmpipe's GLSL: verify holds each to its bound.
     done = subprocess.run([command, "verify", text, scratch / "one.cube", "--json", *([] if ALL else ["--quick"])],
                           capture_output=True, text=True, check=False)
     report.check("verify: all within their bounds", done.returncode == 0, done.stdout[-600:] + done.stderr)
-    forms = [row["form"] for row in json.loads(done.stdout)["rows"]] if done.stdout else []
+    forms = [row["backend"] for row in json.loads(done.stdout)["rows"]] if done.stdout else []
     report.check("verify: OpenColorIO and GLSL are rows", any("ocio cpu" in f for f in forms) and "glsl" in forms, str(forms))
 
 

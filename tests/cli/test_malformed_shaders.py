@@ -44,7 +44,7 @@ def malformed():
     for end in range(100, len(whole) - 2, 31):
         add(f"cut at {end}", whole[:end], "expected")
 
-    # What is no straight-line code.
+    # Code that is not straight-line.
     for loop in ("for (int i = 0; i < 3; i++) c *= c;", "while (true) c *= c;", "do { c *= c; } while (true);"):
         body(f"{loop} return c;", f"found {loop.split()[0]}; expected straight-line code, without loops")
     body("switch (1) { default: return c; }", "found switch; expected if, return")

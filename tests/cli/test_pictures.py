@@ -192,7 +192,7 @@ def check_files(check, scratch):
 
 
 def check_color(check, scratch):
-    """What the picture says of its numbers."""
+    """The picture's metadata about its color."""
     rgb = np.clip(picture(24, 24, 3), 0, 1)
     check.same("16-bit PNG, sRGB", write(scratch / "a.png", spec_of(rgb, "uint16"), rgb), EXACT, decode=srgb_decode)
     check.same("the same, --input lin_rec709", scratch / "a.png", options=("--input", "lin_rec709"))

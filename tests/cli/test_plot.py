@@ -209,7 +209,7 @@ def check_pixels(report, command, folder):
 
 
 def check_many(report, command, folder):
-    """More lines than can be told apart in one graph: a small graph for each."""
+    """Too many lines for one graph: a small graph for each."""
     names = ["hable", "agx_sobotka", "aces_13", "reinhard", "lottes", "gt7", "uchimura", "khronos_neutral", "drago"]
     path = folder / "many.svg"
     run(command, "plot", *names, "-o", path)

@@ -88,7 +88,7 @@ def check_arrays(report, tw):
     parts = []
     tw.tonemap(light((500, 8, 3)), "hable", progress=lambda part: parts.append(part))
     report.check("progress", len(parts) > 50 and parts == sorted(parts) and parts[-1] == 1, parts[-3:])
-    raises(report, "progress that stops", ValueError, "cancelled",
+    raises(report, "progress that stops", ValueError, "canceled",
            lambda: tw.tonemap(rgb, "hable", progress=lambda part: True))
     raises(report, "progress that raises", ZeroDivisionError, "division",
            lambda: tw.tonemap(rgb, "hable", progress=lambda part: 1 / 0))

@@ -50,7 +50,7 @@ class Shots:
             path.unlink()
 
     def apply(self, *arguments, keep=False, to="out.@@@@.png"):
-        """Of in.@@@@.exr, into an empty folder or what is there."""
+        """Frames of in.@@@@.exr, into an empty folder or the given one."""
         if not keep:
             self.clean()
         return apply(self.command, "in.@@@@.exr", to, *HABLE, *arguments, folder=self.folder)

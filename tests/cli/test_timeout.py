@@ -95,7 +95,7 @@ def check_killed(tool, report):
 
 
 def check_same(tool, report):
-    """What a process for each frame writes and meters is what one process writes and meters."""
+    """A process for each frame writes and meters the same as one process."""
     cases = [[], ["--auto-exposure", "histogram", "--adapt"], ["--auto-exposure", "log-average", "--threads", "3"],
              ["--operator", "drago", "--statistics", "sequence"], ["--jobs", "2"], ["--frames", "1-3", "--strict"]]
     for options in share_of(cases, 3):

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What a release promises: names in the configs stay, and no operator's numbers change without a line in CHANGELOG.md.
+"""The promises of a release: names in the configs stay, and no operator's numbers change without a line in CHANGELOG.md.
 
     /usr/bin/python3 tests/contract/test_contract.py build/release/bin/tonewright [--record]
 

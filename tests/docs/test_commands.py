@@ -30,7 +30,7 @@ from pictures import PROJECT, Report  # noqa: E402
 from test_into import ACES  # noqa: E402
 
 PROGRAMS = ("tonewright oiiotool ffmpeg ./run export echo python3 cmake ctest npm g++ iinfo idiff maketx iv rv blender "
-            "dpkg-buildpackage tests/install/debian.sh").split()
+            "dpkg-buildpackage tests/install/release.sh tests/install/debian.sh").split()
 COMMAND = re.compile(rf"(\$ )?((?:\w+=\S+ )?(?:{'|'.join(map(re.escape, PROGRAMS))})(?: .*)?)")
 GENERATED = {"docs/operators.md"}
 FOLLOWED = {"docs/cookbook.md", "docs/own_operators.md", "docs/formula_to_picture.md", "docs/gallery.md"}
@@ -40,6 +40,7 @@ NOT_RUN = {
     "ctest": "runs tests",
     "cmake --preset dev": "builds everything",
     "dpkg-buildpackage": "builds everything; `./run release` runs it",
+    "tests/install/release.sh": "needs the files of a release",
     "tests/install/debian.sh": "needs a Debian mirror",
     "cmake --install": "the test install runs it",
     "g++ main.cpp": "the test install compiles and links programs so",

@@ -483,7 +483,7 @@ std::string text_of(const Settings& settings) {
 class ParameterLaw : public ::testing::TestWithParam<std::string> {};
 
 /// "A bad parameter is an error, never a silent clamp": then what is no error has to work.
-TEST_P(ParameterLaw, WhatIsAcceptedIsTotal) {
+TEST_P(ParameterLaw, AcceptedValuesGiveFiniteResults) {
     const Operator& op = find_operator(GetParam());
     SampleRandom random(43);
     std::vector<float> in;

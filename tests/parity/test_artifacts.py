@@ -49,7 +49,7 @@ NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w^])")
 
 
 def without_hash(text):
-    """What no two compilers need to agree about: content hashes, OpenColorIO's version."""
+    """Contents that may differ between compilers: content hashes, OpenColorIO's version."""
     text = re.sub(r"id=\"tonewright-[0-9a-f]{8}\"", "id=\"tonewright-HASH\"", text)
     return re.sub(r"OpenColorIO \d+\.\d+\.\d+", "OpenColorIO VERSION", text)
 

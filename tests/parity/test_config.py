@@ -45,7 +45,7 @@ LINEAR = {"Linear Rec.709": "rec709", "ACEScg": "ap1", "ACES2065-1": "ap0", "Lin
           "Linear P3-D65": "p3d65", "Linear FilmLight E-Gamut": "egamut"}
 # FilmLight E-Gamut, 2018: the one space that no operator there needs.
 EGAMUT = ((0.8, 0.3177), (0.18, 0.9), (0.065, -0.0805), (0.3127, 0.3290))
-# What artists look for, in the order that menus have; the first is what applications start with.
+# Views that artists look for, in the order of menus; the first is the default view.
 VIEWS = ["AgX", "AgX Punchy", "ACES 2.0", "ACES 1.3", "Khronos PBR Neutral", "Reinhard Extended", "Hable", "Gran Turismo",
          "ACES Narkowicz", "AgX Sobotka", "Standard", "False Color", "Un-tone-mapped", "Raw"]
 DISPLAYS = ["sRGB", "Display P3", "Rec.1886", "Rec.2020", "Gamma 2.2", "Rec.2100-PQ", "Rec.2100-HLG", "P3-D65 PQ"]
@@ -179,7 +179,7 @@ def slog3_decode(code):
 
 
 def check_cameras(report, config, command, operators, lut_encodings):
-    """What the makers print, and one gamut of a camera in `--input` and in the config."""
+    """The makers' matrices, and one gamut of a camera in `--input` and in the config."""
     codes = np.concatenate([np.repeat(np.arange(33)[:, None] / 32, 3, axis=1),
                             np.random.default_rng(8).uniform(0.2, 0.8, (2000, 3))])
     # ARRI, "LogC4 Logarithmic Color Space, Specification", 2022, 4.1.
@@ -214,7 +214,7 @@ def check_cameras(report, config, command, operators, lut_encodings):
 
 
 def check_round_trips(report, config, folder):
-    """What the README says of the inverse, for colors of its kind, without loss and by default."""
+    """The README's figures for the inverse, for colors of its kind, without loss and by default."""
     stated = {}
     for line in (folder / "README.md").read_text().splitlines():
         cells = [c.strip() for c in line.split("|")]

@@ -165,7 +165,7 @@ BOUND = 1e-4
 
 
 def numbers_of(path):
-    """What a config makes of some light: every space both ways, every view."""
+    """A config's output for some colors: every space in both directions, every view."""
     config = ocio.Config.CreateFromFile(str(path))
     config.setProcessorCacheFlags(ocio.PROCESSOR_CACHE_OFF)
     light = np.random.default_rng(2).uniform(0, 4, (256, 3)).astype(np.float32)
@@ -259,7 +259,7 @@ def check_text(report, command, root):
             "added 4 views: Hable on Monitor", f"2 view transforms: Hable, {second[1]}",
             "9 looks" if second[1] == "AgX" else "", "4 color spaces: Output - Hable - Monitor")), done.stdout)
         tables = {p.name for p in (folder / "tonewright").glob("*.clf")}
-        # What is not ours may be changed between the two.
+        # Users may change the rest between the two.
         path.write_bytes(path.read_bytes().replace(b"the one on the desk", b"the one on the wall"))
         done = call(command, "--into", path, "--update", "--views", "hable", "--looks", "none")
         left = {p.name for p in (folder / "tonewright").glob("*.clf")}

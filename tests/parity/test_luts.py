@@ -49,7 +49,7 @@ def nodes_of(size):
 
 
 def through_ocio(path, rgb):
-    """What OpenColorIO makes of the file, in tetrahedra."""
+    """OpenColorIO's output for the file, in tetrahedra."""
     config = ocio.Config.CreateRaw()
     config.setProcessorCacheFlags(ocio.PROCESSOR_CACHE_OFF)
     transform = ocio.FileTransform(str(path), interpolation=ocio.INTERP_TETRAHEDRAL)
@@ -112,7 +112,7 @@ def check_host(report, command, host, folder):
 
 
 def check_formats(report, command, folder):
-    """What no host takes by default."""
+    """Options that no application has by default."""
     codes = nodes_of(17)
     truth = expected_of(command, codes, "acescct", "srgb")
     path = folder / "x.raw"

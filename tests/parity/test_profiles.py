@@ -49,7 +49,7 @@ AMF_IDS = {("ACES 2.0", "sRGB"): AMF + "v2.0:Output.Academy.Rec709-D65_100nit_in
 
 @contextlib.contextmanager
 def logged():
-    """What OpenColorIO has to say."""
+    """OpenColorIO's messages."""
     lines = []
     ocio.SetLoggingFunction(lambda message: lines.append(message.strip()))
     try:

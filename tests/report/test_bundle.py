@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The page's bundle, built anew from npm packages; accessibility by axe-core; first paint, a 4K picture, and flipping.
+"""The page's bundle, built again from npm packages; accessibility by axe-core; first paint, a 4K picture, and flipping.
 
     python3 tests/report/test_bundle.py build/release/bin/tonewright
 
@@ -56,7 +56,7 @@ def check_axe(report, page, file, axe):
             passed, found = page.run("axe.run().then(({ passes, violations }) => [passes.length, "
                                      "violations.map(({ id, nodes }) => [id, nodes[0].html.slice(0, 120)])])")
             report.check(f"axe-core, {name}, {view}: {passed} rules hold, {len(found)} do not", passed > 15 and not found, json.dumps(found))
-        # Of a page that is too wide, a phone shows a part.
+        # A phone shows only a part of a page that is too wide.
         wide = page.run("document.documentElement.scrollWidth - innerWidth")
         report.check(f"{name}: no scrolling sideways", wide <= 0, f"{wide} pixels")
 

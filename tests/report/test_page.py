@@ -279,7 +279,7 @@ def check_damaged(report, command, page, scratch):
 
 
 def check_command(report, command, scratch):
-    """What the command refuses: one line, the right exit code, no file."""
+    """Errors of the command: one line, the right exit code, no file."""
     file = scratch / "no.html"
     for arguments, code, words in (
             ([], 2, "-o is missing"),
@@ -376,7 +376,7 @@ def check_silence(report, page):
 
 
 def check_hdr(report, command, page, file):
-    """The HDR form of operators on WebGPU, where the display is HDR; else one line that says why there is none."""
+    """The HDR version of operators on WebGPU if the display is HDR; otherwise one line with the reason."""
     page.open(file)
     note = "document.querySelector('.tools > .note').textContent"
     report.check("HDR: the page says that the display is not HDR", "not HDR" in page.run(note), page.run(note))
@@ -433,7 +433,7 @@ def check_hdr_forms(report, command, page, file):
     })()""")
     report.check("HDR: lights are brighter than white", max(bright) > 1.5, str(bright))
     page.run("tonewright.state.slots[0].op = 'hable'; tonewright.state.hdr = true; tonewright.change()")
-    report.check("HDR: an operator without it says so", "no HDR form" in page.run(note), page.run(note))
+    report.check("HDR: an operator without it says so", "no HDR version" in page.run(note), page.run(note))
 
 
 def take_screenshots(page, file, folder):

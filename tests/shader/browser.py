@@ -34,7 +34,7 @@ const floats = async (url) => {
 
 
 def run_page(page: str, files: dict, timeout: float = 900) -> dict:
-    """What the page posts by `post(name, body)`, up to `post('finished')`.
+    """The texts that the page posts by `post(name, body)`, up to `post('finished')`.
 
     files: URL -> bytes, or a path; a URL that ends in a slash is a folder.
     """

@@ -86,7 +86,7 @@ class Comparison:
         self.recorded = {}  # language -> function -> largest error
 
     def colors_of(self, row: dict) -> np.ndarray:
-        """What the function of this row should be run over."""
+        """The colors for the function of this row."""
         return self.all_rgb if row["operator"] in self.hostile else self.rgb
 
     def expected(self, operator: str, rgb: np.ndarray) -> np.ndarray:
@@ -137,7 +137,7 @@ class Comparison:
 
 
 def reference(tonewright: str, operator: str, rgb: np.ndarray, *options: str) -> np.ndarray:
-    """What `tonewright eval` answers."""
+    """The answer of `tonewright eval`."""
     text = "\n".join(" ".join(map(repr, row)) for row in rgb.astype(float).tolist()) + "\n"
     lines = subprocess.run([tonewright, "eval", operator, "--digits", "12", *options], input=text, check=True,
                            capture_output=True, text=True).stdout

@@ -39,7 +39,7 @@ def main(tonewright: str) -> int:
         verified = json.loads(subprocess.run([tonewright, "verify", "--quick", "--best-target", "--shaders", "glsl", "--json"],
                                              check=True, capture_output=True, text=True).stdout)
         for row in verified["rows"]:
-            if row["form"] == "glsl":
+            if row["backend"] == "glsl":
                 errors[names[0]][functions[row["operator"].replace(" look=", ":look=")]] = row["max_all"]
         for test, implementations in TESTS.items():
             subprocess.run([sys.executable, str(HERE / test), tonewright, str(shaders), "--record",

@@ -118,7 +118,7 @@ def unreal(text: str, function: str, folder: pathlib.Path) -> dict:
 
 
 def resolve(text: str, function: str, picture: np.ndarray) -> np.ndarray:
-    """What transform() returns; it is told the place of the pixel, too."""
+    """The result of transform(), which also gets the position of the pixel."""
     call = f"transform({SIZE[0]}, {SIZE[1]}, i / 3 % {SIZE[0]}, i / 3 / {SIZE[0]}, a[i], a[i + 1], a[i + 2])"
     return OpenCl({function: f"#define SLIDER {STOPS}f\n{text}"}, {function: call}).run(function, picture)
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What `tonewright shader` writes for three.js, in a page in Chromium, against `tonewright eval`.
+"""Files of `tonewright shader` for three.js, in a page in Chromium, against `tonewright eval`.
 
 Modules of `--for threejs` and `--for threejs-tsl`; with TONEWRIGHT_TEST_ALL=1 the npm package, too: packed, installed, and
 imported by the examples of its README. The pixels are those of a picture with the colors of executed.colors(), and of a

@@ -54,12 +54,12 @@ class Checks:
         done = subprocess.run([self.tonewright, "verify", *(arguments or OPERATORS), "--quick", "--best-target", "--json"],
                               env=os.environ | environment, capture_output=True, text=True, check=False)
         found = json.loads(done.stdout) if done.stdout else {"rows": [], "not_executed": []}
-        rows = [row for row in found["rows"] if not row["form"].startswith(("simd", "ocio"))]
+        rows = [row for row in found["rows"] if not row["backend"].startswith(("simd", "ocio"))]
         return done.returncode, rows, {n["name"]: n["reason"] for n in found["not_executed"]}, done.stderr
 
 
 def dawn_environment(tonewright: str) -> dict:
-    """What `verify` needs for WGSL and HLSL; nothing where that is missing, which Dawn() says."""
+    """The environment that `verify` needs for WGSL and HLSL; empty if Dawn() reports that it is missing."""
     try:
         return {"TONEWRIGHT_NODE_MODULES": str(Dawn(tonewright).modules), "VK_ICD_FILENAMES": str(SWIFTSHADER)}
     except SystemExit:
@@ -83,8 +83,8 @@ def main(tonewright: str) -> int:
     dawn = dawn_environment(tonewright)
     wanted = {"c"} | ({"wgsl", "hlsl"} if dawn else set())
     code, rows, not_executed, messages = checks.verify(**dawn)
-    executed = {row["form"] for row in rows}
-    print("executed:", ", ".join(f"{row['form']} {row['max']:.1e} ({row['lowering']})" for row in rows
+    executed = {row["backend"] for row in rows}
+    print("executed:", ", ".join(f"{row['backend']} {row['max']:.1e} ({row['lowering']})" for row in rows
                                  if row["operator"] == "hable"))
     checks.check("every language is executed, or has a reason", code == 0 and wanted <= executed
                  and not executed & set(not_executed)
@@ -95,7 +95,7 @@ def main(tonewright: str) -> int:
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         own = {"TMPDIR": name}
-        # What is missing is said, and is no error.
+        # A missing program is reported, and is not an error.
         for environment, language, reason in (
                 ({"CC": str(folder / "none")}, "c", "no C compiler"),
                 ({"CC": "false"}, "c", "no C compiler"),
@@ -107,7 +107,7 @@ def main(tonewright: str) -> int:
             code, rows, not_executed, messages = checks.verify("hable", "--shaders", language, **own | environment)
             checks.check(f"{language} with {environment}", code == 0 and not rows
                          and not_executed.get(language, "").startswith(reason), (code, rows, not_executed, messages))
-        # What is wrong is found.
+        # Errors are found.
         for text, note in ((WRONG_CONSTANT, "worst at"), (NO_C, "error")):
             wrong = script(folder, "wrong_cc", text)
             code, rows, _, messages = checks.verify("hable", "--shaders", "c", CC=wrong, REAL_CC=compiler, **own)

@@ -66,7 +66,7 @@ def with_textures(tonewright: str, language: str, rows: list, shaders: pathlib.P
 
 
 def step_of(language: str, row: dict, shaders: pathlib.Path, rgb: np.ndarray, folder: pathlib.Path) -> dict:
-    """What run_on_dawn.mjs takes of this function."""
+    """The input of run_on_dawn.mjs for this function."""
     text_file = shaders / row["path"]
     program = folder / f"{row['path'].replace('/', '_')}.main.{language}"
     program.write_text(text_file.read_text() + MAIN[language].replace("FUNCTION", row["function"]))

@@ -65,7 +65,7 @@ WriteOptions::Alpha parse_alpha(const ApplyOptions& options) {
                             join_choices(names), did_you_mean(options.alpha, names)));
 }
 
-/// @throws Error  what no file of this name can be, before a large picture is read
+/// @throws Error  the file name cannot have this output; checked before a large picture is read
 WriteOptions write_options_of(const ApplyOptions& options, const std::string& out) {
     WriteOptions write;
     write.type = pixel_type_of(options);
@@ -83,12 +83,12 @@ double max_pixels_of(const ApplyOptions& options) {
     return options.picture.max_pixels.value_or(kMaxPixels);
 }
 
-/// Where alpha plays no part, color is taken as it is.
+/// Without alpha, color is taken as it is.
 TonemapOptions::Unpremult alpha_of(const ApplyOptions& options) {
     return options.alpha == "keep" ? alpha_of(options.picture) : TonemapOptions::Unpremult::no;
 }
 
-/// For metering, which sees the same colors.
+/// For metering, which uses the same colors.
 PictureInput picture_of(const ApplyOptions& options) {
     PictureInput picture = options.picture;
     if (options.alpha != "keep") picture.no_unpremult = true;
@@ -103,8 +103,7 @@ void take_error(const MeteredShot& shot, FrameFiles& frame) {
     }
 }
 
-/// What the frames of a shot say before any of them is tone mapped: their exposures, the statistics
-/// of all.
+/// Results of metering a shot before tone mapping: exposures of the frames, statistics of all.
 void meter_frames(Tonemapper& tonemapper, std::vector<FrameFiles>& frames,
                   const std::vector<int>& numbers, const ApplyOptions& options) {
     const bool has_exposures = !options.metering.method.empty();
@@ -121,7 +120,7 @@ void meter_frames(Tonemapper& tonemapper, std::vector<FrameFiles>& frames,
         throw Error(fmt::format("apply: --meter-frames is {}; expected frame {} of --frames in it",
                                 options.shot.meter_frames, number));
     }
-    // Where frames may be missing, the shot is those that are there.
+    // If frames may be missing, the shot consists of the existing ones.
     if (options.frames.missing != "error") {
         std::erase_if(all, [&](int number) {
             return !std::filesystem::exists(frame_name("in", options.in, number));
@@ -141,15 +140,16 @@ void meter_frames(Tonemapper& tonemapper, std::vector<FrameFiles>& frames,
         shot.exposures(rule, options.metering.delta, options.shot.adapt ? &adaptation : nullptr);
     for (std::size_t i = 0; i < frames.size(); ++i) {
         if (options.picture.timeout > 0) take_error(shot, frames[i]);
-        // A missing frame that is held has the exposure of the one before, too. One that could not
-        // be metered cannot be tone mapped either, which says why.
+        // A held frame also has the exposure of the frame before it. A frame that could not be
+        // metered cannot be tone mapped either, and reports the same error.
         const auto after = exposures.upper_bound(numbers[i]);
         if (after != exposures.begin())
             frames[i].exposure_stops = options.exposure + std::prev(after)->second;
     }
 }
 
-/// Each picture by itself. @throws  the first error, where there is one picture
+/// Each picture separately.
+/// @throws  the first error, if there is one picture only
 void meter_each(std::vector<FrameFiles>& files, const ApplyOptions& options) {
     if (options.metering.method.empty()) return;
     const ExposureRule rule = rule_of(options.metering);
@@ -161,7 +161,7 @@ void meter_each(std::vector<FrameFiles>& files, const ApplyOptions& options) {
         paths, meter_options_of(options.metering, options.input, picture_of(options)),
         options.shot.cache, options.picture);
     for (std::size_t i = 0; i < files.size(); ++i) {
-        // Where there are several, tone mapping says why it cannot be read.
+        // If there are several, tone mapping reports the reason.
         if (files.size() == 1 && metered[i].is_file_error) throw FileError(metered[i].error);
         if (files.size() == 1 && !metered[i].error.empty()) throw Error(metered[i].error);
         if (options.picture.timeout > 0) files[i].error = metered[i].error;
@@ -177,7 +177,7 @@ void apply_lut(const ApplyOptions& options, const LutFile& lut, const FrameFiles
     WriteOptions write = write_options_of(options, file.out);
     Warnings warnings(file.out);
     write.warn = [hear = warnings.hearer()](std::string text) {
-        // The display is a matter of the LUT.
+        // The LUT decides the display.
         constexpr std::string_view kRemedy = "use --display linear";
         if (const std::size_t at = text.find(kRemedy); at != std::string::npos)
             text.replace(at, kRemedy.size(), "bake the LUT with --display linear");
@@ -219,7 +219,7 @@ void apply_lut(const ApplyOptions& options, const LutFile& lut, const FrameFiles
 }
 
 int apply_lut(const ApplyOptions& options, ApplyFiles& files) {
-    // What is wrong with the options is told before a picture is read.
+    // Reports wrong options before a picture is read.
     check_lut_options("apply", options.lut, options, source_color({}, options.input));
     const LutFile lut = with_memory_for(options.lut.file, [&] {
         return open_lut(options.lut.file, options.lut.interpolation, load_lut_picture);
@@ -309,7 +309,7 @@ int run_apply(const ApplyOptions& given) {
                         "for another",
                         kDefaultOperator, find_operator(kDefaultOperator).view));
     };
-    Tonemapper tonemapper(tonemap);  // a wrong name is told before a large file is read
+    Tonemapper tonemapper(tonemap);  // reports a wrong name before it reads a large file
     if (options.has_legend && find_display(options.display).id != "srgb") {
         throw Error("apply: --display is " + options.display + "; expected srgb with --legend");
     }

@@ -44,12 +44,12 @@ class Shot {
         const auto known = known_.find(frame);
         if (known != known_.end()) return known->second;
         std::error_code error;
-        // What cannot be looked at is no missing frame: reading it tells why.
+        // A file without access is not a missing frame: reading it reports the reason.
         const fs::file_type type = fs::status(name(frame), error).type();
         return known_[frame] = type != fs::file_type::not_found;
     }
-    /// The frame that stands for a missing one. It depends on the files alone, not on which frames
-    /// are asked for: every part of a shot gets the same.
+    /// The frame that replaces a missing one. It depends on the files only, not on --frames, so
+    /// every part of a shot gets the same frames.
     [[nodiscard]] std::optional<int> held(int frame) {
         for (int earlier = frame - 1; earlier >= frame - kMostHeld; --earlier) {
             if (has(earlier)) return earlier;
@@ -105,7 +105,8 @@ Plan plan_frames(const std::string& in, const std::string& out, const FrameOptio
     return plan;
 }
 
-/// Lines for what failed. @returns  how many
+/// Prints lines for failures.
+/// @returns  their number
 std::size_t print_failures(const std::vector<FrameFiles>& files) {
     constexpr std::size_t kMostLines = 50;
     std::size_t failed = 0;
@@ -121,13 +122,13 @@ std::size_t print_failures(const std::vector<FrameFiles>& files) {
     return failed;
 }
 
-/// One line for all, on a terminal or where there is more to say than that all were written.
+/// One line for all, on a terminal or if not all were simply written.
 void print_summary(const std::string& text, bool is_all_written) {
     if (says_what_was_done() || (!is_all_written && !message_options().is_quiet))
         print_message("apply: " + text);
 }
 
-/// Lines for what failed, and one for all.
+/// Lines for failures, and one for all.
 void print_summary(const Plan& plan) {
     std::vector<int> failed;
     std::size_t skipped = 0;

@@ -11,28 +11,28 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// Every frame, whatever becomes of the others: how far it is on a terminal, and at the end what
-/// became of them, on standard error.
-/// @param options   `in` and `out` are names with places for the number. @see frame_name
-/// @param prepare   called with the frames and their numbers before any is made
+/// Tone maps every frame, also after failures. Shows the progress on a terminal, and the results at
+/// the end on standard error.
+/// @param options   `in` and `out` are names with placeholders for the number. @see frame_name
+/// @param prepare   called with the frames and their numbers before the first one
 /// @returns         the exit code
-/// @throws Error    what is wrong with the whole of it
+/// @throws Error    an error that concerns all frames
 int apply_to_frames(
     const Tonemapper& tonemapper, const ApplyOptions& options, WriteOptions write,
     const std::function<void(std::vector<FrameFiles>&, const std::vector<int>&)>& prepare);
 
-/// Pictures that are no shot, in the same way.
+/// The same for pictures that are not frames of a shot.
 /// @returns  the exit code
 int apply_to_files(const Tonemapper& tonemapper, const ApplyOptions& options,
                    std::vector<FrameFiles>& files, WriteOptions write);
 
-/// tonemap_files() with a timeout: each file in a process of its own. A file that has an error
-/// already is left out. What a killed process left of its output is removed.
+/// tonemap_files() with a timeout: each file has its own process. Leaves out files that already
+/// have an error. Removes incomplete output of a killed process.
 void tonemap_contained(const Tonemapper& tonemapper, std::vector<FrameFiles>& files,
                        const SequenceOptions& options, const PictureInput& picture);
 
-/// tonemap_file() with a timeout: in a process of its own.
-/// @throws  what tonemap_file() throws; FileError for a crash and the timeout
+/// tonemap_file() with a timeout: in its own process.
+/// @throws  as tonemap_file(); FileError for a crash and the timeout
 void tonemap_contained(const Tonemapper& tonemapper, const FrameFiles& file,
                        const WriteOptions& write, const PictureInput& picture);
 

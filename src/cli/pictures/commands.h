@@ -6,7 +6,7 @@
 
 #include "cli/picture_commands.h"
 
-/// The functions behind PictureCommands.
+/// The implementation of PictureCommands.
 TONEWRIGHT_NAMESPACE_BEGIN
 
 int run_apply(const ApplyOptions& options);

@@ -56,7 +56,7 @@ Rendering rendering_of(const ResolvedOperator& op, const CompareOptions& options
     return {op, Tonemapper(tonemap)};
 }
 
-/// The named ones, or the views that the config offers.
+/// The named operators, or the views of the config.
 std::vector<Rendering> renderings_of(const CompareOptions& options) {
     std::vector<Rendering> all;
     for (const std::string& text : options.operators)
@@ -71,7 +71,7 @@ std::vector<Rendering> renderings_of(const CompareOptions& options) {
     return all;
 }
 
-/// Those that measure the picture measure all of it, once.
+/// Operators that measure the picture measure all of it, once.
 void take_statistics(std::vector<Rendering>& renderings, const OIIO::ImageBuf& picture,
                      const std::string& input) {
     const auto takes = [](const Rendering& r) { return r.tonemapper.takes_statistics(); };
@@ -147,7 +147,7 @@ void write_sheet(const CompareOptions& options, const std::vector<Rendering>& re
         PictureDifference difference =
             difference_of(cells[0].second, cells[1].second, *options.difference);
         cells.emplace_back(
-            fmt::format("Difference x {:g}\nlargest {:.1f}, mean {:.2f} codes of 8 bits",
+            fmt::format("Difference x {:g}\nlargest {:.1f}, mean {:.2f} 8-bit codes",
                         *options.difference, 255 * difference.largest, 255 * difference.mean),
             std::move(difference.picture));
     }
@@ -198,7 +198,7 @@ void compare_pictures(CompareOptions options) {
     const std::string remark =
         fmt::format("{}, {}, shown on sRGB", exposure_text(options.exposure), title_of(source));
     if (!options.split && !source.decode.empty()) {
-        // Code values are no light to scale.
+        // Code values are not light, so they are not scaled.
         picture = to_rec709_light(picture, source, options.in);
         options.input = "lin_rec709";
         renderings = renderings_of(options);

@@ -31,7 +31,7 @@ using Clock = std::chrono::steady_clock;
 
 using Failure = ContainedResult::Failure;
 
-/// What a process sends: one byte that says what follows, and the value or the message.
+/// Message of a process: one byte with its kind, and the value or the text.
 std::string message(Failure failure, const std::string& text) {
     return static_cast<char>('0' + static_cast<int>(failure)) + text;
 }
@@ -40,8 +40,8 @@ ContainedResult file_failure(const std::string& name, const std::string& reason)
     return {.failure = Failure::file, .error = fmt::format("{}: {}", name, reason)};
 }
 
-/// What the new process does. It ends without destructors and exit handlers, which would wait for
-/// threads that only the old process has.
+/// The work of the new process. It ends without destructors and exit handlers, which would wait for
+/// threads that exist in the old process only.
 [[noreturn]] void run_child(const std::function<std::string(std::size_t)>& work, std::size_t item,
                             int pipe, pid_t parent) {
     // SIGTERM removes unfinished files, as in the program itself.
@@ -76,7 +76,7 @@ struct Process {
     std::string text = {};
 };
 
-/// @returns  nothing where no process can be made; then errno says why
+/// @returns  nothing if no process can be made; then errno has the reason
 std::optional<Process> start(std::size_t item, double seconds,
                              const std::function<std::string(std::size_t)>& work) {
     std::array<int, 2> ends{};
@@ -99,7 +99,8 @@ std::optional<Process> start(std::size_t item, double seconds,
     return Process{item, id, ends[0], Clock::now() + limit};
 }
 
-/// Reads what is there. @returns  true at the end
+/// Reads the available bytes.
+/// @returns  true at the end
 bool read_more(Process& process) {
     std::array<char, 65536> bytes;
     const ssize_t count = ::read(process.pipe, bytes.data(), bytes.size());
@@ -108,7 +109,7 @@ bool read_more(Process& process) {
     return count == 0;
 }
 
-/// What a process that has closed its pipe became.
+/// The result of a process that has closed its pipe.
 ContainedResult result_of(const Process& process, const std::string& name) {
     int status = 0;
     while (::waitpid(process.id, &status, 0) < 0 && errno == EINTR) {
@@ -128,7 +129,7 @@ ContainedResult result_of(const Process& process, const std::string& name) {
     return {.failure = failure, .error = rest};
 }
 
-/// A process that waits for a device may outlive even this; then nobody waits for it.
+/// A process that waits for a device may outlive even this; then it is abandoned.
 void kill_process(const Process& process) {
     constexpr int kMostWaits = 200;
     ::kill(process.id, SIGKILL);

@@ -10,33 +10,32 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// What became of a piece of work in a process of its own.
+/// Result of work in a separate process.
 struct ContainedResult {
-    /// What went wrong: a FileError (a crash and a timeout, too), an Error, another exception.
+    /// The error: a FileError (also for a crash and a timeout), an Error, or another exception.
     enum class Failure { none, file, usage, other };
 
-    /// What the work returned.
+    /// The result of the work.
     std::string value = {};
     Failure failure = Failure::none;
-    /// In one line, with the name; empty: nothing went wrong.
+    /// In one line, with the name; empty: no error.
     std::string error = {};
 
-    /// Throws what the work threw, in this process.
+    /// Throws the work's exception in this process.
     void require() const;
 };
 
-/// Runs pieces of work, each in a process of its own, so that one that crashes or hangs in a reader
-/// does not stop the others.
+/// Runs pieces of work, each in its own process, so that a crash or a hang in a reader does not
+/// stop the others.
 ///
 /// Call it before OpenImageIO and OpenEXR have made their thread pools: a new process has one
-/// thread only, and would wait for the others. The work says how many threads its own process
-/// takes.
+/// thread only, and would wait for the others. The work sets the number of threads of its process.
 ///
 /// @param names    of the files, for the messages: one for each piece of work
 /// @param jobs     processes at the same time
-/// @param seconds  that each may take; one that takes longer is killed
+/// @param seconds  limit for each; a process that takes longer is killed
 /// @param work     returns the value, in the new process
-/// @param done     called in this process when a piece of work has ended
+/// @param done     called in this process after each piece of work
 void run_contained(const std::vector<std::string>& names, std::size_t jobs, double seconds,
                    const std::function<std::string(std::size_t)>& work,
                    const std::function<void(std::size_t, const ContainedResult&)>& done);

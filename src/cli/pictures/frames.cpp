@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// OpenImageIO has functions for this, too. In 2.4 a step of 0 never ends in them, and a % that is
-// no number ends the process.
+// OpenImageIO's functions for this are not used: in 2.4 they never end with a step of 0, and a %
+// without a number ends the process.
 
 #include <fmt/format.h>
 
@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kMostFrames = 1'000'000;
 
-/// Where a pattern has the number, from `begin` on.
+/// Position of the number in a pattern, from `begin` on.
 struct Places {
     std::regex shape;
     std::size_t begin;

@@ -15,14 +15,14 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// The same frames as a text that parse_frames() takes; in order, each once.
 [[nodiscard]] std::string format_frames(std::vector<int> frames);
 
-/// The name of a frame: every `%d`, `%04d` (printf), `####` (as many digits) or `#` (four, as in
-/// oiiotool) in the pattern is its number. Where there is none of these, every `@@@@` (as many
-/// digits) in the file's name is: names of folders have an @ of their own.
+/// The name of a frame. Its number replaces every `%d`, `%04d` (printf), `####` (as many digits) or
+/// `#` (four, as in oiiotool) of the pattern. If there is none of these, it replaces every `@@@@`
+/// (as many digits) in the file's name; names of folders may contain @.
 /// @param what     the argument, for the message
-/// @throws Error   a pattern that has no place for a number
+/// @throws Error   a pattern without a placeholder for the number
 [[nodiscard]] std::string frame_name(const char* what, const std::string& pattern, int frame);
 
-/// True for a name that has places for a number.
+/// True for a name with placeholders for a number.
 [[nodiscard]] bool is_frame_pattern(const std::string& name);
 
 TONEWRIGHT_NAMESPACE_END

@@ -31,7 +31,7 @@ std::set<std::string> picture_extensions() {
     return extensions;
 }
 
-/// By name. Folders in it are left out.
+/// Sorted by name, without subfolders.
 std::vector<std::string> pictures_of_folder(const std::string& folder) {
     const std::set<std::string> extensions = picture_extensions();
     std::vector<std::string> pictures;

@@ -9,16 +9,16 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// What `apply` reads and writes.
+/// Input and output files of `apply`.
 struct ApplyFiles {
     /// One picture, or the pattern of a shot.
     bool is_single = true;
     std::vector<FrameFiles> files;
 };
 
-/// The files that the arguments name: those of folders and lists, too.
-/// @throws Error      no output, two outputs of one name
-/// @throws FileError  a folder without pictures, a list that cannot be read
+/// The files of the arguments, also those of folders and lists.
+/// @throws Error      no output, or two outputs of one name
+/// @throws FileError  a folder without pictures, or a list that cannot be read
 [[nodiscard]] ApplyFiles files_of(const ApplyOptions& options);
 
 TONEWRIGHT_NAMESPACE_END

@@ -7,7 +7,7 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// What the colors of the operator false_color mean: a patch for every stop.
+/// The legend of the operator false_color: a patch for every stop.
 void add_legend(SheetAnnotations& around);
 
 /// A picture in false color, sRGB code values, with the legend below it.

@@ -36,14 +36,14 @@ constexpr std::array<NamedMethod, 4> kMethods = {
      {Method::mean, "mean", "mean"},
      {Method::maximum, "max", "maximum"}}};
 
-/// A picture, and what was asked of it.
+/// A picture, and the options for it.
 struct Metered {
     MeteredPicture picture;
     std::optional<int> frame;
     std::optional<double> adapted;  // stops
 };
 
-/// What an exposure is made of.
+/// The figures behind an exposure.
 struct Suggestion {
     double luminance;
     double stops;
@@ -58,7 +58,7 @@ Suggestion suggestion(const Metering& metering, ExposureRule rule, Method method
 // ---------------------------------------------------------------------------------------------
 // For people
 
-/// The terminal draws more than ASCII.
+/// True if the terminal shows more than ASCII.
 bool is_utf8() {
     for (const char* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
         const char* value = std::getenv(name);
@@ -71,7 +71,7 @@ bool is_utf8() {
     return false;
 }
 
-/// Bins side by side under each other's share, log2 of luminance from left to right.
+/// Bins side by side as bars, log2 of luminance from left to right.
 void draw_histogram(const Metering& metering, const MeterOptions& options, double metered) {
     constexpr std::size_t kColumns = 76;
     constexpr std::size_t kRows = 8;
@@ -99,7 +99,7 @@ void draw_histogram(const Metering& metering, const MeterOptions& options, doubl
         for (const double column : columns) {
             const double height =
                 column / most * static_cast<double>(kRows) - static_cast<double>(kRows - 1 - row);
-            // What is there is seen.
+            // A bin with pixels is always visible.
             const double least = column > 0 && row == kRows - 1 ? 1 : 0;
             const double eighths = std::clamp(std::max(std::round(height * 8), least), 0.0, 8.0);
             line += has_blocks      ? kBlocks[static_cast<std::size_t>(eighths)]

@@ -10,13 +10,13 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// What tells whether a file has changed.
+/// Shows whether a file has changed.
 struct FileStamp {
     std::uint64_t bytes = 0;
     std::int64_t modified = 0;  // nanoseconds of its file system's clock
     friend bool operator==(const FileStamp&, const FileStamp&) = default;
 };
-/// Zeros of a file that is not there.
+/// Zeros for a file that does not exist.
 [[nodiscard]] FileStamp stamp_of(const std::string& path);
 
 [[nodiscard]] Json to_json(const MeterOptions& options);
@@ -24,14 +24,14 @@ struct FileStamp {
 /// @throws JsonError
 [[nodiscard]] Metering metering_from(const Json& j);
 
-/// What was metered, kept in a file.
+/// Metered figures, stored in a file.
 class MeterCache {
   public:
-    /// @param path  empty: nothing is known and nothing is kept. A file that is not there: is made.
-    /// @throws FileError  it cannot be read, or is something else.
+    /// @param path  empty: no cache. A file that does not exist is made.
+    /// @throws FileError  it cannot be read, or is not a cache
     MeterCache(std::string path, const MeterOptions& options);
 
-    /// Null where the file is not known, or has changed, or was metered in another way.
+    /// Null if the file is unknown, has changed, or was metered with other options.
     [[nodiscard]] const Metering* find(const std::string& picture, const FileStamp& stamp) const;
     void add(const std::string& picture, const FileStamp& stamp, const Metering& metering);
     /// Writes it, if something was added.

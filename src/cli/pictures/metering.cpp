@@ -49,15 +49,15 @@ OIIO::ROI parse_region(const std::string& text) {
             throw Error(fmt::format("meter: --meter-region is {}; expected {}", text, expected));
     }
     const auto at = [&](std::size_t i) { return static_cast<int>(n[i]); };
-    // Of a volume, all slices.
+    // For a volume, all slices.
     constexpr int kAll = 1 << 30;
     return {at(0), at(0) + at(2), at(1), at(1) + at(3), -kAll, kAll};
 }
 
 }  // namespace
 
-// The options that `--help` shows have the library's defaults. For Clang 14, a structure with a
-// std::string is no constant.
+// `--help` shows the library's defaults. Clang 14 does not accept a structure with a std::string as
+// a constant.
 #ifndef __clang__
 static_assert(ExposureOptions{}.delta == MeterOptions{}.delta &&
               ExposureOptions{}.histogram_bins == MeterOptions{}.bins &&

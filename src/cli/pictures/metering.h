@@ -20,11 +20,11 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// @throws Error
 [[nodiscard]] Adaptation adaptation_of(const ShotOptions& options);
 
-/// One picture that was metered.
+/// A metered picture.
 struct MeteredPicture {
     std::string path;
     Metering metering = {};
-    /// What went wrong, in one line; empty: nothing.
+    /// The error, in one line; empty: none.
     std::string error = {};
     bool is_file_error = false;
 };
@@ -40,16 +40,16 @@ struct MeteredPicture {
     const std::vector<std::string>& paths, const MeterOptions& options, const std::string& cache,
     const PictureInput& input, const std::function<void(std::size_t)>& done = {});
 
-/// What a shot was metered for.
+/// Exposures and statistics of a metered shot.
 struct MeteredShot {
     std::vector<int> numbers;  // increasing
     std::vector<MeteredPicture> pictures;
 
-    /// Throws the first error that a picture has.
+    /// Throws the first error of a picture.
     void require_all() const;
     [[nodiscard]] SceneStatistics statistics() const;
-    /// Of every frame that could be metered, stops, compensation included.
-    /// @param adaptation  null: each by itself; else all frames are required.
+    /// Exposures of all metered frames, in stops, with compensation.
+    /// @param adaptation  null: each frame separately; otherwise all frames are required
     [[nodiscard]] std::map<int, double> exposures(const ExposureRule& rule, double delta,
                                                   const Adaptation* adaptation) const;
 };

@@ -14,9 +14,8 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// Standard error leads nowhere while it lives: libraries below OpenImageIO (libpng, libtiff) print
-/// their complaints themselves, and the error that comes back says the same in our one line. For a
-/// program with one of these at a time.
+/// Discards standard error while it lives: libraries below OpenImageIO (libpng, libtiff) print
+/// their errors themselves, and our one line repeats them. Use one of these at a time.
 class QuietStderr {
   public:
     QuietStderr();
@@ -24,18 +23,18 @@ class QuietStderr {
     QuietStderr(const QuietStderr&) = delete;
     QuietStderr& operator=(const QuietStderr&) = delete;
 
-    /// The file descriptor of what standard error was; -1: none.
+    /// A copy of the file descriptor of standard error; -1: none.
     [[nodiscard]] int before() const { return saved_; }
 
   private:
     int saved_;
 };
 
-/// Two names of one file: the same, or through links. False where one does not exist.
+/// True if both names are one file, also through links. False if one does not exist.
 [[nodiscard]] bool is_same_file(const std::string& a, const std::string& b);
 
-/// Warnings of the library, which come while QuietStderr lives and from several threads. Each text
-/// is printed once, by print().
+/// Collects warnings of the library, from several threads, while QuietStderr lives. print() prints
+/// each text once.
 class Warnings {
   public:
     /// @param name  of the file or the files, before each text
@@ -55,16 +54,16 @@ class Warnings {
 
 [[nodiscard]] TonemapOptions::Unpremult alpha_of(const PictureInput& input);
 
-/// Tells OpenImageIO and OpenEXR how many threads. With a timeout, does nothing: their thread pools
-/// belong to the processes of the pictures. @see run_contained
+/// Sets the number of threads of OpenImageIO and OpenEXR. With a timeout, does nothing: the
+/// processes of the pictures have their own thread pools. @see run_contained
 void use_threads(const PictureInput& input);
 
-/// Scene-linear Rec.709 light of a picture whose numbers mean `source`.
+/// Scene-linear Rec.709 light of a picture with the color `source`.
 /// @throws FileError  a picture that cannot be read
 [[nodiscard]] OIIO::ImageBuf to_rec709_light(const OIIO::ImageBuf& picture,
                                              const SourceColor& source, const std::string& path);
 
-/// read_image() with the terminal kept clean.
+/// read_image() without messages of other libraries on the terminal.
 /// @param max_pixels  of --max-pixels
 [[nodiscard]] OIIO::ImageBuf read_picture(const std::string& path,
                                           std::optional<double> max_pixels = {});

@@ -9,8 +9,8 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// How far the frames of a shot or several pictures are, on a terminal only, from its first half
-/// second on.
+/// Progress of the frames of a shot or of several pictures, on a terminal only, after the first
+/// half second.
 class ProgressBar {
   public:
     /// @param terminal  a file descriptor, or -1
@@ -20,7 +20,8 @@ class ProgressBar {
     ProgressBar(const ProgressBar&) = delete;
     ProgressBar& operator=(const ProgressBar&) = delete;
 
-    /// One frame more. @param took_time  else it was there already, and says nothing of the others.
+    /// Counts one frame.
+    /// @param took_time  false for a skipped frame, which does not count for the remaining time
     void add(bool took_time);
 
   private:

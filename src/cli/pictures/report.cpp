@@ -20,7 +20,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-/// Of three channels, as the bytes of a file.
+/// The bytes of a file with three channels.
 std::string encoded(const std::vector<float>& rgb, int width, int height, const char* name,
                     const OIIO::TypeDesc& type) {
     OIIO::Filesystem::IOVecOutput memory;  // before what writes to it until it ends
@@ -28,7 +28,7 @@ std::string encoded(const std::vector<float>& rgb, int width, int height, const 
     if (!out) throw FileError("report: " + first_line(OIIO::geterror()));
     OIIO::ImageSpec spec(width, height, 3, type);
     spec.attribute("compression", type == OIIO::TypeUInt8 ? "zip:9" : "zip");
-    // The writer of OpenEXR would put in the time, and each page would have other bytes.
+    // The writer of OpenEXR would record the current time, and each page would have other bytes.
     if (type == OIIO::TypeHalf) spec.attribute("DateTime", date_text(0));
     out->set_ioproxy(&memory);
     if (!out->open(name, spec) || !out->write_image(OIIO::TypeFloat, rgb.data()) || !out->close())

@@ -11,7 +11,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 
 void run_sheet(const SheetOptions& options) {
-    std::vector<std::pair<std::string, OIIO::ImageBuf>> labelled;
+    std::vector<std::pair<std::string, OIIO::ImageBuf>> labeled;
     for (const std::string& text : options.pictures) {
         const std::size_t equals = text.find('=');
         const std::string path = equals == std::string::npos ? text : text.substr(equals + 1);
@@ -19,15 +19,15 @@ void run_sheet(const SheetOptions& options) {
             throw Error(fmt::format(
                 "sheet: -o is {}, the same file as an input; expected another file", options.file));
         }
-        labelled.emplace_back(equals == std::string::npos ? text : text.substr(0, equals),
-                              read_picture(path, options.max_pixels));
+        labeled.emplace_back(equals == std::string::npos ? text : text.substr(0, equals),
+                             read_picture(path, options.max_pixels));
         try {
-            check_shown_window(labelled.back().second);
+            check_shown_window(labeled.back().second);
         } catch (const PictureError& e) {
             throw FileError(fmt::format("sheet: {}: {}", path, e.what()));
         }
     }
-    write_image_atomically(make_contact_sheet(labelled, options.columns, options.cell_width),
+    write_image_atomically(make_contact_sheet(labeled, options.columns, options.cell_width),
                            options.file, OIIO::TypeUInt8);
 }
 

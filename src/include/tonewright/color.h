@@ -17,7 +17,7 @@ inline constexpr Matrix3 kIdentity3 = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 [[nodiscard]] TONEWRIGHT_API Matrix3 multiply(const Matrix3& a, const Matrix3& b) noexcept;
 [[nodiscard]] TONEWRIGHT_API Vector3 multiply(const Matrix3& m, const Vector3& v) noexcept;
 [[nodiscard]] TONEWRIGHT_API Matrix3 scale(const Matrix3& m, double factor) noexcept;
-/// @throws Error  when the determinant is 0.
+/// @throws Error  the determinant is 0
 [[nodiscard]] TONEWRIGHT_API Matrix3 inverse(const Matrix3& m);
 
 /// CIE 1931 chromaticity.
@@ -78,27 +78,28 @@ inline constexpr Primaries kDaVinciWideGamut = {
 [[nodiscard]] TONEWRIGHT_API Vector3 xyz_of(Chromaticity xy) noexcept;
 
 /// Linear RGB with white (1,1,1) -> CIE XYZ of the same white with Y = 1 (SMPTE RP 177:1993). A
-/// primary may have y = 0, as X and Z themselves have.
-/// @throws Error  when the primaries lie on one line.
+/// primary may have y = 0, like X and Z.
+/// @throws Error  the primaries lie on one line
 [[nodiscard]] TONEWRIGHT_API Matrix3 rgb_to_xyz(const Primaries& primaries);
 
 /// Bradford chromatic adaptation of XYZ from one white to another (Lam 1985; ICC.1:2010 annex E).
 [[nodiscard]] TONEWRIGHT_API Matrix3 bradford_adaptation(Chromaticity from, Chromaticity to);
 
-/// Linear RGB -> linear RGB, Bradford-adapted where the whites differ; rows sum to 1. Gamuts of
-/// ARRI and Sony go through ACES2065-1, by their makers' own matrices, which adapt white by CAT02:
-/// the same light as an OpenColorIO config makes of their logs.
+/// Linear RGB -> linear RGB, with Bradford adaptation if the whites differ; rows sum to 1. Gamuts
+/// of ARRI and Sony go through ACES2065-1 by their makers' matrices, which adapt white by CAT02. An
+/// OpenColorIO config gives the same light for their logs.
 [[nodiscard]] TONEWRIGHT_API Matrix3 rgb_to_rgb(const Primaries& from, const Primaries& to);
 
-/// Linear RGB -> CIE XYZ under D65 (Bradford where the white differs; see rgb_to_rgb()).
+/// Linear RGB -> CIE XYZ under D65 (with Bradford adaptation if the white differs; see
+/// rgb_to_rgb()).
 [[nodiscard]] TONEWRIGHT_API Matrix3 rgb_to_xyz_d65(const Primaries& primaries);
 
-/// Weights of relative luminance as nearly all code and papers print them for Rec.709 (ITU-R
-/// BT.709-6, item 3.2). Derived from the primaries they would be 0.2126390, 0.7151687, 0.0721923.
+/// Weights of relative luminance for Rec.709, as code and papers print them (ITU-R BT.709-6, item
+/// 3.2). Derived from the primaries, they would be 0.2126390, 0.7151687, 0.0721923.
 inline constexpr Vector3 kRec709Weights = {0.2126, 0.7152, 0.0722};
 
 // ---------------------------------------------------------------------------------------------
-// Transfer functions, as expressions of `x`. Names say the direction.
+// Transfer functions, as expressions of input 0. `encode` gives code values, `decode` light.
 
 /// IEC 61966-2-1:1999 display light -> code value: 12.92 L up to 0.0031308, then
 /// 1.055 L^(1/2.4) - 0.055. Negatives follow the straight part. Domain (-inf, inf).
@@ -115,8 +116,8 @@ inline constexpr Vector3 kRec709Weights = {0.2126, 0.7152, 0.0722};
 [[nodiscard]] TONEWRIGHT_API Expr bt1886_encode(const Expr& linear);
 [[nodiscard]] TONEWRIGHT_API Expr bt1886_decode(const Expr& code);
 
-/// ITU-R BT.709-6, item 1.2, the other way: what a camera put out -> scene light. Negatives follow
-/// the straight part.
+/// Inverse of ITU-R BT.709-6, item 1.2: code value of a camera -> scene light. Negatives follow the
+/// straight part.
 [[nodiscard]] TONEWRIGHT_API Expr bt709_inverse_oetf(const Expr& code);
 
 /// SMPTE ST 2084:2014 inverse EOTF: luminance in cd/m2 [0, 10000] -> code value [0, 1].
@@ -130,21 +131,21 @@ inline constexpr Vector3 kRec709Weights = {0.2126, 0.7152, 0.0722};
 /// Its inverse.
 [[nodiscard]] TONEWRIGHT_API Expr hlg_inverse_oetf(const Expr& code);
 
-/// ITU-R BT.2100-2 table 5, HLG inverse OOTF of a display of 1000 cd/m2 (gamma 1.2), on the
-/// luminance of display light, 1 = peak: L -> scene luminance L^(1/1.2). Below 1e-4/3^1.2 it is a
-/// straight line, as in OpenColorIO's DISPLAY - CIE-XYZ-D65_to_REC.2100-HLG-1000nit: the power's
-/// gain at black has no end.
+/// ITU-R BT.2100-2 table 5, HLG inverse OOTF of a display of 1000 cd/m2 (gamma 1.2): luminance of
+/// display light (1 = peak) -> scene luminance L^(1/1.2). Below 1e-4/3^1.2 it is a straight line,
+/// as in OpenColorIO's DISPLAY - CIE-XYZ-D65_to_REC.2100-HLG-1000nit, because the power is
+/// infinitely steep at black.
 [[nodiscard]] TONEWRIGHT_API Expr hlg_inverse_ootf_luminance(const Expr& display_luminance);
 /// Its inverse, the OOTF: scene luminance -> display luminance.
 [[nodiscard]] TONEWRIGHT_API Expr hlg_ootf_luminance(const Expr& scene_luminance);
 
 /// Academy S-2016-001, ACEScct: AP1 scene-linear -> log code value. 1 is 222.86 scene-linear.
 [[nodiscard]] TONEWRIGHT_API Expr acescct_encode(const Expr& linear);
-/// Its inverse; the clamp at 65504 of the standard is not in it.
+/// Its inverse, without the standard's clamp at 65504.
 [[nodiscard]] TONEWRIGHT_API Expr acescct_decode(const Expr& code);
 
-// Scene-linear light -> log code value of cameras and grading systems, and back. Below their toes
-// they go on straight.
+// Scene-linear light -> log code value of cameras and grading systems, and the inverses. Below the
+// toe they continue as straight lines.
 
 /// ARRI LogC3 of exposure index 800, scene exposure: "ALEXA Log C Curve, Usage in VFX", 2017.
 [[nodiscard]] TONEWRIGHT_API Expr arri_logc3_encode(const Expr& linear);
@@ -158,7 +159,7 @@ inline constexpr Vector3 kRec709Weights = {0.2126, 0.7152, 0.0722};
 /// Blackmagic Design, "DaVinci Resolve 17 Wide Gamut Intermediate", 2021.
 [[nodiscard]] TONEWRIGHT_API Expr davinci_intermediate_encode(const Expr& linear);
 [[nodiscard]] TONEWRIGHT_API Expr davinci_intermediate_decode(const Expr& code);
-/// Unity's LogC, ALEXA's of EI 1000 without its toe: core render pipeline, Color.hlsl,
+/// Unity's LogC: ALEXA's for EI 1000, without the toe. Core render pipeline, Color.hlsl,
 /// LinearToLogC.
 [[nodiscard]] TONEWRIGHT_API Expr unity_logc_encode(const Expr& linear);
 [[nodiscard]] TONEWRIGHT_API Expr unity_logc_decode(const Expr& code);

@@ -20,43 +20,43 @@ class TONEWRIGHT_API DefinitionError : public FileError {
   public:
     DefinitionError(const std::string& message, std::string excerpt)
         : FileError(message), excerpt_(std::move(excerpt)) {}
-    /// The line of the file, and one with a caret below the place. It may be empty.
+    /// The line of the file, and a line with a caret below the error. May be empty.
     [[nodiscard]] const std::string& excerpt() const noexcept { return excerpt_; }
 
   private:
     std::string excerpt_;
 };
 
-/// A LUT file as stages, and what it says about itself.
+/// A LUT file as stages, with the facts of its header.
 struct TableFile {
-    /// What the file holds: lattices, tables of each channel, and simple formulas between them.
+    /// 3D LUTs, 1D tables for each channel, and simple formulas between them.
     Pipeline stages;
     /// "3D LUT of 33^3 nodes"
     std::string description;
-    /// Empty: it has none.
+    /// Empty: none.
     std::string title;
-    /// The encoding that goes in, as parse_input_encoding() reads it, and the id of the input space
-    /// whose light it encodes. Empty: the file does not say.
+    /// The encoding of the input, as parse_input_encoding() reads it, and the id of the input space
+    /// whose light it encodes. Empty: unknown.
     std::string encoding;
     std::string space;
-    /// Id of the display whose code values come out, or `linear`. Empty: the file does not say.
+    /// Id of the display whose code values are the output, or `linear`. Empty: unknown.
     std::string display;
-    /// What to take where the file does not say: formats of light hold light.
+    /// Used if `display` is empty; `linear` for formats that usually contain light.
     std::string likely_display = "srgb";
-    /// What a user should know, such as an interpolation that the operator does not have.
+    /// A note for the user, such as an interpolation that the operator does not support.
     std::string note;
 };
 
-/// Reads LUT files for this part of the library, which has no readers of its own.
+/// Reads LUT files. The core library has no such reader of its own.
 /// @throws FileError  "read: PATH: REASON"
 using TableReader = std::function<TableFile(const std::string& path)>;
 
-/// Extensions of the files that a TableReader may know, with the dot: LUTs, and pictures of LUTs.
+/// Extensions of LUT files and of pictures that contain LUTs, with the dot.
 [[nodiscard]] TONEWRIGHT_API const std::vector<std::string>& table_extensions();
 
-/// Reads an operator from a .tone file or a LUT. Nothing is registered: the operator lives as long
-/// as somebody holds it.
-/// @param tables  reads LUTs. Null: only .tone files without `lut` stages are operators.
+/// Reads an operator from a .tone file or a LUT. Nothing is registered: the caller owns the
+/// operator.
+/// @param tables  reads LUTs. Null: only .tone files without `lut` stages are read.
 /// @throws FileError        the file cannot be read
 /// @throws DefinitionError  it does not define an operator
 [[nodiscard]] TONEWRIGHT_API std::shared_ptr<const Operator> load_operator(
@@ -68,17 +68,18 @@ using TableReader = std::function<TableFile(const std::string& path)>;
 [[nodiscard]] TONEWRIGHT_API std::shared_ptr<const Operator> parse_operator(
     std::string_view text, const std::string& name, const TableReader& tables = {});
 
-/// A LUT as an operator, with the parameters `input` (encoding), `space` (of its light) and
-/// `output` (display, or `linear`). Their defaults are what the file says.
+/// A LUT as an operator, with the parameters `input` (encoding), `space` (of the encoded light) and
+/// `output` (display, or `linear`). Their defaults come from the file.
 [[nodiscard]] TONEWRIGHT_API std::shared_ptr<const Operator> operator_of_table(
     const TableFile& table, const std::string& path);
 
-/// The operator as the text of a .tone file: its live parameters as parameters, the others as they
-/// are resolved. parse_operator() reads it back as an operator with the identical expressions.
-/// @throws Error  no formula says what the operator does: it is local, or has a table of no file
+/// The operator as the text of a .tone file: live parameters stay parameters, the others are fixed
+/// as resolved. parse_operator() reads the text as an operator with identical expressions.
+/// @throws Error  a local operator, or one with a table that comes from no file
 [[nodiscard]] TONEWRIGHT_API std::string definition_of(const ResolvedOperator& op);
 
-/// A number of a shader that stays a parameter. Without ends, its range is a guess.
+/// A number of a shader that becomes a parameter. Without `min` and `max`, its range reaches from a
+/// sixteenth of the value to sixteen times the value.
 struct ImportedParameter {
     double value = 0;
     std::optional<double> min = {};
@@ -87,13 +88,14 @@ struct ImportedParameter {
 
 /// How to read a shader as an operator.
 struct ShaderImport {
-    /// `float f(float)` or `vec3 f(vec3)`; empty: the last one that no other calls.
+    /// Name of `float f(float)` or `vec3 f(vec3)`; empty: the last one that no other function
+    /// calls.
     std::string function;
-    /// Of the operator; empty: the name of the function.
+    /// Id of the operator; empty: the name of the function.
     std::string id;
-    /// The primaries that the function works in: a name that .tone files have.
+    /// The primaries of the function, by the names of .tone files.
     std::string primaries = "rec709";
-    /// What the function returns. Empty: display-linear, with a warning where it looks encoded.
+    /// Meaning of the result. Empty: display-linear, with a warning if it looks encoded.
     enum class Output : unsigned char { display_linear, srgb, gamma22, gamma24 };
     std::optional<Output> output = {};
     /// Further arguments of the function, and uniforms.
@@ -105,17 +107,17 @@ struct ImportedShader {
     /// The text of a .tone file.
     std::string definition;
     std::string function;
-    /// Names of other functions that could have been taken.
+    /// Names of other functions that could be imported.
     std::vector<std::string> others;
-    /// Of the operator: "clamp", "matrix", "curve", ...
+    /// Kinds of the operator's stages: "clamp", "matrix", "curve", ...
     std::vector<std::string> stages;
-    /// What the user may have meant otherwise.
+    /// Cautions about assumptions that may be wrong.
     std::vector<std::string> warnings;
 };
 
-/// Reads a function of straight-line GLSL or HLSL (docs/tone_files.md says what it may have).
+/// Reads a function of straight-line GLSL or HLSL; docs/tone_files.md lists what is supported.
 /// @param name  of the file, for messages and the definition's comments
-/// @throws DefinitionError  the shader has no such function, or one that no operator can say
+/// @throws DefinitionError  the shader has no such function, or one that cannot be an operator
 /// @throws Error            a setting of the import is wrong
 [[nodiscard]] TONEWRIGHT_API ImportedShader import_shader(std::string_view text,
                                                           const std::string& name,

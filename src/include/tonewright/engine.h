@@ -14,25 +14,25 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// The first step of every engine: NaN -> 0, then limited to +-kHalfMax.
+/// The first step of every engine: NaN -> 0, then the limits +-kHalfMax.
 [[nodiscard]] inline double sanitize(double x) noexcept {
     return x != x ? 0.0 : (x < -kHalfMax ? -kHalfMax : (x > kHalfMax ? kHalfMax : x));
 }
 
-/// Double-precision evaluation of a pipeline: the truth that every other form is held to.
+/// Double-precision evaluation of a pipeline: the reference for all other backends.
 ///
-/// It runs the expressions as they are written, without any pass that changes a value. Total:
-/// finite out for every double in, NaN and infinities included. Safe to share between threads.
+/// It runs the expressions as they are written, without any pass that changes a value. The result
+/// is finite for every double, also for NaN and infinities. Safe to share between threads.
 class TONEWRIGHT_API ReferenceEngine {
   public:
-    /// @throws Error  when more than 4096 values live at the same time; Lattice::nodes() as well
+    /// @throws Error  more than 4096 values live at the same time; exceptions of Lattice::nodes()
     explicit ReferenceEngine(const Pipeline& pipeline);
     ~ReferenceEngine();
     ReferenceEngine(ReferenceEngine&&) noexcept;
     ReferenceEngine& operator=(ReferenceEngine&&) noexcept;
 
     [[nodiscard]] Vector3 operator()(const Vector3& rgb) const noexcept;
-    /// Planar; in and out may be the same planes; any count, 0 included.
+    /// Planar. In and out may be the same planes. Any count, also 0.
     void run(const std::array<const double*, 3>& in, const std::array<double*, 3>& out,
              std::size_t count) const noexcept;
     /// Interleaved RGB float in, interleaved RGB double out.
@@ -43,14 +43,14 @@ class TONEWRIGHT_API ReferenceEngine {
     std::unique_ptr<const Program> program_;
 };
 
-/// A number that stays open while a pipeline is compiled: see SimdEngine::with_uniforms().
+/// A number of a compiled pipeline that can change: see SimdEngine::with_uniforms().
 struct LiveUniform {
-    /// What precision is chosen for, and the value until another is given.
+    /// The engine chooses precision for this value, and uses it until another one is given.
     double typical = 0;
     double least = 0;
     double most = 0;
-    /// Precision is chosen for both ends, too: the uniform decides how much errors of other values
-    /// count, as a number close to 0 does that something is divided by.
+    /// The engine chooses precision for both ends, too: the uniform changes the weight of other
+    /// errors, as a divisor close to 0 does.
     bool covers_ends = false;
 };
 /// By the names of the uniforms.
@@ -58,20 +58,21 @@ using LiveUniforms = std::map<std::string, LiveUniform, std::less<>>;
 
 /// Single-precision SIMD evaluation of a pipeline.
 ///
-/// Passes that change the last bits (matrices multiplied together, division by a constant as
-/// multiplication, fused multiply-add, piecewise polynomials for whole curves) are allowed here and
-/// only here. Total. Safe to share.
+/// Only this engine has passes that change the last bits: products of matrices, multiplication
+/// instead of division by a constant, fused multiply-add, piecewise polynomials for whole curves.
+/// The result is finite for every float. Safe to share between threads.
 class TONEWRIGHT_API SimdEngine {
   public:
-    /// @param max_error  how far the result may be from the reference: absolute up to 1, relative
-    ///                   above. What needs more than float for that is computed in double. Each
-    ///                   operator declares what its views are made for (DeclaredBounds::simd_goal).
+    /// @param max_error  largest difference from the reference: absolute up to 1, relative above.
+    ///                   Values that need more than float for that are computed in double. Each
+    ///                   operator declares the bound of its views (DeclaredBounds::simd_goal).
     /// @param target  the instruction set, one of targets(); "" for the best
-    /// @throws Error  when the machine has no such target, or when the pipeline has more values at
-    ///                a time than a tile holds; Lattice::nodes() as well
+    /// @throws Error  the machine has no such target, or the pipeline has more values at a time
+    /// than
+    ///                a tile holds; exceptions of Lattice::nodes()
     explicit SimdEngine(const Pipeline& pipeline, double max_error = kSimdError,
                         std::string_view target = {});
-    /// An engine for all values of the pipeline's uniforms. What uniforms alone decide on is
+    /// An engine for all values of the pipeline's uniforms. Values that depend on uniforms only are
     /// computed once, in double, not for each pixel.
     explicit SimdEngine(const Pipeline& pipeline, const LiveUniforms& uniforms,
                         double max_error = kSimdError, std::string_view target = {});
@@ -81,22 +82,22 @@ class TONEWRIGHT_API SimdEngine {
 
     /// Planar float. `stride` is the distance between consecutive pixels of one plane, in floats
     /// (1 = packed, 3 or 4 = interleaved). In and out may be the same memory; otherwise they must
-    /// not overlap. Any pixel count, 0 included; nothing outside the pixels is read or written.
+    /// not overlap. Any pixel count, also 0. Nothing outside the pixels is read or written.
     void run(const std::array<const float*, 3>& in, std::ptrdiff_t in_stride,
              const std::array<float*, 3>& out, std::ptrdiff_t out_stride,
              std::size_t count) const noexcept;
     /// Interleaved RGB, packed.
     void run_rgb(const float* in, float* out, std::size_t pixel_count) const noexcept;
 
-    /// The same program with other values of its uniforms. Takes microseconds: the code is shared,
-    /// and only the numbers that it reads are copied.
-    /// @throws Error  when a uniform has no value, or one out of its range
+    /// The same program with other values of its uniforms. Takes microseconds, because the code is
+    /// shared and only the numbers that it reads are copied.
+    /// @throws Error  a uniform has no value, or one out of its range
     [[nodiscard]] SimdEngine with_uniforms(const UniformValues& values) const;
 
-    /// Names of the instruction sets compiled in that this machine has, best first ("AVX3", ...).
+    /// Names of the compiled instruction sets that this machine has, best first ("AVX3", ...).
     [[nodiscard]] static std::vector<std::string> targets();
-    /// An engine for each of targets(), in their order, sooner than one by one: what several
-    /// targets share is compiled once.
+    /// An engine for each of targets(), in their order. Faster than one by one, because targets
+    /// share some of the work.
     /// @throws Error  as the constructor does
     [[nodiscard]] static std::vector<SimdEngine> of_all_targets(const Pipeline& pipeline,
                                                                 double max_error = kSimdError);
@@ -107,17 +108,17 @@ class TONEWRIGHT_API SimdEngine {
     std::unique_ptr<const Program> program_;
 };
 
-/// The parameters that a picture decides (ParameterSpec::from_picture) as uniforms, so that one
-/// engine serves every picture and every frame of a sequence. Their intervals and units are the
-/// parameters' own, their typical values the defaults; errors keep to the operator's bound at both
+/// The parameters that come from a picture (ParameterSpec::from_picture) as uniforms, so that one
+/// engine serves every picture and every frame of a sequence. Intervals and units are those of the
+/// parameters, and typical values are the defaults. Errors stay within the operator's bound at both
 /// ends of each interval.
 ///
-/// Left out is what the settings or the preset set. Empty where each picture should have an engine
-/// of its own: a parameter is fixed, or a program with uniforms would be up to three times as slow,
+/// Leaves out parameters that the settings or the preset set. Empty if each picture should have its
+/// own engine: a parameter is fixed, or a program with uniforms would be up to three times as slow,
 /// because one of them is an exponent, or values are scaled by two of them.
 [[nodiscard]] TONEWRIGHT_API LiveUniforms live_statistics(const ResolvedOperator& resolved);
 
-/// For build_live_view().
+/// The names for build_live_view().
 [[nodiscard]] TONEWRIGHT_API std::vector<std::string> uniform_names(const LiveUniforms& uniforms);
 
 /// The values of live_statistics() for a picture.
@@ -125,8 +126,8 @@ class TONEWRIGHT_API SimdEngine {
                                                             const ResolvedOperator& resolved,
                                                             const SceneStatistics& statistics);
 
-/// What SimdEngine makes of a pipeline, step by step, for developers: expressions, precision,
-/// curves, program and machine code. The text has no fixed form.
+/// How SimdEngine compiles a pipeline, step by step, for developers: expressions, precision,
+/// curves, program and machine code. The format of the text may change.
 [[nodiscard]] TONEWRIGHT_API std::string explain(const Pipeline& pipeline,
                                                  const LiveUniforms& uniforms = {},
                                                  double max_error = kSimdError,

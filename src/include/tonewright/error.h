@@ -7,12 +7,12 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// A mistake of the caller, in one line:
+/// An error of the caller, in one line:
 /// `<operation>: <parameter> is <value>; expected <interval or choices>[; did you mean
 /// <nearest>?]`.
 ///
-/// The core throws it; image functions turn it into an error on the destination image; the command
-/// prints it and exits with 2 (usage).
+/// The core throws it. Image functions put it on the destination image. The command prints it and
+/// exits with 2 (usage).
 class TONEWRIGHT_API Error : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;

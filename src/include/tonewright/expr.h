@@ -16,7 +16,7 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// What a node of an expression computes.
+/// Operation of a node of an expression.
 enum class ExprOp : unsigned char {
     constant,
     input,
@@ -42,11 +42,11 @@ enum class ExprOp : unsigned char {
     select,   // b where a is not 0, else c
     lookup,   // table, index
     lattice,  // one channel of a lattice at three coordinates
-    uniform,  // a number that has a name and no value yet
+    uniform,  // a number with a name and no value yet
 };
 
-/// Samples of a function, at equal distances over [0, 1] or where `positions` says; outside, the
-/// first or last one holds.
+/// Samples of a function, at equal distances over [0, 1] or at `positions`. Outside, the first or
+/// the last sample holds.
 struct Table {
     enum class Interpolation : unsigned char {
         linear,  // straight lines between samples
@@ -55,7 +55,7 @@ struct Table {
     };
     std::vector<double> samples;
     Interpolation interpolation = Interpolation::linear;
-    /// Empty: equal distances. Else of each sample: finite, each larger than the one before.
+    /// Empty: equal distances. Otherwise one for each sample: finite and increasing.
     std::vector<double> positions = {};
 
     /// NaN gives the first sample.
@@ -64,12 +64,12 @@ struct Table {
 
 class Expr;
 
-/// Colors on a grid of edge^3 nodes over the unit cube, interpolated in tetrahedra along the gray
-/// diagonal; outside, the nearest face holds.
+/// A 3D LUT: colors on a grid of edge^3 nodes over the unit cube, interpolated in tetrahedra along
+/// the gray diagonal. Outside, the nearest face holds.
 class TONEWRIGHT_API Lattice {
   public:
     /// @param make  gives red, green, blue of each node, the third coordinate running fastest.
-    ///              It is called once, when a node is first asked for.
+    ///              It is called once, at the first use of a node.
     /// @throws Error  for an edge below 2.
     Lattice(int edge, std::function<std::vector<double>()> make);
     /// @param formula  gives three expressions that compute the same node. Inputs 0, 1, 2: the
@@ -79,18 +79,19 @@ class TONEWRIGHT_API Lattice {
 
     [[nodiscard]] int edge() const noexcept { return edge_; }
     /// Safe to call from several threads.
-    /// @throws Error  when `make` has not given 3 edge^3 numbers; and whatever `make` throws. The
+    /// @throws Error  `make` does not give 3 edge^3 numbers; exceptions of `make` pass through. The
     ///                next call tries again.
     [[nodiscard]] const std::vector<double>& nodes() const;
     [[nodiscard]] bool has_formula() const noexcept { return formula_ != nullptr; }
     /// @pre has_formula()
     [[nodiscard]] std::vector<Expr> formula() const;
 
-    /// NaN counts as 0. These throw what nodes() throws, and nothing once it has returned.
+    /// NaN counts as 0. These throw as nodes() does; after nodes() has returned once, they do not
+    /// throw.
     [[nodiscard]] std::array<double, 3> operator()(double r, double g, double b) const;
     [[nodiscard]] double operator()(int channel, double r, double g, double b) const;
-    /// d channel / d each coordinate, in the tetrahedron that holds the place; 0 along a coordinate
-    /// that is outside.
+    /// d channel / d each coordinate, in the tetrahedron that contains the point; 0 along a
+    /// coordinate outside [0, 1].
     [[nodiscard]] std::array<double, 3> gradient(int channel, double r, double g, double b) const;
 
   private:
@@ -105,11 +106,10 @@ struct ExprNode;
 
 /// An immutable scalar expression over numbered inputs.
 ///
-/// Operators are written with it and read like the paper's formula. Building one folds constants,
-/// drops neutral elements (x+0, x*1, x*0, ...; inputs are finite by contract, so 0*x is 0) and
-/// shares equal nodes: two expressions built the same way are the same node. Nothing else is
-/// rewritten, so what the reference engine computes is what the formula says, in the order in which
-/// it says it.
+/// Operators are written as expressions, which read like the formula of the paper. Building one
+/// folds constants, drops neutral elements (x+0, x*1, x*0, ...; inputs are finite by contract, so
+/// 0*x is 0) and shares equal nodes: two expressions built the same way are the same node. Nothing
+/// else is rewritten, so the reference engine computes the formula in its own order.
 ///
 /// There is no conversion to bool: an `if` on a pixel value does not compile. `select` is the
 /// branch.
@@ -121,8 +121,8 @@ class TONEWRIGHT_API Expr {
     /// blue).
     [[nodiscard]] static Expr input(int index = 0);
 
-    /// A number that bind_uniforms() gives a value, or that stays an argument of what is made of
-    /// the expression. Engines take bound expressions only.
+    /// A number that bind_uniforms() gives a value, or that becomes an argument of a shader or an
+    /// engine.
     [[nodiscard]] static Expr uniform(std::string name);
 
     [[nodiscard]] ExprOp op() const noexcept;
@@ -142,7 +142,7 @@ class TONEWRIGHT_API Expr {
     [[nodiscard]] int channel() const noexcept;
     [[nodiscard]] int operand_count() const noexcept;
     [[nodiscard]] Expr operand(int i) const;
-    /// Identity of the shared node: equal for two expressions exactly when they were built equal.
+    /// The shared node: the same for two expressions exactly if they were built in the same way.
     [[nodiscard]] const ExprNode* node() const noexcept { return node_.get(); }
 
   private:
@@ -178,23 +178,23 @@ TONEWRIGHT_API Expr floor(const Expr& a);
 TONEWRIGHT_API Expr less(const Expr& a, const Expr& b);
 TONEWRIGHT_API Expr less_equal(const Expr& a, const Expr& b);
 TONEWRIGHT_API Expr equal(const Expr& a, const Expr& b);
-/// `if_true` where `condition` is not 0, else `if_false`; both are evaluated, one is taken.
+/// `if_true` where `condition` is not 0, else `if_false`. Both are evaluated.
 TONEWRIGHT_API Expr select(const Expr& condition, const Expr& if_true, const Expr& if_false);
-/// @throws Error  when the table's positions are not as Table wants them.
+/// @throws Error  the table's positions are not finite and increasing
 TONEWRIGHT_API Expr lookup(std::shared_ptr<const Table> table, const Expr& index);
 /// Channel 0, 1 or 2 of the lattice at coordinates in [0, 1].
 TONEWRIGHT_API Expr interpolate(std::shared_ptr<const Lattice> lattice, int channel, const Expr& r,
                                 const Expr& g, const Expr& b);
 
-// Words of the papers, made of the above.
+// Functions that papers use, composed of the ones above.
 TONEWRIGHT_API Expr exp(const Expr& a);                                    // exp2(a * log2(e))
 TONEWRIGHT_API Expr log(const Expr& a);                                    // log2(a) * ln(2)
 TONEWRIGHT_API Expr clamp(const Expr& a, const Expr& lo, const Expr& hi);  // min(max(a, lo), hi)
 TONEWRIGHT_API Expr mix(const Expr& a, const Expr& b, const Expr& t);      // a + t*(b - a)
 TONEWRIGHT_API Expr smoothstep(const Expr& edge0, const Expr& edge1, const Expr& x);
 
-/// Collects, while it exists, the names that its thread gives with named(). A rewritten part keeps
-/// its name. An object within another one starts without names and hides the outer one.
+/// Collects the names that its thread gives with named(), as long as the object exists. A rewritten
+/// part keeps its name. A nested object starts without names and hides the outer one.
 class TONEWRIGHT_API PartNames {
   public:
     struct Entry {
@@ -213,13 +213,13 @@ class TONEWRIGHT_API PartNames {
     /// Adds a name to the innermost object, if there is one. A part keeps the last name, a number
     /// the first. Inputs and uniforms get none.
     static void add(std::string_view name, const Expr& part);
-    /// The name of the part; null: it has none.
+    /// The name of the part; null: none.
     [[nodiscard]] static const std::string* of(const Expr& part);
     /// Gives `after` the name of `before`. Each function that rewrites expressions calls it.
     static void move(const Expr& before, const Expr& after);
 
   private:
-    std::vector<Entry> all_;  // which keeps the parts: no address is used twice
+    std::vector<Entry> all_;  // keeps the parts alive, so that no address is used twice
     std::unordered_map<const ExprNode*, std::size_t> place_;
     PartNames* outer_;
 };
@@ -244,35 +244,36 @@ using UniformValues = std::map<std::string, double, std::less<>>;
 /// Names of the uniforms that the expressions read, sorted.
 [[nodiscard]] TONEWRIGHT_API std::vector<std::string> uniforms_of(Span<const Expr> exprs);
 
-/// The value, in double, by plain recursion over the shared nodes: the meaning of an expression.
-/// Slow; engines compile a Tape instead, and a test holds the two equal bit for bit.
-/// @throws Error  the expression has a uniform.
+/// The value in double, by plain recursion over the shared nodes. This function defines the meaning
+/// of an expression. It is slow: engines compile a Tape instead, which gives the same bits.
+/// @throws Error  the expression has a uniform
 [[nodiscard]] TONEWRIGHT_API double evaluate(const Expr& expr, Span<const double> inputs);
 [[nodiscard]] TONEWRIGHT_API double evaluate(const Expr& expr, double input);
 
-/// d expr / d input `index`. At a kink of min, max, abs or select: the slope of the side taken
-/// there. Comparisons and floor have slope 0; a linear table has a step table as slope.
+/// d expr / d input `index`. At a kink of min, max, abs or select, it is the slope of the side that
+/// the function takes. Comparisons and floor have slope 0; the slope of a linear table is a step
+/// table.
 [[nodiscard]] TONEWRIGHT_API Expr derivative(const Expr& expr, int index = 0);
 
-/// Exact text: constants are the shortest decimals that read back as the same double, brackets
-/// appear where the order of evaluation needs them.
-/// @param names  of the inputs; `x` for input 0 when there is one input, else `r`, `g`, `b`.
+/// The exact text: constants are the shortest decimals that give the same double, and brackets
+/// appear only where the order of evaluation needs them.
+/// @param names  of the inputs; default: `x` for a single input, otherwise `r`, `g`, `b`
 [[nodiscard]] TONEWRIGHT_API std::string to_string(const Expr& expr,
                                                    Span<const std::string> names = {});
 
-/// Number of distinct nodes reachable: what an engine has to compute.
+/// Number of distinct nodes, which an engine must compute.
 [[nodiscard]] TONEWRIGHT_API std::size_t node_count(Span<const Expr> exprs);
 
 /// True when the expression reads input `index`.
 [[nodiscard]] TONEWRIGHT_API bool depends_on(const Expr& expr, int index);
 
-/// x in [lo, hi] with f(x) = y, for f increasing or decreasing over [lo, hi]: bracketed Newton
-/// steps on the symbolic derivative, bisection where they leave the bracket; to the last double.
-/// @throws Error  when y is outside [f(lo), f(hi)] or an end is not finite.
+/// x in [lo, hi] with f(x) = y, for a monotone f: bracketed Newton steps with the symbolic
+/// derivative, and bisection where they leave the bracket. Exact to the last double.
+/// @throws Error  y is outside [f(lo), f(hi)], or an end is not finite
 [[nodiscard]] TONEWRIGHT_API double inverse_at(const Expr& f, double y, double lo, double hi);
 
-/// Where f is not smooth in (lo, hi): every x at which a comparison, min, max, abs or clamp inside
-/// f changes sides, found to the last double. Sorted.
+/// Points in (lo, hi) where f is not smooth: every x at which a comparison, min, max, abs or clamp
+/// in f changes sides, exact to the last double. Sorted.
 [[nodiscard]] TONEWRIGHT_API std::vector<double> kinks(const Expr& f, double lo, double hi);
 
 TONEWRIGHT_NAMESPACE_END

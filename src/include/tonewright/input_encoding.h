@@ -9,29 +9,29 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// How scene-linear light is put into the [0, 1] that a lookup table is indexed with.
+/// Encoding of scene-linear light in [0, 1], the input range of a LUT.
 struct InputEncoding {
     std::string id;     // "acescct", "log2:-10:6.5", "linear:0:1"
     std::string title;  // for headers: "ACEScct (Academy S-2016-001)"
-    /// Scene-linear -> table input, and back; of input 0.
+    /// Scene-linear -> input of the LUT, and the inverse; functions of input 0.
     Expr encode = Expr::input();
     Expr decode = Expr::input();
-    /// The scene-linear light at table input 0 and 1.
+    /// Scene-linear light at input 0 and 1 of the LUT.
     double scene_lo = 0;
     double scene_hi = 1;
     bool is_linear = false;
-    /// Input space that the encoding belongs to, taken when the user names none.
+    /// Input space of the encoding, used if the user names none.
     std::string default_input = "lin_rec709";
 };
 
 /// `acescct`, `logc3` (ARRI, EI 800), `logc4`, `slog3` (Sony), `davinci` (DaVinci Intermediate),
 /// `unity_logc`, `unreal_log`, `srgb`; `pq[:WHITE]` = SMPTE ST 2084, scene-linear 1 at WHITE cd/m2
 /// (default 100); `log2[:LO:HI]` = log2 of scene-linear over 0.18, LO..HI stops (default -10:6.5);
-/// `reinhard` = x/(x + 1) of scene-linear x, up to 65504, as Tony McMapface has it;
+/// `reinhard` = x/(x + 1) of scene-linear x, up to 65504, as in Tony McMapface;
 /// `linear[:LO:HI]` = scene-linear (default 0:1).
-/// @throws Error  unknown name; parameters that are no numbers or out of range.
+/// @throws Error  unknown name; parameters that are not numbers or out of range
 [[nodiscard]] TONEWRIGHT_API InputEncoding parse_input_encoding(std::string_view text);
-/// Without parameters.
+/// Names without parameters.
 [[nodiscard]] TONEWRIGHT_API std::vector<std::string> input_encoding_names();
 
 TONEWRIGHT_NAMESPACE_END

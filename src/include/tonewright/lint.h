@@ -8,11 +8,11 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// One thing that is wrong, or odd, with an OpenColorIO config.
+/// One finding about an OpenColorIO config.
 struct LintFinding {
     enum class Level : unsigned char {
-        error,    // something does not work: a space, a view or the whole config
-        warning,  // something does not work, or looks otherwise, in some applications
+        error,    // a space, a view or the whole config does not work
+        warning,  // something fails or looks different in some applications
         note      // worth knowing
     };
     Level level = Level::warning;
@@ -21,13 +21,13 @@ struct LintFinding {
     std::string what;
 };
 
-/// Any config, ours or not: names (length, twice the same, aliases that are roles), roles of
-/// applications, interchange roles, lists of what is active or inactive, displays and the spaces of
-/// views, view transforms, search paths and tables, interpolation; and of every active view what
-/// NaN, infinities and negatives become, and how far OpenColorIO's GPU path is from its CPU path.
+/// Checks any config: names (length, duplicates, aliases that are roles), roles of applications,
+/// interchange roles, lists of active and inactive items, displays and the spaces of views, view
+/// transforms, search paths and tables, interpolation. For every active view: the result of NaN,
+/// infinities and negatives, and the difference between OpenColorIO's GPU path and its CPU path.
 /// @param path      of the config
-/// @param with_gpu  the last of these, where OpenGL can be had
-/// @throws FileError  for a config that cannot be read
+/// @param with_gpu  includes the GPU path, if OpenGL is available
+/// @throws FileError  the config cannot be read
 [[nodiscard]] TONEWRIGHT_API std::vector<LintFinding> lint_config(const std::string& path,
                                                                   bool with_gpu);
 

@@ -12,8 +12,8 @@
 /// them on pictures of any kind; this header needs no other library.
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// Calls body(begin, end) for parts that make up [0, count), each once, from any threads, and
-/// returns when all are done. What an operator computes does not depend on the parts, in any bit.
+/// Divides [0, count) into parts, calls body(begin, end) for each, from any threads, and returns
+/// when all are done. The division changes no bit of the result.
 using RowLoop = std::function<void(int count, const std::function<void(int begin, int end)>& body)>;
 
 /// One part, in the calling thread.
@@ -27,18 +27,17 @@ struct ScenePlanes {
     /// Red, green and blue of Rec.709, row by row without gaps: scene-linear before exposure,
     /// within [0, 65504]. They become the operator's output: finite, not negative.
     std::array<std::vector<float>, 3> rgb;
-    /// 0: the pixel is left out of statistics (nothing covers it). Empty: all count. Where none
-    /// counts, all do.
+    /// 0: the pixel is left out of statistics, because its alpha is 0. Empty, or all 0: all pixels
+    /// count.
     std::vector<std::uint8_t> counts = {};
-    /// Factor on light, > 0. Statistics are those without it: it is a correction on top of what
-    /// they choose.
+    /// Factor on light, > 0. Statistics describe the picture without it.
     float exposure = 1;
     RowLoop for_rows = run_rows_in_turn;
 };
 
 /// Runs a local operator.
 /// @param op      as resolve_picture_operator() gives it
-/// @throws Error  the operator is not local, or the planes are not of the picture's size.
+/// @throws Error  the operator is not local, or the planes do not have the picture's size
 TONEWRIGHT_API void run_local_operator(const ResolvedOperator& op, ScenePlanes& picture);
 
 TONEWRIGHT_NAMESPACE_END

@@ -13,12 +13,12 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// `cube` (Adobe and Resolve), `clf` (Academy S-2014-006), `ctf` (Autodesk's form of it), `spi1d`,
-/// `spi3d` (Sony Imageworks), `csp` (cineSpace: scene-linear in, its prelut encodes),
-/// `resolve_cube` (a .cube with a 1D table before the 3D one: scene-linear in), `3dl` (Autodesk:
-/// integers), `lut` (Houdini), `icc` (ICC device link), `hald` (a Hald CLUT picture), `strip` (a
-/// picture of n slices of n x n side by side, green down), `strip_up` (the same, green up), `raw`
-/// (float32, little-endian, RGB triplets, red fastest).
+/// `cube` (Adobe and Resolve), `clf` (Academy S-2014-006), `ctf` (Autodesk's variant of it),
+/// `spi1d`, `spi3d` (Sony Imageworks), `csp` (cineSpace: takes scene-linear input, which its prelut
+/// encodes), `resolve_cube` (a .cube with a 1D table before the 3D LUT; takes scene-linear input),
+/// `3dl` (Autodesk: integers), `lut` (Houdini), `icc` (ICC device link), `hald` (a Hald CLUT
+/// picture), `strip` (a picture of n slices of n x n side by side, green down), `strip_up` (the
+/// same, green up), `raw` (float32, little-endian, RGB triplets, red fastest).
 enum class LutFormat : unsigned char {
     cube,
     clf,
@@ -39,10 +39,11 @@ enum class LutFormat : unsigned char {
 [[nodiscard]] TONEWRIGHT_API LutFormat parse_lut_format(std::string_view text);
 [[nodiscard]] TONEWRIGHT_API std::vector<std::string> lut_format_names();
 [[nodiscard]] TONEWRIGHT_API std::string name_of(LutFormat format);
-/// A picture's layout, not a file of its own kind: OpenImageIO writes it.
+/// True for `strip` and `strip_up`.
 [[nodiscard]] TONEWRIGHT_API bool is_strip(LutFormat format);
+/// True for layouts of pictures, which OpenImageIO writes.
 [[nodiscard]] TONEWRIGHT_API bool is_picture_format(LutFormat format);
-/// Scene-linear goes in, and a 1D table before the cube encodes it.
+/// True if the LUT takes scene-linear input, which a 1D table before the 3D LUT encodes.
 [[nodiscard]] TONEWRIGHT_API bool has_shaper(LutFormat format);
 
 enum class LutDimension : unsigned char { automatic, one, three };
@@ -53,20 +54,19 @@ struct LutRequest {
     InputEncoding encoding;
     LutFormat format = LutFormat::cube;
     LutDimension dimension = LutDimension::automatic;
-    /// Entries of a 1D table (2..65536), or grid points a side of a cube (17..129; `3dl`: 17, 33 or
-    /// 65; `hald`: a square of 16..144; strips: 2..64; `raw`: 2..129).
+    /// Entries of a 1D table (2..65536), or grid points a side of a 3D LUT (17..129; `3dl`: 17, 33
+    /// or 65; `hald`: a square of 16..144; strips: 2..64; `raw`: 2..129).
     std::optional<int> size;
-    /// Of integers: 8 or 16 in pictures, 10, 12 or 16 in `3dl`, 16 in `icc`. 32: float.
+    /// Bits of a value: 8 or 16 in pictures, 10, 12 or 16 in `3dl`, 16 in `icc`. 32: float.
     std::optional<int> bits;
-    /// Of the ICC's specification: 2 (more programs read it) or 4.
+    /// Version of the ICC specification: 2 (more programs read it) or 4.
     int icc_version = 2;
-    /// Of the numbers in a `cube`, [3, 9]; where none is given, as many as a float has. Four round
-    /// by 5e-5 at most, less than cubes of 33 points are off between their nodes, in half the
-    /// space.
+    /// Decimals of the numbers in a `cube`, [3, 9]; default: all digits of a float. Four decimals
+    /// add at most 5e-5, less than the interpolation error of 33 points a side, and halve the file.
     std::optional<int> decimals;
 };
 
-/// A baked table. 1D: `size` entries of `channels` values. 3D: size^3 RGB triplets, red fastest.
+/// A baked LUT. 1D: `size` entries of `channels` values. 3D: size^3 RGB triplets, red fastest.
 /// Half-domain: 65536 entries in the order of the half floats' bit patterns.
 struct Lut {
     int dimension = 3;
@@ -74,81 +74,82 @@ struct Lut {
     int channels = 3;
     bool is_half_domain = false;
     std::vector<float> values;
-    /// That the values were rounded to. @see LutRequest::decimals
+    /// Decimals of the rounded values. @see LutRequest::decimals
     std::optional<int> decimals = {};
 };
 
-/// Distance of a table, interpolated as its readers do, from the double reference; display code
-/// values for a display, the operator's numbers for `linear` and `native`.
+/// Difference between a LUT, interpolated as its readers do, and the double reference: in code
+/// values for a display, in the operator's numbers for `linear` and `native`.
 struct LutError {
-    /// Of all colors of the input range: of a cube, a search finds the largest from the worst
-    /// samples on. The other figures are those of the samples.
+    /// Over all colors of the input range: for a 3D LUT, a search starts at the worst samples. The
+    /// other figures are those of the samples.
     double max = 0;
     double p999 = 0;
     double mean = 0;
-    /// dE_ITP (ITU-R BT.2124), 0 where there is no display.
+    /// dE_ITP (ITU-R BT.2124), 0 without a display.
     double delta_e_max = 0;
     double delta_e_p999 = 0;
     double delta_e_mean = 0;
     std::string interpolation;
 };
 
-/// @throws Error  a 3D table of linear input (it would clip at its end and band below); a 1D table
-///                of a view that mixes channels; a size out of range; a format without that
-///                dimension.
+/// A LUT whose nodes are samples of the view.
+/// @throws Error  a 3D LUT of linear input (it would clip and band); a 1D table of a view that
+/// mixes
+///                channels; a size out of range; a format without that dimension
 [[nodiscard]] TONEWRIGHT_API Lut sample_lut(const LutRequest& request);
 
-/// A cube as sample_lut() makes it, with nodes that are chosen for the least error between them,
-/// for colors of pictures and beyond. It can be nearer or not: measure both.
-/// @param sampled  its sampled form
-/// @throws Error  for a 1D table.
+/// A 3D LUT whose nodes are fitted for the least error between them. It is not always nearer to the
+/// view than a sampled one: measure both.
+/// @param sampled  the result of sample_lut()
+/// @throws Error   for a 1D table
 [[nodiscard]] TONEWRIGHT_API Lut fit_lut(const LutRequest& request, const Lut& sampled);
 
-/// Table output for scene-linear input that the encoding holds; `rgb` is table input in [0, 1] (for
-/// a half-domain table: scene-linear). Linear in 1D; in 3D tetrahedral, or trilinear when asked.
+/// Output of the LUT for its input `rgb` in [0, 1] (for a half-domain table: scene-linear). Linear
+/// in 1D; tetrahedral or trilinear in 3D.
 [[nodiscard]] TONEWRIGHT_API Vector3 interpolate(const Lut& lut, const Vector3& rgb,
                                                  bool trilinear = false);
 
-/// Measured on the standard sample set, as far as it lies inside the encoding's range, and on
-/// random table inputs; behind a shaper as its readers resample it.
+/// Measures on the standard sample set inside the encoding's range, and on random inputs of the
+/// LUT. A shaper is resampled as its readers do.
 [[nodiscard]] TONEWRIGHT_API LutError measure_lut(const Lut& lut, const LutRequest& request,
                                                   bool trilinear = false);
 
-/// How a cube behaves along rays of rising exposure: the lamps and hues of the test chart (pure and
-/// half saturated hues, the primaries and secondaries of Rec.709, P3 and Rec.2020), from -12 to +12
-/// stops, as far as the encoding holds them.
+/// Behavior of a 3D LUT along rays of rising exposure: the lamps and hues of the test chart (pure
+/// and half-saturated hues, the primaries and secondaries of Rec.709, P3 and Rec.2020), from -12 to
+/// +12 stops, inside the encoding's range.
 ///
-/// A cube rings where a clip or a kink of the operator runs through its cells: a channel rises and
-/// falls between the nodes where the operator's does not, and shows as rings around a lamp.
+/// A 3D LUT rings where a clip or a kink of the operator cuts through grid cells: between the
+/// nodes, a channel rises and falls although the operator's does not. A lamp then gets rings.
 struct LutRinging {
-    /// The largest fall of a channel on a ray, less what the operator itself falls by between the
-    /// same exposures; code values, of `linear` those of sRGB.
+    /// The largest fall of a channel on a ray, minus the operator's own fall between the same
+    /// exposures. In code values; for `linear`, those of sRGB.
     double fall = 0;
     /// 99.9th percentile of the errors along the rays, in the same unit.
     double p999 = 0;
-    /// Where the largest fall ends.
+    /// The end of the largest fall.
     std::string color;    // "blue of Rec.2020"
     std::string channel;  // "red"
     double stops = 0;     // from 0.18
 };
-/// One code of 8 bits: what falls by more than that rings.
+/// One 8-bit code: a LUT with a larger fall rings.
 inline constexpr double kLargestFall = 1.0 / 255;
-/// Of `p999`: what is beyond does not follow the operator in saturated lights.
+/// A LUT with a larger `p999` does not follow the operator in saturated light.
 inline constexpr double kLargestRayError = 0.02;
-/// Of a 1D table: nothing.
+/// A 1D table never rings.
 [[nodiscard]] TONEWRIGHT_API LutRinging measure_ringing(const Lut& lut, const LutRequest& request,
                                                         bool trilinear = false);
 [[nodiscard]] TONEWRIGHT_API bool rings(const LutRinging& ringing);
-/// It does not ring, and its errors along the rays are within kLargestRayError.
+/// True if the LUT does not ring, and its errors along the rays are within kLargestRayError.
 [[nodiscard]] TONEWRIGHT_API bool follows_operator(const LutRinging& ringing);
 /// "red falls by 0.19 at +9.4 stops of blue of Rec.2020".
 [[nodiscard]] TONEWRIGHT_API std::string to_string(const LutRinging& ringing);
 
-/// Light beyond the ends of an encoding that the operator would still show as something else than
-/// the light at the end: by more than one code of 10 bits (of `linear` and `native`: more than
-/// 1/1023), on grays, and above also on the six saturated colors of Rec.709.
+/// Stops beyond the end of an encoding where the operator still changes: by more than one 10-bit
+/// code (with `linear` and `native`: 1/1023) from its value at the end. Measured on grays, and
+/// above the range also on the six saturated colors of Rec.709.
 struct ClippedStops {
-    /// Stops from 0.18: where the encoding ends, and the last stop at which it shows.
+    /// Stops from 0.18: the end of the encoding, and the last visible change.
     double end = 0;
     double last = 0;
     /// The largest difference.
@@ -158,48 +159,49 @@ struct LutClipping {
     std::optional<ClippedStops> below;
     std::optional<ClippedStops> above;
 };
-/// Of a half-domain table: nothing.
+/// A half-domain table never clips.
 [[nodiscard]] TONEWRIGHT_API LutClipping measure_clipping(const LutRequest& request,
                                                           const Lut& lut);
 /// "above +6.50 stops from 0.18, up to +9.25, by up to 3.1e-02; below -10.00 stops, down to black,
-/// by up to 1.8e-03"; empty where nothing is.
+/// by up to 1.8e-03"; empty if nothing is clipped.
 [[nodiscard]] TONEWRIGHT_API std::string to_string(const LutClipping& clipping);
 
-/// Which values the nodes of a cube have: sampled, fitted, or `automatic`. Automatic nodes are
-/// sampled and fitted; where a cube rings, its nodes are changed as little as it takes not to ring.
-/// Of the two it is the one that follows the operator along the rays of LutRinging; where both or
-/// neither do, the one that is nearer in the mean and in the 99.9th percentile.
+/// Values of the nodes of a 3D LUT: sampled, fitted, or `automatic`. `automatic` makes both, and
+/// changes the nodes of a LUT that rings just enough. It takes the one that follows the operator
+/// along the rays of LutRinging. If both or neither do, it takes the one with the smaller mean and
+/// 99.9th percentile of errors.
 enum class LutNodes : unsigned char { automatic, sampled, fitted };
 
 struct BakedLut {
     Lut lut;
     LutError error;
-    /// Of a cube: with the other interpolation.
+    /// Error of a 3D LUT with the other interpolation.
     std::optional<LutError> other_error;
     bool is_fitted = false;
-    /// Interpolated as for `error`.
+    /// With the interpolation of `error`.
     LutRinging ringing = {};
 };
 
-/// A table as its format holds it, and how far it is from the view.
-/// @param trilinear  what its reader does in a cube
-/// @param max_error  instead of a size: the smallest cube, of 17, 25, 33, 49, 65, 97 and 129 points
-///                   a side (or what the format has of such), whose largest error is at most this,
-///                   in code values (of `linear` and `native`: in the operator's numbers)
-/// @throws Error  as sample_lut(); with a size and a max_error; where no size meets it
+/// A LUT, rounded as its format requires, and its error.
+/// @param trilinear  the interpolation of its reader: trilinear instead of tetrahedral
+/// @param max_error  instead of a size: the smallest of 17, 25, 33, 49, 65, 97 and 129 points a
+/// side
+///                   (those that the format allows) with at most this error, in code values (with
+///                   `linear` and `native`: in the operator's numbers)
+/// @throws Error  as sample_lut(); both a size and a max_error; no size meets max_error
 [[nodiscard]] TONEWRIGHT_API BakedLut bake_lut(const LutRequest& request,
                                                LutNodes nodes = LutNodes::automatic,
                                                bool trilinear = false,
                                                std::optional<double> max_error = std::nullopt);
 
-/// The table as its format holds it: rounded to the integers of LutRequest::bits, or to
+/// Rounds the values as the format requires: to integers of LutRequest::bits, or to
 /// LutRequest::decimals.
 TONEWRIGHT_API void quantize(Lut& lut, const LutRequest& request);
 
-/// The contents of the file: what it is, what goes in, what clips, what comes out, the measured
-/// errors, whether it rings, and a hash of the numbers; then numbers with 9 significant digits
-/// (enough for every float), never in exponent notation. Of no picture.
-/// @param other_error  of a cube: with the other interpolation
+/// The contents of the file; not for pictures. A header states the operator, the input, clipping,
+/// the output, the measured errors, ringing, and a hash of the numbers. The numbers follow with 9
+/// significant digits (enough for every float), without exponents.
+/// @param other_error  of a 3D LUT: with the other interpolation
 [[nodiscard]] TONEWRIGHT_API std::string write_lut(
     const Lut& lut, const LutRequest& request, const LutError& error,
     const std::optional<LutError>& other_error = std::nullopt,
@@ -207,16 +209,16 @@ TONEWRIGHT_API void quantize(Lut& lut, const LutRequest& request);
 [[nodiscard]] TONEWRIGHT_API std::string write_lut(const BakedLut& baked,
                                                    const LutRequest& request);
 
-/// True for a file that is a picture, by its extension.
+/// True if the extension is that of a picture.
 [[nodiscard]] TONEWRIGHT_API bool is_lut_picture(const std::string& path);
 
-/// The table as stages, as its readers interpolate it.
+/// The LUT as stages, interpolated as its readers do.
 /// @param path  of its file, for errors
 /// @throws FileError  a 3D LUT of more than 129 nodes a side
 [[nodiscard]] TONEWRIGHT_API TableFile table_file_of(const Lut& lut, const std::string& path);
 
-/// Reads LUTs for load_operator(): .cube, .raw, .dds and ICC device links, and whatever `next`
-/// reads. It keeps the last four files, and reads a file that has changed again.
+/// Reads LUTs for load_operator(): .cube, .raw, .dds and ICC device links, and the files that
+/// `next` reads. It caches the last four files, and reads a changed file again.
 [[nodiscard]] TONEWRIGHT_API TableReader table_reader(TableReader next = {});
 
 TONEWRIGHT_NAMESPACE_END

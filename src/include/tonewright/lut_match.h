@@ -10,25 +10,26 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// How near a LUT is to an operator, if it is fed and shown like this.
+/// Difference between a LUT and an operator, for one input encoding and display.
 struct LutMatch {
-    std::string op;        // label: id, preset and what is set
-    std::string encoding;  // of parse_input_encoding(), or "scene-linear": it has a shaper
-    std::string input;     // space that the encoded light is in
-    std::string display;   // whose code values come out, or "linear"
-    /// Differences of what comes out, over what can go in.
+    std::string op;  // label: id, preset and settings
+    std::string
+        encoding;         // as in parse_input_encoding(), or "scene-linear" for a LUT with a shaper
+    std::string input;    // space of the encoded light
+    std::string display;  // display of the output's code values, or "linear"
+    /// Differences of the output over the whole input range.
     double max = 0;
     double p999 = 0;
     double mean = 0;
-    /// The definition, which lives as long as the program. A known defect says what is wrong.
+    /// The definition, which lives as long as the program. A known defect describes its mistake.
     const Operator* definition = nullptr;
 };
 
-/// Which operator a lookup table is, by what it does: against operators with every input encoding,
-/// in its own primaries and in Rec.709, and on SDR displays.
+/// Identifies the operator of a LUT. Compares its output with operators in every input encoding, in
+/// the encoding's own primaries and in Rec.709, and on SDR displays.
 /// @param operators  `id`, `id:preset`; empty: all, with their defaults, and the known defects
-/// @param count      how many, the nearest first; a defect only where it is nearer by a margin
-/// @throws Error  for an unknown operator
+/// @param count      number of matches, the nearest first; a defect must be nearer by a margin
+/// @throws Error     an unknown operator
 [[nodiscard]] TONEWRIGHT_API std::vector<LutMatch> match_lut(
     const LutFile& lut, const std::vector<std::string>& operators, std::size_t count = 5);
 

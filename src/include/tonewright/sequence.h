@@ -11,47 +11,45 @@
 /// The frames of a shot.
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// A frame of a shot, and what became of it.
+/// A frame of a shot, and its result.
 struct FrameFiles {
     std::string in;
     std::string out;
-    /// Instead of the tonemapper's exposure, in stops.
+    /// Replaces the tonemapper's exposure, in stops.
     std::optional<double> exposure_stops = {};
-    /// Of `in`.
+    /// Subimage of `in`.
     int subimage = 0;
-    /// What went wrong, in one line; empty: nothing.
+    /// The error, in one line; empty: none.
     std::string error = {};
-    /// It was a FileError.
+    /// True if the error is a FileError.
     bool is_file_error = false;
-    /// `out` was there already, and stayed as it was. @see SequenceOptions::skip_existing
+    /// True if `out` existed and was kept. @see SequenceOptions::skip_existing
     bool is_skipped = false;
 };
 
 struct SequenceOptions {
-    /// Of the files. `warn` is called from one thread at a time.
+    /// `warn` is called from one thread at a time.
     WriteOptions write = {};
-    /// Leaves a frame's `out` as it is if it is newer than `in`, has the size and the pixel type
-    /// that it would have, and can be read to its end. What it was made with nobody knows: with
-    /// another operator or another exposure it would have other colors.
+    /// Keeps a frame's `out` if it is newer than `in`, has the expected size and pixel type, and
+    /// can be read to its end. The operator and the exposure of an earlier run are not known.
     bool skip_existing = false;
-    /// Frames at the same time, each with memory of its own. 0: as many as threads.
+    /// Frames at the same time, each with its own memory. 0: as many as threads.
     int jobs = 0;
-    /// Threads of all of them together; each frame has at least one. 0: OIIO's `threads` attribute.
+    /// Threads for all frames together; each frame has at least one. 0: OIIO's `threads` attribute.
     int nthreads = 0;
-    /// Of each frame. @see read_image
+    /// Limit for each frame. @see read_image
     double max_pixels = kMaxPixels;
     /// Called after each frame, from one thread at a time.
     std::function<void(const FrameFiles&)> done = {};
 };
 
-/// tonemap_file() of many files, several at the same time: while one is read another is written.
-/// One that fails does not stop the others. The bytes do not depend on jobs and threads, nor on
-/// which frames are made in one run.
+/// Runs tonemap_file() on many files, several at the same time. A frame that fails does not stop
+/// the others. Jobs, threads and the choice of frames change no byte of the files.
 ///
-/// First removes temporary files that killed runs left of the same frames: those of processes of
-/// this machine that are no more, and those that are older than a day.
+/// First removes temporary files that killed runs left for the same frames: those whose process on
+/// this machine has ended, and those that are older than a day.
 ///
-/// @param frames  gets what became of each.
+/// @param frames  receives the results
 TONEWRIGHT_API void tonemap_files(const Tonemapper& tonemapper, std::vector<FrameFiles>& frames,
                                   const SequenceOptions& options = {});
 

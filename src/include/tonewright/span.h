@@ -9,7 +9,7 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// Contiguous elements of something else: std::span for C++17 hosts, as far as it is needed.
+/// A view of contiguous elements: the subset of std::span that C++17 programs need here.
 template <class T>
 class Span {
   public:
@@ -18,7 +18,7 @@ class Span {
     template <std::size_t N>
     constexpr Span(T (&array)[N]) noexcept  // NOLINT(google-explicit-constructor): a view
         : data_(array), size_(N) {}
-    /// Of a vector, an array, a std::span.
+    /// Views a vector, an array or a std::span.
     template <class Container, class = std::enable_if_t<std::is_convertible_v<
                                    decltype(std::declval<const Container&>().data()), T*>>>
     constexpr Span(const Container& c) noexcept  // NOLINT(google-explicit-constructor): a view

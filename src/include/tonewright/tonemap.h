@@ -21,35 +21,34 @@
 
 /// Tone mapping of OpenImageIO images.
 ///
-/// tonemap() follows the conventions of ImageBufAlgo, errors included; the other functions of this
-/// header throw, as the rest of Tonewright does.
+/// tonemap() and map_colors() follow the conventions of ImageBufAlgo, also for errors. The other
+/// functions of this header throw, as the rest of Tonewright does.
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// The input of a picture that says itself what it is. @see TonemapOptions::input
+/// The input of a picture whose metadata states its color. @see TonemapOptions::input
 inline constexpr std::string_view kAutoInput = "auto";
 
-/// What a picture is tone mapped with. Names and texts are those of the command line.
+/// Options of tone mapping. Names and texts are those of the command line.
 struct TonemapOptions {
-    /// What to do with color that may be multiplied by alpha. A curve needs the color alone.
+    /// Treatment of associated color. A curve needs un-premultiplied color.
     enum class Unpremult : unsigned char {
-        /// As the picture says: divide, unless its `oiio:UnassociatedAlpha` is set.
+        /// Divides by alpha before and multiplies after, unless `oiio:UnassociatedAlpha` is set.
         automatic,
-        /// Divide by alpha before, multiply after.
+        /// Divides by alpha before and multiplies after.
         yes,
-        /// Leave color as it is.
+        /// Leaves color as it is.
         no,
     };
-    /// What operators with parameters that a picture has (its largest luminance, ...) take for
-    /// those that neither `settings` nor the preset set.
+    /// Source of the parameters that come from a picture (its largest luminance, ...), if neither
+    /// `settings` nor the preset sets them.
     enum class Statistics : unsigned char {
-        /// The picture's own, of measure_scene(): one more pass over it. Other operators pay
-        /// nothing.
+        /// measure_scene(), which takes one more pass. Other operators skip it.
         from_picture,
         /// The defaults, the same for every picture.
         defaults,
     };
 
-    /// Operator id, optionally `:preset`. Local operators are welcome (local.h).
+    /// Operator id, optionally `:preset`. Local operators are accepted (local.h).
     std::string op;
     /// Operator parameters, name -> text.
     Settings settings = {};
@@ -57,76 +56,73 @@ struct TonemapOptions {
     std::string look = {};
     /// Exposure before the operator, in stops, [-64, 64].
     double exposure_stops = 0;
-    /// What the source's numbers are: a name that find_source_color() knows, or `auto`: what the
-    /// picture says. That is its `oiio:ColorSpace` (sRGB and other code values are decoded first),
-    /// where it is another one than the linear Rec.709 that readers presume; else `colorInteropID`;
-    /// else ACES2065-1 where `acesImageContainerFlag` is set; else linear light of its
-    /// `chromaticities`; else linear Rec.709.
+    /// Color of the source: a name that find_source_color() knows, or `auto`: the first of these
+    /// that the metadata has. `oiio:ColorSpace`, unless it is the linear Rec.709 that readers
+    /// assume (sRGB and other code values are decoded first); `colorInteropID`; ACES2065-1 if
+    /// `acesImageContainerFlag` is set; linear light of `chromaticities`; linear Rec.709.
     std::string input = std::string(kAutoInput);
     /// Display (id, title or alias), or `linear`, or `native`.
     std::string display = "srgb";
-    /// What an HDR display shows light 1 at, cd/m2, [50, 1000].
+    /// Luminance of scene-linear 1.0 on an HDR display, cd/m2, [50, 1000].
     double reference_white = kReferenceWhite;
     Unpremult unpremult = Unpremult::automatic;
-    /// Files of 8 bits get noise of half a code value against bands: `oiio:dither`, which OIIO's
-    /// writers follow.
+    /// Dithers 8-bit files by half a code value: sets `oiio:dither`, which OIIO's writers follow.
     bool dither = false;
     Statistics statistics = Statistics::from_picture;
-    /// Operators that `op` may name beside the built-in ones, and what reads LUTs.
+    /// Operators that `op` may name beside the built-in ones, and the reader of LUTs.
     OperatorSet others = {};
 };
 
-/// Measures the light of a picture, for the operators whose parameters a picture has.
+/// Measures the statistics of a picture, for operators whose parameters come from it.
 ///
-/// Relative luminance (0.2126, 0.7152, 0.0722) and channels of Rec.709 light, each pixel as
-/// tonemap() sees it: NaN is 0, limited to +-65504, converted from `input`, negatives 0. Exposure
-/// plays no part: it stays the user's correction on top of what the statistics choose.
+/// Relative luminance (0.2126, 0.7152, 0.0722) and channels of Rec.709 light, for each pixel as in
+/// tonemap(): NaN becomes 0, channels are limited to +-65504 and converted from `input`, negatives
+/// become 0. Statistics describe the picture before exposure.
 ///
-/// Where alpha counts (`unpremult` is not `no`), color is that of tonemap(), and pixels without
-/// cover (alpha 0 or not finite) are left out; a picture without any cover is measured as it is.
+/// If alpha counts (`unpremult` is not `no`), color is un-premultiplied as in tonemap(), and pixels
+/// whose alpha is 0 or not finite are left out. If all are, the picture is measured as it is.
 ///
-/// @param src       any pixel type, tiled, cached or local.
+/// @param src       any pixel type, tiled, cached or local
 /// @param input     @see TonemapOptions::input
-/// @param roi       default: the data window. Channels of it are not read.
-/// @param nthreads  0: OIIO's `threads` attribute. The result does not depend on it, in any bit.
-/// @returns         zeros for a picture without light.
-/// @throws Error    unknown input; a picture that cannot be read, is deep, or has no color.
+/// @param roi       default: the data window. Its channels are ignored.
+/// @param nthreads  0: OIIO's `threads` attribute. Threads change no bit of the result.
+/// @returns         zeros for a black picture
+/// @throws Error    unknown input; a picture that cannot be read, is deep, or has no color
 [[nodiscard]] TONEWRIGHT_API SceneStatistics
 measure_scene(const OIIO::ImageBuf& src, std::string_view input = kAutoInput,
               TonemapOptions::Unpremult unpremult = TonemapOptions::Unpremult::automatic,
               OIIO::ROI roi = {}, int nthreads = 0);
 
-/// A view made ready to run on pictures: compiled once for each kind of source color, at its first
-/// picture, and used for every frame of a shot. Safe to use from several threads at once, on
+/// A view that is ready to run on pictures. It is compiled once for each source color, at the first
+/// picture, and serves every frame of a shot. Safe to use from several threads at once, on
 /// different destinations.
 ///
-/// An operator that takes statistics takes those of each picture. Where live_statistics()
-/// (engine.h) has them as uniforms, all pictures share one program, and the pixels keep to the
-/// operator's bound; else each picture has its own. A shot would flicker: give it the statistics of
-/// one frame, with_statistics(measure_scene(frame)).
+/// An operator that takes statistics takes those of each picture. If live_statistics() (engine.h)
+/// returns them as uniforms, all pictures share one program, and errors stay within the operator's
+/// bound; otherwise each picture has its own program. A shot would flicker: give it the statistics
+/// of one frame, with_statistics(measure_scene(frame)).
 class TONEWRIGHT_API Tonemapper {
   public:
-    /// @throws Error  unknown name or bad value among the options, with the nearest name.
+    /// @throws Error  unknown name or bad value among the options, with the nearest name
     explicit Tonemapper(const TonemapOptions& options);
     ~Tonemapper();
     Tonemapper(Tonemapper&&) noexcept;
     Tonemapper& operator=(Tonemapper&&) noexcept;
 
     [[nodiscard]] const TonemapOptions& options() const noexcept;
-    /// Some of the operator's parameters are each picture's own.
+    /// True if some of the operator's parameters come from each picture.
     [[nodiscard]] bool takes_statistics() const noexcept;
-    /// The operator is a local one: a pixel's surroundings count.
+    /// True for a local operator, which maps a pixel by its surroundings.
     [[nodiscard]] bool needs_whole_picture() const noexcept;
-    /// The same for all pictures that have these statistics. Compiles nothing where all statistics
-    /// of the operator are live, else once.
-    /// @throws Error  statistics that are no values of the operator's parameters
+    /// The same with fixed statistics for all pictures. Compiles nothing if all statistics of the
+    /// operator are live, otherwise once.
+    /// @throws Error  statistics that are outside the intervals of the operator's parameters
     [[nodiscard]] Tonemapper with_statistics(const SceneStatistics& statistics) const;
-    /// The same at another exposure, in stops, [-64, 64]. Takes microseconds, and so does the
-    /// first picture: within 16 stops up or down, a view is compiled once for all exposures but 0,
-    /// and once without exposure. Beyond, and where an operator takes statistics that are not live
-    /// from each picture, it is compiled anew at the first picture. The pixels are those of a
-    /// Tonemapper that was made with this exposure.
-    /// @throws Error  out of that interval
+    /// The same at another exposure, in stops, [-64, 64]. Takes microseconds, also for the first
+    /// picture: within 16 stops, a view is compiled once for exposure 0 and once for all others.
+    /// Beyond 16 stops, or if an operator takes statistics that are not live, the first picture
+    /// compiles it again. The pixels are those of a Tonemapper that was made with this exposure.
+    /// @throws Error  an exposure outside that interval
     [[nodiscard]] Tonemapper with_exposure(double stops) const;
 
     /// Same contract as tonemap(dst, src, ...).
@@ -142,46 +138,42 @@ class TONEWRIGHT_API Tonemapper {
 
 /// Tone maps `src` into `dst`, with the calling convention of ImageBufAlgo.
 ///
-/// 1. Channels go by position, not by name. The first three are color, of `options.input`;
-/// `spec().alpha_channel` is alpha; all others are copied, bit for bit where
-///    the two pixel types are the same. (A picture that has red elsewhere: `oiiotool --ch
-///    R,G,B,A`.)
-/// 2. One channel is gray, R = G = B; so is the first of two when the second is alpha. A gray
-/// picture
-///    stays gray where the view shows grays as grays, else it becomes R, G, B (, A).
-/// 3. Associated color is divided by alpha first and multiplied by it last (`options.unpremult`).
-///    Where alpha is 0, or not finite, color is taken as it is: light without cover, such as a
-///    flame, stays.
-/// 4. NaN is 0 and every channel is limited to +-65504 before the view; the result is finite.
-/// 5. Statistics are those of the whole source, whatever the region: parts that are rendered one by
-///    one fit together. (Not in place: there the source changes under them, and so does what it
-///    says of its color. Measure first, and name the input.)
-/// 6. `dst` says what it holds: `oiio:ColorSpace` as OIIO names it ("sRGB", "Gamma2.4" for
-/// Rec.1886,
-///    "Linear"), else the display's title; no claim for `native`, unless the operator's output is
-///    plainly linear or a power of Rec.709. Profiles, gammas and primaries that contradict it go;
-///    `chromaticities` is set where the result is not Rec.709.
+/// 1. Channels are identified by position, not by name. The first three are color in
+///    `options.input`, `spec().alpha_channel` is alpha, and all others are copied, bit for bit if
+///    both pixel types are the same. (`oiiotool --ch R,G,B,A` reorders the channels of other
+///    pictures.)
+/// 2. One channel is gray, R = G = B; so is the first of two if the second is alpha. A gray picture
+///    stays gray if the view keeps gray neutral; otherwise it becomes R, G, B (, A).
+/// 3. Associated color is un-premultiplied first and premultiplied last (`options.unpremult`).
+/// Color
+///    of pixels whose alpha is 0 or not finite is taken as it is, because it represents emission.
+/// 4. NaN becomes 0, and every channel is limited to +-65504 before the view. The result is finite.
+/// 5. Statistics are those of the whole source, for every region, so regions that are rendered one
+///    by one match. (This does not hold in place, because the source and its metadata change.
+///    Measure first, and name the input.)
+/// 6. The metadata of `dst` states its color: `oiio:ColorSpace` by OIIO's names ("sRGB", "Gamma2.4"
+///    for Rec.1886, "Linear"), or else the display's title. `native` has none, unless the
+///    operator's output is linear or a power of Rec.709. Contradicting profiles, gammas and
+///    primaries are removed. `chromaticities` is set if the result is not Rec.709.
+/// 7. A local operator (local.h) reads the whole data window for every region, so regions match. It
+///    needs somewhat more than three floats a pixel of memory. Volumes are refused.
 ///
-/// 7. A local operator (local.h) looks at the whole data window, whatever the region: regions fit
-///    together. It holds three floats a pixel and some more in memory. Volumes are refused.
-///
-/// @param dst       uninitialized: becomes a float image of the ROI's size with the source's
-/// metadata.
-///                  Initialized: keeps its size and pixel type (integers are rounded and clamped as
-///                  OIIO does), and only the pixels and channels of the ROI are written; a gray
-///                  source fills the first three channels of a destination that has them. May be
-///                  `src`.
+/// @param dst       Uninitialized: becomes a float image of the ROI's size with the source's
+///                  metadata. Initialized: keeps its size and pixel type (OIIO's rounding and
+///                  clamping of integers), and only the pixels and channels of the ROI are written.
+///                  A gray source fills the first three channels of a destination that has them.
+///                  May be `src`.
 /// @param src       any pixel type, tiled, cached or local. Outside its data window it is black.
-/// Deep
-///                  images are refused.
+///                  Deep images are refused.
 /// @param roi       default: all. `[chbegin, chend)` counts the source's channels and must contain
 ///                  its color.
 /// @param nthreads  0: OIIO's `threads` attribute. The result does not depend on it.
-/// @param progress  called with `progress_data` and the part that is done, (0, 1], about a hundred
-///                  times, from one thread at a time, which may be one of OIIO's. What it returns
-///                  true for is to stop: an error, "cancelled", with some of the pixels written.
-/// @returns         false when something is wrong; then `dst` has the error, in one line, and its
-///                  pixels are as they were unless reading `src` failed half way. Never throws.
+/// @param progress  called with `progress_data` and the fraction done, (0, 1], about a hundred
+/// times,
+///                  from one thread at a time, which may be one of OIIO's. If it returns true, the
+///                  work stops: the error is "canceled", and some of the pixels are written.
+/// @returns         false on failure. Then `dst` has the error, in one line, and its pixels are
+///                  unchanged unless reading `src` failed half way. Never throws.
 TONEWRIGHT_API bool tonemap(OIIO::ImageBuf& dst, const OIIO::ImageBuf& src,
                             const TonemapOptions& options, OIIO::ROI roi = {}, int nthreads = 0,
                             OIIO::ProgressCallback progress = nullptr,
@@ -194,27 +186,27 @@ TONEWRIGHT_API bool tonemap(OIIO::ImageBuf& dst, const OIIO::ImageBuf& src,
                                                     void* progress_data = nullptr) noexcept;
 
 /// Runs the colors of a picture through a function, such as a LUT of lut_file.h: channels, alpha,
-/// pixel types, regions and threads as in tonemap(). A gray picture becomes one in color. `dst`
-/// makes no claim about its colors.
+/// pixel types, regions and threads as in tonemap(). A gray picture becomes one in color. The
+/// metadata of `dst` states no color.
 ///
-/// @param map  interleaved RGB, `count` colors from `in` to `out`, which are not the same memory;
-///             called from several threads at once. What it throws is the error of `dst`.
-/// @returns    false when something is wrong; then `dst` has the error.
+/// @param map  maps `count` colors from `in` to `out`, interleaved RGB in different memory. Called
+///             from several threads at once. Its exceptions become the error of `dst`.
+/// @returns    false on failure; then `dst` has the error.
 TONEWRIGHT_API bool map_colors(
     OIIO::ImageBuf& dst, const OIIO::ImageBuf& src,
     const std::function<void(const float* in, float* out, std::size_t count)>& map,
     TonemapOptions::Unpremult unpremult = TonemapOptions::Unpremult::automatic, OIIO::ROI roi = {},
     int nthreads = 0) noexcept;
 
-/// Tone maps a file into a file: read_image(), tonemap() and write_image_atomically() at once, with
-/// the same result to the last byte, in the memory of some rows. One subimage of it (a part of an
-/// OpenEXR file, a page): parts are seldom all of them color. A picture without a date gets that
-/// of the environment variable SOURCE_DATE_EPOCH, else its file's (UTC), or some formats would put
-/// in the time: made again, the result is the same.
+/// Tone maps a file to a file. The result equals that of read_image(), tonemap() and
+/// write_image_atomically() to the last byte, but needs memory for some rows only. It reads one
+/// subimage (a part of an OpenEXR file, or a page). A picture without a date gets that of the
+/// environment variable SOURCE_DATE_EPOCH, else its file's (UTC). Some formats would record the
+/// current time, and a second run would give other bytes.
 ///
 /// Rows are read, tone mapped and written at the same time. An operator that takes statistics reads
-/// the file twice. Volumes, and the pictures of local operators, are held in memory as a whole.
-/// `out` may be `in`.
+/// the file twice. Volumes and the pictures of local operators are read into memory. `out` may be
+/// `in`.
 ///
 /// @param type      @see write_image_atomically
 /// @param nthreads  0: OIIO's `threads` attribute. 1: one step after the other in the calling

@@ -11,65 +11,64 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// What to compare with the reference.
+/// Backends and samples of a comparison with the reference.
 struct VerifyOptions {
-    /// As resolve_operator() takes them. Empty or `all`: every operator, preset and look. Empty,
-    /// with a config: those that it has views of.
+    /// As resolve_operator() takes them. Empty or `all`: every operator, preset and look. Empty
+    /// with a config: the operators of its views.
     std::vector<std::string> operators;
-    /// Empty = sRGB; of a config without operators named, all that it has.
+    /// Empty: sRGB; with a config and without operators: all displays of the config.
     std::vector<std::string> displays;
     std::string input = "lin_rec709";
-    /// A config to check, or its folder; empty = a fresh one, written to a temporary folder and
-    /// read back.
+    /// A config to check, or its folder. Empty: a new config in a temporary folder.
     std::string config;
-    /// Grid points a side of the gamut lattices.
+    /// Grid points a side of the gamut grids.
     int lattice_edge = 33;
-    /// Random colors; colors near black and with negative channels in proportion.
+    /// Random colors; colors near black and with negative channels are in proportion.
     std::size_t random_count = 100000;
-    /// OpenColorIO's GPU path, and shaders.
+    /// Includes OpenColorIO's GPU path, and shaders.
     bool with_gpu = true;
-    /// Languages to run shaders of, as shader_languages() names them. Empty or `all`: each that
-    /// something on this machine can run. `none`.
+    /// Languages of the shaders to run, as shader_languages() names them. Empty or `all`: those
+    /// that this machine can run. `none`: no shaders.
     std::vector<std::string> shaders;
-    /// Our engine only with the instruction set that it takes on this processor.
+    /// Measures the SIMD engine only with the best instruction set of this processor.
     bool only_best_target = false;
     /// Scene-linear RGB pixels to add to the sample set, in the input space.
     std::vector<float> picture;
-    /// Operators that `operators` may name, and what reads LUTs.
+    /// Operators that `operators` may name, and the reader of LUTs.
     OperatorSet others;
 };
 
-/// One form of one view against the double reference, in display code values.
+/// Errors of one backend of one view against the double reference, in display code values.
 struct ParityRow {
     std::string op;
     std::string display;
     /// "simd AVX3", "ocio cpu lossless", "ocio cpu default", "ocio gpu", or a shader's language
-    std::string form;
-    /// Of OCIO forms "config" or "chain" and what was emitted; of shaders the compiler or driver.
+    std::string backend;
+    /// For OpenColorIO: "config" or "chain", and the operations. For shaders: compiler or driver.
     std::string lowering;
-    /// Colors with all channels >= 0.
+    /// Over colors with all channels >= 0.
     double max = 0, p999 = 0, mean = 0;
-    /// Every color, negatives and mixed signs of thousands included.
+    /// Over all colors, also negatives and mixed signs of thousands.
     double max_all = 0;
-    /// The largest error of the colors beyond the bound; 0 where there are none. Near black of a
-    /// display with a pure power it is an error of light (times 12.92, sRGB's slope there), because
-    /// the code value's own slope is infinite. With the mixed metric only what exceeds float32
-    /// rounding counts: the change of the exact result when each channel of the input, and of what
-    /// enters each matrix with negative coefficients, moves by one float32 unit (2^-23 of its
-    /// value; 2^-21 for the GPU, whose texture filtering rounds more often). Such matrices cancel,
-    /// which no float32 form can avoid.
+    /// The largest error of the colors beyond the bound; 0 if there are none. Near black of a
+    /// display with a pure power, it is an error of light (times 12.92, sRGB's slope there),
+    /// because the code value's own slope is infinite. With the mixed metric, only the error beyond
+    /// float32 rounding counts. Float32 rounding is the change of the exact result if each channel
+    /// of the input, and of the input of each matrix with negative coefficients, moves by one
+    /// float32 unit (2^-23 of its value; 2^-21 for the GPU, whose texture filtering rounds more
+    /// often). Such matrices cancel, which no float32 backend can avoid.
     double max_beyond_rounding = 0;
     double bound = 0;
-    /// True where a matrix of the chain has negative coefficients.
+    /// True if a matrix of the chain has negative coefficients.
     bool is_mixed_metric = false;
-    /// Every output finite and inside [0, 1], NaN and infinities going in. Of shaders without NaN:
-    /// compilers may take it that there is none.
+    /// Every output is finite and inside [0, 1], also for NaN and infinities. Shaders are not
+    /// tested with NaN, because compilers may assume that there is none.
     bool is_total = true;
     bool is_ok = true;
-    std::string note;  // why a form is missing, or the worst color of a failure
+    std::string note;  // why a backend is missing, or the worst color of a failure
 };
 
-/// A language or an application whose shaders are written but were not run.
+/// A language or an application whose shaders did not run.
 struct NotExecuted {
     std::string name;
     std::string reason;
@@ -77,21 +76,21 @@ struct NotExecuted {
 
 struct VerifyResult {
     std::vector<ParityRow> rows;
-    /// Of the languages that were asked for; with all of them, what nothing can run, too.
+    /// Requested languages that did not run; if all were requested, also those that cannot run.
     std::vector<NotExecuted> not_executed;
 };
 
-/// Shaders run on OpenGL and OpenGL ES through EGL, by the C compiler `$CC` (else cc, gcc, clang),
-/// on OpenCL (DCTL), and on Dawn for Node.js (WGSL, HLSL) where TONEWRIGHT_NODE_MODULES names a
-/// folder with the packages webgpu and naga-wasm.
-/// @throws Error  unknown operators, displays, spaces, languages; FileError for the config folder.
+/// Shaders run on OpenGL and OpenGL ES through EGL, with the C compiler `$CC` (else cc, gcc,
+/// clang), on OpenCL (DCTL), and on Dawn for Node.js (WGSL, HLSL), if TONEWRIGHT_NODE_MODULES names
+/// a folder with the packages webgpu and naga-wasm.
+/// @throws Error  unknown operators, displays, spaces, languages; FileError for the config folder
 [[nodiscard]] TONEWRIGHT_API VerifyResult
 verify(const VerifyOptions& options, const std::function<void(const ParityRow&)>& on_row = {});
 
-/// Lines of a table for the terminal: a heading, one row each.
+/// Lines of a table for the terminal: the heading, and a row.
 [[nodiscard]] TONEWRIGHT_API std::string parity_heading();
 [[nodiscard]] TONEWRIGHT_API std::string format_row(const ParityRow& row);
-/// One line, with reasons behind names.
+/// One line with the names and their reasons.
 [[nodiscard]] TONEWRIGHT_API std::string format_not_executed(const std::vector<NotExecuted>& all);
 
 TONEWRIGHT_NAMESPACE_END

@@ -14,7 +14,7 @@
     "." TONEWRIGHT_STRINGIZE(TONEWRIGHT_VERSION_MINOR) "." TONEWRIGHT_STRINGIZE( \
         TONEWRIGHT_VERSION_PATCH)
 
-/// The inline namespace carries the major version, so that two versions can live in one process.
+/// The inline namespace has the major version, so that a process can load two versions.
 #define TONEWRIGHT_NAMESPACE_BEGIN \
     namespace tonewright {         \
     inline namespace v0 {

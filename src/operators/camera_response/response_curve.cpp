@@ -56,7 +56,7 @@ class Lines {
         return std::nullopt;
     }
 
-    /// Of the line that next() gave, or of the last one.
+    /// Position of the line that next() gave, or of the last one.
     [[nodiscard]] std::size_t number() const { return std::max<std::size_t>(number_, 1); }
 
   private:
@@ -334,8 +334,8 @@ class Reader {
                                                          {{"r", "g", "b"}}}};
     static constexpr std::array<std::string_view, 5> kJoints = {"", "-", "_", " ", "."};
 
-    /// What may be asked for: three curves by what their names have in common, other curves by
-    /// name.
+    /// Names that a user may ask for: three curves by the common part of their names, other curves
+    /// by name.
     static std::vector<std::string> choices(const std::vector<Record>& all) {
         std::set<std::string_view> names;
         for (const Record& record : all)

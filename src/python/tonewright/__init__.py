@@ -8,14 +8,14 @@ Functions that take an operator share these options:
 
     settings         dict of the operator's parameters, see operators()
     exposure         exposure before the operator, in stops
-    input            "auto" (what the picture says), a color space ("acescg") or an encoding ("sRGB", "Gamma2.2")
+    input            "auto" (as the picture says), a color space ("acescg") or an encoding ("sRGB", "Gamma2.2")
     display          "srgb", "rec1886", "rec2100_pq", ... (see displays()), "linear" or "native"
     look             look of the operator
     reference_white  luminance of scene-linear 1.0 on HDR displays, in cd/m2
 
 A wrong type raises TypeError, a wrong value ValueError, a file OSError or one of its subclasses. Too little memory raises
-MemoryError. A file that is not what a user may expect is a UserWarning; where `python -W error` makes it an error, the file
-is not written. Other threads run while a function works.
+MemoryError. Warnings about a file are UserWarnings; with `python -W error`, they are errors and the file is not written.
+Other threads run while a function works.
 """
 
 from __future__ import annotations
@@ -89,15 +89,15 @@ def tonemap(image: Picture, op: str, *, settings: Mapping[str, Any] | None = Non
     """Tone map a picture and return the result as float32 values of the same kind.
 
     image: an OpenImageIO.ImageBuf, or an array of shape (height, width) or (height, width, channels) of float16, float32,
-    float64, uint8, uint16 or uint32; integers stand for [0, 1]. The first three channels are color (or the first of one or
+    float64, uint8, uint16 or uint32; integers represent [0, 1]. The first three channels are color (or the first of one or
     two channels); the fourth (or second) is alpha.
     op: operator id, optionally with :preset, or the path of a .tone file or a LUT.
-    unpremult: "auto", "yes" or "no": divide color by alpha first.
+    unpremult: "auto", "yes" or "no": un-premultiply color first.
     statistics: "picture" (measure it for operators that need it) or "defaults".
     axis: the axis of the channels of an array, such as 0 for (channels, height, width).
     roi: part of an ImageBuf.
     nthreads: number of threads; 0 uses all cores.
-    progress: called with the finished part, from 0 to 1; a true result cancels.
+    progress: called with the finished fraction, from 0 to 1; a true result cancels.
 
     Example: tonewright.tonemap(OpenImageIO.ImageBuf("shot.exr"), "agx_blender", exposure=1)
     """
@@ -120,7 +120,7 @@ def tonemap_file(source: Path, target: Path, op: str, *, settings: Mapping[str, 
     """Tone map a picture file into another file, as `tonewright apply` does. Its warnings are UserWarnings.
 
     target: replaced only when the new file is complete; its extension sets the format.
-    dtype: "uint8", "uint16", "half" or "float" (default: what suits the format).
+    dtype: "uint8", "uint16", "half" or "float" (default: the format's).
     alpha: "keep", "ignore" (leave it out) or "opaque" (make it 1).
     subimage: subimage of a multi-part file, counted from 0.
     in_place: allow the target to be the source, which is lost then.
@@ -159,10 +159,10 @@ def meter(image: Path | Picture, *, method: str = "log-average", key: float | No
 
     image: a file, an OpenImageIO.ImageBuf or an array (see tonemap()).
     method: "log-average", "histogram", "mean" or "max".
-    key: what the metered luminance becomes (default 0.18; 1 with "max").
+    key: target for the metered luminance (default 0.18; 1 with "max").
     compensation: stops on top of the metered exposure.
     delta: added to each luminance inside the logarithm.
-    percentiles: between which "histogram" averages.
+    percentiles: "histogram" averages between these.
     max_pixels: most pixels that a file may declare.
 
     Example: tonewright.meter("shot.exr")["exposure"]

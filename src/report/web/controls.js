@@ -39,7 +39,7 @@ export function makeOperatorList() {
     }
     for (const element of [list, search]) element.addEventListener('keydown', move);
 
-    const slots = h('div', { class: 'group', role: 'group', 'aria-label': 'Part of the view whose operator the list sets' });
+    const slots = h('div', { class: 'group', role: 'group', 'aria-label': 'Part of the view that the list changes' });
     function update() {
         const { op: name } = activeSlot();
         for (const { op, row } of rows) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// HDR displays: the operator's HDR form as WGSL, on a WebGPU canvas whose white is not the end. WebGL has no such canvas.
+// HDR displays: the operator's HDR version as WGSL, on a WebGPU canvas that can exceed white. WebGL has no such canvas.
 import { texels } from './reference.js';
 
 const hasHdrDisplay = () => matchMedia('(dynamic-range: high)').matches;

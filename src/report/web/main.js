@@ -75,14 +75,14 @@ const wipe = h('input', { type: 'range', id: 'wipe', min: 0, max: 1, step: 0.01,
 const wipeLabel = h('label', { for: 'wipe' }, 'Wipe', wipe);
 const toggles = { falseColor: button('False color', () => change({ falseColor: !state.falseColor })),
     clipping: button('Clipping', () => change({ clipping: !state.clipping }), { title: 'Stripes where a channel reaches white (orange) or all are black (blue)' }) };
-const hdr = button('HDR', () => change({ hdr: !state.hdr }), { title: 'What the operator makes for an HDR display' });
+const hdr = button('HDR', () => change({ hdr: !state.hdr }), { title: "Show the operator's HDR version" });
 const hdrNote = h('span', { class: 'note' });
 function updateHdr() {
     const why = whyNot();
     const op = findOperator(state.slots[0].op);
     hdr.hidden = why !== '';
     hdr.setAttribute('aria-pressed', state.hdr);
-    hdrNote.textContent = why || (!state.hdr ? '' : !op.hdr ? `${op.title} has no HDR form: this is SDR.`
+    hdrNote.textContent = why || (!state.hdr ? '' : !op.hdr ? `${op.title} has no HDR version; this is SDR.`
         : state.mode !== 'single' ? 'The Single view shows HDR; this is SDR.'
             : state.falseColor || state.clipping ? 'Without false color and clipping, this view shows HDR.' : '');
 }

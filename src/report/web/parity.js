@@ -8,7 +8,7 @@ import { change } from './state.js';
 
 const COLUMNS = [
     { title: 'Operator', of: (row) => row.operator },
-    { title: 'Backend', of: (row) => row.form, isText: true },
+    { title: 'Backend', of: (row) => row.backend, isText: true },
     { title: 'Largest difference', of: (row) => 255 * row.max, text: codes },
     { title: '99.9 %', of: (row) => 255 * row.p999, text: codes },
     { title: 'Mean', of: (row) => 255 * row.mean, text: codes },
@@ -27,7 +27,7 @@ export function makeParity() {
     const worst = ran.reduce((a, b) => (b.max > a.max ? b : a), ran[0] ?? { max: 0 });
     section.append(h('p', {}, `Each backend computed thousands of colors. In ${exact.length} of ${ran.length} rows, the largest difference `
         + 'is below half a step of an 8-bit picture, so the rounded picture is the same or one step off where a value is on the edge. '
-        + (worst.operator ? `The largest difference that you could see is ${codes(255 * worst.max)} of an 8-bit step: ${worst.operator}, ${worst.form}.` : '')));
+        + (worst.operator ? `The largest difference that you could see is ${codes(255 * worst.max)} of an 8-bit step: ${worst.operator}, ${worst.backend}.` : '')));
     const body = h('tbody', {});
     const heads = COLUMNS.map((column) => h('th', { scope: 'col', class: column.isText && 'text' }, button(column.title, () => sort(column))));
     let by = COLUMNS[0];

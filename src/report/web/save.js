@@ -96,5 +96,5 @@ export function makeSave(view) {
         buttons.tone.disabled = !op.definition;
         buttons.png.disabled = !view.canvas || !op.glsl;
     }
-    return { element: h('div', { class: 'tools', role: 'group', 'aria-label': 'Take away' }, ...Object.values(buttons)), update };
+    return { element: h('div', { class: 'tools', role: 'group', 'aria-label': 'Save and copy' }, ...Object.values(buttons)), update };
 }

@@ -35,7 +35,7 @@ export function valuesOf(slot) {
     }
     return { ...values, ...slot.values };
 }
-// Of the operator's HDR form, whose defaults may be others.
+// For the operator's HDR version, whose defaults may differ.
 export function hdrValuesOf(slot) {
     const op = findOperator(slot.op);
     const decided = Object.entries(op.hdr.values).filter(([name, value]) => value !== op.values[name]);

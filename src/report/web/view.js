@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// The stage: panels of the picture, zoom and pan, the wipe line, the pixel that is probed.
+// The stage: panels of the picture, zoom and pan, the wipe line, the probe.
 import { file, findOperator, page } from './data.js';
 import { h, say } from './dom.js';
 import { HdrRenderer, whyNot } from './hdr.js';
@@ -16,7 +16,7 @@ export function makeView(renderer, showProbe) {
     const images = h('div', {});
     const hdrCanvas = h('canvas', { id: 'hdr_canvas', 'aria-hidden': true, hidden: true });
     const stage = h('div', { id: 'stage', tabindex: 0, role: 'application',
-        'aria-label': 'Picture. Arrow keys move the pixel that is probed, plus and minus zoom, 0 fits the picture.' },
+        'aria-label': 'Picture. Arrow keys move the probe, plus and minus zoom, 0 fits the picture.' },
         canvas ?? '', hdrCanvas, images, line, cross, labels);
     canvas?.addEventListener('webglcontextlost', () => say('The browser stopped the graphics of this page; reload it.'));
     let picture = null;

@@ -21,7 +21,7 @@ class ChildProcess {
     ChildProcess(const ChildProcess&) = delete;
     ChildProcess& operator=(const ChildProcess&) = delete;
 
-    /// Waits until it ends; true where it says that all went well.
+    /// Waits until it ends; true if it succeeded.
     bool succeeds();
 
   private:
@@ -44,8 +44,8 @@ class OwnedDescriptor {
 };
 
 /// Runs a program to its end.
-/// @param log  a file for what it prints
-/// @throws Error  it cannot be started, or fails: with its first message of an error
+/// @param log  a file for its output
+/// @throws Error  it cannot be started, or fails: with its first error message
 void run_program(const std::vector<std::string>& words, const std::string& log);
 
 /// The first line of a file of messages that is about an error, else the first line.

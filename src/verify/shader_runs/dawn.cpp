@@ -155,7 +155,7 @@ class DawnRun : public ShaderRun {
     }
 
   private:
-    /// The path of a file of ours, as JSON has it.
+    /// The path of a file of ours, as a JSON string.
     [[nodiscard]] std::string quoted(const std::string& name) const {
         std::ostringstream text;
         text << std::quoted(folder_.file(name));

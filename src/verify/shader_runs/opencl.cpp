@@ -31,8 +31,8 @@ constexpr const char* kWords = R"(
 )";
 constexpr const char* kResolveFlags = "-cl-mad-enable -cl-fast-relaxed-math";
 
-// What is used of OpenCL 1.1, whose binary interface is the same everywhere. All of its objects are
-// pointers.
+// The parts of OpenCL 1.1 in use. Their binary interface is the same everywhere, and all objects
+// are pointers.
 using Handle = void*;
 using Int = std::int32_t;
 using Uint = std::uint32_t;

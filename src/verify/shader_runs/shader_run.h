@@ -29,7 +29,7 @@ class ShaderRun {
                          std::size_t pixel_count) = 0;
 };
 
-// Each throws an Error with the reason where this machine lacks what it needs.
+// Each throws an Error with the reason if this machine lacks a requirement.
 [[nodiscard]] std::unique_ptr<ShaderRun> run_on_opengl();
 [[nodiscard]] std::unique_ptr<ShaderRun> run_on_opengl_es();
 [[nodiscard]] std::unique_ptr<ShaderRun> run_by_c_compiler();
@@ -37,7 +37,7 @@ class ShaderRun {
 [[nodiscard]] std::unique_ptr<ShaderRun> run_wgsl_on_dawn();
 [[nodiscard]] std::unique_ptr<ShaderRun> run_hlsl_on_dawn();
 
-/// Which of the languages run here, with runs that have been tried.
+/// The languages that run here, tested by a run.
 struct ShaderRuns {
     struct Of {
         ShaderLanguageInfo language;

@@ -12,7 +12,7 @@ std::vector<Operator> define_toy() {
     op.view = "Toy";
     op.character = "nothing to look at";
     op.source = "none";
-    op.licence = "Apache-2.0";
+    op.license = "Apache-2.0";
     op.negatives = kNegativesClampAtZero;
     op.parameters = with_apply(
         "channels", {number_parameter("knee", "scene-linear", 2, 0.1, 10, "half of white")});

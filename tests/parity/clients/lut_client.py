@@ -67,7 +67,7 @@ def write_picture(path, rgb, depth="uint16"):
 
 
 class LutTest:
-    """What a program makes of the codes, against a file's numbers and against the operator."""
+    """A program's output for the codes, against a file's numbers and against the operator."""
 
     def __init__(self, command, scratch, client):
         self.command, self.scratch, self.client, self.version = command, scratch, client, version_of(client)

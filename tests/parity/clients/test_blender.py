@@ -130,7 +130,7 @@ def published_error(config, view):
 
 
 def check_start(report, output, found):
-    """What it says and finds before anybody chose anything."""
+    """Its messages and its selections at the start."""
     # The scene of the factory settings of Blender 3 asks for Filmic, which is a table of Blender's own.
     complaints = [line for line in output.splitlines()
                   if any(word in line.lower() for word in ("not found", "could not", "error", "warn"))

@@ -193,7 +193,7 @@ def of_canvas(path, scratch):
 
 
 def check_lists(report, lists):
-    """What a user can choose from, in the order of the config, from its path and from $OCIO."""
+    """The choices of a user, in the order of the config, from its path and from $OCIO."""
     for engine in (CONFIG, ENVIRONMENT):
         listed = lists[f"{engine}, sRGB"]
         expected = {"DisplayDevice": list(DISPLAYS), "View": [*OPERATORS, "Un-tone-mapped", "Raw"]}

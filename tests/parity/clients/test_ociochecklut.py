@@ -48,7 +48,7 @@ def main(test):
             print("skipped: the GPU path (no X server without a screen: Xvfb; Debian: xvfb)")
             return
         environment = {**os.environ, "DISPLAY": display, "LIBGL_ALWAYS_SOFTWARE": "1"}
-        # Its context is made anew for each color.
+        # Its context is made again for each color.
         test.flat, test.truth = test.flat[::5], test.truth[::5]
         shown = through_ociochecklut(cube, test.flat, "--gpu", environment=environment)
         test.compare(".cube 33, --gpu", shown, tetrahedral(table, test.flat), stated, PRINTED, clips=False)

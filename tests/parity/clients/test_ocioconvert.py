@@ -22,7 +22,7 @@ from pictures import (LIGHT, Report, nearest_of_bytes, need_program, read_exr, r
 from test_blender import OPERATORS
 from test_oiiotool import EXACT, bound_of
 
-# What a shader adds to an error: where a view is matrices and curves, float32 in another order; where it samples a
+# The error that a shader adds: where a view is matrices and curves, float32 in another order; where it samples a
 # cube, goes through HSV or through OpenColorIO's glow and red modifier, the weights and logarithms of the renderer.
 GPU_CURVES, GPU_OTHERS = 1e-6, 5e-5
 CURVES = 2e-6  # a view with a lower bound on the CPU is matrices and curves
@@ -156,7 +156,7 @@ def check_spaces(report, command, convert, config, picture, has_gpu):
 
 
 def check_bytes(report, command, convert, config, picture):
-    """What it writes for a screen: a PNG of 8 bits, the nearest ones."""
+    """Its output for a screen: a PNG with the nearest 8-bit codes."""
     out = convert.scratch / "screen.png"
     convert.run(["--view"], picture, "Linear Rec.709", out, "sRGB", "AgX")
     applied = through_apply(command, picture, "AgX", "srgb", convert.scratch)

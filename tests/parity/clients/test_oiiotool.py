@@ -107,7 +107,7 @@ def check_alpha(report, command, config, picture, scratch):
 
 
 def check_output_spaces(report, config, picture, scratch):
-    """What write nodes and `--colorconvert` have instead of views: the same pixels, and back."""
+    """Color spaces for write nodes and `--colorconvert` instead of views: the same pixels, and the inverse."""
     names = ("AgX", "ACES 2.0", "Reinhard Extended")
     spaces = [("--colorconvert", "Linear Rec.709", f"Output - {view} - sRGB") for view in names]
     again = (*spaces[-1], "--colorconvert", "out_reinhard_extended_srgb", "lin_rec709",

@@ -194,10 +194,10 @@ def check_errors(report, scratch, made):
               name(good, op="hable", input="lin_rec708"): "did you mean lin_rec709?",
               name(good, op="hable", display="native", look="x"): "look is x",
               name(good + ".tonewright", op="hable"): "expected one that is not tone mapped yet",
-              "a.tonewright": "did you mean hable?", "b.tonewright": "file is missing", "c.tonewright": "line 1 is no setting",
+              "a.tonewright": "did you mean hable?", "b.tonewright": "file is missing", "c.tonewright": "line 1 is not a setting",
               "rec.tonewright": "not tone mapped yet", "rec.tonewright?op=hable": "not tone mapped yet",
               "one.tonewright": "not tone mapped yet",
-              "secret.tonewright": "line 1 sets something unknown", "words.tonewright": "line 1 is no setting",
+              "secret.tonewright": "line 1 has an unknown name", "words.tonewright": "line 1 is not a setting",
               "d.tonewright": "gone.exr: cannot read", "e.tonewright": "not tone mapped yet",
               "f.tonewright": "expected name=value", "g.tonewright": "it has 70000 bytes; expected at most 65536"}
     os.chdir(scratch)

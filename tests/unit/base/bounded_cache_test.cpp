@@ -59,7 +59,7 @@ TEST(BoundedCache, AComputationDoesNotBlockOtherKeys) {
     EXPECT_EQ(other, 20);
 }
 
-TEST(BoundedCache, DropsTheKeyThatWasNotAskedForLongest) {
+TEST(BoundedCache, DropsTheLeastRecentlyUsedKey) {
     BoundedCache<std::string, std::string> cache(2);
     int made = 0;
     const auto ask = [&](const std::string& key) {

@@ -64,7 +64,7 @@ TEST_F(Files, NoDevicePipeOrFolderIsReplaced) {
     EXPECT_TRUE(S_ISFIFO(status.st_mode));
 }
 
-TEST_F(Files, TemporaryNamesAreNotRepeatedAndNothingThatIsThereIsTaken) {
+TEST_F(Files, TemporaryNamesAreUnique) {
     std::set<std::string> names;
     for (int i = 0; i < 20; ++i)
         names.insert(AtomicFile(path("a.txt")).path().string());

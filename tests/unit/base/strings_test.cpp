@@ -8,7 +8,7 @@
 namespace tonewright {
 namespace {
 
-TEST(OneLine, HasNoControlCharactersWhateverTheTextHolds) {
+TEST(OneLine, RemovesControlCharacters) {
     EXPECT_EQ(one_line("two\n  lines\r\n"), "two lines");
     EXPECT_EQ(one_line("\x1b[2J\x07 bell"), "?[2J? bell");
     EXPECT_EQ(one_line("\xc2\x9b"

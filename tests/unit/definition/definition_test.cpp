@@ -281,7 +281,7 @@ TEST(Definition, MessagesHaveThePlace) {
         {kHead + "title = \"\"\"a\\ \xC3\xA9\"\"\"\n",
          "3:13: escape is not ASCII; expected \\n, \\t, ..."},
         // An assertion of the library's parser, which Debug and Release builds have the same way.
-        {kHead + "[ = 1\n" + kStage, "3:1: line is no TOML; expected a key or a value"},
+        {kHead + "[ = 1\n" + kStage, "3:1: line is not TOML; expected a key or a value"},
         {kHead + "[parameter.=]\n" + kStage,
          "3:12: Error while parsing key: expected bare key starting character or string delimiter, "
          "saw '='"},
@@ -380,7 +380,7 @@ TEST(Definition, OperatorSetGivesTextsMoreNames) {
                  Error);
 }
 
-TEST(Definition, TextsHaveSettingsBehindTheFile) {
+TEST(Definition, TextsHaveSettingsAfterTheFile) {
     const std::string path = TONEWRIGHT_TEST_DATA "/../../docs/examples/reinhard_055.tone";
     EXPECT_EQ(resolve_operator(path).params.number("k"), 0.55);
     for (const char* rest : {":firm", ":k=0.3", " k=0.3", ": k=0.3", ":firm:k=0.3", ":K=0.3"}) {
@@ -447,7 +447,7 @@ TEST(LutStage, EncodesLightForTheLut) {
     }
 }
 
-TEST(LutStage, RefusesWhatItCannotRead) {
+TEST(LutStage, RefusesUnsupportedFiles) {
     const auto error = [](const std::string& stage) -> std::string {
         try {
             (void)parse_operator(kHead + "[[stage]]\n" + stage, "my.tone", small_table);

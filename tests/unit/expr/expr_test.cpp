@@ -251,7 +251,7 @@ TEST(Expr, InverseFindsTheArgument) {
     EXPECT_NEAR(inverse_at(pow(kX, 8), 1e-4, 0, 1), std::pow(1e-4, 1.0 / 8), 1e-12);
 }
 
-TEST(Expr, InverseRefusesWhatItCannotFind) {
+TEST(Expr, InverseRefusesValuesOutOfRange) {
     const Expr reinhard = kX / (1 + kX);
     EXPECT_THROW((void)inverse_at(reinhard, 1.5, 0, 100), Error);
     EXPECT_THROW((void)inverse_at(log2(kX), 0, 0, 1), Error) << "log2(0) is not finite";

@@ -45,7 +45,7 @@ std::string repeated(std::string_view text, int count) {
 }
 
 // Values by hand: C's rules, and the definitions of OpenGL's GLSL 4.60, section 8.
-TEST(Formula, ComputesWhatItSays) {
+TEST(Formula, ComputesItsOperations) {
     const struct {
         const char* formula;
         double x;
@@ -131,7 +131,7 @@ TEST(Formula, IsTheExpressionThatCodeWrites) {
         same(parsed("x > 1 && k < x"), select(less(1, kX), less(Expr::uniform("k"), kX), 0)));
 }
 
-TEST(Formula, SaysWhereItIsWrong) {
+TEST(Formula, ErrorsHaveThePosition) {
     const struct {
         const char* formula;
         const char* error;
@@ -160,7 +160,8 @@ TEST(Formula, SaysWhereItIsWrong) {
         {"min = x\nmin", "1:1: name min is a function; expected another name"},
         {"a = x", "1:6: formula ends without a value; expected an expression in its last line"},
         {"x\nx",
-         "1:1: line sets nothing, and others follow it; expected name = expression, and one value "
+         "1:1: line has no name, and more lines follow it; expected name = expression, and one "
+         "value "
          "in the last line"},
         {"x +", "1:4: found the end; expected an expression"},
         {"x\n+ 1",
@@ -239,7 +240,7 @@ TEST(Formula, TemporariesServeSeveralFormulas) {
     EXPECT_THROW(parse_temporaries("peak - low", scope), FormulaError);
 }
 
-TEST(Formula, CaretStandsBelowTheMistake) {
+TEST(Formula, CaretIsBelowTheError) {
     EXPECT_EQ(caret_lines("a = x\n  b + \xC3\xA4\t1", {2, 7}), "    b + ? 1\n        ^");
     EXPECT_EQ(caret_lines("abc", {1, 4}), "  abc\n     ^");
     const std::string long_line(1000, 'x');
@@ -247,7 +248,7 @@ TEST(Formula, CaretStandsBelowTheMistake) {
               "  " + std::string(76, 'x') + "\n  " + std::string(49, ' ') + "^");
 }
 
-TEST(Formula, PrintsWhatReadsBackTheSame) {
+TEST(Formula, PrintedTextReadsBackTheSame) {
     const char* const formulas[] = {
         "x",
         "-x",

@@ -31,7 +31,7 @@ Color value_at(const std::string& shader, const Color& in) {
 }
 
 // Values by hand: GLSL 4.60, sections 5 and 8, and the reference of HLSL.
-TEST(Glsl, ComputesWhatItSays) {
+TEST(Glsl, ComputesItsOperations) {
     const Color in = {0.5, 2, -1};
     const struct {
         const char* body;
@@ -211,7 +211,7 @@ TEST(Glsl, ReadsTheRestOfTheFile) {
     }
 }
 
-TEST(Glsl, TellsWhatItTook) {
+TEST(Glsl, ReportsTheImportedFunction) {
     const char* const shader =
         "float curve(float x) { return x; }\n"
         "vec3 first(vec3 c) { return c*curve(c.r); }\n"
@@ -247,7 +247,7 @@ TEST(Glsl, BuildsTheExpressionOfTheFormula) {
     EXPECT_TRUE(same(red("return mix(vec3(dot(c, vec3(1))), c, 1.0);"), r));
 }
 
-TEST(Glsl, CountsNegativesOfPowersAsZeroWhereItIsTold) {
+TEST(Glsl, CountsNegativeBasesOfPowersAsZero) {
     GlslSettings settings;
     settings.limits_powers = true;
     const auto value = [&](const std::string& expression) {

@@ -44,7 +44,7 @@ TEST(Chart, EveryStopHasItsPatch) {
     }
 }
 
-TEST(Chart, HoldsWhatItsTitlesSay) {
+TEST(Chart, MatchesItsTitles) {
     const ImageBuf chart = make_chart();
     const auto stats = OIIO::ImageBufAlgo::computePixelStats(chart);
     for (std::size_t c = 0; c < 3; ++c) {

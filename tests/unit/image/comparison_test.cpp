@@ -227,7 +227,7 @@ TEST(ResizeScene, ThinPicturesAreRefused) {
     EXPECT_EQ(resize_scene(make_rgb(1, 50), 16).spec().height, 800);
 }
 
-TEST(ChooseColumns, LooksLikeAScreenAndFillsRows) {
+TEST(ChooseColumns, GivesScreenShapeAndFullRows) {
     EXPECT_EQ(choose_columns(1, 480, 270), 1);
     EXPECT_EQ(choose_columns(2, 480, 270), 2);
     EXPECT_EQ(choose_columns(12, 480, 270), 4);  // 4 x 3

@@ -17,7 +17,7 @@ namespace {
 using OIIO::ImageBuf;
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
-using Labelled = std::vector<std::pair<std::string, ImageBuf>>;
+using Labeled = std::vector<std::pair<std::string, ImageBuf>>;
 
 ImageBuf flat(int width, int height, const std::vector<float>& color,
               TypeDesc type = TypeDesc::UINT8) {
@@ -68,7 +68,7 @@ TEST(ContactSheet, PicturesKeepTheirShapeAndColors) {
     EXPECT_EQ(wide.ybegin - tall.ybegin, tall.yend - wide.yend);
 }
 
-TEST(ContactSheet, LabelsStandBelow) {
+TEST(ContactSheet, LabelsAreBelow) {
     const std::vector<float> red = {0.8F, 0.2F, 0.1F};
     const auto lit_below = [&](const std::string& label) {
         const ImageBuf sheet = make_contact_sheet({{label, flat(100, 100, red)}}, 1, 200);
@@ -87,7 +87,7 @@ TEST(ContactSheet, LabelsStandBelow) {
 }
 
 TEST(ContactSheet, Rows) {
-    Labelled pictures;
+    Labeled pictures;
     for (int i = 0; i < 5; ++i)
         pictures.emplace_back("p", flat(100, 50, {0.5F, 0.6F, 0.7F}));
     const ImageBuf two = make_contact_sheet(pictures, 2, 100);
@@ -127,7 +127,7 @@ TEST(ContactSheet, OtherPictures) {
 
 TEST(ContactSheet, WordsAndPatchesAround) {
     const std::vector<float> red = {0.8F, 0.2F, 0.1F};
-    const Labelled one = {{"Title\nid", flat(100, 100, red)}};
+    const Labeled one = {{"Title\nid", flat(100, 100, red)}};
     const ImageBuf plain = make_contact_sheet({{"Title", flat(100, 100, red)}}, 1, 200);
     const ImageBuf two_lines = make_contact_sheet(one, 1, 200);
     EXPECT_GT(two_lines.spec().height, plain.spec().height);
@@ -172,7 +172,7 @@ TEST(ContactSheet, APictureOfTheCellsSizeKeepsItsPixels) {
 }
 
 TEST(ContactSheet, BadArguments) {
-    const Labelled one = {{"a", flat(4, 4, {0.5F, 0.5F, 0.5F})}};
+    const Labeled one = {{"a", flat(4, 4, {0.5F, 0.5F, 0.5F})}};
     EXPECT_THROW((void)make_contact_sheet({}, 1, 100), Error);
     EXPECT_THROW((void)make_contact_sheet(one, 0, 100), Error);
     EXPECT_THROW((void)make_contact_sheet(one, 1, 15), Error);

@@ -154,7 +154,7 @@ TEST(FileTags, EveryDisplayIsDescribed) {
     }
 }
 
-TEST(FileTags, FormatsThatCannotSayItAreAWarning) {
+TEST(FileTags, FormatsWithoutColorTagsWarn) {
     const TemporaryFolder folder;
     const auto warning = [&](const char* display, const char* name) {
         const std::vector<std::string> all = warnings_of(shown_on(display), folder.file(name));
@@ -162,12 +162,12 @@ TEST(FileTags, FormatsThatCannotSayItAreAWarning) {
         return all.empty() ? std::string() : all[0];
     };
     EXPECT_EQ(warning("rec2100_pq", "a.jpg"),
-              "JPEG does not say that its colors are Rec.2100-PQ: viewers take them for sRGB; "
+              "JPEG does not say that its colors are Rec.2100-PQ: viewers assume sRGB; "
               "gradients in 8 bits show bands");
     EXPECT_EQ(warning("rec2100_hlg", "a.tif"),
-              "TIFF does not say that its colors are Rec.2100-HLG: viewers take them for sRGB");
+              "TIFF does not say that its colors are Rec.2100-HLG: viewers assume sRGB");
     EXPECT_EQ(warning("display_p3", "a.webp"),
-              "WebP does not say that its colors are Display P3: viewers take them for sRGB");
+              "WebP does not say that its colors are Display P3: viewers assume sRGB");
     EXPECT_EQ(warning("srgb", "a.hdr"),
               "most applications read Radiance HDR as linear light, but the file holds code values "
               "of sRGB; for linear light, use --display linear");

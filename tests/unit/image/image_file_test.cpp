@@ -119,7 +119,7 @@ TEST_F(ImageFile, RoundTrip) {
     EXPECT_EQ(files(), 1U);
 }
 
-TEST_F(ImageFile, TypeOfTheFormatOrTheOneAskedFor) {
+TEST_F(ImageFile, TypeOfTheFormatOrTheRequestedOne) {
     const ImageBuf picture = make_picture();
     write_image_atomically(picture, file("a.png"));
     EXPECT_EQ(read_image(file("a.png")).spec().format, TypeDesc::UINT8);
@@ -284,7 +284,7 @@ TEST_F(ImageFile, FailedEncodingLeavesTheOldFile) {
     EXPECT_EQ(files(), 1U);
 }
 
-TEST_F(ImageFile, PlacesThatCannotBeWritten) {
+TEST_F(ImageFile, RefusesPathsThatCannotBeWritten) {
     const ImageBuf picture = make_picture();
     const auto write = [&](const std::string& path) {
         return message_of([&] { write_image_atomically(picture, path); });
@@ -348,7 +348,7 @@ TEST_F(ImageFile, TruncatedFilesAreErrors) {
     }
 }
 
-TEST_F(ImageFile, FilesThatAreNoPictures) {
+TEST_F(ImageFile, RefusesFilesThatAreNotPictures) {
     const auto read = [&](const std::string& path) {
         return message_of([&] { (void)read_image(path); });
     };
@@ -374,7 +374,7 @@ TEST_F(ImageFile, DeepPicturesAreRefused) {
                       file("a.exr"), "deep");
 }
 
-TEST_F(ImageFile, ARewrittenFileIsReadAnew) {
+TEST_F(ImageFile, ReadsAChangedFileAgain) {
     ImageBuf picture(ImageSpec(4, 4, 3, TypeDesc::FLOAT));
     for (const float value : {0.25F, 0.75F}) {
         OIIO::ImageBufAlgo::fill(picture, {value, value, value});

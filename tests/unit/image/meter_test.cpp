@@ -267,7 +267,7 @@ TEST(Meter, NanAndInfinitiesAreIgnoredAndCounted) {
     expect_near(scene.maximum_luminance, 0.7152 * 65504 + 0.2126 + 0.0722);
 }
 
-TEST(Meter, AlphaIsDividedByAndUncoveredPixelsAreLeftOut) {
+TEST(Meter, ColorIsUnpremultipliedAndZeroAlphaIsLeftOut) {
     ImageBuf picture = colors(
         {{0.5F, 0.5F, 0.5F, 0.25F}, {8, 8, 8, 1}, {100, 100, 100, 0}, {100, kNan, 100, kNan}});
     Metering m = meter(picture);
@@ -452,7 +452,7 @@ TEST(Adaptation, SpeedZeroStaysAndEmptyShotsAreEmpty) {
 // ---------------------------------------------------------------------------------------------
 // Errors
 
-TEST(Meter, ErrorsNameWhatIsWrong) {
+TEST(Meter, ErrorsNameTheOption) {
     const auto error_of = [](MeterOptions options) {
         try {
             (void)meter(grays({1}), options);

@@ -246,7 +246,7 @@ TEST(SceneStatistics, OfVolumes) {
 // ---------------------------------------------------------------------------------------------
 // Alpha
 
-TEST(SceneStatistics, AssociatedColorIsDividedAndPixelsWithoutCoverAreLeftOut) {
+TEST(SceneStatistics, AssociatedColorIsUnpremultipliedAndZeroAlphaIsLeftOut) {
     ImageBuf picture = row_of(
         {{0.5F, 0.5F, 0.5F, 0.25F}, {8, 8, 8, 1}, {100, 100, 100, 0}, {100, 100, 100, kNan}});
     const SceneStatistics covered = {4, 5, 2, 8, {5, 5, 5}, {8, 8, 8}};  // of 2 and 8
@@ -263,7 +263,7 @@ TEST(SceneStatistics, AssociatedColorIsDividedAndPixelsWithoutCoverAreLeftOut) {
     expect_statistics(measure_scene(picture), covered);
 }
 
-TEST(SceneStatistics, WithoutAnyCoverThePictureIsMeasuredAsItIs) {
+TEST(SceneStatistics, PicturesOfZeroAlphaAreMeasuredAsTheyAre) {
     const double mean = 5;
     expect_statistics(measure_scene(row_of({{2, 2, 2, 0}, {8, 8, 8, 0}})),
                       {4, mean, 2, 8, {mean, mean, mean}, {8, 8, 8}});

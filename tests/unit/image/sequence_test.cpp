@@ -108,7 +108,7 @@ TEST_F(Sequence, OneFrameThatFailsDoesNotStopTheOthers) {
     tonemap_files(tonemapper, none);
 }
 
-TEST_F(Sequence, SkipsWhatIsThereNewerOfItsSizeAndTypeAndWhole) {
+TEST_F(Sequence, SkipsCompleteNewerFramesOfTheSameSizeAndType) {
     for (const std::string extension : {".png", ".exr", ".tif", ".dpx", ".sgi", ".jpg"}) {
         const std::vector<FrameFiles> frames = make_frames(6, extension);
         EXPECT_EQ(skipped(frames, TypeDesc::UINT8), std::vector<int>{}) << extension;

@@ -1034,7 +1034,7 @@ TEST(TonemapInput, CieXyz) {
     expect_light(light_of(spec, {0.30F, 0.28F, 0.20F}), expected, 5e-4);
 }
 
-TEST(TonemapInput, WhatNobodyKnowsIsAnError) {
+TEST(TonemapInput, UnknownColorsAreErrors) {
     const auto refused = [](const ImageSpec& spec, const std::string& part) {
         ImageBuf dst;
         const bool ok = tonemap(dst, make_picture(spec), hable());
@@ -1141,7 +1141,7 @@ TEST(Tonemap, StopsWhenItIsTold) {
         told.stop_at = 0.3F;
         ImageBuf dst;
         const bool ok = tonemap(dst, src, hable(), {}, threads, tell, &told);
-        expect_error(dst, ok, "cancelled");
+        expect_error(dst, ok, "canceled");
         EXPECT_LT(told.parts.back(), 0.4F) << "and is not asked again";
     }
 }

@@ -53,14 +53,14 @@ TEST(LocalOperators, AreSortedAndApartFromTheOthers) {
         }
         for (const Operator& other : all_operators())
             EXPECT_NE(other.id, op.id);
-        for (const std::string& text : {op.title, op.character, op.source, op.licence})
+        for (const std::string& text : {op.title, op.character, op.source, op.license})
             EXPECT_FALSE(text.empty()) << op.id;
     }
     for (const Operator& op : all_operators())
         EXPECT_FALSE(op.is_local()) << op.id;
 }
 
-TEST(LocalOperators, WhatCannotHoldThemSaysWhy) {
+TEST(LocalOperators, OtherBackendsRefuseThem) {
     for (const Operator& op : local_operators()) {
         for (const bool resolve : {false, true}) {
             try {
@@ -167,7 +167,7 @@ TEST(ReinhardLocal, UniformPictureIsTheGlobalOperator) {
     }
 }
 
-TEST(ReinhardLocal, PixelsWithoutCoverAreNotMeasured) {
+TEST(ReinhardLocal, PixelsOfZeroAlphaAreNotMeasured) {
     const Operator& op = *resolve_picture_operator("reinhard_local").op;
     ScenePlanes picture = make_light(24, 10);
     for (std::vector<float>& plane : picture.rgb)
@@ -181,7 +181,7 @@ TEST(ReinhardLocal, PixelsWithoutCoverAreNotMeasured) {
     EXPECT_EQ(run(op, covered), run(op, picture)) << "where nothing is covered, all counts";
 }
 
-TEST(LocalLaplacian, SaturatedColorsKeepTheirChromaticityWhereTheyAreToldTo) {
+TEST(LocalLaplacian, SaturatedColorsKeepTheirChromaticity) {
     const Operator& op = *resolve_picture_operator("local_laplacian").op;
     const ScenePlanes picture = make_light(40, 30);
     const auto result = run(op, picture, {{"saturation", "1"}});
@@ -198,7 +198,7 @@ TEST(LocalLaplacian, SaturatedColorsKeepTheirChromaticityWhereTheyAreToldTo) {
     }
 }
 
-TEST(LocalLaplacian, NothingToCompressIsLeftAlone) {
+TEST(LocalLaplacian, LowContrastIsLeftAlone) {
     // base = detail = 1 keeps all differences: the picture, but for its white.
     const Operator& op = *resolve_picture_operator("local_laplacian").op;
     ScenePlanes picture = make_light(65, 33, 2);

@@ -149,7 +149,7 @@ TEST(FitCube, IsTheSameOnEveryRunAndForAnyNumberOfThreads) {
     EXPECT_EQ(once, fit_cube(problem, {.thread_count = 5}));
 }
 
-TEST(FitCube, KeepsWhatIsStraightBetweenTheNodes) {
+TEST(FitCube, KeepsStraightLinesBetweenNodes) {
     CubeProblem problem;
     problem.edge = 9;
     problem.axis = make_log_axis(16, problem.edge);
@@ -187,7 +187,7 @@ TEST(FitCube, WithoutSamplesOnlyGraysAreFitted) {
 }
 
 /// What the display clips is not fitted at the cost of what it shows.
-TEST(FitCube, WhatIsClippedDoesNotCount) {
+TEST(FitCube, ClippedColorsDoNotCount) {
     CubeProblem problem;
     problem.edge = 9;
     problem.axis = make_log_axis(64, problem.edge);
@@ -205,7 +205,7 @@ TEST(FitCube, WhatIsClippedDoesNotCount) {
     }
 }
 
-TEST(LogAxis, GoesThereAndBack) {
+TEST(LogAxis, RoundTrips) {
     for (const double share : {0.0, 0.125}) {
         const CubeAxis axis = make_log_axis(1024, 65, share);
         EXPECT_NEAR(evaluate(axis.place, 0.0), 0, 1e-15);
@@ -226,7 +226,7 @@ TEST(LogAxis, LongerStepsBeginAtANode) {
               evaluate(make_log_axis(65, 65).place, 1.0));
 }
 
-TEST(LogAxis, IsChosenForWhatTheOperatorHasToDoWithLights) {
+TEST(LogAxis, IsChosenForTheOperator) {
     const double mid_gray = 0.18;
     const auto is_equal_steps = [&](const Expr& curve) {
         CubeProblem problem;

@@ -14,7 +14,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-TEST(DeviceLink, IsWhatItWasMadeOf) {
+TEST(DeviceLink, EqualsTheBakedLut) {
     for (const int version : {2, 4}) {
         LutRequest r = request_for("agx_sobotka", "log2", LutFormat::icc, 17);
         r.icc_version = version;

@@ -74,7 +74,7 @@ TEST(InParallel, NestedCallsTakeACoreThatIsIdle) {
     EXPECT_TRUE(is_taken);
 }
 
-TEST(InParallel, ThrowsWhatOneThrowsAndCountsThreadsRightAfterIt) {
+TEST(InParallel, RethrowsAndCountsThreadsAfterwards) {
     for (int round = 0; round < 3; ++round) {
         EXPECT_THROW(in_parallel(100, 0, [](std::size_t) { throw Error("x: y is z"); }), Error);
     }

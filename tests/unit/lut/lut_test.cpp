@@ -221,7 +221,7 @@ TEST(InputEncoding, DecodeInvertsEncode) {
     }
 }
 
-TEST(InputEncoding, RefusesWhatItDoesNotKnow) {
+TEST(InputEncoding, RefusesUnknownNames) {
     const auto error = [](std::string_view text) {
         return error_of([&] { (void)parse_input_encoding(text); });
     };
@@ -283,7 +283,7 @@ TEST(HalfDomain, ValuesAreIeee754Binary16) {
     }
 }
 
-TEST(HalfDomain, SamplesStandInTheOrderOfTheBits) {
+TEST(HalfDomain, SamplesAreInTheOrderOfTheBits) {
     const std::vector<float> table = sample_half_domain(2 * kX + 1, -kHalfMax, kHalfMax);
     ASSERT_EQ(table.size(), 65536U);
     for (unsigned bits = 0; bits < 65536; ++bits) {
@@ -515,7 +515,7 @@ TEST(Interpolate, CurvesMayDifferByChannel) {
 // ---------------------------------------------------------------------------------------------
 // Sampling
 
-TEST(SampleLut, CubeNodesAreTheViewsValues) {
+TEST(SampleLut, NodesAreValuesOfTheView) {
     // A Rec.709 view of `clamp` on a log2 encoding, by hand: light 0.18 * 2^(16.5 n - 10), limited
     // to 1, then IEC 61966-2-1.
     const Lut lut = sample_lut(request_for("clamp", "log2", LutFormat::spi3d, 17));
@@ -566,7 +566,7 @@ TEST(SampleLut, TakesSizesOf17To129) {
         EXPECT_EQ(sample_lut(request_for("hable", "log2", LutFormat::spi1d, size)).size, size);
 }
 
-TEST(SampleLut, RefusesWhatAHostWouldShowWrong) {
+TEST(SampleLut, RefusesLutsThatApplicationsShowWrong) {
     const auto error = [](const LutRequest& r) { return error_of([&] { (void)sample_lut(r); }); };
     LutRequest r = request_for("agx_sobotka", "linear");
     EXPECT_EQ(error(r).rfind("input encoding is linear:0:1; expected another for a 3D "
@@ -604,7 +604,7 @@ TEST(SampleLut, RefusesWhatAHostWouldShowWrong) {
 // ---------------------------------------------------------------------------------------------
 // Measured errors
 
-TEST(MeasureLut, IsNeverBelowTheErrorAtTheProbes) {
+TEST(MeasureLut, IsNeverBelowTheErrorOfTheSamples) {
     for (const LutRequest& r : {request_for("agx_sobotka", "acescct", LutFormat::cube, 17),
                                 request_for("hable", "log2", LutFormat::spi1d, 256),
                                 request_for("hable", "linear", LutFormat::clf)}) {
@@ -682,7 +682,7 @@ TEST(MeasureLut, NamesTheInterpolation) {
     EXPECT_EQ(measure_lut(lut, r, true).interpolation, "trilinear");
 }
 
-TEST(MeasureLut, LargerCubesAreBetter) {
+TEST(MeasureLut, LargerLutsAreBetter) {
     // Chords of a smooth function: a quarter of the error for twice the nodes. The operator's
     // clamps keep the worst color from it, the mean shows it.
     const LutRequest small = request_for("agx_sobotka", "acescct", LutFormat::cube, 17);
@@ -768,7 +768,7 @@ TEST(Numbers, NearOnesAreTheShortestWithinTheTolerance) {
     }
 }
 
-TEST(Numbers, OneDigitGoesTheWayThatItIsTold) {
+TEST(Numbers, OneDigitRoundsInTheGivenDirection) {
     const auto text_of = [](double value, bool is_up) {
         std::string text;
         append_one_digit(text, value, is_up);
@@ -784,7 +784,7 @@ TEST(Numbers, OneDigitGoesTheWayThatItIsTold) {
     EXPECT_EQ(text_of(0, true), "0");
 }
 
-TEST(HalfDomain, EntriesThatNothingAsksForMayBeOthers) {
+TEST(HalfDomain, UnusedEntriesMayDiffer) {
     const std::vector<float> table = sample_half_domain(kX * 2, 0, 1);
     const std::vector<signed char> slack = unused_entries(table, 0, 1);
     const unsigned one = 0x3C00;
@@ -898,7 +898,7 @@ TEST(WriteLut, CubeReadsBackBitForBit) {
     }
 }
 
-TEST(WriteLut, HeaderSaysWhatItsNumbersAre) {
+TEST(WriteLut, HeaderDescribesItsNumbers) {
     const auto header_of = [](const char* op, const char* display) {
         const LutRequest r = request_for(op, "log2", LutFormat::cube, 17, display);
         return write_lut(sample_lut(r), r, {});
@@ -1053,7 +1053,7 @@ TEST(WriteText, WorksWithARelativeName) {
     EXPECT_EQ(read(folder / "plain.txt"), "here");
 }
 
-TEST(WriteText, FailureLeavesWhatWasThere) {
+TEST(WriteText, FailureLeavesTheOldFile) {
     const Folder folder;
     write(folder / "old", "precious");
     fs::create_directories(folder / "full/of");
@@ -1103,7 +1103,7 @@ std::string manifest_of(const std::vector<std::string>& paths) {
     return text;
 }
 
-TEST(WriteFiles, WritesTheSetAndRemovesWhatIsStale) {
+TEST(WriteFiles, WritesTheSetAndRemovesStaleFiles) {
     const Folder folder;
     const std::string root = folder / "set";
     write_generated_files(root,
@@ -1121,7 +1121,7 @@ TEST(WriteFiles, WritesTheSetAndRemovesWhatIsStale) {
     EXPECT_EQ(read(root + "/two.cube"), "22");
 }
 
-TEST(WriteFiles, NeverTouchesWhatIsOutside) {
+TEST(WriteFiles, NeverChangesFilesOutside) {
     const Folder folder;
     const std::string root = folder / "set";
     fs::create_directories(root + "/sub");

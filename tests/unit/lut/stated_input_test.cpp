@@ -18,7 +18,7 @@ std::string file_of(const std::string& encoding, const std::string& space, LutFo
     return write_lut(sample_lut(request), request, {});
 }
 
-TEST(StatedInput, IsWhatTheFileWasMadeFor) {
+TEST(StatedInput, MatchesTheBakedFile) {
     for (const char* encoding : {"acescct", "logc3", "logc4", "slog3", "davinci", "unity_logc",
                                  "unreal_log", "srgb", "pq:100", "pq:203", "log2:-10:6.5"}) {
         const auto stated = read_stated_input(file_of(encoding, "lin_ap1", LutFormat::cube));
@@ -43,7 +43,7 @@ TEST(StatedInput, IsInAllFormatsWithText) {
     }
 }
 
-TEST(StatedDisplay, IsWhatTheFileWasMadeFor) {
+TEST(StatedDisplay, MatchesTheBakedFile) {
     LutRequest request;
     request.encoding = parse_input_encoding("acescct");
     request.size = 17;
@@ -72,7 +72,7 @@ TEST(StatedInput, IsInTheDescriptorsOfAClf) {
     EXPECT_NE(clf.find("<OutputDescriptor>sRGB code values"), std::string::npos);
 }
 
-TEST(StatedInput, IsNotWhatOtherProgramsWrite) {
+TEST(StatedInput, IgnoresHeadersOfOtherPrograms) {
     EXPECT_FALSE(
         read_stated_input("LUT_3D_SIZE 2\n# Input: DaVinci Intermediate, of scene-linear "
                           "ACEScg\n"));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Every kind of stage as OpenColorIO transforms, run by OCIO itself (CPU with the lossless and the
-// default optimizer, GPU where there is one), against the double reference. Bounds: DESIGN of the
-// project, section 4, in code values of the display.
+// default optimizer, GPU if there is one), against the double reference. Bounds are in code values
+// of the display.
 #include "ocio/lower.h"
 #include "base/random.h"
 
@@ -194,7 +194,7 @@ TEST(LowerMatrix, NeighborsAreMultipliedInOrder) {
         EXPECT_EQ(form.out, (std::vector<float>{0, 9, 5, 1, 10, 3})) << "b a, " << form.name;
 }
 
-TEST(LowerMatrix, NothingIsNothing) {
+TEST(LowerMatrix, NoMatrixGivesNoOperation) {
     EXPECT_EQ(types_of(lower_to_ocio({})), Types{});
     EXPECT_EQ(types_of(lower_to_ocio({MatrixStage{kIdentity3}, curve_stage(kX)})), Types{});
 }
@@ -255,7 +255,7 @@ TEST(LowerCurve, NeighborsAreFusedIntoOneTable) {
               (Types{kLut1D, kRangeType, kLut1D}));
 }
 
-TEST(LowerCurve, ChannelsKeepTheirOwn) {
+TEST(LowerCurve, ChannelsKeepTheirCurves) {
     // Three curves before and after a shared one.
     const CurveStage before = {{kX, kX * 0.5, kX * 0.25}, std::nullopt};
     const CurveStage after = {{kX, 1 - kX, kX * kX}, std::nullopt};
@@ -318,7 +318,7 @@ void expect_no_cube(const Pipeline& pipeline) {
     EXPECT_TRUE(lowered.is_exact) << lowered.summary;
 }
 
-TEST(LowerToneScale, OnLuminanceNeedsNoCube) {
+TEST(LowerToneScale, OnLuminanceNeedsNo3dLut) {
     const Pipeline pipeline = {
         kPositive, ToneScaleStage{Norm::luminance, kRec709Weights, reinhard()}, kSdr, srgb()};
     expect_no_cube(pipeline);
@@ -389,7 +389,7 @@ TEST(LowerToneScale, OnLuminanceOfRec2020IsAsExact) {
     }
 }
 
-TEST(LowerToneScale, OnTheLargestChannelNeedsNoCube) {
+TEST(LowerToneScale, OnTheLargestChannelNeedsNo3dLut) {
     const Pipeline pipeline = {kPositive, ToneScaleStage{Norm::max_rgb, {}, reinhard()}, kSdr,
                                srgb()};
     expect_no_cube(pipeline);
@@ -517,7 +517,7 @@ TEST(LowerHuePreserving, KeepsThePlaceOfTheMiddleChannel) {
     }
 }
 
-TEST(LowerHuePreserving, FallingCurvesAreACube) {
+TEST(LowerHuePreserving, FallingCurvesNeedA3dLut) {
     // OCIO's shader takes the smallest and the largest of what it looked up, not of what came in.
     const Pipeline pipeline = {kPositive, HuePreservingStage{1 / (1 + kX)}, kSdr, srgb()};
     LowerOptions options;
@@ -654,7 +654,7 @@ HexconeStage neutral(double start_compression, double desaturation, bool white) 
 
 Pipeline shown(const HexconeStage& stage) { return {kPositive, stage, kSdr, srgb()}; }
 
-TEST(LowerHexcone, PbrNeutralNeedsNoCube) {
+TEST(LowerHexcone, PbrNeutralNeedsNo3dLut) {
     // On the whole sample set: CPU 7.3e-6, llvmpipe 1.7e-5.
     const SampleSet set = make_sample_set(find_input_space("lin_rec709"), {});
     std::vector<float> in;
@@ -687,7 +687,7 @@ TEST(LowerHexcone, PbrNeutralByHand) {
 }
 
 /// OpenColorIO inverts every transform: tables that fall, too, over positive and negative numbers.
-TEST(LowerHexcone, PbrNeutralBackByHand) {
+TEST(LowerHexcone, PbrNeutralInverseByHand) {
     // The three colors above, from their light; and one whose peak is compressed, so that stops
     // are counted on both sides: (3, 0.5, 0.5) less 0.04 has the peak 2.96, which becomes
     // n = 1 - 0.0576/2.44.
@@ -791,7 +791,7 @@ TEST(LowerHexcone, IsTotal) {
         expect_sane(shown(neutral(0.8, 0.15, white)), 5e-5);
 }
 
-TEST(LowerHexcone, RefusesWhatItCannotShow) {
+TEST(LowerHexcone, RefusesUnsupportedCurves) {
     const HexconeStage good = neutral(0.8, 0.15, false);
     EXPECT_THROW((void)lower_to_ocio({good}), Error) << "no clamp";
     EXPECT_THROW((void)lower_to_ocio({kPositive, MatrixStage{rgb_to_rgb(kRec2020, kRec709)}, good}),
@@ -972,7 +972,7 @@ std::string lower(std::string text) {
     return text;
 }
 
-TEST(ConfigModel, NamesAreWhatHostsCanTake) {
+TEST(ConfigModel, NamesFitApplications) {
     const ConfigModel model = make_config_model({.views = {"all"}});
     std::set<std::string> taken;
     const auto claim = [&](const std::string& name) {

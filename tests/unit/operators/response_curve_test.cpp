@@ -249,7 +249,7 @@ TEST(ResponseCurve, RefusesCurvesThatAreNotThere) {
     EXPECT_EQ(why("0 0\n1 1\n", "red"), "red; expected none, the file has one for all channels");
 }
 
-TEST(ResponseCurve, RefusesFilesThatAreNone) {
+TEST(ResponseCurve, RefusesOtherFiles) {
     const fs::path folder = fs::temp_directory_path() / "tonewright_response_curve_test";
     fs::remove_all(folder);
     fs::create_directories(folder);

@@ -87,7 +87,7 @@ TEST(InverseView, OfKhronosNeutralIsTheSceneThatItShows) {
     EXPECT_NEAR(white[0], 65504, 1);
 }
 
-TEST(InverseView, LeadsBackFromEveryDisplay) {
+TEST(InverseView, RoundTripsOnEveryDisplay) {
     const Vector3 scene = {0.3, 0.2, 0.05};
     for (const Display& display : all_displays()) {
         for (const double white : {100.0, 203.0}) {

@@ -121,7 +121,7 @@ TEST(LiveParameters, FortyOperatorsHaveAll) {
     EXPECT_GE(all_live, 40U);
 }
 
-TEST(LiveParameters, WhatIsNotLiveIsAnError) {
+TEST(LiveParameters, ParametersThatAreNotLiveAreErrors) {
     const ResolvedOperator hable = resolve_operator("hable");
     EXPECT_THROW((void)build_live(hable, {"whit"}), Error);
     EXPECT_THROW((void)build_live(hable, {"apply"}), Error);

@@ -128,7 +128,7 @@ TEST(Stage, KnowsWhetherItMixesChannels) {
     EXPECT_TRUE(mixes_channels(CrossTalkStage{{kR, kG, kR + kB}}));
 }
 
-TEST(Stage, PerChannelMeansAlikeAndApart) {
+TEST(Stage, PerChannelMeansOneFunctionForEachChannel) {
     const Stage half = curve_stage(kX / 2);
     EXPECT_TRUE(is_per_channel({}));
     EXPECT_TRUE(is_per_channel({exposure_stage(1), ClampStage{0, 1}, half}));
@@ -170,7 +170,7 @@ TEST(Stage, ClampHasTwoEnds) {
     EXPECT_EQ(shown(ClampStage{}, {-3, 0, 7e9}), (Vector3{0, 0, 7e9})) << "0 to infinity";
 }
 
-TEST(Stage, Map3SeesAllChannels) {
+TEST(Stage, CrossTalkReadsAllChannels) {
     EXPECT_EQ(shown(CrossTalkStage{{kR + kG, kG * kB, kB - kR}}, {2, 3, 5}), (Vector3{5, 15, 3}));
 }
 
@@ -267,7 +267,7 @@ TEST(Pipeline, SimplifyMultipliesMatricesInTheRightOrder) {
     EXPECT_EQ(shown(simple, {1, 0, 0}), (Vector3{0, 9, 5})) << "a b would give (10, 3, 1)";
 }
 
-TEST(Pipeline, SimplifyDropsWhatDoesNothing) {
+TEST(Pipeline, SimplifyDropsIdentities) {
     EXPECT_TRUE(simplify(identities()).empty());
     const Matrix3 turn = {{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}}};
     const Pipeline there_and_back = {MatrixStage{turn}, curve_stage(kX),
@@ -373,7 +373,7 @@ TEST(Resolve, OneGrammarForAll) {
               (Settings{{"white", "4"}}));
 }
 
-TEST(Resolve, WhatContradictsItselfIsRefused) {
+TEST(Resolve, ContradictionsAreRefused) {
     EXPECT_EQ(resolve_error("hable:white=4:white=5"), "hable: white is 4 and 5; expected it once");
     EXPECT_EQ(resolve_error("hable:white=4", {{"white", "5"}}),
               "hable: white is 4 and 5; expected it once");
@@ -386,7 +386,7 @@ TEST(Resolve, WhatContradictsItselfIsRefused) {
 }
 
 /// Every operator with each preset and look, and with a setting that is hard to write.
-TEST(Resolve, WhatIsPrintedCanBeTyped) {
+TEST(Resolve, PrintedNamesResolve) {
     const auto expect_same = [](const ResolvedOperator& op) {
         const ResolvedOperator again = resolve_picture_operator(operator_text(op));
         EXPECT_EQ(again.op, op.op) << operator_text(op);
@@ -474,7 +474,7 @@ TEST(Resolve, UnknownNamesGetTheNearest) {
               "reinhard: apply is ; expected channels, luminance, max or hue_preserving");
 }
 
-TEST(Resolve, RefusesWhatIsNoNumberOrOutOfRange) {
+TEST(Resolve, RefusesTextsThatAreNotNumbersOrOutOfRange) {
     for (const char* text :
          {"-2",   "0",   "0.0099999", "65504.01", "1e999", "-1e999", "nan", "NaN",
           "-nan", "inf", "infinity",  "-inf",     "",      " ",      "4x",  "4 ",
@@ -540,7 +540,7 @@ TEST(Resolve, TextsAreTakenAsTheyAre) {
     EXPECT_EQ(shown(blue.build(), gray)[0], shown(file.build(), gray)[2]);
 }
 
-TEST(Resolve, TextsThatNameNothingAreErrors) {
+TEST(Resolve, UnknownTextsAreErrors) {
     EXPECT_EQ(resolve_error("camera_response", {{"curve", "gold"}}),
               "camera_response: curve is gold; expected a file that has it");
     // A file that is missing is no wrong usage: the command exits with another code.
@@ -591,7 +591,7 @@ SceneStatistics some_scene() {
     return s;
 }
 
-TEST(Statistics, FillWhatNobodySets) {
+TEST(Statistics, FillUnsetParameters) {
     EXPECT_EQ(settings_for_picture(resolve_operator("exponential"), some_scene()),
               (Settings{{"average", "0.37"}}));
     EXPECT_EQ(settings_for_picture(resolve_operator("drago"), some_scene()),
@@ -808,7 +808,7 @@ TEST(Apply, OfCodeValuesNormsScaleTheLight) {
                {0.8, 0.2, 0}, kRounding);
 }
 
-TEST(Apply, ParametersStandBehindTheOperatorsOwn) {
+TEST(Apply, ParametersFollowTheOperatorsOwn) {
     const std::vector<ParameterSpec> all =
         with_apply("max", {number_parameter("white", "", 4, 1, 9, "help")});
     std::vector<std::string> names;
@@ -876,14 +876,14 @@ TEST(Registry, IsSortedByUniqueIds) {
     }
 }
 
-TEST(Registry, OperatorsSayWhatTheyAre) {
+TEST(Registry, OperatorsAreDescribed) {
     std::set<std::string> views;
     for (const Operator& op : all_operators()) {
         SCOPED_TRACE(op.id);
         EXPECT_TRUE(views.insert(lower(op.view)).second) << "OCIO compares views without case";
         EXPECT_LE(op.view.size(), 63U) << "Blender's limit";
         for (const std::string* text :
-             {&op.title, &op.view, &op.character, &op.source, &op.licence, &op.negatives}) {
+             {&op.title, &op.view, &op.character, &op.source, &op.license, &op.negatives}) {
             EXPECT_TRUE(is_line(*text)) << "one line of plain text: " << *text;
         }
         for (const std::string& warning : op.warnings)
@@ -902,7 +902,7 @@ TEST(Registry, KnownDefectsAreInNoListAndNoNameFindsThem) {
         SCOPED_TRACE(defect.id);
         EXPECT_TRUE(is_lower_snake(defect.id));
         EXPECT_TRUE(is_line(defect.defect) && defect.defect.back() != '.');
-        EXPECT_TRUE(is_line(defect.source) && is_line(defect.licence));
+        EXPECT_TRUE(is_line(defect.source) && is_line(defect.license));
         EXPECT_FALSE(resolve_operator(defect.meant).op->is_defect());
         for (const std::vector<Operator>* listed : {&all_operators(), &local_operators()}) {
             for (const Operator& op : *listed)
@@ -1017,7 +1017,7 @@ bool does_something(const Operator& op, const ParameterSpec& p) {
     return false;
 }
 
-TEST(Registry, EveryParameterPresetAndLookDoesSomething) {
+TEST(Registry, EveryParameterPresetAndLookHasAnEffect) {
     for (const Operator& op : all_operators()) {
         const std::vector<double> normal = picture(resolve_operator(op.id));
         for (const ParameterSpec& p : op.parameters) {

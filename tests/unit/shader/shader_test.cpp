@@ -115,7 +115,7 @@ TEST(Shader, EveryVariantInEveryLanguageIsAsciiAndHasItsOwnName) {
     }
 }
 
-TEST(Shader, HeadersSayWhatWasMeasured) {
+TEST(Shader, HeadersStateTheMeasuredErrors) {
     const std::string not_measured = "not with these settings";
     const ShaderErrors errors;
     for (const OperatorVariant& variant : all_variants()) {
@@ -194,7 +194,7 @@ TEST(Shader, PartsHaveTheNamesOfTheirSources) {
     }
 }
 
-TEST(Shader, TextIsTheSameWhateverWasWrittenBefore) {
+TEST(Shader, TextDoesNotDependOnEarlierTexts) {
     const std::string first = text_of(request_of("uchimura"));
     for (const char* other : {"gt7", "unreal", "reinhard_jodie", "hable_piecewise"})
         (void)text_of(request_of(other));
@@ -203,7 +203,7 @@ TEST(Shader, TextIsTheSameWhateverWasWrittenBefore) {
     EXPECT_EQ(text_of(request_of("uchimura")), first);
 }
 
-TEST(Shader, NoVariableHasANameThatALanguageKeeps) {
+TEST(Shader, NoVariableHasAReservedName) {
     const std::string file =
         "tonewright = 1\nid = \"own\"\n[[stage]]\ncurve = \"\"\"\nhalf = x*0.3\nline = half + 0.1\n"
         "a__b = line*line\ngl_Color = a__b + half\na__b/gl_Color\n\"\"\"\n";
@@ -220,7 +220,7 @@ TEST(Shader, NoVariableHasANameThatALanguageKeeps) {
     }
 }
 
-TEST(Shader, MatricesAreRowsWhateverTheLanguageTakes) {
+TEST(Shader, MatricesAreRowsInEveryLanguage) {
     const Pipeline pipeline = {MatrixStage{{{{0.5, 0.25, 0.25}, {0, 1, 0}, {-0.125, 0, 1}}}, "m"}};
     const ShaderProgram program = make_program(pipeline, {});
     const std::string in_glsl =
@@ -387,7 +387,7 @@ TEST(Shader, ACurveOfEachChannelIsWrittenOnce) {
     EXPECT_EQ(count_of("_mix_curve("), 4);  // and three calls
 }
 
-TEST(Shader, BadRequestsAreToldInOneLine) {
+TEST(Shader, ErrorsAreOneLine) {
     ShaderRequest request = request_of("hable");
     request.uniforms = {"whit"};
     EXPECT_NE(error_of(request).find("shader: uniform is whit; expected exposure"),

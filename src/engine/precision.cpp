@@ -244,7 +244,9 @@ class PrecisionChooser {
     };
     static constexpr std::size_t kPairs = 4;
 
-    /// A sum of constant multiples of values, with a negative constant among them.
+    /// A sum of constant multiples of values, with a negative constant among them, or an input,
+    /// which may be negative: random floats found colors at which rows of positive constants
+    /// cancel.
     [[nodiscard]] bool is_cancelling_row(std::size_t i) const {
         if (code_[i].op != ExprOp::add) return false;
         bool has_negative = false;
@@ -260,7 +262,8 @@ class PrecisionChooser {
             const bool left = term.op == ExprOp::multiply && code_[term.a].op == ExprOp::constant;
             const bool right = term.op == ExprOp::multiply && code_[term.b].op == ExprOp::constant;
             if (!left && !right) return false;
-            has_negative = has_negative || code_[left ? term.a : term.b].value < 0;
+            has_negative = has_negative || code_[left ? term.a : term.b].value < 0 ||
+                           code_[left ? term.b : term.a].op == ExprOp::input;
         }
         return has_negative;
     }

@@ -17,11 +17,11 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// most other roundings are harmless. Which is which is not a matter of the operation but of what
 /// follows. So it is computed: over a set of probe colors, the derivative of each output by each
 /// value (reverse accumulation) times the value's rounding error is what that rounding adds to the
-/// output. While the root of the sum of squares is above 0.4 of the error (roundings are
+/// output. While the root of the sum of squares is above a quarter of the error (roundings are
 /// independent; the rest is for colors between the probes), the value that adds most for its cost
-/// becomes double. The rows of matrices with negative coefficients are double in any case, and so
-/// is what steep tables are indexed with. Compiled curves are as exact as they are: those that
-/// leave no such set are named.
+/// becomes double. The rows of matrices with negative coefficients, or of inputs, are double in any
+/// case, and so is what steep tables are indexed with. Compiled curves are as exact as they are:
+/// those that leave no such set are named.
 struct Precision {
     std::vector<bool> in_double;
     std::vector<const CompiledCurve*> too_coarse;

@@ -601,7 +601,7 @@ std::vector<Operator> define_agx_blender() {
                      {DocumentedDifference::Kind::black, 1.85e-5, "medium_low_contrast"},
                      {DocumentedDifference::Kind::black, 0.000128, "low_contrast"},
                      {DocumentedDifference::Kind::black, 0.000456, "very_low_contrast"}};
-    op.bounds = {.simd = 3e-5,
+    op.bounds = {.simd = 1e-5,
                  .simd_goal = 1e-5,
                  .ocio_cpu = 8e-5,
                  .ocio_gpu = 2e-4,

@@ -43,7 +43,9 @@ export function makeView(renderer, showProbe) {
     function origin(rect) {
         const z = zoom();
         const center = state.zoom > 0 ? [state.x, state.y] : [picture.width / 2, picture.height / 2];
-        return [center[0] - rect[2] / 2 / z, center[1] - rect[3] / 2 / z];
+        const corner = [0, 1].map((i) => center[i] - rect[2 + i] / 2 / z);
+        // On pixels of the canvas: in a panel with an odd size, a middle would lie on the edge of two pixels of the picture.
+        return z < 1 ? corner : corner.map((at) => Math.round(at * z) / z);
     }
     function resize() {
         ratio = devicePixelRatio || 1;

@@ -168,7 +168,13 @@ class PrecisionChooser {
         // Where the rows of a matrix cancel, the loss has no bound, and no set of probes comes near
         // enough to every zero of every row: these are double from the start.
         for (std::size_t i = 0; i < code_.size(); ++i) {
-            if (is_cancelling_row(i)) keep_in_double(i);
+            if (const std::vector<std::uint32_t> terms = terms_of_cancelling_row(i);
+                !terms.empty()) {
+                keep_in_double(i);
+                for (const std::uint32_t term : terms) {
+                    if (is_exposed_input(term)) keep_in_double(term);
+                }
+            }
             // In float the rounding of y log2(x) grows with it, and kernels have no better for an
             // exponent that is not constant. A small power of a ratio too small for float is not
             // small.
@@ -244,12 +250,13 @@ class PrecisionChooser {
     };
     static constexpr std::size_t kPairs = 4;
 
-    /// A sum of constant multiples of values, with a negative constant among them, or an input,
-    /// which may be negative: random floats found colors at which rows of positive constants
-    /// cancel.
-    [[nodiscard]] bool is_cancelling_row(std::size_t i) const {
-        if (code_[i].op != ExprOp::add) return false;
-        bool has_negative = false;
+    /// The values whose constant multiples are added, if one of the constants is negative, or one of
+    /// the values an input, which may be negative: random floats found colors at which rows of
+    /// positive constants cancel. Otherwise empty.
+    [[nodiscard]] std::vector<std::uint32_t> terms_of_cancelling_row(std::size_t i) const {
+        std::vector<std::uint32_t> values;
+        if (code_[i].op != ExprOp::add) return values;
+        bool may_cancel = false;
         std::vector<std::uint32_t> terms = {code_[i].a, code_[i].b};
         while (!terms.empty()) {
             const TapeInstruction& term = code_[terms.back()];
@@ -261,11 +268,20 @@ class PrecisionChooser {
             }
             const bool left = term.op == ExprOp::multiply && code_[term.a].op == ExprOp::constant;
             const bool right = term.op == ExprOp::multiply && code_[term.b].op == ExprOp::constant;
-            if (!left && !right) return false;
-            has_negative = has_negative || code_[left ? term.a : term.b].value < 0 ||
-                           code_[left ? term.b : term.a].op == ExprOp::input;
+            if (!left && !right) return {};
+            values.push_back(left ? term.b : term.a);
+            may_cancel = may_cancel || code_[left ? term.a : term.b].value < 0 ||
+                         code_[values.back()].op == ExprOp::input ||
+                         is_exposed_input(values.back());
         }
-        return has_negative;
+        return may_cancel ? values : std::vector<std::uint32_t>{};
+    }
+    /// An input times a number, its exposure.
+    [[nodiscard]] bool is_exposed_input(std::size_t i) const {
+        const TapeInstruction& step = code_[i];
+        return step.op == ExprOp::multiply &&
+               ((is_number(code_[step.a].op) && code_[step.b].op == ExprOp::input) ||
+                (is_number(code_[step.b].op) && code_[step.a].op == ExprOp::input));
     }
 
     void keep_index_in_double(std::uint32_t index) {

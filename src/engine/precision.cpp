@@ -250,8 +250,8 @@ class PrecisionChooser {
     };
     static constexpr std::size_t kPairs = 4;
 
-    /// The values whose constant multiples are added, if one of the constants is negative, or one of
-    /// the values an input, which may be negative: random floats found colors at which rows of
+    /// The values whose constant multiples are added, if one of the constants is negative, or one
+    /// of the values an input, which may be negative: random floats found colors at which rows of
     /// positive constants cancel. Otherwise empty.
     [[nodiscard]] std::vector<std::uint32_t> terms_of_cancelling_row(std::size_t i) const {
         std::vector<std::uint32_t> values;

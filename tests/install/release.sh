@@ -65,7 +65,7 @@ expect "archive: plugin" clean OIIO_LIBRARY_PATH="$plugins" oiiotool 'chart.exr.
 expect "archive: the plugin's picture is the command's" idiff -fail 0 command.exr plugin.exr
 module=$(dirname "$(dirname "$(find "$prefix" -name '_tonewright*.so')")")
 expect "archive: Python module" clean PYTHONPATH="$module" /usr/bin/python3 -B -c 'import tonewright
-tonewright.tonemap_file("chart.exr", "python.exr", "agx_blender", type="float")'
+tonewright.tonemap_file("chart.exr", "python.exr", "agx_blender", dtype="float")'
 expect "archive: the module's picture is the command's" idiff -fail 0 command.exr python.exr
 expect "archive: config" ociocheck --iconfig "$prefix/share/tonewright/ocio_config/config.ocio"
 expect "archive: LUTs" diff -r "$source/luts" "$prefix/share/tonewright/luts"

@@ -25,11 +25,11 @@ fi
 mkdir "$root"
 tar -C "$root" --exclude='./dev/*' -xf "$work/clean.tar"
 
-# What runs in the root sees processes and devices, and stays the only one that does.
+# What runs in the root sees processes, devices and processors, and stays the only one that does.
 inside() {
     # shellcheck disable=SC2016 # the inner shell expands
     unshare -m bash -c 'mount --make-rprivate /; root=$1; shift
-        mount -t proc proc "$root/proc"; mount --rbind /dev "$root/dev"
+        mount -t proc proc "$root/proc"; mount --rbind /dev "$root/dev"; mount --rbind /sys "$root/sys"
         exec chroot "$root" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/tmp/home LC_ALL=C.UTF-8 TMPDIR=/tmp \
             DEBIAN_FRONTEND=noninteractive PYTHONDONTWRITEBYTECODE=1 "$@"' _ "$root" "$@"
 }

@@ -233,6 +233,10 @@ SourceColor find_source_color(std::string_view name) {
             kRec709};
 }
 
+const Display& find_display(std::string_view name) {
+    return find_named(all_displays(), name, "display", {});
+}
+
 const Display& find_display(std::string_view name, const std::vector<std::string>& others) {
     return find_named(all_displays(), name, "display", others);
 }

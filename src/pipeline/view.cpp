@@ -61,8 +61,8 @@ View make_view(ResolvedOperator op, SourceColor input, double exposure_stops,
                     ", which is not an HDR display");
     }
     if (!is_display) return view;
-    const Display& found =
-        find_display(display, {std::string(kLinearOutput), std::string(kNativeOutput)});
+    const std::vector<std::string> others{std::string(kLinearOutput), std::string(kNativeOutput)};
+    const Display& found = find_display(display, others);
     view.display = found.id;
     const double unit = found.is_hdr ? kReferenceWhite / reference_white : 1;
     view.op = resolve_for_display(view.op, {found.primaries, found.is_hdr, found.peak * unit});

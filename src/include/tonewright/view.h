@@ -42,11 +42,12 @@ struct Display {
 [[nodiscard]] TONEWRIGHT_API const std::vector<InputSpace>& all_input_spaces();
 [[nodiscard]] TONEWRIGHT_API const std::vector<Display>& all_displays();
 /// By id, title or alias. Ignores case; `-`, `_` and blanks are equal.
-/// @param others  further names that the caller accepts, for the message
 /// @throws Error  with the nearest name
 [[nodiscard]] TONEWRIGHT_API const InputSpace& find_input_space(std::string_view name);
-[[nodiscard]] TONEWRIGHT_API const Display& find_display(
-    std::string_view name, const std::vector<std::string>& others = {});
+[[nodiscard]] TONEWRIGHT_API const Display& find_display(std::string_view name);
+/// @param others  further names that the caller accepts, for the message
+[[nodiscard]] TONEWRIGHT_API const Display& find_display(std::string_view name,
+                                                         const std::vector<std::string>& others);
 
 /// Color of a source picture: light in some primaries, linear or encoded by a curve.
 struct SourceColor {

@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <charconv>
 #include <cstdio>
 #include <functional>
 #include <memory>
@@ -11,7 +10,7 @@
 
 #include "base/atomic_file.h"
 #include "base/input_file.h"
-#include "base/strings.h"
+#include "cli/color_line.h"
 #include "cli/picture_commands.h"
 #include "cli/shared_options.h"
 #include "cli/suggestions.h"
@@ -31,52 +30,6 @@ struct Options : ViewOptions {
     bool explain = false;
     LutOptions lut;
 };
-
-/// The three numbers of a line, or none if it is blank or a comment.
-/// @throws Error
-std::optional<Vector3> parse_line(std::string_view whole, std::size_t number) {
-    std::string_view line = whole.substr(0, whole.find('#'));
-    Vector3 values{};
-    std::size_t count = 0;
-    bool is_bad = false;
-    const auto skip = [&](std::string_view what) {
-        line.remove_prefix(std::min(line.find_first_not_of(what), line.size()));
-    };
-    skip(" \t\r");
-    while (!line.empty() && !is_bad) {
-        double value = 0;
-        if (line.front() == '+' && line.size() > 1 && line[1] != '-') {
-            line.remove_prefix(1);  // from_chars takes no plus sign
-        }
-        const auto result = std::from_chars(line.data(), line.data() + line.size(), value);
-        // A number too large for double is infinite, and one too small is 0, as printf() prints
-        // such data.
-        if (result.ec == std::errc::result_out_of_range) {
-            value = std::strtod(std::string(line.data(), result.ptr).c_str(), nullptr);
-        } else if (result.ec != std::errc()) {
-            is_bad = true;
-            break;
-        }
-        if (count < values.size()) values[count] = value;
-        ++count;
-        line.remove_prefix(static_cast<std::size_t>(result.ptr - line.data()));
-        const std::size_t before = line.size();
-        skip(" \t\r");
-        if (!line.empty() && line.front() == ',') {
-            line.remove_prefix(1);
-            skip(" \t\r");
-            if (line.empty()) is_bad = true;  // "1,2,"
-        } else if (!line.empty() && line.size() == before) {
-            is_bad = true;  // "1x"
-        }
-    }
-    if (is_bad || (count != 0 && count != 3)) {
-        throw Error(fmt::format("eval: standard input: line {} is \"{}\"; expected three numbers",
-                                number, trimmed(whole.substr(0, 60))));
-    }
-    if (count == 0) return std::nullopt;
-    return values;
-}
 
 /// Maps `count` triplets.
 using ColorMap = std::function<void(const double* in, double* out, std::size_t count)>;
@@ -129,7 +82,7 @@ class LineEvaluator {
                     "numbers",
                     number_, kLongestLine));
             }
-            if (const std::optional<Vector3> color = parse_line(line, number_))
+            if (const std::optional<Vector3> color = parse_color_line(line, number_))
                 colors_.insert(colors_.end(), color->begin(), color->end());
         } catch (const Error&) {
             answer();

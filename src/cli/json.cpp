@@ -9,6 +9,9 @@ namespace {
 
 using Library = nlohmann::ordered_json;
 
+/// Levels of a text that parse() takes: from_library() calls itself for each.
+constexpr int kDeepest = 100;
+
 Library to_library(const Json& json) {
     return std::visit(
         [](const auto& value) -> Library {
@@ -71,11 +74,14 @@ template <class T>
 T number_of(const Json& json) {
     return std::visit(
         [](const auto& value) -> T {
-            if constexpr (std::is_arithmetic_v<std::decay_t<decltype(value)>>) {
-                return static_cast<T>(value);
-            } else {
-                throw JsonError("expected a number");
+            using Held = std::decay_t<decltype(value)>;
+            constexpr bool is_whole = std::is_integral_v<Held> && !std::is_same_v<Held, bool>;
+            if constexpr (std::is_same_v<T, double> && (is_whole || std::is_same_v<Held, double>)) {
+                return static_cast<double>(value);
+            } else if constexpr (is_whole) {
+                if (std::in_range<T>(value)) return static_cast<T>(value);
             }
+            throw JsonError("expected a number");
         },
         json.value());
 }
@@ -142,7 +148,10 @@ std::string Json::dump(int indent) const { return to_library(*this).dump(indent)
 
 Json Json::parse(const std::string& text) {
     try {
-        return from_library(Library::parse(text));
+        return from_library(Library::parse(text, [](int depth, auto, const auto&) {
+            if (depth > kDeepest) throw JsonError("too deep");
+            return true;
+        }));
     } catch (const Library::exception& e) {
         throw JsonError(e.what());
     }

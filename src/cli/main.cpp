@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <string>
 #include <string_view>
@@ -118,6 +119,8 @@ int run(int argc, char** argv) {
         }
         if (std::fflush(stdout) != 0) return report("write: standard output: cannot write", kFile);
         return exit_code;
+    } catch (const std::filesystem::filesystem_error& e) {
+        return report(command + e.path1().string() + ": " + e.code().message(), kFile);
     } catch (const std::system_error& e) {  // exceptions of printing, and a thread without a stack
         if (e.code() == std::errc::resource_unavailable_try_again)
             return report(command + "not enough memory or threads", kFile);

@@ -53,7 +53,10 @@ Lut read_lut_picture(const std::string& path) {
         // Checked before memory is allocated for its pixels.
         (void)layout_of(path, in->spec().width, in->spec().height);
     }
-    const OIIO::ImageBuf picture = read_image(path);
+    return lut_of_picture(read_image(path), path);
+}
+
+Lut lut_of_picture(const OIIO::ImageBuf& picture, const std::string& path) {
     const OIIO::ImageSpec& spec = picture.spec();
     Layout layout = layout_of(path, spec.width, spec.height);
     if (spec.nchannels < 3 || spec.nchannels > 4) {

@@ -17,6 +17,9 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// @throws FileError  missing, truncated, of another size (before its pixels are read), with alpha
 ///                    below 1, NaN or infinities
 [[nodiscard]] TONEWRIGHT_API Lut read_lut_picture(const std::string& path);
+/// The same of a picture in memory. @param path  of its file, for messages
+[[nodiscard]] TONEWRIGHT_API Lut lut_of_picture(const OIIO::ImageBuf& picture,
+                                                const std::string& path);
 
 /// Reads LUTs that are pictures for load_operator(). Other files go to `next`. @see table_reader()
 [[nodiscard]] TONEWRIGHT_API TableReader picture_table_reader(TableReader next = {});

@@ -15,8 +15,8 @@ constexpr std::string_view kBlanks = " \t\r\n";
 [[noreturn]] void fail() {
     throw YAML::RepresentationException(
         YAML::Mark::null_mark(),
-        "cannot insert into YAML that is written this way; expected lists, and texts without "
-        "escapes");
+        "cannot insert into YAML that is written this way; expected UTF-8, lists, and texts "
+        "without escapes");
 }
 
 std::size_t position(const YAML::Node& node) {
@@ -106,7 +106,11 @@ YamlText::YamlText(const std::string& text)
     : mark_(text.starts_with(kByteOrderMark) ? kByteOrderMark : ""),
       text_(text.substr(mark_.size())),
       line_end_(text_.find("\r\n") == std::string::npos ? "\n" : "\r\n"),
-      root_(YAML::Load(text_)) {}
+      root_(YAML::Load(text_)) {
+    // yaml-cpp reads UTF-16 and UTF-32, too, and its positions are those of the text as UTF-8.
+    const bool is_wide = text_.starts_with("\xFE\xFF") || text_.starts_with("\xFF\xFE");
+    if (is_wide || text_.find('\0') != std::string::npos) fail();
+}
 
 std::size_t YamlText::end_of_line(std::size_t at) const {
     const std::size_t end = std::min(text_.find('\n', at), text_.size());

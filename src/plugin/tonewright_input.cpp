@@ -6,18 +6,15 @@
 // It throws no exception, and exports only the symbols that OpenImageIO needs of a plugin.
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imageio.h>
-#include <OpenImageIO/strutil.h>
 #include <fmt/format.h>
 
 #include <cstddef>
 #include <exception>
-#include <filesystem>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <new>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,6 +27,7 @@
 #include "image/source_picture.h"
 #include "image/tonemap_arguments.h"
 #include "image/tonemap_file.h"
+#include "plugin/request.h"
 #include "tonewright/lut.h"
 #include "tonewright/registry.h"
 #include "tonewright/tonemap.h"
@@ -37,26 +35,10 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-namespace fs = std::filesystem;
 using OIIO::ImageBuf;
 using OIIO::ImageInput;
 using OIIO::ImageSpec;
 using OIIO::ROI;
-
-constexpr std::string_view kExtension = ".tonewright";
-using Arguments = std::map<std::string, std::string>;
-
-/// Result of a name.
-struct Request {
-    std::string picture;
-    Arguments arguments;
-};
-
-/// The part before `?`, where OpenImageIO looks for the format, too.
-bool has_extension(const std::string& name) {
-    return OIIO::Strutil::iends_with(name.substr(0, name.find('?')),
-                                     OIIO::string_view(kExtension.data(), kExtension.size()));
-}
 
 /// Set while a thread opens the picture of a name. The picture's name must not be one that this
 /// format opens: a text file that names itself would never end.
@@ -76,60 +58,6 @@ class Opening {
     static thread_local bool is_open_;
 };
 thread_local bool Opening::is_open_ = false;
-
-/// A file of lines `name=value`, of which `file` names the picture, relative to the file. Messages
-/// quote nothing from it, because the name may lead to a file that the host can read and its user
-/// cannot.
-void read_request_file(const fs::path& path, Request& request) {
-    constexpr std::size_t kMostBytes = 1 << 16;
-    std::istringstream file(read_file(path.string(), kMostBytes, [&](const std::string& reason) {
-        throw FileError(path.string() + ": cannot read: " + reason);
-    }));
-    std::string line;
-    for (int number = 1; std::getline(file, line); ++number) {
-        constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-        if (number == 1 && line.starts_with(kByteOrderMark)) line.erase(0, kByteOrderMark.size());
-        const std::string_view text = OIIO::Strutil::strip(line);
-        if (text.empty() || text.front() == '#') continue;
-        const std::size_t equals = text.find('=');
-        if (equals == std::string_view::npos || equals == 0) {
-            throw FileError(fmt::format("{}: line {} is not a setting; expected name=value",
-                                        path.string(), number));
-        }
-        const std::string name(OIIO::Strutil::strip(std::string(text.substr(0, equals))));
-        const std::string value(OIIO::Strutil::strip(std::string(text.substr(equals + 1))));
-        if (name == "file") {
-            request.picture = (path.parent_path() / value).string();
-        } else if (!is_tonemap_argument(name)) {
-            throw FileError(fmt::format("{}: line {} has an unknown name; expected file, {}",
-                                        path.string(), number, tonemap_argument_choices()));
-        } else {
-            request.arguments.emplace(name, value);  // settings in the name take precedence
-        }
-    }
-    if (request.picture.empty())
-        throw FileError(path.string() + ": file is missing; expected a line file=PICTURE");
-}
-
-/// @throws Error, FileError
-Request parse_request(const std::string& name) {
-    Request request;
-    std::string base;
-    if (!OIIO::Strutil::get_rest_arguments(name, base, request.arguments)) {
-        throw Error("arguments are " + name.substr(base.size()) +
-                    "; expected ?name=value&name=value");
-    }
-    if (!has_extension(base)) throw Error(base + " does not end in " + std::string(kExtension));
-    std::error_code ignored;
-    if (fs::is_regular_file(base, ignored)) {
-        read_request_file(base, request);
-    } else {
-        request.picture = base.substr(0, base.size() - kExtension.size());
-    }
-    if (has_extension(request.picture))
-        throw Error("picture is " + request.picture + "; expected one that is not tone mapped yet");
-    return request;
-}
 
 TonemapOptions parse_options(const Arguments& arguments, const ImageSpec& config) {
     TonemapOptions options;

@@ -977,6 +977,7 @@ def file_errors(bad, picture, scratch):
         (["sheet", bad["half.png"], "-o", "out.png"], "half.png"),
         (["sheet", picture, "-o", "file/out.png"], "file"),
         (["verify", "hable", "--config", "none"], "none"),
+        (["verify", "--config", 300 * "a"], f"verify: {300 * 'a'}: File name too long"),
         (["verify", "hable", "--picture", "none.exr"], "none.exr"),
     ]
     for extension in (".cube", ".svg"):

@@ -116,6 +116,12 @@ REFUSED = {
                             "100 deep"),
     "a LUT that is a pipe": ([(LAST, space("m", "to_scene_reference: !<FileTransform> {src: pipe.cube}"))],
                              "pipe.cube: is no regular file"),
+    "an alias inside its own node": ([(LAST, space("m", "to_scene_reference: &a !<GroupTransform> {children: [*a]}"))],
+                                     ": the alias is inside its own node"),
+    "a million copies by aliases": (
+        [(LAST, space("m", "to_scene_reference: !<GroupTransform> {children: [&a0 !<MatrixTransform> {}"
+                      + "".join(f", &a{i + 1} !<GroupTransform> {{children: [{', '.join(10 * [f'*a{i}'])}]}}" for i in range(6))
+                      + "]}"))], ": aliases make more than 1000000 nodes"),
     "20,000 color spaces": ([(LAST, "".join(f"  - !<ColorSpace> {{name: s{i}}}\n" for i in range(20000)))],
                             "has 20005 color spaces; expected at most 4000"),
     "5,000 views": ([(RAW_VIEW, "".join(f"    - !<View> {{name: v{i}, colorspace: raw}}\n" for i in range(5000)))],

@@ -9,6 +9,7 @@ The last line is `N passed, M failed`.
 import argparse
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -248,7 +249,12 @@ def cache(tool, report, adapt):
     report.check("and the cache has it then", tool.meter("shot.1003.exr", "--meter-cache", path)[0]["luminance"]
                  == kept[2]["luminance"] and b"123.0" not in path.read_bytes())
 
-    for what, text in (("no JSON", "shot"), ("other JSON", "[1]"), ("another program's", '{"a": 1}'), ("cut", before[:999])):
+    first = known["pictures"][str(tool.folder / "shot.1001.exr")]
+    first["metering"]["luminance"]["percentiles"]["2"] = first["metering"]["luminance"]["percentiles"].pop("1")
+    other_percentiles = json.dumps(known)
+    for what, text in (("no JSON", "shot"), ("other JSON", "[1]"), ("another program's", '{"a": 1}'), ("cut", before[:999]),
+                       ("100,000 levels deep", "[" * 100000 + "]" * 100000), ("of other percentiles", other_percentiles),
+                       ("of a file with -1 bytes", re.sub(rb'"bytes": ?\d+', b'"bytes":-1', before))):
         path.write_bytes(text if isinstance(text, bytes) else text.encode())
         tool.refused(f"a cache that is {what}", 3, "is not a meter cache", "meter", "shot.1003.exr", "--meter-cache", path)
         report.check("stays", path.read_bytes() == (text if isinstance(text, bytes) else text.encode()))

@@ -96,6 +96,10 @@ def check_names(shots):
     code, lines = apply(shots.command, "me@host/in.@@@@.exr", "me@host/out.@@.png", *HABLE, "--frames", "-7", folder=shots.folder)
     shots.report.check("negative numbers", (code, lines) == (OK, [])
                        and contents(folder) == {"out.-7.png": shots.truth["out.0007.png"]}, f"{lines} {list(contents(folder))}")
+    code, lines = apply(shots.command, "in." + 100_000 * "#" + ".exr", "out.@@.png", *HABLE, "--frames", "7",
+                        folder=shots.folder)
+    shots.report.check("a pattern that is longer than any name", code == FAILED and "File name too long" in lines[0],
+                       f"{code} {[line[-100:] for line in lines]}")
 
 
 def check_jobs(shots):

@@ -10,10 +10,10 @@
 #include <string>
 
 using Target = int(const std::uint8_t*, std::size_t);
-extern "C" Target fuzz_dds;
-extern "C" Target fuzz_definition;
-extern "C" Target fuzz_formula;
-extern "C" Target fuzz_glsl;
+// FUZZ_TARGETS is X(dds) X(definition) ...
+#define X(name) extern "C" Target fuzz_##name;
+FUZZ_TARGETS
+#undef X
 
 namespace {
 
@@ -36,8 +36,9 @@ bool feed(const std::filesystem::path& folder, Target* target) {
 int main(int argc, char** argv) {
     if (argc != 2) return 2;
     const std::filesystem::path corpus = argv[1];
-    const bool has_all = feed(corpus / "dds", fuzz_dds) &&
-                         feed(corpus / "definition", fuzz_definition) &&
-                         feed(corpus / "formula", fuzz_formula) && feed(corpus / "glsl", fuzz_glsl);
+    bool has_all = true;
+#define X(name) has_all = feed(corpus / #name, fuzz_##name) && has_all;
+    FUZZ_TARGETS
+#undef X
     return has_all ? 0 : 1;
 }

@@ -1,20 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """Good files for the fuzz targets to begin with, in a folder for each target.
 
-    /usr/bin/python3 tests/fuzz/seeds.py build/fuzz/seeds [LINK.icc...]
+    /usr/bin/python3 tests/fuzz/seeds.py build/fuzz/seeds
 
-LUT files stand behind the byte that chooses the format. Device links come from `tonewright bake --format icc`. Formulas and
-some shaders are the texts of the unit tests.
+Texts and LUT files stand behind the byte that chooses the reader. Formulas, response curves and some shaders are the texts of the unit tests.
 """
 
+import json
 import re
 import shutil
+import struct
 import sys
 from pathlib import Path
 
 TESTS = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(TESTS / "cli"))
-from test_lut_files import GOOD, RAW  # noqa: E402
+from test_lut_files import FOREIGN, GOOD, RAW  # noqa: E402
 from test_lut_operators import nodes, shared_exponent, write_dds  # noqa: E402
 
 # The order of kFormats in src/lut/lut_text.cpp; then .raw, .icc.
@@ -40,17 +41,45 @@ def write_texts(target, texts):
         (folder_of(target) / f"{number}.txt").write_text(text)
 
 
-folder = folder_of("lut_file")
-for name, text in GOOD.items():
-    (folder / name).write_bytes(bytes([FORMATS.index(name.rsplit(".", 1)[1])]) + text.encode())
-(folder / "cube.raw").write_bytes(bytes([len(FORMATS)]) + RAW)
-for path in map(Path, sys.argv[2:]):
-    (folder / path.name).write_bytes(bytes([len(FORMATS) + 1]) + path.read_bytes())
+def device_link(kind):
+    """ICC.1:2010-12, 10.8 to 10.10: a table of two nodes a side, with linear curves before and behind it."""
+    nodes = [65535 * (node >> place & 1) for node in range(8) for place in (2, 1, 0)]
+    matrix = struct.pack(">9i", *(65536 * (i % 4 == 0) for i in range(9)))
+    if kind == "mft1":
+        ramp = bytes(range(256)) * 3
+        tag = b"mft1" + bytes([0, 0, 0, 0, 3, 3, 2, 0]) + matrix + ramp + bytes(v >> 8 for v in nodes) + ramp
+    elif kind == "mft2":
+        ramp = struct.pack(">6H", *[0, 65535] * 3)
+        tag = (b"mft2" + bytes([0, 0, 0, 0, 3, 3, 2, 0]) + matrix + struct.pack(">2H", 2, 2) + ramp
+               + struct.pack(">24H", *nodes) + ramp)
+    else:
+        curves = (b"curv" + bytes(8)) * 3
+        table = bytes([2] * 3 + [0] * 13 + [2, 0, 0, 0]) + struct.pack(">24H", *nodes)
+        # B, then neither matrix nor M, the table, A.
+        tag = b"mAB " + bytes([0, 0, 0, 0, 3, 3, 0, 0]) + struct.pack(">5I", 32, 0, 0, 68, 136) + curves + table + curves
+    whole = 128 + 4 + 12 + len(tag)
+    version = 0x02400000 if kind.startswith("mft") else 0x04300000
+    header = struct.pack(">I4xI", whole, version) + b"linkRGB RGB " + bytes(12) + b"acsp" + bytes(28)
+    header += struct.pack(">3I", 0xF6D6, 0x10000, 0xD32D)
+    return header.ljust(128, b"\0") + struct.pack(">I", 1) + b"A2B0" + struct.pack(">2I", 144, len(tag)) + tag
+
+
+for target in ("lut_file", "lut"):
+    folder = folder_of(target)
+    for name, text in (GOOD | FOREIGN).items():
+        extension = name.rsplit(".", 1)[1]
+        if extension in FORMATS:
+            (folder / name).write_bytes(bytes([FORMATS.index(extension)]) + text.encode())
+    (folder / "cube.raw").write_bytes(bytes([len(FORMATS)]) + RAW)
+    for kind in ("mft1", "mft2", "mAB "):
+        (folder / f"{kind.strip()}.icc").write_bytes(bytes([len(FORMATS) + 1]) + device_link(kind))
 
 for name, dxgi, texels in (("rgb9e5", 67, shared_exponent(nodes(2))[0]),
                            ("rgba16f", 10, nodes(2).repeat(2, 1)[:, :4].astype("<f2").tobytes()),
                            ("rgba32f", 2, nodes(2).repeat(2, 1)[:, :4].astype("<f4").tobytes())):
     write_dds(folder_of("dds") / f"{name}.dds", 2, dxgi, texels)
+    volume = (folder_of("dds") / f"{name}.dds").read_bytes()
+    (folder_of("lut") / f"{name}.dds").write_bytes(bytes([len(FORMATS) + 2]) + volume)
 
 UNIT = TESTS / "unit" / "formula"
 write_texts("formula", strings_of(UNIT / "formula_test.cpp"))
@@ -61,3 +90,103 @@ write_texts("definition", [text for source in (TESTS / "unit" / "definition").gl
                            if "=" in text])
 for path in (TESTS.parent / "docs" / "examples").glob("*.tone"):
     shutil.copy(path, folder_of("definition"))
+
+UNIT = TESTS / "unit" / "operators"
+write_texts("responses", ["\n" + text for text in strings_of(UNIT / "response_curve_test.cpp") if "\n" in text])
+for path in (TESTS / "data").glob("synthetic_response*"):
+    lines = path.read_text().splitlines()
+    # Every tenth sample of the columns; the curves of DoRF whole.
+    short = [line for number, line in enumerate(lines) if path.suffix == ".txt" or number % 10 == 0 or line == lines[-1]]
+    (folder_of("responses") / path.name).write_text("\n" + "\n".join(short) + "\n")
+
+# The readers of text.cpp in their order.
+METERING = {
+    "pixels": dict.fromkeys(("counted", "black", "nan", "infinite", "uncovered"), 1),
+    "luminance": dict.fromkeys(("log_average", "geometric_mean", "mean", "minimum", "maximum", "histogram_average"), 0.5)
+    | {"percentiles": dict.fromkeys(("1", "5", "25", "50", "75", "95", "99"), 0.5)},
+    "histogram": [1, 2],
+    "statistics": dict.fromkeys(("log_average", "mean_luminance", "minimum_luminance", "maximum_luminance"), 0.5)
+    | {"mean_rgb": [1, 2, 3], "maximum_rgb": [1, 2, 3], "count": 1, "lit_count": 1},
+}
+OPTIONS = {"input": "auto", "subimage": 0, "unpremult": "as the picture says", "region": None, "delta": 0.001,
+           "histogram_range": [-8.0, 3.5], "bins": 256, "percentiles": [0.0, 100.0], "exact": False}
+CACHE = {"tonewright_meter_cache": 1, "options": OPTIONS,
+         "pictures": {"/x/a.exr": {"bytes": 1, "modified": 2, "metering": METERING}}}
+NUMBERS = struct.pack("<2d", 0.5, 2)
+SUM = 0xCBF29CE484222325
+for byte in NUMBERS:
+    SUM = (SUM ^ byte) * 0x100000001B3 % 2**64
+TEXTS = [
+    ["agx_blender:look=punchy", "agx_blender\nlook=punchy", "AgX Blender Punchy", "reinhard:key=0.5 white=2",
+     "reinhard_local:key=1", "camera_response:file=a\\:b.rf:curve=red", "drago:bias=0.7\nbias=0.8", "agx_blendr"],
+    ["1001-1100", "1-9x2", "1,5,10-20", "-5--1", "20-10x3"],
+    ["out.#.exr", "shot.%04d.exr", "a@b/shot.@@@@.exr", "shot.####.%d.exr"],
+    ["0.18 0.18 0.18\n4,2,0.5 # comment\n\n", "nan inf -1e-400", "+1\t1e999\r 2,"],
+    [json.dumps(CACHE, separators=(",", ":")), "{}"],
+    [b"tonewright numbers 1\nk\n2 %016x\n" % SUM + NUMBERS],
+    ["shot.exr.tonewright?op=hable&look=a&set.white=4", "a.tonewright?exposure=1&unpremult=yes&statistics=picture"],
+    ["\N{BYTE ORDER MARK}file=a.exr\n# comment\nop = hable\nset.white=4\nreference_white=203\n", "file=x.tonewright\n"],
+]
+for kind, texts in enumerate(TEXTS):
+    for number, text in enumerate(texts):
+        data = text if isinstance(text, bytes) else text.encode()
+        (folder_of("text") / f"{kind}_{number}").write_bytes(bytes([kind]) + data)
+
+CONFIG = """ocio_profile_version: 2
+environment: {SHOT: a}
+search_path: [luts, tonewright]
+roles: {aces_interchange: ap0, cie_xyz_d65_interchange: xyz, scene_linear: ap0}
+file_rules:
+  - !<Rule> {name: Default, colorspace: ap0}
+displays:
+  "sRGB":
+    # Comment
+    - !<View> {name: 'It''s', view_transform: vt, display_colorspace: sRGB, looks: +lk}
+    - !<View> {name: Raw, colorspace: ap0}
+active_displays: [sRGB]
+active_views: It's, Raw
+looks:
+  - !<Look> {name: lk, process_space: ap0, transform: !<CDLTransform> {slope: [2, 1, 1]}}
+view_transforms:
+  - !<ViewTransform>
+    name: vt
+    description: |
+      Two
+
+      lines
+    from_scene_reference: !<GroupTransform>
+      children:
+        - !<LookTransform> {src: ap0, dst: ap0, looks: "-lk|$SHOT"}
+        - !<FileTransform> {src: $SHOT.cube}
+display_colorspaces:
+  - !<ColorSpace> {name: xyz}
+  - !<ColorSpace> {name: sRGB, aliases: [s], from_display_reference: !<ExponentTransform> {value: 2.4, direction: inverse}}
+colorspaces:
+  - !<ColorSpace>
+    name: ap0
+    to_scene_reference: !<ColorSpaceTransform> {src: b, dst: ap0}
+  - !<ColorSpace> {name: b, isdata: true}
+"""
+RECORD = """options:
+  views: ["a"]
+  displays: []
+  looks: ["b"]
+  operators:
+    - name: "n"
+      operator: "agx_blender:look=punchy"
+  exposures: [1, -0.5]
+files: ["c.spi3d"]
+added:
+  - before: "2\\n"
+    text: "\\n  - a"
+  - before: "a"
+    text: ", b"
+"""
+for kind, text in enumerate((CONFIG, CONFIG, RECORD)):
+    (folder_of("config") / str(kind)).write_bytes(bytes([kind]) + text.encode())
+(folder_of("config") / "windows").write_bytes(b"\1" + ("\N{BYTE ORDER MARK}" + CONFIG).replace("\n", "\r\n").encode())
+(folder_of("config") / "flow").write_bytes(b'\1{a: [b, "c"], d: {e: [], f: [g]}, h: "i", # j\n}')
+
+for size in range(5):
+    for channels in (2, 3, 66, 131):
+        (folder_of("picture") / f"{size}_{channels}").write_bytes(bytes([size, 0, 0, channels]) + struct.pack("<3f", 0, 0.5, 2))

@@ -7,8 +7,10 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <optional>
 #include <regex>
 #include <sstream>
+#include <string_view>
 
 #include "tonewright/error.h"
 
@@ -17,17 +19,42 @@ namespace {
 
 constexpr std::size_t kMostFrames = 1'000'000;
 
-/// Position of the number in a pattern, from `begin` on.
-struct Places {
-    std::regex shape;
+/// A placeholder for the number in a pattern.
+struct Place {
     std::size_t begin;
+    std::size_t length;
+    int width;
 };
 
-Places places_of_number(const std::string& pattern) {
-    static const std::regex common("%(?:0([1-9]))?d|#+");
-    static const std::regex at("@+");
-    if (std::regex_search(pattern, common)) return {common, 0};
-    return {at, pattern.rfind('/') == std::string::npos ? 0 : pattern.rfind('/') + 1};
+/// @param is_at  of @, not of the others
+std::optional<Place> next_place(std::string_view pattern, std::size_t from, bool is_at) {
+    for (std::size_t i = from; i < pattern.size(); ++i) {
+        const std::string_view rest = pattern.substr(i);
+        if (rest.front() == (is_at ? '@' : '#')) {
+            const std::size_t length = std::min(rest.find_first_not_of(rest.front()), rest.size());
+            return Place{i, length, !is_at && length == 1 ? 4 : static_cast<int>(length)};
+        }
+        if (is_at) continue;
+        if (rest.starts_with("%d")) return Place{i, 2, 1};
+        if (rest.starts_with("%0") && rest.size() > 3 && rest[2] >= '1' && rest[2] <= '9' &&
+            rest[3] == 'd')
+            return Place{i, 4, rest[2] - '0'};
+    }
+    return std::nullopt;
+}
+
+/// Not with std::regex, which needs a stack for every character.
+std::vector<Place> places_of_number(std::string_view pattern) {
+    std::vector<Place> places;
+    const auto add = [&](std::size_t from, bool is_at) {
+        while (const std::optional<Place> place = next_place(pattern, from, is_at)) {
+            places.push_back(*place);
+            from = place->begin + place->length;
+        }
+    };
+    add(0, false);
+    if (places.empty()) add(pattern.rfind('/') + 1, true);
+    return places;
 }
 
 }  // namespace
@@ -75,35 +102,25 @@ std::string format_frames(std::vector<int> frames) {
     return text;
 }
 
-bool is_frame_pattern(const std::string& name) {
-    const Places places = places_of_number(name);
-    return std::regex_search(name.substr(places.begin), places.shape);
-}
+bool is_frame_pattern(const std::string& name) { return !places_of_number(name).empty(); }
 
 std::string frame_name(const char* what, const std::string& pattern, int frame) {
-    const Places places = places_of_number(pattern);
-    std::string name = pattern.substr(0, places.begin);
-    std::string rest = pattern.substr(places.begin);
-    bool has_place = false;
-    for (std::smatch match; std::regex_search(rest, match, places.shape); has_place = true) {
-        const bool is_hash = match[0] == "#";
-        const bool is_printf = match[0].str().front() == '%';
-        const int width = is_hash            ? 4
-                          : !is_printf       ? static_cast<int>(match.length())
-                          : match[1].matched ? std::stoi(match[1])
-                                             : 1;
+    std::string name;
+    std::size_t from = 0;
+    for (const Place& place : places_of_number(pattern)) {
         // As printf does, the sign is one of the digits.
-        name += match.prefix().str() + fmt::format("{:0{}d}", frame, width);
-        rest = match.suffix();
+        name +=
+            pattern.substr(from, place.begin - from) + fmt::format("{:0{}d}", frame, place.width);
+        from = place.begin + place.length;
     }
-    if (!has_place) {
+    if (from == 0) {
         throw Error(
             fmt::format("apply: {} is {}; expected a placeholder for the frame number, as in "
                         "shot.%04d.exr, "
                         "shot.####.exr or shot.@@@@.exr",
                         what, pattern));
     }
-    return name + rest;
+    return name + pattern.substr(from);
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -43,8 +43,11 @@ Metering metering_from(const Json& j) {
     luminance.at("minimum").get_to(m.minimum);
     luminance.at("maximum").get_to(m.maximum);
     luminance.at("histogram_average").get_to(m.histogram_average);
-    for (const auto& [percent, value] : luminance.at("percentiles").members())
-        value.get_to(m.percentiles.emplace_back());
+    const Json& percentiles = luminance.at("percentiles");
+    if (!percentiles.members().empty()) {
+        for (const double percent : Metering::kPercents)
+            percentiles.at(shortest(percent)).get_to(m.percentiles.emplace_back());
+    }
     j.at("histogram").get_to(m.histogram);
     const Json& scene = j.at("statistics");
     scene.at("log_average").get_to(m.scene.log_average);

@@ -220,6 +220,22 @@ int AtomicFile::create() {
     return ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
 }
 
+int AtomicFile::write(std::string_view contents) {
+    const int file = create();
+    if (file < 0) return errno;
+    std::size_t written = 0;
+    int error = 0;
+    while (written < contents.size() && error == 0) {
+        const ssize_t n = ::write(file, contents.data() + written, contents.size() - written);
+        if (n > 0) {
+            written += static_cast<std::size_t>(n);
+        } else if (errno != EINTR) {
+            error = errno;
+        }
+    }
+    return ::close(file) != 0 && error == 0 ? errno : error;
+}
+
 int AtomicFile::keep() {
     const int file = ::open(path_.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
     if (file < 0) return errno;
@@ -242,7 +258,8 @@ int AtomicFile::keep() {
     return 0;
 }
 
-void write_text_atomically(const std::string& path, std::string_view contents) {
+namespace {
+void write_whole(const std::string& path, std::string_view contents) {
     const auto refuse = [&](const std::string& reason) {
         throw FileError("write: " + path + ": " + reason);
     };
@@ -250,24 +267,11 @@ void write_text_atomically(const std::string& path, std::string_view contents) {
     AtomicFile target(path);
     if (!target.refusal().empty()) refuse(target.refusal());
     if (const int error = target.check_target()) fail(error);
-    const int file = target.create();
-    if (file < 0) fail(errno);
-    std::size_t written = 0;
-    int error = 0;
-    while (written < contents.size() && error == 0) {
-        const ssize_t n = ::write(file, contents.data() + written, contents.size() - written);
-        if (n > 0) {
-            written += static_cast<std::size_t>(n);
-        } else if (errno != EINTR) {
-            error = errno;
-        }
-    }
-    if (::close(file) != 0 && error == 0) error = errno;
+    int error = target.write(contents);
     if (error == 0) error = target.keep();
     if (error != 0) fail(error);
 }
 
-namespace {
 void make_folder(const fs::path& folder) {
     std::vector<std::string> missing;  // the deepest first: so they are removed
     std::error_code error;
@@ -280,6 +284,11 @@ void make_folder(const fs::path& folder) {
         (void)register_unfinished(path);
 }
 }  // namespace
+
+void write_text_atomically(const std::string& path, std::string_view contents) {
+    remove_leftovers({path});
+    write_whole(path, contents);
+}
 
 void require_writable_file(const std::string& path) {
     const auto refuse = [&](const std::string& reason) {
@@ -296,7 +305,9 @@ void require_writable_file(const std::string& path) {
 void require_writable_folder(const std::string& folder) {
     const fs::path root(folder);
     make_folder(root);
-    AtomicFile probe((root / ".tonewright").string());  // which is never kept
+    const std::string name = (root / ".tonewright").string();
+    remove_leftovers({name});
+    AtomicFile probe(name);  // which is never kept
     const int file = probe.create();
     if (file < 0) throw FileError("write: " + folder + ": " + reason_of(errno));
     ::close(file);
@@ -318,9 +329,13 @@ void write_generated_files(const std::string& folder, const std::vector<Generate
     const auto write = [&](const GeneratedFile& file) {
         const fs::path path = root / file.path;
         make_folder(path.parent_path());
-        write_text_atomically(path.string(), file.contents);
+        write_whole(path.string(), file.contents);
         stale.erase(fs::path(file.path).lexically_normal().string());
     };
+    std::vector<std::string> paths;
+    for (const GeneratedFile& file : files)
+        paths.push_back((root / file.path).string());
+    remove_leftovers(paths);
     for (const GeneratedFile& file : files) {
         if (file.path != last) write(file);
     }

@@ -53,6 +53,9 @@ class TONEWRIGHT_API AtomicFile {
     /// FileCreation.
     /// @returns  a descriptor, which the caller closes; or -1, and an errno in `errno`.
     [[nodiscard]] int create();
+    /// Creates the temporary file with these contents.
+    /// @returns  0 or an errno.
+    [[nodiscard]] int write(std::string_view contents);
     /// Gives the temporary file the permissions of the old one, syncs it and renames it.
     /// @returns  0 or an errno.
     [[nodiscard]] int keep();
@@ -64,7 +67,8 @@ class TONEWRIGHT_API AtomicFile {
     std::atomic<const char*>* unfinished_ = nullptr;
 };
 
-/// Writes a whole file. @throws FileError  "write: <path>: <reason>"
+/// Writes a whole file, and removes what killed runs left of it. @throws FileError  "write: <path>:
+/// <reason>"
 TONEWRIGHT_API void write_text_atomically(const std::string& path, std::string_view contents);
 
 /// Throws what write_text_atomically() will throw, before a long computation.

@@ -3,10 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
-#include <random>
 
 #include "base/atomic_file.h"
 #include "cli/archive.h"
@@ -41,8 +38,14 @@ void write_backup(const std::string& path) {
     std::string backup = path + ".bak";
     for (int number = 2; fs::exists(backup); ++number)
         backup = fmt::format("{}.bak{}", path, number);
+    remove_leftovers({backup});
+    AtomicFile copy(backup);
     std::error_code error;
-    fs::copy_file(path, backup, error);
+    {
+        const FileCreation creation;
+        fs::copy_file(path, copy.path(), error);  // with its permissions
+    }
+    if (!error) error = {copy.keep(), std::generic_category()};
     if (error) throw FileError("write: " + backup + ": " + error.message());
     fmt::print("backup: {}\n", backup);
 }
@@ -52,52 +55,52 @@ std::string counted(std::size_t count, std::string_view noun) {
     return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
-/// Empty: none.
-std::string text_of(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-}
-
-/// Replaces the config after all checks; until then the old one stays.
-void replace_config(const std::string& path, const ExtendedConfig& changed, bool has_backup) {
+/// Replaces the config after all checks; until then the old one stays. A run that is killed between
+/// config and record leaves the new record as NAME.new, which the next run finds.
+void replace_config(const std::string& path, const ExtendedConfig& changed,
+                    const Options& options) {
     namespace fs = std::filesystem;
     const fs::path folder = fs::absolute(path).parent_path();
     std::vector<fs::path> written;
-    // Beside the config, so that its relative paths work. The name cannot be guessed.
-    const fs::path trial = folder / fmt::format(".tonewright-{:08x}-{}", std::random_device()(),
-                                                fs::path(path).filename().string());
     const fs::path record = folder / changed.record.path;
-    const std::string earlier_record = text_of(record);
+    const fs::path new_record = record.string() + ".new";
     std::vector<ExtendedView> views;
     try {
+        require_writable_folder(record.parent_path().string());
         for (const GeneratedFile& file : changed.files) {
             const fs::path table = folder / file.path;
             if (fs::exists(table)) continue;  // its name has the hash of its contents
-            fs::create_directories(table.parent_path());
             write_text_atomically(table.string(), file.contents);
             written.push_back(table);
         }
-        write_text_atomically(trial.string(), changed.text);
-        written.push_back(trial);
-        views = changed.check(trial.string());
-        if (has_backup) write_backup(path);
-        if (!changed.record.contents.empty()) {
-            fs::create_directories(record.parent_path());
-            write_text_atomically(record.string(), changed.record.contents);
-            if (earlier_record.empty()) written.push_back(record);
+        {
+            // Beside the config, so that its relative paths work; never kept.
+            const std::string name = (folder / ".tonewright.ocio").string();
+            remove_leftovers({name});
+            AtomicFile trial(name);
+            if (const int error = trial.write(changed.text))
+                throw FileError("write: " + path + ": " + reason_of(error));
+            views = changed.check(trial.path().string());
         }
+        if (options.has_backup) write_backup(path);
+        written.push_back(new_record);
+        write_text_atomically(new_record.string(), changed.record.contents);
         write_text_atomically(path, changed.text);
-        fs::remove(trial);
-        std::error_code ignored;
+        written.clear();
+        std::error_code error, ignored;
+        if (!options.is_removed) {
+            fs::rename(new_record, record, error);
+        } else if (fs::remove(record, error); !error) {
+            fs::remove(new_record, error);
+        }
+        if (error) throw FileError("write: " + record.string() + ": " + error.message());
         for (const std::string& file : changed.unused_files)
             fs::remove(folder / file, ignored);
-        if (changed.record.contents.empty()) fs::remove(record, ignored);
         fs::remove(record.parent_path(), ignored);  // if it is empty
     } catch (...) {
         std::error_code ignored;
         for (const fs::path& file : written)
             fs::remove(file, ignored);
-        if (!earlier_record.empty()) write_text_atomically(record.string(), earlier_record);
         fs::remove(record.parent_path(), ignored);
         throw;
     }
@@ -144,7 +147,7 @@ int run_config(Options& options) {
             return options.is_removed ? reduce_config(options.into)
                                       : extend_config(options.into, wanted, options.is_updated);
         }();
-        replace_config(options.into, changed, options.has_backup);
+        replace_config(options.into, changed, options);
         return kOk;
     }
     if (options.folder.empty() && options.archive.empty())

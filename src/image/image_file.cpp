@@ -4,6 +4,7 @@
 #include <string_view>
 #include <utility>
 
+#include "base/atomic_file.h"
 #include "base/strings.h"
 #include "image/picture_file.h"
 #include "tonewright/image_io.h"
@@ -23,6 +24,7 @@ void write_image_atomically(const OIIO::ImageBuf& image, const std::string& path
     if (!image.initialized())
         refuse(image.has_error() ? first_line(image.geterror()) : "there is no picture");
     with_memory_for(path, [&] {
+        remove_leftovers({path});
         PictureWriter writer(path, options);
         writer.open(image.spec());
         writer.write_rows(image);

@@ -6,7 +6,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
+#include <iterator>
+#include <system_error>
 
 #include "base/input_file.h"
 #include "base/strings.h"
@@ -22,6 +23,15 @@ constexpr std::size_t kContext = 80;
 
 std::string file_of(const std::string& config) {
     return (fs::absolute(config).parent_path() / AddedRecord::path_of(config)).string();
+}
+
+/// Empty: none.
+std::string text_of(const std::string& path) {
+    std::error_code ignored;
+    if (!fs::exists(path, ignored)) return "";
+    require_regular_file(path);
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
 }
 
 std::vector<std::string> texts(const YAML::Node& list) {
@@ -66,19 +76,16 @@ std::string AddedRecord::path_of(const std::string& config) {
     return "tonewright/" + fs::path(config).filename().string() + ".yaml";
 }
 
-AddedRecord AddedRecord::read(const std::string& config) {
+std::optional<AddedRecord> AddedRecord::find(const std::string& config,
+                                             const std::string& config_text) {
     const std::string path = file_of(config);
-    require_regular_file(path);
-    std::ifstream file(path, std::ios::binary);
-    if (!file) {
-        throw FileError("config: " + config + ": has no record of an earlier --into; " + path +
-                        " is missing");
-    }
-    std::stringstream text;
-    text << file.rdbuf();
+    const std::string mark = mark_of(config_text);
+    std::string text = text_of(path + ".new");
+    text = text.starts_with(mark) ? text.substr(mark.size()) : text_of(path);
+    if (text.empty()) return std::nullopt;
     AddedRecord record;
     try {
-        const YAML::Node root = YAML::Load(text.str());
+        const YAML::Node root = YAML::Load(text);
         for (const YAML::Node& piece : root["added"])
             record.pieces.push_back(
                 {piece["before"].as<std::string>(), piece["text"].as<std::string>()});
@@ -98,7 +105,17 @@ AddedRecord AddedRecord::read(const std::string& config) {
     return record;
 }
 
-std::string AddedRecord::text() const {
+AddedRecord AddedRecord::read(const std::string& config, const std::string& config_text) {
+    if (std::optional<AddedRecord> record = find(config, config_text)) return *std::move(record);
+    throw FileError("config: " + config + ": has no record of an earlier --into; " +
+                    file_of(config) + " is missing");
+}
+
+std::string AddedRecord::mark_of(const std::string& config_text) {
+    return "# Config " + content_hash(config_text) + "\n";
+}
+
+std::string AddedRecord::text(const std::string& config_text) const {
     YAML::Emitter out;
     const auto list = [&](const char* key, const std::vector<std::string>& items) {
         out << YAML::Key << key << YAML::Value << YAML::BeginSeq;
@@ -128,7 +145,8 @@ std::string AddedRecord::text() const {
             << piece.text << YAML::EndMap;
     }
     out << YAML::EndSeq << YAML::EndMap;
-    return "# Written by `tonewright config --into`; --update and --remove read it.\n" +
+    return mark_of(config_text) +
+           "# Written by `tonewright config --into`; --update and --remove read it.\n" +
            std::string(out.c_str()) + "\n";
 }
 

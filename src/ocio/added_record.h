@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,9 +27,17 @@ struct AddedRecord {
 
     /// Its path beside the config: "tonewright/studio.ocio.yaml".
     [[nodiscard]] static std::string path_of(const std::string& config);
+    /// The record of a config with this text. A run that was killed after it replaced the config
+    /// has left the new record as PATH.new.
+    /// @throws FileError  if it is damaged
+    [[nodiscard]] static std::optional<AddedRecord> find(const std::string& config,
+                                                         const std::string& config_text);
     /// @throws FileError  if it is missing or damaged
-    [[nodiscard]] static AddedRecord read(const std::string& config);
-    [[nodiscard]] std::string text() const;
+    [[nodiscard]] static AddedRecord read(const std::string& config,
+                                          const std::string& config_text);
+    /// The first line of a record, which identifies the text of its config.
+    [[nodiscard]] static std::string mark_of(const std::string& config_text);
+    [[nodiscard]] std::string text(const std::string& config_text) const;
 
     /// @param result  the config's text with the insertions
     void add(const std::vector<YamlText::Insertion>& insertions, const std::string& result);

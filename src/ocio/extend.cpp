@@ -203,12 +203,15 @@ std::vector<std::string> unused(const std::string& config, const std::vector<std
     const fs::path folder = fs::absolute(config).parent_path();
     std::error_code ignored;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder / kFolder, ignored)) {
-        const fs::path name = entry.path().filename();
+        fs::path name = entry.path().filename();
+        if (name.extension() == ".new") name = name.stem();
         if (name.extension() != ".yaml" ||
             name == fs::path(AddedRecord::path_of(config)).filename())
             continue;
-        const AddedRecord other = AddedRecord::read((folder / name.stem()).string());
-        kept.insert(other.files.begin(), other.files.end());
+        const std::string path = (folder / name.stem()).string();
+        const auto other =
+            AddedRecord::find(path, fs::exists(path, ignored) ? read_config_text(path) : "");
+        if (other) kept.insert(other->files.begin(), other->files.end());
     }
     std::vector<std::string> result;
     for (const std::string& file : files) {
@@ -226,10 +229,10 @@ bool is_empty(const ConfigOptions& o) {
 
 ExtendedConfig reduce_config(const std::string& path) {
     const std::string text = read_config_text(path);
-    const AddedRecord record = AddedRecord::read(path);
+    const AddedRecord record = AddedRecord::read(path, text);
     ExtendedConfig result;
     result.text = record.without(text, path);
-    result.record = {AddedRecord::path_of(path), ""};
+    result.record = {AddedRecord::path_of(path), AddedRecord::mark_of(result.text)};
     result.unused_files = unused(path, record.files, {});
     const OCIO::ConfigRcPtr left = read_config(path, result.text);
     const std::map<std::string, std::vector<float>> all = pictures_of(read_config(path));
@@ -252,16 +255,15 @@ ExtendedConfig extend_config(const std::string& path, const ConfigOptions& given
     AddedRecord record;
     std::vector<std::string> replaced;
     if (is_updated) {
-        const AddedRecord earlier = AddedRecord::read(path);
+        const AddedRecord earlier = AddedRecord::read(path, text);
         text = earlier.without(text, path);
         replaced = earlier.files;
         if (is_empty(given)) {
             options = earlier.options;
             options.others = given.others;
         }
-    } else if (std::filesystem::exists(std::filesystem::absolute(path).parent_path() /
-                                       AddedRecord::path_of(path))) {
-        record = AddedRecord::read(path);
+    } else {
+        record = AddedRecord::find(path, text).value_or(AddedRecord{});
     }
     record.options = options;
     const OCIO::ConfigRcPtr config = read_config(path, text);
@@ -376,7 +378,7 @@ ExtendedConfig extend_config(const std::string& path, const ConfigOptions& given
     for (const GeneratedFile& file : result.files)
         files.insert(file.path);
     record.files.assign(files.begin(), files.end());
-    result.record = {AddedRecord::path_of(path), record.text()};
+    result.record = {AddedRecord::path_of(path), record.text(result.text)};
     result.unused_files = unused(path, replaced, record.files);
     result.check = [before, hosts, model, path, bounds = [&] {
         std::map<std::string, double> all;

@@ -11,6 +11,32 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
 from pictures import write_exr  # noqa: E402
 
+# A config as a studio has one, with displays that Tonewright knows.
+CONFIG = """ocio_profile_version: 2.1
+environment: {}
+search_path: luts
+roles: {aces_interchange: ACES2065-1, cie_xyz_d65_interchange: CIE-XYZ-D65, data: Raw, scene_linear: ACES2065-1}
+file_rules:
+  - !<Rule> {name: Default, colorspace: ACES2065-1}
+displays:
+  sRGB:
+    - !<View> {name: Raw, colorspace: Raw}
+    - !<View> {name: Video, view_transform: Video, display_colorspace: sRGB}
+active_displays: [sRGB]
+active_views: [Video, Raw]
+view_transforms:
+  - !<ViewTransform>
+    name: Video
+    from_scene_reference: !<BuiltinTransform> {style: UTILITY - ACES-AP0_to_CIE-XYZ-D65_BFD}
+display_colorspaces:
+  - !<ColorSpace> {name: CIE-XYZ-D65}
+  - !<ColorSpace>
+    name: sRGB
+    from_display_reference: !<BuiltinTransform> {style: DISPLAY - CIE-XYZ-D65_to_sRGB}
+colorspaces:
+  - !<ColorSpace> {name: ACES2065-1}
+  - !<ColorSpace> {name: Raw, isdata: true}
+"""
 DATE = 1_600_000_000  # of every input, because outputs without a date get it
 
 

@@ -8,6 +8,7 @@
 //     TONEWRIGHT_FAULT=memory-from:N   allocation N and all later ones fail
 //     TONEWRIGHT_FAULT=file:N[:ERRNO]  call N that writes, creates, syncs or renames (ENOSPC)
 //     TONEWRIGHT_FAULT=short:N         write N takes one byte
+//     TONEWRIGHT_FAULT=kill:N          the process is killed at call N on a file
 //     TONEWRIGHT_FAULT_LOG=FILE        gets `memory N` for each new call stack of an allocation,
 //                                      and `file N NAME` for each call on a file
 #include <dlfcn.h>
@@ -23,6 +24,7 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <cstdarg>
 #include <cstdint>
 #include <cstdio>
@@ -39,7 +41,7 @@ void* __libc_memalign(std::size_t, std::size_t);
 
 namespace {
 
-enum class Kind { none, memory, memory_from, file, short_write };
+enum class Kind { none, memory, memory_from, file, short_write, kill };
 
 Kind kind = Kind::none;
 std::uint64_t wanted = 0;
@@ -112,6 +114,7 @@ bool fails_file(const char* name, bool is_write = false) {
     if (log_file >= 0) log_line("file", number, name);
     is_inside = false;
     if (number != wanted) return false;
+    if (kind == Kind::kill) (void)::raise(SIGKILL);
     if (kind == Kind::file) errno = error_number;
     return kind == Kind::file || (kind == Kind::short_write && is_write);
 }
@@ -138,6 +141,7 @@ __attribute__((constructor)) void arm() {
         kind = is("memory")        ? Kind::memory
                : is("memory-from") ? Kind::memory_from
                : is("file")        ? Kind::file
+               : is("kill")        ? Kind::kill
                                    : Kind::short_write;
         char* end = nullptr;
         wanted = std::strtoull(colon + 1, &end, 10);

@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Memory and disks that fail at one call: the command ends with one line and exit code 3, and leaves no partial file.
 
-    python3 tests/faults/test_faults.py build/release/bin/tonewright build/release/tests/tonewright_faults.so [JOB...]
+    python3 tests/faults/test_faults.py build/release/bin/tonewright build/release/tests/tonewright_faults.so [JOB... into]
         [--points N] [--only FAULT]
 
 For each job the shim counts the distinct call stacks of allocations and the calls on files, then one run for each of them makes
 it fail: for all calls on files, and for N call stacks (default 60). A run may end well where the program goes on without the
-memory, as a cache does: then its output is that of an unbroken run. The last line is `N passed, M failed`.
+memory, as a cache does: then its output is that of an unbroken run. Runs are also killed at their calls on files.
+
+The job `into` does the same to `config --into`, --update and --remove. After a failure, the folder has the old files. After a kill, the
+config is the old or the new one, and later runs update it and remove everything that was added. The last line is `N passed, M
+failed`.
 """
 
 import argparse
@@ -14,6 +18,7 @@ import errno
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -22,6 +27,9 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
 from pictures import Report  # noqa: E402
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "cli"))
+from shots import CONFIG  # noqa: E402
 
 OK, NO_FILE = 0, 3
 OLD = b"the old file"
@@ -84,6 +92,10 @@ class Job:
         """None, or what is wrong with a run."""
         code, lines, output, left = self.run(fault)
         said = f"{self.name} {fault}: exit {code}, {lines}"
+        if fault.startswith("kill"):
+            is_whole = self.target is None or output in (OLD, whole)
+            left = [name for name in left if not name.startswith(".")]
+            return None if code == -signal.SIGKILL and is_whole and not left else f"{said}; left {left}, a whole file: {is_whole}"
         if code not in (OK, NO_FILE):
             return f"{said}; expected 0 or 3"
         if left:
@@ -120,14 +132,95 @@ def faults_of(job, points):
         "quota": [f"file:{number}:{errno.EDQUOT}" for number, _ in spread(files, 10)],
         "I/O error": [f"file:{number}:{errno.EIO}" for number, _ in spread(files, 40)],
         "one byte written": [f"short:{number}" for number, name in files if "write" in name and name != "fwrite"],
+        "killed": [f"kill:{number}" for number, _ in spread(files, points)],
     }, whole, total
+
+
+class Into:
+    """`config --into` and what follows it, each in a folder of its own."""
+
+    STEPS = (["--views", "hable,clamp", "--looks", "none", "--backup"], ["--update", "--views", "reinhard"], ["--remove"])
+
+    def __init__(self, command, shim, scratch):
+        self.command, self.shim, self.scratch = command, shim, scratch
+
+    def run(self, folder, *arguments, **variables):
+        environment = {**os.environ, "XDG_CACHE_HOME": str(self.scratch / "cache"), **variables}
+        if variables:
+            environment["LD_PRELOAD"] = str(self.shim)
+        return subprocess.run([self.command, "config", "--into", "studio.ocio", "-q", *arguments], cwd=folder, env=environment,
+                              capture_output=True, text=True, check=False, timeout=SECONDS)
+
+    @staticmethod
+    def files(folder):
+        return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+    def after_failure(self, number, step, old, new):
+        """None, or what is wrong after a call on a file that fails."""
+        with tempfile.TemporaryDirectory(dir=self.scratch) as name:
+            folder = Path(name) / "config"
+            shutil.copytree(old, folder)
+            done = self.run(folder, *self.STEPS[step], TONEWRIGHT_FAULT=f"file:{number}:{errno.ENOSPC}")
+            if done.returncode == OK and not done.stderr and self.files(folder) == self.files(new):
+                return None
+            found = {name: found for name, found in self.files(folder).items() if ".bak" not in name}
+            is_said = done.returncode == NO_FILE and done.stderr.startswith("tonewright: ") and done.stderr.count("\n") == 1
+            is_old = found == {name: found for name, found in self.files(old).items() if ".bak" not in name}
+            # Where only the record's last name is missing, the next run finds it.
+            is_new = found["studio.ocio"] == self.files(new)["studio.ocio"] and "tonewright/studio.ocio.yaml.new" in found
+            return None if is_said and (is_old or is_new) else f"{number} fails: exit {done.returncode}: {done.stderr}; {sorted(found)}"
+
+    def after_kill(self, number, step, old, new):
+        """None, or what is wrong after a kill at a call on a file."""
+        with tempfile.TemporaryDirectory(dir=self.scratch) as name:
+            folder = Path(name) / "config"
+            config = folder / "studio.ocio"
+            shutil.copytree(old, folder)
+            killed = self.run(folder, *self.STEPS[step], TONEWRIGHT_FAULT=f"kill:{number}")
+            if killed.returncode != -signal.SIGKILL:
+                return f"{number}: exit {killed.returncode}: {killed.stderr}"
+            after, before = ((place / "studio.ocio").read_bytes() for place in (new, old))
+            if config.read_bytes() not in (before, after):
+                return f"{number}: neither the old config nor the new one"
+            if any(path.read_text() != CONFIG for path in folder.glob("studio.ocio.bak*")):
+                return f"{number}: a partial backup"
+            rest = [] if config.read_bytes() == after else [self.STEPS[step]]
+            rest += [["--views", "clamp"], ["--remove"]] if step == 2 else [["--update"], ["--remove"]]
+            for arguments in rest:
+                done = self.run(folder, *arguments)
+                if done.returncode or done.stderr:
+                    return f"{number}: then {' '.join(arguments)}: exit {done.returncode}: {done.stderr}"
+                if arguments == ["--update"] and config.read_bytes() != after:
+                    return f"{number}: --update makes another config"
+            left = sorted(path.name for path in folder.rglob("*") if path.name != "studio.ocio" and ".bak" not in path.name)
+            # A run that is killed after it replaced the config may leave tables that nothing uses.
+            left = [name for name in left if name.startswith(".") or not name.endswith(".clf") and name != "tonewright"]
+            return f"{number}: left {left}" if left or config.read_text() != CONFIG else None
+
+    def check(self, report, pool, points):
+        old = self.scratch / "into.0"
+        old.mkdir()
+        (old / "studio.ocio").write_text(CONFIG)
+        for step, arguments in enumerate(self.STEPS):
+            new = self.scratch / f"into.{step + 1}"
+            shutil.copytree(old, new)
+            log = self.scratch / f"into.{step}.log"
+            done = self.run(new, *arguments, TONEWRIGHT_FAULT_LOG=str(log))
+            calls = [line.split() for line in log.read_text().splitlines() if line.startswith("file")]
+            numbers = [int(number) for _, number, name in calls if name not in ("fwrite", "fflush")]  # of messages
+            moments = spread(numbers, points)
+            for what, check in (("killed", self.after_kill), ("failures", self.after_failure)):
+                wrong = [text for text in pool.map(lambda number: check(number, step, old, new), moments) if text]
+                report.check(f"config --into {' '.join(arguments)}: {what} at {len(moments)} of {len(numbers)} calls on files",
+                             done.returncode == OK and moments and not wrong, "\n     ".join([done.stderr, *wrong[:10]]))
+            old = new
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("command", type=Path)
     parser.add_argument("shim", type=Path)
-    parser.add_argument("jobs", nargs="*", default=list(JOBS), metavar="JOB")
+    parser.add_argument("jobs", nargs="*", default=[*JOBS, "into"], metavar="JOB")
     parser.add_argument("--points", type=int, metavar="N", default=POINTS, help="call stacks of allocations (default %(default)s)")
     parser.add_argument("--only", metavar="FAULT", help="run this one and show it, such as memory:120")
     arguments = parser.parse_args()
@@ -138,6 +231,9 @@ def main():
         command = arguments.command.resolve()
         subprocess.run([command, "chart", "-o", picture, "--width", "320", "--height", "180"], check=True)
         for job_name in arguments.jobs:
+            if job_name == "into":
+                Into(command, arguments.shim.resolve(), scratch).check(report, pool, arguments.points)
+                continue
             job = Job(command, arguments.shim.resolve(), job_name, picture, scratch)
             if arguments.only:
                 code, lines, output, left = job.run(arguments.only)

@@ -336,6 +336,7 @@ int run_apply(const ApplyOptions& given) {
         return apply_to_files(tonemapper, options, files.files, write);
     }
     FrameFiles& file = files.files.front();
+    remove_leftovers({file.out});
     Warnings warnings(file.out);
     write.warn = warnings.hearer();
     const ResultLine result;

@@ -73,8 +73,8 @@ struct ExtendedView {
 struct ExtendedConfig {
     /// Tables, by their paths relative to the config; their names have a hash of their contents.
     std::vector<GeneratedFile> files;
-    /// A file for later updates and removals, relative to the config. If the text is empty, delete
-    /// the file.
+    /// A file for later updates and removals, relative to the config. Write it as PATH.new before
+    /// you replace the config, and rename it afterward. After reduce_config(), remove both instead.
     GeneratedFile record;
     /// Tables that are no longer used, by their paths relative to the config.
     std::vector<std::string> unused_files;

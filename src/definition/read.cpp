@@ -112,11 +112,11 @@ class Table {
             fail(value.at, key + " is " + described(value) + "; expected a finite number");
         return value.number;
     }
-    static const std::vector<Value>& items_of(const Value& value, const std::string& key,
+    static const std::vector<Value>& items_of(const Value& value, std::string_view key,
                                               std::size_t count) {
         if (value.kind != Value::Kind::array || value.items.size() != count) {
-            fail(value.at, key + " is " + described(value) + "; expected an array of " +
-                               std::to_string(count));
+            fail(value.at, std::string(key) + " is " + described(value) +
+                               "; expected an array of " + std::to_string(count));
         }
         return value.items;
     }

@@ -17,6 +17,7 @@
 #include <fstream>
 #include <map>
 #include <memory>
+#include <new>
 #include <set>
 #include <system_error>
 #include <utility>
@@ -116,9 +117,9 @@ std::vector<std::string> parts_of_temporary(const std::string& name) {
     // <regex> takes five seconds to compile; this function takes none.
     static const regex_t pattern = [] {
         regex_t compiled;
-        (void)::regcomp(&compiled,
-                        R"(^\.(.+)\.([0-9a-f]{8})\.([0-9]{1,9})\.[0-9a-f]+\.tmp(\..*)?$)",
-                        REG_EXTENDED);
+        if (::regcomp(&compiled, R"(^\.(.+)\.([0-9a-f]{8})\.([0-9]{1,9})\.[0-9a-f]+\.tmp(\..*)?$)",
+                      REG_EXTENDED) != 0)
+            throw std::bad_alloc();
         return compiled;
     }();
     std::array<regmatch_t, 5> match;

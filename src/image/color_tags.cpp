@@ -2,6 +2,7 @@
 #include "image/color_tags.h"
 #include "base/format_number.h"
 
+#include <OpenImageIO/strutil.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -133,15 +134,28 @@ void tag(const Claim& claim, OIIO::ImageSpec& spec) {
 
 }  // namespace
 
+void erase_attributes(OIIO::ImageSpec& spec, OIIO::string_view name) {
+    const bool begins_so = name.back() == '*';
+    if (begins_so) name.remove_suffix(1);
+    auto& all = spec.extra_attribs;
+    all.erase(std::remove_if(all.begin(), all.end(),
+                             [&](const OIIO::ParamValue& attribute) {
+                                 return begins_so
+                                            ? OIIO::Strutil::istarts_with(attribute.name(), name)
+                                            : OIIO::Strutil::iequals(attribute.name(), name);
+                             }),
+              all.end());
+}
+
 void tag_as_unknown(OIIO::ImageSpec& spec) {
-    // Regular expressions, ignoring case. Each of these attributes described the source. If a
+    // Each of these attributes described the source. If a
     // writer prefers one of them to oiio:ColorSpace (as DPX does), the file would be wrong.
     // oiio:Gamma repeats the name "GammaX.Y", is deprecated, and makes OIIO's TGA writer divide by
     // a power of alpha.
     for (const char* stale : {
              "oiio:ColorSpace",
              "oiio:Gamma",
-             "ICCProfile.*",
+             "ICCProfile*",
              "photoshop:ICCProfile",
              "CICP",
              "colorInteropID",
@@ -163,7 +177,7 @@ void tag_as_unknown(OIIO::ImageSpec& spec) {
              "rla:BlueChroma",
              "rla:WhitePoint",
          }) {
-        spec.erase_attribute(stale);
+        erase_attributes(spec, stale);
     }
 }
 

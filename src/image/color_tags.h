@@ -13,6 +13,11 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
+/// Removes attributes, and needs no memory for it. Where memory runs out,
+/// ImageSpec::erase_attribute() says nothing and leaves a list with other attributes than before.
+/// @param name  in any case; with `*` at its end, all names that begin so
+TONEWRIGHT_API void erase_attributes(OIIO::ImageSpec& spec, OIIO::string_view name);
+
 /// Sets the metadata of a picture after `view`: `oiio:ColorSpace`, and `chromaticities` if they are
 /// not those of Rec.709. Removes the description of the source's colors.
 TONEWRIGHT_API void tag_as_result_of(const View& view, OIIO::ImageSpec& spec);

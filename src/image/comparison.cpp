@@ -16,6 +16,7 @@
 
 #include "base/strings.h"
 #include "image/canvas.h"
+#include "image/color_tags.h"
 #include "image/contact_sheet.h"
 #include "image/source_picture.h"
 #include "tonewright/error.h"
@@ -51,7 +52,7 @@ ImageBuf shown_scene(const ImageBuf& picture, const ROI& part) {
     spec.full_width = window.width();
     spec.full_height = window.height();
     spec.extra_attribs = picture.spec().extra_attribs;
-    spec.erase_attribute("PixelAspectRatio");
+    erase_attributes(spec, "PixelAspectRatio");
     spec.alpha_channel = -1;
     for (int c = 0; c < count; ++c) {
         const int from = channels[static_cast<std::size_t>(c)];

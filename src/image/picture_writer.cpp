@@ -280,7 +280,7 @@ ImageSpec PictureWriter::plan(const ImageSpec& picture) {
     spec.channelformats.clear();
     // A single level is not a texture: OpenEXR's writer would wait for the others.
     if (spec.get_string_attribute("textureformat") == "Plain Texture")
-        spec.erase_attribute("textureformat");
+        erase_attributes(spec, "textureformat");
     channels_ = channels_to_write(spec, *out_, options_.alpha == WriteOptions::Alpha::ignore);
     if (!channels_.empty()) {
         // One pixel shows the format's names and order of channels.
@@ -339,14 +339,14 @@ ImageSpec PictureWriter::plan(const ImageSpec& picture) {
     }
     spec.set_format(type == OIIO::TypeUnknown ? picture.format : type);
     if (type != OIIO::TypeUnknown)
-        spec.erase_attribute("oiio:BitsPerSample");  // overrules the type
+        erase_attributes(spec, "oiio:BitsPerSample");  // overrules the type
     if (!options_.compression.empty()) {
         spec.attribute("compression", options_.compression);
     } else if (options_.quality > 0) {
-        spec.erase_attribute("compression");  // the source's may have a quality of its own
+        erase_attributes(spec, "compression");  // the source's may have a quality of its own
     }
     if (options_.quality > 0) spec.attribute("CompressionQuality", options_.quality);
-    if (format() != "openexr" && format() != "png") spec.erase_attribute("tonewright:.*");
+    if (format() != "openexr" && format() != "png") erase_attributes(spec, "tonewright:*");
     return spec;
 }
 

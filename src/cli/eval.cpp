@@ -10,6 +10,7 @@
 
 #include "base/atomic_file.h"
 #include "base/input_file.h"
+#include "base/strings.h"
 #include "cli/color_line.h"
 #include "cli/picture_commands.h"
 #include "cli/shared_options.h"

@@ -187,6 +187,10 @@ for kind, text in enumerate((CONFIG, CONFIG, RECORD)):
 (folder_of("config") / "windows").write_bytes(b"\1" + ("\N{BYTE ORDER MARK}" + CONFIG).replace("\n", "\r\n").encode())
 (folder_of("config") / "flow").write_bytes(b'\1{a: [b, "c"], d: {e: [], f: [g]}, h: "i", # j\n}')
 
+(folder_of("config") / "utf16").write_bytes(b"\1" + ('a: "' + 20 * "\N{CJK UNIFIED IDEOGRAPH-4E00}" + '"\nb: [c]\n').encode("utf-16"))
+(folder_of("config") / "cycle").write_bytes(b"\0" + CONFIG.replace("!<CDLTransform> {slope: [2, 1, 1]}",
+                                                                   "&a !<GroupTransform> {children: [*a]}").encode())
+
 for size in range(5):
     for channels in (2, 3, 66, 131):
         (folder_of("picture") / f"{size}_{channels}").write_bytes(bytes([size, 0, 0, channels]) + struct.pack("<3f", 0, 0.5, 2))

@@ -86,7 +86,7 @@ void read_number_cache(const std::string& text) {
     static const bool is_set = ::setenv("XDG_CACHE_HOME", folder.path().c_str(), 1) == 0;
     if (!is_set) std::abort();
     const std::string key = text.substr(0, std::min<std::size_t>(text.find('\n'), 40));
-    folder.write("tonewright/x_" + content_hash(key) + ".numbers", text);
+    (void)folder.write("tonewright/x_" + content_hash(key) + ".numbers", text);
     const std::vector<double> made = {0.5, 2};
     (void)cached_numbers("x", key, [&] { return made; });
     if (cached_numbers("x", key, [&] { return made; }) !=

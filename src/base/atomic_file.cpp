@@ -334,6 +334,7 @@ void write_generated_files(const std::string& folder, const std::vector<Generate
         stale.erase(fs::path(file.path).lexically_normal().string());
     };
     std::vector<std::string> paths;
+    paths.reserve(files.size());
     for (const GeneratedFile& file : files)
         paths.push_back((root / file.path).string());
     remove_leftovers(paths);

@@ -42,6 +42,7 @@ NOT_RUN = {
     "dpkg-buildpackage": "builds everything; `./run release` runs it",
     "tests/install/release.sh": "needs the files of a release",
     "tests/install/debian.sh": "needs a Debian mirror",
+    "python3 tests/faults/test_faults.py": "takes minutes; the test faults runs it with fewer points",
     "cmake --install": "the test install runs it",
     "g++ main.cpp": "the test install compiles and links programs so",
     "export OIIO_LIBRARY_PATH=": "a path of an installed plugin; the test clients.plugin runs the next commands",

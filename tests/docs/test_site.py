@@ -147,13 +147,15 @@ def check_browser(report, site, folder):
             report.check(f"{len(SHOWN)} pages fit a {screen}'s screen, {width} pixels wide", not wide, "\n     ".join(wide))
         page.resize(*SCREENS["desk"])
         go(page, root + "index.html")
-        page.run("""(() => { document.querySelector('#__search').checked = true;
+        # Typed again until the theme has read its index.
+        search = """(() => { document.querySelector('#__search').checked = true;
             const query = document.querySelector('.md-search__input'); query.focus(); query.value = 'uncharted';
-            query.dispatchEvent(new Event('keyup', { bubbles: true })); query.dispatchEvent(new Event('input', { bubbles: true })); })()""")
+            query.dispatchEvent(new Event('keyup', { bubbles: true })); query.dispatchEvent(new Event('input', { bubbles: true })); })()"""
         found = "[...document.querySelectorAll('.md-search-result__link')].some((link) => link.href.includes('operators/hable.html'))"
         end = time.monotonic() + 30
         while not page.run(found) and time.monotonic() < end:
-            page.receive(0.2)
+            page.run(search)
+            page.receive(1)
         report.check("a search for a word of Hable's title finds its page", page.run(found))
         others = sorted({address for address in page.requests if not address.startswith((root, "about:", "data:", "blob:"))})
         report.check(f"{len(page.requests)} requests of the browser, all of them to this server", page.requests and not others, others)

@@ -98,7 +98,8 @@ def check_names(shots):
                        and contents(folder) == {"out.-7.png": shots.truth["out.0007.png"]}, f"{lines} {list(contents(folder))}")
     code, lines = apply(shots.command, "in." + 100_000 * "#" + ".exr", "out.@@.png", *HABLE, "--frames", "7",
                         folder=shots.folder)
-    shots.report.check("a pattern that is longer than any name", code == FAILED and "File name too long" in lines[0],
+    shots.report.check("a pattern that is longer than any name",
+                       code == FAILED and len(lines) == 2 and lines[0].startswith("tonewright: apply: in.000"),
                        f"{code} {[line[-100:] for line in lines]}")
 
 

@@ -148,10 +148,9 @@ void erase_attributes(OIIO::ImageSpec& spec, OIIO::string_view name) {
 }
 
 void tag_as_unknown(OIIO::ImageSpec& spec) {
-    // Each of these attributes described the source. If a
-    // writer prefers one of them to oiio:ColorSpace (as DPX does), the file would be wrong.
-    // oiio:Gamma repeats the name "GammaX.Y", is deprecated, and makes OIIO's TGA writer divide by
-    // a power of alpha.
+    // Each of these attributes described the source. If a writer prefers one of them to
+    // oiio:ColorSpace (as DPX does), the file would be wrong. oiio:Gamma repeats the name
+    // "GammaX.Y", is deprecated, and makes OIIO's TGA writer divide by a power of alpha.
     for (const char* stale : {
              "oiio:ColorSpace",
              "oiio:Gamma",

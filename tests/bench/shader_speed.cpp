@@ -143,6 +143,8 @@ void measure(const std::string& name, const std::string& text) {
          std::regex_search(at, text.cend(), found, std::regex(R"(vec3 (\w+)\(vec3 scene\))"));
          at = found.suffix().first)
         function = found[1];
+    if (function.empty())
+        throw std::runtime_error(name + ": has no function `vec3 NAME(vec3 scene)`");
     const auto with_tail = [&](const char* tail) {
         return "#version 430\n" + text +
                std::regex_replace(std::string(tail), std::regex("FUNCTION"), function);

@@ -369,7 +369,7 @@ class Generator : public Xbyak::CodeGenerator {
             const Xbyak::Xmm rb = in_register(b, step.wide);
             if (!is_in_memory(c)) return fused(step, over_a, over_a_c_first, over_c);
             const Xbyak::Address mc = in_memory(c);
-            if (!dies(a) && !a.is_constant() && dies(b)) {
+            if (!dies(a) && !a.is_constant() && (dies(b) || b.is_constant())) {
                 over_a(result_over(step, b, rb), ra, mc);
             } else {
                 over_a(result_over(step, a, ra), rb, mc);

@@ -903,9 +903,9 @@ void run(const Code& code, const Numbers& numbers, const std::array<const float*
 }
 
 #if HWY_TARGET <= HWY_AVX3
-constexpr std::optional<VectorMachine> kMachine = VectorMachine{16, 32, true, 115};
+constexpr std::optional<VectorMachine> kMachine = VectorMachine{16, 32, true, 90};
 #elif HWY_TARGET <= HWY_AVX2
-constexpr std::optional<VectorMachine> kMachine = VectorMachine{8, 16, false, 80};
+constexpr std::optional<VectorMachine> kMachine = VectorMachine{8, 16, false, 50};
 #else
 constexpr std::optional<VectorMachine> kMachine;
 #endif

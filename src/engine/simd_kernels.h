@@ -237,9 +237,8 @@ struct VectorMachine {
     /// Registers for masks, broadcasts in operands, permutes of whole tables, exponents.
     bool has_avx512;
     /// Vector instructions of a part. Measured: longer ones leave the processor waiting for their
-    /// own results (AVX-512, ACES 2.0 with 400: a tenth slower, in one part: a quarter; AVX2,
-    /// Khronos Neutral with 115: a tenth slower), much shorter ones write more values to the tile
-    /// than they compute.
+    /// own results (AVX-512, ACES 1.3 with 115: 6 % slower; AVX2, Khronos Neutral with 80: 15 %),
+    /// much shorter ones write more values to the tile than they compute.
     int longest_part;
 
     [[nodiscard]] constexpr int bytes() const { return lanes * 4; }

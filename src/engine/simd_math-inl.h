@@ -41,6 +41,20 @@ HWY_INLINE Vec<D> horner(D d, Vec<D> x, double c0, C... c) {
     return hn::MulAdd(horner(d, x, c...), x, set(d, c0));
 }
 
+/// The same with even and odd powers apart: a shorter chain.
+template <class D, class... C>
+HWY_INLINE Vec<D> even_odd(D d, Vec<D> x, C... c) {
+    constexpr int n = sizeof...(C);
+    const double coefficient[n] = {c...};
+    const auto z = hn::Mul(x, x);
+    Vec<D> sum[2];
+    for (int k = n - 1; k >= 0; --k) {
+        const auto here = set(d, coefficient[k]);
+        sum[k % 2] = k < n - 2 ? hn::MulAdd(sum[k % 2], z, here) : here;
+    }
+    return hn::MulAdd(sum[1], x, sum[0]);
+}
+
 /// NaN gives -limit.
 template <class D>
 HWY_INLINE Vec<D> limited(D d, Vec<D> x, double limit) {
@@ -120,34 +134,42 @@ HWY_INLINE void split(D d, Vec<D> x, Vec<D>& e, Vec<D>& f) {
     }
 }
 
-/// Beyond these powers of two every number is 0 or infinity.
+/// Beyond these powers of two every number is 0 or infinity; up to the others it is normal.
 template <class D>
 inline constexpr double kLargestExponent = kIsDouble<D> ? 2000 : 250;
-
-/// @param is_limited  n is within +-kLargestExponent
 template <class D>
-HWY_INLINE Vec<D> scale(D d, Vec<D> x, Vec<D> n, bool is_limited) {
+inline constexpr double kLargestNormalExponent = kIsDouble<D> ? 1022 : 126;
+/// The logarithm of a positive number is not larger than this, and larger than its negative.
+template <class D>
+inline constexpr double kLargestLog2 = kIsDouble<D> ? 1075 : 150;
+
+/// @param largest  of |n|; above kLargestExponent, n is limited to that
+template <class D>
+HWY_INLINE Vec<D> scale(D d, Vec<D> x, Vec<D> n, double largest) {
     if constexpr (kMayHaveExponents) {
         if (has_exponents(d)) return scale_by(x, n);
     }
-    if (!is_limited) n = limited(d, n, kLargestExponent<D>);
-    // In two factors, so that results outside the normal numbers are rounded once, or reach 0 or
-    // infinity.
+    if (largest > kLargestExponent<D>) n = limited(d, n, kLargestExponent<D>);
+    const bool is_normal = largest <= kLargestNormalExponent<D>;
+    // Else in two factors, so that results outside the normal numbers are rounded once, or reach 0
+    // or infinity.
     const auto tag = bits_tag(d);
     if constexpr (kIsDouble<D>) {
-        const auto half = hn::Floor(hn::Mul(n, set(d, 0.5)));
         const auto power_of_two = [d, tag](auto k) HWY_ATTR {
             const auto whole = hn::BitCast(tag, hn::Add(k, set(d, 0x1p52 + 1023)));
             return hn::BitCast(d, hn::ShiftLeft<52>(whole));
         };
+        if (is_normal) return hn::Mul(x, power_of_two(n));
+        const auto half = hn::Floor(hn::Mul(n, set(d, 0.5)));
         return hn::Mul(hn::Mul(x, power_of_two(half)), power_of_two(hn::Sub(n, half)));
     } else {
-        const auto whole = hn::ConvertTo(tag, n);
-        const auto half = hn::ShiftRight<1>(whole);
         const auto power_of_two = [d, tag](auto k) HWY_ATTR {
             const auto biased = hn::Add(k, hn::Set(tag, std::int32_t{127}));
             return hn::BitCast(d, hn::ShiftLeft<23>(biased));
         };
+        const auto whole = hn::ConvertTo(tag, n);
+        if (is_normal) return hn::Mul(x, power_of_two(whole));
+        const auto half = hn::ShiftRight<1>(whole);
         return hn::Mul(hn::Mul(x, power_of_two(half)), power_of_two(hn::Sub(whole, half)));
     }
 }
@@ -155,15 +177,16 @@ HWY_INLINE Vec<D> scale(D d, Vec<D> x, Vec<D> n, bool is_limited) {
 // ---------------------------------------------------------------------------------------------
 // Exponential, logarithm
 
-/// 2^r for r in [-1/2, 1/2]; 2^-28.9 in float, 2^-58 in double.
+// Polynomials in double are as exact as a result needs that becomes a float, not as doubles are.
+
+/// 2^r for r in [-1/2, 1/2]; 2^-28.9 in float, 2^-45.9 in double.
 template <class D>
 HWY_INLINE Vec<D> exp2_fraction(D d, Vec<D> r) {
     if constexpr (kIsDouble<D>) {
         const auto p =
-            horner(d, r, 0.6931471805599453, 0.2402265069591013, 0.05550410866482009,
-                   0.009618129107594187, 0.0013333558146773998, 0.00015403530457037794,
-                   1.5252733493437096e-05, 1.3215435315483844e-06, 1.0178199518826279e-07,
-                   7.073778059560721e-09, 4.4347715552879237e-10);
+            even_odd(d, r, 0.6931471805598851, 0.24022650695722841, 0.05550410866841757,
+                     0.009618129181160442, 0.0013333557625206589, 0.00015403440885993974,
+                     1.525299014348045e-05, 1.325833521451359e-06, 1.0148320507441935e-07);
         return hn::MulAdd(p, r, set(d, 1));
     } else {
         const auto p = horner(d, r, 0.6931471824645996, 0.24022647738456726, 0.055503327399492264,
@@ -173,11 +196,15 @@ HWY_INLINE Vec<D> exp2_fraction(D d, Vec<D> r) {
 }
 
 /// 2^x.
+/// @param largest  of |x|
 template <class D>
-HWY_INLINE Vec<D> exp2(D d, Vec<D> x) {
-    x = limited(d, x, kLargestExponent<D>);
+HWY_INLINE Vec<D> exp2(D d, Vec<D> x, double largest = kInfinity) {
+    if (largest > kLargestExponent<D>) {
+        largest = kLargestExponent<D>;
+        x = limited(d, x, largest);
+    }
     const auto n = hn::Round(x);
-    return scale(d, exp2_fraction(d, hn::Sub(x, n)), n, true);
+    return scale(d, exp2_fraction(d, hn::Sub(x, n)), n, largest);
 }
 
 /// 1/ln 2, rounded to float.
@@ -186,23 +213,21 @@ inline constexpr double kLog2e = 1.4426950216293335;
 /// log2(1 + f) - kLog2e f for 1 + f in [3/4, 3/2), in float; 2^-27.8 of the logarithm.
 template <class D>
 HWY_INLINE Vec<D> log2_curvature(D d, Vec<D> f) {
-    // Even and odd powers apart: a shorter chain. The first coefficient is the rest of 1/ln 2.
-    const auto z = hn::Mul(f, f);
-    const auto even = horner(d, z, 1.327158027919495e-08, 0.48090076446533203, 0.2883840501308441,
-                             0.2091008722782135, 0.15066714584827423);
-    const auto odd = horner(d, z, -0.7213475108146667, -0.3606748580932617, -0.24014823138713837,
-                            -0.19027815759181976, -0.06434474885463715);
-    return hn::Mul(f, hn::MulAdd(odd, f, even));
+    // The first coefficient is the rest of 1/ln 2.
+    const auto q =
+        even_odd(d, f, 1.327158027919495e-08, -0.7213475108146667, 0.48090076446533203,
+                 -0.3606748580932617, 0.2883840501308441, -0.24014823138713837, 0.2091008722782135,
+                 -0.19027815759181976, 0.15066714584827423, -0.06434474885463715);
+    return hn::Mul(f, q);
 }
 
-/// log2(1 + f) in double by s = f/(2+f): log2((1+s)/(1-s)); 2^-62.
+/// log2(1 + f) in double by s = f/(2+f): log2((1+s)/(1-s)); 2^-49.
 template <class D>
 HWY_INLINE Vec<D> log2_fraction(D d, Vec<D> f) {
     const auto s = hn::Div(f, hn::Add(f, set(d, 2)));
     const auto z = hn::Mul(s, s);
-    const auto p = horner(d, z, 0.9617966939259746, 0.5770780163563926, 0.4121985828886401,
-                          0.32059892760850184, 0.26230600942494436, 0.222046238639155,
-                          0.19006442778763416, 0.19964825707152564);
+    const auto p = even_odd(d, z, 0.961796693918524, 0.5770780199671594, 0.41219800183780014,
+                            0.32064179500391204, 0.2607156537296817, 0.25067507324819643);
     return hn::MulAdd(hn::Mul(s, z), p, hn::Mul(s, set(d, 2.8853900817779268)));
 }
 
@@ -225,11 +250,12 @@ HWY_INLINE Vec<D> log2(D d, Vec<D> x) {
 // Powers
 
 /// a^b in double for a > 0.
+/// @param largest  of |b|
 template <class D>
-HWY_INLINE Vec<D> power_double(D d, Vec<D> a, Vec<D> b) {
+HWY_INLINE Vec<D> power_double(D d, Vec<D> a, Vec<D> b, double largest = kInfinity) {
     Vec<D> e, f;
     split(d, a, e, f);
-    return exp2(d, hn::Mul(b, hn::Add(e, log2_fraction(d, f))));
+    return exp2(d, hn::Mul(b, hn::Add(e, log2_fraction(d, f))), largest * kLargestLog2<D>);
 }
 
 /// Float a^b for a > 0, with the logarithm in double: for exponents of any size.
@@ -252,7 +278,7 @@ HWY_INLINE Vec<D> power_float(D d, Vec<D> a, const Doubles& b) {
         whole.half[h] = hn::Round(p);
         rest.half[h] = hn::Sub(p, whole.half[h]);
     }
-    return scale(d, exp2_fraction(d, demote(rest)), demote(whole), true);
+    return scale(d, exp2_fraction(d, demote(rest)), demote(whole), kLargestExponent<D>);
 }
 
 /// What a^b is where a is not positive, given |a|^b.
@@ -300,7 +326,8 @@ HWY_INLINE Vec<D> power_near(D d, Vec<D> x, double y) {
     r = hn::MulAdd(set(d, slope_hi), f, r);
     r = hn::MulAdd(vy, curvature, r);
     r = hn::Add(r, hn::MulAdd(set(d, slope - slope_hi), f, hn::Mul(set(d, y - y_hi), e)));
-    return power_of_any(d, x, y, scale(d, exp2_fraction(d, r), n, false));
+    const double largest = std::fabs(y) * kLargestLog2<D>;
+    return power_of_any(d, x, y, scale(d, exp2_fraction(d, r), n, largest));
 }
 
 /// a^b.
@@ -320,7 +347,7 @@ HWY_INLINE Vec<D> power(D d, Vec<D> a, Vec<D> b) {
 template <class D>
 HWY_INLINE Vec<D> power(D d, Vec<D> a, double b) {
     if constexpr (kIsDouble<D>) {
-        return power_of_any(d, a, b, power_double(d, a, set(d, b)));
+        return power_of_any(d, a, b, power_double(d, a, set(d, b), std::fabs(b)));
     } else {
         Doubles wide;
         for (int h = 0; h < kHalves; ++h)
@@ -380,11 +407,10 @@ HWY_INLINE Vec<D> atan2(D d, Vec<D> y, Vec<D> x) {
     const auto bottom = hn::IfThenElse(far, hn::Add(small, large), large);
     const auto t = hn::IfThenElseZero(hn::Gt(large, hn::Zero(d)), hn::Div(top, bottom));
     const auto z = hn::Mul(t, t);
-    // 2^-64
-    const auto p = horner(d, z, -0.33333333333333326, 0.19999999999997692, -0.14285714285390944,
-                          0.11111111088362774, -0.09090908151259271, 0.07692282911857598,
-                          -0.06666229031771803, 0.058770441703819475, -0.05218548969052191,
-                          0.045041393781768635, -0.033488235462723365, 0.015209188612267548);
+    // 2^-45
+    const auto p = even_odd(d, z, -0.3333333333169734, 0.1999999968563621, -0.14285693596719518,
+                            0.1111045000392336, -0.09079137962146798, 0.07568543311754397,
+                            -0.058910736472696804, 0.030894979008270294);
     auto angle = hn::MulAdd(hn::Mul(t, z), p, t);
     angle = hn::Add(angle, hn::IfThenElseZero(far, set(d, 0.78539816339744831)));
     angle = hn::IfThenElse(hn::Gt(ay, ax), hn::Sub(set(d, 1.5707963267948966), angle), angle);

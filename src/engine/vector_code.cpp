@@ -163,7 +163,7 @@ class Translator {
                     best = end + 1;
             }
             const bool is_whole = end == steps_.size() || is_tile_step(*steps_[end].step);
-            end_part(is_whole ? end : std::max(best, begin + 1));
+            end_part(is_whole || best == begin ? std::max(end, begin + 1) : best);
             if (!is_whole) ++part;
         }
         part_count_ = part + 1;

@@ -11,6 +11,7 @@
 #include <array>
 #include <cerrno>
 #include <charconv>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -165,7 +166,8 @@ class PictureWriter::FileProxy final : public OIIO::Filesystem::IOProxy {
 
   private:
     void put(const char* bytes, std::size_t size) {
-        if (!errno_ && std::fwrite(bytes, 1, size, file_) != size) errno_ = errno ? errno : EIO;
+        if (errno_ || size == 0) return;
+        if (std::fwrite(bytes, 1, size, file_) != size) errno_ = errno ? errno : EIO;
     }
 
     std::FILE* file_ = nullptr;
@@ -511,11 +513,24 @@ void PictureWriter::write_part(const ImageBuf& rows) {
 
 void PictureWriter::write_fitted(const ImageBuf& rows) {
     const ROI part = rows.roi();
-    const bool written = part.height() == out_->spec().height
-                             ? rows.write(out_.get())
-                             : out_->write_scanlines(part.ybegin, part.yend, part.zbegin,
-                                                     rows.spec().format, rows.localpixels(),
-                                                     rows.pixel_stride(), rows.scanline_stride());
+    bool written = false;
+    if (format() == "heif") {
+        // OpenImageIO 2.4 copies rows as long as libheif's, which have padding: the last one needs
+        // something behind it.
+        constexpr std::size_t kPadding = 1024;
+        const OIIO::TypeDesc type = out_->spec().format;
+        const std::size_t values =
+            static_cast<std::size_t>(part.npixels()) * static_cast<std::size_t>(rows.nchannels());
+        std::vector<std::byte> pixels(values * type.size() + kPadding);
+        written = rows.get_pixels(part, type, pixels.data()) &&
+                  out_->write_scanlines(part.ybegin, part.yend, part.zbegin, type, pixels.data());
+    } else if (part.height() == out_->spec().height) {
+        written = rows.write(out_.get());
+    } else {
+        written =
+            out_->write_scanlines(part.ybegin, part.yend, part.zbegin, rows.spec().format,
+                                  rows.localpixels(), rows.pixel_stride(), rows.scanline_stride());
+    }
     check_disk();
     if (!written) fail(first_line(rows.has_error() ? rows.geterror() : out_->geterror()));
 }

@@ -27,6 +27,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
 from pictures import (Report, acescct_decode, evaluate, files_of, log2_decode, need_program, read_planes,  # noqa: E402
                       read_rgb, run, share_of, share_of_refusals, stack, unstack, views, write_exr)
+from sanitizers import is_sanitized  # noqa: E402
 
 try:
     import PyOpenColorIO as ocio
@@ -313,8 +314,7 @@ def check_limits(report, command, scratch, picture):
     (scratch / "a\x1b[31m\n.cube").unlink()
     report.check("bake -q", call(command, ["bake", "hable", "--input", "lin_rec709", "-o", "x.cube", "-q"], folder=scratch) == (OK, "", ""))
     (scratch / "x.cube").unlink()
-    libraries = subprocess.run(["ldd", command], capture_output=True, text=True, check=False).stdout
-    if "libasan" in libraries or "libtsan" in libraries:
+    if is_sanitized(command):
         print("skipped: memory that does not do, sanitizers take all addresses")
     else:
         code, _, err = call(command, ["compare", picture, "hable", "--cell-width", "12000", "-o", "x.png"], folder=scratch,
@@ -1074,7 +1074,7 @@ def check_start(report, command):
     libraries = subprocess.run(["ldd", command], capture_output=True, text=True, check=True).stdout
     report.check("the program is not linked with OpenImageIO",
                  "libOpenColorIO" in libraries and "OpenImageIO" not in libraries, libraries)
-    if "libasan" in libraries or "libtsan" in libraries:
+    if is_sanitized(command):
         print("skipped: start time, the sanitizer's own start takes longer")
         return
     for arguments in (["--version"], ["--help"], *([name, "--help"] for name in SUBCOMMANDS), ["list"]):

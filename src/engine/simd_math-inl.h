@@ -92,7 +92,7 @@ HWY_INLINE Vec<D> dot3(D d, const double* k, Vec<D> a, Vec<D> b, Vec<D> c) {
 
 // ---------------------------------------------------------------------------------------------
 // Exponents: x = 2^e (1 + f) with 1 + f in [3/4, 3/2) for finite x > 0, and x * 2^n for whole n;
-// with denormals.
+// with denormal floats, but without denormal doubles, which no float becomes.
 
 template <class D>
 HWY_INLINE void split(D d, Vec<D> x, Vec<D>& e, Vec<D>& f) {
@@ -110,22 +110,21 @@ HWY_INLINE void split(D d, Vec<D> x, Vec<D>& e, Vec<D>& f) {
         }
     }
     const auto tag = bits_tag(d);
-    const auto denormal = hn::Lt(x, hn::Set(d, std::numeric_limits<Number<D>>::min()));
-    const auto normal =
-        hn::IfThenElse(denormal, hn::Mul(x, set(d, kIsDouble<D> ? 0x1p53 : 0x1p24)), x);
-    const auto lost = hn::IfThenElseZero(denormal, set(d, kIsDouble<D> ? 53 : 24));
     if constexpr (kIsDouble<D>) {
         constexpr std::uint64_t kThreeQuarters = 0x3FE8000000000000;
         constexpr std::uint64_t kBias = 0x3FF0000000000000;  // keeps the difference positive
-        const auto bits = hn::Add(hn::BitCast(tag, normal), hn::Set(tag, kBias - kThreeQuarters));
+        const auto bits = hn::Add(hn::BitCast(tag, x), hn::Set(tag, kBias - kThreeQuarters));
         const auto fraction = hn::And(bits, hn::Set(tag, std::uint64_t{0x000FFFFFFFFFFFFF}));
         // 64-bit integers are converted by way of the low bits of 2^52 + n: below AVX-512 there is
         // no instruction.
         const auto whole =
             hn::Or(hn::ShiftRight<52>(bits), hn::Set(tag, std::uint64_t{0x4330000000000000}));
-        e = hn::Sub(hn::Sub(hn::BitCast(d, whole), set(d, 0x1p52 + 1023)), lost);
+        e = hn::Sub(hn::BitCast(d, whole), set(d, 0x1p52 + 1023));
         f = hn::Sub(hn::BitCast(d, hn::Add(fraction, hn::Set(tag, kThreeQuarters))), set(d, 1));
     } else {
+        const auto denormal = hn::Lt(x, hn::Set(d, std::numeric_limits<float>::min()));
+        const auto normal = hn::IfThenElse(denormal, hn::Mul(x, set(d, 0x1p24)), x);
+        const auto lost = hn::IfThenElseZero(denormal, set(d, 24));
         constexpr std::int32_t kThreeQuarters = 0x3F400000;
         const auto bits = hn::Sub(hn::BitCast(tag, normal), hn::Set(tag, kThreeQuarters));
         const auto fraction = hn::And(bits, hn::Set(tag, std::int32_t{0x007FFFFF}));
@@ -134,14 +133,12 @@ HWY_INLINE void split(D d, Vec<D> x, Vec<D>& e, Vec<D>& f) {
     }
 }
 
-/// Beyond these powers of two every number is 0 or infinity; up to the others it is normal.
+/// Beyond these powers of two every float is 0 or infinity.
 template <class D>
-inline constexpr double kLargestExponent = kIsDouble<D> ? 2000 : 250;
+inline constexpr double kLargestExponent = kIsDouble<D> ? 1022 : 250;
+/// What the logarithm of a positive number is limited to.
 template <class D>
-inline constexpr double kLargestNormalExponent = kIsDouble<D> ? 1022 : 126;
-/// The logarithm of a positive number is not larger than this, and larger than its negative.
-template <class D>
-inline constexpr double kLargestLog2 = kIsDouble<D> ? 1075 : 150;
+inline constexpr double kLargestLog2 = kIsDouble<D> ? 1024 : 150;
 
 /// @param largest  of |n|; above kLargestExponent, n is limited to that
 template <class D>
@@ -150,25 +147,20 @@ HWY_INLINE Vec<D> scale(D d, Vec<D> x, Vec<D> n, double largest) {
         if (has_exponents(d)) return scale_by(x, n);
     }
     if (largest > kLargestExponent<D>) n = limited(d, n, kLargestExponent<D>);
-    const bool is_normal = largest <= kLargestNormalExponent<D>;
-    // Else in two factors, so that results outside the normal numbers are rounded once, or reach 0
-    // or infinity.
     const auto tag = bits_tag(d);
     if constexpr (kIsDouble<D>) {
-        const auto power_of_two = [d, tag](auto k) HWY_ATTR {
-            const auto whole = hn::BitCast(tag, hn::Add(k, set(d, 0x1p52 + 1023)));
-            return hn::BitCast(d, hn::ShiftLeft<52>(whole));
-        };
-        if (is_normal) return hn::Mul(x, power_of_two(n));
-        const auto half = hn::Floor(hn::Mul(n, set(d, 0.5)));
-        return hn::Mul(hn::Mul(x, power_of_two(half)), power_of_two(hn::Sub(n, half)));
+        const auto whole = hn::BitCast(tag, hn::Add(n, set(d, 0x1p52 + 1023)));
+        return hn::Mul(x, hn::BitCast(d, hn::ShiftLeft<52>(whole)));
     } else {
         const auto power_of_two = [d, tag](auto k) HWY_ATTR {
             const auto biased = hn::Add(k, hn::Set(tag, std::int32_t{127}));
             return hn::BitCast(d, hn::ShiftLeft<23>(biased));
         };
         const auto whole = hn::ConvertTo(tag, n);
-        if (is_normal) return hn::Mul(x, power_of_two(whole));
+        constexpr double kLargestNormal = 126;
+        if (largest <= kLargestNormal) return hn::Mul(x, power_of_two(whole));
+        // In two factors, so that results outside the normal numbers are rounded once, or reach 0
+        // or infinity.
         const auto half = hn::ShiftRight<1>(whole);
         return hn::Mul(hn::Mul(x, power_of_two(half)), power_of_two(hn::Sub(whole, half)));
     }
@@ -221,26 +213,28 @@ HWY_INLINE Vec<D> log2_curvature(D d, Vec<D> f) {
     return hn::Mul(f, q);
 }
 
-/// log2(1 + f) in double by s = f/(2+f): log2((1+s)/(1-s)); 2^-49.
+/// log2(x) for x > 0 in double by s = f/(2+f): log2((1+s)/(1-s)); 2^-49.
 template <class D>
-HWY_INLINE Vec<D> log2_fraction(D d, Vec<D> f) {
+HWY_INLINE Vec<D> log2_double(D d, Vec<D> x) {
+    Vec<D> e, f;
+    split(d, x, e, f);
     const auto s = hn::Div(f, hn::Add(f, set(d, 2)));
-    const auto z = hn::Mul(s, s);
-    const auto p = even_odd(d, z, 0.961796693918524, 0.5770780199671594, 0.41219800183780014,
-                            0.32064179500391204, 0.2607156537296817, 0.25067507324819643);
-    return hn::MulAdd(hn::Mul(s, z), p, hn::Mul(s, set(d, 2.8853900817779268)));
+    const auto p =
+        even_odd(d, hn::Mul(s, s), 2.8853900817779268, 0.961796693918524, 0.5770780199671594,
+                 0.41219800183780014, 0.32064179500391204, 0.2607156537296817, 0.25067507324819643);
+    return hn::MulAdd(s, p, e);
 }
 
 /// log2(x); -inf for x <= 0. In float only where sums and products are rounded once: below 3/4 the
 /// exponent is -1, and most of it cancels.
 template <class D>
 HWY_INLINE Vec<D> log2(D d, Vec<D> x) {
-    Vec<D> e, f;
-    split(d, x, e, f);
     Vec<D> result;
     if constexpr (kIsDouble<D>) {
-        result = hn::Add(e, log2_fraction(d, f));
+        result = log2_double(d, x);
     } else {
+        Vec<D> e, f;
+        split(d, x, e, f);
         result = hn::Add(hn::MulAdd(f, set(d, kLog2e), e), log2_curvature(d, f));
     }
     return hn::IfThenElse(hn::Gt(x, hn::Zero(d)), result, set(d, -kInfinity));
@@ -253,9 +247,7 @@ HWY_INLINE Vec<D> log2(D d, Vec<D> x) {
 /// @param largest  of |b|
 template <class D>
 HWY_INLINE Vec<D> power_double(D d, Vec<D> a, Vec<D> b, double largest = kInfinity) {
-    Vec<D> e, f;
-    split(d, a, e, f);
-    return exp2(d, hn::Mul(b, hn::Add(e, log2_fraction(d, f))), largest * kLargestLog2<D>);
+    return exp2(d, hn::Mul(b, log2_double(d, a)), largest * kLargestLog2<D>);
 }
 
 /// Float a^b for a > 0, with the logarithm in double: for exponents of any size.

@@ -133,9 +133,10 @@ class Translator {
 
     /// Parts end where a step over the tile begins, and where they get so long that a processor
     /// could not begin with the next pixels while it waits for the results of these: there at the
-    /// place with the fewest values to hand on.
+    /// place with the fewest values to hand on. What is little longer than a part is not divided.
     void divide() {
         const std::vector<std::size_t> across = bytes_across();
+        constexpr int kLittleLonger = 30;
         std::size_t part = 0;
         std::size_t begin = 0;
         const auto end_part = [&](std::size_t end) {
@@ -157,8 +158,8 @@ class Translator {
             int length = 0;
             for (; end < steps_.size() && !is_tile_step(*steps_[end].step); ++end) {
                 length += vectors_of(*steps_[end].step);
-                if (length > machine_.longest_part) break;
-                if (length >= machine_.longest_part / 2 &&
+                if (length > machine_.longest_part + kLittleLonger) break;
+                if (length >= machine_.longest_part / 2 && length <= machine_.longest_part &&
                     (best == begin || across[end + 1] <= across[best]))
                     best = end + 1;
             }

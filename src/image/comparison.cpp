@@ -59,8 +59,7 @@ ImageBuf shown_scene(const ImageBuf& picture, const ROI& part) {
         spec.channelnames[static_cast<std::size_t>(c)] = picture.spec().channel_name(from);
         if (from == picture.spec().alpha_channel) spec.alpha_channel = c;
     }
-    ImageBuf scene(spec);
-    if (!scene.localpixels()) throw std::bad_alloc();
+    ImageBuf scene = black_picture(spec);
     OIIO::ImageBufAlgo::parallel_image(scene.roi(), [&](ROI rows) {
         const auto all = static_cast<std::size_t>(picture.nchannels());
         std::vector<float> row(static_cast<std::size_t>(part.width()) * all);
@@ -100,7 +99,7 @@ ImageBuf shrink(const ImageBuf& picture, const PictureSize& size) {
     spec.x = spec.y = 0;
     spec.width = spec.full_width = size.width;
     spec.height = spec.full_height = size.height;
-    ImageBuf small(spec);
+    ImageBuf small = black_picture(spec);
     if (is_empty) return small;
     // The pixels that the filter, three pixels of the result wide, needs for the part.
     const auto reach = [](int from, int to, int window_length, int length) {
@@ -131,8 +130,7 @@ ImageBuf enlarge(const ImageBuf& scene, const PictureSize& size) {
     ImageSpec spec = scene.spec();
     spec.width = spec.full_width = size.width;
     spec.height = spec.full_height = size.height;
-    ImageBuf large(spec);
-    if (!large.localpixels()) throw std::bad_alloc();
+    ImageBuf large = black_picture(spec);
     const auto bytes = static_cast<std::size_t>(spec.nchannels) * sizeof(float);
     for (int y = 0; y < size.height; ++y) {
         for (int x = 0; x < size.width; ++x) {
@@ -301,7 +299,7 @@ PictureDifference difference_of(const ImageBuf& a, const ImageBuf& b, double gai
     const ImageBuf x = shown_rgb(a);
     const ImageBuf y = shown_rgb(b);
     PictureDifference result;
-    result.picture = ImageBuf(x.spec());
+    result.picture = black_picture(x.spec());
     const std::span<const Rgb> first = pixels_of(x);
     const std::span<const Rgb> second = pixels_of(y);
     auto* to = static_cast<Rgb*>(result.picture.localpixels());

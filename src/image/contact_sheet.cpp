@@ -170,7 +170,8 @@ ImageBuf shown_rgb(const ImageBuf& picture) {
     check_shown_window(picture);
     const ROI window = shown_window(picture);
     const int channels = picture.nchannels();
-    ImageBuf rgb(OIIO::ImageSpec(window.width(), window.height(), 3, OIIO::TypeDesc::FLOAT));
+    ImageBuf rgb =
+        black_picture(OIIO::ImageSpec(window.width(), window.height(), 3, OIIO::TypeDesc::FLOAT));
     OIIO::ImageBufAlgo::parallel_image(rgb.roi(), [&](ROI part) {
         std::vector<float> row(static_cast<std::size_t>(window.width()) *
                                static_cast<std::size_t>(channels));

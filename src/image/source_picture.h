@@ -67,6 +67,10 @@ TONEWRIGHT_API void check_source(const OIIO::ImageBuf& source);
 /// @throws Error  with the reader's message
 TONEWRIGHT_API void check_was_read(const OIIO::ImageBuf& source, bool is_complete);
 
+/// In memory. OpenImageIO 3.1 ends the process where it clears what it could not allocate.
+/// @throws std::bad_alloc
+[[nodiscard]] TONEWRIGHT_API OIIO::ImageBuf black_picture(const OIIO::ImageSpec& spec);
+
 /// Position of a span's pixels in memory.
 struct SpanSource {
     const std::byte* pixels;  // null: outside the data window, black

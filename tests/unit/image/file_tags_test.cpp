@@ -333,8 +333,10 @@ TEST(FileTags, FilesThatDeclareMoreThanTheyCanHoldAreRefused) {
         (void)read_image(path);
         FAIL() << "no error";
     } catch (const FileError& e) {
-        EXPECT_NE(std::string(e.what()).find("declares 60000 x 60000 pixels"), std::string::npos)
-            << e.what();
+        const std::string text = e.what();
+        EXPECT_TRUE(text.find("declares 60000 x 60000 pixels") != std::string::npos ||
+                    text.find("from a 19 byte file") != std::string::npos)  // OpenImageIO 3.1
+            << text;
     }
 }
 

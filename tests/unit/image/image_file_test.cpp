@@ -231,7 +231,8 @@ TEST_F(ImageFile, PngHasColorThatIsNotMultiplied) {
     ImageSpec as_stored;
     as_stored.attribute("oiio:UnassociatedAlpha", 1);
     const ImageBuf stored(file("a.png"), 0, 0, nullptr, &as_stored);
-    EXPECT_EQ(stored.spec().get_string_attribute("oiio:ColorSpace"), "Gamma2.2");
+    const std::string space = stored.spec().get_string_attribute("oiio:ColorSpace");
+    EXPECT_TRUE(space == "Gamma2.2" || space == "g22_rec709_scene") << space;  // OpenImageIO 3.1
     constexpr float kStep = 1.0F / 65535;
     EXPECT_NEAR(stored.getchannel(0, 0, 0, 0), 0.5F, kStep);
     EXPECT_NEAR(stored.getchannel(0, 0, 0, 2), 0.8F, kStep);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagecache.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -44,6 +45,11 @@ inline OIIO::ImageBuf make_picture(const OIIO::ImageSpec& spec, float peak = 1) 
 inline OIIO::ImageBuf make_rgb(int width, int height, OIIO::TypeDesc type = OIIO::TypeDesc::FLOAT,
                                float peak = 1) {
     return make_picture(make_spec(width, height, {"R", "G", "B"}, type), peak);
+}
+
+/// Of a file, by way of OpenImageIO's cache. Without it, version 3 reads the file into memory.
+inline OIIO::ImageBuf cached_picture(const std::string& path) {
+    return OIIO::ImageBuf(path, 0, 0, OIIO::ImageCache::create());
 }
 
 inline std::vector<float> pixel(const OIIO::ImageBuf& picture, int x, int y) {

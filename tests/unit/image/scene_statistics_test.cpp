@@ -212,7 +212,7 @@ TEST(SceneStatistics, CachedAndTiledPictures) {
     ImageBuf local = make_picture(spec, 5);
     local.set_write_tiles(32, 32);
     ASSERT_TRUE(local.write(path)) << local.geterror();
-    const ImageBuf cached(path);
+    const ImageBuf cached = cached_picture(path);
     const SceneStatistics s = measure_scene(cached, "lin_rec709", Unpremult::automatic, {}, 4);
     EXPECT_TRUE(cached.cachedpixels());
     EXPECT_TRUE(same_statistics(s, measure_scene(local)));

@@ -520,7 +520,7 @@ TEST(Tonemap, OutsideItsDataWindowTheSourceIsBlack) {
         const TemporaryFolder folder;
         if (cached) {
             ASSERT_TRUE(src.write(folder.file("window.exr")));
-            src.reset(folder.file("window.exr"));
+            src.reset(folder.file("window.exr"), 0, 0, OIIO::ImageCache::create());
             src.init_spec(src.name(), 0, 0);
             ASSERT_TRUE(src.cachedpixels());
         }
@@ -826,7 +826,7 @@ TEST(Tonemap, CachedAndTiledSources) {
     ImageBuf local = make_picture(make_spec(150, 90, {"R", "G", "B", "A", "Z"}, TypeDesc::HALF), 5);
     local.set_write_tiles(32, 32);
     ASSERT_TRUE(local.write(path)) << local.geterror();
-    const ImageBuf cached(path);
+    const ImageBuf cached = cached_picture(path);
     const ImageBuf result = tonemap(cached, hable(), {}, 4);
     ASSERT_FALSE(result.has_error()) << result.geterror();
     EXPECT_TRUE(cached.cachedpixels());
@@ -838,16 +838,18 @@ TEST(Tonemap, CachedAndTiledSources) {
     EXPECT_EQ(pixel(in_place, 149, 89)[4], pixel(local, 149, 89)[4]);
 }
 
-TEST(Tonemap, TruncatedCachedSourceIsAnError) {
-    const TemporaryFolder folder;
-    const std::string path = folder.file("cut.exr");
-    ImageBuf local = make_rgb(200, 200, TypeDesc::HALF);
-    local.set_write_tiles(32, 32);
-    ASSERT_TRUE(local.write(path));
-    std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
-    const ImageBuf cut(path);
-    ImageBuf dst;
-    expect_error(dst, tonemap(dst, cut, hable()), "cut.exr");
+TEST(Tonemap, TruncatedSourceIsAnError) {
+    for (const bool is_cached : {false, true}) {
+        const TemporaryFolder folder;
+        const std::string path = folder.file("cut.exr");
+        ImageBuf local = make_rgb(200, 200, TypeDesc::HALF);
+        local.set_write_tiles(32, 32);
+        ASSERT_TRUE(local.write(path));
+        std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
+        const ImageBuf cut = is_cached ? cached_picture(path) : ImageBuf(path);
+        ImageBuf dst;
+        expect_error(dst, tonemap(dst, cut, hable()), "cut.exr");
+    }
 }
 
 // ---------------------------------------------------------------------------------------------

@@ -85,7 +85,7 @@ TEST(OperatorFacts, BuiltinsOfThisLibraryEqualTheirOperators) {
         std::sort(errors.begin(), errors.end());
         EXPECT_LE(errors[errors.size() * 999 / 1000], 1.0 / 1023) << row.style;
     }
-    EXPECT_EQ(compared, 12) << "the rows of ACES 1.x";
+    EXPECT_GE(compared, 12) << "the rows of ACES 1.x";  // OpenColorIO 2.5 has more
 }
 
 TEST(OperatorFacts, FittedOperatorsExist) {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <OpenImageIO/imagebufalgo.h>
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
@@ -225,12 +224,7 @@ void PictureReader::read_rows(int ybegin, int yend, std::byte* to) {
 
 ImageBuf PictureReader::read_all() {
     // Cleared, because some readers deliver less than they declare.
-    ImageBuf image(spec_, OIIO::InitializePixels::No);
-    if (!image.localpixels()) {
-        cannot_read(path_,
-                    fmt::format("not enough memory for {} x {} pixels", spec_.width, spec_.height));
-    }
-    OIIO::ImageBufAlgo::zero(image);
+    ImageBuf image = with_memory_for(path_, [&] { return black_picture(spec_); });
     forget_errors(*in_);
     check(in_->read_image(subimage_, 0, 0, spec_.nchannels, image.spec().format,
                           image.localpixels()));

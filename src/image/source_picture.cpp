@@ -196,7 +196,10 @@ void check_was_read(const OIIO::ImageBuf& source, bool is_complete) {
 
 OIIO::ImageBuf black_picture(const OIIO::ImageSpec& spec) {
     OIIO::ImageBuf picture(spec, OIIO::InitializePixels::No);
-    if (!picture.localpixels()) throw std::bad_alloc();
+    if (!picture.localpixels()) {
+        (void)picture.geterror();  // which would be printed otherwise
+        throw std::bad_alloc();
+    }
     OIIO::ImageBufAlgo::zero(picture);
     return picture;
 }

@@ -136,7 +136,7 @@ class Translator {
     /// place with the fewest values to hand on. What is little longer than a part is not divided.
     void divide() {
         const std::vector<std::size_t> across = bytes_across();
-        constexpr int kLittleLonger = 60;
+        constexpr int kLittleLonger = 60;  // as fast as 30; 0 divides Hable: 4 % slower
         std::size_t part = 0;
         std::size_t begin = 0;
         const auto end_part = [&](std::size_t end) {

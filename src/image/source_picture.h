@@ -58,7 +58,8 @@ struct ChannelLayout {
 /// @throws PictureError  for a type that OIIO has no pixels of.
 TONEWRIGHT_API void check_pixel_type(const char* what, const OIIO::TypeDesc& type);
 
-/// Reads the header of a picture that is not open yet.
+/// Reads the header of a picture that is not open yet. OpenImageIO 3 reads its pixels, too, unless
+/// the picture is cached.
 /// @throws Error  no picture, or one that cannot be read, or deep, or of a type without pixels.
 TONEWRIGHT_API void check_source(const OIIO::ImageBuf& source);
 

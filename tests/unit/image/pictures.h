@@ -52,6 +52,14 @@ inline OIIO::ImageBuf cached_picture(const std::string& path) {
     return OIIO::ImageBuf(path, 0, 0, OIIO::ImageCache::create());
 }
 
+/// Half of a tiled OpenEXR file.
+inline void write_truncated(const std::string& path) {
+    OIIO::ImageBuf picture = make_rgb(200, 200, OIIO::TypeDesc::HALF);
+    picture.set_write_tiles(32, 32);
+    ASSERT_TRUE(picture.write(path));
+    std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
+}
+
 inline std::vector<float> pixel(const OIIO::ImageBuf& picture, int x, int y) {
     std::vector<float> values(static_cast<std::size_t>(picture.nchannels()));
     picture.getpixel(x, y, values.data(), picture.nchannels());

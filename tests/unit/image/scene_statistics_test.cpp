@@ -301,10 +301,7 @@ TEST(SceneStatistics, ErrorsAreThrown) {
 
     const TemporaryFolder folder;
     const std::string path = folder.file("cut.exr");
-    ImageBuf local = make_rgb(200, 200, TypeDesc::HALF);
-    local.set_write_tiles(32, 32);
-    ASSERT_TRUE(local.write(path));
-    std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
+    write_truncated(path);
     EXPECT_NE(error_of(ImageBuf(path)).find("cut.exr"), std::string::npos);
 }
 

@@ -839,16 +839,15 @@ TEST(Tonemap, CachedAndTiledSources) {
 }
 
 TEST(Tonemap, TruncatedSourceIsAnError) {
+    const TemporaryFolder folder;
     for (const bool is_cached : {false, true}) {
-        const TemporaryFolder folder;
-        const std::string path = folder.file("cut.exr");
-        ImageBuf local = make_rgb(200, 200, TypeDesc::HALF);
-        local.set_write_tiles(32, 32);
-        ASSERT_TRUE(local.write(path));
-        std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
-        const ImageBuf cut = is_cached ? cached_picture(path) : ImageBuf(path);
+        // The cache of OpenImageIO 2.4 reports the error of a file once.
+        const std::string name = is_cached ? "cached_cut.exr" : "cut.exr";
+        write_truncated(folder.file(name));
+        const ImageBuf cut =
+            is_cached ? cached_picture(folder.file(name)) : ImageBuf(folder.file(name));
         ImageBuf dst;
-        expect_error(dst, tonemap(dst, cut, hable()), "cut.exr");
+        expect_error(dst, tonemap(dst, cut, hable()), name);
     }
 }
 

@@ -6,6 +6,7 @@
 #include "engine/simd_kernels.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <span>
 

@@ -2,6 +2,7 @@
 #include "engine/vector_code.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <map>
 

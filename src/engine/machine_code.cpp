@@ -25,6 +25,9 @@ constexpr int kFetchAhead = 1024;
 
 /// On the stack, of what spill_index keeps: four lines for each of the blocks.
 constexpr int kKeptBytes = 4 * 64 * 4;
+/// An index in the vector register with this number is none for QEMU 7.2 and for FEX before its
+/// pull request 3776, as it is in a general register: gathers read the first entry of the table.
+constexpr int kNoIndex = 4;
 /// Encodings of comparisons (ordered, quiet).
 constexpr std::uint8_t kEqual = 0x00;
 constexpr std::uint8_t kLess = 0x11;
@@ -666,7 +669,12 @@ class Generator : public Xbyak::CodeGenerator {
                 return vpermt2ps(r, index, table(step.offset + 64));
             }
             case VectorOp::gather: {
-                const Z index = in_register(step.in[0], false);
+                Z index = in_register(step.in[0], false);
+                if (index.getIdx() == kNoIndex) {
+                    const Z copy = vector(take());
+                    vmovaps(copy, index);
+                    index = copy;
+                }
                 const Z all = machine_.has_avx512 ? index : vector(take());
                 const Z r = result_apart(step);
                 const Xbyak::Address number =

@@ -9,6 +9,7 @@ namespace {
 Operator named(const char* id) {
     Operator op;
     op.id = id;
+    op.build = [](const Params&) { return Pipeline(); };
     return op;
 }
 

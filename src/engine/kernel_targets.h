@@ -7,10 +7,23 @@
 #include <utility>
 #include <vector>
 
+#include "hwy/base.h"
+
+// Highway 1.3 names "evex512" among Clang's target features. Clang 22 has no such feature and
+// ignores them all, so that AVX-512 does not compile: there AVX2 is the best instruction set.
+#if defined(__clang__) && __clang_major__ >= 22 && defined(HWY_MAJOR) && HWY_MAJOR == 1 && \
+    HWY_MINOR <= 3
+#define TONEWRIGHT_BROKEN_TARGETS (HWY_AVX3 | (HWY_AVX3 - 1))
+#else
+#define TONEWRIGHT_BROKEN_TARGETS 0
+#endif
+
 // x86 processors without SSE4 (before 2008) run the scalar code. Vectors of SVE and RISC-V have no
 // size at compile time, so the kernels cannot hold them in structs and arrays; Arm processors run
 // NEON.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#define HWY_DISABLED_TARGETS                                                 \
+    (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | \
+     TONEWRIGHT_BROKEN_TARGETS)
 #include "hwy/targets.h"
 #include "tonewright/version.h"
 

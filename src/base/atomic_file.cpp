@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/atomic_file.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <regex.h>
-#include <sys/random.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,17 +9,19 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
-#include <ctime>
 #include <fstream>
 #include <map>
 #include <memory>
-#include <new>
+#include <optional>
+#include <random>
 #include <set>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include "base/input_file.h"
 #include "base/strings.h"
+#include "base/system_files.h"
 #include "tonewright/error.h"
 #include "tonewright/generated_files.h"
 
@@ -46,7 +44,7 @@ fs::path resolve_target(const std::string& path, std::string& why) {
         if (error) why = error.message();
     }
     // Renaming over a device or a folder would destroy it, or fail late.
-    if (why.empty()) why = why_no_file(target);
+    if (why.empty()) why = why_no_file(target.string());
     return target;
 }
 
@@ -57,22 +55,12 @@ std::pair<std::string, std::string> name_parts(const fs::path& target) {
 
 /// A name that no other program can guess.
 std::uint64_t random_bits() {
-    std::uint64_t bits = 0;
-    if (::getrandom(&bits, sizeof bits, 0) == static_cast<ssize_t>(sizeof bits)) return bits;
-    // An old kernel. O_EXCL still keeps two writers apart.
-    static std::atomic<std::uint64_t> count = 0;
-    return static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count()) +
-           count++;
+    std::random_device device;
+    return std::uint64_t{device()} << 32 | device();
 }
 
-/// Identifies the machine and the container, within which a process id means one process.
 const std::string& machine_tag() {
-    static const std::string tag = [] {
-        std::array<char, 256> host{};
-        (void)::gethostname(host.data(), host.size() - 1);
-        std::error_code none;
-        return content_hash(host.data() + fs::read_symlink("/proc/self/ns/pid", none).string());
-    }();
+    static const std::string tag = content_hash(machine_and_container());
     return tag;
 }
 
@@ -108,30 +96,47 @@ void release_unfinished(std::atomic<const char*>*& place) {
 
 void end_by_signal(int number) {
     remove_unfinished_files();
-    ::signal(number, SIG_DFL);
-    ::raise(number);
+    std::signal(number, SIG_DFL);
+    std::raise(number);
 }
 
-/// The parts of a temporary name: stem, machine, process, extension. Empty for other names.
-std::vector<std::string> parts_of_temporary(const std::string& name) {
-    // <regex> takes five seconds to compile; this function takes none.
-    static const regex_t pattern = [] {
-        regex_t compiled;
-        if (::regcomp(&compiled, R"(^\.(.+)\.([0-9a-f]{8})\.([0-9]{1,9})\.[0-9a-f]+\.tmp(\..*)?$)",
-                      REG_EXTENDED) != 0)
-            throw std::bad_alloc();
-        return compiled;
-    }();
-    std::array<regmatch_t, 5> match;
-    if (::regexec(&pattern, name.c_str(), match.size(), match.data(), 0) != 0) return {};
-    std::vector<std::string> parts;
-    for (std::size_t i = 1; i < match.size(); ++i) {
-        const auto [begin, end] = match[i];
-        parts.push_back(begin < 0 ? ""
-                                  : name.substr(static_cast<std::size_t>(begin),
-                                                static_cast<std::size_t>(end - begin)));
+/// `.<stem>.<machine>.<pid>.<random>.tmp<extension>`. The stem may have dots.
+struct TemporaryName {
+    std::string stem, machine, extension;
+    int process = 0;
+};
+
+bool is_made_of(std::string_view text, const char* characters) {
+    return !text.empty() && text.find_first_not_of(characters) == std::string_view::npos;
+}
+
+/// Nothing for other names.
+std::optional<TemporaryName> parse_temporary(std::string_view name) {
+    const auto take_last = [&](std::string_view& part) {
+        const std::size_t dot = name.rfind('.');
+        if (dot == std::string_view::npos) return false;
+        part = name.substr(dot + 1);
+        name = name.substr(0, dot);
+        return true;
+    };
+    TemporaryName result;
+    std::string_view ending, random, process, machine;
+    if (!take_last(ending)) return std::nullopt;
+    if (name.ends_with(".tmp")) {
+        result.extension = "." + std::string(ending);
+        (void)take_last(ending);
     }
-    return parts;
+    if (ending != "tmp") return std::nullopt;
+    constexpr const char* kHexadecimal = "0123456789abcdef";
+    if (!take_last(random) || !take_last(process) || !take_last(machine)) return std::nullopt;
+    if (!is_made_of(random, kHexadecimal) || !is_made_of(machine, kHexadecimal) ||
+        machine.size() != 8 || !is_made_of(process, "0123456789") || process.size() > 9 ||
+        name.size() < 2 || name[0] != '.')
+        return std::nullopt;
+    result.stem = name.substr(1);
+    result.machine = machine;
+    result.process = std::stoi(std::string(process));
+    return result;
 }
 
 }  // namespace
@@ -139,23 +144,15 @@ std::vector<std::string> parts_of_temporary(const std::string& name) {
 void remove_unfinished_files() noexcept {
     is_ending = true;
     // This thread may have been stopped while it created a file; it does not continue.
-    for (int i = 0; i < 1000 && creations > own_creations; ++i) {
-        constexpr timespec kMillisecond = {0, 1'000'000};
-        (void)::nanosleep(&kMillisecond, nullptr);
-    }
+    for (int i = 0; i < 1000 && creations > own_creations; ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
     for (std::atomic<const char*>& place : unfinished_names) {
         // Folders that are not empty stay.
-        if (const char* name = place.exchange(nullptr); name && ::unlink(name) != 0) ::rmdir(name);
+        if (const char* name = place.exchange(nullptr)) remove_name(name);
     }
 }
 
-void remove_unfinished_files_on_signals() {
-    for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
-        // nohup stays in effect.
-        if (::signal(number, end_by_signal) == SIG_IGN) ::signal(number, SIG_IGN);
-    }
-    ::signal(SIGXFSZ, SIG_IGN);
-}
+void remove_unfinished_files_on_signals() { set_end_handler(end_by_signal); }
 
 void remove_leftovers(const std::vector<std::string>& paths) {
     std::map<fs::path, std::set<std::pair<std::string, std::string>>> names_of_folders;
@@ -170,11 +167,9 @@ void remove_leftovers(const std::vector<std::string>& paths) {
         std::error_code error;
         for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
              entry.increment(error)) {
-            const std::string name = entry->path().filename().string();
-            const std::vector<std::string> parts = parts_of_temporary(name);
-            if (parts.empty() || !names.contains({parts[0], parts[3]})) continue;
-            const bool is_of_nobody =
-                parts[1] == machine_tag() && ::kill(std::stoi(parts[2]), 0) != 0 && errno == ESRCH;
+            const auto name = parse_temporary(entry->path().filename().string());
+            if (!name || !names.contains({name->stem, name->extension})) continue;
+            const bool is_of_nobody = name->machine == machine_tag() && has_ended(name->process);
             std::error_code unknown, ignored;
             const bool is_old = fs::last_write_time(entry->path(), unknown) < yesterday && !unknown;
             if (is_of_nobody || is_old) fs::remove(entry->path(), ignored);
@@ -188,7 +183,7 @@ FileCreation::FileCreation() noexcept {
     if (!is_ending) return;
     --creations;
     while (true)
-        ::pause();
+        std::this_thread::sleep_for(std::chrono::hours(1));
 }
 
 FileCreation::~FileCreation() {
@@ -200,7 +195,7 @@ AtomicFile::AtomicFile(const std::string& path) {
     target_ = resolve_target(path, refusal_);
     const auto [stem, extension] = name_parts(target_);
     path_ = target_.parent_path() / fmt::format(".{}.{}.{}.{:016x}.tmp{}", stem, machine_tag(),
-                                                ::getpid(), random_bits(), extension);
+                                                this_process(), random_bits(), extension);
     unfinished_ = register_unfinished(path_.string());
 }
 
@@ -213,23 +208,23 @@ AtomicFile::~AtomicFile() {
 }
 
 int AtomicFile::check_target() const {
-    return ::access(target_.c_str(), W_OK) == 0 || errno == ENOENT ? 0 : errno;
+    const int error = check_access(target_, true);
+    return error == ENOENT ? 0 : error;
 }
 
 int AtomicFile::create() {
     const FileCreation creation;
-    return ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    return create_new(path_);
 }
 
 int AtomicFile::write(std::string_view contents) {
     const int file = create();
     if (file < 0) return errno;
-    std::size_t written = 0;
     int error = 0;
-    while (written < contents.size() && error == 0) {
-        const ssize_t n = ::write(file, contents.data() + written, contents.size() - written);
+    while (!contents.empty() && error == 0) {
+        const auto n = ::write(file, contents.data(), piece_of(contents.size()));
         if (n > 0) {
-            written += static_cast<std::size_t>(n);
+            contents.remove_prefix(static_cast<std::size_t>(n));
         } else if (errno != EINTR) {
             error = errno;
         }
@@ -238,24 +233,9 @@ int AtomicFile::write(std::string_view contents) {
 }
 
 int AtomicFile::keep() {
-    const int file = ::open(path_.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
-    if (file < 0) return errno;
-    struct stat old {};
-    if (::stat(target_.c_str(), &old) == 0) (void)::fchmod(file, old.st_mode & 07777);
-    const int error = ::fsync(file) == 0 ? 0 : errno;
-    ::close(file);
-    if (error) return error;
-    if (::rename(path_.c_str(), target_.c_str()) != 0) return errno;
+    if (const int error = replace(target_, path_)) return error;
     path_.clear();
     release_unfinished(unfinished_);
-    // The new name is on the disk after its directory is synced. Some file systems cannot sync a
-    // directory.
-    const fs::path folder = target_.has_parent_path() ? target_.parent_path() : fs::path(".");
-    const int directory = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (directory >= 0) {
-        (void)::fsync(directory);
-        ::close(directory);
-    }
     return 0;
 }
 

@@ -1,29 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/input_file.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <filesystem>
 
 #include "base/atomic_file.h"
+#include "base/system_files.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
-std::string why_no_file(const struct stat& status) {
-    if (S_ISDIR(status.st_mode)) return "is a folder";
-    if (S_ISREG(status.st_mode)) return "";
-    return "is no regular file (a pipe or a device); expected a file";
+std::string why_no_file(bool is_folder, bool is_regular) {
+    if (is_folder) return "is a folder";
+    return is_regular ? "" : "is no regular file (a pipe or a device); expected a file";
 }
 
 }  // namespace
 
 std::string why_no_file(const std::string& path) {
-    struct stat status {};
-    return ::stat(path.c_str(), &status) == 0 ? why_no_file(status) : "";
+    std::error_code none;
+    const auto status = std::filesystem::status(path, none);
+    if (!std::filesystem::exists(status)) return "";
+    return why_no_file(is_directory(status), is_regular_file(status));
 }
 
 void require_regular_file(const std::string& path) {
@@ -32,10 +34,9 @@ void require_regular_file(const std::string& path) {
 }
 
 std::string why_not_readable(const std::string& path) {
-    struct stat status {};
-    if (::stat(path.c_str(), &status) != 0) return reason_of(errno);
-    if (std::string why = why_no_file(status); !why.empty()) return why;
-    return ::access(path.c_str(), R_OK) == 0 ? "" : reason_of(errno);
+    if (std::string why = why_no_file(path); !why.empty()) return why;
+    const int error = check_access(path, false);
+    return error ? reason_of(error) : "";
 }
 
 std::string read_file(const std::string& path, std::size_t longest,
@@ -52,20 +53,20 @@ std::string read_file(const std::string& path, std::size_t longest,
         fail(why);
         return bytes;
     }
-    const Descriptor file = {::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)};
+    const Descriptor file = {open_to_read(path)};
     struct stat status {};
     if (file.number < 0 || ::fstat(file.number, &status) != 0) {
         fail(reason_of(errno));
         return bytes;
     }
     const auto size = static_cast<std::size_t>(status.st_size);
-    std::string why = why_no_file(status);
+    std::string why = why_no_file(S_ISDIR(status.st_mode), S_ISREG(status.st_mode));
     if (why.empty() && size > longest)
         why = fmt::format("it has {} bytes; expected at most {}", size, longest);
     if (why.empty()) bytes.resize(size);
     std::size_t count = 0;
     while (why.empty() && count < size) {
-        const ssize_t n = ::read(file.number, bytes.data() + count, size - count);
+        const auto n = ::read(file.number, bytes.data() + count, piece_of(size - count));
         if (n > 0) {
             count += static_cast<std::size_t>(n);
         } else if (n == 0 || errno != EINTR) {

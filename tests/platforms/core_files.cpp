@@ -8,12 +8,11 @@
 
 #include <cstdio>
 #include <exception>
-#include <fstream>
 #include <string>
 #include <vector>
 
+#include "base/atomic_file.h"
 #include "tonewright/engine.h"
-#include "tonewright/error.h"
 #include "tonewright/lut.h"
 #include "tonewright/registry.h"
 #include "tonewright/shader.h"
@@ -21,12 +20,6 @@
 using namespace tonewright;
 
 namespace {
-
-void write(const std::string& path, const std::string& contents) {
-    std::ofstream file(path, std::ios::binary);
-    file.write(contents.data(), static_cast<std::streamsize>(contents.size()));
-    if (!file.flush()) throw FileError(path + ": cannot write");
-}
 
 View view_of(const char* op) { return make_view(resolve_operator(op), "lin_rec709", 0, "srgb"); }
 
@@ -51,8 +44,8 @@ void write_numbers(const std::string& folder, const std::string& op) {
             of_simd += fmt::format("{:.9g}\n", static_cast<double>(fast[i + c]));
         }
     }
-    write(folder + "/" + op + ".reference.txt", of_reference);
-    write(folder + "/" + op + ".simd.txt", of_simd);
+    write_text_atomically(folder + "/" + op + ".reference.txt", of_reference);
+    write_text_atomically(folder + "/" + op + ".simd.txt", of_simd);
 }
 
 void write_luts(const std::string& folder, const std::string& op) {
@@ -68,11 +61,11 @@ void write_luts(const std::string& folder, const std::string& op) {
         Lut lut = sample_lut(request);
         quantize(lut, request);
         const std::string path = folder + "/" + op + "." + name_of(format);
-        write(path, write_lut(lut, request, {}));
+        write_text_atomically(path, write_lut(lut, request, {}));
         if (format != LutFormat::cube && format != LutFormat::raw) continue;
         // A name that the reader knows.
         const std::string known = path + (format == LutFormat::cube ? ".cube" : ".raw");
-        write(known, write_lut(lut, request, {}));
+        write_text_atomically(known, write_lut(lut, request, {}));
         (void)table_reader()(known);
     }
 }
@@ -85,7 +78,8 @@ void write_curves(const std::string& folder) {
         request.format = format;
         request.dimension = LutDimension::one;
         request.size = 1024;
-        write(folder + "/hable.1d." + name_of(format), write_lut(sample_lut(request), request, {}));
+        write_text_atomically(folder + "/hable.1d." + name_of(format),
+                              write_lut(sample_lut(request), request, {}));
     }
 }
 
@@ -95,7 +89,8 @@ void write_shaders(const std::string& folder, const std::string& op) {
         ShaderRequest request;
         request.view = view_of(op.c_str());
         request.language = language.language;
-        write(folder + "/" + op + "." + language.id, write_shader(request, &none).text);
+        write_text_atomically(folder + "/" + op + "." + language.id,
+                              write_shader(request, &none).text);
     }
 }
 

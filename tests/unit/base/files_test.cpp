@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -76,6 +77,37 @@ TEST_F(Files, TemporaryNamesAreUnique) {
     EXPECT_EQ(file.create(), -1);
     EXPECT_EQ(errno, EEXIST);
     EXPECT_EQ(text_of("victim"), "old");
+}
+
+TEST_F(Files, LeftoversOfYesterdayAreRemoved) {
+    const auto make = [&](const std::string& name) {
+        put(name, "x");
+        fs::last_write_time(path(name), fs::file_time_type::clock::now() - std::chrono::hours(49));
+    };
+    const std::vector<std::string> left = {".a.b.01234567.1.f.tmp.exr", ".c.01234567.12.ff.tmp.tmp",
+                                           ".d.01234567.123456789.0f.tmp"};
+    // Other targets, and what no temporary name is.
+    const std::vector<std::string> other = {".e.01234567.1.f.tmp.exr",
+                                            ".a.b.01234567.1.f.tmp.png",
+                                            ".a.b.0123456g.1.f.tmp.exr",
+                                            ".a.b.1234567.1.f.tmp.exr",
+                                            ".a.b.01234567.1.g.tmp.exr",
+                                            ".a.b.01234567.x.f.tmp.exr",
+                                            ".a.b.01234567.1..tmp.exr",
+                                            "a.b.01234567.1.f.tmp.exr",
+                                            ".a.b.01234567.1.f.txt",
+                                            ".a.b.01234567.1234567890.f.tmp.exr",
+                                            ".tmp",
+                                            ".d.tmp"};
+    for (const std::string& name : left)
+        make(name);
+    for (const std::string& name : other)
+        make(name);
+    remove_leftovers({path("a.b.exr"), path("c.tmp"), path("d")});
+    for (const std::string& name : left)
+        EXPECT_FALSE(fs::exists(path(name))) << name;
+    for (const std::string& name : other)
+        EXPECT_TRUE(fs::exists(path(name))) << name;
 }
 
 TEST_F(Files, AnOldFileIsReplacedAndLinksStay) {

@@ -264,10 +264,10 @@ class Translator {
         writer_ = &writer;
         lanes_.assign(values_.size(), {});
         if (part == 0) read_inputs(layout);
-        static const auto kWrite = all_writes(std::make_index_sequence<std::size(kOperations)>());
+        static const auto writes = all_writes(std::make_index_sequence<std::size(kOperations)>());
         for (const Step& s : steps_) {
             if (s.part != part || is_tile_step(*s.step)) continue;
-            (this->*kWrite[static_cast<std::size_t>(computed_by(*s.step))])(s);
+            (this->*writes[static_cast<std::size_t>(computed_by(*s.step))])(s);
         }
         if (part == part_count_ - 1) write_outputs(layout);
         return writer.take();

@@ -263,6 +263,7 @@ class Writer {
 /// Highway's functions, as far as simd_math-inl.h calls them, with vectors that are values of
 /// instructions: what they would compute, they write. Highway's documentation is theirs.
 namespace recorded {
+// NOLINTBEGIN(readability-identifier-naming): the names are Highway's.
 
 /// Of floats, doubles, or whole numbers of as many bits.
 template <class T>
@@ -301,9 +302,11 @@ template <VectorOp op, VectorOp integer_op = op>
 struct Operation {
     template <class T, std::same_as<Vector<T>>... V>
     Vector<T> operator()(Vector<T> a, V... others) const {
-        return {a.writer, a.writer->emit({.op = std::integral<T> ? integer_op : op,
-                                          .wide = kIsWide<T>,
-                                          .in = {a.operand, others.operand...}})};
+        // NOLINTNEXTLINE(bugprone-branch-clone): many have one instruction for both.
+        constexpr VectorOp kOp = std::integral<T> ? integer_op : op;
+        return {
+            a.writer,
+            a.writer->emit({.op = kOp, .wide = kIsWide<T>, .in = {a.operand, others.operand...}})};
     }
 };
 inline constexpr Operation<VectorOp::add, VectorOp::integer_add> Add;
@@ -410,6 +413,7 @@ Vector<T> IfThenElseZero(Mask<T> mask, Vector<T> yes) {
                                           .mask = mask.value,
                                           .in = {yes.operand}})};
 }
+// NOLINTEND(readability-identifier-naming)
 }  // namespace recorded
 
 // ---------------------------------------------------------------------------------------------

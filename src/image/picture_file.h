@@ -145,6 +145,9 @@ class TONEWRIGHT_API PictureWriter {
 
     [[noreturn]] void fail(const std::string& reason) const;
     void check_disk() const;
+    /// OpenEXR 3.1 forgets that it could not compress a block of rows, such as without memory: it
+    /// writes no more of this call, and takes later rows from before the given ones.
+    void check_blocks() const;
     [[nodiscard]] OIIO::ImageSpec plan(const OIIO::ImageSpec& picture);
     [[nodiscard]] OIIO::ImageBuf checked(OIIO::ImageBuf&& changed) const;
     [[nodiscard]] std::string_view format() const;
@@ -166,6 +169,8 @@ class TONEWRIGHT_API PictureWriter {
     bool divides_by_alpha_ = false;
     int last_row_ = 0;  // of the picture, exclusive
     int next_row_ = 0;  // of the window, or of the picture
+    int rows_written_ = 0;
+    int rows_of_block_ = 0;  // of an OpenEXR file, else 0
     // The order matters: at its end, the writer writes to the proxy, which writes to the file.
     std::unique_ptr<AtomicFile> temporary_;
     std::unique_ptr<FileProxy> proxy_;  // null: OIIO opens the file itself

@@ -18,6 +18,7 @@
 #include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -80,6 +81,16 @@ const FormatCompressions* compressions_of(std::string_view format) {
     return found == all.end() ? nullptr : &*found;
 }
 
+/// Of the blocks that a compression of OpenEXR makes of rows (ImfCompressor.cpp); 0 for other
+/// names.
+int rows_of_block(std::string_view compression) {
+    static const std::map<std::string_view, int> rows = {
+        {"none", 1}, {"rle", 1},  {"zips", 1},  {"zip", 16},  {"pxr24", 16},
+        {"piz", 32}, {"b44", 32}, {"b44a", 32}, {"dwaa", 32}, {"dwab", 256}};
+    const auto found = rows.find(compression.substr(0, compression.find(':')));
+    return found == rows.end() ? 0 : found->second;
+}
+
 /// Only heif files need this check, because the name does not state the codec. ISO/IEC 14496-12,
 /// 4.3: the brand of a file is in its box `ftyp`.
 std::string brand_of(const fs::path& path) {
@@ -123,6 +134,11 @@ class PictureWriter::FileProxy final : public OIIO::Filesystem::IOProxy {
         inserted_ = std::move(bytes);
     }
 
+    /// Begins to count the blocks of an OpenEXR file, each of which begins with its first row and
+    /// its size in bytes, four bytes each.
+    void begin_blocks() { next_block_ = m_pos; }
+    [[nodiscard]] int blocks() const { return blocks_; }
+
     [[nodiscard]] const char* proxytype() const override { return "tonewright"; }
     bool seek(int64_t offset) override {
         if (offset == m_pos) return true;
@@ -141,6 +157,7 @@ class PictureWriter::FileProxy final : public OIIO::Filesystem::IOProxy {
             inserted_.clear();
         }
         put(from + before, size - before);
+        if (next_block_ >= 0) count_blocks(from, size);
         m_pos += static_cast<int64_t>(size);
         size_ = std::max(size_, m_pos);
         return size;
@@ -170,9 +187,27 @@ class PictureWriter::FileProxy final : public OIIO::Filesystem::IOProxy {
         if (std::fwrite(bytes, 1, size, file_) != size) errno_ = errno ? errno : EIO;
     }
 
+    void count_blocks(const char* bytes, std::size_t size) {
+        const int64_t end = m_pos + static_cast<int64_t>(size);
+        for (int64_t at = std::max(m_pos, next_block_); at < end; ++at) {
+            block_[static_cast<std::size_t>(at - next_block_)] =
+                static_cast<unsigned char>(bytes[at - m_pos]);
+            if (at - next_block_ < 7) continue;
+            ++blocks_;
+            std::uint32_t rest = 0;
+            for (std::size_t i = 8; i-- > 4;)
+                rest = rest << 8U | block_[i];
+            next_block_ = at + 1 + rest;
+            at = next_block_ - 1;
+        }
+    }
+
     std::FILE* file_ = nullptr;
     int errno_ = 0;
     int64_t size_ = 0;
+    int64_t next_block_ = -1;  // where one begins
+    std::array<unsigned char, 8> block_{};
+    int blocks_ = 0;
     std::string inserted_;  // not yet
     int64_t place_ = 0;
     int64_t shift_ = 0;  // of what follows it
@@ -408,6 +443,10 @@ void PictureWriter::open(const ImageSpec& picture) {
         return out_->open(name, spec);
     }();
     if (!is_open) fail(first_line(out_->geterror()));
+    if (proxy_ && format() == "openexr") {
+        rows_of_block_ = rows_of_block(out_->spec().get_string_attribute("compression", "zip"));
+        proxy_->begin_blocks();
+    }
     warn_of_limits(spec, color.missing);
 }
 
@@ -533,34 +572,33 @@ void PictureWriter::write_fitted(const ImageBuf& rows) {
     }
     check_disk();
     if (!written) fail(first_line(rows.has_error() ? rows.geterror() : out_->geterror()));
+    rows_written_ += part.height();
+    check_blocks();
+}
+
+void PictureWriter::check_blocks() const {
+    if (rows_of_block_ == 0) return;
+    const int height = out_->spec().height;
+    const int first = is_bottom_up() ? (height - 1) % rows_of_block_ + 1 : rows_of_block_;
+    int complete = rows_written_ < first ? 0 : 1 + (rows_written_ - first) / rows_of_block_;
+    if (rows_written_ == height) complete = (height - 1) / rows_of_block_ + 1;
+    if (proxy_->blocks() < complete)
+        fail("OpenEXR could not compress all rows (not enough memory?)");
 }
 
 void PictureWriter::finish() {
     warn_without_cover();
     const bool is_heif = format() == "heif";
-    const bool is_openexr = format() == "openexr";
-    const bool is_first_row_last = is_bottom_up();
     if (!out_->close()) fail(first_line(out_->geterror()));
     out_.reset();  // some write their last bytes only now
     if (proxy_) {
         if (const int error = proxy_->finish()) fail(reason_of(error));
-    }
-    // Without our proxy there is no other proof. OpenEXR 3.1 forgets that a block of rows could not
-    // be compressed, such as without memory, and lacks the last block then.
-    if (!proxy_ || is_openexr) {
+    } else {
         try {
             PictureReader written(temporary_->path().string(), 0, 0, kUnlimited);
-            if (proxy_) {
-                std::vector<std::byte> row(written.spec().scanline_bytes());
-                const int y =
-                    written.spec().y + (is_first_row_last ? 0 : written.spec().height - 1);
-                written.read_rows(y, y + 1, row.data());
-            } else {
-                check_is_complete(written);
-            }
+            check_is_complete(written);  // there is no other proof
         } catch (const FileError&) {
-            fail(fmt::format("what was written cannot be read back ({}?)",
-                             proxy_ ? "not enough memory" : "disk full"));
+            fail("what was written cannot be read back (disk full?)");
         }
     }
     const bool is_named_avif =

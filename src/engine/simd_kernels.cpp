@@ -63,6 +63,8 @@ constexpr bool kHasFma = HWY_NATIVE_FMA;
 
 constexpr int kHalves = HWY_TARGET == HWY_SCALAR ? 1 : 2;
 struct Doubles {
+    // GCC 12 does not inline vectors of NEON into an implicit constructor, which has no target.
+    HWY_INLINE Doubles() {}  // NOLINT(modernize-use-equals-default)
     hn::Vec<DD> half[kHalves];
 };
 HWY_INLINE hn::Vec<DD> promote(hn::Vec<DF> x, int half) {

@@ -35,8 +35,8 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// A file or an empty folder. For signal handlers, too.
 void remove_name(const char* path) noexcept;
 
-/// Of the signals that end a program, those that are not ignored already: SIGINT, SIGTERM, and
-/// SIGHUP where the system has it. A file that becomes too large (SIGXFSZ) is an error of writing.
+/// Calls the handler on SIGINT, SIGTERM, and SIGHUP where the system has it, unless they are
+/// ignored already. A file that becomes too large (SIGXFSZ) is an error of writing it from then on.
 void set_end_handler(void (*handler)(int signal));
 
 TONEWRIGHT_NAMESPACE_END

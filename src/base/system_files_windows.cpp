@@ -10,7 +10,6 @@
 
 #include <cerrno>
 #include <csignal>
-#include <cstdlib>
 #include <system_error>
 
 #include "base/system_files.h"
@@ -19,8 +18,9 @@ TONEWRIGHT_NAMESPACE_BEGIN
 namespace fs = std::filesystem;
 
 std::string machine_and_container() {
-    const char* name = std::getenv("COMPUTERNAME");
-    return name ? name : "";
+    char name[MAX_COMPUTERNAME_LENGTH + 1];
+    DWORD size = sizeof name;
+    return ::GetComputerNameA(name, &size) ? std::string(name, size) : std::string();
 }
 
 int this_process() { return ::_getpid(); }

@@ -189,7 +189,7 @@ class PictureWriter::FileProxy final : public OIIO::Filesystem::IOProxy {
 
     void count_blocks(const char* bytes, std::size_t size) {
         const int64_t end = m_pos + static_cast<int64_t>(size);
-        for (int64_t at = std::max(m_pos, next_block_); at < end; ++at) {
+        for (int64_t at = std::max(m_pos, next_block_); at < end && at < next_block_ + 8; ++at) {
             block_[static_cast<std::size_t>(at - next_block_)] =
                 static_cast<unsigned char>(bytes[at - m_pos]);
             if (at - next_block_ < 7) continue;
@@ -610,6 +610,7 @@ void PictureWriter::finish() {
     if (const int error = temporary_->keep()) fail(reason_of(error));
     // Readers that use OIIO's shared cache get the new file.
     auto cache = OIIO::ImageCache::create(true);  // a pointer, or since 3.0 a shared one
+    if (!cache) return;                           // no memory, so none before
     cache->invalidate(OIIO::ustring(path_));
     OIIO::ImageCache::destroy(cache);
 }

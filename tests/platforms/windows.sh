@@ -24,11 +24,12 @@ toolchain=(-G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX="$build/pr
 if [ ! -f "$build/prefix/complete" ]; then
     mkdir -p "$build"/apt/{lists/partial,archives/partial} "$build/prefix/include"
     : >"$build/apt/status"
-    sed 's/^Types:.*/Types: deb-src/; s/^deb /deb-src /' /etc/apt/sources.list.d/debian.sources /etc/apt/sources.list \
-        2>/dev/null >"$build/apt/debian.sources" || true
+    list=/etc/apt/sources.list.d/debian.sources
+    [ -f $list ] || list=/etc/apt/sources.list
+    sed 's/^Types:.*/Types: deb-src/; s/^deb /deb-src /' $list >"$build/apt/${list##*/}"
     apt=(apt-get -qq -o APT::Sandbox::User=root -o Acquire::Retries=3 -o Acquire::Languages=none -o Dir::State="$build/apt"
         -o Dir::State::status="$build/apt/status" -o Dir::Cache="$build/apt" -o Dir::Etc::SourceParts=/dev/null
-        -o Dir::Etc::SourceList="$build/apt/debian.sources")
+        -o Dir::Etc::SourceList="$build/apt/${list##*/}")
     { "${apt[@]}" update && (cd "$build/apt" && "${apt[@]}" source --download-only highway fmtlib); } ||
         skip "apt-get cannot download the sources of highway and fmtlib"
     for library in highway fmtlib; do

@@ -220,8 +220,7 @@ class Stages {
         if (!is_curve && name.components > 1)
             text += std::string("_") + (name.components == 2 ? "xy" : "rgba")[name.component];
         const auto is_parameter = [&](const GlslParameter& p) { return p.name == text; };
-        static const std::set<std::string, std::less<>> taken = {"x", "r", "g", "b", kLookName};
-        while (taken.contains(text) || is_formula_function(text) ||
+        while (is_taken_name(text) || is_formula_function(text) ||
                std::any_of(function_.parameters.begin(), function_.parameters.end(), is_parameter))
             text += "_";
         return text;
@@ -260,8 +259,7 @@ std::string id_of(const std::string& wanted) {
         id += is_right ? c : '_';
     }
     if (id.empty() || !(id[0] >= 'a' && id[0] <= 'z')) id = "imported_" + id;
-    constexpr std::size_t kLongest = 63;
-    return id.substr(0, kLongest);
+    return id.substr(0, kLongestName);
 }
 
 ParameterSpec parameter_of(const GlslParameter& parameter, const ImportedParameter& set) {
@@ -274,13 +272,6 @@ ParameterSpec parameter_of(const GlslParameter& parameter, const ImportedParamet
     if (!(min <= a && a <= max)) {
         throw Error("import: parameter " + parameter.name + " is " + shortest(a) + "; expected [" +
                     shortest(min) + ", " + shortest(max) + "]");
-    }
-    static const std::set<std::string, std::less<>> taken = {"x", "r", "g", "b", kLookName};
-    if (taken.contains(parameter.name) || is_formula_function(parameter.name) ||
-        !is_formula_name(parameter.name)) {
-        throw FormulaError(parameter.at,
-                           "parameter is " + printable(parameter.name) +
-                               "; expected a name that is no function and not x, r, g, b or look");
     }
     return number_parameter(parameter.name, "", a, min, max, "");
 }
@@ -336,6 +327,13 @@ ImportedShader imported(std::string_view text, const std::string& name,
     op.source = file + ": " + type + " " + op.title + "(" + type + ")";
     op.negatives = "clamped at 0 before the function";
     for (const GlslParameter& parameter : function.parameters) {
+        if (op.parameters.size() == kMostNames) {
+            throw FormulaError(parameter.at,
+                               "function has " + std::to_string(function.parameters.size()) +
+                                   " parameters; expected at most " + std::to_string(kMostNames));
+        }
+        const std::string why = why_no_parameter(parameter.name, op.parameters);
+        if (!why.empty()) throw FormulaError(parameter.at, why);
         const auto set = settings.parameters.find(parameter.name);
         op.parameters.push_back(parameter_of(
             parameter, set == settings.parameters.end() ? ImportedParameter{} : set->second));
@@ -367,6 +365,11 @@ ImportedShader imported(std::string_view text, const std::string& name,
     } else if (output != Output::display_linear) {
         op.output = OutputKind::code_value;
         op.code_power = output == Output::gamma22 ? 2.2 : 2.4;
+    }
+    if (recipe->stages.size() > kMostStages) {
+        throw FormulaError(function.at,
+                           "function becomes " + std::to_string(recipe->stages.size()) +
+                               " stages; expected at most " + std::to_string(kMostStages));
     }
     // resolve() makes its own message of what build() throws.
     const auto wrong = std::make_shared<std::string>();

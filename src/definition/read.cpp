@@ -21,9 +21,6 @@ TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 constexpr std::size_t kLongestFile = std::size_t{1} << 20U;
-constexpr std::size_t kMostStages = 64;
-constexpr std::size_t kMostNames = 64;    // of parameters, presets, looks, and choices of one
-constexpr std::size_t kLongestName = 63;  // of a view; Blender cuts what is longer
 
 using Value = TomlValue;
 using Names = std::vector<std::string>;
@@ -128,12 +125,6 @@ class Table {
     const Value& value_;
     std::string what_;
 };
-
-bool is_id(std::string_view text) {
-    return !text.empty() && text.size() <= kLongestName && is_formula_name(text) &&
-           text.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") ==
-               std::string_view::npos;
-}
 
 class Reader {
   public:
@@ -266,13 +257,8 @@ class Reader {
         if (!all) return;
         require_names(*all, "parameter");
         for (const Value& member : all->members) {
-            if (!is_id(lowercase(member.key)) || is_formula_function(member.key) ||
-                is_taken(member.key)) {
-                fail(member.key_at,
-                     "parameter is " + printable(member.key) +
-                         "; expected a name of letters, digits and _ that is no function, "
-                         "input or other parameter");
-            }
+            const std::string why = why_no_parameter(member.key, recipe_->parameters);
+            if (!why.empty()) fail(member.key_at, why);
             const std::string what = "[parameter." + member.key + "]";
             const Table table(member, what,
                               {"default", "min", "max", "unit", "doc", "choices", "from_picture",
@@ -291,15 +277,6 @@ class Reader {
                 scope_.names.emplace(spec.name + "." + spec.choices[i], FormulaValue{double(i)});
             recipe_->parameters.push_back(std::move(spec));
         }
-    }
-
-    [[nodiscard]] bool is_taken(const std::string& name) const {
-        static const Names taken = {"x", "r", "g", "b", kLookName};
-        const auto is_same = [&](const ParameterSpec& spec) {
-            return is_same_name(spec.name, name);
-        };
-        return std::find(taken.begin(), taken.end(), name) != taken.end() ||
-               std::any_of(recipe_->parameters.begin(), recipe_->parameters.end(), is_same);
     }
 
     static void read_choices(ParameterSpec& spec, const Table& table) {

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/format_number.h"
+#include "base/strings.h"
 #include "expr/nodes.h"
 #include "expr/scalar_ops.h"
 
@@ -217,6 +218,26 @@ Pipeline build_stages(const OperatorRecipe& recipe, const std::vector<StageRecip
 double number_of(const OperatorRecipe& recipe, const Expr& e, const Params& params) {
     const Expr value = bind_uniforms(e, values_of(recipe, params));
     return value.is_constant() ? value.value() : 1;
+}
+
+bool is_id(std::string_view text) {
+    return !text.empty() && text.size() <= kLongestName && is_formula_name(text) &&
+           text.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") ==
+               std::string_view::npos;
+}
+
+bool is_taken_name(std::string_view name) {
+    static const std::set<std::string_view> taken = {"x", "r", "g", "b", kLookName};
+    return taken.contains(name);
+}
+
+std::string why_no_parameter(const std::string& name, const std::vector<ParameterSpec>& others) {
+    const auto is_same = [&](const ParameterSpec& spec) { return is_same_name(spec.name, name); };
+    if (is_id(lowercase(name)) && !is_formula_function(name) && !is_taken_name(name) &&
+        std::none_of(others.begin(), others.end(), is_same))
+        return "";
+    return "parameter is " + printable(name) +
+           "; expected at most 63 letters, digits and _, and no function, input or other parameter";
 }
 
 const char* kept_name(const std::string& name) {

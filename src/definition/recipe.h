@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "formula/formula.h"
@@ -58,6 +59,17 @@ struct OperatorRecipe {
 
 /// The name of the uniform of an operator's look.
 inline constexpr const char* kLookName = "look";
+inline constexpr std::size_t kMostStages = 64;
+inline constexpr std::size_t kMostNames = 64;    // of parameters, presets, looks, choices of one
+inline constexpr std::size_t kLongestName = 63;  // of a view; Blender cuts what is longer
+
+/// At most 63 small letters, digits and _, a letter first.
+[[nodiscard]] bool is_id(std::string_view text);
+/// Formulas use the name for a color, or for the look.
+[[nodiscard]] bool is_taken_name(std::string_view name);
+/// Why an operator with the other parameters has none of this name; empty if it may.
+[[nodiscard]] std::string why_no_parameter(const std::string& name,
+                                           const std::vector<ParameterSpec>& others);
 
 /// An error of a stage that gives no finite number: the message, and the position of the stage.
 class StageError : public Error {

@@ -4,14 +4,13 @@
 #include <memory>
 
 #include "base/strings.h"
+#include "definition/recipe.h"
 #include "definition/table_stages.h"
 #include "tonewright/input_encoding.h"
 #include "tonewright/view.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
-
-constexpr std::size_t kLongestName = 63;  // of an id and of a view
 
 /// "Film Print v2" -> "film_print_v2".
 std::string id_of(const std::string& name) {

@@ -610,7 +610,7 @@ void PictureWriter::finish() {
     if (const int error = temporary_->keep()) fail(reason_of(error));
     // Readers that use OIIO's shared cache get the new file.
     auto cache = OIIO::ImageCache::create(true);  // a pointer, or since 3.0 a shared one
-    if (!cache) return;                           // no memory, so none before
+    if (!cache) return;                           // no memory for a first one
     cache->invalidate(OIIO::ustring(path_));
     OIIO::ImageCache::destroy(cache);
 }

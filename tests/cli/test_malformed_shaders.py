@@ -44,6 +44,16 @@ def malformed():
     for end in range(100, len(whole) - 2, 31):
         add(f"cut at {end}", whole[:end], "expected")
 
+    # What a .tone file has no room for.
+    add("a long name", f"float f(float x, float {'y' * 64} = 5.0) {{ return x; }}",
+        "bad.glsl:1:24: parameter is yyy")
+    add("two names of one", "float f(float x, float White = 2.0, float white = 2.0) { return x*White/white; }",
+        "bad.glsl:1:43: parameter is white; expected at most 63 letters, digits and _, and no function, input or other parameter")
+    add("65 parameters", f"float f(float x{''.join(f', float p{i} = 1.0' for i in range(65))}) {{ return x; }}",
+        "function has 65 parameters; expected at most 64")
+    add("81 stages", "vec3 f(vec3 c) {" + "c = mat3(0.9, 0.1, 0, 0, 0.9, 0.1, 0.1, 0, 0.9)*c; c = c/(c + 1.0);" * 40 + "return c; }",
+        "function becomes 81 stages; expected at most 64")
+
     # Code that is not straight-line.
     for loop in ("for (int i = 0; i < 3; i++) c *= c;", "while (true) c *= c;", "do { c *= c; } while (true);"):
         body(f"{loop} return c;", f"found {loop.split()[0]}; expected straight-line code, without loops")

@@ -261,7 +261,7 @@ TEST(Definition, MessagesHaveThePlace) {
         {bad_stage + "lut = \"film.cube\"\n",
          "4:7: lut is \"film.cube\"; this program reads no LUT as a stage"},
         {kHead + "[parameter.x]\ndefault = 1\nmin = 0\nmax = 2\n" + kStage,
-         "3:12: parameter is x; expected a name of letters, digits and _ that is no function, "
+         "3:12: parameter is x; expected at most 63 letters, digits and _, and no function, "
          "input or other parameter"},
         {kHead + "[parameter.k]\ndefault = 3\nmin = 0\nmax = 2\n" + kStage,
          "4:11: default is 3; expected [0, 2]"},

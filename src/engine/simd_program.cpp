@@ -106,6 +106,12 @@ class FloatTape {
                 return push(ExprOp::multiply, step.a, constant(reciprocal));
             }
         }
+        if (step.op == ExprOp::select && is_scale_of_positive(step)) {
+            TapeInstruction scale = step;
+            scale.b = push(ExprOp::divide, constant(1), code_[code_[step.b].a].b);
+            code_.push_back(scale);
+            return last();
+        }
         if (step.op == ExprOp::power && is_constant(step.b)) {
             const double y = code_[step.b].value;
             if (y == 0.5) return push(ExprOp::square_root, step.a);
@@ -117,6 +123,16 @@ class FloatTape {
         }
         code_.push_back(step);
         return last();
+    }
+
+    /// f(y) / y where y > 0 and f(y) = y / g: Reinhard of a luminance.
+    [[nodiscard]] bool is_scale_of_positive(const TapeInstruction& select) const {
+        const TapeInstruction& condition = code_[select.a];
+        const TapeInstruction& scale = code_[select.b];
+        const TapeInstruction& mapped = code_[scale.a];
+        return condition.op == ExprOp::less && is_constant(condition.a) &&
+               code_[condition.a].value >= 0 && scale.op == ExprOp::divide &&
+               scale.b == condition.b && mapped.op == ExprOp::divide && mapped.a == condition.b;
     }
 
     std::uint32_t whole_power(std::uint32_t x, unsigned n) {

@@ -264,6 +264,7 @@ TEST(Simd, OperationsMeanWhatExpressionsMean) {
         select(less(a, b), a, b * 0.5F),
         select(less_equal(a, 0.25F), b, 7),
         select(equal(a, b), 1, 2),
+        select(less(0, a), a / (abs(b) + 0.5F) / a, 2),
         clamp(a, -1, 2),
         a * 0.5F + b,
         a * b + 1,

@@ -369,22 +369,13 @@ HWY_NOINLINE void run_op<Op::dot3>(const Frame& frame, const Code& /*code*/,
     }
 }
 
-/// One value of an operand at a time, as its own type.
-template <class F>
-HWY_INLINE void with_number(const Frame& frame, const Operand& operand, std::size_t i, F use) {
-    if (operand.wide) {
-        use(reinterpret_cast<double*>(frame.registers + operand.offset)[i]);
-    } else {
-        use(reinterpret_cast<float*>(frame.registers + operand.offset)[i]);
-    }
-}
-
 /// Always in double. Pixel by pixel: gathers are slower, and all tables lie in one line of memory.
 template <>
 HWY_NOINLINE void run_op<Op::lookup_nonuniform>(const Frame& frame, const Code& code,
                                                 const Instruction& step) {
     const NonuniformTables& tables = code.positioned[step.table];
     const DD d;
+    const hn::Rebind<std::int32_t, DD> whole;
     const hn::CappedTag<double, 4> part;
     const std::size_t lanes = hn::Lanes(d);
     const Source source(frame, step.in[0]);
@@ -392,30 +383,40 @@ HWY_NOINLINE void run_op<Op::lookup_nonuniform>(const Frame& frame, const Code& 
     const auto last = hn::Set(d, tables.last);
     const auto parts_per_unit = hn::Set(d, tables.parts_per_unit);
     alignas(kVectorBytes) double place[kLaneMultiple];
-    alignas(kVectorBytes) double part_of[kLaneMultiple];
-    alignas(kVectorBytes) double values[4];
-    for (std::size_t i = 0; i < frame.count; i += lanes) {
-        const auto x = source.load(d, i);
-        // NaN -> the first position: the comparison fails.
-        const auto t = hn::Min(hn::IfThenElse(hn::Gt(x, first), x, first), last);
-        hn::Store(t, d, place);
-        hn::Store(hn::Mul(hn::Sub(t, first), parts_per_unit), d, part_of);
-        for (std::size_t p = 0; p < lanes; ++p) {
-            std::size_t cell = tables.first_cell[static_cast<std::size_t>(part_of[p])];
+    alignas(kVectorBytes) std::int32_t cell[kLaneMultiple];
+    alignas(kVectorBytes) double values[4 * kLaneMultiple];  // four of each pixel
+    // All cells first: a processor that waits for one of the tables goes on with other pixels.
+    for (std::size_t begin = 0; begin < frame.count; begin += kLaneMultiple) {
+        for (std::size_t p = 0; p < kLaneMultiple; p += lanes) {
+            const auto x = source.load(d, begin + p);
+            // NaN -> the first position: the comparison fails.
+            const auto t = hn::Min(hn::IfThenElse(hn::Gt(x, first), x, first), last);
+            hn::Store(t, d, place + p);
+            hn::Store(hn::DemoteTo(whole, hn::Mul(hn::Sub(t, first), parts_per_unit)), whole,
+                      cell + p);
+        }
+        for (std::size_t p = 0; p < kLaneMultiple; ++p) {
+            auto at =
+                static_cast<std::int32_t>(tables.first_cell[static_cast<std::size_t>(cell[p])]);
             for (int k = 0; k < tables.steps; ++k)
-                cell += place[p] >= tables.end[cell] ? 1 : 0;
-            const NonuniformTables::Line& line = tables.lines[cell];
+                at += place[p] >= tables.end[static_cast<std::size_t>(at)] ? 1 : 0;
+            cell[p] = at;
+        }
+        for (std::size_t p = 0; p < kLaneMultiple; ++p) {
+            const NonuniformTables::Line& line = tables.lines[static_cast<std::size_t>(cell[p])];
             const auto at = hn::Set(part, place[p]);
             for (std::size_t c = 0; c < 4; c += hn::Lanes(part)) {
                 hn::Store(hn::MulAdd(hn::Load(part, line.slope.data() + c), at,
                                      hn::Load(part, line.constant.data() + c)),
-                          part, values + c);
+                          part, values + 4 * p + c);
             }
+        }
+        for (std::size_t p = 0; p < kLaneMultiple; p += lanes) {
+            Vec<DD> result[4];
+            hn::LoadInterleaved4(d, values + 4 * p, result[0], result[1], result[2], result[3]);
             for (std::size_t c = 0; c < 3; ++c) {
-                if (step.channel[c].constant) continue;
-                with_number(frame, step.channel[c], i + p, [&](auto& out) {
-                    out = static_cast<std::decay_t<decltype(out)>>(values[c]);
-                });
+                if (!step.channel[c].constant)
+                    store_result(frame, step.channel[c], begin + p, result[c]);
             }
         }
     }
@@ -908,7 +909,7 @@ void run(const Code& code, const Numbers& numbers, const std::array<const float*
 #if HWY_TARGET <= HWY_AVX3
 constexpr std::optional<VectorMachine> kMachine = VectorMachine{16, 32, true, 90};
 #elif HWY_TARGET <= HWY_AVX2
-constexpr std::optional<VectorMachine> kMachine = VectorMachine{8, 16, false, 50};
+constexpr std::optional<VectorMachine> kMachine = VectorMachine{8, 16, false, 150};
 #else
 constexpr std::optional<VectorMachine> kMachine;
 #endif

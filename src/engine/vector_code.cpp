@@ -6,6 +6,7 @@
 #include <cstring>
 #include <map>
 
+#include "engine/schedule.h"
 #include "engine/vector_writer-inl.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -270,7 +271,7 @@ class Translator {
             (this->*writes[static_cast<std::size_t>(computed_by(*s.step))])(s);
         }
         if (part == part_count_ - 1) write_outputs(layout);
-        return writer.take();
+        return machine_.has_avx512 ? writer.take() : scheduled(writer.take());
     }
 
     void read_inputs(PixelLayout layout) {

@@ -866,6 +866,9 @@ def usage_errors(bad, picture):
           for words in (["--missing", "hold"], ["--skip-existing"])),
         (["apply", "in.%s.exr", "out.%04d.png", "--operator", "hable", "--frames", "1-2"], "in is in.%s.exr"),
         (["apply", "in.####.exr", "out.png", "--operator", "hable", "--frames", "1-2"], "out is out.png; shot.####.exr"),
+        # Other commands take the operator by its place.
+        *((["apply", operator, picture, "-o", "out.png"], f"apply: IN is {operator}, an operator; --operator {operator}")
+          for operator in ("hable", "AgX", "agx_blender:punchy")),
         # Told before the picture is read, although it decides on parameters.
         (["apply", bad["missing.exr"], "out.png", "--operator", "drago", "--set", "maximun=9"],
          "parameter is maximun; did you mean maximum?"),

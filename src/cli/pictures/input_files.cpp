@@ -13,6 +13,7 @@
 #include "base/input_file.h"
 #include "base/strings.h"
 #include "tonewright/error.h"
+#include "tonewright/registry.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -111,10 +112,24 @@ std::vector<FrameFiles> into_folder(const std::vector<std::string>& inputs,
     return files;
 }
 
+/// Other commands take the operator by its place.
+/// @throws Error  the name is an operator's, and no file has it
+void expect_picture(const std::string& name) {
+    if (fs::exists(name) || names_a_file(name)) return;
+    try {
+        (void)resolve_picture_operator(name);
+    } catch (const Error&) {
+        return;
+    }
+    throw Error(fmt::format("apply: IN is {}, an operator; expected a picture, and --operator {}",
+                            name, name));
+}
+
 }  // namespace
 
 ApplyFiles files_of(const ApplyOptions& options) {
     std::vector<std::string> named = options.pictures;
+    expect_picture(named.front());
     ApplyOptions with_output = options;
     if (!options.given.contains("--output")) {
         if (named.size() != 2) {

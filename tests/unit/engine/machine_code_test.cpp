@@ -257,7 +257,7 @@ TEST_P(MachineCode, ComputesEveryOperation) {
 /// Each sine is a step over the whole tile, so each value goes through it: more than it holds.
 TEST_P(MachineCode, IsNotMadeOfMoreValuesThanATileHolds) {
     std::array<Expr, 3> rgb = {Expr::input(0), Expr::input(1), Expr::input(2)};
-    for (int i = 0; i < 600; ++i) {
+    for (int i = 0; i < 1500; ++i) {
         for (Expr& channel : rgb)
             channel = sin(channel);
     }

@@ -9,6 +9,7 @@
 #include <map>
 #include <set>
 #include <sstream>
+#include <system_error>
 
 #include "base/input_file.h"
 #include "base/strings.h"
@@ -115,7 +116,8 @@ std::vector<FrameFiles> into_folder(const std::vector<std::string>& inputs,
 /// Other commands take the operator by its place.
 /// @throws Error  the name is an operator's, and no file has it
 void expect_picture(const std::string& name) {
-    if (fs::exists(name) || names_a_file(name)) return;
+    std::error_code unknown;  // too long a name, too
+    if (fs::exists(name, unknown) || names_a_file(name)) return;
     try {
         (void)resolve_picture_operator(name);
     } catch (const Error&) {

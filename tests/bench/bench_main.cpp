@@ -267,7 +267,7 @@ int main(int argc, char** argv) {
         std::copy(at + 1, argv + argc, at);
         --argc;
     }
-    // Writes to both pictures, which must not happen between a measurement and its error.
+    // Overwrites the result, which must not happen between a measurement and its error.
     tonewright::memcpy_rate();
     tonewright::register_all();
     benchmark::Initialize(&argc, argv);

@@ -254,7 +254,7 @@ TEST_P(MachineCode, ComputesEveryOperation) {
     }
 }
 
-/// Each sine is a step over the whole tile, so each value goes through it: more than it holds.
+/// So many parts hand on more values than a tile holds.
 TEST_P(MachineCode, IsNotMadeOfMoreValuesThanATileHolds) {
     std::array<Expr, 3> rgb = {Expr::input(0), Expr::input(1), Expr::input(2)};
     for (int i = 0; i < 1500; ++i) {

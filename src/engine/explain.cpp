@@ -65,11 +65,8 @@ constexpr const char* kVectorNames[] = {"add",
                                         "load_pixels",
                                         "store_pixels",
                                         "store_colors",
-                                        "load_halves",
-                                        "store_halves",
-                                        "shuffle",
-                                        "expand",
-                                        "shuffle_128",
+                                        "load_thirds",
+                                        "store_thirds",
                                         "shuffle_4"};
 static_assert(std::size(kVectorNames) == static_cast<std::size_t>(VectorOp::shuffle_4) + 1);
 

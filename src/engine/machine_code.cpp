@@ -40,8 +40,6 @@ constexpr std::uint8_t kLessEqual = 0x12;
 constexpr std::uint8_t kGreaterEqual = 0x1D;
 constexpr std::uint8_t kGreater = 0x1E;
 
-struct NoMaskLeft {};
-
 /// Of a part among those of a program.
 enum class Place : std::uint8_t { only, first, later };
 
@@ -232,6 +230,13 @@ class Generator : public Xbyak::CodeGenerator {
         return ptr[rsp + static_cast<std::size_t>(slot * machine_.bytes())];
     }
 
+    int take_slot() {
+        if (free_slots_.empty()) return slot_count_++;
+        const int slot = free_slots_.back();
+        free_slots_.pop_back();
+        return slot;
+    }
+
     /// A register that holds nothing, not locked.
     int take() {
         int best = -1;
@@ -251,12 +256,7 @@ class Generator : public Xbyak::CodeGenerator {
         }
         State& s = state(holder_[static_cast<std::size_t>(best)]);
         if (s.slot < 0) {
-            if (free_slots_.empty()) {
-                s.slot = slot_count_++;
-            } else {
-                s.slot = free_slots_.back();
-                free_slots_.pop_back();
-            }
+            s.slot = take_slot();
             vmovaps(slot_of(s.slot), vector(best));
         }
         s.reg = -1;
@@ -364,17 +364,38 @@ class Generator : public Xbyak::CodeGenerator {
         return vector(r);
     }
 
-    Xbyak::Opmask mask(std::int32_t value) { return Xbyak::Opmask(state(value).reg); }
+    /// As take() and define(), for a mask. An instruction has one at most.
+    Xbyak::Opmask take_mask(std::int32_t value) {
+        int best = kFirstMask;
+        for (int k = kFirstMask; k <= kLastMask; ++k) {
+            const auto use = [&](int at) {
+                const std::int32_t holds = mask_holder_[static_cast<std::size_t>(at)];
+                return holds == kNone ? std::numeric_limits<std::size_t>::max() : next_use(holds);
+            };
+            if (use(k) > use(best)) best = k;
+        }
+        std::int32_t& holder = mask_holder_[static_cast<std::size_t>(best)];
+        if (holder != kNone) {
+            State& s = state(holder);
+            if (s.slot < 0) {
+                s.slot = take_slot();
+                kmovw(slot_of(s.slot), Xbyak::Opmask(best));
+            }
+            s.reg = -1;
+        }
+        holder = value;
+        state(value).reg = best;
+        state(value).is_mask = true;
+        return Xbyak::Opmask(best);
+    }
+    Xbyak::Opmask mask(std::int32_t value) {
+        const State& s = state(value);
+        if (s.reg < 0) kmovw(take_mask(value), slot_of(s.slot));
+        return Xbyak::Opmask(s.reg);
+    }
     Xbyak::Opmask new_mask(const VectorInstruction& step) {
         release(step);
-        for (int k = kFirstMask; k <= kLastMask; ++k) {
-            if (mask_holder_[static_cast<std::size_t>(k)] != kNone) continue;
-            mask_holder_[static_cast<std::size_t>(k)] = step.result;
-            state(step.result).reg = k;
-            state(step.result).is_mask = true;
-            return Xbyak::Opmask(k);
-        }
-        throw NoMaskLeft();
+        return take_mask(step.result);
     }
 
     // --- instructions ----------------------------------------------------------------------------
@@ -484,6 +505,10 @@ class Generator : public Xbyak::CodeGenerator {
     Xbyak::Address pixels(const Xbyak::Reg64& base, const VectorInstruction& step, int at) {
         return ptr[base + static_cast<std::size_t>(at + pixel_bytes() * step.block)];
     }
+    /// Of the four floats of load_thirds, the i-th.
+    Xbyak::Address third(const Xbyak::Reg64& base, const VectorInstruction& step, int i) {
+        return pixels(base, step, 16 * (step.immediate + 3 * i));
+    }
     /// The stack's first lines, behind those of the spilled values.
     Xbyak::Address kept_index(const VectorInstruction& step, int number, int pixel) {
         const int offset = 64 * (number + 4 * step.block) + 4 * pixel;
@@ -519,7 +544,7 @@ class Generator : public Xbyak::CodeGenerator {
         if (machine_.has_avx512) {
             for (int i = 0; i < 4; ++i) {
                 const Xbyak::Reg64 at = i % 2 == 0 ? r9 : r11;
-                mov(at.cvt32(), index_of(4 * quarter + i));
+                mov(at.cvt32(), index_of(quarter + 4 * i));
                 i == 0 ? vmovaps(low, row(at))
                        : vinsertf32x4(zmm(r), zmm(r), row(at), static_cast<std::uint8_t>(i));
             }
@@ -765,12 +790,6 @@ class Generator : public Xbyak::CodeGenerator {
             }
             case VectorOp::rows:
                 return rows(step);
-            case VectorOp::expand: {
-                const Z a = in_register(step.in[0], false);
-                const Z r = result_apart(step);
-                vmovaps(r, table(step.offset));
-                return vpermps(zmm(r), zmm(r), a);
-            }
             case VectorOp::load_plane:
                 return vmovaps(result_after(step), plane(step));
             case VectorOp::store_plane: {
@@ -785,15 +804,24 @@ class Generator : public Xbyak::CodeGenerator {
                 vmovups(pixels(rdx, step), a);
                 return release(step);
             }
-            case VectorOp::load_halves: {
-                const Xbyak::Ymm r(result_after(step).getIdx());
-                vmovups(Xbyak::Xmm(r.getIdx()), pixels(rsi, step, 16 * step.immediate));
-                return vinsertf128(r, r, pixels(rsi, step, 16 * (step.immediate + 3)), 1);
+            case VectorOp::load_thirds: {
+                const int r = result_after(step).getIdx();
+                vmovups(Xbyak::Xmm(r), third(rsi, step, 0));
+                if (!machine_.has_avx512)
+                    return vinsertf128(Xbyak::Ymm(r), Xbyak::Ymm(r), third(rsi, step, 1), 1);
+                for (std::uint8_t i = 1; i < 4; ++i)
+                    vinsertf32x4(Xbyak::Zmm(r), Xbyak::Zmm(r), third(rsi, step, i), i);
+                return;
             }
-            case VectorOp::store_halves: {
-                const Xbyak::Ymm a(in_register(step.in[0], false).getIdx());
-                vmovups(pixels(rdx, step, 16 * step.immediate), Xbyak::Xmm(a.getIdx()));
-                vextractf128(pixels(rdx, step, 16 * (step.immediate + 3)), a, 1);
+            case VectorOp::store_thirds: {
+                const int a = in_register(step.in[0], false).getIdx();
+                vmovups(third(rdx, step, 0), Xbyak::Xmm(a));
+                if (!machine_.has_avx512) {
+                    vextractf128(third(rdx, step, 1), Xbyak::Ymm(a), 1);
+                } else {
+                    for (std::uint8_t i = 1; i < 4; ++i)
+                        vextractf32x4(third(rdx, step, i), Xbyak::Zmm(a), i);
+                }
                 return release(step);
             }
             case VectorOp::store_colors: {
@@ -806,18 +834,6 @@ class Generator : public Xbyak::CodeGenerator {
                 }
                 vmovups(pixels(rdx, step) | k7, a);
                 return release(step);
-            }
-            case VectorOp::shuffle: {
-                const Z a = in_register(step.in[0], false);
-                const Z b = in_register(step.in[1], false);
-                const Z r = result_apart(step);
-                vmovaps(r, table(step.offset));
-                return vpermi2ps(r, a, b);
-            }
-            case VectorOp::shuffle_128: {
-                const Z a = in_register(step.in[0], false);
-                const Z b = in_register(step.in[1], false);
-                return vshuff64x2(zmm(result_after(step)), zmm(a), b, step.immediate);
             }
             case VectorOp::shuffle_4: {
                 const Z a = in_register(step.in[0], false);
@@ -847,7 +863,7 @@ class Generator : public Xbyak::CodeGenerator {
 /// The code.
 class Assembled final : public MachineCode {
   public:
-    Assembled(VectorProgram program, const VectorMachine& machine, int interleaved_blocks)
+    Assembled(VectorProgram program, const VectorMachine& machine)
         : MachineCode(std::move(program)), generator_(machine) {
         std::array<std::vector<std::size_t>, 3> entry;
         for (std::size_t layout = 0; layout < 3; ++layout) {
@@ -864,7 +880,7 @@ class Assembled final : public MachineCode {
                                       parts[part].instructions.size() <= kShort;
                 entry[layout].push_back(
                     generator_.write(parts[part], static_cast<PixelLayout>(layout), place,
-                                     program_.tile, is_alone ? 1 : interleaved_blocks));
+                                     program_.tile, is_alone ? 1 : kInterleaved));
                 bytes_[layout].push_back(generator_.getSize() - entry[layout].back());
             }
             parts.clear();  // they are machine code now
@@ -892,18 +908,11 @@ std::shared_ptr<const MachineCode> MachineCode::make(Code& code) {
     code.numbers.pool.resize(program->pool.size() / kVectorBytes + 2);
     std::memcpy(code.numbers.pool.data(), program->pool.data(), program->pool.size());
     program->pool.clear();
-    // Side by side, blocks need more mask registers than there are when each needs three.
-    const VectorMachine& machine = *code.target->machine;
-    for (int blocks = kInterleaved; blocks > 0; --blocks) {
-        try {
-            return std::make_shared<const Assembled>(*program, machine, blocks);
-        } catch (const NoMaskLeft&) {
-            continue;
-        } catch (const Xbyak::Error&) {
-            return nullptr;  // no memory that can be executed
-        }
+    try {
+        return std::make_shared<const Assembled>(std::move(*program), *code.target->machine);
+    } catch (const Xbyak::Error&) {
+        return nullptr;  // no memory that can be executed
     }
-    return nullptr;
 }
 
 }  // namespace simd

@@ -49,7 +49,7 @@ int latency(const VectorInstruction& step) {
 
 bool writes_pixels(VectorOp op) {
     return op == VectorOp::store_pixels || op == VectorOp::store_colors ||
-           op == VectorOp::store_halves;
+           op == VectorOp::store_thirds;
 }
 
 class Scheduler {
@@ -89,7 +89,7 @@ class Scheduler {
                 rows_before = i;
             }
             // A picture may be written where it is read.
-            if (step.op == VectorOp::load_pixels || step.op == VectorOp::load_halves)
+            if (step.op == VectorOp::load_pixels || step.op == VectorOp::load_thirds)
                 pixels_read.push_back(i);
             if (writes_pixels(step.op)) {
                 for (const std::size_t read : pixels_read)

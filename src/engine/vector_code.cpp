@@ -278,7 +278,10 @@ class Translator {
         std::array<VectorOperand, 3> given;
         if (layout == PixelLayout::rgb)
             given = code_.is_one_function ? writer_->load_floats() : writer_->load_rgb();
-        if (layout == PixelLayout::rgba) given = writer_->load_rgba();
+        if (layout == PixelLayout::rgba) {
+            const std::array<VectorOperand, 4> rgba = writer_->load_rgba();
+            std::copy_n(rgba.begin(), 3, given.begin());
+        }
         for (std::size_t c = 0; c < 3; ++c) {
             if (input_[c] == kNone) continue;
             if (layout == PixelLayout::planes) given[c] = load(input_offset_[c], false, 0);
@@ -479,9 +482,9 @@ class Translator {
             };
             rgba[static_cast<std::size_t>(quarter)] = weighted_sum(weight, node).operand;
         }
-        const std::array<VectorOperand, 3> rgb = w.channels(rgba);
+        const std::array<VectorOperand, 4> channel = w.columns(rgba);
         for (std::size_t c = 0; c < 3; ++c) {
-            if (s.out[c] != kNone) set(s.out[c], VF{writer_, rgb[c]});
+            if (s.out[c] != kNone) set(s.out[c], VF{writer_, channel[c]});
         }
     }
 

@@ -64,19 +64,16 @@ enum class VectorOp : std::uint8_t {
     spill_index,  // the whole numbers a, on the stack, number `immediate`
     rows,  // four floats each for a quarter of the pixels, at `address`, or without one in the
            // pool, + `offset` + the bytes that spill_index kept: `immediate` says which
-           // index, and times 4, which pixels: AVX-512 k to k+3, AVX2 k and k+4
+           // index, and times 4, which pixels: each fourth
     // Memory
     load_plane,
     store_plane,
     load_pixels,   // the vector number `immediate` of the block's pixels
     store_pixels,  //
     store_colors,  // only the first three of each four floats
-    load_halves,   // four floats each from the places `immediate` and `immediate` + 3; AVX2
-    store_halves,  // AVX2
-    shuffle,       // of the 32 floats of a, b: those that 16 numbers at `offset` say; AVX-512
-    expand,        // the floats of a that 16 numbers at `offset` say; AVX-512
-    shuffle_128,   // two fours of a, two of b; AVX-512
-    shuffle_4,     // two floats of each four of a, two of b; AVX2
+    load_thirds,   // each third four floats of the block's pixels, from number `immediate` on
+    store_thirds,  //
+    shuffle_4,     // two floats of each four of a, two of b
 };
 
 /// A value in a register, or a number in the pool.

@@ -108,23 +108,10 @@ class Writer {
                      .address = address});
     }
     /// The floats of a quarter of the pixels, four times each.
-    Number expand(Number x, int quarter) {
-        if (!machine_.has_avx512) return shuffle_4(x, x, quarter * 0x55);
-        std::array<std::int32_t, 16> of_pixel{};
-        for (std::int32_t i = 0; i < 16; ++i)
-            of_pixel[static_cast<std::size_t>(i)] = 4 * quarter + i / 4;
-        return emit({.op = VectorOp::expand,
-                     .offset = pool_.table(of_pixel.data(), of_pixel.size()),
-                     .in = {x}});
-    }
+    Number expand(Number x, int quarter) { return shuffle_4(x, x, quarter * 0x55); }
 
     // --- pixels --------------------------------------------------------------------------------
 
-    Number shuffle(Number a, Number b, const std::array<std::int32_t, 16>& from) {
-        return emit({.op = VectorOp::shuffle,
-                     .offset = pool_.table(from.data(), from.size()),
-                     .in = {a, b}});
-    }
     Number load(VectorOp o, int number) {
         return emit({.op = o, .immediate = static_cast<std::uint8_t>(number)});
     }
@@ -135,39 +122,21 @@ class Writer {
         for (std::size_t i = 0; i < 3; ++i)
             store(VectorOp::store_pixels, static_cast<int>(i), floats[i]);
     }
-    Number load_halves(int number) { return load(VectorOp::load_halves, number); }
     std::array<Number, 3> load_rgb() {
-        if (!machine_.has_avx512) {
-            // The first four pixels in the low half of each vector, the others in the high half.
-            const std::array<Number, 3> v = {load_halves(0), load_halves(1), load_halves(2)};
-            const Number red_green = shuffle_4(v[1], v[2], shuffle_code(2, 3, 1, 2));
-            const Number green_blue = shuffle_4(v[0], v[1], shuffle_code(1, 2, 0, 1));
-            return {shuffle_4(v[0], red_green, shuffle_code(0, 3, 0, 2)),
-                    shuffle_4(green_blue, red_green, shuffle_code(0, 2, 1, 3)),
-                    shuffle_4(green_blue, v[2], shuffle_code(1, 3, 0, 3))};
-        }
-        const std::array<Number, 3> v = {load_pixels(0), load_pixels(1), load_pixels(2)};
-        std::array<Number, 3> result;
-        for (std::int32_t c = 0; c < 3; ++c) {
-            // From the first two vectors what is there, then the rest from the third.
-            std::array<std::int32_t, 16> first{}, second{};
-            for (std::int32_t i = 0; i < 16; ++i) {
-                const std::int32_t at = 3 * i + c;
-                first[static_cast<std::size_t>(i)] = at < 32 ? at : 0;
-                second[static_cast<std::size_t>(i)] = at < 32 ? i : at - 32 + 16;
-            }
-            result[static_cast<std::size_t>(c)] = shuffle(shuffle(v[0], v[1], first), v[2], second);
-        }
-        return result;
-    }
-    Number shuffle_128(Number a, Number b, std::uint8_t which) {
-        return shuffle_by(VectorOp::shuffle_128, a, b, which);
+        // Each four floats of a vector have four pixels.
+        const std::array<Number, 3> v = {load(VectorOp::load_thirds, 0),
+                                         load(VectorOp::load_thirds, 1),
+                                         load(VectorOp::load_thirds, 2)};
+        const Number red_green = shuffle_4(v[1], v[2], shuffle_code(2, 3, 1, 2));
+        const Number green_blue = shuffle_4(v[0], v[1], shuffle_code(1, 2, 0, 1));
+        return {shuffle_4(v[0], red_green, shuffle_code(0, 3, 0, 2)),
+                shuffle_4(green_blue, red_green, shuffle_code(0, 2, 1, 3)),
+                shuffle_4(green_blue, v[2], shuffle_code(1, 3, 0, 3))};
     }
     Number shuffle_4(Number a, Number b, int which) {
-        return shuffle_by(VectorOp::shuffle_4, a, b, which);
-    }
-    Number shuffle_by(VectorOp o, Number a, Number b, int which) {
-        return emit({.op = o, .immediate = static_cast<std::uint8_t>(which), .in = {a, b}});
+        return emit({.op = VectorOp::shuffle_4,
+                     .immediate = static_cast<std::uint8_t>(which),
+                     .in = {a, b}});
     }
     /// For shuffle_4: floats i, j of a, then k, l of b.
     static constexpr int shuffle_code(int i, int j, int k, int l) {
@@ -182,74 +151,28 @@ class Writer {
         return {shuffle_4(first01, first23, 0x88), shuffle_4(first01, first23, 0xDD),
                 shuffle_4(last01, last23, 0x88), shuffle_4(last01, last23, 0xDD)};
     }
-    std::array<Number, 3> load_rgba() {
-        return channels({load_pixels(0), load_pixels(1), load_pixels(2), load_pixels(3)});
-    }
-    /// Of a block's pixels of four floats.
-    std::array<Number, 3> channels(const std::array<Number, 4>& v) {
-        if (!machine_.has_avx512) {
-            const std::array<Number, 4> rgba = columns(v);
-            return {rgba[0], rgba[1], rgba[2]};
-        }
-        std::array<std::int32_t, 16> red_green{}, blue{};
-        for (std::int32_t i = 0; i < 8; ++i) {
-            red_green[static_cast<std::size_t>(i)] = 4 * i;
-            red_green[static_cast<std::size_t>(i) + 8] = 4 * i + 1;
-            blue[static_cast<std::size_t>(i)] = 4 * i + 2;
-        }
-        const Number low = shuffle(v[0], v[1], red_green);
-        const Number high = shuffle(v[2], v[3], red_green);
-        const Number blue_low = shuffle(v[0], v[1], blue);
-        const Number blue_high = shuffle(v[2], v[3], blue);
-        return {shuffle_128(low, high, 0x44), shuffle_128(low, high, 0xEE),
-                shuffle_128(blue_low, blue_high, 0x44)};
+    /// In another order of the pixels, which store_rgba() undoes.
+    std::array<Number, 4> load_rgba() {
+        return columns({load_pixels(0), load_pixels(1), load_pixels(2), load_pixels(3)});
     }
     void store(VectorOp o, int number, Number value) {
         emit_store({.op = o, .immediate = static_cast<std::uint8_t>(number), .in = {value}});
     }
     void store_rgb(const std::array<Number, 3>& c) {
-        if (!machine_.has_avx512) {
-            const Number red_green = shuffle_4(c[0], c[1], 0x88);
-            const Number green_blue = shuffle_4(c[1], c[2], 0xDD);
-            const Number blue_red = shuffle_4(c[2], c[0], shuffle_code(0, 2, 1, 3));
-            store(VectorOp::store_halves, 0, shuffle_4(red_green, blue_red, 0x88));
-            store(VectorOp::store_halves, 1,
-                  shuffle_4(green_blue, red_green, shuffle_code(0, 2, 1, 3)));
-            return store(VectorOp::store_halves, 2, shuffle_4(blue_red, green_blue, 0xDD));
-        }
-        for (std::int32_t v = 0; v < 3; ++v) {
-            std::array<std::int32_t, 16> first{}, second{};
-            for (std::int32_t i = 0; i < 16; ++i) {
-                const std::int32_t at = 16 * v + i;
-                const std::int32_t pixel = at / 3;
-                const std::int32_t channel = at % 3;
-                first[static_cast<std::size_t>(i)] = channel == 0   ? pixel
-                                                     : channel == 1 ? 16 + pixel
-                                                                    : 0;
-                second[static_cast<std::size_t>(i)] = channel == 2 ? 16 + pixel : i;
-            }
-            store(VectorOp::store_pixels, v, shuffle(shuffle(c[0], c[1], first), c[2], second));
-        }
+        const Number red_green = shuffle_4(c[0], c[1], 0x88);
+        const Number green_blue = shuffle_4(c[1], c[2], 0xDD);
+        const Number blue_red = shuffle_4(c[2], c[0], shuffle_code(0, 2, 1, 3));
+        store(VectorOp::store_thirds, 0, shuffle_4(red_green, blue_red, 0x88));
+        store(VectorOp::store_thirds, 1,
+              shuffle_4(green_blue, red_green, shuffle_code(0, 2, 1, 3)));
+        store(VectorOp::store_thirds, 2, shuffle_4(blue_red, green_blue, 0xDD));
     }
     void store_rgba(const std::array<Number, 3>& c) {
-        if (!machine_.has_avx512) {
-            for (int v = 0; v < 4; v += 2) {
-                const Number red_green = shuffle_4(c[0], c[1], v == 0 ? 0x44 : 0xEE);
-                for (int i = 0; i < 2; ++i)
-                    store(VectorOp::store_colors, v + i,
-                          shuffle_4(red_green, c[2], shuffle_code(i, i + 2, v + i, v + i)));
-            }
-            return;
-        }
-        for (std::int32_t v = 0; v < 4; ++v) {
-            std::array<std::int32_t, 16> first{}, second{};
-            for (std::int32_t i = 0; i < 16; ++i) {
-                const std::int32_t pixel = 4 * v + i / 4;
-                const std::int32_t channel = i % 4;
-                first[static_cast<std::size_t>(i)] = channel == 1 ? 16 + pixel : pixel;
-                second[static_cast<std::size_t>(i)] = channel == 2 ? 16 + pixel : i;
-            }
-            store(VectorOp::store_colors, v, shuffle(shuffle(c[0], c[1], first), c[2], second));
+        for (int v = 0; v < 4; v += 2) {
+            const Number red_green = shuffle_4(c[0], c[1], v == 0 ? 0x44 : 0xEE);
+            for (int i = 0; i < 2; ++i)
+                store(VectorOp::store_colors, v + i,
+                      shuffle_4(red_green, c[2], shuffle_code(i, i + 2, v + i, v + i)));
         }
     }
 

@@ -23,11 +23,11 @@ constexpr double kOutputFloor = 0x1p-26;
 /// What rounding of coefficients, steps and the result leaves room for.
 constexpr double kHalfUlps = 3;
 /// Of precise curves, the first that a curve keeps to. With 0.25, more powers in double become
-/// curves (GT7, Unreal and AgX in three.js 1.3 times as fast, BT.2446 A 2.5 times); in segments,
-/// that is not measured.
+/// curves (GT7, Unreal and AgX in three.js 1.3 times as fast, BT.2446 A 2.5 times).
 constexpr std::array kPreciseHalfUlps = {0.25, 1.5};
 
 constexpr int kCheap = 3;
+constexpr int kCheapestFunction = 15;
 constexpr int kCheapestCurve = 20;
 /// Steps computed while looking for curves of one program, at some 10 ns each. What has not been
 /// looked at by then stays as it is.
@@ -60,6 +60,12 @@ int cost_of(const TapeInstruction& step) {
         default:
             return kCheap;
     }
+}
+
+/// The same in double.
+double cost_in_double(const TapeInstruction& step) {
+    const int cost = cost_of(step);
+    return cost >= kCheapestFunction ? 2.5 * cost : 1.4 * cost;
 }
 
 /// Between which values a result lies.
@@ -299,10 +305,7 @@ class CurveFitter {
             fitted.is_tried = true;
             const auto f = [&](double x) { return run(steps, root, x); };
             std::span<const double> half_ulps(&kHalfUlps, 1);
-            if (fitted.is_precise) {
-                half_ulps = kPreciseHalfUlps;
-                if (form_ == CurveForm::segments) half_ulps = half_ulps.last(1);
-            }
+            if (fitted.is_precise) half_ulps = kPreciseHalfUlps;
             std::optional<CompiledCurve> curve;
             if (const auto kinks = find_kinks(root, steps)) {
                 for (auto units = half_ulps.begin(); !curve && units != half_ulps.end(); ++units) {
@@ -312,7 +315,13 @@ class CurveFitter {
                 }
             }
             // What a precise curve stands for would be in double.
-            if (curve && curve->cost() < (fitted.is_precise ? 2.5 * cost : cost))
+            double of_steps = cost;
+            if (fitted.is_precise) {
+                of_steps = 0;
+                for (const std::uint32_t i : steps)
+                    of_steps += cost_in_double(code_[i]);
+            }
+            if (curve && curve->cost() < of_steps)
                 fitted.curve = std::make_unique<const CompiledCurve>(*curve);
         }
         return fitted;

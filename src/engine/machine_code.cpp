@@ -179,12 +179,11 @@ class Generator : public Xbyak::CodeGenerator {
     /// waits for loads more than for arithmetic (Reinhard by luminance: 1.06 times as fast).
     void keep_constants(const VectorCode& code) {
         kept_.clear();
-        if (machine_.has_avx512) return;  // not measured there
         std::vector<int> ending(code.instructions.size());
         for (const State& s : state_) {
             if (!s.uses.empty()) ++ending[s.uses.back()];
         }
-        std::map<std::int32_t, int> uses;  // by offset in the pool
+        std::map<std::pair<std::int32_t, bool>, int> uses;  // by offset in the pool, and width
         int alive = 0;
         int most_alive = 0;
         for (std::size_t i = 0; i < code.instructions.size(); ++i) {
@@ -193,16 +192,16 @@ class Generator : public Xbyak::CodeGenerator {
             most_alive = std::max(most_alive, alive);
             alive -= ending[i];
             for (const VectorOperand& operand : step.in) {
-                if (operand.is_constant()) ++uses[operand.pool];
+                if (operand.is_constant()) ++uses[{operand.pool, step.wide}];
             }
         }
-        std::multimap<int, std::int32_t, std::greater<>> by_uses;
-        for (const auto& [offset, count] : uses)
-            by_uses.emplace(count, offset);
-        for (const auto& [count, offset] : by_uses) {
+        std::multimap<int, std::pair<std::int32_t, bool>, std::greater<>> by_uses;
+        for (const auto& [constant, count] : uses)
+            by_uses.emplace(count, constant);
+        for (const auto& [count, constant] : by_uses) {
             if (free_registers() <= most_alive + kSpare) break;
-            kept_.push_back(offset);
-            vmovaps(vector(free_registers()), table(offset));
+            kept_.push_back(constant.first);
+            load_constant(vector(free_registers()), constant.first, constant.second);
         }
     }
     /// The others have constants.
@@ -270,13 +269,7 @@ class Generator : public Xbyak::CodeGenerator {
         if (const int r = kept_in(operand); r != kNone) return vector(r);
         if (operand.is_constant()) {
             const Xbyak::Xmm r = vector(take());
-            if (!machine_.has_avx512) {
-                vmovaps(r, table(operand.pool));
-            } else if (wide) {
-                vbroadcastsd(zmm(r), ptr[rax + operand.pool]);
-            } else {
-                vbroadcastss(r, ptr[rax + operand.pool]);
-            }
+            load_constant(r, operand.pool, wide);
             return r;
         }
         State& s = state(operand.value);
@@ -287,6 +280,15 @@ class Generator : public Xbyak::CodeGenerator {
         }
         is_locked_[static_cast<std::size_t>(s.reg)] = true;
         return vector(s.reg);
+    }
+    void load_constant(const Xbyak::Xmm& r, std::int32_t offset, bool wide) {
+        if (!machine_.has_avx512) {
+            vmovaps(r, table(offset));
+        } else if (wide) {
+            vbroadcastsd(zmm(r), table(offset));
+        } else {
+            vbroadcastss(r, table(offset));
+        }
     }
     [[nodiscard]] bool is_in_memory(const VectorOperand& operand) {
         return operand.is_constant() ? kept_in(operand) == kNone : state(operand.value).reg < 0;

@@ -907,9 +907,9 @@ void run(const Code& code, const Numbers& numbers, const std::array<const float*
 }
 
 #if HWY_TARGET <= HWY_AVX3
-constexpr std::optional<VectorMachine> kMachine = VectorMachine{16, 32, true, 90};
+constexpr std::optional<VectorMachine> kMachine = VectorMachine{16, 32, true};
 #elif HWY_TARGET <= HWY_AVX2
-constexpr std::optional<VectorMachine> kMachine = VectorMachine{8, 16, false, 150};
+constexpr std::optional<VectorMachine> kMachine = VectorMachine{8, 16, false};
 #else
 constexpr std::optional<VectorMachine> kMachine;
 #endif

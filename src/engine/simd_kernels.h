@@ -236,11 +236,6 @@ struct VectorMachine {
     int registers;  // for vectors
     /// Registers for masks, broadcasts in operands, permutes of whole tables, exponents.
     bool has_avx512;
-    /// Vector instructions of a part. With AVX-512, longer ones leave the processor waiting for
-    /// their own results (ACES 1.3 with 115: 6 % slower), and much shorter ones write more values
-    /// to the tile than they compute. With AVX2, where schedule.h orders the instructions, AgX of
-    /// Blender is 10 % slower with 50, and ACES 1.3 is 8 % slower with 300.
-    int longest_part;
 
     [[nodiscard]] constexpr int bytes() const { return lanes * 4; }
 };

@@ -159,9 +159,9 @@ class Explanation {
         const std::optional<simd::VectorProgram> program = simd::translate(code);
         line("\nMachine code: {} bytes of numbers and tables",
              code.numbers.pool.size() * simd::kVectorBytes);
-        constexpr const char* kLayouts[] = {"planes", "RGB pixels", "RGBA pixels"};
+        constexpr const char* kLayouts[] = {"RGB pixels", "RGBA pixels"};
         for (const auto layout :
-             {simd::PixelLayout::planes, simd::PixelLayout::rgb, simd::PixelLayout::rgba}) {
+             {simd::PixelLayout::rgb, simd::PixelLayout::rgba}) {
             const auto l = static_cast<std::size_t>(layout);
             const std::vector<simd::VectorCode>& parts = program->parts[l];
             for (std::size_t part = 0; part < parts.size(); ++part) {

@@ -59,9 +59,7 @@ class Generator : public Xbyak::CodeGenerator {
                       int interleaved_blocks) {
         layout_ = layout;
         const int tile_bytes = static_cast<int>(tile) / machine_.lanes * pixel_bytes();
-        const bool has_pixels = layout != PixelLayout::planes;
-        fetch_ahead_ = !has_pixels             ? 0
-                       : place == Place::only  ? kFetchAhead
+        fetch_ahead_ = place == Place::only    ? kFetchAhead
                        : place == Place::first ? tile_bytes
                                                : 0;
         // The last part writes this tile's pixels when the first is long done.
@@ -129,10 +127,8 @@ class Generator : public Xbyak::CodeGenerator {
             dropped_slots_.clear();
         }
         add(r8, machine_.bytes() * blocks);
-        if (layout_ != PixelLayout::planes) {
-            add(rsi, pixel_bytes() * blocks);
-            add(rdx, pixel_bytes() * blocks);
-        }
+        add(rsi, pixel_bytes() * blocks);
+        add(rdx, pixel_bytes() * blocks);
         sub(rcx, blocks);
         jge(loop, T_NEAR);
         L(end);
@@ -853,7 +849,7 @@ class Generator : public Xbyak::CodeGenerator {
     std::array<std::int32_t, 8> mask_holder_{};
     std::vector<int> free_slots_, dropped_slots_;
     int slot_count_ = 0;
-    PixelLayout layout_ = PixelLayout::planes;
+    PixelLayout layout_ = PixelLayout::rgb;
     int fetch_ahead_ = 0;  // in bytes
     int claim_ahead_ = 0;
     std::size_t position_ = 0;
@@ -867,8 +863,8 @@ class Assembled final : public MachineCode {
   public:
     Assembled(VectorProgram program, const VectorMachine& machine)
         : MachineCode(std::move(program)), generator_(machine) {
-        std::array<std::vector<std::size_t>, 3> entry;
-        for (std::size_t layout = 0; layout < 3; ++layout) {
+        std::array<std::vector<std::size_t>, 2> entry;
+        for (std::size_t layout = 0; layout < entry.size(); ++layout) {
             std::vector<VectorCode>& parts = program_.parts[layout];
             for (std::size_t part = 0; part < parts.size(); ++part) {
                 const Place place = part > 0            ? Place::later
@@ -888,7 +884,7 @@ class Assembled final : public MachineCode {
             parts.clear();  // they are machine code now
         }
         generator_.ready(Xbyak::CodeArray::PROTECT_RE);
-        for (std::size_t layout = 0; layout < 3; ++layout) {
+        for (std::size_t layout = 0; layout < entry.size(); ++layout) {
             for (const std::size_t at : entry[layout])
                 function_[layout].push_back(reinterpret_cast<Function>(
                     const_cast<std::uint8_t*>(generator_.getCode() + at)));

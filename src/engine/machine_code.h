@@ -14,8 +14,7 @@ namespace simd {
 class MachineCode {
   public:
     /// Nothing where the system gives no memory that can be executed, the build has no assembler,
-    /// or the program has more values between its parts than a tile holds or, for AVX-512, more
-    /// than five comparisons open at once (no operator of the catalogue has): then the interpreter
+    /// or the program has more values between its parts than a tile holds: then the interpreter
     /// runs, slower.
     /// @pre the code's target has machine code
     /// @param code  gets the numbers that it reads
@@ -35,8 +34,8 @@ class MachineCode {
     }
 
     /// Runs one part over blocks of as many pixels as the target's vectors have lanes.
-    /// @param tile     values that come from other parts or go there, and pixels in planes
-    /// @param in, out  of the first and the last part with interleaved pixels. May be the same.
+    /// @param tile     values that come from other parts or go there
+    /// @param in, out  of the first and the last part. May be the same.
     void run(std::size_t part, PixelLayout layout, const Numbers& numbers, unsigned char* tile,
              const float* in, float* out, std::size_t blocks) const noexcept {
         function_[static_cast<std::size_t>(layout)][part](tile, in, out, blocks,
@@ -49,8 +48,8 @@ class MachineCode {
     using Function = void (*)(unsigned char*, const float*, float*, std::size_t,
                               const ConstantVector* pool);
     VectorProgram program_;
-    std::array<std::vector<Function>, 3> function_;  // by layout, by part
-    std::array<std::vector<std::size_t>, 3> bytes_;
+    std::array<std::vector<Function>, 2> function_;  // by layout, by part
+    std::array<std::vector<std::size_t>, 2> bytes_;
 };
 
 }  // namespace simd

@@ -284,30 +284,12 @@ HWY_INLINE void store_result(const Frame& frame, const Operand& out, std::size_t
         store_result(frame, out, i + static_cast<std::size_t>(h) * hn::Lanes(DD()), value.half[h]);
 }
 
-/// As a double; `kIsWide`: it is one.
-template <bool kIsWide>
-HWY_INLINE Vec<DD> load_double(DD d, const Source& source, std::size_t i) {
-    if constexpr (kIsWide) {
-        return hn::Load(d, reinterpret_cast<const double*>(source.data) + i * source.step);
-    } else {
-        return source.load(d, i);
-    }
-}
-
-template <Op op, bool kAllWide, bool kIsOutWide>
-HWY_INLINE void over_doubles(const Frame& frame, const Code& code, const Instruction& step,
-                             const Source* source) {
-    const DD d;
-    const DFOfDD narrow;
-    unsigned char* const out = frame.registers + step.out.offset;
+template <Op op, class D>
+HWY_INLINE void over_tile(D d, const Frame& frame, const Code& code, const Instruction& step,
+                          const Source* source) {
     for (std::size_t i = 0; i < frame.count; i += hn::Lanes(d)) {
-        const auto value = compute<op>(
-            d, code, step, [&](int k) HWY_ATTR { return load_double<kAllWide>(d, source[k], i); });
-        if constexpr (kIsOutWide) {
-            hn::Store(value, d, reinterpret_cast<double*>(out) + i);
-        } else {
-            hn::Store(hn::DemoteTo(narrow, value), narrow, reinterpret_cast<float*>(out) + i);
-        }
+        const auto x = [&](int k) HWY_ATTR { return source[k].load(d, i); };
+        store_result(frame, step.out, i, compute<op>(d, code, step, x));
     }
 }
 
@@ -320,26 +302,9 @@ HWY_NOINLINE void run_op(const Frame& given, const Code& code, const Instruction
     const Source source[4] = {Source(frame, step.in[0]), Source(frame, step.in[1]),
                               Source(frame, step.in[2]), Source(frame, step.in[3])};
     if constexpr (!is_always_wide(op)) {
-        if (!step.wide) {
-            const DF d;
-            auto* const out = reinterpret_cast<float*>(frame.registers + step.out.offset);
-            for (std::size_t i = 0; i < frame.count; i += hn::Lanes(d)) {
-                const auto x = [&](int k) HWY_ATTR { return source[k].load(d, i); };
-                hn::Store(compute<op>(d, code, step, x), d, out + i);
-            }
-            return;
-        }
+        if (!step.wide) return over_tile<op>(DF(), frame, code, step, source);
     }
-    // What operands and result are kept in is decided before the loop.
-    bool all_wide = true;
-    for (int k = 0; k < operation(op).operands; ++k)
-        all_wide = all_wide && source[k].wide;
-    if (all_wide) {
-        if (step.out.wide) return over_doubles<op, true, true>(frame, code, step, source);
-        return over_doubles<op, true, false>(frame, code, step, source);
-    }
-    if (step.out.wide) return over_doubles<op, false, true>(frame, code, step, source);
-    over_doubles<op, false, false>(frame, code, step, source);
+    over_tile<op>(DD(), frame, code, step, source);
 }
 
 /// Operands loaded, and converted, once for all rows.
@@ -479,15 +444,6 @@ constexpr CurveForm kCurveForm = CurveForm::segments;
 
 #elif HWY_TARGET <= HWY_SSE4
 
-/// use(kind) with the curve's RowKind.
-template <class F>
-HWY_INLINE void with_row_kind(const CompiledCurve& curve, F use) {
-    const bool has_restarts = !curve.rows->restarts.empty();
-    if (curve.rows->length == 8)
-        return has_restarts ? use(RowKind<8, true>()) : use(RowKind<8, false>());
-    return has_restarts ? use(RowKind<4, true>()) : use(RowKind<4, false>());
-}
-
 template <class Kind>
 HWY_NOINLINE void run_curve(const Frame& frame, const Instruction& step,
                             const CompiledCurve& curve) {
@@ -497,41 +453,12 @@ HWY_NOINLINE void run_curve(const Frame& frame, const Instruction& step,
 template <>
 HWY_NOINLINE void run_op<Op::curve>(const Frame& frame, const Code& code, const Instruction& step) {
     const CompiledCurve& curve = code.curves[step.table];
-    with_row_kind(curve,
-                  [&](auto kind) HWY_ATTR { run_curve<decltype(kind)>(frame, step, curve); });
-}
-
-/// The curve of every float.
-/// @param is_rgba  every fourth is left as it is
-template <class Kind>
-HWY_NOINLINE void run_flat(const CompiledCurve& curve, const float* in, float* out,
-                           std::size_t count, bool is_rgba) {
-    const DF d;
-    const DI di;
-    const std::size_t lanes = hn::Lanes(d);
-    const RowPolynomial<DF, Kind> polynomial(d, *curve.rows, {});
-    const CurveEnds<DF> ends(d, curve);
-    const auto at = [&](Vec<DF> x) HWY_ATTR { return curve_value(d, ends, polynomial, x); };
-    const auto channel = hn::And(hn::Iota(di, 0), hn::Set(di, 3));
-    const auto is_left = hn::RebindMask(d, hn::Eq(channel, hn::Set(di, is_rgba ? 3 : 4)));
-    const std::size_t whole = count / lanes * lanes;
-    for (std::size_t i = 0; i < whole; i += lanes) {
-        const auto y = at(hn::LoadU(d, in + i));
-        hn::StoreU(is_rgba ? hn::IfThenElse(is_left, hn::LoadU(d, out + i), y) : y, d, out + i);
-    }
-    alignas(kVectorBytes) float rest[kLaneMultiple] = {};
-    std::copy(in + whole, in + count, rest);
-    hn::Store(at(hn::Load(d, rest)), d, rest);
-    for (std::size_t i = whole; i < count; ++i) {
-        if (!is_rgba || i % 4 != 3) out[i] = rest[i - whole];
-    }
-}
-
-HWY_INLINE void run_flat(const CompiledCurve& curve, const float* in, float* out, std::size_t count,
-                         bool is_rgba) {
-    with_row_kind(curve, [&](auto kind) HWY_ATTR {
-        run_flat<decltype(kind)>(curve, in, out, count, is_rgba);
-    });
+    const bool has_restarts = !curve.rows->restarts.empty();
+    if (curve.rows->length == 8)
+        return has_restarts ? run_curve<RowKind<8, true>>(frame, step, curve)
+                            : run_curve<RowKind<8, false>>(frame, step, curve);
+    has_restarts ? run_curve<RowKind<4, true>>(frame, step, curve)
+                 : run_curve<RowKind<4, false>>(frame, step, curve);
 }
 
 constexpr CurveForm kCurveForm = HWY_NATIVE_FMA ? CurveForm::rows : CurveForm::rows_unfused;
@@ -654,7 +581,7 @@ HWY_INLINE bool are_interleaved(const std::array<T*, 3>& plane, std::ptrdiff_t s
     return (stride == 3 || stride == 4) && plane[1] == plane[0] + 1 && plane[2] == plane[0] + 2;
 }
 
-HWY_NOINLINE void load_tile(const TilePorts& ports, unsigned char* registers,
+HWY_NOINLINE void load_tile(const Code& code, unsigned char* registers,
                             const std::array<const float*, 3>& in, std::ptrdiff_t stride,
                             std::size_t count, std::size_t padded) {
     const DF d;
@@ -663,7 +590,7 @@ HWY_NOINLINE void load_tile(const TilePorts& ports, unsigned char* registers,
     alignas(kVectorBytes) float unused[kMaxTile];
     std::array<float*, 3> out;
     for (std::size_t c = 0; c < 3; ++c) {
-        out[c] = ports.reads_input[c] ? reinterpret_cast<float*>(registers + ports.input_offset[c])
+        out[c] = code.reads_input[c] ? reinterpret_cast<float*>(registers + code.input_offset[c])
                                       : unused;
     }
     std::size_t done = 0;
@@ -711,14 +638,14 @@ HWY_NOINLINE void load_tile(const TilePorts& ports, unsigned char* registers,
     }
 }
 
-HWY_NOINLINE void store_tile(const TilePorts& ports, const Frame& frame,
+HWY_NOINLINE void store_tile(const Code& code, const Frame& frame,
                              const std::array<float*, 3>& out, std::ptrdiff_t stride,
                              std::size_t count) {
     const DF d;
     const std::size_t lanes = hn::Lanes(d);
-    const std::array<Source, 3> value = {Source(frame, ports.output[0]),
-                                         Source(frame, ports.output[1]),
-                                         Source(frame, ports.output[2])};
+    const std::array<Source, 3> value = {Source(frame, code.output[0]),
+                                         Source(frame, code.output[1]),
+                                         Source(frame, code.output[2])};
     std::size_t done = 0;
     if (stride == 1) {
         for (; done + lanes <= count; done += lanes) {
@@ -734,50 +661,16 @@ HWY_NOINLINE void store_tile(const TilePorts& ports, const Frame& frame,
                                       value[2].load(d, done), d, out[0] + done * 3);
             }
         }
-#if HWY_TARGET <= HWY_AVX3
-        // Masked stores leave the fourth channel alone.
-        if (stride == 4) {
-            alignas(kVectorBytes) float pixels[4 * kLaneMultiple];
-            const hn::Rebind<std::int32_t, DF> di;
-            const auto third = hn::And(hn::Iota(di, 0), hn::Set(di, 3));
-            const auto ours = hn::RebindMask(d, hn::Lt(third, hn::Set(di, 3)));
-            for (; done + lanes < count; done += lanes) {
-                hn::StoreInterleaved4(value[0].load(d, done), value[1].load(d, done),
-                                      value[2].load(d, done), hn::Zero(d), d, pixels);
-                for (std::size_t k = 0; k < 4; ++k) {
-                    hn::BlendedStore(hn::Load(d, pixels + k * lanes), ours, d,
-                                     out[0] + done * 4 + k * lanes);
-                }
-            }
+        // The fourth channel is written as it was read. What follows the last pixel's three
+        // channels is not ours.
+        auto unused = hn::Undefined(d);
+        auto alpha = hn::Undefined(d);
+        for (; stride == 4 && done + lanes < count; done += lanes) {
+            float* const pixels = out[0] + done * 4;
+            hn::LoadInterleaved4(d, pixels, unused, unused, unused, alpha);
+            hn::StoreInterleaved4(value[0].load(d, done), value[1].load(d, done),
+                                  value[2].load(d, done), alpha, d, pixels);
         }
-#elif HWY_TARGET <= HWY_AVX2
-        // The fourth channel is written as it was read: masked stores are slow here.
-        if (stride == 4) {
-            for (; done + lanes < count; done += lanes) {
-                float* pixels = out[0] + done * 4;
-                const __m256 r = value[0].load(d, done).raw;
-                const __m256 g = value[1].load(d, done).raw;
-                const __m256 b = value[2].load(d, done).raw;
-                // By pixel: the first two channels of 0 1 | 4 5 and of 2 3 | 6 7; the third one
-                // beside itself.
-                const __m256 rg01 = _mm256_unpacklo_ps(r, g);
-                const __m256 rg23 = _mm256_unpackhi_ps(r, g);
-                const __m256 bb01 = _mm256_unpacklo_ps(b, b);
-                const __m256 bb23 = _mm256_unpackhi_ps(b, b);
-                const __m256 pixel[4] = {
-                    _mm256_shuffle_ps(rg01, bb01, 0x44), _mm256_shuffle_ps(rg01, bb01, 0xEE),
-                    _mm256_shuffle_ps(rg23, bb23, 0x44), _mm256_shuffle_ps(rg23, bb23, 0xEE)};
-                for (std::size_t k = 0; k < 4; ++k) {
-                    float* lower = pixels + 4 * k;
-                    float* upper = lower + 16;
-                    _mm_storeu_ps(lower, _mm_blend_ps(_mm256_castps256_ps128(pixel[k]),
-                                                      _mm_loadu_ps(lower), 8));
-                    _mm_storeu_ps(upper, _mm_blend_ps(_mm256_extractf128_ps(pixel[k], 1),
-                                                      _mm_loadu_ps(upper), 8));
-                }
-            }
-        }
-#endif
     }
 #endif
     for (std::size_t c = 0; c < 3; ++c) {
@@ -804,72 +697,67 @@ void run_parts(const Code& code, const Numbers& numbers, PixelLayout layout, uns
     }
 }
 
+/// Pixels as RGB.
+void pack(const std::array<const float*, 3>& in, std::ptrdiff_t stride, std::size_t count,
+          float* rgb) {
+    const DF d;
+    std::size_t i = 0;
+    for (; stride == 1 && i + hn::Lanes(d) <= count; i += hn::Lanes(d)) {
+        hn::StoreInterleaved3(hn::LoadU(d, in[0] + i), hn::LoadU(d, in[1] + i),
+                              hn::LoadU(d, in[2] + i), d, rgb + 3 * i);
+    }
+    for (; i < count; ++i) {
+        for (std::size_t c = 0; c < 3; ++c)
+            rgb[3 * i + c] = in[c][static_cast<std::ptrdiff_t>(i) * stride];
+    }
+}
+void unpack(const float* rgb, const std::array<float*, 3>& out, std::ptrdiff_t stride,
+            std::size_t count) {
+    const DF d;
+    std::size_t i = 0;
+    for (; stride == 1 && i + hn::Lanes(d) <= count; i += hn::Lanes(d)) {
+        hn::Vec<DF> channel[3];
+        hn::LoadInterleaved3(d, rgb + 3 * i, channel[0], channel[1], channel[2]);
+        for (std::size_t c = 0; c < 3; ++c)
+            hn::StoreU(channel[c], d, out[c] + i);
+    }
+    for (; i < count; ++i) {
+        for (std::size_t c = 0; c < 3; ++c)
+            out[c][static_cast<std::ptrdiff_t>(i) * stride] = rgb[3 * i + c];
+    }
+}
+
 void run_machine(const Code& code, const Numbers& numbers, unsigned char* tile,
                  const std::array<const float*, 3>& in, std::ptrdiff_t in_stride,
                  const std::array<float*, 3>& out, std::ptrdiff_t out_stride, std::size_t count) {
     const VectorProgram& program = code.machine->program();
+    std::size_t done = 0;
     if (in_stride == out_stride && are_interleaved(in, in_stride) &&
         are_interleaved(out, out_stride)) {
         const PixelLayout layout = in_stride == 3 ? PixelLayout::rgb : PixelLayout::rgba;
         const auto stride = static_cast<std::size_t>(in_stride);
-        // What follows the last pixel's three channels is not ours to read: the last pixels are
-        // copied, and so are those that fill no block.
+        // What follows the last pixel's three channels is not ours to read.
         const std::size_t whole =
             (stride == 4 && count > 0 ? count - 1 : count) / kLaneMultiple * kLaneMultiple;
         // Without a step over a tile nothing is kept in it.
         const std::size_t step = program.tile_steps.empty() ? HWY_MAX(whole, 1) : program.tile;
-        for (std::size_t begin = 0; begin < whole; begin += step) {
-            run_parts(code, numbers, layout, tile, in[0] + begin * stride, out[0] + begin * stride,
-                      HWY_MIN(step, whole - begin));
+        for (; done < whole; done += HWY_MIN(step, whole - done)) {
+            run_parts(code, numbers, layout, tile, in[0] + done * stride, out[0] + done * stride,
+                      HWY_MIN(step, whole - done));
         }
-        if (whole == count) return;
-        alignas(kVectorBytes) float pixels[4 * kLaneMultiple] = {};
-        const std::size_t rest = (count - whole) * stride - (stride - 3);
-        std::memcpy(pixels, in[0] + whole * stride, rest * sizeof(float));
-        run_parts(code, numbers, layout, tile, pixels, pixels, kLaneMultiple);
-        for (std::size_t i = 0; i < (count - whole) * stride; i += stride)
-            std::memcpy(out[0] + whole * stride + i, pixels + i, 3 * sizeof(float));
-        return;
     }
-    for (std::size_t begin = 0; begin < count; begin += program.tile) {
-        const std::size_t n = HWY_MIN(program.tile, count - begin);
-        const std::size_t padded = (n + kLaneMultiple - 1) / kLaneMultiple * kLaneMultiple;
-        const auto at = static_cast<std::ptrdiff_t>(begin);
-        load_tile(program, tile,
-                  {in[0] + at * in_stride, in[1] + at * in_stride, in[2] + at * in_stride},
-                  in_stride, n, padded);
-        run_parts(code, numbers, PixelLayout::planes, tile, nullptr, nullptr, padded);
-        const Frame frame{tile, reinterpret_cast<const unsigned char*>(numbers.constants.data()),
-                          padded};
-        store_tile(program, frame,
-                   {out[0] + at * out_stride, out[1] + at * out_stride, out[2] + at * out_stride},
-                   out_stride, n);
+    // The last pixels, and those that lie in another way, are copied.
+    alignas(kVectorBytes) float rgb[3 * kMaxTile] = {};
+    for (; done < count; done += HWY_MIN(program.tile, count - done)) {
+        const std::size_t n = HWY_MIN(program.tile, count - done);
+        const auto at = static_cast<std::ptrdiff_t>(done);
+        pack({in[0] + at * in_stride, in[1] + at * in_stride, in[2] + at * in_stride}, in_stride,
+             n, rgb);
+        run_parts(code, numbers, PixelLayout::rgb, tile, rgb, rgb,
+                  (n + kLaneMultiple - 1) / kLaneMultiple * kLaneMultiple);
+        unpack(rgb, {out[0] + at * out_stride, out[1] + at * out_stride, out[2] + at * out_stride},
+               out_stride, n);
     }
-}
-
-#endif
-#if HWY_TARGET > HWY_AVX3 && HWY_TARGET <= HWY_SSE4
-
-/// What is one curve of every channel needs no planes: whether it is, and the pixels lie so.
-bool run_without_tiles(const Code& code, const std::array<const float*, 3>& in,
-                       std::ptrdiff_t in_stride, const std::array<float*, 3>& out,
-                       std::ptrdiff_t out_stride, std::size_t count) {
-    if (!code.only_curve || in_stride != out_stride || count == 0) return false;
-    const CompiledCurve& curve = code.curves[*code.only_curve];
-    if (in_stride == 1) {
-        // One after the other: planes that change places have to go through a tile.
-        for (std::size_t c = 0; c < 3; ++c) {
-            if (out[c] == in[(c + 1) % 3] || out[c] == in[(c + 2) % 3]) return false;
-        }
-        for (std::size_t c = 0; c < 3; ++c)
-            run_flat(curve, in[c], out[c], count, false);
-        return true;
-    }
-    if (!are_interleaved(in, in_stride) || !are_interleaved(out, out_stride)) return false;
-    // What follows the last pixel's three channels is not ours.
-    const bool is_rgba = in_stride == 4;
-    run_flat(curve, in[0], out[0], is_rgba ? 4 * count - 1 : 3 * count, is_rgba);
-    return true;
 }
 
 #endif
@@ -877,13 +765,6 @@ bool run_without_tiles(const Code& code, const std::array<const float*, 3>& in,
 void run(const Code& code, const Numbers& numbers, const std::array<const float*, 3>& in,
          std::ptrdiff_t in_stride, const std::array<float*, 3>& out, std::ptrdiff_t out_stride,
          std::size_t count) noexcept {
-#if HWY_TARGET > HWY_AVX3 && HWY_TARGET <= HWY_SSE4
-    // Machine code has a tile for planes, but none for pixels.
-    if ((!code.machine || in_stride == 1) &&
-        run_without_tiles(code, in, in_stride, out, out_stride, count)) {
-        return;
-    }
-#endif
     alignas(kVectorBytes) unsigned char registers[kRegisterFileBytes];
 #if HWY_TARGET <= HWY_AVX2
     if (code.machine)

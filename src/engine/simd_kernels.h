@@ -215,15 +215,6 @@ inline void fill(unsigned char* to, std::size_t bytes, double value, bool wide) 
         std::memcpy(to + at, wide ? static_cast<const void*>(&value) : &narrow, size);
 }
 
-/// Where a program's tile has the pixels.
-struct TilePorts {
-    /// Float registers of the three input channels; a channel that is not read has none.
-    std::array<std::uint32_t, 3> input_offset{};
-    std::array<bool, 3> reads_input{};
-    /// Never wide.
-    std::array<Operand, 3> output;
-};
-
 class MachineCode;
 struct Code;
 }  // namespace simd
@@ -257,9 +248,14 @@ struct Target {
 /// @throws Error  when this machine has no such target
 [[nodiscard]] const Target& find_target(std::string_view name = {});
 
-struct Code : TilePorts {
+struct Code {
     /// The one that it is compiled for, and that runs it.
     const Target* target = nullptr;
+    /// Float registers of the three input channels; a channel that is not read has none.
+    std::array<std::uint32_t, 3> input_offset{};
+    std::array<bool, 3> reads_input{};
+    /// Never wide.
+    std::array<Operand, 3> output;
     std::vector<Instruction> instructions;
     /// With typical values of the uniforms.
     Numbers numbers;
@@ -269,9 +265,6 @@ struct Code : TilePorts {
     std::vector<NonuniformTables> positioned;
     std::vector<SampledLattice> lattices;
     std::vector<CompiledCurve> curves;
-    /// Where the program is this curve of every channel by itself, in float, and limits numbers as
-    /// the engine does before it.
-    std::optional<std::uint32_t> only_curve;
     /// Each channel of the result is the same function of that channel alone: the floats of RGB
     /// pixels need not be sorted by channel.
     bool is_one_function = false;

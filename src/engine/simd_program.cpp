@@ -489,7 +489,6 @@ class Assembler {
         code.lattices = std::move(lattices_);
         code.curves = std::move(curves_);
         code.is_one_function = is_one_function();
-        code.only_curve = only_curve(code);
         if (target.machine) code.machine = MachineCode::make(code);
         return code;
     }
@@ -533,23 +532,6 @@ class Assembler {
                 return false;
         }
         return true;
-    }
-
-    static std::optional<std::uint32_t> only_curve(const Code& code) {
-        if (code.instructions.size() != 3) return std::nullopt;
-        const std::uint32_t table = code.instructions.front().table;
-        for (std::size_t c = 0; c < 3; ++c) {
-            const auto makes_channel = [&](const Instruction& step) {
-                return step.op == Op::curve && step.table == table && code.reads_input[c] &&
-                       !step.in[0].constant && step.in[0].offset == code.input_offset[c] &&
-                       !code.output[c].constant && step.out.offset == code.output[c].offset;
-            };
-            if (std::none_of(code.instructions.begin(), code.instructions.end(), makes_channel))
-                return std::nullopt;
-        }
-        const CompiledCurve& curve = code.curves[table];
-        const bool limits = curve.lo >= 0 && curve.hi <= kLargestInput;
-        return limits && !curve.is_precise ? std::optional(table) : std::nullopt;
     }
 
     std::size_t define(std::uint32_t value, bool wide) {

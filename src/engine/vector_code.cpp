@@ -81,8 +81,7 @@ class Translator {
         for (const Step& s : steps_) {
             if (is_tile_step(*s.step)) program.tile_steps[s.part].push_back(moved(s));
         }
-        for (const PixelLayout layout :
-             {PixelLayout::planes, PixelLayout::rgb, PixelLayout::rgba}) {
+        for (const PixelLayout layout : {PixelLayout::rgb, PixelLayout::rgba}) {
             auto& parts = program.parts[static_cast<std::size_t>(layout)];
             for (std::size_t part = 0; part < part_count_; ++part)
                 parts.push_back(write(part, layout));
@@ -220,29 +219,20 @@ class Translator {
 
     /// False where the tile is too small.
     bool place_in_tile(VectorProgram& program) {
-        // Where the pixels lie in planes, they come and go through the tile.
-        std::size_t bytes = 6 * sizeof(float);
+        const auto size = [](const Value& v) { return v.wide ? sizeof(double) : sizeof(float); };
+        std::size_t bytes = 0;
         for (const Value& v : values_)
-            bytes += v.crosses ? v.wide ? sizeof(double) : sizeof(float) : 0;
-        program.tile =
-            std::clamp(kTileBytes / bytes / kLaneMultiple * kLaneMultiple, kLaneMultiple, kMaxTile);
+            bytes += v.crosses ? size(v) : 0;
+        program.tile = kMaxTile;
+        if (bytes > 0)
+            program.tile = std::clamp(kTileBytes / bytes / kLaneMultiple * kLaneMultiple,
+                                      kLaneMultiple, kMaxTile);
         if (program.tile * bytes > kRegisterFileBytes) return false;
-        std::uint32_t end = 0;
-        const auto place = [&](bool wide) {
-            const std::uint32_t at = end;
-            end +=
-                static_cast<std::uint32_t>(program.tile * (wide ? sizeof(double) : sizeof(float)));
-            return at;
-        };
-        program.reads_input = code_.reads_input;
-        for (std::size_t c = 0; c < 3; ++c) {
-            program.input_offset[c] = input_offset_[c] = place(false);
-            output_offset_[c] = place(false);
-            program.output[c] = code_.output[c];
-            if (!code_.output[c].constant) program.output[c].offset = output_offset_[c];
-        }
+        std::size_t end = 0;
         for (Value& v : values_) {
-            if (v.crosses) v.offset = place(v.wide);
+            if (!v.crosses) continue;
+            v.offset = static_cast<std::uint32_t>(end);
+            end += program.tile * size(v);
         }
         return true;
     }
@@ -287,12 +277,8 @@ class Translator {
         }
         for (std::size_t c = 0; c < 3; ++c) {
             if (input_[c] == kNone) continue;
-            if (layout == PixelLayout::planes) given[c] = load(input_offset_[c], false, 0);
-            // In the tile they are sanitized already.
-            const bool is_sanitized =
-                value(input_[c]).is_sanitized || layout == PixelLayout::planes;
             const VF x = {writer_, given[c]};
-            set(input_[c], is_sanitized ? x : sanitized(float_tag(), x));
+            set(input_[c], value(input_[c]).is_sanitized ? x : sanitized(float_tag(), x));
         }
     }
 
@@ -305,13 +291,8 @@ class Translator {
                 result[c] = narrow(output_[c]).operand;
             }
         }
-        if (layout == PixelLayout::rgb)
-            return code_.is_one_function ? writer_->store_floats(result)
-                                         : writer_->store_rgb(result);
         if (layout == PixelLayout::rgba) return writer_->store_rgba(result);
-        for (std::size_t c = 0; c < 3; ++c) {
-            if (output_[c] != kNone) store(output_offset_[c], false, 0, result[c]);
-        }
+        code_.is_one_function ? writer_->store_floats(result) : writer_->store_rgb(result);
     }
 
     [[nodiscard]] hn::Tag<float> float_tag() const { return {writer_}; }
@@ -498,8 +479,6 @@ class Translator {
     std::vector<Step> steps_;
     std::array<std::int32_t, 3> input_ = {kNone, kNone, kNone};
     std::array<std::int32_t, 3> output_ = {kNone, kNone, kNone};
-    std::array<std::uint32_t, 3> input_offset_{};
-    std::array<std::uint32_t, 3> output_offset_{};
     std::size_t part_count_ = 1;
     Pool pool_;
     std::vector<Lanes> lanes_;

@@ -102,9 +102,8 @@ struct VectorInstruction {
     return op >= VectorOp::equal && op <= VectorOp::is_minus;
 }
 
-/// How pixels lie in memory, for the code that reads or writes them.
+/// Floats of a pixel in memory, for the code that reads or writes them.
 enum class PixelLayout : std::uint8_t {
-    planes,  // in the tile
     rgb,
     rgba,  // what is in the fourth channel is not touched
 };
@@ -121,10 +120,10 @@ struct VectorCode {
 
 /// The program as such parts and, between them, what runs over a whole tile: lattices, positioned
 /// tables.
-struct VectorProgram : TilePorts {
+struct VectorProgram {
     /// By the layout of the pixels: part k runs before tile step k. Only the first and the last
     /// differ.
-    std::array<std::vector<VectorCode>, 3> parts;
+    std::array<std::vector<VectorCode>, 2> parts;
     std::vector<std::vector<Instruction>> tile_steps;  // behind each part but the last
     std::vector<unsigned char> pool;                   // constants and tables; to be aligned to 64
     std::vector<UniformPlace> uniforms;                // in the pool

@@ -202,17 +202,13 @@ TEST_P(CompiledCurveForm, KernelsComputeWhatItSays) {
                 if (std::fabs(place) <= 65504) x.push_back(place);
             }
             std::vector<float> y(x.size()), rest(x.size());
-            for (const bool is_all : {false, true}) {
-                if (is_all && is_precise) continue;
-                if (is_all) code.only_curve = 0;
-                for (const simd::Target* target : targets) {
-                    code.target = target;
-                    simd::run(code, {x.data(), x.data(), x.data()}, 1,
-                              {y.data(), rest.data(), rest.data()}, 1, x.size());
-                    for (std::size_t i = 0; i < x.size(); ++i) {
-                        ASSERT_EQ(y[i], static_cast<float>((*curve)(static_cast<double>(x[i]))))
-                            << f.name << " of " << x[i] << " on " << target->target;
-                    }
+            for (const simd::Target* target : targets) {
+                code.target = target;
+                simd::run(code, {x.data(), x.data(), x.data()}, 1,
+                          {y.data(), rest.data(), rest.data()}, 1, x.size());
+                for (std::size_t i = 0; i < x.size(); ++i) {
+                    ASSERT_EQ(y[i], static_cast<float>((*curve)(static_cast<double>(x[i]))))
+                        << f.name << " of " << x[i] << " on " << target->target;
                 }
             }
         }
@@ -229,16 +225,10 @@ TEST(CompiledCurve, AWholeChannelIsOneInstruction) {
         for (const char* op : {"hable", "reinhard", "uchimura"}) {
             const simd::Code code = compiled(op);
             EXPECT_EQ(code.instructions.size(), 3U) << op << " on " << target.target;
-            // Only rows need no tiles. Segments may end beyond the largest input, at the next power
-            // of two, and leave its limit to the program.
-            if (target.curve_form != CurveForm::segments) {
-                EXPECT_TRUE(code.only_curve) << op << " on " << target.target;
-            }
         }
         // Inset, curve, outset to the display's primaries, encoding.
         const simd::Code code = compiled("agx_sobotka");
         EXPECT_LE(code.instructions.size(), 8U) << target.target;
-        EXPECT_FALSE(code.only_curve) << target.target;
     }
 }
 

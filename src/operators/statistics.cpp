@@ -186,23 +186,23 @@ constexpr Vector3 kRods = {-0.702 * 0.412453 + 1.039 * 0.212671 + 0.433 * 0.0193
 double dot(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 /// Smallest luminance difference visible to cones adapted to La cd/m2.
-double cone_threshold(double La) {
-    const double l = std::log10(La);
-    if (l <= -2.6) return std::pow(10, -0.72);
-    if (l >= 1.9) return std::pow(10, l - 1.255);
-    return std::pow(10, std::pow(0.249 * l + 0.65, 2.7) - 0.72);
+Expr cone_threshold(const Expr& La) {
+    const Expr l = log2(La) * std::log10(2.0);
+    const Expr middle = pow(max(0.249 * l + 0.65, 0), 2.7) - 0.72;
+    return pow(10, select(less_equal(l, -2.6), -0.72,
+                          select(less_equal(1.9, l), l - 1.255, middle)));
 }
 
 /// The same for rods.
-double rod_threshold(double La) {
-    const double l = std::log10(La);
-    if (l <= -3.94) return std::pow(10, -2.86);
-    if (l >= -1.44) return std::pow(10, l - 0.395);
-    return std::pow(10, std::pow(0.405 * l + 1.6, 2.18) - 2.86);
+Expr rod_threshold(const Expr& La) {
+    const Expr l = log2(La) * std::log10(2.0);
+    const Expr middle = pow(max(0.405 * l + 1.6, 0), 2.18) - 2.86;
+    return pow(10, select(less_equal(l, -3.94), -2.86,
+                          select(less_equal(-1.44, l), l - 0.395, middle)));
 }
 
 /// C' = cones C + rods tint max(dot(kRods, C), 0).
-Pipeline cones_and_rods(double cones, double rods, const Vector3& tint) {
+Pipeline cones_and_rods(const Expr& cones, const Expr& rods, const Vector3& tint) {
     const Expr x = Expr::input();
     // Choose coordinates in which one is the rods' signal and the others do not change along the
     // tint. Only the signal has a nonlinear curve, so matrix, curve, matrix is exact.
@@ -244,14 +244,14 @@ std::vector<ParameterSpec> rod_parameters() {
 }
 
 /// C' = (mp C + k ms tint Ls)/Ldmax.
-Pipeline rod_pipeline(const Params& p, double weight_by_adaptation, const Vector3& tint) {
-    const double display = p.number("display_max");
-    const double threshold = cone_threshold(display / 2);
-    const double mp = threshold / cone_threshold(p.number("photopic_adaptation"));
-    const double ms = threshold / rod_threshold(p.number("scotopic_adaptation"));
-    const double k =
-        p.choice("rod_weight_from") == "fixed" ? p.number("rod_weight") : weight_by_adaptation;
-    return cones_and_rods(mp / display, k * ms / display, tint);
+Pipeline rod_pipeline(const Params& p, const Expr& weight_by_adaptation, const Vector3& tint) {
+    const Expr display = p.expr("display_max");
+    const Expr threshold = cone_threshold(display / 2);
+    const Expr mp = threshold / cone_threshold(p.expr("photopic_adaptation"));
+    const Expr ms = threshold / rod_threshold(p.expr("scotopic_adaptation"));
+    const Expr k =
+        p.choice("rod_weight_from") == "fixed" ? p.expr("rod_weight") : weight_by_adaptation;
+    return cones_and_rods(named("cones", mp / display), named("rods", k * ms / display), tint);
 }
 
 DeclaredBounds rod_bounds() {
@@ -276,13 +276,13 @@ Operator ferwerda() {
     op.license = "published formula";
     op.negatives = kNegativesClampAtZero;
     op.dialects = "Ferwerda";
-    op.parameters = fixed_parameters(rod_parameters());
+    op.parameters = rod_parameters();
     op.bounds = rod_bounds();
     op.warnings = {kScenesAreLuminances};
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""}};
     op.build = [](const Params& p) -> Pipeline {
-        const double La = p.number("photopic_adaptation");
-        const double k = std::clamp(1 - (La / 2 - 0.01) / (10 - 0.01), 0.0, 1.0);
+        const Expr La = p.expr("photopic_adaptation");
+        const Expr k = min(max(1 - (La / 2 - 0.01) / (10 - 0.01), 0), 1);
         return rod_pipeline(p, k * k, {1, 1, 1});
     };
     return op;
@@ -304,19 +304,18 @@ Operator durand_dorsey_rods() {
     op.parameters = rod_parameters();
     op.bounds = rod_bounds();
     const auto shift = [&](const std::string& color, double value) {
-        op.parameters.push_back(
-            number_parameter("blue_shift_" + color, "", value, 0, 2, color + " of the rods' gray"));
+        op.parameters.push_back(fixed_parameters({number_parameter(
+            "blue_shift_" + color, "", value, 0, 2, color + " of the rods' gray")})[0]);
     };
     shift("red", 1.05);
     shift("green", 0.97);
     shift("blue", 1.27);
-    op.parameters = fixed_parameters(std::move(op.parameters));
     op.warnings = {kScenesAreLuminances};
     op.deviations = {{DocumentedDifference::Kind::exceeds_white, kInfinity, ""},
                      {DocumentedDifference::Kind::tints_gray, 0.049, ""}};
     op.build = [](const Params& p) -> Pipeline {
-        const double La = p.number("scotopic_adaptation");
-        const double k = std::max((100 - La / 4) / (100 + La), 0.0);
+        const Expr La = p.expr("scotopic_adaptation");
+        const Expr k = max((100 - La / 4) / (100 + La), 0);
         return rod_pipeline(p, k * k,
                             {p.number("blue_shift_red"), p.number("blue_shift_green"),
                              p.number("blue_shift_blue")});

@@ -113,9 +113,8 @@ class TONEWRIGHT_API SimdEngine {
 /// parameters, and typical values are the defaults. Errors stay within the operator's bound at both
 /// ends of each interval.
 ///
-/// Leaves out parameters that the settings or the preset set. Empty if each picture should have its
-/// own engine: a parameter is fixed, or a program with uniforms would be up to three times as slow,
-/// because one of them is an exponent, or values are scaled by two of them.
+/// Leaves out parameters that the settings or the preset set. Empty if one of the others is fixed
+/// (no operator of the catalog has such a parameter).
 [[nodiscard]] TONEWRIGHT_API LiveUniforms live_statistics(const ResolvedOperator& resolved);
 
 /// The names for build_live_view().

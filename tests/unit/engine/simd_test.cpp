@@ -763,24 +763,20 @@ TEST(Simd, UniformsMeanWhatTheirValuesMean) {
     }
 }
 
-/// Every operator with statistics, also those of which each picture has an engine of its own: with
-/// all of a picture's numbers at the ends of their intervals and at opposite ends, on colors of all
-/// magnitudes and on those near the statistics.
+/// Every operator with statistics: with all of a picture's numbers at the ends of their intervals
+/// and at opposite ends, on colors of all magnitudes and on those near the statistics.
 TEST(Simd, StatisticsAsUniformsKeepTheBound) {
     std::size_t tested = 0;
     for (const Operator& op : all_operators()) {
-        LiveUniforms uniforms;
-        std::vector<std::string> names;
-        const std::vector<std::string> live = live_parameters(op);
-        for (const ParameterSpec& spec : op.parameters) {
-            if (!spec.from_picture || std::find(live.begin(), live.end(), spec.name) == live.end())
-                continue;
-            uniforms[spec.name] = {spec.default_value, spec.min, spec.max, true};
-            names.push_back(spec.name);
-        }
+        const ResolvedOperator resolved = resolve_operator(op.id);
+        const LiveUniforms uniforms = live_statistics(resolved);
+        const std::vector<std::string> names = uniform_names(uniforms);
+        const bool takes_statistics =
+            std::any_of(op.parameters.begin(), op.parameters.end(),
+                        [](const ParameterSpec& spec) { return spec.from_picture; });
+        ASSERT_EQ(!names.empty(), takes_statistics) << op.id;
         if (names.empty()) continue;
         ++tested;
-        const ResolvedOperator resolved = resolve_operator(op.id);
         const View view = make_view(resolved, "lin_rec709", 0, "srgb");
         const Pipeline pipeline = build_live_view(view, names);
         for (const std::string& target : SimdEngine::targets()) {
@@ -825,20 +821,15 @@ TEST(Simd, StatisticsAsUniformsKeepTheBound) {
             }
         }
     }
-    EXPECT_EQ(tested, 12);
+    EXPECT_EQ(tested, 14);
 }
 
-TEST(Simd, StatisticsThatAreFixedOrSlowHaveNoUniforms) {
-    for (const char* id : {"ferwerda", "durand_dorsey_rods", "reinhard_devlin", "drago",
-                           "tumblin_rushmeier", "hable"}) {
-        EXPECT_TRUE(live_statistics(resolve_operator(id)).empty()) << id;
-    }
+TEST(Simd, StatisticsThatAreFixedHaveNoUniforms) {
     const LiveUniforms uniforms = live_statistics(resolve_operator("logarithmic"));
     ASSERT_EQ(uniforms.size(), 1);
     EXPECT_EQ(uniforms.at("maximum").least, 1e-6);
     EXPECT_EQ(uniforms.at("maximum").most, kHalfMax);
     EXPECT_TRUE(live_statistics(resolve_operator("logarithmic", {{"maximum", "4"}}, "")).empty());
-    // With one of two fixed, one scale is left.
     EXPECT_EQ(live_statistics(resolve_operator("drago", {{"maximum", "4"}}, "")).size(), 1);
     const SceneStatistics dark = {0, 0, 0, 1e-9, {}, {}};
     EXPECT_EQ(statistic_values(uniforms, resolve_operator("logarithmic"), dark),

@@ -28,8 +28,9 @@ constexpr int kSpare = 3;
 /// 4096 were equally fast, a third faster than without.
 constexpr int kFetchAhead = 1024;
 
-/// On the stack, of what spill_index keeps: four lines for each of the blocks.
-constexpr int kKeptBytes = 4 * 64 * 4;
+/// On the stack, of what spill_index keeps: four lines for each of the blocks; before them, one for
+/// the caller's stack pointer.
+constexpr int kKeptBytes = 64 + 4 * 64 * 4;
 /// An index in the vector register with this number is none for QEMU 7.2 and for FEX before its
 /// pull request 3776, as it is in a general register: gathers read the first entry of the table.
 constexpr int kNoIndex = 4;
@@ -71,10 +72,12 @@ class Generator : public Xbyak::CodeGenerator {
         const std::array saved = {rbp, rbx, r12, r13, r14, r15};
         for (const Xbyak::Reg64& r : saved)
             push(r);
-        mov(rbx, rsp);
+        mov(r9, rsp);
         mov(rbp, rsp);
         and_(rbp, -64);
         lea(rsp, ptr[rbp - kKeptBytes]);
+        mov(ptr[rsp], r9);
+        mov(ebx, 32);
         mov(r9d, std::numeric_limits<std::int32_t>::max());
         const std::size_t frame = getSize() - sizeof(std::int32_t);
         sub(rsp, r9);
@@ -87,7 +90,7 @@ class Generator : public Xbyak::CodeGenerator {
         if (interleaved_blocks > 1)
             write_loop(interleaved(code, interleaved_blocks), interleaved_blocks);
         write_loop(code, 1);
-        mov(rsp, rbx);
+        mov(rsp, ptr[rbp - kKeptBytes]);
         std::for_each(saved.rbegin(), saved.rend(), [&](const Xbyak::Reg64& r) { pop(r); });
         vzeroupper();
         ret();
@@ -509,7 +512,7 @@ class Generator : public Xbyak::CodeGenerator {
     }
     /// The stack's first lines, behind those of the spilled values.
     Xbyak::Address kept_index(const VectorInstruction& step, int number, int pixel) {
-        const int offset = 64 * (number + 4 * step.block) + 4 * pixel;
+        const int offset = 64 * (1 + number + 4 * step.block) + 4 * pixel;
         return ptr[rbp - static_cast<std::size_t>(kKeptBytes - offset)];
     }
     template <class T>
@@ -561,10 +564,8 @@ class Generator : public Xbyak::CodeGenerator {
                 index_pair_[step.block % 2] = pair;
             }
             if (is_odd) {
-                mov(r9, low_pair);
-                mov(r11, high_pair);
-                shr(r9, 32);
-                shr(r11, 32);
+                shrx(r9, low_pair, rbx);
+                shrx(r11, high_pair, rbx);
             } else {
                 mov(r9d, low_pair.cvt32());
                 mov(r11d, high_pair.cvt32());

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "base/random.h"
 #include "engine/probe_block.h"
@@ -321,12 +320,9 @@ class PrecisionChooser {
     }
     void keep_large_in_double(std::size_t lane) {
         for (std::size_t i = 0; i < code_.size(); ++i) {
-            if (is_too_large(i, lane)) keep_in_double(i);
+            const double size = std::fabs(block_.value(i, lane));
+            if (std::isfinite(size) && size > kTooLarge) keep_in_double(i);
         }
-    }
-    [[nodiscard]] bool is_too_large(std::size_t i, std::size_t lane) const {
-        const double size = std::fabs(block_.value(i, lane));
-        return std::isfinite(size) && size > kTooLarge;
     }
 
     /// Evaluates a block, and what its roundings add to the outputs.
@@ -365,28 +361,11 @@ class PrecisionChooser {
         }
     }
 
-    /// What visit_lane() returns where it changes nothing.
-    std::optional<double> look_at_lane(std::size_t lane) {
-        if (largest_.lane[lane] > kTooLarge) {
-            for (std::size_t i = 0; i < code_.size(); ++i) {
-                if (is_too_large(i, lane) && !is_kept_in_double(i)) return std::nullopt;
-            }
-        }
-        double worst = 0;
-        for (std::size_t o = 0; o < 3; ++o) {
-            const std::optional<double> found = within_budget(o, lane);
-            if (!found) return std::nullopt;
-            worst = std::max(worst, *found);
-        }
-        return worst;
-    }
-
     /// Keeps the errors of this color within what they may be.
     /// @return  how near the worst output is to it
     double visit_lane(std::size_t lane) {
         if (largest_.lane[lane] > kTooLarge) keep_large_in_double(lane);
         if (summed_after_ != changes_) sum_squares();
-        if (const std::optional<double> found = look_at_lane(lane)) return *found;
         double worst = 0;
         for (std::size_t o = 0; o < 3; ++o)
             worst = std::max(worst, keep_within_budget(o, lane));
@@ -417,88 +396,37 @@ class PrecisionChooser {
         if (!settings_.empty()) block_.set_uniforms(&TapeInstruction::value);
     }
 
-    /// A color that climbs to worse ones, by the steps that it has been given.
-    struct Climber {
-        static constexpr std::size_t kSteps = 40;
-
-        Probe here;
-        std::array<Vector3, kSteps> change{};
-        std::size_t step = 0;
-
-        [[nodiscard]] bool is_done() const { return step == kSteps; }
-        [[nodiscard]] Vector3 next() const {
-            Vector3 rgb = here.rgb;
-            for (std::size_t c = 0; c < 3; ++c) {
-                const double x = std::clamp(rgb[c] * (1 + change[step][c]), -kHalfMax, kHalfMax);
-                rgb[c] = static_cast<double>(static_cast<float>(x));
-            }
-            return rgb;
-        }
-        void move(const Vector3& rgb, double worst) {
-            if (worst > here.worst) here = {rgb, worst};
-            ++step;
-        }
-    };
-
     /// From the worst probes on to worse colors: where rows of matrices nearly cancel, or a curve
     /// is steep, there may be few of them, and no probe among them.
     void climb(std::vector<Probe>& probes) {
         constexpr std::size_t kStarts = 24;
-        const std::size_t starts = std::min(kStarts, probes.size());
-        std::partial_sort(probes.begin(), probes.begin() + static_cast<std::ptrdiff_t>(starts),
-                          probes.end(),
-                          [](const Probe& x, const Probe& y) { return x.worst > y.worst; });
-        std::vector<Climber> climbers;
-        for (std::size_t p = 0; p < starts; ++p) {
-            Climber climber{probes[p]};
-            for (std::size_t step = 0; step < Climber::kSteps; ++step) {
-                const double reach = step < Climber::kSteps / 2 ? 0.3 : 0.03;
-                for (double& x : climber.change[step])
+        constexpr std::size_t kSteps = 40;
+        std::sort(probes.begin(), probes.end(),
+                  [](const Probe& x, const Probe& y) { return x.worst > y.worst; });
+        probes.resize(std::min(probes.size(), kStarts));
+        std::vector<std::array<Vector3, kSteps>> change(probes.size());
+        for (auto& steps : change) {
+            for (std::size_t step = 0; step < kSteps; ++step) {
+                const double reach = step < kSteps / 2 ? 0.3 : 0.03;
+                for (double& x : steps[step])
                     x = random_.uniform(-reach, reach);
             }
-            climbers.push_back(climber);
         }
-        for (std::size_t first = 0; first < starts;) {
-            const std::vector<Climber> before(
-                climbers.begin() + static_cast<std::ptrdiff_t>(first),
-                climbers.begin() + static_cast<std::ptrdiff_t>(std::min(first + kLanes, starts)));
-            const std::size_t done = climb_together(&climbers[first], before.size());
-            if (done == before.size()) {
-                first += done;
-                continue;
-            }
-            // This one changes what is in double, and those behind it have to know.
-            std::copy(before.begin() + static_cast<std::ptrdiff_t>(done) + 1, before.end(),
-                      climbers.begin() + static_cast<std::ptrdiff_t>(first + done) + 1);
-            first += done;
-            const Vector3 rgb = climbers[first].next();
-            look_at(&rgb, 1);
-            climbers[first].move(rgb, visit_lane(0));
-        }
-    }
-
-    /// As if one climbed after the other, as long as they change nothing.
-    /// @return  how many of the first have come to their end; the next one's step changes something
-    std::size_t climb_together(Climber* climbers, std::size_t count) {
-        std::vector<Vector3> colors;
-        std::vector<std::size_t> who;
-        while (true) {
-            colors.clear();
-            who.clear();
-            for (std::size_t k = 0; k < count; ++k) {
-                if (climbers[k].is_done()) continue;
-                colors.push_back(climbers[k].next());
-                who.push_back(k);
-            }
-            if (who.empty()) return count;
-            look_at(colors.data(), colors.size());
-            for (std::size_t lane = 0; lane < who.size(); ++lane) {
-                const std::optional<double> worst = look_at_lane(lane);
-                if (!worst) {
-                    count = who[lane];
-                    break;
+        for (std::size_t first = 0; first < probes.size(); first += kLanes) {
+            std::vector<Vector3> colors(std::min(kLanes, probes.size() - first));
+            for (std::size_t step = 0; step < kSteps; ++step) {
+                for (std::size_t lane = 0; lane < colors.size(); ++lane) {
+                    for (std::size_t c = 0; c < 3; ++c) {
+                        const double x =
+                            probes[first + lane].rgb[c] * (1 + change[first + lane][step][c]);
+                        colors[lane][c] = static_cast<double>(
+                            static_cast<float>(std::clamp(x, -kHalfMax, kHalfMax)));
+                    }
                 }
-                climbers[who[lane]].move(colors[lane], *worst);
+                visit(colors, [&](std::size_t, std::size_t lane, double worst) {
+                    Probe& probe = probes[first + lane];
+                    if (worst > probe.worst) probe = {colors[lane], worst};
+                });
             }
         }
     }
@@ -663,12 +591,14 @@ class PrecisionChooser {
     /// Of one output at one color.
     double keep_within_budget(std::size_t number, std::size_t lane) {
         const double most = largest_sum_;
-        double sum = collect_shares(number, lane);
+        double sum = sums_[number].lane[lane];
+        if (sum <= most) return sum / most;
+        sum = collect_shares(number, lane);
         const auto double_has_more_merit = [&](const Share& x, const Share& y) {
             return x.error / cost_of_double(code_[x.index].op) >
                    y.error / cost_of_double(code_[y.index].op);
         };
-        if (!(sum <= most)) std::sort(shares_.begin(), shares_.end(), double_has_more_merit);
+        std::sort(shares_.begin(), shares_.end(), double_has_more_merit);
         for (const Share& share : shares_) {
             if (sum <= most) return sum / most;
             put_in_double(share.index);
@@ -682,25 +612,9 @@ class PrecisionChooser {
         return sum / most;
     }
 
-    /// What keep_within_budget() returns where it changes nothing.
-    std::optional<double> within_budget(std::size_t number, std::size_t lane) {
-        double sum = sums_[number].lane[lane];
-        if (sum <= largest_sum_) return sum / largest_sum_;
-        sum = collect_shares(number, lane);
-        if (!shares_.empty()) return std::nullopt;
-        for (const Share& share : curves_) {
-            if (sum <= largest_sum_) break;
-            if (!is_rejected(code_[share.index].curve)) return std::nullopt;
-            sum -= share.error * share.error;
-        }
-        return sum / largest_sum_;
-    }
-
-    [[nodiscard]] bool is_rejected(const CompiledCurve* curve) const {
-        return std::find(too_coarse_.begin(), too_coarse_.end(), curve) != too_coarse_.end();
-    }
     void reject(const CompiledCurve* curve) {
-        if (!is_rejected(curve)) too_coarse_.push_back(curve);
+        if (std::find(too_coarse_.begin(), too_coarse_.end(), curve) == too_coarse_.end())
+            too_coarse_.push_back(curve);
     }
 
     void keep_in_double(std::size_t i) {
@@ -709,10 +623,6 @@ class PrecisionChooser {
         } else {
             put_in_double(i);
         }
-    }
-    [[nodiscard]] bool is_kept_in_double(std::size_t i) const {
-        return code_[i].curve && !code_[i].curve->is_precise ? is_rejected(code_[i].curve)
-                                                             : in_double_[i];
     }
     void put_in_double(std::size_t i) {
         if (!in_double_[i]) ++changes_;

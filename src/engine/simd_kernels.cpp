@@ -153,9 +153,6 @@ template <int kSize>
 HWY_INLINE auto table(DF /*d*/, const float* numbers, std::integral_constant<int, kSize> /*size*/) {
     return PermutedTable<kSize>(numbers);
 }
-HWY_INLINE hn::Vec<DI> add_one_where(hn::Mask<DF> mask, hn::Vec<DI> x) {
-    return hn::Sub(x, hn::VecFromMask(DI(), hn::RebindMask(DI(), mask)));
-}
 
 #else
 
@@ -241,6 +238,7 @@ struct Source {
           wide(operand.wide) {}
 
     HWY_INLINE Vec<DF> load(DF d, std::size_t i) const {
+        if (wide) return demote(load_doubles(i));
         return hn::Load(d, reinterpret_cast<const float*>(data) + i * step);
     }
     HWY_INLINE Vec<DFOfDD> load(DFOfDD d, std::size_t i, int /*half*/) const {
@@ -250,19 +248,14 @@ struct Source {
         if (wide) return hn::Load(d, reinterpret_cast<const double*>(data) + i * step);
         return hn::PromoteTo(d, load(DFOfDD(), i, 0));
     }
+    HWY_INLINE Doubles load_doubles(std::size_t i) const {
+        const DD d;
+        Doubles result;
+        for (int h = 0; h < kHalves; ++h)
+            result.half[h] = load(d, i + static_cast<std::size_t>(h) * hn::Lanes(d));
+        return result;
+    }
 };
-
-/// As floats or doubles, of operands of either kind.
-HWY_INLINE Doubles load_doubles(const Source& source, std::size_t i) {
-    const DD d;
-    Doubles result;
-    for (int h = 0; h < kHalves; ++h)
-        result.half[h] = source.load(d, i + static_cast<std::size_t>(h) * hn::Lanes(d));
-    return result;
-}
-HWY_INLINE Vec<DF> load_narrow(DF d, const Source& source, std::size_t i) {
-    return source.wide ? demote(load_doubles(source, i)) : source.load(d, i);
-}
 
 /// A result to where it goes.
 HWY_INLINE void store_result(const Frame& frame, const Operand& out, std::size_t i, Vec<DD> value) {
@@ -398,15 +391,15 @@ HWY_INLINE void over_curve(const Frame& given, const Instruction& step, const Co
     const Source source(frame, step.in[0]);
     if (!curve.is_precise) {
         for (std::size_t i = 0; i < frame.count; i += hn::Lanes(d)) {
-            const auto y = curve_value(d, ends, polynomial, load_narrow(d, source, i));
+            const auto y = curve_value(d, ends, polynomial, source.load(d, i));
             store_result(frame, out, i, y);
         }
         return;
     }
     const CurveEnds<DD> wide_ends(DD(), curve);
     for (std::size_t i = 0; i < frame.count; i += hn::Lanes(d)) {
-        const Doubles exact = load_doubles(source, i);
-        const auto narrow = load_narrow(d, source, i);
+        const Doubles exact = source.load_doubles(i);
+        const auto narrow = source.load(d, i);
         store_result(frame, out, i,
                      precise_curve_value(d, ends, wide_ends, polynomial, narrow,
                                          source.wide ? &exact : nullptr));
@@ -581,104 +574,80 @@ HWY_INLINE bool are_interleaved(const std::array<T*, 3>& plane, std::ptrdiff_t s
     return (stride == 3 || stride == 4) && plane[1] == plane[0] + 1 && plane[2] == plane[0] + 2;
 }
 
-HWY_NOINLINE void load_tile(const Code& code, unsigned char* registers,
-                            const std::array<const float*, 3>& in, std::ptrdiff_t stride,
-                            std::size_t count, std::size_t padded) {
+/// use(r, g, b, i) with the vectors of pixels from the i-th on, up to `padded` pixels: behind the
+/// last of them, 0.
+template <class F>
+HWY_INLINE void read_pixels(const std::array<const float*, 3>& in, std::ptrdiff_t stride,
+                            std::size_t count, std::size_t padded, const F& use) {
     const DF d;
     const std::size_t lanes = hn::Lanes(d);
-    // Channels that are not read get a place to be written to.
-    alignas(kVectorBytes) float unused[kMaxTile];
-    std::array<float*, 3> out;
-    for (std::size_t c = 0; c < 3; ++c) {
-        out[c] = code.reads_input[c] ? reinterpret_cast<float*>(registers + code.input_offset[c])
-                                      : unused;
-    }
-    std::size_t done = 0;
-    const auto store = [&](Vec<DF> r, Vec<DF> g, Vec<DF> b) HWY_ATTR {
-        hn::Store(sanitized(d, r), d, out[0] + done);
-        hn::Store(sanitized(d, g), d, out[1] + done);
-        hn::Store(sanitized(d, b), d, out[2] + done);
-    };
-    if (stride == 1) {
-        for (; done + lanes <= count; done += lanes) {
-            store(hn::LoadU(d, in[0] + done), hn::LoadU(d, in[1] + done),
-                  hn::LoadU(d, in[2] + done));
-        }
-    }
+    std::size_t i = 0;
+    for (; stride == 1 && i + lanes <= count; i += lanes)
+        use(hn::LoadU(d, in[0] + i), hn::LoadU(d, in[1] + i), hn::LoadU(d, in[2] + i), i);
 #if HWY_TARGET != HWY_SCALAR
     if (are_interleaved(in, stride)) {
-        auto r = hn::Undefined(d);
-        auto g = hn::Undefined(d);
-        auto b = hn::Undefined(d);
-        auto a = hn::Undefined(d);
-        if (stride == 3) {
-            for (; done + lanes <= count; done += lanes) {
-                hn::LoadInterleaved3(d, in[0] + done * 3, r, g, b);
-                store(r, g, b);
-            }
-        } else {
-            // What follows the last pixel's three channels is not ours to read.
-            for (; done + lanes < count; done += lanes) {
-                hn::LoadInterleaved4(d, in[0] + done * 4, r, g, b, a);
-                store(r, g, b);
-            }
+        Vec<DF> r, g, b, unused;
+        for (; stride == 3 && i + lanes <= count; i += lanes) {
+            hn::LoadInterleaved3(d, in[0] + i * 3, r, g, b);
+            use(r, g, b, i);
+        }
+        // What follows the last pixel's three channels is not ours to read.
+        for (; stride == 4 && i + lanes < count; i += lanes) {
+            hn::LoadInterleaved4(d, in[0] + i * 4, r, g, b, unused);
+            use(r, g, b, i);
         }
     }
 #endif
-    for (std::size_t c = 0; c < 3; ++c) {
-        const float* plane = in[c];
-        for (std::size_t i = done; i < count; ++i) {
-            out[c][i] = plane[static_cast<std::ptrdiff_t>(i) * stride];
+    for (; i < padded; i += lanes) {
+        alignas(kVectorBytes) float rest[3][kLaneMultiple] = {};
+        for (std::size_t c = 0; c < 3; ++c) {
+            for (std::size_t k = i; k < HWY_MIN(i + lanes, count); ++k)
+                rest[c][k - i] = in[c][static_cast<std::ptrdiff_t>(k) * stride];
         }
-        for (std::size_t i = count; i < padded; ++i)
-            out[c][i] = 0.0F;
-        for (std::size_t i = done; i < padded; i += lanes) {
-            hn::Store(sanitized(d, hn::Load(d, out[c] + i)), d, out[c] + i);
+        use(hn::Load(d, rest[0]), hn::Load(d, rest[1]), hn::Load(d, rest[2]), i);
+    }
+}
+
+/// @param get  get(i, c): channel c of the pixels from the i-th on
+template <class F>
+HWY_INLINE void write_pixels(const std::array<float*, 3>& out, std::ptrdiff_t stride,
+                             std::size_t count, const F& get) {
+    const DF d;
+    const std::size_t lanes = hn::Lanes(d);
+    std::size_t i = 0;
+    for (; stride == 1 && i + lanes <= count; i += lanes) {
+        for (std::size_t c = 0; c < 3; ++c)
+            hn::StoreU(get(i, c), d, out[c] + i);
+    }
+#if HWY_TARGET != HWY_SCALAR
+    if (are_interleaved(out, stride)) {
+        for (; stride == 3 && i + lanes <= count; i += lanes)
+            hn::StoreInterleaved3(get(i, 0), get(i, 1), get(i, 2), d, out[0] + i * 3);
+        // The fourth channel is written as it was read. What follows the last pixel's three
+        // channels is not ours.
+        Vec<DF> unused, alpha;
+        for (; stride == 4 && i + lanes < count; i += lanes) {
+            float* const pixels = out[0] + i * 4;
+            hn::LoadInterleaved4(d, pixels, unused, unused, unused, alpha);
+            hn::StoreInterleaved4(get(i, 0), get(i, 1), get(i, 2), alpha, d, pixels);
+        }
+    }
+#endif
+    for (; i < count; i += lanes) {
+        alignas(kVectorBytes) float rest[kLaneMultiple];
+        for (std::size_t c = 0; c < 3; ++c) {
+            hn::Store(get(i, c), d, rest);
+            for (std::size_t k = i; k < HWY_MIN(i + lanes, count); ++k)
+                out[c][static_cast<std::ptrdiff_t>(k) * stride] = rest[k - i];
         }
     }
 }
 
-HWY_NOINLINE void store_tile(const Code& code, const Frame& frame,
-                             const std::array<float*, 3>& out, std::ptrdiff_t stride,
-                             std::size_t count) {
-    const DF d;
-    const std::size_t lanes = hn::Lanes(d);
-    const std::array<Source, 3> value = {Source(frame, code.output[0]),
-                                         Source(frame, code.output[1]),
-                                         Source(frame, code.output[2])};
-    std::size_t done = 0;
-    if (stride == 1) {
-        for (; done + lanes <= count; done += lanes) {
-            for (std::size_t c = 0; c < 3; ++c)
-                hn::StoreU(value[c].load(d, done), d, out[c] + done);
-        }
-    }
-#if HWY_TARGET != HWY_SCALAR
-    if (are_interleaved(out, stride)) {
-        if (stride == 3) {
-            for (; done + lanes <= count; done += lanes) {
-                hn::StoreInterleaved3(value[0].load(d, done), value[1].load(d, done),
-                                      value[2].load(d, done), d, out[0] + done * 3);
-            }
-        }
-        // The fourth channel is written as it was read. What follows the last pixel's three
-        // channels is not ours.
-        auto unused = hn::Undefined(d);
-        auto alpha = hn::Undefined(d);
-        for (; stride == 4 && done + lanes < count; done += lanes) {
-            float* const pixels = out[0] + done * 4;
-            hn::LoadInterleaved4(d, pixels, unused, unused, unused, alpha);
-            hn::StoreInterleaved4(value[0].load(d, done), value[1].load(d, done),
-                                  value[2].load(d, done), alpha, d, pixels);
-        }
-    }
-#endif
-    for (std::size_t c = 0; c < 3; ++c) {
-        const auto* values = reinterpret_cast<const float*>(value[c].data);
-        for (std::size_t i = done; i < count; ++i) {
-            out[c][static_cast<std::ptrdiff_t>(i) * stride] = values[i * value[c].step];
-        }
-    }
+/// The planes from pixel `first` on.
+template <class T>
+std::array<T*, 3> from(const std::array<T*, 3>& plane, std::ptrdiff_t stride, std::size_t first) {
+    const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(first) * stride;
+    return {plane[0] + at, plane[1] + at, plane[2] + at};
 }
 
 #if HWY_TARGET <= HWY_AVX2
@@ -694,36 +663,6 @@ void run_parts(const Code& code, const Numbers& numbers, PixelLayout layout, uns
         if (part == program.tile_steps.size()) return;
         for (const Instruction& step : program.tile_steps[part])
             run_instruction(frame, code, step);
-    }
-}
-
-/// Pixels as RGB.
-void pack(const std::array<const float*, 3>& in, std::ptrdiff_t stride, std::size_t count,
-          float* rgb) {
-    const DF d;
-    std::size_t i = 0;
-    for (; stride == 1 && i + hn::Lanes(d) <= count; i += hn::Lanes(d)) {
-        hn::StoreInterleaved3(hn::LoadU(d, in[0] + i), hn::LoadU(d, in[1] + i),
-                              hn::LoadU(d, in[2] + i), d, rgb + 3 * i);
-    }
-    for (; i < count; ++i) {
-        for (std::size_t c = 0; c < 3; ++c)
-            rgb[3 * i + c] = in[c][static_cast<std::ptrdiff_t>(i) * stride];
-    }
-}
-void unpack(const float* rgb, const std::array<float*, 3>& out, std::ptrdiff_t stride,
-            std::size_t count) {
-    const DF d;
-    std::size_t i = 0;
-    for (; stride == 1 && i + hn::Lanes(d) <= count; i += hn::Lanes(d)) {
-        hn::Vec<DF> channel[3];
-        hn::LoadInterleaved3(d, rgb + 3 * i, channel[0], channel[1], channel[2]);
-        for (std::size_t c = 0; c < 3; ++c)
-            hn::StoreU(channel[c], d, out[c] + i);
-    }
-    for (; i < count; ++i) {
-        for (std::size_t c = 0; c < 3; ++c)
-            out[c][static_cast<std::ptrdiff_t>(i) * stride] = rgb[3 * i + c];
     }
 }
 
@@ -747,16 +686,21 @@ void run_machine(const Code& code, const Numbers& numbers, unsigned char* tile,
         }
     }
     // The last pixels, and those that lie in another way, are copied.
-    alignas(kVectorBytes) float rgb[3 * kMaxTile] = {};
+    alignas(kVectorBytes) float rgb[3 * kMaxTile];
     for (; done < count; done += HWY_MIN(program.tile, count - done)) {
         const std::size_t n = HWY_MIN(program.tile, count - done);
-        const auto at = static_cast<std::ptrdiff_t>(done);
-        pack({in[0] + at * in_stride, in[1] + at * in_stride, in[2] + at * in_stride}, in_stride,
-             n, rgb);
-        run_parts(code, numbers, PixelLayout::rgb, tile, rgb, rgb,
-                  (n + kLaneMultiple - 1) / kLaneMultiple * kLaneMultiple);
-        unpack(rgb, {out[0] + at * out_stride, out[1] + at * out_stride, out[2] + at * out_stride},
-               out_stride, n);
+        const std::size_t padded = (n + kLaneMultiple - 1) / kLaneMultiple * kLaneMultiple;
+        const auto pack = [&](Vec<DF> r, Vec<DF> g, Vec<DF> b, std::size_t i) HWY_ATTR {
+            hn::StoreInterleaved3(r, g, b, DF(), rgb + 3 * i);
+        };
+        read_pixels(from(in, in_stride, done), in_stride, n, padded, pack);
+        run_parts(code, numbers, PixelLayout::rgb, tile, rgb, rgb, padded);
+        const auto unpack = [&](std::size_t i, std::size_t c) HWY_ATTR {
+            Vec<DF> channel[3];
+            hn::LoadInterleaved3(DF(), rgb + 3 * i, channel[0], channel[1], channel[2]);
+            return channel[c];
+        };
+        write_pixels(from(out, out_stride, done), out_stride, n, unpack);
     }
 }
 
@@ -771,19 +715,25 @@ void run(const Code& code, const Numbers& numbers, const std::array<const float*
         return run_machine(code, numbers, registers, in, in_stride, out, out_stride, count);
 #endif
     const auto* constants = reinterpret_cast<const unsigned char*>(numbers.constants.data());
+    const DF d;
     for (std::size_t begin = 0; begin < count; begin += code.tile) {
         const std::size_t n = HWY_MIN(code.tile, count - begin);
         const std::size_t padded = (n + kLaneMultiple - 1) / kLaneMultiple * kLaneMultiple;
-        const auto at = static_cast<std::ptrdiff_t>(begin);
         const Frame frame{registers, constants, padded};
-        load_tile(code, registers,
-                  {in[0] + at * in_stride, in[1] + at * in_stride, in[2] + at * in_stride},
-                  in_stride, n, padded);
+        const auto keep = [&](Vec<DF> r, Vec<DF> g, Vec<DF> b, std::size_t i) HWY_ATTR {
+            const Vec<DF> rgb[3] = {r, g, b};
+            for (std::size_t c = 0; c < 3; ++c) {
+                if (code.reads_input[c])
+                    store_result(frame, {code.input_offset[c]}, i, sanitized(d, rgb[c]));
+            }
+        };
+        read_pixels(from(in, in_stride, begin), in_stride, n, padded, keep);
         for (const Instruction& step : code.instructions)
             run_instruction(frame, code, step);
-        store_tile(code, frame,
-                   {out[0] + at * out_stride, out[1] + at * out_stride, out[2] + at * out_stride},
-                   out_stride, n);
+        const Source value[3] = {Source(frame, code.output[0]), Source(frame, code.output[1]),
+                                 Source(frame, code.output[2])};
+        write_pixels(from(out, out_stride, begin), out_stride, n,
+                     [&](std::size_t i, std::size_t c) HWY_ATTR { return value[c].load(d, i); });
     }
 }
 

@@ -162,12 +162,14 @@ struct SampledLattice {
     std::vector<double> wide;
 };
 
-/// An instruction computes over a whole tile. A wide one computes in double, whatever its operands
-/// and its result are kept in; another has float operands and a float result. A compiled curve
-/// computes in float and takes either.
+/// An instruction computes over a whole tile, a wide one in double, another in float, whatever its
+/// operands are kept in. What is not wide, and no compiled curve, has a float result.
 struct Instruction {
     Op op = Op::copy;
     bool wide = false;
+    /// Of a logarithm, or a power with a constant exponent: its operand is no denormal, and not
+    /// below.
+    bool is_positive = false;
     Operand out;
     std::array<Operand, 4> in;
     std::array<double, 9> k{};  // coefficients of dot3, exponent of power_constant

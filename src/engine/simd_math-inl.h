@@ -94,8 +94,9 @@ HWY_INLINE Vec<D> dot3(D d, const double* k, Vec<D> a, Vec<D> b, Vec<D> c) {
 // Exponents: x = 2^e (1 + f) with 1 + f in [3/4, 3/2) for finite x > 0, and x * 2^n for whole n;
 // with denormal floats, but without denormal doubles, which no float becomes.
 
+/// @param is_normal  x is no denormal
 template <class D>
-HWY_INLINE void split(D d, Vec<D> x, Vec<D>& e, Vec<D>& f) {
+HWY_INLINE void split(D d, Vec<D> x, Vec<D>& e, Vec<D>& f, bool is_normal) {
     if constexpr (kMayHaveExponents) {
         if (has_exponents(d)) {
             // 4/3 x has the next exponent exactly where the fraction of x is 3/2 or more, also when
@@ -122,13 +123,18 @@ HWY_INLINE void split(D d, Vec<D> x, Vec<D>& e, Vec<D>& f) {
         e = hn::Sub(hn::BitCast(d, whole), set(d, 0x1p52 + 1023));
         f = hn::Sub(hn::BitCast(d, hn::Add(fraction, hn::Set(tag, kThreeQuarters))), set(d, 1));
     } else {
-        const auto denormal = hn::Lt(x, hn::Set(d, std::numeric_limits<float>::min()));
-        const auto normal = hn::IfThenElse(denormal, hn::Mul(x, set(d, 0x1p24)), x);
-        const auto lost = hn::IfThenElseZero(denormal, set(d, 24));
+        auto normal = x;
+        auto lost = hn::Zero(d);
+        if (!is_normal) {
+            const auto denormal = hn::Lt(x, hn::Set(d, std::numeric_limits<float>::min()));
+            normal = hn::IfThenElse(denormal, hn::Mul(x, set(d, 0x1p24)), x);
+            lost = hn::IfThenElseZero(denormal, set(d, 24));
+        }
         constexpr std::int32_t kThreeQuarters = 0x3F400000;
         const auto bits = hn::Sub(hn::BitCast(tag, normal), hn::Set(tag, kThreeQuarters));
         const auto fraction = hn::And(bits, hn::Set(tag, std::int32_t{0x007FFFFF}));
-        e = hn::Sub(hn::ConvertTo(d, hn::ShiftRight<23>(bits)), lost);
+        e = hn::ConvertTo(d, hn::ShiftRight<23>(bits));
+        if (!is_normal) e = hn::Sub(e, lost);
         f = hn::Sub(hn::BitCast(d, hn::Add(fraction, hn::Set(tag, kThreeQuarters))), set(d, 1));
     }
 }
@@ -217,7 +223,7 @@ HWY_INLINE Vec<D> log2_curvature(D d, Vec<D> f) {
 template <class D>
 HWY_INLINE Vec<D> log2_double(D d, Vec<D> x) {
     Vec<D> e, f;
-    split(d, x, e, f);
+    split(d, x, e, f, true);
     const auto s = hn::Div(f, hn::Add(f, set(d, 2)));
     const auto p =
         even_odd(d, hn::Mul(s, s), 2.8853900817779268, 0.961796693918524, 0.5770780199671594,
@@ -227,16 +233,18 @@ HWY_INLINE Vec<D> log2_double(D d, Vec<D> x) {
 
 /// log2(x); -inf for x <= 0. In float only where sums and products are rounded once: below 3/4 the
 /// exponent is -1, and most of it cancels.
+/// @param is_positive  see Instruction
 template <class D>
-HWY_INLINE Vec<D> log2(D d, Vec<D> x) {
+HWY_INLINE Vec<D> log2(D d, Vec<D> x, bool is_positive) {
     Vec<D> result;
     if constexpr (kIsDouble<D>) {
         result = log2_double(d, x);
     } else {
         Vec<D> e, f;
-        split(d, x, e, f);
+        split(d, x, e, f, is_positive);
         result = hn::Add(hn::MulAdd(f, set(d, kLog2e), e), log2_curvature(d, f));
     }
+    if (is_positive) return result;
     return hn::IfThenElse(hn::Gt(x, hn::Zero(d)), result, set(d, -kInfinity));
 }
 
@@ -252,10 +260,10 @@ HWY_INLINE Vec<D> power_double(D d, Vec<D> a, Vec<D> b, double largest = kInfini
 
 /// Float a^b for a > 0, with the logarithm in double: for exponents of any size.
 template <class D>
-HWY_INLINE Vec<D> power_float(D d, Vec<D> a, const Doubles& b) {
+HWY_INLINE Vec<D> power_float(D d, Vec<D> a, const Doubles& b, bool is_normal) {
     const auto dd = double_tag(d);
     Vec<D> e, f;
-    split(d, a, e, f);
+    split(d, a, e, f, is_normal);
     Doubles whole, rest;
     for (int h = 0; h < kHalves; ++h) {
         const auto wide = promote(f, h);
@@ -290,11 +298,13 @@ HWY_INLINE Vec<D> power_of_any(D d, Vec<D> a, Vec<D> b, Vec<D> magnitude) {
 
 /// The same for one b that is not whole. Below 0 there is no value: 0 for b > 0, infinity for b <
 /// 0.
+/// @param is_positive  see Instruction
 template <class D>
-HWY_INLINE Vec<D> power_of_any(D d, Vec<D> a, double b, Vec<D> magnitude) {
-    const auto is_positive = hn::Gt(a, hn::Zero(d));
-    if (b > 0) return hn::IfThenElseZero(is_positive, magnitude);
-    return hn::IfThenElse(is_positive, magnitude, set(d, kInfinity));
+HWY_INLINE Vec<D> power_of_any(D d, Vec<D> a, double b, Vec<D> magnitude, bool is_positive) {
+    if (is_positive) return magnitude;
+    const auto is_above = hn::Gt(a, hn::Zero(d));
+    if (b > 0) return hn::IfThenElseZero(is_above, magnitude);
+    return hn::IfThenElse(is_above, magnitude, set(d, kInfinity));
 }
 
 /// Largest exponent of power_near that keeps to 2 ulp; the rounding of its products tells.
@@ -304,13 +314,13 @@ inline constexpr double kNearPower = kHasFma ? 4 : 1;
 /// of x is exact (y in two parts, the first of 11 bits); what is left is small, and so is its float
 /// error.
 template <class D>
-HWY_INLINE Vec<D> power_near(D d, Vec<D> x, double y) {
+HWY_INLINE Vec<D> power_near(D d, Vec<D> x, double y, bool is_positive) {
     const double y_hi = static_cast<double>(static_cast<std::int32_t>(y * 512)) / 512;
     const double slope = y * kLog2e;
     const auto slope_hi = static_cast<double>(static_cast<float>(slope));
     const auto vy = set(d, y);
     Vec<D> e, f;
-    split(d, x, e, f);
+    split(d, x, e, f, is_positive);
     const auto curvature = log2_curvature(d, f);
     const auto log2_x = hn::Add(e, hn::MulAdd(f, set(d, kLog2e), curvature));
     const auto n = hn::Round(hn::Mul(log2_x, vy));
@@ -319,7 +329,7 @@ HWY_INLINE Vec<D> power_near(D d, Vec<D> x, double y) {
     r = hn::MulAdd(vy, curvature, r);
     r = hn::Add(r, hn::MulAdd(set(d, slope - slope_hi), f, hn::Mul(set(d, y - y_hi), e)));
     const double largest = std::fabs(y) * kLargestLog2<D>;
-    return power_of_any(d, x, y, scale(d, exp2_fraction(d, r), n, largest));
+    return power_of_any(d, x, y, scale(d, exp2_fraction(d, r), n, largest), is_positive);
 }
 
 /// a^b.
@@ -331,20 +341,21 @@ HWY_INLINE Vec<D> power(D d, Vec<D> a, Vec<D> b) {
         Doubles wide;
         for (int h = 0; h < kHalves; ++h)
             wide.half[h] = promote(b, h);
-        return power_of_any(d, a, b, power_float(d, hn::Abs(a), wide));
+        return power_of_any(d, a, b, power_float(d, hn::Abs(a), wide, false));
     }
 }
 
 /// The same for one b that is not whole; in float beyond kNearPower.
 template <class D>
-HWY_INLINE Vec<D> power(D d, Vec<D> a, double b) {
+HWY_INLINE Vec<D> power(D d, Vec<D> a, double b, bool is_positive) {
     if constexpr (kIsDouble<D>) {
-        return power_of_any(d, a, b, power_double(d, a, set(d, b), std::fabs(b)));
+        const auto magnitude = power_double(d, a, set(d, b), std::fabs(b));
+        return power_of_any(d, a, b, magnitude, is_positive);
     } else {
         Doubles wide;
         for (int h = 0; h < kHalves; ++h)
             wide.half[h] = set(double_tag(d), b);
-        return power_of_any(d, a, b, power_float(d, a, wide));
+        return power_of_any(d, a, b, power_float(d, a, wide, is_positive), is_positive);
     }
 }
 
@@ -558,8 +569,9 @@ class SegmentPolynomial {
         const auto bits = hn::BitCast(tag, hn::Max(x, hn::Set(d, curve_.cell_floor)));
         const auto first = hn::Set(tag, static_cast<std::int32_t>(curve_.first_cell));
         const auto cell = hn::Sub(hn::ShiftRightSame(bits, curve_.shift), first);
-        const auto is_behind = hn::Ge(x, threshold_.at(cell));
-        return add_one_where(is_behind, hn::BitCast(tag, segment_.at(cell)));
+        const auto segment = hn::BitCast(tag, segment_.at(cell));
+        const auto is_behind = hn::RebindMask(tag, hn::Ge(x, threshold_.at(cell)));
+        return hn::IfThenElse(is_behind, hn::Add(segment, hn::Set(tag, 1)), segment);
     }
 
     const CompiledCurve& curve_;
@@ -697,10 +709,10 @@ HWY_INLINE Vec<D> compute(D d, const Code& code, const Instruction& step, const 
     if constexpr (op == Op::square_root) return hn::Sqrt(x(0));
     if constexpr (op == Op::floor) return hn::Floor(x(0));
     if constexpr (op == Op::exp2) return exp2(d, x(0));
-    if constexpr (op == Op::log2) return log2(d, x(0));
+    if constexpr (op == Op::log2) return log2(d, x(0), step.is_positive);
     if constexpr (op == Op::power) return power(d, x(0), x(1));
-    if constexpr (op == Op::power_constant) return power(d, x(0), step.k[0]);
-    if constexpr (op == Op::power_near) return power_near(d, x(0), step.k[0]);
+    if constexpr (op == Op::power_constant) return power(d, x(0), step.k[0], step.is_positive);
+    if constexpr (op == Op::power_near) return power_near(d, x(0), step.k[0], step.is_positive);
     if constexpr (op == Op::sine) return sine(d, x(0), 0);
     if constexpr (op == Op::cosine) return sine(d, x(0), 1);
     if constexpr (op == Op::atan2) return atan2(d, x(0), x(1));

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <map>
 
 #include "base/strings.h"
@@ -188,6 +189,7 @@ struct Selected {
     int channel = 0;  // of the lattice
     int sibling = 0;  // 0, or how many siblings come before: they are one instruction
     bool wide = false;
+    bool is_positive = false;
 };
 
 /// One instruction computes both: two channels of one lattice at one place, two rows of a matrix,
@@ -245,11 +247,15 @@ class Selector {
             current_.value = static_cast<std::uint32_t>(i);
             current_.wide = in_double_[i];
             match(code_[i]);
+            // A limit of the rounded number is the rounded limit of the number.
+            const bool rounds_before = current_.op == Op::clamp || current_.op == Op::minimum ||
+                                       current_.op == Op::maximum;
+            if (rounds_before) current_.wide = in_double_[i];
             for (const std::int64_t operand : current_.operands) {
                 if (operand == kNone) continue;
                 const auto v = static_cast<std::size_t>(operand);
                 is_needed_[v] = true;
-                current_.wide = current_.wide || (in_double_[v] && !current_.curve);
+                if (in_double_[v] && !current_.curve && !rounds_before) current_.wide = true;
             }
             result.push_back(current_);
         }
@@ -292,6 +298,15 @@ class Selector {
     /// Value i is computed by `op`, and for this one use alone: it can become a part of the user.
     [[nodiscard]] bool absorbs(std::uint32_t i, ExprOp op) const {
         return is(i, op) && uses_[i] == 1;
+    }
+
+    /// Limited to positive numbers that are no denormals.
+    [[nodiscard]] bool is_positive(std::uint32_t i) const {
+        const TapeInstruction& step = code_[i];
+        constexpr double kLeast = std::numeric_limits<float>::min();
+        if (step.op == ExprOp::constant) return step.value >= kLeast;
+        if (step.op == ExprOp::maximum) return is_positive(step.a) || is_positive(step.b);
+        return step.op == ExprOp::minimum && is_positive(step.a) && is_positive(step.b);
     }
 
     /// Makes the pattern's instruction; `absorbed` values become part of it.
@@ -364,6 +379,7 @@ class Selector {
             case ExprOp::power:
                 if (is_constant(b) && code_[b].value != std::floor(code_[b].value)) {
                     current_.k[0] = code_[b].value;
+                    current_.is_positive = is_positive(a);
                     return emit(Op::power_constant, {a}, {b});
                 }
                 return emit(Op::power, {a, b});
@@ -393,6 +409,7 @@ class Selector {
                 return emit(Op::lattice, {a, b, step.c});
             default: {
                 current_.op = same_operation(step.op);
+                current_.is_positive = step.op == ExprOp::log2 && is_positive(a);
                 const std::vector<std::uint32_t> operands = operands_of(step);
                 std::copy(operands.begin(), operands.end(), current_.operands.begin());
             }
@@ -461,6 +478,7 @@ class Assembler {
             step.op = s.op;
             step.wide = s.wide || s.op == Op::sine || s.op == Op::cosine || s.op == Op::atan2 ||
                         s.op == Op::lookup_nonuniform;
+            step.is_positive = s.is_positive;
             step.out = place(slot);
             for (Operand& channel : step.channel)
                 channel.constant = true;

@@ -45,7 +45,6 @@ enum class VectorOp : std::uint8_t {
     less_equal,
     greater,
     greater_equal,
-    has_bit,   // integer a & b != 0; AVX-512
     is_minus,  // the sign bit of a, for a blend
     blend,     // mask ? a : b
     zero_unless,
@@ -54,9 +53,8 @@ enum class VectorOp : std::uint8_t {
     shift_left,
     integer_add,
     integer_subtract,
-    integer_add_where,  // mask ? a + b : a; AVX-512
-    to_index,           // from floats, or from doubles to half a vector
-    to_float,           // from whole numbers
+    to_index,  // from floats, or from doubles to half a vector
+    to_float,  // from whole numbers
     // Tables
     permute_16,   // the element of 16 floats at `offset` that a says; AVX-512
     permute_32,   // AVX-512

@@ -413,18 +413,13 @@ struct PermutedTable {
         if (size <= 32) return low;
         const auto second = static_cast<std::uint32_t>(offset + 32 * sizeof(float));
         const VF high = {w, w->emit({.op = op, .offset = second, .in = {index.operand}})};
-        const VectorOperand is_high = w->emit(
-            {.op = VectorOp::has_bit, .in = {index.operand, w->pool().bits(std::int32_t{32})}});
-        return hn::IfThenElse(hn::Mask<float>{w, is_high.value}, high, low);
+        const hn::Tag<float> d = {w};
+        const auto is_high = has_minus(d, hn::BitCast(d, hn::ShiftLeft<26>(index)));
+        return hn::IfThenElse(is_high, high, low);
     }
 };
 inline PermutedTable table(hn::Tag<float> d, const float* numbers, int size) {
     return {d.writer->pool().table(numbers, static_cast<std::size_t>(size)), size};
-}
-inline VI add_one_where(hn::Mask<float> mask, VI x) {
-    return {x.writer, x.writer->emit({.op = VectorOp::integer_add_where,
-                                      .mask = mask.value,
-                                      .in = {x.operand, x.writer->pool().bits(std::int32_t{1})}})};
 }
 
 /// Four or eight floats in a row for each pixel.

@@ -490,10 +490,10 @@ template <class D>
 HWY_INLINE void find_places(D d, const std::array<Source, 3>& source, std::size_t i, int edge,
                             std::size_t in_block, LatticePlaces<TFromD<D>>& places) {
     const Nodes<D> nodes =
-        nodes_about(d, source[0].load(d, i), source[1].load(d, i), source[2].load(d, i), edge);
+        nodes_about(d, source[0].load(d, i), source[1].load(d, i), source[2].load(d, i), edge, 4);
     for (int k = 0; k < 4; ++k) {
         const hn::Rebind<std::int32_t, D> di;
-        hn::Store(hn::ShiftLeft<2>(to_whole(nodes.number[k])), di, places.node[k] + in_block);
+        hn::Store(to_whole(nodes.place[k]), di, places.node[k] + in_block);
         hn::Store(nodes.weight[k], d, places.weight[k] + in_block);
     }
 }

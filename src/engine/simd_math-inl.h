@@ -444,13 +444,15 @@ HWY_INLINE Vec<D> lookup(D d, Vec<D> x, const SampledTable& table) {
     return hn::MulAdd(hn::Sub(position, cell), hn::Sub(b, a), a);
 }
 
-/// The four nodes of a 3D LUT about a place, by their numbers, and their weights.
+/// The four nodes of a 3D LUT about a color: where they lie, and their weights.
 template <class D>
 struct Nodes {
-    Vec<D> number[4], weight[4];
+    Vec<D> place[4], weight[4];
 };
+/// @param unit  from one node to the next
 template <class D>
-HWY_INLINE Nodes<D> nodes_about(D d, Vec<D> red, Vec<D> green, Vec<D> blue, double edge) {
+HWY_INLINE Nodes<D> nodes_about(D d, Vec<D> red, Vec<D> green, Vec<D> blue, double edge,
+                                double unit) {
     const auto one = set(d, 1);
     const Vec<D> given[3] = {red, green, blue};
     Vec<D> cell[3], f[3];
@@ -460,22 +462,23 @@ HWY_INLINE Nodes<D> nodes_about(D d, Vec<D> red, Vec<D> green, Vec<D> blue, doub
         cell[c] = hn::Min(hn::Floor(place), set(d, edge - 2));
         f[c] = hn::Sub(place, cell[c]);
     }
-    // Whole numbers below 2^24 are exact in float, and so is their sum.
-    const auto n1 = set(d, edge);
-    const auto n2 = set(d, edge * edge);
-    const auto corner = hn::MulAdd(cell[0], n2, hn::MulAdd(cell[1], n1, cell[2]));
+    // Whole numbers below 2^24 are exact in float, and so is their sum; also 4 and 16 times them.
+    const auto n0 = set(d, unit);
+    const auto n1 = set(d, unit * edge);
+    const auto n2 = set(d, unit * edge * edge);
+    const auto corner = hn::MulAdd(cell[0], n2, hn::MulAdd(cell[1], n1, hn::Mul(cell[2], n0)));
     // Steps of the axes with the largest and the smallest fraction.
     const auto red_below_green = hn::Lt(f[0], f[1]);
     const auto upper = hn::Max(f[0], f[1]);
     const auto lower = hn::Min(f[0], f[1]);
     const auto step_upper = hn::IfThenElse(red_below_green, n1, n2);
     const auto step_lower = hn::IfThenElse(red_below_green, n2, n1);
-    const auto step_highest = hn::IfThenElse(hn::Lt(upper, f[2]), one, step_upper);
-    const auto step_lowest = hn::IfThenElse(hn::Lt(lower, f[2]), step_lower, one);
+    const auto step_highest = hn::IfThenElse(hn::Lt(upper, f[2]), n0, step_upper);
+    const auto step_lowest = hn::IfThenElse(hn::Lt(lower, f[2]), step_lower, n0);
     const auto highest = hn::Max(upper, f[2]);
     const auto lowest = hn::Min(lower, f[2]);
     const auto middle = hn::Max(lower, hn::Min(upper, f[2]));
-    const auto far = hn::Add(corner, set(d, edge * edge + edge + 1));
+    const auto far = hn::Add(corner, set(d, unit * (edge * edge + edge + 1)));
     return {{corner, hn::Add(corner, step_highest), hn::Sub(far, step_lowest), far},
             {hn::Sub(one, highest), hn::Sub(highest, middle), hn::Sub(middle, lowest), lowest}};
 }

@@ -247,9 +247,10 @@ class Selector {
             current_.value = static_cast<std::uint32_t>(i);
             current_.wide = in_double_[i];
             match(code_[i]);
-            // A limit of the rounded number is the rounded limit of the number.
+            // The result of rounded numbers is the rounded result.
             const bool rounds_before = current_.op == Op::clamp || current_.op == Op::minimum ||
-                                       current_.op == Op::maximum;
+                                       current_.op == Op::maximum || current_.op == Op::negate ||
+                                       current_.op == Op::absolute;
             if (rounds_before) current_.wide = in_double_[i];
             for (const std::int64_t operand : current_.operands) {
                 if (operand == kNone) continue;

@@ -451,11 +451,12 @@ class Translator {
     }
 
     void write_lattice(const Step& s, const SampledLattice& lattice) {
-        constexpr int kNodeShift = 4;  // of 16 bytes
+        constexpr double kNodeBytes = 4 * sizeof(float);
         Writer& w = *writer_;
-        const auto nodes = nodes_about(float_tag(), in(s, 0), in(s, 1), in(s, 2), lattice.edge);
+        const auto nodes =
+            nodes_about(float_tag(), in(s, 0), in(s, 1), in(s, 2), lattice.edge, kNodeBytes);
         for (int k = 0; k < 4; ++k)
-            w.spill_index(k, hn::ShiftLeftSame(places(nodes.number[k]), kNodeShift).operand);
+            w.spill_index(k, places(nodes.place[k]).operand);
         std::array<VectorOperand, 4> rgba;
         for (int quarter = 0; quarter < 4; ++quarter) {
             const auto weight = [&](int k) {

@@ -726,8 +726,7 @@ int CompiledCurve::cost() const noexcept {
                (is_precise ? 24 : 0);
     }
     const int steps = std::bit_width(static_cast<unsigned>(segments)) - 1;  // of the search
-    const int of_cells =
-        cells == 0 ? steps * (segments <= 32 ? 4 : 8) : 2 * (cells <= 32 ? 1 : 3);
+    const int of_cells = cells == 0 ? steps * (segments <= 32 ? 4 : 8) : 2 * (cells <= 32 ? 1 : 3);
     const int of_segments = (degree + 3) * (segments <= 32 ? 1 : 3);
     const int of_doubles = is_precise ? 24 : 0;
     return 12 + of_cells + of_segments + degree + of_doubles;

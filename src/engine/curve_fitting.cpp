@@ -62,7 +62,8 @@ int cost_of(const TapeInstruction& step) {
     }
 }
 
-/// The same in double.
+/// The same in double, where polynomials are longer. With 1.4 for functions, too, AgX in three.js
+/// is 9 % slower; with 2.5 for other operations, Khronos Neutral is 8 to 20 % slower.
 double cost_in_double(const TapeInstruction& step) {
     const int cost = cost_of(step);
     return cost >= kCheapestFunction ? 2.5 * cost : 1.4 * cost;

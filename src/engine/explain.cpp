@@ -158,8 +158,7 @@ class Explanation {
         line("\nMachine code: {} bytes of numbers and tables",
              code.numbers.pool.size() * simd::kVectorBytes);
         constexpr const char* kLayouts[] = {"RGB pixels", "RGBA pixels"};
-        for (const auto layout :
-             {simd::PixelLayout::rgb, simd::PixelLayout::rgba}) {
+        for (const auto layout : {simd::PixelLayout::rgb, simd::PixelLayout::rgba}) {
             const auto l = static_cast<std::size_t>(layout);
             const std::vector<simd::VectorCode>& parts = program->parts[l];
             for (std::size_t part = 0; part < parts.size(); ++part) {

@@ -29,9 +29,9 @@ constexpr int kSpare = 3;
 /// 2048 is 1.1 times as fast as 1024 and 4096.
 constexpr int kFetchAhead = 2048;
 
-/// On the stack, of what spill_index keeps: four lines for each of the blocks; before them, one for
-/// the caller's stack pointer.
-constexpr int kKeptBytes = 64 + 4 * 64 * 4;
+/// Bytes of the stack frame: a line for the caller's stack pointer, then four lines a block for
+/// spill_index.
+constexpr int kKeptBytes = 64 + 4 * 64 * kInterleaved;
 /// An index in the vector register with this number is none for QEMU 7.2 and for FEX before its
 /// pull request 3776, as it is in a general register: gathers read the first entry of the table.
 constexpr int kNoIndex = 4;
@@ -61,9 +61,7 @@ class Generator : public Xbyak::CodeGenerator {
                       int interleaved_blocks) {
         layout_ = layout;
         const int tile_bytes = static_cast<int>(tile) / machine_.lanes * pixel_bytes();
-        fetch_ahead_ = place == Place::only    ? kFetchAhead
-                       : place == Place::first ? tile_bytes
-                                               : 0;
+        fetch_ahead_ = place == Place::only ? kFetchAhead : place == Place::first ? tile_bytes : 0;
         // The last part writes this tile's pixels when the first is long done.
         claim_ahead_ = place == Place::only ? kFetchAhead : 0;
         slot_count_ = 0;
@@ -191,8 +189,12 @@ class Generator : public Xbyak::CodeGenerator {
             if (step.result != kNone && !state(step.result).uses.empty()) ++alive;
             most_alive = std::max(most_alive, alive);
             alive -= ending[i];
+            // Constants of AVX2 fill a vector, whatever they are.
+            const bool is_wide = machine_.has_avx512 && step.wide &&
+                                 step.op != VectorOp::promote_low &&
+                                 step.op != VectorOp::promote_high;
             for (const VectorOperand& operand : step.in) {
-                if (operand.is_constant()) ++uses[{operand.pool, step.wide}];
+                if (operand.is_constant()) ++uses[{operand.pool, is_wide}];
             }
         }
         std::multimap<int, std::pair<std::int32_t, bool>, std::greater<>> by_uses;
@@ -366,7 +368,8 @@ class Generator : public Xbyak::CodeGenerator {
         return vector(r);
     }
 
-    /// As take() and define(), for a mask. An instruction has one at most.
+    /// Does for a mask what take() and define() do for a vector. An instruction reads or writes at
+    /// most one mask.
     Xbyak::Opmask take_mask(std::int32_t value) {
         int best = kFirstMask;
         for (int k = kFirstMask; k <= kLastMask; ++k) {
@@ -507,11 +510,11 @@ class Generator : public Xbyak::CodeGenerator {
     Xbyak::Address pixels(const Xbyak::Reg64& base, const VectorInstruction& step, int at) {
         return ptr[base + static_cast<std::size_t>(at + pixel_bytes() * step.block)];
     }
-    /// Of the four floats of load_thirds, the i-th.
+    /// The i-th group of four floats of load_thirds.
     Xbyak::Address third(const Xbyak::Reg64& base, const VectorInstruction& step, int i) {
         return pixels(base, step, 16 * (step.immediate + 3 * i));
     }
-    /// The stack's first lines, behind those of the spilled values.
+    /// Behind the line of the stack pointer, which lies behind the spilled values.
     Xbyak::Address kept_index(const VectorInstruction& step, int number, int pixel) {
         const int offset = 64 * (1 + number + 4 * step.block) + 4 * pixel;
         return ptr[rbp - static_cast<std::size_t>(kKeptBytes - offset)];

@@ -9,9 +9,9 @@ TONEWRIGHT_NAMESPACE_BEGIN
 namespace simd {
 namespace {
 
-/// How many values of a block may wait until they are read. Two blocks share 16 registers; other
-/// values lie on the stack, and instructions read them there. With 9, ACES 2.0 is 5 % slower, with
-/// 14, AgX of Blender.
+/// How many values of a block may wait until they are read. With AVX2, two blocks share 16
+/// registers; other values lie on the stack, and instructions read them there. With 9, ACES 2.0 is
+/// 5 % slower (Zen 4), with 14, AgX of Blender. AVX-512 has 32 registers, but is no faster with 16.
 constexpr int kMostAlive = 12;
 
 /// About how many cycles the processor waits for a result (Zen 4). Loads count as one, because they

@@ -12,7 +12,7 @@ namespace simd {
 /// A program computes one long chain of dependent results after the other, and a processor looks
 /// some 60 waiting instructions ahead (Zen 4). In the new order, the longest chain begins first,
 /// and the others fill the time that it waits.
-/// @param code  of one block, for AVX2, where masks need no registers of their own
+/// @param code  of one block
 [[nodiscard]] VectorCode scheduled(const VectorCode& code);
 
 }  // namespace simd

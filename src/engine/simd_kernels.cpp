@@ -574,8 +574,7 @@ HWY_INLINE bool are_interleaved(const std::array<T*, 3>& plane, std::ptrdiff_t s
     return (stride == 3 || stride == 4) && plane[1] == plane[0] + 1 && plane[2] == plane[0] + 2;
 }
 
-/// use(r, g, b, i) with the vectors of pixels from the i-th on, up to `padded` pixels: behind the
-/// last of them, 0.
+/// use(r, g, b, i) with the vectors of pixels from the i-th on. Pads with 0 to `padded` pixels.
 template <class F>
 HWY_INLINE void read_pixels(const std::array<const float*, 3>& in, std::ptrdiff_t stride,
                             std::size_t count, std::size_t padded, const F& use) {
@@ -608,7 +607,10 @@ HWY_INLINE void read_pixels(const std::array<const float*, 3>& in, std::ptrdiff_
     }
 }
 
-/// @param get  get(i, c): channel c of the pixels from the i-th on
+struct Colors {
+    Vec<DF> channel[3];
+};
+/// @param get  get(i): the pixels from the i-th on
 template <class F>
 HWY_INLINE void write_pixels(const std::array<float*, 3>& out, std::ptrdiff_t stride,
                              std::size_t count, const F& get) {
@@ -616,27 +618,32 @@ HWY_INLINE void write_pixels(const std::array<float*, 3>& out, std::ptrdiff_t st
     const std::size_t lanes = hn::Lanes(d);
     std::size_t i = 0;
     for (; stride == 1 && i + lanes <= count; i += lanes) {
+        const Colors x = get(i);
         for (std::size_t c = 0; c < 3; ++c)
-            hn::StoreU(get(i, c), d, out[c] + i);
+            hn::StoreU(x.channel[c], d, out[c] + i);
     }
 #if HWY_TARGET != HWY_SCALAR
     if (are_interleaved(out, stride)) {
-        for (; stride == 3 && i + lanes <= count; i += lanes)
-            hn::StoreInterleaved3(get(i, 0), get(i, 1), get(i, 2), d, out[0] + i * 3);
+        for (; stride == 3 && i + lanes <= count; i += lanes) {
+            const Colors x = get(i);
+            hn::StoreInterleaved3(x.channel[0], x.channel[1], x.channel[2], d, out[0] + i * 3);
+        }
         // The fourth channel is written as it was read. What follows the last pixel's three
-        // channels is not ours.
+        // channels belongs to the caller.
         Vec<DF> unused, alpha;
         for (; stride == 4 && i + lanes < count; i += lanes) {
             float* const pixels = out[0] + i * 4;
+            const Colors x = get(i);
             hn::LoadInterleaved4(d, pixels, unused, unused, unused, alpha);
-            hn::StoreInterleaved4(get(i, 0), get(i, 1), get(i, 2), alpha, d, pixels);
+            hn::StoreInterleaved4(x.channel[0], x.channel[1], x.channel[2], alpha, d, pixels);
         }
     }
 #endif
     for (; i < count; i += lanes) {
         alignas(kVectorBytes) float rest[kLaneMultiple];
+        const Colors x = get(i);
         for (std::size_t c = 0; c < 3; ++c) {
-            hn::Store(get(i, c), d, rest);
+            hn::Store(x.channel[c], d, rest);
             for (std::size_t k = i; k < HWY_MIN(i + lanes, count); ++k)
                 out[c][static_cast<std::ptrdiff_t>(k) * stride] = rest[k - i];
         }
@@ -690,15 +697,14 @@ void run_machine(const Code& code, const Numbers& numbers, unsigned char* tile,
     for (; done < count; done += HWY_MIN(program.tile, count - done)) {
         const std::size_t n = HWY_MIN(program.tile, count - done);
         const std::size_t padded = (n + kLaneMultiple - 1) / kLaneMultiple * kLaneMultiple;
-        const auto pack = [&](Vec<DF> r, Vec<DF> g, Vec<DF> b, std::size_t i) HWY_ATTR {
-            hn::StoreInterleaved3(r, g, b, DF(), rgb + 3 * i);
-        };
+        const auto pack = [&](Vec<DF> r, Vec<DF> g, Vec<DF> b, std::size_t i)
+                              HWY_ATTR { hn::StoreInterleaved3(r, g, b, DF(), rgb + 3 * i); };
         read_pixels(from(in, in_stride, done), in_stride, n, padded, pack);
         run_parts(code, numbers, PixelLayout::rgb, tile, rgb, rgb, padded);
-        const auto unpack = [&](std::size_t i, std::size_t c) HWY_ATTR {
-            Vec<DF> channel[3];
-            hn::LoadInterleaved3(DF(), rgb + 3 * i, channel[0], channel[1], channel[2]);
-            return channel[c];
+        const auto unpack = [&](std::size_t i) HWY_ATTR {
+            Colors x;
+            hn::LoadInterleaved3(DF(), rgb + 3 * i, x.channel[0], x.channel[1], x.channel[2]);
+            return x;
         };
         write_pixels(from(out, out_stride, done), out_stride, n, unpack);
     }
@@ -732,8 +738,9 @@ void run(const Code& code, const Numbers& numbers, const std::array<const float*
             run_instruction(frame, code, step);
         const Source value[3] = {Source(frame, code.output[0]), Source(frame, code.output[1]),
                                  Source(frame, code.output[2])};
-        write_pixels(from(out, out_stride, begin), out_stride, n,
-                     [&](std::size_t i, std::size_t c) HWY_ATTR { return value[c].load(d, i); });
+        write_pixels(from(out, out_stride, begin), out_stride, n, [&](std::size_t i) HWY_ATTR {
+            return Colors{{value[0].load(d, i), value[1].load(d, i), value[2].load(d, i)}};
+        });
     }
 }
 

@@ -163,12 +163,13 @@ struct SampledLattice {
 };
 
 /// An instruction computes over a whole tile, a wide one in double, another in float, whatever its
-/// operands are kept in. What is not wide, and no compiled curve, has a float result.
+/// operands are kept in. An instruction that is neither wide nor a compiled curve has a float
+/// result.
 struct Instruction {
     Op op = Op::copy;
     bool wide = false;
-    /// Of a logarithm, or a power with a constant exponent: its operand is no denormal, and not
-    /// below.
+    /// Of a logarithm, or a power with a constant exponent: its operand is at least the smallest
+    /// normal float.
     bool is_positive = false;
     Operand out;
     std::array<Operand, 4> in;

@@ -247,7 +247,8 @@ class Selector {
             current_.value = static_cast<std::uint32_t>(i);
             current_.wide = in_double_[i];
             match(code_[i]);
-            // The result of rounded numbers is the rounded result.
+            // Rounding is monotone, so rounding the operands gives the rounded result, except for
+            // the sign of a zero.
             const bool rounds_before = current_.op == Op::clamp || current_.op == Op::minimum ||
                                        current_.op == Op::maximum || current_.op == Op::negate ||
                                        current_.op == Op::absolute;
@@ -301,12 +302,36 @@ class Selector {
         return is(i, op) && uses_[i] == 1;
     }
 
-    /// Limited to positive numbers that are no denormals.
+    /// A finite number, because it is a sum of multiples of inputs, or a limit of one.
+    [[nodiscard]] bool is_finite(std::uint32_t i) const {
+        constexpr double kLargest = 0x1p20;
+        const TapeInstruction& step = code_[i];
+        switch (step.op) {
+            case ExprOp::input:
+                return true;
+            case ExprOp::constant:
+                return std::fabs(step.value) <= kLargest;
+            case ExprOp::uniform:
+                return std::fabs(step.least) <= kLargest && std::fabs(step.most) <= kLargest;
+            case ExprOp::multiply:
+                return (is_number(code_[step.a].op) || is_number(code_[step.b].op)) &&
+                       is_finite(step.a) && is_finite(step.b);
+            case ExprOp::add:
+            case ExprOp::subtract:
+            case ExprOp::minimum:
+            case ExprOp::maximum:
+                return is_finite(step.a) && is_finite(step.b);
+            default:
+                return false;
+        }
+    }
+    /// Limited to positive numbers that are no denormals. A limit of NaN is NaN.
     [[nodiscard]] bool is_positive(std::uint32_t i) const {
         const TapeInstruction& step = code_[i];
         constexpr double kLeast = std::numeric_limits<float>::min();
         if (step.op == ExprOp::constant) return step.value >= kLeast;
-        if (step.op == ExprOp::maximum) return is_positive(step.a) || is_positive(step.b);
+        if (step.op == ExprOp::maximum)
+            return (is_positive(step.a) || is_positive(step.b)) && is_finite(i);
         return step.op == ExprOp::minimum && is_positive(step.a) && is_positive(step.b);
     }
 

@@ -62,14 +62,14 @@ enum class VectorOp : std::uint8_t {
     spill_index,  // the whole numbers a, on the stack, number `immediate`
     rows,  // four floats each for a quarter of the pixels, at `address`, or without one in the
            // pool, + `offset` + the bytes that spill_index kept: `immediate` says which
-           // index, and times 4, which pixels: each fourth
+           // index, and times 4, which pixel of each four
     // Memory
     load_plane,
     store_plane,
     load_pixels,   // the vector number `immediate` of the block's pixels
     store_pixels,  //
     store_colors,  // only the first three of each four floats
-    load_thirds,   // each third four floats of the block's pixels, from number `immediate` on
+    load_thirds,   // every third group of four floats, beginning with group `immediate`
     store_thirds,  //
     shuffle_4,     // two floats of each four of a, two of b
 };
@@ -103,7 +103,7 @@ struct VectorInstruction {
 /// Floats of a pixel in memory, for the code that reads or writes them.
 enum class PixelLayout : std::uint8_t {
     rgb,
-    rgba,  // what is in the fourth channel is not touched
+    rgba,  // the fourth channel keeps its value
 };
 
 /// A part of the program without a step that runs over a whole tile.

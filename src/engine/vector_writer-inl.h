@@ -123,7 +123,7 @@ class Writer {
             store(VectorOp::store_pixels, static_cast<int>(i), floats[i]);
     }
     std::array<Number, 3> load_rgb() {
-        // Each four floats of a vector have four pixels.
+        // Each four floats of a vector are of the same four pixels.
         const std::array<Number, 3> v = {load(VectorOp::load_thirds, 0),
                                          load(VectorOp::load_thirds, 1),
                                          load(VectorOp::load_thirds, 2)};
@@ -151,7 +151,7 @@ class Writer {
         return {shuffle_4(first01, first23, 0x88), shuffle_4(first01, first23, 0xDD),
                 shuffle_4(last01, last23, 0x88), shuffle_4(last01, last23, 0xDD)};
     }
-    /// In another order of the pixels, which store_rgba() undoes.
+    /// The pixels come in another order, and store_rgba() restores it.
     std::array<Number, 4> load_rgba() {
         return columns({load_pixels(0), load_pixels(1), load_pixels(2), load_pixels(3)});
     }

@@ -189,16 +189,16 @@ double dot(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1
 Expr cone_threshold(const Expr& La) {
     const Expr l = log2(La) * std::log10(2.0);
     const Expr middle = pow(max(0.249 * l + 0.65, 0), 2.7) - 0.72;
-    return pow(10, select(less_equal(l, -2.6), -0.72,
-                          select(less_equal(1.9, l), l - 1.255, middle)));
+    return pow(10,
+               select(less_equal(l, -2.6), -0.72, select(less_equal(1.9, l), l - 1.255, middle)));
 }
 
 /// The same for rods.
 Expr rod_threshold(const Expr& La) {
     const Expr l = log2(La) * std::log10(2.0);
     const Expr middle = pow(max(0.405 * l + 1.6, 0), 2.18) - 2.86;
-    return pow(10, select(less_equal(l, -3.94), -2.86,
-                          select(less_equal(-1.44, l), l - 0.395, middle)));
+    return pow(
+        10, select(less_equal(l, -3.94), -2.86, select(less_equal(-1.44, l), l - 0.395, middle)));
 }
 
 /// C' = cones C + rods tint max(dot(kRods, C), 0).

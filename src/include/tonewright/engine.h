@@ -113,8 +113,8 @@ class TONEWRIGHT_API SimdEngine {
 /// parameters, and typical values are the defaults. Errors stay within the operator's bound at both
 /// ends of each interval.
 ///
-/// Leaves out parameters that the settings or the preset set. Empty if one of the others is fixed
-/// (no operator of the catalog has such a parameter).
+/// Leaves out parameters that the settings or the preset set. Empty if one of the others is fixed:
+/// then each picture has a program of its own. No built-in operator has such a parameter.
 [[nodiscard]] TONEWRIGHT_API LiveUniforms live_statistics(const ResolvedOperator& resolved);
 
 /// The names for build_live_view().

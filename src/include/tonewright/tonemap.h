@@ -99,8 +99,8 @@ measure_scene(const OIIO::ImageBuf& src, std::string_view input = kAutoInput,
 ///
 /// An operator that takes statistics takes those of each picture. They are uniforms
 /// (live_statistics() in engine.h), so all pictures share one program, and errors stay within the
-/// operator's bound. A shot would flicker: give it the statistics of one frame,
-/// with_statistics(measure_scene(frame)).
+/// operator's bound; where they are not, each picture has a program of its own. A shot would
+/// flicker: give it the statistics of one frame, with_statistics(measure_scene(frame)).
 class TONEWRIGHT_API Tonemapper {
   public:
     /// @throws Error  unknown name or bad value among the options, with the nearest name
@@ -114,12 +114,14 @@ class TONEWRIGHT_API Tonemapper {
     [[nodiscard]] bool takes_statistics() const noexcept;
     /// True for a local operator, which maps a pixel by its surroundings.
     [[nodiscard]] bool needs_whole_picture() const noexcept;
-    /// The same with fixed statistics for all pictures. Compiles nothing.
+    /// The same with fixed statistics for all pictures. Compiles nothing if all statistics of the
+    /// operator are live, as those of built-in operators are, otherwise once.
     /// @throws Error  statistics that are outside the intervals of the operator's parameters
     [[nodiscard]] Tonemapper with_statistics(const SceneStatistics& statistics) const;
     /// The same at another exposure, in stops, [-64, 64]. Takes microseconds, also for the first
     /// picture: within 16 stops, a view is compiled once for exposure 0 and once for all others.
-    /// Beyond 16 stops, the first picture compiles it again. The pixels are those of a Tonemapper that was made with this exposure.
+    /// Beyond 16 stops, the first picture compiles it again. The pixels are those of a Tonemapper
+    /// that was made with this exposure.
     /// @throws Error  an exposure outside that interval
     [[nodiscard]] Tonemapper with_exposure(double stops) const;
 

@@ -328,7 +328,7 @@ class Selector {
     /// Limited to positive numbers that are no denormals. A limit of NaN is NaN.
     [[nodiscard]] bool is_positive(std::uint32_t i) const {
         const TapeInstruction& step = code_[i];
-        constexpr double kLeast = std::numeric_limits<float>::min();
+        constexpr auto kLeast = static_cast<double>(std::numeric_limits<float>::min());
         if (step.op == ExprOp::constant) return step.value >= kLeast;
         if (step.op == ExprOp::maximum)
             return (is_positive(step.a) || is_positive(step.b)) && is_finite(i);

@@ -836,6 +836,25 @@ TEST(Simd, StatisticsThatAreFixedHaveNoUniforms) {
               (UniformValues{{"maximum", 1e-6}}));
 }
 
+/// A limit of NaN is NaN. Logarithms and powers without a guard would take it for a large number,
+/// and only the limits of finite numbers need no guard.
+TEST(Simd, LimitsOfNanAreNoPositiveNumbers) {
+    const Expr quotient = max(Expr::input(0) / Expr::input(1), 0.5);
+    const Pipeline pipeline = {
+        CrossTalkStage{{log2(quotient), pow(quotient, 0.3), pow(quotient, 5.5)}}};
+    for (const std::string& target : SimdEngine::targets()) {
+        for (const double max_error : {1e-6, 1e-12}) {  // the second computes in double
+            const std::vector<float> out =
+                run(SimdEngine(pipeline, max_error, target), {0, 0, 0, 3, 1, 0});
+            // As of a number below 0 or, without vectors, as of the limit.
+            EXPECT_LE(out[0], -1) << target;
+            EXPECT_LT(out[1], 1) << target;
+            EXPECT_LT(out[2], 1) << target;
+            EXPECT_NEAR(out[3], std::log2(3), 1e-6) << target;
+        }
+    }
+}
+
 TEST(Simd, UniformsOutOfTheirRangeAreRefused) {
     const Pipeline twice = {curve_stage(Expr::input() * Expr::uniform("u"))};
     const SimdEngine engine(twice, {{"u", {1, 0, 4}}});

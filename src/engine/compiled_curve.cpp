@@ -97,14 +97,21 @@ struct ChebyshevNumbers {
     }
 };
 
-/// Monomial coefficients of the polynomial through f at the Chebyshev nodes of [-1, 1].
-template <class F>
-Coefficients interpolate(const F& f, int degree) {
+double at(const CurveFunction& f, double x) {
+    f({&x, 1});
+    return x;
+}
+
+/// Monomial coefficients, in t, of the polynomial through f(place(t)) at the Chebyshev nodes of
+/// [-1, 1].
+template <class Place>
+Coefficients interpolate(const CurveFunction& f, const Place& place, int degree) {
     const ChebyshevNumbers& numbers = ChebyshevNumbers::of(degree + 1);
     const auto n = static_cast<std::size_t>(degree + 1);
     Coefficients value{};
     for (std::size_t i = 0; i < n; ++i)
-        value[i] = f(numbers.node[i]);
+        value[i] = place(numbers.node[i]);
+    f(std::span(value).first(n));
     Coefficients sum{};
     for (std::size_t k = 0; k < n; ++k) {
         double c = 0;
@@ -152,16 +159,89 @@ class Ends {
     Least least_, most_;  // of the function, and of the negative function
 };
 
-class CurveFit {
+/// What a fit is to keep to.
+class Fit {
+  protected:
+    Fit(const CurveFunction& f, double hi, std::span<const double> kinks,
+        const CurveTolerance& tolerance, bool is_precise)
+        : f_(f), hi_(hi), tolerance_(tolerance), is_precise_(is_precise) {
+        for (const double kink : kinks) {
+            if (kink > 0 && kink < hi) kinks_.push_back(float_from(kink));
+        }
+        std::sort(kinks_.begin(), kinks_.end());
+        kinks_.erase(std::unique(kinks_.begin(), kinks_.end()), kinks_.end());
+    }
+
+    /// Whether polynomial(x) keeps to the tolerance over [begin, end]: at both ends, at and beside
+    /// kinks, and between `steps` equal steps.
+    template <class P>
+    bool keeps(double begin, double end, int steps, const P& polynomial) {
+        places_ = {begin, end};
+        const auto behind = std::lower_bound(kinks_.begin(), kinks_.end(), to_float(begin));
+        for (auto kink = behind; kink != kinks_.end(); ++kink) {
+            if (static_cast<double>(*kink) > end) break;
+            for (const float x :
+                 {std::nextafter(*kink, 0.0F), *kink, std::nextafter(*kink, kMost)}) {
+                const auto place = static_cast<double>(x);
+                if (place >= begin && place <= end) places_.push_back(place);
+            }
+        }
+        // Where it is most likely to be wrong.
+        if (!keeps_at_places(polynomial)) return false;
+        places_.clear();
+        for (int i = 1; i < steps; ++i)
+            places_.push_back(begin + (end - begin) * i / steps);
+        if (begin == 0) {  // the tolerance is of the result, which may be proportional to x
+            for (double x = end; x > 0x1p-126; x *= 0.37)
+                places_.push_back(x);
+        }
+        return keeps_at_places(polynomial);
+    }
+
+    /// What all forms have in common.
+    [[nodiscard]] CompiledCurve curve_without_polynomials() const {
+        CompiledCurve result;
+        result.hi = to_float(hi_);
+        result.at_lo = at(f_, 0);
+        ends_.set(result, result.at_lo, at(f_, hi_));
+        result.is_precise = is_precise_;
+        result.tolerance = tolerance_;
+        return result;
+    }
+
+    const CurveFunction& f_;
+    double hi_;
+    std::vector<float> kinks_;  // rising
+    const CurveTolerance& tolerance_;
+    bool is_precise_;
+
+  private:
+    template <class P>
+    bool keeps_at_places(const P& polynomial) {
+        if (!is_precise_) {
+            for (double& x : places_)
+                x = static_cast<double>(to_float(x));
+        }
+        expected_ = places_;
+        f_(expected_);
+        for (std::size_t i = 0; i < places_.size(); ++i) {
+            ends_.add(expected_[i]);
+            const double error = std::fabs(polynomial(places_[i]) - expected_[i]);
+            if (!(error <= tolerance_.at(places_[i], expected_[i]))) return false;
+        }
+        return true;
+    }
+
+    std::vector<double> places_, expected_;
+    Ends ends_;
+};
+
+class CurveFit : Fit {
   public:
-    CurveFit(const std::function<double(double)>& f, double hi, std::span<const double> kinks,
+    CurveFit(const CurveFunction& f, double hi, std::span<const double> kinks,
              const CurveTolerance& tolerance, bool is_precise, int degree, int shift,
              std::size_t most_segments)
-        : f_(f),
-          hi_(hi),
-          kinks_(kinks),
-          tolerance_(tolerance),
-          is_precise_(is_precise),
+        : Fit(f, hi, kinks, tolerance, is_precise),
           degree_(degree),
           shift_(shift),
           most_segments_(most_segments) {}
@@ -173,9 +253,8 @@ class CurveFit {
         const std::uint32_t top = cell_of(to_float(hi_));
         for (std::uint32_t cell = cell_of(0x1p-60F); cell <= top; ++cell)
             ends.push_back(edge(cell));
-        for (const double kink : kinks_) {
-            if (kink < hi_) ends.push_back(static_cast<double>(float_from(kink)));
-        }
+        for (const float kink : kinks_)
+            ends.push_back(static_cast<double>(kink));
         ends.push_back(hi_);
         std::sort(ends.begin(), ends.end());
         ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
@@ -267,8 +346,8 @@ class CurveFit {
         const auto x_of = [&](double t) {
             return (t - static_cast<double>(s.offset)) / static_cast<double>(s.scale);
         };
-        const Coefficients c =
-            interpolate([&](double t) { return f_(std::clamp(x_of(t), begin, end)); }, degree_);
+        const Coefficients c = interpolate(
+            f_, [&](double t) { return std::clamp(x_of(t), begin, end); }, degree_);
         for (int k = 0; k <= degree_; ++k) {
             const double coefficient = c[static_cast<std::size_t>(k)];
             if (!(std::fabs(coefficient) < kFloatMax)) return false;
@@ -276,36 +355,12 @@ class CurveFit {
         }
         s.rest = to_float(c[0] - static_cast<double>(s.coefficients[0]));
         tried_ = s;
-        // First where it is most likely to be wrong.
-        if (!is_within(s, begin) || !is_within(s, end)) return false;
-        for (const double kink : kinks_) {
-            if (!(kink >= begin && kink <= end)) continue;
-            const float at = to_float(kink);
-            for (const double x : {static_cast<double>(std::nextafter(at, 0.0F)), kink,
-                                   static_cast<double>(std::nextafter(at, kNever))}) {
-                if (x >= begin && x <= end && !is_within(s, x)) return false;
-            }
-        }
-        const int steps = 5 * (degree_ + 1);
-        for (int i = 1; i < steps; ++i) {
-            if (!is_within(s, begin + (end - begin) * i / steps)) return false;
-        }
-        if (begin == 0) {  // the tolerance is of the result, which may be proportional to x
-            for (double x = end; x > 0x1p-126; x *= 0.37) {
-                if (!is_within(s, x)) return false;
-            }
-        }
-        return true;
-    }
-
-    bool is_within(const Segment& s, double x) {
-        if (!is_precise_) x = static_cast<double>(to_float(x));
-        const double expected = f_(x);
-        ends_.add(expected);
-        const auto coefficient = [&](int k) { return s.coefficients[static_cast<std::size_t>(k)]; };
-        const double actual =
-            evaluate(x, s.scale, s.offset, degree_, coefficient, s.rest, is_precise_);
-        return std::fabs(actual - expected) <= tolerance_.at(x, expected);
+        return keeps(begin, end, 5 * (degree_ + 1), [&](double x) {
+            const auto of_power = [&](int k) {
+                return s.coefficients[static_cast<std::size_t>(k)];
+            };
+            return evaluate(x, s.scale, s.offset, degree_, of_power, s.rest, is_precise_);
+        });
     }
 
     bool fit_cell(std::uint32_t cell) {
@@ -324,12 +379,10 @@ class CurveFit {
         }
         // Two in this cell: the boundary at a kink, or in the middle.
         std::vector<double> boundaries;
-        for (const double kink : kinks_) {
-            if (kink > begin && kink < end) boundaries.push_back(kink);
-        }
-        boundaries.push_back(0.5 * (begin + end));
-        for (const double place : boundaries) {
-            const auto boundary = static_cast<double>(float_from(place));
+        for (const float kink : kinks_)
+            boundaries.push_back(static_cast<double>(kink));
+        boundaries.push_back(static_cast<double>(float_from(0.5 * (begin + end))));
+        for (const double boundary : boundaries) {
             if (!(boundary > begin && boundary < end)) continue;
             // The float before it is the last of the first segment.
             const double before = static_cast<double>(std::nextafter(to_float(boundary), 0.0F));
@@ -359,18 +412,13 @@ class CurveFit {
     }
 
     [[nodiscard]] CompiledCurve curve() const {
-        CompiledCurve result;
-        result.hi = to_float(hi_);
-        result.at_lo = f_(0);
-        ends_.set(result, f_(0), f_(hi_));
+        CompiledCurve result = curve_without_polynomials();
         result.shift = shift_;
         result.first_cell = first_cell_;
         result.cell_floor = to_float(edge(first_cell_));
         result.degree = degree_;
         result.cells = cells_.size() <= 32 ? 32 : 64;
         result.segments = segments_.size() <= 16 ? 16 : segments_.size() <= 32 ? 32 : 64;
-        result.is_precise = is_precise_;
-        result.tolerance = tolerance_;
         if (cells_.empty()) {
             result.cells = 0;
             result.threshold.fill(kNever);
@@ -392,16 +440,10 @@ class CurveFit {
         return result;
     }
 
-    const std::function<double(double)>& f_;
-    double hi_;
-    std::span<const double> kinks_;
-    const CurveTolerance& tolerance_;
-    bool is_precise_;
     int degree_;
     int shift_;
     std::size_t most_segments_;
     std::uint32_t first_cell_ = 0;
-    Ends ends_;
     Segment tried_{};
     std::vector<Segment> segments_;
     std::vector<Cell> cells_;
@@ -417,20 +459,14 @@ float polynomial(const CurveRows& rows, const float* row, float t, bool is_preci
 }
 
 /// A curve in rows, of one length and number of cells an octave.
-class RowFit {
+class RowFit : Fit {
   public:
-    RowFit(const std::function<double(double)>& f, double hi, std::span<const double> kinks,
+    RowFit(const CurveFunction& f, double hi, std::span<const double> kinks,
            const CurveTolerance& tolerance, bool is_precise, bool is_fused, int length, int shift)
-        : f_(f), hi_(hi), tolerance_(tolerance), is_precise_(is_precise) {
+        : Fit(f, hi, kinks, tolerance, is_precise) {
         rows_.is_fused = is_fused;
         rows_.length = length;
         rows_.shift = shift;
-        for (const double kink : kinks) {
-            const float place = float_from(kink);
-            if (kink > 0 && kink < hi) kinks_.push_back(place);
-        }
-        std::sort(kinks_.begin(), kinks_.end());
-        kinks_.erase(std::unique(kinks_.begin(), kinks_.end()), kinks_.end());
     }
 
     std::optional<CompiledCurve> fit() {
@@ -519,12 +555,7 @@ class RowFit {
             rows_.numbers.insert(rows_.numbers.end(), tried_.begin(),
                                  tried_.begin() + rows_.length);
         }
-        CompiledCurve result;
-        result.hi = to_float(hi_);
-        result.at_lo = f_(0);
-        ends_.set(result, f_(0), f_(hi_));
-        result.is_precise = is_precise_;
-        result.tolerance = tolerance_;
+        CompiledCurve result = curve_without_polynomials();
         result.rows = std::move(rows_);
         return result;
     }
@@ -537,7 +568,7 @@ class RowFit {
         const double half = std::max(0.5 * (end - begin) * scale, 1e-6);
         const int degree = rows_.length - (is_precise_ ? 2 : 1);
         const Coefficients c = interpolate(
-            [&](double u) { return f_(std::clamp(x0 + (middle + u * half) / scale, begin, end)); },
+            f_, [&](double u) { return std::clamp(x0 + (middle + u * half) / scale, begin, end); },
             degree);
         // Powers of u = (t - middle) / half as powers of t, by Horner's rule.
         Coefficients in_t{c[static_cast<std::size_t>(degree)]};
@@ -557,58 +588,25 @@ class RowFit {
             if (is_precise_ && next == 1)
                 tried_[next++] = to_float(k - static_cast<double>(to_float(k)));
         }
-        if (!is_within(begin, cell) || !is_within(end, cell)) return false;
-        const auto behind = std::lower_bound(kinks_.begin(), kinks_.end(), to_float(begin));
-        for (auto kink = behind; kink != kinks_.end(); ++kink) {
-            if (static_cast<double>(*kink) > end) break;
-            for (const float x :
-                 {std::nextafter(*kink, 0.0F), *kink, std::nextafter(*kink, kMost)}) {
-                const auto place = static_cast<double>(x);
-                if (place >= begin && place <= end && !is_within(place, cell)) return false;
-            }
-        }
-        const int steps = 3 * rows_.length;
-        for (int i = 1; i < steps; ++i) {
-            if (!is_within(begin + (end - begin) * i / steps, cell)) return false;
-        }
-        if (begin == 0) {  // the tolerance is of the result, which may be proportional to x
-            for (double x = end; x > 0x1p-126; x *= 0.37) {
-                if (!is_within(x, cell)) return false;
-            }
-        }
-        return true;
+        return keeps(begin, end, 3 * rows_.length, [&](double x) {
+            const float x_float = to_float(x);
+            float distance = x_float - begin_of(cell);
+            if (is_precise_) distance += to_float(x - static_cast<double>(x_float));
+            const float y = polynomial(rows_, tried_.data(),
+                                       distance * CurveRows::scale_of(begin_of(cell)), is_precise_);
+            return static_cast<double>(y) + (is_precise_ ? static_cast<double>(tried_[0]) : 0);
+        });
     }
 
-    bool is_within(double x, std::uint32_t cell) {
-        const float x_float = to_float(x);
-        if (!is_precise_) x = static_cast<double>(x_float);
-        const double expected = f_(x);
-        ends_.add(expected);
-        const float x0 = begin_of(cell);
-        float distance = x_float - x0;
-        if (is_precise_) distance += to_float(x - static_cast<double>(x_float));
-        const float y =
-            polynomial(rows_, tried_.data(), distance * CurveRows::scale_of(x0), is_precise_);
-        const double actual =
-            static_cast<double>(y) + (is_precise_ ? static_cast<double>(tried_[0]) : 0);
-        return std::fabs(actual - expected) <= tolerance_.at(x, expected);
-    }
-
-    const std::function<double(double)>& f_;
-    double hi_;
-    std::vector<float> kinks_;
-    const CurveTolerance& tolerance_;
-    bool is_precise_;
     CurveRows rows_;
     std::vector<Grid> grids_;  // the first one, and one for each restart
     std::uint32_t count_ = 0;  // of cells
-    Ends ends_;
     Row tried_{};
 };
 
 /// The shortest rows that do it, and of these the fewest: they share the first-level cache with
 /// pixels.
-std::optional<CompiledCurve> fit_rows(const std::function<double(double)>& f, double hi,
+std::optional<CompiledCurve> fit_rows(const CurveFunction& f, double hi,
                                       std::span<const double> kinks,
                                       const CurveTolerance& tolerance, bool is_precise,
                                       bool is_fused) {
@@ -732,13 +730,20 @@ int CompiledCurve::cost() const noexcept {
     return 12 + of_cells + of_segments + degree + of_doubles;
 }
 
-std::optional<CompiledCurve> compile_curve(const std::function<double(double)>& f,
-                                           std::array<double, 2> range,
+std::optional<CompiledCurve> compile_curve(const CurveFunction& f, std::array<double, 2> range,
                                            std::span<const double> kinks,
                                            const CurveTolerance& tolerance, CurveForm form,
                                            bool is_precise) {
-    const double at_zero = f(0);
+    const double at_zero = at(f, 0);
     if (!std::isfinite(at_zero)) return std::nullopt;
+    const auto is_near = [&](const std::vector<double>& places, double value, double share) {
+        std::vector<double> y = places;
+        f(y);
+        for (std::size_t i = 0; i < y.size(); ++i) {
+            if (!(std::fabs(y[i] - value) <= share * tolerance.at(places[i], value))) return false;
+        }
+        return true;
+    };
     const auto is_constant = [&](double from, double to, double value) {
         std::vector<double> places = half_octaves(from, to);
         for (const double kink : kinks) {
@@ -747,20 +752,18 @@ std::optional<CompiledCurve> compile_curve(const std::function<double(double)>& 
             for (const double x : {near * (1 - 1e-6), near, near * (1 + 1e-6)})
                 places.push_back(std::clamp(x, from, to));
         }
-        return std::all_of(places.begin(), places.end(), [&](double x) {
-            return std::fabs(f(x) - value) <= 0.5 * tolerance.at(x, value);
-        });
+        return is_near(places, value, 0.5);
     };
     if (range[0] < 0) {
-        const double lowest = std::max(range[0], -kFloatMax);
-        for (const double x : half_octaves(0x1p-126, -lowest)) {
-            if (!(std::fabs(f(-x) - at_zero) <= tolerance.at(x, at_zero))) return std::nullopt;
-        }
+        std::vector<double> places = half_octaves(0x1p-126, -std::max(range[0], -kFloatMax));
+        for (double& x : places)
+            x = -x;
+        if (!is_near(places, at_zero, 1)) return std::nullopt;
     }
     double hi = std::min(range[1], kFloatMax);
     if (!(hi > 0)) return std::nullopt;
     hi = static_cast<double>(to_float(hi));
-    const double at_top = f(hi);
+    const double at_top = at(f, hi);
     if (!std::isfinite(at_top)) return std::nullopt;
     while (hi > 0x1p-60 && is_constant(hi / 2, hi, at_top))
         hi = static_cast<double>(to_float(hi / 2));

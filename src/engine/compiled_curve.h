@@ -123,6 +123,9 @@ struct CompiledCurve {
     [[nodiscard]] std::size_t segment_of(float x) const noexcept;
 };
 
+/// A function of one number, of many at once and in their place.
+using CurveFunction = std::function<void(std::span<double>)>;
+
 /// The cheapest such curve that is within the tolerance of f, measured in float at many places of
 /// every segment, and at and beside every kink. Nothing when there is none: f is no function of
 /// that kind (it has values below 0 that matter, too many kinks, a pole...).
@@ -130,7 +133,7 @@ struct CompiledCurve {
 /// @param is_precise  see CompiledCurve
 /// @param range  of x. Above 0 all of it counts; below 0, f has to be f(0).
 /// @param kinks  where f is not smooth, rising; those that do not show cost nothing
-[[nodiscard]] std::optional<CompiledCurve> compile_curve(const std::function<double(double)>& f,
+[[nodiscard]] std::optional<CompiledCurve> compile_curve(const CurveFunction& f,
                                                          std::array<double, 2> range,
                                                          std::span<const double> kinks,
                                                          const CurveTolerance& tolerance,

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "engine/precision.h"
+#include "engine/reference_operations.h"
 #include "expr/interval.h"
 #include "expr/scalar_ops.h"
 #include "tonewright/pipeline.h"
@@ -29,7 +30,7 @@ constexpr std::array kPreciseHalfUlps = {0.25, 1.5};
 constexpr int kCheap = 3;
 constexpr int kCheapestFunction = 15;
 constexpr int kCheapestCurve = 20;
-/// Steps computed while looking for curves of one program, at some 10 ns each. What has not been
+/// Steps computed while looking for curves of one program, at 2 to 5 ns each. What has not been
 /// looked at by then stays as it is.
 constexpr std::size_t kMostWork = 10'000'000;
 
@@ -79,6 +80,9 @@ Interval interval_of(const TapeInstruction& step, const Interval& a, const Inter
 }
 
 class CurveFitter {
+    /// Numbers that the steps are computed of at a time.
+    static constexpr std::size_t kBlock = 32;
+
   public:
     CurveFitter(std::vector<TapeInstruction>& code, std::array<std::uint32_t, 3>& outputs,
                 const Sensitivity& sensitivity, CurveCache& cache, CurveForm form)
@@ -88,6 +92,8 @@ class CurveFitter {
           cache_(cache),
           form_(form),
           value_(code.size()) {
+        for (std::size_t i = 0; i < code_.size(); ++i)
+            value_[i].fill(code_[i].value);  // of constants
         uses_.resize(code_.size());
         for (std::size_t i = 0; i < code_.size(); ++i) {
             for (const std::uint32_t operand : operands_of(i))
@@ -247,18 +253,24 @@ class CurveFitter {
         return text;
     }
 
-    double run(const std::vector<std::uint32_t>& steps, std::uint32_t root, double x) {
-        work_ += steps.size();
-        value_[root] = x;
+    /// x becomes the last step's value.
+    void run(const std::vector<std::uint32_t>& steps, std::uint32_t root, std::span<double> x) {
+        for (; !x.empty(); x = x.subspan(std::min(kBlock, x.size()))) {
+            const std::span<double> block = x.first(std::min(kBlock, x.size()));
+            run_block(steps, root, block);
+            std::copy_n(value_[steps.back()].begin(), block.size(), block.begin());
+        }
+    }
+    /// @param x  kBlock numbers at most
+    void run_block(const std::vector<std::uint32_t>& steps, std::uint32_t root,
+                   std::span<const double> x) {
+        work_ += steps.size() * x.size();
+        std::copy(x.begin(), x.end(), value_[root].begin());
         for (const std::uint32_t i : steps) {
             const TapeInstruction& step = code_[i];
-            value_[i] = scalar_op(step.op, operand_value(step.a), operand_value(step.b),
-                                  operand_value(step.c), step.table);
+            operations_(step, value_[i].data(), value_[step.a].data(), value_[step.b].data(),
+                        value_[step.c].data(), x.size());
         }
-        return value_[steps.back()];
-    }
-    [[nodiscard]] double operand_value(std::uint32_t i) const {
-        return code_[i].op == ExprOp::constant ? code_[i].value : value_[i];
     }
 
     /// What the error of value i may be, by the exponent of `root`, so that it does not show.
@@ -304,7 +316,7 @@ class CurveFitter {
         FittedCurve& fitted = cache_[key];
         if (!fitted.is_tried && work_ < kMostWork) {
             fitted.is_tried = true;
-            const auto f = [&](double x) { return run(steps, root, x); };
+            const auto f = [&](std::span<double> x) { run(steps, root, x); };
             std::span<const double> half_ulps(&kHalfUlps, 1);
             if (fitted.is_precise) half_ulps = kPreciseHalfUlps;
             std::optional<CompiledCurve> curve;
@@ -328,33 +340,6 @@ class CurveFitter {
         return fitted;
     }
 
-    /// Which side every branch of the steps takes at x.
-    void sides(const std::vector<std::uint32_t>& steps, std::uint32_t root, double x,
-               std::vector<bool>& result) {
-        run(steps, root, x);
-        result.clear();
-        for (const std::uint32_t i : steps) {
-            const TapeInstruction& step = code_[i];
-            const double a = operand_value(step.a);
-            const double b = operand_value(step.b);
-            switch (step.op) {
-                case ExprOp::minimum:
-                case ExprOp::maximum:
-                case ExprOp::less:
-                    result.push_back(a < b);
-                    break;
-                case ExprOp::less_equal:
-                    result.push_back(a <= b);
-                    break;
-                case ExprOp::absolute:
-                    result.push_back(a < 0);
-                    break;
-                default:
-                    break;
-            }
-        }
-    }
-
     /// Where a branch changes sides for x > 0; nothing when a step has more corners than that.
     std::optional<std::vector<double>> find_kinks(std::uint32_t root,
                                                   const std::vector<std::uint32_t>& steps) {
@@ -364,32 +349,54 @@ class CurveFitter {
         std::vector<double> kinks;
         // What is not found is found out by the fit, which then fails.
         const double top = std::min(interval_[root].hi, 1e12);
-        std::vector<bool> left, right, middle;
-        double x = 1e-12;
-        sides(steps, root, x, left);
-        while (x < top) {
-            const double next = std::min(x * 1.2, top);
-            sides(steps, root, next, right);
-            if (left != right) split(root, steps, x, left, next, right, kinks, middle);
-            x = next;
-            left = right;
+        std::vector<double> places;
+        for (double x = 1e-12; x < top; x *= 1.2)
+            places.push_back(x);
+        places.push_back(top);
+        for (std::size_t i = 1; i < places.size(); i += kBlock - 1) {
+            const std::size_t n = std::min(kBlock, places.size() - (i - 1));
+            find_kinks_between(std::span(places).subspan(i - 1, n), root, steps, kinks);
         }
         return kinks;
     }
 
-    void split(std::uint32_t root, const std::vector<std::uint32_t>& steps, double lo,
-               const std::vector<bool>& at_lo, double hi, const std::vector<bool>& at_hi,
-               std::vector<double>& kinks, std::vector<bool>& at_middle) {
-        const double middle = 0.5 * (lo + hi);
-        // Floats are what a curve is asked for: nothing is nearer together.
-        if (!(hi - lo > 1e-9 * hi) || !(middle > lo && middle < hi)) {
-            kinks.push_back(hi);
-            return;
+    /// @param places  kBlock at most, rising
+    void find_kinks_between(std::span<const double> places, std::uint32_t root,
+                            const std::vector<std::uint32_t>& steps, std::vector<double>& kinks) {
+        run_block(steps, root, places);
+        // Which side every branch takes.
+        std::vector<std::vector<bool>> sides(places.size());
+        for (const std::uint32_t i : steps) {
+            const TapeInstruction& step = code_[i];
+            for (std::size_t k = 0; k < places.size(); ++k) {
+                const double a = value_[step.a][k];
+                const double b = value_[step.b][k];
+                if (step.op == ExprOp::minimum || step.op == ExprOp::maximum ||
+                    step.op == ExprOp::less) {
+                    sides[k].push_back(a < b);
+                } else if (step.op == ExprOp::less_equal) {
+                    sides[k].push_back(a <= b);
+                } else if (step.op == ExprOp::absolute) {
+                    sides[k].push_back(a < 0);
+                }
+            }
         }
-        sides(steps, root, middle, at_middle);
-        const std::vector<bool> here = at_middle;
-        if (here != at_lo) split(root, steps, lo, at_lo, middle, here, kinks, at_middle);
-        if (here != at_hi) split(root, steps, middle, here, hi, at_hi, kinks, at_middle);
+        constexpr std::size_t kParts = 16;
+        for (std::size_t k = 1; k < places.size(); ++k) {
+            if (sides[k] == sides[k - 1]) continue;
+            const double lo = places[k - 1];
+            const double hi = places[k];
+            // Floats are what a curve is asked for: nothing is nearer together.
+            if (!(hi - lo > 1e-9 * hi)) {
+                kinks.push_back(hi);
+                continue;
+            }
+            std::array<double, kParts + 1> between;
+            for (std::size_t i = 0; i < kParts; ++i)
+                between[i] = lo + (hi - lo) * static_cast<double>(i) / kParts;
+            between[kParts] = hi;
+            find_kinks_between(between, root, steps, kinks);
+        }
     }
 
     void drop_unread() {
@@ -430,7 +437,8 @@ class CurveFitter {
     std::vector<std::int64_t> dominator_;
     std::vector<int> uses_;
     std::vector<bool> tried_;
-    std::vector<double> value_;
+    RunInstruction operations_ = reference_operations();
+    std::vector<std::array<double, kBlock>> value_;
     std::size_t work_ = 0;
 };
 

@@ -3,7 +3,7 @@
 
     python3 check_operators.py build/release/bin/tonewright [OPERATOR ...]
 
-Prints one line per run; exits 1 when a color is outside the tolerance. The last line is `N passed, M failed`.
+600 colors each, with TONEWRIGHT_TEST_ALL=1 2000. Prints one line per run; exits 1 when a color is outside the tolerance. The last line is `N passed, M failed`.
 """
 
 import os
@@ -332,7 +332,7 @@ def main(arguments):
         print("usage: check_operators.py TONEWRIGHT [OPERATOR ...]", file=sys.stderr)
         return 2
     binary, *chosen = arguments
-    rgb = samples()
+    rgb = samples(2000 if os.environ.get("TONEWRIGHT_TEST_ALL") == "1" else 600)
     jobs = [lambda view=view: compare(binary, view, rgb) for view in runs() if not chosen or view["operator"] in chosen]
     jobs += [lambda case=case: refuse(binary, *case) for case in REFUSED if not chosen or case[0] in chosen]
     print(f"{'operator settings':110s} {'N':>5s} {'max error':>9s} {'x toler.':>9s}")

@@ -305,7 +305,7 @@ def check_apply_many(report, command, scratch, picture):
 
 def check_limits(report, command, scratch, picture):
     """Files with control characters in their names, a file that may not become larger, an interrupt while a config is made, memory that does not do."""
-    code, _, err = call(command, ["bake", "agx_sobotka", "-o", scratch / "x.cube"],
+    code, _, err = call(command, ["bake", "agx_sobotka", "--nodes", "sampled", "-o", scratch / "x.cube"],
                         prefix=["sh", "-c", 'ulimit -f 20; exec "$0" "$@"'])
     report.check("SIGXFSZ ends nothing", code == FILE and "File too large" in err and not os.listdir(scratch), err)
     code, out, err = call(command, ["bake", "hable", "--input", "lin_rec709", "-o", "a\x1b[31m\n.cube"], folder=scratch)
@@ -322,7 +322,7 @@ def check_limits(report, command, scratch, picture):
         report.check("memory that does not do", code == FILE and err == f"tonewright: {picture}: not enough memory\n", err)
         # From some 60 MB to where pictures can be read. In between, libraries that get no memory or thread while they are
         # loaded abort, crash or wait forever; where that is depends on the libraries.
-        call(command, ["bake", "agx_sobotka", "--3d", "--size", "17", "-o", "small.cube", "-q"], folder=scratch)
+        call(command, ["bake", "agx_sobotka", "--3d", "--size", "17", "--nodes", "sampled", "-o", "small.cube", "-q"], folder=scratch)
         # How many threads fit into what is left depends on when each one starts: 130 MB do, or do not.
         for limit in (50000, 90000, 130000):
             code, _, err = call(command, ["verify", "--lut", "small.cube"], folder=scratch,
@@ -1142,13 +1142,13 @@ def main():
         for check, *arguments in share_of([
                 (check_apply,), (check_statistics,), (check_frames, picture), (check_bake,), (check_verify, config, picture),
                 (check_archive,), (check_chart, picture), (check_sheet, picture), (check_full_disks,),
-                (check_apply_many, picture), (check_limits, picture), (check_module,)], 2):
+                (check_apply_many, picture), (check_limits, picture), (check_module,)], 3):
             add(check, *arguments)
         for check in (check_start, check_help, check_list, check_eval_text, check_engines, check_names, check_coprocess):
             add(check, in_folder=False)
         errors = [(USAGE, *case) for case in usage_errors(bad, picture)]
         errors += [(FILE, *case) for case in file_errors(bad, picture, scratch)]
-        for number, case in enumerate(share_of_refusals(errors, lambda case: case[1])):
+        for number, case in enumerate(share_of_refusals(errors, lambda case: case[1], 4)):
             add(check_error, scratch, number, *case, in_folder=False)
         for number, case in enumerate(old_files(bad, picture)):
             add(check_old_file, scratch, number, *case, in_folder=False)

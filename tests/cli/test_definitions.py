@@ -133,7 +133,7 @@ def check_ffmpeg(report, command, scratch):
     if not shutil.which("ffmpeg") or " exr " not in run("ffmpeg", "-v", "error", "-encoders"):
         print("skipped: a LUT through ffmpeg (it is not installed, or has no EXR encoder)")
         return
-    run(command, "bake", SOFT, "--for", "ffmpeg", "--input", "lin_rec709", "-o", scratch / "f.cube")
+    run(command, "bake", SOFT, "--for", "ffmpeg", "--input", "lin_rec709", "--nodes", "sampled", "-o", scratch / "f.cube")
     header = (scratch / "f.cube").read_text()[:3000]
     codes = np.random.default_rng(1).uniform(0, 1, (8, 64, 3)).astype(np.float32)
     write_picture(scratch / "codes.exr", codes)

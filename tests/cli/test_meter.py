@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import Report, read_exr, read_planes, share_of_refusals, shared_picture, write_exr  # noqa: E402
+from pictures import Report, read_exr, read_planes, share_of, share_of_refusals, shared_picture, write_exr  # noqa: E402
 
 WEIGHTS = np.array([0.2126, 0.7152, 0.0722])
 FPS, UP, DOWN = 12, 3.0, 0.8
@@ -118,8 +118,8 @@ def pixels(tool, report):
 
 def single(tool, report):
     """A picture is that of the exposure that meter names."""
-    for arguments in (["log-average"], ["mean", "--compensation", "-0.5"], ["histogram", "--percentiles", "10,90"],
-                      ["max", "--meter-region", "0,1,6,1"]):
+    for arguments in share_of((["log-average"], ["mean", "--compensation", "-0.5"], ["histogram", "--percentiles", "10,90"],
+                               ["max", "--meter-region", "0,1,6,1"]), 2):
         metering = ["--method", arguments[0], *arguments[1:]]
         stops = tool.meter("a.exr", *metering)[0]["exposure"]
         tool.run("apply", "a.exr", "auto.exr", "--operator", "hable", "-d", "float", "--exposure", "0.25",
@@ -334,10 +334,8 @@ def main():
         folder = Path(name).resolve()
         tool = Tool(command, report, folder)
         tool.run("chart", "-o", "chart.exr", "--width", "640", "--height", "360")
-        figures(tool, report, folder / "chart.exr", "chart")
-        memorial = shared_picture("memorial.hdr")
-        if memorial:
-            figures(tool, report, memorial, "memorial.hdr")
+        for picture in share_of(filter(None, [folder / "chart.exr", shared_picture("memorial.hdr")]), 2):
+            figures(tool, report, picture, picture.name)
         pixels(tool, report)
         single(tool, report)
         shots(tool, report)

@@ -119,7 +119,8 @@ void expect_picture(const std::string& name) {
     std::error_code unknown;  // too long a name, too
     if (fs::exists(name, unknown) || names_a_file(name)) return;
     try {
-        (void)resolve_picture_operator(name);
+        // Settings that it does not take are told where the operator is expected.
+        (void)resolve_picture_operator(name.substr(0, name.find(':')));
     } catch (const Error&) {
         return;
     }

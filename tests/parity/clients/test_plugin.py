@@ -106,7 +106,7 @@ def make_pictures(scratch):
 
 
 def check_bits(report, command, scratch, made):
-    for path in made.values():
+    for path in share_of(made.values(), 2):
         check_same(report, command, path, scratch, OPTIONS)
     fits = scratch / "nameless.fits"  # its reader gives channels no names
     run("oiiotool", made["rgb"], "-o", fits)
@@ -123,7 +123,8 @@ def check_bits(report, command, scratch, made):
     check_through_oiiotool(report, command, made["alpha"], scratch, OPTIONS, "uint16", "tif")
     apply(command, made["alpha"], scratch / "ours.exr", "float", "--no-unpremult", op="hable")
     report.check("unpremult=no", is_same(scratch / "ours.exr", name(made["alpha"], op="hable", unpremult="no")))
-    for picture in ("Desk.exr", "XYZ.exr", "Tree.exr", "StageEnvLatLong.exr", "composited.exr", "t05.exr", "memorial.hdr"):
+    for picture in share_of(("Desk.exr", "XYZ.exr", "Tree.exr", "StageEnvLatLong.exr", "composited.exr", "t05.exr",
+                             "memorial.hdr"), 3):
         path = shared_picture(picture)
         if path:
             check_same(report, command, path, scratch, {"op": "hable"})

@@ -460,7 +460,13 @@ TEST_P(SimdOperator, IsWithinBoundOfReference) {
         const Pipeline view = view_of(GetParam(), display);
         const ReferenceEngine decode(find_display(display).decode);
         const std::vector<double> truth = run(ReferenceEngine(view), rgb);
-        const std::vector<SimdEngine> engines = SimdEngine::of_all_targets(view, goal);
+        // Without full counts, presets run on the best target only.
+        std::vector<SimdEngine> engines;
+        if (takes_full_counts() || GetParam().find(':') == std::string::npos) {
+            engines = SimdEngine::of_all_targets(view, goal);
+        } else {
+            engines.emplace_back(view, goal);
+        }
         for (std::size_t t = 0; t < engines.size(); ++t) {
             const std::string target = SimdEngine::targets()[t];
             // Every n-th color, so that there are some of each kind.

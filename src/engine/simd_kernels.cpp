@@ -356,8 +356,8 @@ HWY_NOINLINE void run_op<Op::lookup_nonuniform>(const Frame& frame, const Code& 
         for (std::size_t p = 0; p < kLaneMultiple; ++p) {
             auto at =
                 static_cast<std::int32_t>(tables.first_cell[static_cast<std::size_t>(cell[p])]);
-            for (int k = 0; k < tables.steps; ++k)
-                at += place[p] >= tables.end[static_cast<std::size_t>(at)] ? 1 : 0;
+            for (std::int32_t half = tables.half_of_most; half > 0; half /= 2)
+                at += place[p] >= tables.end[static_cast<std::size_t>(at + half - 1)] ? half : 0;
             cell[p] = at;
         }
         for (std::size_t p = 0; p < kLaneMultiple; ++p) {

@@ -674,7 +674,6 @@ class Assembler {
         result.first = positions.front();
         result.last = positions.back();
         result.end.assign(positions.begin() + 1, positions.end());
-        result.end.push_back(kInfinity);
         result.lines.resize(positions.size());
         const double length = result.last - result.first;
         // Twice as many parts as cells: few parts have more than one boundary.
@@ -685,6 +684,7 @@ class Assembler {
             return static_cast<std::uint32_t>(
                 std::max<std::ptrdiff_t>(behind - positions.begin() - 1, 0));
         };
+        std::uint32_t most = 0;
         for (std::size_t part = 0; part <= parts; ++part) {
             // A little earlier than it begins: the division may round.
             const double begin = result.first + length * (static_cast<double>(part) - 1e-9) /
@@ -692,9 +692,10 @@ class Assembler {
             const double end = result.first + length * (static_cast<double>(part) + 1 + 1e-9) /
                                                   static_cast<double>(parts);
             result.first_cell.push_back(cell_of(begin));
-            result.steps =
-                std::max(result.steps, static_cast<int>(cell_of(end) - result.first_cell.back()));
+            most = std::max(most, cell_of(end) - result.first_cell.back());
         }
+        result.half_of_most = static_cast<std::int32_t>(std::bit_ceil(most + 1) / 2);
+        result.end.resize(positions.size() + 2 * std::bit_ceil(most + 1), kInfinity);
         return result;
     }
 

@@ -636,13 +636,16 @@ VerifyResult verify(const VerifyOptions& options,
         std::optional<ShaderErrors> errors;
         for (const ShaderRuns::Of& shader_run : shaders.runs) {
             const ShaderLanguageInfo& language = shader_run.language;
-            if (!language.holds_lattices && reads_lattice(view)) {
-                add_note(language.id, "none: it cannot store the operator's 3D LUT");
+            const ShaderRequest request = {.view = view, .language = language.language};
+            Shader shader;
+            try {
+                if (!errors) errors = measure_shader(request);
+                shader = write_shader(request, &*errors);
+            } catch (const Error&) {
+                if (language.holds_lattices) throw;
+                add_note(language.id, "none: it cannot store the operator's tables");
                 continue;
             }
-            const ShaderRequest request = {.view = view, .language = language.language};
-            if (!errors) errors = measure_shader(request);
-            const Shader shader = write_shader(request, &*errors);
             ParityRow row = row_of(language.id);
             row.bound = shader_bound(shader, is_hdr);
             row.is_mixed_metric = bounds.is_mixed_metric;

@@ -121,12 +121,23 @@ def check_formats(report, command, scratch):
     (scratch / "x.cc").write_text('<ColorCorrection id="a"><SOPNode><Slope>1.1 1 .9</Slope><Offset>.01 0 -.01</Offset>'
                                   "<Power>1.2 1 .8</Power></SOPNode><SATNode><Saturation>.8</Saturation></SATNode>"
                                   "</ColorCorrection>")
+    halves = np.nan_to_num(np.arange(65536, dtype=np.uint16).view(np.float16).astype(float))
+    (scratch / "half.clf").write_text(
+        '<?xml version="1.0" encoding="UTF-8"?>\n<ProcessList id="a" compCLFversion="3">'
+        '<LUT1D inBitDepth="16f" outBitDepth="32f" halfDomain="true"><Array dim="65536 1">\n'
+        + "".join(f"{x / (1 + abs(x)):.9g}\n" for x in halves) + "</Array></LUT1D></ProcessList>\n")
     for form in ("clf", "spi3d", "csp", "3dl", "lut"):
         run(command, "bake", "agx_sobotka", "--format", form, "--size", "17", "--3d", "--nodes", "sampled", "-q", "-o",
             scratch / f"a.{form}")
-    for name in ("film.cube", "domain.cube", "one.cube", "x.spi1d", "x.cc", "a.clf", "a.spi3d", "a.csp", "a.3dl", "a.lut"):
+    for name in ("film.cube", "domain.cube", "one.cube", "x.spi1d", "x.cc", "half.clf", "a.clf", "a.spi3d", "a.csp", "a.3dl",
+                 "a.lut"):
         shown = evaluate(command, UNIT, f"{scratch / name}:input=none", "--display", "native")
         report.compare(f"{name}: as OpenColorIO reads it", shown, through_ocio(scratch / name, UNIT), OCIO_FLOAT)
+    shown = evaluate(command, UNIT, f"{scratch / 'half.clf'}:input=none", "--display", "native", "--engine", "simd")
+    report.compare("half.clf, --engine simd", shown, through_ocio(scratch / "half.clf", UNIT), OCIO_FLOAT)
+    done = subprocess.run([command, "verify", f"{scratch / 'half.clf'}:input=none", "--quick"], capture_output=True, text=True,
+                          check=False)
+    report.check("half.clf: verify", done.returncode == 0 and "ocio cpu lossless" in done.stdout, done.stdout + done.stderr)
     raw = nodes(9).astype("<f4")
     (scratch / "film.raw").write_bytes(raw.tobytes())
     report.compare("film.raw", evaluate(command, UNIT, f"{scratch / 'film.raw'}:input=none", "--display", "native"),

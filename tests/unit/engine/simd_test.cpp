@@ -9,6 +9,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <ctime>
 #include <functional>
 #include <limits>
 #include <thread>
@@ -18,6 +19,7 @@
 #include "base/random.h"
 #include "engine/simd_program.h"
 #include "full_counts.h"
+#include "lut/half_value.h"
 #include "measure/sample_set.h"
 #include "tonewright/engine.h"
 #include "tonewright/registry.h"
@@ -229,6 +231,34 @@ TEST(Simd, ElementaryFunctionsInDouble) {
             EXPECT_LE(worst, is_sine ? 16 * 0x1p-53 + 0x1p-25 / kGain : 0x1p-45)
                 << f.name << " on " << target;
         }
+    }
+}
+
+TEST(Simd, PositionsThatAreHalvesAreFoundSoon) {
+    // Half of all positions lie within [-1, 1] of [-65504, 65504], as in LUTs over halves.
+    Table halves;
+    for (int i = -31743; i <= 31743; ++i) {
+        halves.positions.push_back(
+            std::copysign(half_value(static_cast<unsigned>(std::abs(i))), i));
+        halves.samples.push_back(i % 7);  // another cell has another line
+    }
+    std::vector<float> rgb;
+    SampleRandom random(11);
+    for (const double x : halves.positions)
+        rgb.push_back(static_cast<float>(x));
+    while (rgb.size() < 300'000)
+        rgb.push_back(static_cast<float>(halves.positions[random.bits() % 63486] * 1.0002));
+    const Pipeline pipeline = {
+        curve_stage(lookup(std::make_shared<const Table>(halves), Expr::input()))};
+    const std::vector<double> truth = run(ReferenceEngine(pipeline), rgb);
+    for (const std::string& target : SimdEngine::targets()) {
+        const SimdEngine engine(pipeline, kSimdError, target);
+        const std::clock_t start = std::clock();
+        const std::vector<float> out = run(engine, rgb);
+        // Bisection takes 0.02 s; one position after the other would take 20 s.
+        EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 3) << target;
+        for (std::size_t i = 0; i < out.size(); ++i)
+            ASSERT_NEAR(static_cast<double>(out[i]), truth[i], kBound) << target << " " << rgb[i];
     }
 }
 

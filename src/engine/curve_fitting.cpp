@@ -32,7 +32,7 @@ constexpr int kCheapestFunction = 15;
 constexpr int kCheapestCurve = 20;
 /// Steps computed while looking for curves of one program, at 2 to 5 ns each. What has not been
 /// looked at by then stays as it is.
-constexpr std::size_t kMostWork = 10'000'000;
+constexpr std::size_t kMostWork = 20'000'000;
 
 /// What an instruction costs, in those of a processor and with its loads and stores; roughly.
 int cost_of(const TapeInstruction& step) {

@@ -3,7 +3,8 @@
 
     python3 check_operators.py build/release/bin/tonewright [OPERATOR ...]
 
-600 colors each, with TONEWRIGHT_TEST_ALL=1 2000. Prints one line per run; exits 1 when a color is outside the tolerance. The last line is `N passed, M failed`.
+Compares 600 colors a run, or 2,000 with TONEWRIGHT_TEST_ALL=1.
+Prints one line per run; exits 1 when a color is outside the tolerance. The last line is `N passed, M failed`.
 """
 
 import os

@@ -123,7 +123,7 @@ struct CompiledCurve {
     [[nodiscard]] std::size_t segment_of(float x) const noexcept;
 };
 
-/// A function of one number, of many at once and in their place.
+/// Replaces each number x by f(x).
 using CurveFunction = std::function<void(std::span<double>)>;
 
 /// The cheapest such curve that is within the tolerance of f, measured in float at many places of

@@ -80,7 +80,7 @@ Interval interval_of(const TapeInstruction& step, const Interval& a, const Inter
 }
 
 class CurveFitter {
-    /// Numbers that the steps are computed of at a time.
+    /// The steps run over this many numbers at a time.
     static constexpr std::size_t kBlock = 32;
 
   public:
@@ -253,7 +253,7 @@ class CurveFitter {
         return text;
     }
 
-    /// x becomes the last step's value.
+    /// Replaces each number by the value of the last step.
     void run(const std::vector<std::uint32_t>& steps, std::uint32_t root, std::span<double> x) {
         for (; !x.empty(); x = x.subspan(std::min(kBlock, x.size()))) {
             const std::span<double> block = x.first(std::min(kBlock, x.size()));

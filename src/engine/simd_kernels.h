@@ -141,13 +141,13 @@ struct NonuniformTables {
     /// What is before the first and behind the last position counts as that.
     double first = 0;
     double last = 0;
-    /// Equal parts of [first, last], and in which cell each of them begins. No part has
-    /// 2 half_of_most further cells in it: bisection finds the cell of a number. Halves as
-    /// positions have 32,000 of them in one part.
+    /// Equal parts of [first, last], and in which cell each of them begins. Bisection finds the
+    /// cell of a number: positions that are halves have 15,360 cells in one part.
     double parts_per_unit = 0;
     std::vector<std::uint32_t> first_cell;
-    std::int32_t half_of_most = 0;
-    std::vector<double> end;  // of each cell; of the last one, and as many behind it, infinity
+    std::int32_t half_of_most = 0;  // a power of two, or 0: no part has twice as many further cells
+    /// Of each cell. The last one and those that bisection reads behind it end at infinity.
+    std::vector<double> end;
     /// What each cell holds of the tables, and one number that is not used.
     struct alignas(64) Line {
         std::array<double, 4> constant{};

@@ -694,8 +694,9 @@ class Assembler {
             result.first_cell.push_back(cell_of(begin));
             most = std::max(most, cell_of(end) - result.first_cell.back());
         }
-        result.half_of_most = static_cast<std::int32_t>(std::bit_ceil(most + 1) / 2);
-        result.end.resize(positions.size() + 2 * std::bit_ceil(most + 1), kInfinity);
+        const std::size_t reach = std::bit_ceil(most + 1);
+        result.half_of_most = static_cast<std::int32_t>(reach / 2);
+        result.end.resize(positions.size() + reach, kInfinity);
         return result;
     }
 

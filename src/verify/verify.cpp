@@ -636,11 +636,10 @@ VerifyResult verify(const VerifyOptions& options,
         std::optional<ShaderErrors> errors;
         for (const ShaderRuns::Of& shader_run : shaders.runs) {
             const ShaderLanguageInfo& language = shader_run.language;
-            const ShaderRequest request = {.view = view, .language = language.language};
+            if (!errors) errors = measure_shader({.view = view});
             Shader shader;
             try {
-                if (!errors) errors = measure_shader(request);
-                shader = write_shader(request, &*errors);
+                shader = write_shader({.view = view, .language = language.language}, &*errors);
             } catch (const Error&) {
                 if (language.holds_lattices) throw;
                 add_note(language.id, "none: it cannot store the operator's tables");

@@ -137,7 +137,9 @@ def check_formats(report, command, scratch):
     report.compare("half.clf, --engine simd", shown, through_ocio(scratch / "half.clf", UNIT), OCIO_FLOAT)
     done = subprocess.run([command, "verify", f"{scratch / 'half.clf'}:input=none", "--quick"], capture_output=True, text=True,
                           check=False)
-    report.check("half.clf: verify", done.returncode == 0 and "ocio cpu lossless" in done.stdout, done.stdout + done.stderr)
+    report.check("half.clf: verify", done.returncode == 0 and "ocio cpu lossless" in done.stdout
+                 and ("none: it cannot store the operator's tables" in done.stdout or " dctl " not in done.stdout),
+                 done.stdout + done.stderr)
     raw = nodes(9).astype("<f4")
     (scratch / "film.raw").write_bytes(raw.tobytes())
     report.compare("film.raw", evaluate(command, UNIT, f"{scratch / 'film.raw'}:input=none", "--display", "native"),

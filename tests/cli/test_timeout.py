@@ -98,7 +98,7 @@ def check_same(tool, report):
     """A process for each frame writes and meters the same as one process."""
     cases = [[], ["--auto-exposure", "histogram", "--adapt"], ["--auto-exposure", "log-average", "--threads", "3"],
              ["--operator", "drago", "--statistics", "sequence"], ["--jobs", "2"], ["--frames", "1-3", "--strict"]]
-    for options in share_of(cases, 3):
+    for options in share_of(cases, 2):
         results = []
         for timeout in ([], ["--timeout", "100"]):
             tool.clean()

@@ -26,7 +26,7 @@ without() { # PROGRAM PATTERN: the program loads no library of that name
 }
 
 # Every public header stands alone, in C++17: a third of them, by the commit.
-commit=$(git -C "$here" rev-parse HEAD 2>/dev/null | cut -c1-8)
+commit=$(git -C "$here" rev-parse HEAD 2>/dev/null | cut -c9-16)
 share=$((${TONEWRIGHT_TEST_SHARE:-0x${commit:-0}} % 3))
 number=0
 for header in "$prefix"/include/tonewright/*.h; do

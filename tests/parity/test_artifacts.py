@@ -317,7 +317,7 @@ def write_luts(command, committed, folder):
 
 
 def write_config(command, committed, folder):
-    """A config of a third of the views, without AgX and ACES 2.0, whose 3D LUTs take nine tenths of the time."""
+    """A config of a sixth of the views, without AgX and ACES 2.0, whose 3D LUTs take nine tenths of the time."""
     rows = re.findall(r"^\| ([^|]+) \| [^|]+ \| (?:exact|65\^3 3D LUT) \|", (committed / "README.md").read_text(), re.M)
     slow = {"AgX", "AgX Punchy", "ACES 2.0"}
     run(command, "config", "-o", folder, "--views", ",".join(share_of([name for name in rows if name not in slow], 6)))

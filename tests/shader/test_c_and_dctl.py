@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """C, DCTL and BlinkScript that `tonewright shader` writes, compiled and run against `tonewright eval`.
 
-C by every compiler there is, with -O2, -ffast-math or both (a share by the commit); DCTL by pocl, as OpenCL with Resolve's flags and without; whole
+C by GCC and Clang, one with -ffast-math (the commit says which); DCTL by pocl, as OpenCL with Resolve's flags and without; whole
 kernels for Nuke as C++, with the words of Blink defined, with a slider at its default, and every second one with fitted
 curves. All operators, presets and looks with TONEWRIGHT_TEST_ALL=1, and a million hostile colors through ten of them; else
 a dozen.
@@ -23,7 +23,7 @@ from executed import Comparison, skip, start
 from opencl import RESOLVE, OpenCl, device
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import share_of  # noqa: E402
+from pictures import ALL, share_of  # noqa: E402
 
 # Words of Blink, for a C++ compiler; the functions are those of Foundry's page "Maths Functions", Blink 16.1.
 BLINK = """
@@ -94,7 +94,12 @@ def main(tonewright: str, shaders: pathlib.Path, record_file: str) -> int:
     compilers = [c for c in ("gcc", "clang") if shutil.which(c)]
     if not compilers:
         skip("no C compiler")
-    commands = [[c, *flags] for c in compilers for flags in share_of([["-O2"], ["-O2", "-ffast-math"]], 2)]
+    flags = [["-O2"], ["-O2", "-ffast-math"]]
+    if ALL:
+        commands = [[c, *words] for c in compilers for words in flags]
+    else:
+        first = share_of(range(2), 2)[0]
+        commands = [[c, *flags[(first + i) % 2]] for i, c in enumerate(compilers)]
     with tempfile.TemporaryDirectory() as folder_name:
         folder = pathlib.Path(folder_name)
         runs = [("c", command, compiled(command, comparison.rows["c"], shaders, folder)) for command in commands]

@@ -119,8 +119,9 @@ void expect_picture(const std::string& name) {
     std::error_code unknown;  // too long a name, too
     if (fs::exists(name, unknown) || names_a_file(name)) return;
     try {
-        // Settings that it does not take are told where the operator is expected.
-        (void)resolve_picture_operator(name.substr(0, name.find(':')));
+        // --operator says what is wrong with a setting. With a dot, it may be a file's name.
+        const bool may_be_file = name.find('.') != std::string::npos;
+        (void)resolve_picture_operator(may_be_file ? name : name.substr(0, name.find(':')));
     } catch (const Error&) {
         return;
     }

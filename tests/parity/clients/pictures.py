@@ -77,6 +77,8 @@ def skip(reason):
 def share_of(items, parts):
     """Every parts-th of the items, by the commit's hash: a few commits test all of them. All with `./run test --all`.
 
+    By other digits of the hash than CI's slices. A share within a share needs another number of parts.
+
     TONEWRIGHT_TEST_SHARE=N selects a share by hand.
     """
     if ALL:
@@ -84,7 +86,7 @@ def share_of(items, parts):
     number = os.environ.get("TONEWRIGHT_TEST_SHARE")
     if number is None:
         done = subprocess.run(["git", "-C", str(PROJECT), "rev-parse", "HEAD"], capture_output=True, text=True, check=False)
-        number = int(done.stdout[:8] or "0", 16)
+        number = int(done.stdout[8:16] or "0", 16)
     number = int(number) % parts
     print(f"share {number} of {parts} (TONEWRIGHT_TEST_SHARE={number}; `./run test --all` takes all)")
     return list(items)[number::parts]

@@ -106,7 +106,7 @@ def make_pictures(scratch):
 
 
 def check_bits(report, command, scratch, made):
-    for path in share_of(made.values(), 2):
+    for path in share_of(made.values(), 3):
         check_same(report, command, path, scratch, OPTIONS)
     fits = scratch / "nameless.fits"  # its reader gives channels no names
     run("oiiotool", made["rgb"], "-o", fits)

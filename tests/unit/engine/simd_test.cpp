@@ -247,7 +247,7 @@ TEST(Simd, PositionsThatAreHalvesAreFoundSoon) {
     for (const double x : halves.positions)
         rgb.push_back(static_cast<float>(x));
     while (rgb.size() < 300'000)
-        rgb.push_back(static_cast<float>(halves.positions[random.bits() % 63486] * 1.0002));
+        rgb.push_back(static_cast<float>(halves.positions[random.bits() % halves.positions.size()] * 1.0002));
     const Pipeline pipeline = {
         curve_stage(lookup(std::make_shared<const Table>(halves), Expr::input()))};
     const std::vector<double> truth = run(ReferenceEngine(pipeline), rgb);
@@ -475,7 +475,7 @@ TEST(Simd, LatticesAreInterpolatedAsTheReferenceDoes) {
     }
 }
 
-/// Every target. Without full counts, parity.verify has sRGB on the best one,
+/// Without full counts, parity.verify has sRGB on the best one,
 /// parity.verify_displays Display P3.
 std::vector<std::string> bound_displays() {
     if (takes_full_counts()) return {"srgb", "rec1886", "display_p3"};

@@ -247,7 +247,8 @@ TEST(Simd, PositionsThatAreHalvesAreFoundSoon) {
     for (const double x : halves.positions)
         rgb.push_back(static_cast<float>(x));
     while (rgb.size() < 300'000)
-        rgb.push_back(static_cast<float>(halves.positions[random.bits() % halves.positions.size()] * 1.0002));
+        rgb.push_back(
+            static_cast<float>(halves.positions[random.bits() % halves.positions.size()] * 1.0002));
     const Pipeline pipeline = {
         curve_stage(lookup(std::make_shared<const Table>(halves), Expr::input()))};
     const std::vector<double> truth = run(ReferenceEngine(pipeline), rgb);

@@ -18,14 +18,6 @@ constexpr int kLowestExponent = -100;
 
 float to_float(double x) { return static_cast<float>(x); }
 
-/// The first float that is not before x.
-float float_from(double x) {
-    const float nearest = to_float(x);
-    return static_cast<double>(nearest) < x
-               ? std::nextafter(nearest, std::numeric_limits<float>::infinity())
-               : nearest;
-}
-
 /// A number in every half octave from `from` up to `to`, with both.
 std::vector<double> half_octaves(double from, double to) {
     std::vector<double> places = {from};
@@ -621,6 +613,13 @@ std::optional<CompiledCurve> fit_rows(const CurveFunction& f, double hi,
 }
 
 }  // namespace
+
+float float_from(double x) noexcept {
+    const float nearest = to_float(x);
+    return static_cast<double>(nearest) < x
+               ? std::nextafter(nearest, std::numeric_limits<float>::infinity())
+               : nearest;
+}
 
 std::size_t CurveTolerance::exponent_of(double x) noexcept {
     return std::bit_cast<std::uint32_t>(std::fabs(to_float(x))) >> 23;

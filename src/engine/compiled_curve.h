@@ -12,6 +12,9 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
+/// The first float that is not before x.
+[[nodiscard]] float float_from(double x) noexcept;
+
 /// What a curve may be wrong by, where its result is y: units of 2^-24 |y|, but at least a floor,
 /// which depends on the exponent of x.
 struct CurveTolerance {

@@ -138,12 +138,8 @@ class Explanation {
 
     void write_instruction(const simd::Instruction& step) {
         std::string text;
-        if (simd::operation(step.op).has_channels) {
-            for (const simd::Operand& out : step.channel) {
-                if (!out.constant) text += (text.empty() ? "" : ", ") + text_of(out);
-            }
-        } else {
-            text = text_of(step.out);
+        for (const simd::Operand& out : step.out) {
+            if (!out.constant) text += (text.empty() ? "" : ", ") + text_of(out);
         }
         text += fmt::format(" = {}{}", simd::operation(step.op).name, step.wide ? ".f64" : "");
         if (step.op == simd::Op::curve) text += fmt::format(" {}", step.table);

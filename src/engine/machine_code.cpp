@@ -157,7 +157,7 @@ class Generator : public Xbyak::CodeGenerator {
         state_.assign(static_cast<std::size_t>(code.value_count), {});
         std::fill(holder_.begin(), holder_.end(), kNone);
         unlock();
-        row_address_ = nullptr;
+        address_ = 0;
         row_index_ = kNone;
         index_pair_.fill(kNone);
         mask_holder_.fill(kNone);
@@ -524,6 +524,16 @@ class Generator : public Xbyak::CodeGenerator {
         return ptr[rax + static_cast<std::size_t>(offset)];
     }
 
+    /// From what r10 holds then.
+    int distance_to(const void* address) {
+        const auto to = reinterpret_cast<std::uintptr_t>(address);
+        const auto distance = static_cast<std::intptr_t>(to - address_);
+        if (address_ != 0 && distance >= 0 && distance < 64) return static_cast<int>(distance);
+        address_ = to;
+        mov(r10, to);
+        return 0;
+    }
+
     /// What has half the bits of a vector.
     [[nodiscard]] Xbyak::Xmm half(const Xbyak::Xmm& r) const {
         return {machine_.has_avx512 ? Xbyak::Operand::YMM : Xbyak::Operand::XMM, r.getIdx()};
@@ -534,18 +544,11 @@ class Generator : public Xbyak::CodeGenerator {
         const Xbyak::Xmm r = result_apart(step);
         const Xbyak::Xmm low(r.getIdx());
         const int quarter = step.immediate / 4;
-        Xbyak::Reg64 base = rax;
-        if (step.address) {
-            base = r10;
-            if (step.address != row_address_) mov(r10, reinterpret_cast<std::size_t>(step.address));
-            row_address_ = step.address;
-        }
+        const int at_address = distance_to(step.address);
         const auto index_of = [&](int pixel) {
             return kept_index(step, step.immediate % 4, pixel);
         };
-        const auto row = [&](const Xbyak::Reg64& at) {
-            return ptr[base + at + static_cast<std::size_t>(step.offset)];
-        };
+        const auto row = [&](const Xbyak::Reg64& at) { return ptr[r10 + at * 4 + at_address]; };
         if (machine_.has_avx512) {
             for (int i = 0; i < 4; ++i) {
                 const Xbyak::Reg64 at = i % 2 == 0 ? r9 : r11;
@@ -762,8 +765,8 @@ class Generator : public Xbyak::CodeGenerator {
                 }
                 const Z all = machine_.has_avx512 ? index : vector(take());
                 const Z r = result_apart(step);
-                const Xbyak::Address number =
-                    ptr[rax + (wide ? half(index) * 8 : index * 4) + static_cast<int>(step.offset)];
+                const int at = distance_to(step.address);
+                const Xbyak::Address number = ptr[r10 + (wide ? half(index) * 8 : index * 4) + at];
                 vxorpd(r, r, r);
                 if (machine_.has_avx512) {
                     kxnorw(k6, k6, k6);
@@ -846,9 +849,9 @@ class Generator : public Xbyak::CodeGenerator {
     int fetch_ahead_ = 0;  // in bytes
     int claim_ahead_ = 0;
     std::size_t position_ = 0;
-    const void* row_address_ = nullptr;  // in r10
-    int row_index_ = kNone;              // in r9 and r11, of AVX2
-    std::array<int, 2> index_pair_{};    // of each block: in r12 and r14, or in r13 and r15
+    std::uintptr_t address_ = 0;       // in r10
+    int row_index_ = kNone;            // in r9 and r11, of AVX2
+    std::array<int, 2> index_pair_{};  // of each block: in r12 and r14, or in r13 and r15
 };
 
 /// The code.
@@ -895,8 +898,7 @@ bool MachineCode::is_built_in() noexcept { return true; }
 std::shared_ptr<const MachineCode> MachineCode::make(Code& code) {
     std::optional<VectorProgram> program = translate(code);
     if (!program) return nullptr;
-    // Gathers may read some bytes behind the last table.
-    code.numbers.pool.resize(program->pool.size() / kVectorBytes + 2);
+    code.numbers.pool.resize(program->pool.size() / kVectorBytes + 1);
     std::memcpy(code.numbers.pool.data(), program->pool.data(), program->pool.size());
     program->pool.clear();
     try {

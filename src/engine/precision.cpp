@@ -546,11 +546,14 @@ class PrecisionChooser {
         double units = units_of(i);
         double of_position = 0;
         if (step.op == ExprOp::lookup) {
+            const double x = block_.value(step.a, lane);
             if (step.table->positions.empty()) {
-                const double x = block_.value(step.a, lane);
                 of_position = std::fabs(table_slope(*step.table, x) * x) * kHalfUlp;
             } else {
-                units = 1;  // computed in double
+                // The sample and the sum; the slope, the distance, their product, and the sample
+                // once more, as it may be larger than the sum.
+                units = 2;
+                of_position = 4 * std::fabs(table_rise(*step.table, x)) * kHalfUlp;
             }
         }
         if (step.op == ExprOp::lattice) {

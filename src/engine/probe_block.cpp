@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "engine/reference_operations.h"
 
@@ -320,6 +321,17 @@ const Functions& functions() {
     return best;
 }
 
+/// The cell that x is in, unless the table is constant there.
+std::optional<std::size_t> sloping_cell(const Table& table, double x) {
+    if (table.interpolation == Table::Interpolation::step || table.samples.size() < 2) return {};
+    const std::size_t cells = table.samples.size() - 1;
+    if (!(x > cell_begin(table, 0) && x < cell_begin(table, cells))) return {};
+    if (table.positions.empty())
+        return std::min(static_cast<std::size_t>(x * static_cast<double>(cells)), cells - 1);
+    const auto next = std::upper_bound(table.positions.begin(), table.positions.end(), x);
+    return static_cast<std::size_t>(next - table.positions.begin()) - 1;
+}
+
 }  // namespace
 
 double cell_begin(const Table& table, std::size_t i) {
@@ -334,15 +346,13 @@ double cell_slope(const Table& table, std::size_t i) {
 }
 
 double table_slope(const Table& table, double x) {
-    if (table.interpolation == Table::Interpolation::step || table.samples.size() < 2) return 0;
-    const std::size_t cells = table.samples.size() - 1;
-    if (!(x > cell_begin(table, 0) && x < cell_begin(table, cells))) return 0;
-    if (table.positions.empty()) {
-        return cell_slope(
-            table, std::min(static_cast<std::size_t>(x * static_cast<double>(cells)), cells - 1));
-    }
-    const auto next = std::upper_bound(table.positions.begin(), table.positions.end(), x);
-    return cell_slope(table, static_cast<std::size_t>(next - table.positions.begin()) - 1);
+    const std::optional<std::size_t> cell = sloping_cell(table, x);
+    return cell ? cell_slope(table, *cell) : 0;
+}
+
+double table_rise(const Table& table, double x) {
+    const std::optional<std::size_t> cell = sloping_cell(table, x);
+    return cell ? cell_slope(table, *cell) * (x - cell_begin(table, *cell)) : 0;
 }
 
 ProbeBlock::ProbeBlock(const std::vector<TapeInstruction>& code,

@@ -81,6 +81,8 @@ class ProbeBlock {
 
 /// Slope of the table at x; 0 beyond its ends.
 [[nodiscard]] double table_slope(const Table& table, double x);
+/// What it has risen by since the cell that x is in began.
+[[nodiscard]] double table_rise(const Table& table, double x);
 /// Where cell i of a table with two samples or more begins.
 [[nodiscard]] double cell_begin(const Table& table, std::size_t i);
 [[nodiscard]] double cell_slope(const Table& table, std::size_t i);

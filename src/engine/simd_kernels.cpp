@@ -127,60 +127,53 @@ HWY_INLINE hn::Vec<DD> scale_by(hn::Vec<DD> x, hn::Vec<DD> n) {
     return hn::Vec<DD>{_mm512_scalef_pd(x.raw, n.raw)};
 }
 
-/// 16, 32 or 64 numbers, and those of them that a vector of indices picks.
-template <int kSize>
-struct PermutedTable {
-    hn::Vec<DF> part[kSize / 16];
-
-    HWY_INLINE explicit PermutedTable(const float* numbers) {
-        for (int i = 0; i < kSize / 16; ++i)
-            part[i] = hn::Load(DF(), numbers + 16 * i);
-    }
-    HWY_INLINE hn::Vec<DF> at(hn::Vec<DI> index) const {
-        if constexpr (kSize == 16) {
-            return hn::Vec<DF>{_mm512_permutexvar_ps(index.raw, part[0].raw)};
-        } else {
-            const auto low = _mm512_permutex2var_ps(part[0].raw, index.raw, part[1].raw);
-            if constexpr (kSize == 32) return hn::Vec<DF>{low};
-            const auto high = _mm512_permutex2var_ps(part[kSize / 16 - 2].raw, index.raw,
-                                                     part[kSize / 16 - 1].raw);
-            const __mmask16 is_high = _mm512_test_epi32_mask(index.raw, _mm512_set1_epi32(32));
-            return hn::Vec<DF>{_mm512_mask_blend_ps(is_high, low, high)};
-        }
-    }
-};
-template <int kSize>
-HWY_INLINE auto table(DF /*d*/, const float* numbers, std::integral_constant<int, kSize> /*size*/) {
-    return PermutedTable<kSize>(numbers);
-}
-
 #else
 
 constexpr bool kMayHaveExponents = false;
 
 #endif
-#if HWY_TARGET > HWY_AVX3 && HWY_TARGET <= HWY_SSE4
 
-/// kLength numbers in a row for each pixel.
-template <int kLength>
+/// Up to 64 numbers, and those of them that a vector of indices picks.
+struct IndexedTable {
+    const float* numbers;
+    int size;
+    [[nodiscard]] HWY_INLINE hn::Vec<DF> at(hn::Vec<DI> index) const {
+#if HWY_TARGET <= HWY_AVX3
+        const auto of_32 = [&](const float* first) HWY_ATTR {
+            return hn::Vec<DF>{_mm512_permutex2var_ps(_mm512_load_ps(first), index.raw,
+                                                      _mm512_load_ps(first + 16))};
+        };
+        const auto low = of_32(numbers);
+        if (size <= 32) return low;
+        const auto is_high = hn::TestBit(index, hn::Set(DI(), 32));
+        return hn::IfThenElse(hn::RebindMask(DF(), is_high), of_32(numbers + 32), low);
+#else
+        return hn::GatherIndex(DF(), numbers, index);
+#endif
+    }
+};
+HWY_INLINE IndexedTable table(DF /*d*/, const float* numbers, int size) { return {numbers, size}; }
+
+#if HWY_TARGET > HWY_AVX3 && HWY_TARGET != HWY_SCALAR
+
+/// See GatheredRows: twice as fast.
 class Rows {
   public:
-    /// @param cell  which row
-    HWY_INLINE Rows(std::span<const float> numbers, hn::Vec<DI> cell) : numbers_(numbers.data()) {
+    HWY_INLINE Rows(std::span<const float> numbers, hn::Vec<DI> place) : numbers_(numbers.data()) {
         // Through memory, where a load for each costs less than taking a vector apart.
         const hn::RebindToUnsigned<DF> d;
-        hn::Store(hn::BitCast(d, hn::ShiftLeft < kLength == 4 ? 2 : 3 > (cell)), d, at_);
+        hn::Store(hn::BitCast(d, place), d, at_);
         __asm__("" : "+m"(at_));
     }
-    /// The first four numbers as four vectors, or the second four: twice as fast as gathers.
-    HWY_INLINE void columns(int group, hn::Vec<DF>* result) const {
+    HWY_INLINE void columns(std::size_t group, hn::Vec<DF>* result) const {
+        const hn::CappedTag<float, 4> quarter;
         for (int p = 0; p < 4; ++p) {
-            const __m128 row = _mm_loadu_ps(numbers_ + at_[p] + 4 * group);
+            const auto row = hn::LoadU(quarter, numbers_ + at_[p] + 4 * group);
 #if HWY_TARGET <= HWY_AVX2
-            result[p].raw = _mm256_insertf128_ps(
-                _mm256_castps128_ps256(row), _mm_loadu_ps(numbers_ + at_[p + 4] + 4 * group), 1);
+            const auto upper = hn::LoadU(quarter, numbers_ + at_[p + 4] + 4 * group);
+            result[p] = hn::Combine(DF(), upper, row);
 #else
-            result[p].raw = row;
+            result[p] = row;
 #endif
         }
         const DF d;
@@ -200,16 +193,9 @@ class Rows {
     const float* numbers_;
     alignas(kVectorBytes) std::uint32_t at_[kLaneMultiple];
 };
-/// See RowPolynomial.
-template <int kLength, bool kHasRestarts>
-struct RowKind {
-    static constexpr int length = kLength;
-    static constexpr bool has_restarts = kHasRestarts;
-    static constexpr bool is_aligned = false;  // gains nothing here
-};
-template <class Kind>
-HWY_INLINE auto rows_at(DF /*d*/, std::span<const float> numbers, hn::Vec<DI> cell, Kind /*kind*/) {
-    return Rows<Kind::length>(numbers, cell);
+HWY_INLINE Rows rows_at(DF /*d*/, std::span<const float> numbers, hn::Vec<DI> place,
+                        int /*length*/) {
+    return {numbers, place};
 }
 
 #endif
@@ -282,7 +268,9 @@ HWY_INLINE void over_tile(D d, const Frame& frame, const Code& code, const Instr
                           const Source* source) {
     for (std::size_t i = 0; i < frame.count; i += hn::Lanes(d)) {
         const auto x = [&](int k) HWY_ATTR { return source[k].load(d, i); };
-        store_result(frame, step.out, i, compute<op>(d, code, step, x));
+        const auto give = [&](std::size_t c, Vec<D> result)
+                              HWY_ATTR { store_result(frame, step.out[c], i, result); };
+        compute<op>(d, code, step, x, give);
     }
 }
 
@@ -300,93 +288,13 @@ HWY_NOINLINE void run_op(const Frame& given, const Code& code, const Instruction
     over_tile<op>(DD(), frame, code, step, source);
 }
 
-/// Operands loaded, and converted, once for all rows.
-template <class D>
-HWY_INLINE void over_rows(D d, const Frame& frame, const Instruction& step) {
-    const Source a(frame, step.in[0]);
-    const Source b(frame, step.in[1]);
-    const Source c(frame, step.in[2]);
-    for (std::size_t i = 0; i < frame.count; i += hn::Lanes(d)) {
-        const auto va = a.load(d, i);
-        const auto vb = b.load(d, i);
-        const auto vc = c.load(d, i);
-        for (std::size_t row = 0; row < 3; ++row) {
-            if (step.channel[row].constant) continue;
-            store_result(frame, step.channel[row], i, dot3(d, step.k.data() + 3 * row, va, vb, vc));
-        }
-    }
-}
-
-template <>
-HWY_NOINLINE void run_op<Op::dot3>(const Frame& frame, const Code& /*code*/,
-                                   const Instruction& step) {
-    if (step.wide) {
-        over_rows(DD(), frame, step);
-    } else {
-        over_rows(DF(), frame, step);
-    }
-}
-
-/// Always in double. Pixel by pixel: gathers are slower, and all tables lie in one line of memory.
-template <>
-HWY_NOINLINE void run_op<Op::lookup_nonuniform>(const Frame& frame, const Code& code,
-                                                const Instruction& step) {
-    const NonuniformTables& tables = code.positioned[step.table];
-    const DD d;
-    const hn::Rebind<std::int32_t, DD> whole;
-    const hn::CappedTag<double, 4> part;
-    const std::size_t lanes = hn::Lanes(d);
-    const Source source(frame, step.in[0]);
-    const auto first = hn::Set(d, tables.first);
-    const auto last = hn::Set(d, tables.last);
-    const auto parts_per_unit = hn::Set(d, tables.parts_per_unit);
-    alignas(kVectorBytes) double place[kLaneMultiple];
-    alignas(kVectorBytes) std::int32_t cell[kLaneMultiple];
-    alignas(kVectorBytes) double values[4 * kLaneMultiple];  // four of each pixel
-    // All cells first: a processor that waits for one of the tables goes on with other pixels.
-    for (std::size_t begin = 0; begin < frame.count; begin += kLaneMultiple) {
-        for (std::size_t p = 0; p < kLaneMultiple; p += lanes) {
-            const auto x = source.load(d, begin + p);
-            // NaN -> the first position: the comparison fails.
-            const auto t = hn::Min(hn::IfThenElse(hn::Gt(x, first), x, first), last);
-            hn::Store(t, d, place + p);
-            hn::Store(hn::DemoteTo(whole, hn::Mul(hn::Sub(t, first), parts_per_unit)), whole,
-                      cell + p);
-        }
-        for (std::size_t p = 0; p < kLaneMultiple; ++p) {
-            auto at =
-                static_cast<std::int32_t>(tables.first_cell[static_cast<std::size_t>(cell[p])]);
-            for (std::int32_t half = tables.half_of_most; half > 0; half /= 2)
-                at += place[p] >= tables.end[static_cast<std::size_t>(at + half - 1)] ? half : 0;
-            cell[p] = at;
-        }
-        for (std::size_t p = 0; p < kLaneMultiple; ++p) {
-            const NonuniformTables::Line& line = tables.lines[static_cast<std::size_t>(cell[p])];
-            const auto at = hn::Set(part, place[p]);
-            for (std::size_t c = 0; c < 4; c += hn::Lanes(part)) {
-                hn::Store(hn::MulAdd(hn::Load(part, line.slope.data() + c), at,
-                                     hn::Load(part, line.constant.data() + c)),
-                          part, values + 4 * p + c);
-            }
-        }
-        for (std::size_t p = 0; p < kLaneMultiple; p += lanes) {
-            Vec<DD> result[4];
-            hn::LoadInterleaved4(d, values + 4 * p, result[0], result[1], result[2], result[3]);
-            for (std::size_t c = 0; c < 3; ++c) {
-                if (!step.channel[c].constant)
-                    store_result(frame, step.channel[c], begin + p, result[c]);
-            }
-        }
-    }
-}
-
 /// A curve over a tile.
 template <class P>
 HWY_INLINE void over_curve(const Frame& given, const Instruction& step, const CompiledCurve& curve,
                            const P& polynomial) {
     const DF d;
     const Frame frame = given;
-    const Operand out = step.out;
+    const Operand out = step.out[0];
     const CurveEnds<DF> ends(d, curve);
     const Source source(frame, step.in[0]);
     if (!curve.is_precise) {
@@ -406,151 +314,13 @@ HWY_INLINE void over_curve(const Frame& given, const Instruction& step, const Co
     }
 }
 
-#if HWY_TARGET <= HWY_AVX3
-
-template <int kCells, int kSegments>
-HWY_NOINLINE void run_curve(const Frame& frame, const Instruction& step,
-                            const CompiledCurve& curve) {
-    using Cells = std::integral_constant<int, kCells>;
-    using Segments = std::integral_constant<int, kSegments>;
-    const SegmentPolynomial<DF, Cells, Segments> polynomial(DF(), curve, Cells(), Segments());
-    over_curve(frame, step, curve, polynomial);
-}
-
-template <int kCells>
-HWY_INLINE void run_curve(const Frame& frame, const Instruction& step, const CompiledCurve& curve) {
-    if (curve.segments <= 16) return run_curve<kCells, 16>(frame, step, curve);
-    if (curve.segments <= 32) return run_curve<kCells, 32>(frame, step, curve);
-    run_curve<kCells, 64>(frame, step, curve);
-}
-
 template <>
 HWY_NOINLINE void run_op<Op::curve>(const Frame& frame, const Code& code, const Instruction& step) {
     const CompiledCurve& curve = code.curves[step.table];
-    const int cells = threshold_count(curve);
-    if (cells <= 16) return run_curve<16>(frame, step, curve);
-    if (cells <= 32) return run_curve<32>(frame, step, curve);
-    run_curve<64>(frame, step, curve);
-}
-
-constexpr CurveForm kCurveForm = CurveForm::segments;
-
-#elif HWY_TARGET <= HWY_SSE4
-
-template <class Kind>
-HWY_NOINLINE void run_curve(const Frame& frame, const Instruction& step,
-                            const CompiledCurve& curve) {
-    over_curve(frame, step, curve, RowPolynomial<DF, Kind>(DF(), *curve.rows, {}));
-}
-
-template <>
-HWY_NOINLINE void run_op<Op::curve>(const Frame& frame, const Code& code, const Instruction& step) {
-    const CompiledCurve& curve = code.curves[step.table];
-    const bool has_restarts = !curve.rows->restarts.empty();
-    if (curve.rows->length == 8)
-        return has_restarts ? run_curve<RowKind<8, true>>(frame, step, curve)
-                            : run_curve<RowKind<8, false>>(frame, step, curve);
-    has_restarts ? run_curve<RowKind<4, true>>(frame, step, curve)
-                 : run_curve<RowKind<4, false>>(frame, step, curve);
-}
-
-constexpr CurveForm kCurveForm = HWY_NATIVE_FMA ? CurveForm::rows : CurveForm::rows_unfused;
-
-#else
-
-/// Programs for this instruction set have no compiled curves.
-template <>
-HWY_NOINLINE void run_op<Op::curve>(const Frame& /*frame*/, const Code& /*code*/,
-                                    const Instruction& /*step*/) {
-    HWY_ABORT("a compiled curve on an instruction set without them");
-}
-
-constexpr CurveForm kCurveForm = CurveForm::none;
-
-#endif
-
-/// Pixels of a lattice at a time. A read that spans several writes which have not reached the cache
-/// waits for them: with a loop of its own for each step, and this many pixels between, none does.
-inline constexpr std::size_t kLatticeBlock = 64;
-
-/// Nodes and weights of a block of pixels.
-template <class T>
-struct LatticePlaces {
-    /// Where the node's numbers begin among those of all nodes.
-    alignas(kVectorBytes) std::int32_t node[4][kLatticeBlock];
-    alignas(kVectorBytes) T weight[4][kLatticeBlock];
-};
-
-HWY_INLINE Vec<DI> to_whole(Vec<DF> x) { return hn::ConvertTo(DI(), x); }
-HWY_INLINE Vec<hn::Rebind<std::int32_t, DD>> to_whole(Vec<DD> x) {
-    return hn::DemoteTo(hn::Rebind<std::int32_t, DD>(), x);
-}
-
-template <class D>
-HWY_INLINE void find_places(D d, const std::array<Source, 3>& source, std::size_t i, int edge,
-                            std::size_t in_block, LatticePlaces<TFromD<D>>& places) {
-    const Nodes<D> nodes =
-        nodes_about(d, source[0].load(d, i), source[1].load(d, i), source[2].load(d, i), edge, 4);
-    for (int k = 0; k < 4; ++k) {
-        const hn::Rebind<std::int32_t, D> di;
-        hn::Store(to_whole(nodes.place[k]), di, places.node[k] + in_block);
-        hn::Store(nodes.weight[k], d, places.weight[k] + in_block);
-    }
-}
-
-/// Four nodes a pixel, each loaded whole: their places and weights for a vector of pixels, then
-/// pixel by pixel.
-template <class D>
-HWY_INLINE void interpolate(D d, const Frame& frame, const Instruction& step, int edge,
-                            const hn::TFromD<D>* nodes) {
-    using T = hn::TFromD<D>;
-    const std::size_t lanes = hn::Lanes(d);
-    const hn::CappedTag<T, 4> part;
-    const std::array<Source, 3> source = {Source(frame, step.in[0]), Source(frame, step.in[1]),
-                                          Source(frame, step.in[2])};
-    LatticePlaces<T> places;
-    alignas(kVectorBytes) T pixels[4 * kLatticeBlock];
-    for (std::size_t begin = 0; begin < frame.count; begin += kLatticeBlock) {
-        const std::size_t count = HWY_MIN(kLatticeBlock, frame.count - begin);
-        for (std::size_t p = 0; p < count; p += lanes)
-            find_places(d, source, begin + p, edge, p, places);
-        for (std::size_t p = 0; p < count; ++p) {
-            for (std::size_t c = 0; c < 4; c += hn::Lanes(part)) {
-                const auto node = [&](int k) HWY_ATTR {
-                    return hn::LoadU(part, nodes + places.node[k][p] + c);
-                };
-                const auto weight = [&](int k)
-                                        HWY_ATTR { return hn::Set(part, places.weight[k][p]); };
-                hn::Store(weighted_sum(weight, node), part, pixels + 4 * p + c);
-            }
-        }
-        for (std::size_t p = 0; p < count; p += lanes) {
-#if HWY_TARGET == HWY_SCALAR
-            const std::array<Vec<D>, 3> rgb = {hn::Load(d, pixels + 4 * p),
-                                               hn::Load(d, pixels + 4 * p + 1),
-                                               hn::Load(d, pixels + 4 * p + 2)};
-#else
-            // On NEON, std::array's own constructor cannot inline that of a vector.
-            Vec<D> rgb[3];
-            auto unused = hn::Undefined(d);
-            hn::LoadInterleaved4(d, pixels + 4 * p, rgb[0], rgb[1], rgb[2], unused);
-#endif
-            for (std::size_t c = 0; c < 3; ++c) {
-                if (!step.channel[c].constant)
-                    store_result(frame, step.channel[c], begin + p, rgb[c]);
-            }
-        }
-    }
-}
-
-template <>
-HWY_NOINLINE void run_op<Op::lattice>(const Frame& frame, const Code& code,
-                                      const Instruction& step) {
-    const SampledLattice& lattice = code.lattices[step.table];
-    if (step.wide) {
-        interpolate(DD(), frame, step, lattice.edge, lattice.wide.data());
+    if (curve.rows) {
+        over_curve(frame, step, curve, RowPolynomial<DF>(DF(), *curve.rows));
     } else {
-        interpolate(DF(), frame, step, lattice.edge, lattice.narrow.data());
+        over_curve(frame, step, curve, SegmentPolynomial<DF>(DF(), curve));
     }
 }
 
@@ -560,10 +330,6 @@ constexpr std::array<Kernel, sizeof...(kOp)> kernels_of(std::index_sequence<kOp.
     return {run_op<static_cast<Op>(kOp)>...};
 }
 constexpr auto kKernels = kernels_of(std::make_index_sequence<std::size(kOperations)>());
-
-void run_instruction(const Frame& frame, const Code& code, const Instruction& step) {
-    kKernels[static_cast<std::size_t>(computed_by(step))](frame, code, step);
-}
 
 // ---------------------------------------------------------------------------------------------
 // Pixels in and out
@@ -659,18 +425,11 @@ std::array<T*, 3> from(const std::array<T*, 3>& plane, std::ptrdiff_t stride, st
 
 #if HWY_TARGET <= HWY_AVX2
 
-/// One part after the other over each tile, with what runs over the whole tile between them.
-void run_parts(const Code& code, const Numbers& numbers, PixelLayout layout, unsigned char* tile,
-               const float* in, float* out, std::size_t count) {
-    const VectorProgram& program = code.machine->program();
-    const Frame frame{tile, reinterpret_cast<const unsigned char*>(numbers.constants.data()),
-                      count};
-    for (std::size_t part = 0; part <= program.tile_steps.size(); ++part) {
-        code.machine->run(part, layout, numbers, tile, in, out, count / hn::Lanes(DF()));
-        if (part == program.tile_steps.size()) return;
-        for (const Instruction& step : program.tile_steps[part])
-            run_instruction(frame, code, step);
-    }
+/// One part after the other over a tile.
+void run_parts(const MachineCode& code, const Numbers& numbers, PixelLayout layout,
+               unsigned char* tile, const float* in, float* out, std::size_t count) {
+    for (std::size_t part = 0; part < code.part_count(); ++part)
+        code.run(part, layout, numbers, tile, in, out, count / hn::Lanes(DF()));
 }
 
 void run_machine(const Code& code, const Numbers& numbers, unsigned char* tile,
@@ -685,11 +444,11 @@ void run_machine(const Code& code, const Numbers& numbers, unsigned char* tile,
         // What follows the last pixel's three channels is not ours to read.
         const std::size_t whole =
             (stride == 4 && count > 0 ? count - 1 : count) / kLaneMultiple * kLaneMultiple;
-        // Without a step over a tile nothing is kept in it.
-        const std::size_t step = program.tile_steps.empty() ? HWY_MAX(whole, 1) : program.tile;
+        // What is one part keeps nothing in a tile.
+        const std::size_t step = code.machine->part_count() == 1 ? HWY_MAX(whole, 1) : program.tile;
         for (; done < whole; done += HWY_MIN(step, whole - done)) {
-            run_parts(code, numbers, layout, tile, in[0] + done * stride, out[0] + done * stride,
-                      HWY_MIN(step, whole - done));
+            run_parts(*code.machine, numbers, layout, tile, in[0] + done * stride,
+                      out[0] + done * stride, HWY_MIN(step, whole - done));
         }
     }
     // The last pixels, and those that lie in another way, are copied.
@@ -700,7 +459,7 @@ void run_machine(const Code& code, const Numbers& numbers, unsigned char* tile,
         const auto pack = [&](Vec<DF> r, Vec<DF> g, Vec<DF> b, std::size_t i)
                               HWY_ATTR { hn::StoreInterleaved3(r, g, b, DF(), rgb + 3 * i); };
         read_pixels(from(in, in_stride, done), in_stride, n, padded, pack);
-        run_parts(code, numbers, PixelLayout::rgb, tile, rgb, rgb, padded);
+        run_parts(*code.machine, numbers, PixelLayout::rgb, tile, rgb, rgb, padded);
         const auto unpack = [&](std::size_t i) HWY_ATTR {
             Colors x;
             hn::LoadInterleaved3(DF(), rgb + 3 * i, x.channel[0], x.channel[1], x.channel[2]);
@@ -735,7 +494,7 @@ void run(const Code& code, const Numbers& numbers, const std::array<const float*
         };
         read_pixels(from(in, in_stride, begin), in_stride, n, padded, keep);
         for (const Instruction& step : code.instructions)
-            run_instruction(frame, code, step);
+            kKernels[static_cast<std::size_t>(computed_by(step))](frame, code, step);
         const Source value[3] = {Source(frame, code.output[0]), Source(frame, code.output[1]),
                                  Source(frame, code.output[2])};
         write_pixels(from(out, out_stride, begin), out_stride, n, [&](std::size_t i) HWY_ATTR {
@@ -751,6 +510,11 @@ constexpr std::optional<VectorMachine> kMachine = VectorMachine{8, 16, false};
 #else
 constexpr std::optional<VectorMachine> kMachine;
 #endif
+
+// Permutes of AVX-512, loads of rows elsewhere.
+constexpr CurveForm kCurveForm = HWY_TARGET <= HWY_AVX3 ? CurveForm::segments
+                                 : HWY_NATIVE_FMA       ? CurveForm::rows
+                                                        : CurveForm::rows_unfused;
 
 constexpr Target kTarget = {.curve_form = kCurveForm, .machine = kMachine, .run = run};
 

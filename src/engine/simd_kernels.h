@@ -103,7 +103,7 @@ inline constexpr Operation kOperations[] = {
     {"select_less_equal", 4},
     {"select_equal", 4},
     {"lookup", 1, 15},
-    {"lookup_nonuniform", 1, 1, true},
+    {"lookup_nonuniform", 1, 40, true},
     {"curve", 1},
     {"lattice", 3, 80, true},
 };
@@ -121,14 +121,13 @@ struct Operand {
     bool wide = false;  // double, else float
 };
 
-/// At equal distances over [0, 1].
-struct SampledTable {
+/// In float, in double, or both.
+struct Samples {
     std::vector<float> narrow;
     std::vector<double> wide;
-    Table::Interpolation interpolation = Table::Interpolation::linear;
 
     template <class T>
-    [[nodiscard]] std::span<const T> samples() const {
+    [[nodiscard]] std::span<const T> of() const {
         if constexpr (std::is_same_v<T, float>)
             return narrow;
         else
@@ -136,31 +135,33 @@ struct SampledTable {
     }
 };
 
-/// Up to three tables with the same positions.
+/// At equal distances over [0, 1].
+struct SampledTable {
+    Samples samples;
+    Table::Interpolation interpolation = Table::Interpolation::linear;
+};
+
+/// Up to three tables with the same positions. What is before the first and behind the last
+/// position counts as that.
 struct NonuniformTables {
-    /// What is before the first and behind the last position counts as that.
-    double first = 0;
-    double last = 0;
-    /// Equal parts of [first, last], and in which cell each of them begins. Bisection finds the
-    /// cell of a number: positions that are halves have 15,360 cells in one part.
+    /// Equal parts between them, and in which cell each of them begins. Bisection finds the cell
+    /// of a number: positions that are halves have 15,360 cells in one part.
     double parts_per_unit = 0;
-    std::vector<std::uint32_t> first_cell;
+    Samples first_cell;
     std::int32_t half_of_most = 0;  // a power of two, or 0: no part has twice as many further cells
-    /// Of each cell. The last one and those that bisection reads behind it end at infinity.
-    std::vector<double> end;
-    /// What each cell holds of the tables, and one number that is not used.
-    struct alignas(64) Line {
-        std::array<double, 4> constant{};
-        std::array<double, 4> slope{};
-    };
-    std::vector<Line> lines;
+    /// Where each cell begins, and infinity for those that bisection reads behind the last. As
+    /// floats not before it: no float changes its cell.
+    Samples begin;
+    std::size_t cells = 0;
+    /// Of each cell in a row: where it begins, and for each table the sample there and the slope.
+    int length = 4;  // or 8
+    Samples rows;
 };
 
 /// Nodes of red, green, blue and one unused; in double where its results are.
 struct SampledLattice {
     int edge = 0;
-    std::vector<float> narrow;
-    std::vector<double> wide;
+    Samples nodes;
 };
 
 /// An instruction computes over a whole tile, a wide one in double, another in float, whatever its
@@ -172,13 +173,12 @@ struct Instruction {
     /// Of a logarithm, or a power with a constant exponent: its operand is at least the smallest
     /// normal float.
     bool is_positive = false;
-    Operand out;
+    /// Where up to three results go. One that is not there, or that nobody reads, is marked as a
+    /// constant.
+    std::array<Operand, 3> out;
     std::array<Operand, 4> in;
     std::array<double, 9> k{};  // coefficients of dot3, exponent of power_constant
     std::uint32_t table = 0;    // of a lookup, a curve, a lattice: its index among those
-    /// Where the results go of an operation that has up to three. One that nobody reads is marked
-    /// as a constant.
-    std::array<Operand, 3> channel;
 };
 
 /// Largest tile, in pixels.

@@ -425,10 +425,31 @@ HWY_INLINE Vec<D> atan2(D d, Vec<D> y, Vec<D> x) {
 // Tables and 3D LUTs. places(cell): whole numbers as gather() takes them.
 // gather(d, samples, first, places): samples[first + place].
 
+/// Four or eight numbers in a row for each pixel.
+template <class D, class I>
+struct GatheredRows {
+    D d;
+    std::span<const Number<D>> numbers;
+    I place;
+
+    /// The first four numbers as four vectors, or the second four.
+    HWY_INLINE void columns(std::size_t group, Vec<D>* result) const {
+        for (std::size_t k = 0; k < 4; ++k)
+            result[k] = gather(d, numbers, 4 * group + k, place);
+    }
+};
+/// Processors that load a row faster have another function of this name.
+/// @param place  of the first number of the row
+template <class D, class I>
+HWY_INLINE GatheredRows<D, I> rows_at(D d, std::span<const Number<D>> numbers, I place,
+                                      int /*length*/) {
+    return {d, numbers, place};
+}
+
 /// Samples at equal distances over [0, 1]; what Table::operator() does.
 template <class D>
 HWY_INLINE Vec<D> lookup(D d, Vec<D> x, const SampledTable& table) {
-    const auto samples = table.samples<Number<D>>();
+    const auto samples = table.samples.of<Number<D>>();
     const auto count = static_cast<double>(samples.size());
     // NaN -> 0: the comparison fails.
     const auto t = hn::Min(hn::IfThenElseZero(hn::Gt(x, hn::Zero(d)), x), set(d, 1));
@@ -444,28 +465,47 @@ HWY_INLINE Vec<D> lookup(D d, Vec<D> x, const SampledTable& table) {
     return hn::MulAdd(hn::Sub(position, cell), hn::Sub(b, a), a);
 }
 
-/// The four nodes of a 3D LUT about a color: where they lie, and their weights.
+/// The same at given positions.
 template <class D>
-struct Nodes {
-    Vec<D> place[4], weight[4];
-};
-/// @param unit  from one node to the next
+HWY_INLINE void lookup_nonuniform(D d, Vec<D> x, const NonuniformTables& tables, Vec<D>* result) {
+    const auto begin = tables.begin.of<Number<D>>();
+    const auto first = hn::Set(d, begin[0]);
+    const auto last = hn::Set(d, begin[tables.cells - 1]);
+    // NaN -> the first position: the comparison fails.
+    const auto t = hn::Min(hn::IfThenElse(hn::Gt(x, first), x, first), last);
+    const auto part = hn::Mul(hn::Sub(t, first), set(d, tables.parts_per_unit));
+    auto cell = gather(d, tables.first_cell.of<Number<D>>(), 0, places(part));
+    for (std::int32_t half = tables.half_of_most; half > 0; half /= 2) {
+        const auto next = gather(d, begin, static_cast<std::size_t>(half), places(cell));
+        cell = hn::Add(cell, hn::IfThenElseZero(hn::Ge(t, next), set(d, half)));
+    }
+    const auto place = places(hn::Mul(cell, set(d, tables.length)));
+    auto rows = rows_at(d, tables.rows.of<Number<D>>(), place, tables.length);
+    Vec<D> k[8];
+    rows.columns(0, k);
+    if (tables.length == 8) rows.columns(1, k + 4);
+    const auto distance = hn::Sub(t, k[0]);
+    for (int i = 0; i < (tables.length == 8 ? 3 : 1); ++i)
+        result[i] = hn::MulAdd(k[2 * i + 2], distance, k[2 * i + 1]);
+}
+
+/// Tetrahedral interpolation.
 template <class D>
-HWY_INLINE Nodes<D> nodes_about(D d, Vec<D> red, Vec<D> green, Vec<D> blue, double edge,
-                                double unit) {
-    const auto one = set(d, 1);
-    const Vec<D> given[3] = {red, green, blue};
+HWY_INLINE void interpolate(D d, const Vec<D>* given, const SampledLattice& lattice,
+                            Vec<D>* result) {
+    const double edge = lattice.edge;
     Vec<D> cell[3], f[3];
     for (int c = 0; c < 3; ++c) {
-        const auto t = hn::Min(hn::Max(given[c], hn::Zero(d)), one);
+        const auto t = hn::Min(hn::Max(given[c], hn::Zero(d)), set(d, 1));
         const auto place = hn::Mul(t, set(d, edge - 1));
         cell[c] = hn::Min(hn::Floor(place), set(d, edge - 2));
         f[c] = hn::Sub(place, cell[c]);
     }
-    // Whole numbers below 2^24 are exact in float, and so is their sum; also 4 and 16 times them.
-    const auto n0 = set(d, unit);
-    const auto n1 = set(d, unit * edge);
-    const auto n2 = set(d, unit * edge * edge);
+    // Numbers from one node to the next. Four times whole numbers below 2^24 are exact in float,
+    // and so are their sums.
+    const auto n0 = set(d, 4);
+    const auto n1 = set(d, 4 * edge);
+    const auto n2 = set(d, 4 * edge * edge);
     const auto corner = hn::MulAdd(cell[0], n2, hn::MulAdd(cell[1], n1, hn::Mul(cell[2], n0)));
     // Steps of the axes with the largest and the smallest fraction.
     const auto red_below_green = hn::Lt(f[0], f[1]);
@@ -478,18 +518,17 @@ HWY_INLINE Nodes<D> nodes_about(D d, Vec<D> red, Vec<D> green, Vec<D> blue, doub
     const auto highest = hn::Max(upper, f[2]);
     const auto lowest = hn::Min(lower, f[2]);
     const auto middle = hn::Max(lower, hn::Min(upper, f[2]));
-    const auto far = hn::Add(corner, set(d, unit * (edge * edge + edge + 1)));
-    return {{corner, hn::Add(corner, step_highest), hn::Sub(far, step_lowest), far},
-            {hn::Sub(one, highest), hn::Sub(highest, middle), hn::Sub(middle, lowest), lowest}};
-}
-
-/// @param weight, node  functions of k: the numbers of 0 to 3
-template <class Weight, class Node>
-HWY_INLINE auto weighted_sum(Weight weight, Node node) {
-    auto sum = hn::Mul(weight(0), node(0));
-    for (int k = 1; k < 4; ++k)
-        sum = hn::MulAdd(weight(k), node(k), sum);
-    return sum;
+    const auto far = hn::Add(corner, set(d, 4 * (edge * edge + edge + 1)));
+    const Vec<D> place[4] = {corner, hn::Add(corner, step_highest), hn::Sub(far, step_lowest), far};
+    const Vec<D> weight[4] = {hn::Sub(set(d, 1), highest), hn::Sub(highest, middle),
+                              hn::Sub(middle, lowest), lowest};
+    for (int k = 0; k < 4; ++k) {
+        Vec<D> node[4];
+        rows_at(d, lattice.nodes.of<Number<D>>(), places(place[k]), 4).columns(0, node);
+        for (int c = 0; c < 3; ++c)
+            result[c] =
+                k == 0 ? hn::Mul(weight[k], node[c]) : hn::MulAdd(weight[k], node[c], result[c]);
+    }
 }
 
 // ---------------------------------------------------------------------------------------------
@@ -521,30 +560,24 @@ struct Polynomial {
     Vec<D> y, t, first;
 };
 
-/// How many numbers of `threshold` there are.
-HWY_INLINE int threshold_count(const CompiledCurve& curve) {
-    return curve.cells == 0 ? curve.segments : curve.cells;
-}
-
-/// In segments.
-/// @tparam Cells, Segments  of their counts, numbers or constants
-template <class D, class Cells, class Segments>
+/// In segments. table(d, numbers, size).at(index): one of these numbers.
+template <class D>
 class SegmentPolynomial {
   public:
-    /// @param cells  threshold_count(curve)
-    HWY_INLINE SegmentPolynomial(D d, const CompiledCurve& curve, Cells cells, Segments segments)
+    HWY_INLINE SegmentPolynomial(D d, const CompiledCurve& curve)
         : curve_(curve),
-          segments_(segments),
-          threshold_(table(d, curve.threshold.data(), cells)),
-          segment_(table(d, reinterpret_cast<const float*>(curve.segment.data()), cells)),
-          scale_(table(d, curve.scale.data(), segments)),
-          offset_(table(d, curve.offset.data(), segments)) {}
+          threshold_(
+              table(d, curve.threshold.data(), curve.cells == 0 ? curve.segments : curve.cells)),
+          segment_(table(d, reinterpret_cast<const float*>(curve.segment.data()), curve.cells)),
+          scale_(table(d, curve.scale.data(), curve.segments)),
+          offset_(table(d, curve.offset.data(), curve.segments)) {}
 
     /// @param rest  what x leaves out of the number given; null where it is that number
     HWY_INLINE Polynomial<D> operator()(D d, Vec<D> x, const Vec<D>* rest) const {
         const auto index = segment_of(d, x);
-        const auto number = [&](const std::array<float, CompiledCurve::kMaxSegments>& numbers)
-                                HWY_ATTR { return table(d, numbers.data(), segments_).at(index); };
+        const auto number =
+            [&](const std::array<float, CompiledCurve::kMaxSegments>& numbers)
+                HWY_ATTR { return table(d, numbers.data(), curve_.segments).at(index); };
         const auto scale = scale_.at(index);
         auto t = hn::MulAdd(x, scale, offset_.at(index));
         if (rest) t = hn::MulAdd(*rest, scale, t);
@@ -562,7 +595,7 @@ class SegmentPolynomial {
         if (curve_.cells == 0) {
             // A bit of the index at a time, the highest first.
             auto index = hn::Zero(tag);
-            for (int bit = segments_ / 2; bit > 0; bit /= 2) {
+            for (int bit = curve_.segments / 2; bit > 0; bit /= 2) {
                 const auto next = hn::Or(index, hn::Set(tag, bit));
                 const auto is_there = hn::RebindMask(tag, hn::Ge(x, threshold_.at(next)));
                 index = hn::IfThenElse(is_there, next, index);
@@ -578,23 +611,22 @@ class SegmentPolynomial {
     }
 
     const CompiledCurve& curve_;
-    Segments segments_;
-    decltype(table(D(), nullptr, Cells())) threshold_, segment_;
-    decltype(table(D(), nullptr, Segments())) scale_, offset_;
+    decltype(table(D(), nullptr, 0)) threshold_, segment_, scale_, offset_;
 };
 
 /// In rows.
-/// @tparam Kind  its members are numbers or constants: `length` of a row; `has_restarts`;
-///               `is_aligned` where there are none and `base` has no bit within a cell
-template <class D, class Kind>
+template <class D>
 class RowPolynomial {
   public:
-    HWY_INLINE RowPolynomial(D d, const CurveRows& rows, Kind kind)
+    HWY_INLINE RowPolynomial(D d, const CurveRows& rows)
         : numbers_(rows.numbers),
           restarts_(rows.restarts),
           base_(float_of(d, rows.base)),
           shift_(rows.shift),
-          kind_(kind) {}
+          length_(rows.length),
+          // No cell begins with a bit of those within a cell.
+          is_aligned_(restarts_.empty() &&
+                      rows.base % (std::uint32_t{1} << static_cast<unsigned>(shift_)) == 0) {}
 
     /// @param x  not below 0
     /// @param rest  see SegmentPolynomial
@@ -602,17 +634,15 @@ class RowPolynomial {
         const auto tag = bits_tag(d);
         auto base = base_;
         const auto above = hn::Max(x, base);
-        if (kind_.has_restarts) {
-            for (const CurveRows::Restart& restart : restarts_) {
-                const auto is_behind = hn::Ge(above, float_of(d, restart.from));
-                base = hn::IfThenElse(is_behind, float_of(d, restart.base), base);
-            }
+        for (const CurveRows::Restart& restart : restarts_) {
+            const auto is_behind = hn::Ge(above, float_of(d, restart.from));
+            base = hn::IfThenElse(is_behind, float_of(d, restart.base), base);
         }
         const auto base_bits = hn::BitCast(tag, base);
         const auto cell = hn::ShiftRightSame(hn::Sub(hn::BitCast(tag, above), base_bits), shift_);
-        auto rows = rows_at(d, numbers_, cell, kind_);
+        auto rows = rows_at(d, numbers_, hn::ShiftLeftSame(cell, length_ == 8 ? 3 : 2), length_);
         const auto x0 =
-            kind_.is_aligned
+            is_aligned_
                 ? hn::And(above, float_of(d, ~std::uint32_t{0} << static_cast<unsigned>(shift_)))
                 : hn::BitCast(d, hn::Add(hn::ShiftLeftSame(cell, shift_), base_bits));
         // 0x7F000000 less the exponent.
@@ -623,14 +653,14 @@ class RowPolynomial {
         const auto t = hn::Mul(distance, scale);
         Vec<D> number[4];
         auto y = hn::Zero(d);
-        if (kind_.length == 8) {
+        if (length_ == 8) {
             rows.columns(1, number);
             y = number[3];
             for (int k = 2; k >= 0; --k)
                 y = hn::MulAdd(y, t, number[k]);
         }
         rows.columns(0, number);
-        y = kind_.length == 8 ? hn::MulAdd(y, t, number[3]) : number[3];
+        y = length_ == 8 ? hn::MulAdd(y, t, number[3]) : number[3];
         y = hn::MulAdd(hn::MulAdd(y, t, number[2]), t, number[1]);
         return {y, t, number[0]};
     }
@@ -644,7 +674,8 @@ class RowPolynomial {
     std::span<const CurveRows::Restart> restarts_;
     Vec<D> base_;
     int shift_;
-    Kind kind_;
+    int length_;
+    bool is_aligned_;
 };
 
 template <class D, class P>
@@ -692,11 +723,9 @@ constexpr bool is_always_wide(Op op) {
     return op == Op::sine || op == Op::cosine || op == Op::atan2 || (op == Op::log2 && !kHasFma);
 }
 
-/// What an instruction computes of the numbers of one pixel.
-/// @tparam op  computed_by(step)
-/// @param x    x(i): operand i
+/// @param x  x(i): operand i
 template <Op op, class D, class X>
-HWY_INLINE Vec<D> compute(D d, const Code& code, const Instruction& step, const X& x) {
+HWY_INLINE Vec<D> compute_one(D d, const Code& code, const Instruction& step, const X& x) {
     if constexpr (op == Op::add) return hn::Add(x(0), x(1));
     if constexpr (op == Op::subtract) return hn::Sub(x(0), x(1));
     if constexpr (op == Op::multiply) return hn::Mul(x(0), x(1));
@@ -729,4 +758,32 @@ HWY_INLINE Vec<D> compute(D d, const Code& code, const Instruction& step, const 
     if constexpr (op == Op::select_equal) return hn::IfThenElse(hn::Eq(x(0), x(1)), x(2), x(3));
     if constexpr (op == Op::lookup) return lookup(d, x(0), code.tables[step.table]);
     return x(0);  // copy
+}
+
+/// What an instruction computes of the numbers of one pixel.
+/// @tparam op   computed_by(step)
+/// @param give  give(c, result): of each channel that is asked for
+template <Op op, class D, class X, class Give>
+HWY_INLINE void compute(D d, const Code& code, const Instruction& step, const X& x,
+                        const Give& give) {
+    if constexpr (!operation(op).has_channels) {
+        give(0, compute_one<op>(d, code, step, x));
+    } else if constexpr (op == Op::dot3) {
+        const Vec<D> in[3] = {x(0), x(1), x(2)};
+        for (std::size_t row = 0; row < 3; ++row) {
+            if (!step.out[row].constant)
+                give(row, dot3(d, step.k.data() + 3 * row, in[0], in[1], in[2]));
+        }
+    } else {
+        Vec<D> result[3];
+        if constexpr (op == Op::lattice) {
+            const Vec<D> in[3] = {x(0), x(1), x(2)};
+            interpolate(d, in, code.lattices[step.table], result);
+        } else {
+            lookup_nonuniform(d, x(0), code.positioned[step.table], result);
+        }
+        for (std::size_t c = 0; c < 3; ++c) {
+            if (!step.out[c].constant) give(c, result[c]);
+        }
+    }
 }

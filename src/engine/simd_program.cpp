@@ -12,6 +12,7 @@
 #include "base/strings.h"
 #include "engine/machine_code.h"
 #include "engine/precision.h"
+#include "engine/probe_block.h"
 #include "expr/interval.h"
 #include "expr/scalar_ops.h"
 #include "tonewright/engine.h"
@@ -502,18 +503,16 @@ class Assembler {
             }
             Instruction step;
             step.op = s.op;
-            step.wide = s.wide || s.op == Op::sine || s.op == Op::cosine || s.op == Op::atan2 ||
-                        s.op == Op::lookup_nonuniform;
+            step.wide = s.wide || s.op == Op::sine || s.op == Op::cosine || s.op == Op::atan2;
             step.is_positive = s.is_positive;
-            step.out = place(slot);
-            for (Operand& channel : step.channel)
-                channel.constant = true;
+            for (Operand& out : step.out)
+                out.constant = true;
             if (s.op == Op::lookup) step.table = table(*s.table);
             if (s.op == Op::curve) step.table = curve(*s.curve);
             if (s.op == Op::lattice) step.table = lattice(*s.lattice, step.wide);
             if (s.op == Op::lookup_nonuniform) {
                 step.table = static_cast<std::uint32_t>(positioned_.size());
-                positioned_.push_back(at_positions(s.table->positions));
+                positioned_.push_back(at_positions(slot, step.wide));
             }
             add_result(step, slot);
             for (std::size_t k = 0; k < 4; ++k) {
@@ -663,54 +662,68 @@ class Assembler {
     void add_result(Instruction& step, std::size_t slot) {
         const Selected& s = steps_[slot];
         const auto n = static_cast<std::size_t>(s.sibling);
-        step.channel[s.op == Op::lattice ? static_cast<std::size_t>(s.channel) : n] = place(slot);
+        step.out[s.op == Op::lattice ? static_cast<std::size_t>(s.channel) : n] = place(slot);
         std::copy(s.k.begin(), s.k.end(),
                   step.k.begin() + 3 * static_cast<std::ptrdiff_t>(s.sibling));
-        if (s.op == Op::lookup_nonuniform) add_lines(positioned_[step.table], *s.table, n);
     }
 
-    static NonuniformTables at_positions(const std::vector<double>& positions) {
+    static void add(Samples& to, double number, bool is_wide) {
+        is_wide ? to.wide.push_back(number) : to.narrow.push_back(static_cast<float>(number));
+    }
+
+    /// The tables of a step and of its siblings.
+    [[nodiscard]] NonuniformTables at_positions(std::size_t slot, bool is_wide) const {
+        std::vector<const Table*> tables = {steps_[slot].table};
+        while (++slot < steps_.size() && steps_[slot].sibling > 0)
+            tables.push_back(steps_[slot].table);
         NonuniformTables result;
-        result.first = positions.front();
-        result.last = positions.back();
-        result.end.assign(positions.begin() + 1, positions.end());
-        result.lines.resize(positions.size());
-        const double length = result.last - result.first;
+        const std::vector<double>& positions = tables[0]->positions;
+        result.cells = positions.size();
+        result.length = tables.size() > 1 ? 8 : 4;
+        const double length = positions.back() - positions.front();
         // Twice as many parts as cells: few parts have more than one boundary.
-        const std::size_t parts = length > 0 ? 2 * std::bit_ceil(positions.size()) : 1;
-        result.parts_per_unit = length > 0 ? static_cast<double>(parts) / length : 0;
-        const auto cell_of = [&](double x) {
-            const auto behind = std::upper_bound(positions.begin(), positions.end(), x);
-            return static_cast<std::uint32_t>(
-                std::max<std::ptrdiff_t>(behind - positions.begin() - 1, 0));
+        if (length > 0)
+            result.parts_per_unit =
+                static_cast<double>(2 * std::bit_ceil(positions.size())) / length;
+        std::vector<std::size_t> part;  // in which each cell begins, as the kernel computes it
+        const auto part_of = [&](auto begin, auto first, auto parts_per_unit) {
+            part.push_back(static_cast<std::size_t>((begin - first) * parts_per_unit));
         };
-        std::uint32_t most = 0;
-        for (std::size_t part = 0; part <= parts; ++part) {
-            // A little earlier than it begins: the division may round.
-            const double begin = result.first + length * (static_cast<double>(part) - 1e-9) /
-                                                    static_cast<double>(parts);
-            const double end = result.first + length * (static_cast<double>(part) + 1 + 1e-9) /
-                                                  static_cast<double>(parts);
-            result.first_cell.push_back(cell_of(begin));
-            most = std::max(most, cell_of(end) - result.first_cell.back());
-        }
-        const std::size_t reach = std::bit_ceil(most + 1);
-        result.half_of_most = static_cast<std::int32_t>(reach / 2);
-        result.end.resize(positions.size() + reach, kInfinity);
-        return result;
-    }
-
-    static void add_lines(NonuniformTables& tables, const Table& source, std::size_t n) {
-        const bool is_linear = source.interpolation == Table::Interpolation::linear;
-        for (std::size_t i = 0; i < tables.lines.size(); ++i) {
-            double slope = 0;
-            if (is_linear && i + 1 < tables.lines.size()) {
-                slope = (source.samples[i + 1] - source.samples[i]) /
-                        (source.positions[i + 1] - source.positions[i]);
+        for (std::size_t i = 0; i < positions.size(); ++i) {
+            const double begin =
+                is_wide ? positions[i] : static_cast<double>(float_from(positions[i]));
+            add(result.begin, begin, is_wide);
+            if (is_wide) {
+                part_of(begin, positions[0], result.parts_per_unit);
+            } else {
+                part_of(result.begin.narrow[i], result.begin.narrow[0],
+                        static_cast<float>(result.parts_per_unit));
             }
-            tables.lines[i].slope[n] = slope;
-            tables.lines[i].constant[n] = source.samples[i] - slope * source.positions[i];
+            add(result.rows, begin, is_wide);
+            for (const Table* table : tables) {
+                const bool is_line =
+                    table->interpolation == Table::Interpolation::linear && i + 1 < result.cells;
+                const double slope = is_line ? cell_slope(*table, i) : 0;
+                add(result.rows, table->samples[i] + slope * (begin - positions[i]), is_wide);
+                add(result.rows, slope, is_wide);
+            }
+            while ((result.rows.narrow.size() + result.rows.wide.size()) %
+                   static_cast<std::size_t>(result.length))
+                add(result.rows, 0, is_wide);
         }
+        std::size_t first = 0, last = 0, most = 0;
+        for (std::size_t p = 0; p <= part.back(); ++p) {
+            while (first + 1 < part.size() && part[first + 1] < p)
+                ++first;
+            while (last + 1 < part.size() && part[last + 1] <= p)
+                ++last;
+            add(result.first_cell, static_cast<double>(first), is_wide);
+            most = std::max(most, last - first);
+        }
+        result.half_of_most = static_cast<std::int32_t>(std::bit_ceil(most + 1) / 2);
+        for (std::int32_t i = 0; i < result.half_of_most; ++i)
+            add(result.begin, kInfinity, is_wide);
+        return result;
     }
 
     std::uint32_t lattice(const Lattice& source, bool is_wide) {
@@ -729,9 +742,9 @@ class Assembler {
                 nodes[i / 3 * 4 + i % 3] = static_cast<T>(source.nodes()[i]);
         };
         if (is_wide) {
-            fill(sampled.wide);
+            fill(sampled.nodes.wide);
         } else {
-            fill(sampled.narrow);
+            fill(sampled.nodes.narrow);
         }
         return it->second;
     }
@@ -748,8 +761,8 @@ class Assembler {
             table_index_.try_emplace(&source, static_cast<std::uint32_t>(tables_.size()));
         if (is_new) {
             SampledTable sampled;
-            sampled.wide = source.samples;
-            sampled.narrow.assign(source.samples.begin(), source.samples.end());
+            sampled.samples.wide = source.samples;
+            sampled.samples.narrow.assign(source.samples.begin(), source.samples.end());
             sampled.interpolation = source.interpolation;
             tables_.push_back(std::move(sampled));
         }

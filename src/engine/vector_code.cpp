@@ -27,11 +27,6 @@ struct Lanes {
     Doubles wide;
 };
 
-/// What runs over a whole tile: what is rare, and goes pixel by pixel.
-bool is_tile_step(const Instruction& step) {
-    return step.op == Op::lookup_nonuniform || (step.op == Op::lattice && step.wide);
-}
-
 /// The program with every value defined once, divided into parts.
 class Translator {
   public:
@@ -45,32 +40,22 @@ class Translator {
                 at_[code.input_offset[c]] = input_[c];
             }
         }
-        // A step over the tile waits for the parts before it: by how many there are on the way.
-        std::vector<std::size_t> level(values_.size(), 0);
         for (const Instruction& step : code.instructions) {
-            Step s{&step, {kNone, kNone, kNone, kNone}, {kNone, kNone, kNone}, 0, 0};
+            Step s{&step, {kNone, kNone, kNone, kNone}, {kNone, kNone, kNone}, 0};
             for (std::size_t i = 0; i < static_cast<std::size_t>(operation(step.op).operands);
                  ++i) {
-                if (step.in[i].constant) continue;
-                s.in[i] = at_.at(step.in[i].offset);
-                s.level = std::max(s.level, level[static_cast<std::size_t>(s.in[i])]);
+                if (!step.in[i].constant) s.in[i] = at_.at(step.in[i].offset);
             }
             for (std::size_t i = 0; i < 3; ++i) {
-                if (operation(step.op).has_channels ? step.channel[i].constant : i > 0) continue;
-                const Operand& out = operation(step.op).has_channels ? step.channel[i] : step.out;
-                s.out[i] = define(out.wide);
-                level.push_back(s.level + (is_tile_step(step) ? 1 : 0));
-                at_[out.offset] = s.out[i];
+                if (step.out[i].constant) continue;
+                s.out[i] = define(step.out[i].wide);
+                at_[step.out[i].offset] = s.out[i];
             }
             steps_.push_back(s);
         }
         for (std::size_t c = 0; c < 3; ++c) {
             if (!code.output[c].constant) output_[c] = at_.at(code.output[c].offset);
         }
-        std::stable_sort(steps_.begin(), steps_.end(), [](const Step& a, const Step& b) {
-            return std::pair(a.level, is_tile_step(*a.step)) <
-                   std::pair(b.level, is_tile_step(*b.step));
-        });
         divide();
         find_crossings();
     }
@@ -78,10 +63,6 @@ class Translator {
     std::optional<VectorProgram> translate() {
         VectorProgram program;
         if (!place_in_tile(program)) return std::nullopt;
-        program.tile_steps.resize(part_count_ - 1);
-        for (const Step& s : steps_) {
-            if (is_tile_step(*s.step)) program.tile_steps[s.part].push_back(moved(s));
-        }
         for (const PixelLayout layout : {PixelLayout::rgb, PixelLayout::rgba}) {
             auto& parts = program.parts[static_cast<std::size_t>(layout)];
             for (std::size_t part = 0; part < part_count_; ++part)
@@ -94,9 +75,9 @@ class Translator {
 
   private:
     struct Value {
-        std::size_t part = 0;  // that defines it, or behind which a step over the tile does
+        std::size_t part = 0;  // that defines it
         bool wide = false;
-        bool crosses = false;       // into another part, or to or from a tile step
+        bool crosses = false;       // into another part
         bool is_sanitized = false;  // by the curves that are all that reads it
         std::uint32_t offset = 0;
     };
@@ -104,8 +85,7 @@ class Translator {
         const Instruction* step;
         std::array<std::int32_t, 4> in;
         std::array<std::int32_t, 3> out;
-        std::size_t level;
-        std::size_t part;  // that it belongs to, or runs behind
+        std::size_t part;
     };
 
     std::int32_t define(bool wide) {
@@ -136,9 +116,9 @@ class Translator {
         return result;
     }
 
-    /// Parts end where a step over the tile begins, and where they get so long that a processor
-    /// could not begin with the next pixels while it waits for the results of these: there at the
-    /// place with the fewest values to hand on. What is little longer than a part is not divided.
+    /// Parts end where they get so long that a processor could not begin with the next pixels while
+    /// it waits for the results of these: at the place with the fewest values to hand on. What is
+    /// little longer than a part is not divided.
     void divide() {
         const std::vector<std::size_t> across = bytes_across();
         constexpr int kLittleLonger = 60;  // as fast as 30; 0 divides Hable: 4 % slower
@@ -149,26 +129,17 @@ class Translator {
                 steps_[begin].part = part;
         };
         while (begin < steps_.size()) {
-            if (is_tile_step(*steps_[begin].step)) {
-                steps_[begin].part = part;
-                ++begin;
-                if (begin == steps_.size() || !is_tile_step(*steps_[begin].step) ||
-                    steps_[begin].level != steps_[begin - 1].level) {
-                    ++part;
-                }
-                continue;
-            }
             std::size_t end = begin;
             std::size_t best = begin;
             int length = 0;
-            for (; end < steps_.size() && !is_tile_step(*steps_[end].step); ++end) {
+            for (; end < steps_.size(); ++end) {
                 length += vectors_of(*steps_[end].step);
                 if (length > kLongestPart + kLittleLonger) break;
                 if (length >= kLongestPart / 2 && length <= kLongestPart &&
                     (best == begin || across[end + 1] <= across[best]))
                     best = end + 1;
             }
-            const bool is_whole = end == steps_.size() || is_tile_step(*steps_[end].step);
+            const bool is_whole = end == steps_.size();
             end_part(is_whole || best == begin ? std::max(end, begin + 1) : best);
             if (!is_whole) ++part;
         }
@@ -196,12 +167,8 @@ class Translator {
         for (const Step& s : steps_) {
             for (const std::int32_t i : s.in) {
                 if (i == kNone) continue;
-                if (is_tile_step(*s.step) || s.part != value(i).part) value(i).crosses = true;
+                if (s.part != value(i).part) value(i).crosses = true;
                 if (!limits_input(*s.step)) value(i).is_sanitized = false;
-            }
-            if (!is_tile_step(*s.step)) continue;
-            for (const std::int32_t i : s.out) {
-                if (i != kNone) value(i).crosses = true;
             }
         }
         for (const std::int32_t i : output_) {
@@ -238,20 +205,6 @@ class Translator {
         return true;
     }
 
-    Instruction moved(const Step& s) {
-        Instruction step = *s.step;
-        const auto move = [&](Operand& operand, std::int32_t i) {
-            if (i != kNone) operand.offset = value(i).offset;
-        };
-        for (std::size_t i = 0; i < 4; ++i)
-            move(step.in[i], s.in[i]);
-        for (std::size_t i = 0; i < 3; ++i) {
-            if (operation(step.op).has_channels) move(step.channel[i], s.out[i]);
-        }
-        if (!operation(step.op).has_channels) move(step.out, s.out[0]);
-        return step;
-    }
-
     // --- one part --------------------------------------------------------------------------------
 
     VectorCode write(std::size_t part, PixelLayout layout) {
@@ -261,8 +214,7 @@ class Translator {
         if (part == 0) read_inputs(layout);
         static const auto writes = all_writes(std::make_index_sequence<std::size(kOperations)>());
         for (const Step& s : steps_) {
-            if (s.part != part || is_tile_step(*s.step)) continue;
-            (this->*writes[static_cast<std::size_t>(computed_by(*s.step))])(s);
+            if (s.part == part) (this->*writes[static_cast<std::size_t>(computed_by(*s.step))])(s);
         }
         if (part == part_count_ - 1) write_outputs(layout);
         return scheduled(writer.take());
@@ -391,52 +343,35 @@ class Translator {
                                 : wide(s.in[k], half);
     }
 
-    /// f(tag, x) with operands x(i), in float or for each half in double.
-    template <class F>
-    void set_computed(const Step& s, std::int32_t result, bool is_wide, F f) {
-        if (!is_wide) return set(result, f(float_tag(), [&](int i) { return in(s, i); }));
-        Doubles x;
-        for (int half = 0; half < kHalves; ++half)
-            x.half[half] = f(double_tag(float_tag()), [&](int i) { return in(s, i, half); });
-        set(result, x);
-    }
-
     template <Op op>
     void write_op(const Step& s) {
         const Instruction& step = *s.step;
-        if constexpr (op == Op::dot3) {
-            for (std::size_t row = 0; row < 3; ++row) {
-                if (s.out[row] == kNone) continue;
-                set_computed(s, s.out[row], step.wide, [&](auto d, auto x) {
-                    return dot3(d, step.k.data() + 3 * row, x(0), x(1), x(2));
-                });
-            }
-        } else if constexpr (op == Op::lattice) {
-            write_lattice(s, code_.lattices[step.table]);
-        } else if constexpr (op == Op::curve) {
+        if constexpr (op == Op::curve) {
             const CompiledCurve& curve = code_.curves[step.table];
-            if (curve.rows) return write_rows(s, curve);
-            write_curve(s, curve,
-                        SegmentPolynomial<hn::Tag<float>, int, int>(
-                            float_tag(), curve, threshold_count(curve), curve.segments));
-        } else if constexpr (op != Op::lookup_nonuniform) {
-            set_computed(s, s.out[0], step.wide || is_always_wide(op),
-                         [&](auto d, auto x) { return compute<op>(d, code_, step, x); });
+            if (curve.rows)
+                return write_curve(s, curve,
+                                   RowPolynomial<hn::Tag<float>>(float_tag(), *curve.rows));
+            return write_curve(s, curve, SegmentPolynomial<hn::Tag<float>>(float_tag(), curve));
+        }
+        if (!step.wide && !is_always_wide(op)) {
+            const auto x = [&](int i) { return in(s, i); };
+            const auto give = [&](std::size_t c, VF result) { set(s.out[c], result); };
+            return compute<op>(float_tag(), code_, step, x, give);
+        }
+        Doubles results[3];
+        for (int half = 0; half < kHalves; ++half) {
+            const auto x = [&](int i) { return in(s, i, half); };
+            const auto give = [&](std::size_t c, VD result) { results[c].half[half] = result; };
+            compute<op>(double_tag(float_tag()), code_, step, x, give);
+        }
+        for (std::size_t c = 0; c < 3; ++c) {
+            if (s.out[c] != kNone) set(s.out[c], results[c]);
         }
     }
     using Write = void (Translator::*)(const Step&);
     template <std::size_t... kOp>
     static std::array<Write, sizeof...(kOp)> all_writes(std::index_sequence<kOp...> /*all*/) {
         return {&Translator::write_op<static_cast<Op>(kOp)>...};
-    }
-
-    void write_rows(const Step& s, const CompiledCurve& curve) {
-        const CurveRows& rows = *curve.rows;
-        const bool has_restarts = !rows.restarts.empty();
-        const std::uint32_t in_cell = (std::uint32_t{1} << static_cast<unsigned>(rows.shift)) - 1;
-        const RowKind kind = {rows.length, has_restarts,
-                              !has_restarts && (rows.base & in_cell) == 0};
-        write_curve(s, curve, RowPolynomial<hn::Tag<float>, RowKind>(float_tag(), rows, kind));
     }
 
     template <class P>
@@ -449,29 +384,6 @@ class Translator {
         if (is_rounded) exact = {in(s, 0, 0), in(s, 0, 1)};
         set(s.out[0], precise_curve_value(d, ends, CurveEnds(double_tag(d), curve), polynomial,
                                           in(s, 0), is_rounded ? &exact : nullptr));
-    }
-
-    void write_lattice(const Step& s, const SampledLattice& lattice) {
-        constexpr double kNodeBytes = 4 * sizeof(float);
-        Writer& w = *writer_;
-        const auto nodes =
-            nodes_about(float_tag(), in(s, 0), in(s, 1), in(s, 2), lattice.edge, kNodeBytes);
-        for (int k = 0; k < 4; ++k)
-            w.spill_index(k, places(nodes.place[k]).operand);
-        std::array<VectorOperand, 4> rgba;
-        for (int quarter = 0; quarter < 4; ++quarter) {
-            const auto weight = [&](int k) {
-                return VF{writer_, w.expand(nodes.weight[k].operand, quarter)};
-            };
-            const auto node = [&](int k) {
-                return VF{writer_, w.rows(k, quarter, lattice.narrow.data(), 0)};
-            };
-            rgba[static_cast<std::size_t>(quarter)] = weighted_sum(weight, node).operand;
-        }
-        const std::array<VectorOperand, 4> channel = w.columns(rgba);
-        for (std::size_t c = 0; c < 3; ++c) {
-            if (s.out[c] != kNone) set(s.out[c], VF{writer_, channel[c]});
-        }
     }
 
     const Code& code_;

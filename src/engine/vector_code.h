@@ -58,11 +58,10 @@ enum class VectorOp : std::uint8_t {
     // Tables
     permute_16,   // the element of 16 floats at `offset` that a says; AVX-512
     permute_32,   // AVX-512
-    gather,       // of the numbers at `offset`, that of index a
+    gather,       // of the numbers at `address`, that of index a
     spill_index,  // the whole numbers a, on the stack, number `immediate`
-    rows,  // four floats each for a quarter of the pixels, at `address`, or without one in the
-           // pool, + `offset` + the bytes that spill_index kept: `immediate` says which
-           // index, and times 4, which pixel of each four
+    rows,         // four floats each for a quarter of the pixels, at `address` + the floats that
+           // spill_index kept: `immediate` says which index, and times 4, which pixel of each four
     // Memory
     load_plane,
     store_plane,
@@ -90,7 +89,7 @@ struct VectorInstruction {
     std::uint8_t immediate = 0;
     std::uint8_t block = 0;                      // of those that one turn of the loop computes
     std::uint32_t offset = 0;                    // in the pool, or in the tile: bytes
-    const void* address = nullptr;               // of a lattice's nodes
+    const void* address = nullptr;               // of that table
     std::int32_t result = VectorOperand::kNone;  // a mask, of a comparison
     std::int32_t mask = VectorOperand::kNone;
     std::array<VectorOperand, 3> in{};
@@ -106,7 +105,7 @@ enum class PixelLayout : std::uint8_t {
     rgba,  // the fourth channel keeps its value
 };
 
-/// A part of the program without a step that runs over a whole tile.
+/// A part of the program.
 struct VectorCode {
     std::vector<VectorInstruction> instructions;
     std::int32_t value_count = 0;
@@ -116,20 +115,17 @@ struct VectorCode {
 /// processor that waits for a result has the next block's instruction to begin with.
 [[nodiscard]] VectorCode interleaved(const VectorCode& code, int blocks);
 
-/// The program as such parts and, between them, what runs over a whole tile: lattices, positioned
-/// tables.
+/// The program as such parts, which run one after the other over a tile.
 struct VectorProgram {
-    /// By the layout of the pixels: part k runs before tile step k. Only the first and the last
-    /// differ.
+    /// By the layout of the pixels. Only the first and the last differ.
     std::array<std::vector<VectorCode>, 2> parts;
-    std::vector<std::vector<Instruction>> tile_steps;  // behind each part but the last
-    std::vector<unsigned char> pool;                   // constants and tables; to be aligned to 64
-    std::vector<UniformPlace> uniforms;                // in the pool
-    std::size_t tile = 0;                              // in pixels
+    std::vector<unsigned char> pool;     // constants and tables; to be aligned to 64
+    std::vector<UniformPlace> uniforms;  // in the pool
+    std::size_t tile = 0;                // in pixels
 };
 
 /// Nothing where more values go from part to part than a tile of 16 pixels has room for.
-/// @param code  for a target with machine code; owns the lattices that the result refers to
+/// @param code  for a target with machine code; owns the tables that the result refers to
 [[nodiscard]] std::optional<VectorProgram> translate(const Code& code);
 
 }  // namespace simd

@@ -89,26 +89,21 @@ class Writer {
     // --- numbers that lie in rows ------------------------------------------------------------
 
     /// Keeps whole numbers, by which rows() finds its numbers.
-    /// @param bytes  from the first row on
-    void spill_index(int number, Number bytes) {
+    void spill_index(int number, Number place) {
         emit_store({.op = VectorOp::spill_index,
                     .immediate = static_cast<std::uint8_t>(number),
-                    .in = {bytes}});
+                    .in = {place}});
     }
     /// A number for spill_index() that the rows before the last do not need any more.
     int next_index() {
         spilled_ = (spilled_ + 1) % 4;
         return spilled_;
     }
-    /// @param address  null: in the pool
-    Number rows(int index, int quarter, const void* address, std::uint32_t offset) {
+    Number rows(int index, int quarter, const float* first) {
         return emit({.op = VectorOp::rows,
                      .immediate = static_cast<std::uint8_t>(index + 4 * quarter),
-                     .offset = offset,
-                     .address = address});
+                     .address = first});
     }
-    /// The floats of a quarter of the pixels, four times each.
-    Number expand(Number x, int quarter) { return shuffle_4(x, x, quarter * 0x55); }
 
     // --- pixels --------------------------------------------------------------------------------
 
@@ -393,12 +388,10 @@ VI places(hn::Vector<T> x) {
 }
 template <class T>
 hn::Vector<T> gather(hn::Tag<T> d, std::span<const T> samples, std::size_t first, VI place) {
-    const std::uint32_t table = d.writer->pool().table(samples.data(), samples.size());
-    return {d.writer,
-            d.writer->emit({.op = VectorOp::gather,
-                            .wide = hn::kIsWide<T>,
-                            .offset = table + static_cast<std::uint32_t>(first * sizeof(T)),
-                            .in = {place.operand}})};
+    return {d.writer, d.writer->emit({.op = VectorOp::gather,
+                                      .wide = hn::kIsWide<T>,
+                                      .address = samples.data() + first,
+                                      .in = {place.operand}})};
 }
 
 /// Numbers that permutes of AVX-512 pick from.
@@ -422,17 +415,16 @@ inline PermutedTable table(hn::Tag<float> d, const float* numbers, int size) {
     return {d.writer->pool().table(numbers, static_cast<std::size_t>(size)), size};
 }
 
-/// Four or eight floats in a row for each pixel.
+/// See GatheredRows: loads of rows.
 class Rows {
   public:
-    Rows(Writer& writer, std::span<const float> numbers, VI cell, std::size_t groups)
-        : writer_(writer),
-          offset_(writer.pool().table(numbers.data(), numbers.size())),
-          index_(writer.next_index()),
-          groups_(groups) {
-        writer.spill_index(index_, hn::ShiftLeftSame(cell, groups == 2 ? 5 : 4).operand);
+    Rows(std::span<const float> numbers, VI place, int length)
+        : writer_(*place.writer),
+          numbers_(numbers.data()),
+          index_(writer_.next_index()),
+          groups_(static_cast<std::size_t>(length / 4)) {
+        writer_.spill_index(index_, place.operand);
     }
-    /// The first four numbers as four vectors, or the second four.
     void columns(std::size_t group, VF* result) {
         // Both groups are loaded at once: each index is read once.
         if (!is_loaded_) load();
@@ -446,27 +438,20 @@ class Rows {
         for (std::size_t quarter = 0; quarter < 4; ++quarter) {
             for (std::size_t group = 0; group < groups_; ++group)
                 rows_[group][quarter] =
-                    writer_.rows(index_, static_cast<int>(quarter), nullptr,
-                                 offset_ + static_cast<std::uint32_t>(16 * group));
+                    writer_.rows(index_, static_cast<int>(quarter), numbers_ + 4 * group);
         }
         is_loaded_ = true;
     }
 
     Writer& writer_;
-    std::uint32_t offset_;
+    const float* numbers_;
     int index_;
     std::size_t groups_;
     bool is_loaded_ = false;
     std::array<std::array<VectorOperand, 4>, 2> rows_{};
 };
-/// See RowPolynomial.
-struct RowKind {
-    int length;
-    bool has_restarts;
-    bool is_aligned;
-};
-inline Rows rows_at(hn::Tag<float> d, std::span<const float> numbers, VI cell, RowKind kind) {
-    return {*d.writer, numbers, cell, kind.length == 8 ? std::size_t{2} : std::size_t{1}};
+inline Rows rows_at(hn::Tag<float> /*d*/, std::span<const float> numbers, VI place, int length) {
+    return {numbers, place, length};
 }
 
 #include "engine/simd_math-inl.h"

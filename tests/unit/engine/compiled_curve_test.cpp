@@ -199,9 +199,10 @@ TEST_P(CompiledCurveForm, KernelsComputeWhatItSays) {
             simd::Instruction step;
             step.op = simd::Op::curve;
             step.wide = is_precise;
-            step.out.offset = sizeof(float) * simd::kMaxTile;
+            step.out[0].offset = sizeof(float) * simd::kMaxTile;
+            step.out[1].constant = step.out[2].constant = true;
             code.instructions.push_back(step);
-            code.output = {step.out, step.out, step.out};
+            code.output = {step.out[0], step.out[0], step.out[0]};
             // Pixels are limited to half floats' numbers before anything else.
             std::vector<float> x;
             for (const float place : places(f)) {

@@ -600,8 +600,6 @@ class Generator : public Xbyak::CodeGenerator {
                 return binary(step, [&](auto... x) { wide ? vminpd(x...) : vminps(x...); });
             case VectorOp::maximum:
                 return binary(step, [&](auto... x) { wide ? vmaxpd(x...) : vmaxps(x...); });
-            case VectorOp::scale:
-                return binary(step, [&](auto... x) { wide ? vscalefpd(x...) : vscalefps(x...); });
             case VectorOp::bit_and:
                 return binary(step, [&](auto... x) { wide ? vandpd(x...) : vandps(x...); });
             case VectorOp::bit_or:
@@ -644,12 +642,6 @@ class Generator : public Xbyak::CodeGenerator {
                     }
                 });
             }
-            case VectorOp::exponent:
-                return unary(step, [&](auto... x) { wide ? vgetexppd(x...) : vgetexpps(x...); });
-            case VectorOp::mantissa:  // [3/4, 3/2), sign 0
-                return unary(step, [&](Z r, const O& a) {
-                    wide ? vgetmantpd(r, a, 7) : vgetmantps(r, a, 7);
-                });
             case VectorOp::shift_right: {
                 const Z a = in_register(step.in[0], wide);
                 const Z r = result_after(step);

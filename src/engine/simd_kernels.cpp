@@ -104,35 +104,6 @@ HWY_INLINE hn::Vec<D> gather(D d, std::span<const TFromD<D>> samples, std::size_
     return hn::GatherIndex(d, samples.data() + first, place);
 }
 
-#if HWY_TARGET <= HWY_AVX3
-
-// AVX-512 has instructions for exponents.
-constexpr bool kMayHaveExponents = true;
-template <class D>
-constexpr bool has_exponents(D /*d*/) {
-    return true;
-}
-HWY_INLINE hn::Vec<DF> exponent(hn::Vec<DF> x) { return hn::Vec<DF>{_mm512_getexp_ps(x.raw)}; }
-HWY_INLINE hn::Vec<DD> exponent(hn::Vec<DD> x) { return hn::Vec<DD>{_mm512_getexp_pd(x.raw)}; }
-HWY_INLINE hn::Vec<DF> mantissa(hn::Vec<DF> x) {
-    return hn::Vec<DF>{_mm512_getmant_ps(x.raw, _MM_MANT_NORM_p75_1p5, _MM_MANT_SIGN_zero)};
-}
-HWY_INLINE hn::Vec<DD> mantissa(hn::Vec<DD> x) {
-    return hn::Vec<DD>{_mm512_getmant_pd(x.raw, _MM_MANT_NORM_p75_1p5, _MM_MANT_SIGN_zero)};
-}
-HWY_INLINE hn::Vec<DF> scale_by(hn::Vec<DF> x, hn::Vec<DF> n) {
-    return hn::Vec<DF>{_mm512_scalef_ps(x.raw, n.raw)};
-}
-HWY_INLINE hn::Vec<DD> scale_by(hn::Vec<DD> x, hn::Vec<DD> n) {
-    return hn::Vec<DD>{_mm512_scalef_pd(x.raw, n.raw)};
-}
-
-#else
-
-constexpr bool kMayHaveExponents = false;
-
-#endif
-
 /// Up to 64 numbers, and those of them that a vector of indices picks.
 struct IndexedTable {
     const float* numbers;

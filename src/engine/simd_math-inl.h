@@ -9,7 +9,6 @@
 //   - Doubles: as many doubles as a vector has floats, in kHalves vectors; promote(), demote();
 //   - double_tag(), bits_tag(): Highway's tags for doubles and for the bits of a number;
 //   - has_minus(): numbers with a sign, -0 too;
-//   - kMayHaveExponents, and where it is true has_exponents(), exponent(), mantissa(), scale_by();
 //   - what depends on the processor most: where the numbers of a table are (see there).
 //
 // Coefficients are minimax polynomials (Remez exchange, 50 digits); the error beside each is that
@@ -97,19 +96,6 @@ HWY_INLINE Vec<D> dot3(D d, const double* k, Vec<D> a, Vec<D> b, Vec<D> c) {
 /// @param is_normal  x is no denormal
 template <class D>
 HWY_INLINE void split(D d, Vec<D> x, Vec<D>& e, Vec<D>& f, bool is_normal) {
-    if constexpr (kMayHaveExponents) {
-        if (has_exponents(d)) {
-            // 4/3 x has the next exponent exactly where the fraction of x is 3/2 or more, also when
-            // rounded: with 4/3 rounded up to float (by 1/3 of a last place) and down to double (by
-            // 1/3), 3/2 gives 2 and the number before it gives less. Rounded up to double (by 2/3),
-            // that one would give 2 as well.
-            const double up =
-                kIsDouble<D> ? 0x1.5555555555555p+0 : static_cast<double>(1.33333337F);
-            e = exponent(hn::Mul(x, set(d, up)));
-            f = hn::Sub(mantissa(x), set(d, 1));
-            return;
-        }
-    }
     const auto tag = bits_tag(d);
     if constexpr (kIsDouble<D>) {
         constexpr std::uint64_t kThreeQuarters = 0x3FE8000000000000;
@@ -149,9 +135,6 @@ inline constexpr double kLargestLog2 = kIsDouble<D> ? 1024 : 150;
 /// @param largest  of |n|; above kLargestExponent, n is limited to that
 template <class D>
 HWY_INLINE Vec<D> scale(D d, Vec<D> x, Vec<D> n, double largest) {
-    if constexpr (kMayHaveExponents) {
-        if (has_exponents(d)) return scale_by(x, n);
-    }
     if (largest > kLargestExponent<D>) n = limited(d, n, kLargestExponent<D>);
     const auto tag = bits_tag(d);
     if constexpr (kIsDouble<D>) {

@@ -32,9 +32,6 @@ enum class VectorOp : std::uint8_t {
     bit_and_not,  // ~a & b
     round,        // to the nearest whole number
     floor,        //
-    exponent,     // floor(log2 |a|); AVX-512
-    mantissa,     // a / 2^exponent, in [3/4, 3/2); AVX-512
-    scale,        // a * 2^b; AVX-512
     // Between floats and pairs of vectors of doubles
     promote_low,
     promote_high,

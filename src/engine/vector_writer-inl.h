@@ -343,7 +343,6 @@ namespace hn = recorded;
 #define HWY_ATTR
 
 constexpr bool kHasFma = true;
-constexpr bool kMayHaveExponents = true;
 
 using VF = hn::Vector<float>;
 using VD = hn::Vector<double>;
@@ -372,14 +371,6 @@ template <class T>
 hn::Mask<T> has_minus(hn::Tag<T> /*d*/, hn::Vector<T> x) {
     return {x.writer, hn::Operation<VectorOp::is_minus>()(x).operand.value};
 }
-
-template <class T>
-bool has_exponents(hn::Tag<T> d) {
-    return d.writer->has_avx512();
-}
-inline constexpr hn::Operation<VectorOp::exponent> exponent;
-inline constexpr hn::Operation<VectorOp::mantissa> mantissa;
-inline constexpr hn::Operation<VectorOp::scale> scale_by;
 
 template <class T>
 VI places(hn::Vector<T> x) {

@@ -497,12 +497,8 @@ class Generator : public Xbyak::CodeGenerator {
     }
 
     Xbyak::Address plane(const VectorInstruction& step) {
-        const auto vector_bytes = static_cast<std::size_t>(machine_.bytes());
-        if (step.wide) {
-            const std::size_t half = step.immediate + std::size_t{2} * step.block;
-            return ptr[rdi + r8 * 2 + (step.offset + vector_bytes * half)];
-        }
-        return ptr[rdi + r8 + (step.offset + vector_bytes * step.block)];
+        return ptr[rdi + r8 +
+                   (step.offset + static_cast<std::size_t>(machine_.bytes()) * step.block)];
     }
     Xbyak::Address pixels(const Xbyak::Reg64& base, const VectorInstruction& step) {
         return pixels(base, step, machine_.bytes() * step.immediate);

@@ -28,7 +28,9 @@ class MachineCode {
     virtual ~MachineCode() = default;
 
     [[nodiscard]] const VectorProgram& program() const noexcept { return program_; }
-    [[nodiscard]] std::size_t part_count() const noexcept { return bytes_[0].size(); }
+    [[nodiscard]] std::size_t part_count(PixelLayout layout) const noexcept {
+        return bytes_[static_cast<std::size_t>(layout)].size();
+    }
     /// Of code.
     [[nodiscard]] std::size_t bytes(std::size_t part, PixelLayout layout) const noexcept {
         return bytes_[static_cast<std::size_t>(layout)][part];

@@ -399,7 +399,7 @@ std::array<T*, 3> from(const std::array<T*, 3>& plane, std::ptrdiff_t stride, st
 /// One part after the other over a tile.
 void run_parts(const MachineCode& code, const Numbers& numbers, PixelLayout layout,
                unsigned char* tile, const float* in, float* out, std::size_t count) {
-    for (std::size_t part = 0; part < code.part_count(); ++part)
+    for (std::size_t part = 0; part < code.part_count(layout); ++part)
         code.run(part, layout, numbers, tile, in, out, count / hn::Lanes(DF()));
 }
 
@@ -416,7 +416,8 @@ void run_machine(const Code& code, const Numbers& numbers, unsigned char* tile,
         const std::size_t whole =
             (stride == 4 && count > 0 ? count - 1 : count) / kLaneMultiple * kLaneMultiple;
         // What is one part keeps nothing in a tile.
-        const std::size_t step = code.machine->part_count() == 1 ? HWY_MAX(whole, 1) : program.tile;
+        const std::size_t step =
+            code.machine->part_count(layout) == 1 ? HWY_MAX(whole, 1) : program.tile;
         for (; done < whole; done += HWY_MIN(step, whole - done)) {
             run_parts(*code.machine, numbers, layout, tile, in[0] + done * stride,
                       out[0] + done * stride, HWY_MIN(step, whole - done));

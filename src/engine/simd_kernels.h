@@ -64,8 +64,6 @@ enum class Op : std::uint8_t {
 struct Operation {
     const char* name;
     int operands;
-    /// About how many vector instructions compute it; a curve's depend on the curve.
-    int vectors = 1;
     /// Has up to three results.
     bool has_channels = false;
 };
@@ -79,7 +77,7 @@ inline constexpr Operation kOperations[] = {
     {"multiply_add", 3},
     {"multiply_subtract", 3},
     {"subtract_product", 3},
-    {"dot3", 3, 9, true},
+    {"dot3", 3, true},
     {"minimum", 2},
     {"maximum", 2},
     {"clamp", 3},
@@ -87,14 +85,14 @@ inline constexpr Operation kOperations[] = {
     {"absolute", 1},
     {"square_root", 1},
     {"floor", 1},
-    {"exp2", 1, 16},
-    {"log2", 1, 16},
-    {"power", 2, 40},
-    {"power_constant", 1, 30},
-    {"power_near", 1, 30},
-    {"sine", 1, 30},
-    {"cosine", 1, 30},
-    {"atan2", 2, 40},
+    {"exp2", 1},
+    {"log2", 1},
+    {"power", 2},
+    {"power_constant", 1},
+    {"power_near", 1},
+    {"sine", 1},
+    {"cosine", 1},
+    {"atan2", 2},
     {"less", 2},
     {"less_equal", 2},
     {"equal", 2},
@@ -102,10 +100,10 @@ inline constexpr Operation kOperations[] = {
     {"select_less", 4},
     {"select_less_equal", 4},
     {"select_equal", 4},
-    {"lookup", 1, 15},
-    {"lookup_nonuniform", 1, 40, true},
+    {"lookup", 1},
+    {"lookup_nonuniform", 1, true},
     {"curve", 1},
-    {"lattice", 3, 80, true},
+    {"lattice", 3, true},
 };
 static_assert(std::size(kOperations) == static_cast<std::size_t>(Op::lattice) + 1);
 

@@ -16,10 +16,117 @@ namespace {
 constexpr std::int32_t kNone = VectorOperand::kNone;
 /// Bytes of a tile: stays in a first-level cache of 32 KiB.
 constexpr std::size_t kTileBytes = std::size_t{24} * 1024;
-/// Vector instructions of a part. Much shorter ones write more values to the tile than they
-/// compute (with AVX2 and 50, AgX of Blender is 10 % slower); with AVX2 and 300, ACES 1.3 is 8 %
-/// slower. With AVX-512, ten operators are 1 % faster than with 90.
-constexpr int kLongestPart = 150;
+/// Instructions of a part, about. Shorter ones write more values to the tile than they compute; of
+/// longer ones, the processor cannot begin with the next pixels while it waits for the results of
+/// these.
+constexpr std::size_t kPartLength = 360;
+
+/// Of a value.
+auto& at(auto& by_value, std::int32_t v) { return by_value[static_cast<std::size_t>(v)]; }
+
+/// Where the parts of a program end, and which vectors they hand on.
+class Division {
+  public:
+    explicit Division(const VectorCode& code)
+        : code_(code),
+          first_(static_cast<std::size_t>(code.value_count)),
+          last_(first_.size()),
+          plane_(first_.size()) {
+        const std::size_t n = code.instructions.size();
+        // Before each instruction: how many vectors are alive. Masks and indices stay where they
+        // are.
+        constexpr int kNeverCut = 1 << 16;
+        std::vector<int> alive(n + 1);
+        const auto add = [&](std::size_t from, std::size_t to, int count) {
+            for (std::size_t i = from + 1; i <= to; ++i)
+                alive[i] += count;
+        };
+        std::array<std::size_t, 4> spill{};
+        for (std::size_t i = 0; i < n; ++i) {
+            const VectorInstruction& step = code.instructions[i];
+            for (const VectorOperand& operand : step.in) {
+                if (operand.is_value()) at(last_, operand.value) = i;
+            }
+            if (step.mask != kNone) at(last_, step.mask) = i;
+            if (step.result != kNone) at(first_, step.result) = i;
+            if (step.op == VectorOp::spill_index) spill[step.immediate] = i;
+            if (step.op == VectorOp::rows) add(spill[step.immediate % 4], i, kNeverCut);
+        }
+        for (std::size_t v = 0; v < first_.size(); ++v)
+            add(first_[v], last_[v], makes_mask(code.instructions[first_[v]].op) ? kNeverCut : 1);
+        std::size_t begin = 0;
+        for (std::size_t parts = (n + kPartLength / 2) / kPartLength; parts > 1; --parts) {
+            const std::size_t length = (n - begin) / parts;
+            // The nearest place across which the fewest vectors are handed on.
+            std::size_t end = begin + length;
+            for (std::size_t away = 1; away <= length / 4; ++away) {
+                for (const std::size_t i : {begin + length - away, begin + length + away})
+                    end = alive[i] < alive[end] ? i : end;
+            }
+            while (alive[end] >= kNeverCut)
+                ++end;
+            ends_.push_back(end);
+            begin = end;
+        }
+        ends_.push_back(n);
+        for (std::size_t v = 0; v < first_.size(); ++v) {
+            if (part_of(first_[v]) < part_of(last_[v])) plane_[v] = planes_++;
+        }
+    }
+
+    /// Planes of the tile: a vector of each block of pixels.
+    [[nodiscard]] std::size_t planes() const { return planes_; }
+
+    [[nodiscard]] std::vector<VectorCode> parts(std::size_t plane_bytes) const {
+        std::vector<VectorCode> result;
+        std::size_t begin = 0;
+        for (const std::size_t end : ends_) {
+            VectorCode part;
+            std::map<std::int32_t, std::int32_t> number;  // of the values that it knows
+            const auto offset_of = [&](std::int32_t v) {
+                return static_cast<std::uint32_t>(at(plane_, v) * plane_bytes);
+            };
+            const auto renumber = [&](std::int32_t& value) {
+                if (value == kNone) return;
+                const auto [it, is_new] =
+                    number.try_emplace(value, static_cast<std::int32_t>(number.size()));
+                if (is_new && at(first_, value) < begin)
+                    part.instructions.push_back({.op = VectorOp::load_plane,
+                                                 .offset = offset_of(value),
+                                                 .result = it->second});
+                value = it->second;
+            };
+            for (std::size_t i = begin; i < end; ++i) {
+                VectorInstruction step = code_.instructions[i];
+                const std::int32_t made = step.result;
+                for (VectorOperand& operand : step.in)
+                    renumber(operand.value);
+                renumber(step.mask);
+                renumber(step.result);
+                part.instructions.push_back(step);
+                if (made != kNone && at(last_, made) >= end)
+                    part.instructions.push_back({.op = VectorOp::store_plane,
+                                                 .offset = offset_of(made),
+                                                 .in = {{{step.result}}}});
+            }
+            part.value_count = static_cast<std::int32_t>(number.size());
+            result.push_back(scheduled(part));
+            begin = end;
+        }
+        return result;
+    }
+
+  private:
+    [[nodiscard]] std::ptrdiff_t part_of(std::size_t i) const {
+        return std::upper_bound(ends_.begin(), ends_.end(), i) - ends_.begin();
+    }
+
+    const VectorCode& code_;
+    std::vector<std::size_t> first_, last_;  // that make and read each value
+    std::vector<std::size_t> ends_;
+    std::vector<std::size_t> plane_;  // of each value that is handed on
+    std::size_t planes_ = 0;
+};
 
 /// One value of all pixels of a block: a vector of floats, or two of doubles, or both.
 struct Lanes {
@@ -27,287 +134,74 @@ struct Lanes {
     Doubles wide;
 };
 
-/// The program with every value defined once, divided into parts.
+/// Writes the program with the interpreter's registers in the processor's.
 class Translator {
   public:
-    explicit Translator(const Code& code)
-        : code_(code),
-          machine_(*code.target->machine),
-          pool_(machine_.has_avx512 ? 0 : static_cast<std::size_t>(machine_.bytes())) {
-        for (std::size_t c = 0; c < 3; ++c) {
-            if (code.reads_input[c]) {
-                input_[c] = define(false);
-                at_[code.input_offset[c]] = input_[c];
-            }
-        }
-        for (const Instruction& step : code.instructions) {
-            Step s{&step, {kNone, kNone, kNone, kNone}, {kNone, kNone, kNone}, 0};
-            for (std::size_t i = 0; i < static_cast<std::size_t>(operation(step.op).operands);
-                 ++i) {
-                if (!step.in[i].constant) s.in[i] = at_.at(step.in[i].offset);
-            }
-            for (std::size_t i = 0; i < 3; ++i) {
-                if (step.out[i].constant) continue;
-                s.out[i] = define(step.out[i].wide);
-                at_[step.out[i].offset] = s.out[i];
-            }
-            steps_.push_back(s);
-        }
-        for (std::size_t c = 0; c < 3; ++c) {
-            if (!code.output[c].constant) output_[c] = at_.at(code.output[c].offset);
-        }
-        divide();
-        find_crossings();
-    }
+    Translator(const Code& code, Pool& pool)
+        : code_(code), pool_(pool), writer_(pool, *code.target->machine) {}
 
-    std::optional<VectorProgram> translate() {
-        VectorProgram program;
-        if (!place_in_tile(program)) return std::nullopt;
-        for (const PixelLayout layout : {PixelLayout::rgb, PixelLayout::rgba}) {
-            auto& parts = program.parts[static_cast<std::size_t>(layout)];
-            for (std::size_t part = 0; part < part_count_; ++part)
-                parts.push_back(write(part, layout));
-        }
-        program.pool = pool_.take();
-        program.uniforms = pool_.take_uniforms();
-        return program;
+    VectorCode write(PixelLayout layout) {
+        read_inputs(layout);
+        static const auto writes = all_writes(std::make_index_sequence<std::size(kOperations)>());
+        for (const Instruction& step : code_.instructions)
+            (this->*writes[static_cast<std::size_t>(computed_by(step))])(step);
+        write_outputs(layout);
+        return writer_.take();
     }
 
   private:
-    struct Value {
-        std::size_t part = 0;  // that defines it
-        bool wide = false;
-        bool crosses = false;       // into another part
-        bool is_sanitized = false;  // by the curves that are all that reads it
-        std::uint32_t offset = 0;
-    };
-    struct Step {
-        const Instruction* step;
-        std::array<std::int32_t, 4> in;
-        std::array<std::int32_t, 3> out;
-        std::size_t part;
-    };
-
-    std::int32_t define(bool wide) {
-        values_.push_back({0, wide, false, false, 0});
-        return static_cast<std::int32_t>(values_.size() - 1);
-    }
-    Value& value(std::int32_t i) { return values_[static_cast<std::size_t>(i)]; }
-
-    /// How many bytes of a pixel are defined before step `at` and read from there on.
-    [[nodiscard]] std::vector<std::size_t> bytes_across() {
-        std::vector<std::size_t> first(values_.size(), 0), last(values_.size(), 0);
-        for (std::size_t i = 0; i < steps_.size(); ++i) {
-            for (const std::int32_t v : steps_[i].out) {
-                if (v != kNone) first[static_cast<std::size_t>(v)] = i + 1;
+    /// Curves over the light that there is take every number, and NaN as black, by themselves.
+    [[nodiscard]] bool is_read_by_curves_alone(std::uint32_t input) const {
+        for (const Instruction& step : code_.instructions) {
+            for (const Operand& in : step.in) {
+                if (in.constant || in.offset != input) continue;
+                if (step.op != Op::curve) return false;
+                const CompiledCurve& curve = code_.curves[step.table];
+                if (curve.lo < 0 || curve.hi > kLargestInput) return false;
             }
-            for (const std::int32_t v : steps_[i].in) {
-                if (v != kNone) last[static_cast<std::size_t>(v)] = i;
+            for (const Operand& out : step.out) {
+                if (!out.constant && out.offset == input) return true;
             }
         }
-        for (const std::int32_t v : output_) {
-            if (v != kNone) last[static_cast<std::size_t>(v)] = steps_.size();
-        }
-        std::vector<std::size_t> result(steps_.size() + 1, 0);
-        for (std::size_t v = 0; v < values_.size(); ++v) {
-            for (std::size_t at = first[v]; at <= last[v]; ++at)
-                result[at] += values_[v].wide ? sizeof(double) : sizeof(float);
-        }
-        return result;
-    }
-
-    /// Parts end where they get so long that a processor could not begin with the next pixels while
-    /// it waits for the results of these: at the place with the fewest values to hand on. What is
-    /// little longer than a part is not divided.
-    void divide() {
-        const std::vector<std::size_t> across = bytes_across();
-        constexpr int kLittleLonger = 60;  // as fast as 30; 0 divides Hable: 4 % slower
-        std::size_t part = 0;
-        std::size_t begin = 0;
-        const auto end_part = [&](std::size_t end) {
-            for (; begin < end; ++begin)
-                steps_[begin].part = part;
-        };
-        while (begin < steps_.size()) {
-            std::size_t end = begin;
-            std::size_t best = begin;
-            int length = 0;
-            for (; end < steps_.size(); ++end) {
-                length += vectors_of(*steps_[end].step);
-                if (length > kLongestPart + kLittleLonger) break;
-                if (length >= kLongestPart / 2 && length <= kLongestPart &&
-                    (best == begin || across[end + 1] <= across[best]))
-                    best = end + 1;
-            }
-            const bool is_whole = end == steps_.size();
-            end_part(is_whole || best == begin ? std::max(end, begin + 1) : best);
-            if (!is_whole) ++part;
-        }
-        part_count_ = part + 1;
-        for (const Step& s : steps_) {
-            for (const std::int32_t v : s.out) {
-                if (v != kNone) value(v).part = s.part;
-            }
-        }
-    }
-
-    /// About how many vector instructions it is.
-    [[nodiscard]] int vectors_of(const Instruction& step) const {
-        const int halves = step.wide ? 2 : 1;
-        if (step.op != Op::curve) return halves * operation(step.op).vectors;
-        const CompiledCurve& curve = code_.curves[step.table];
-        if (curve.rows) return 16 + 2 * curve.rows->length;
-        return 20 + (curve.segments > 32 ? 5 : 2) * curve.degree;
-    }
-
-    void find_crossings() {
-        for (const std::int32_t i : input_) {
-            if (i != kNone) value(i).is_sanitized = true;
-        }
-        for (const Step& s : steps_) {
-            for (const std::int32_t i : s.in) {
-                if (i == kNone) continue;
-                if (s.part != value(i).part) value(i).crosses = true;
-                if (!limits_input(*s.step)) value(i).is_sanitized = false;
-            }
-        }
-        for (const std::int32_t i : output_) {
-            if (i == kNone) continue;
-            if (value(i).part != part_count_ - 1) value(i).crosses = true;
-            value(i).is_sanitized = false;
-        }
-    }
-
-    /// A curve over the light that there is takes every number, and NaN as black, by itself.
-    bool limits_input(const Instruction& step) const {
-        if (step.op != Op::curve) return false;
-        const CompiledCurve& curve = code_.curves[step.table];
-        return curve.lo >= 0 && curve.hi <= kLargestInput;
-    }
-
-    /// False where the tile is too small.
-    bool place_in_tile(VectorProgram& program) {
-        const auto size = [](const Value& v) { return v.wide ? sizeof(double) : sizeof(float); };
-        std::size_t bytes = 0;
-        for (const Value& v : values_)
-            bytes += v.crosses ? size(v) : 0;
-        program.tile = kMaxTile;
-        if (bytes > 0)
-            program.tile = std::clamp(kTileBytes / bytes / kLaneMultiple * kLaneMultiple,
-                                      kLaneMultiple, kMaxTile);
-        if (program.tile * bytes > kRegisterFileBytes) return false;
-        std::size_t end = 0;
-        for (Value& v : values_) {
-            if (!v.crosses) continue;
-            v.offset = static_cast<std::uint32_t>(end);
-            end += program.tile * size(v);
-        }
-        return true;
-    }
-
-    // --- one part --------------------------------------------------------------------------------
-
-    VectorCode write(std::size_t part, PixelLayout layout) {
-        Writer writer(pool_, machine_);
-        writer_ = &writer;
-        lanes_.assign(values_.size(), {});
-        if (part == 0) read_inputs(layout);
-        static const auto writes = all_writes(std::make_index_sequence<std::size(kOperations)>());
-        for (const Step& s : steps_) {
-            if (s.part == part) (this->*writes[static_cast<std::size_t>(computed_by(*s.step))])(s);
-        }
-        if (part == part_count_ - 1) write_outputs(layout);
-        return scheduled(writer.take());
+        return std::none_of(code_.output.begin(), code_.output.end(), [&](const Operand& output) {
+            return !output.constant && output.offset == input;
+        });
     }
 
     void read_inputs(PixelLayout layout) {
         std::array<VectorOperand, 3> given;
         if (layout == PixelLayout::rgb)
-            given = code_.is_one_function ? writer_->load_floats() : writer_->load_rgb();
+            given = code_.is_one_function ? writer_.load_floats() : writer_.load_rgb();
         if (layout == PixelLayout::rgba) {
-            const std::array<VectorOperand, 4> rgba = writer_->load_rgba();
+            const std::array<VectorOperand, 4> rgba = writer_.load_rgba();
             std::copy_n(rgba.begin(), 3, given.begin());
         }
         for (std::size_t c = 0; c < 3; ++c) {
-            if (input_[c] == kNone) continue;
-            const VF x = {writer_, given[c]};
-            set(input_[c], value(input_[c]).is_sanitized ? x : sanitized(float_tag(), x));
+            if (!code_.reads_input[c]) continue;
+            const VF x = {&writer_, given[c]};
+            const std::uint32_t at = code_.input_offset[c];
+            lanes_[at].narrow = is_read_by_curves_alone(at) ? x : sanitized(float_tag(), x);
         }
     }
 
     void write_outputs(PixelLayout layout) {
         std::array<VectorOperand, 3> result;
-        for (std::size_t c = 0; c < 3; ++c) {
-            if (output_[c] == kNone) {
-                result[c] = number(code_.output[c], float_tag()).operand;
-            } else {
-                result[c] = narrow(output_[c]).operand;
-            }
-        }
-        if (layout == PixelLayout::rgba) return writer_->store_rgba(result);
-        code_.is_one_function ? writer_->store_floats(result) : writer_->store_rgb(result);
+        for (std::size_t c = 0; c < 3; ++c)
+            result[c] = in(code_.output[c], float_tag()).operand;
+        if (layout == PixelLayout::rgba) return writer_.store_rgba(result);
+        code_.is_one_function ? writer_.store_floats(result) : writer_.store_rgb(result);
     }
 
-    [[nodiscard]] hn::Tag<float> float_tag() const { return {writer_}; }
-    Lanes& lanes(std::int32_t i) { return lanes_[static_cast<std::size_t>(i)]; }
-
-    /// A value of this part, or one that has come through the tile.
-    Lanes& given(std::int32_t i) {
-        Lanes& result = lanes(i);
-        const Value& v = value(i);
-        if (result.narrow.writer || result.wide.half[0].writer) return result;
-        if (v.wide) {
-            for (int half = 0; half < kHalves; ++half)
-                result.wide.half[half] = {writer_, load(v.offset, true, half)};
-        } else {
-            result.narrow = {writer_, load(v.offset, false, 0)};
-        }
-        return result;
-    }
-    VF narrow(std::int32_t i) {
-        Lanes& x = given(i);
-        if (!x.narrow.writer) x.narrow = demote(x.wide);
-        return x.narrow;
-    }
-    VD wide(std::int32_t i, int half) {
-        Lanes& x = given(i);
-        VD& result = x.wide.half[half];
-        if (!result.writer) result = promote(x.narrow, half);
-        return result;
-    }
+    [[nodiscard]] hn::Tag<float> float_tag() { return {&writer_}; }
 
     /// Results: kept as they are computed, or as what the value is.
-    void set(std::int32_t i, VF x) {
-        lanes(i).narrow = x;
-        keep(i);
-    }
-    void set(std::int32_t i, const Doubles& x) {
-        if (value(i).wide) {
-            lanes(i).wide = x;
+    void set(const Operand& out, VF x) { lanes_[out.offset] = {x, {}}; }
+    void set(const Operand& out, const Doubles& x) {
+        if (out.wide) {
+            lanes_[out.offset] = {{}, x};
         } else {
-            lanes(i).narrow = demote(x);
+            set(out, demote(x));
         }
-        keep(i);
-    }
-    void keep(std::int32_t i) {
-        const Value& v = value(i);
-        if (!v.crosses) return;
-        if (!v.wide) return store(v.offset, false, 0, narrow(i).operand);
-        for (int half = 0; half < kHalves; ++half)
-            store(v.offset, true, half, wide(i, half).operand);
-    }
-    VectorOperand load(std::uint32_t offset, bool wide, int half) {
-        return writer_->emit({.op = VectorOp::load_plane,
-                              .wide = wide,
-                              .immediate = static_cast<std::uint8_t>(half),
-                              .offset = offset});
-    }
-    void store(std::uint32_t offset, bool wide, int half, VectorOperand x) {
-        writer_->emit_store({.op = VectorOp::store_plane,
-                             .wide = wide,
-                             .immediate = static_cast<std::uint8_t>(half),
-                             .offset = offset,
-                             .in = {x}});
     }
 
     /// A constant or a uniform.
@@ -333,70 +227,70 @@ class Translator {
     }
 
     /// Operands as vectors of floats, or of doubles of one half.
-    VF in(const Step& s, int i) {
-        const auto k = static_cast<std::size_t>(i);
-        return s.in[k] == kNone ? number(s.step->in[k], float_tag()) : narrow(s.in[k]);
+    VF in(const Operand& operand, hn::Tag<float> d) {
+        if (operand.constant) return number(operand, d);
+        Lanes& x = lanes_.at(operand.offset);
+        if (!x.narrow.writer) x.narrow = demote(x.wide);
+        return x.narrow;
     }
-    VD in(const Step& s, int i, int half) {
-        const auto k = static_cast<std::size_t>(i);
-        return s.in[k] == kNone ? number(s.step->in[k], double_tag(float_tag()))
-                                : wide(s.in[k], half);
+    VD in(const Operand& operand, int half) {
+        if (operand.constant) return number(operand, double_tag(float_tag()));
+        Lanes& x = lanes_.at(operand.offset);
+        VD& result = x.wide.half[half];
+        if (!result.writer) result = promote(x.narrow, half);
+        return result;
     }
 
     template <Op op>
-    void write_op(const Step& s) {
-        const Instruction& step = *s.step;
+    void write_op(const Instruction& step) {
+        const hn::Tag<float> d = float_tag();
         if constexpr (op == Op::curve) {
             const CompiledCurve& curve = code_.curves[step.table];
             if (curve.rows)
-                return write_curve(s, curve,
-                                   RowPolynomial<hn::Tag<float>>(float_tag(), *curve.rows));
-            return write_curve(s, curve, SegmentPolynomial<hn::Tag<float>>(float_tag(), curve));
+                return write_curve(step, curve, RowPolynomial<hn::Tag<float>>(d, *curve.rows));
+            return write_curve(step, curve, SegmentPolynomial<hn::Tag<float>>(d, curve));
         }
+        const auto operand = [&](int i) -> const Operand& {
+            return step.in[static_cast<std::size_t>(i)];
+        };
         if (!step.wide && !is_always_wide(op)) {
-            const auto x = [&](int i) { return in(s, i); };
-            const auto give = [&](std::size_t c, VF result) { set(s.out[c], result); };
-            return compute<op>(float_tag(), code_, step, x, give);
+            const auto x = [&](int i) { return in(operand(i), d); };
+            const auto give = [&](std::size_t c, VF result) { set(step.out[c], result); };
+            return compute<op>(d, code_, step, x, give);
         }
         Doubles results[3];
         for (int half = 0; half < kHalves; ++half) {
-            const auto x = [&](int i) { return in(s, i, half); };
+            const auto x = [&](int i) { return in(operand(i), half); };
             const auto give = [&](std::size_t c, VD result) { results[c].half[half] = result; };
-            compute<op>(double_tag(float_tag()), code_, step, x, give);
+            compute<op>(double_tag(d), code_, step, x, give);
         }
         for (std::size_t c = 0; c < 3; ++c) {
-            if (s.out[c] != kNone) set(s.out[c], results[c]);
+            if (results[c].half[0].writer) set(step.out[c], results[c]);
         }
     }
-    using Write = void (Translator::*)(const Step&);
+    using Write = void (Translator::*)(const Instruction&);
     template <std::size_t... kOp>
     static std::array<Write, sizeof...(kOp)> all_writes(std::index_sequence<kOp...> /*all*/) {
         return {&Translator::write_op<static_cast<Op>(kOp)>...};
     }
 
     template <class P>
-    void write_curve(const Step& s, const CompiledCurve& curve, const P& polynomial) {
+    void write_curve(const Instruction& step, const CompiledCurve& curve, const P& polynomial) {
         const hn::Tag<float> d = float_tag();
         const CurveEnds ends(d, curve);
-        if (!curve.is_precise) return set(s.out[0], curve_value(d, ends, polynomial, in(s, 0)));
+        const Operand& x = step.in[0];
+        const VF given = in(x, d);
+        if (!curve.is_precise) return set(step.out[0], curve_value(d, ends, polynomial, given));
         Doubles exact;
-        const bool is_rounded = s.step->in[0].wide;
-        if (is_rounded) exact = {in(s, 0, 0), in(s, 0, 1)};
-        set(s.out[0], precise_curve_value(d, ends, CurveEnds(double_tag(d), curve), polynomial,
-                                          in(s, 0), is_rounded ? &exact : nullptr));
+        if (x.wide) exact = {in(x, 0), in(x, 1)};
+        set(step.out[0], precise_curve_value(d, ends, CurveEnds(double_tag(d), curve), polynomial,
+                                             given, x.wide ? &exact : nullptr));
     }
 
     const Code& code_;
-    VectorMachine machine_;
-    std::vector<Value> values_;
-    std::map<std::uint32_t, std::int32_t> at_;  // by offset in the interpreter's tile
-    std::vector<Step> steps_;
-    std::array<std::int32_t, 3> input_ = {kNone, kNone, kNone};
-    std::array<std::int32_t, 3> output_ = {kNone, kNone, kNone};
-    std::size_t part_count_ = 1;
-    Pool pool_;
-    std::vector<Lanes> lanes_;
-    Writer* writer_ = nullptr;
+    Pool& pool_;
+    Writer writer_;
+    std::map<std::uint32_t, Lanes> lanes_;  // by offset in the interpreter's tile
 };
 
 }  // namespace
@@ -421,7 +315,25 @@ VectorCode interleaved(const VectorCode& code, int blocks) {
     return result;
 }
 
-std::optional<VectorProgram> translate(const Code& code) { return Translator(code).translate(); }
+std::optional<VectorProgram> translate(const Code& code) {
+    const VectorMachine& machine = *code.target->machine;
+    Pool pool(machine.has_avx512 ? 0 : static_cast<std::size_t>(machine.bytes()));
+    std::vector<VectorCode> whole;
+    for (const PixelLayout layout : {PixelLayout::rgb, PixelLayout::rgba})
+        whole.push_back(Translator(code, pool).write(layout));
+    const std::array division = {Division(whole[0]), Division(whole[1])};
+    const std::size_t pixel_bytes =
+        sizeof(float) * std::max({division[0].planes(), division[1].planes(), std::size_t{1}});
+    VectorProgram program;
+    program.tile = std::clamp(kTileBytes / pixel_bytes / kLaneMultiple * kLaneMultiple,
+                              kLaneMultiple, kMaxTile);
+    if (program.tile * pixel_bytes > kRegisterFileBytes) return std::nullopt;
+    for (std::size_t layout = 0; layout < division.size(); ++layout)
+        program.parts[layout] = division[layout].parts(program.tile * sizeof(float));
+    program.pool = pool.take();
+    program.uniforms = pool.take_uniforms();
+    return program;
+}
 
 }  // namespace simd
 TONEWRIGHT_NAMESPACE_END

@@ -114,7 +114,7 @@ struct VectorCode {
 
 /// The program as such parts, which run one after the other over a tile.
 struct VectorProgram {
-    /// By the layout of the pixels. Only the first and the last differ.
+    /// By the layout of the pixels.
     std::array<std::vector<VectorCode>, 2> parts;
     std::vector<unsigned char> pool;     // constants and tables; to be aligned to 64
     std::vector<UniformPlace> uniforms;  // in the pool

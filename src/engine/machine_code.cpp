@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::int32_t kNone = VectorOperand::kNone;
 constexpr int kFirstMask = 1;  // k0 means "no mask"
-constexpr int kLastMask = 5;
+constexpr int kMaskEnd = 6;
 /// Blocks of pixels that a turn of the loop computes side by side. Three gained nothing: registers
 /// run out.
 constexpr int kInterleaved = 2;
@@ -50,10 +50,7 @@ enum class Place : std::uint8_t { only, first, later };
 class Generator : public Xbyak::CodeGenerator {
   public:
     explicit Generator(const VectorMachine& machine)
-        : CodeGenerator(Xbyak::DEFAULT_MAX_CODE_SIZE, Xbyak::AutoGrow),
-          machine_(machine),
-          holder_(static_cast<std::size_t>(machine.registers)),
-          is_locked_(holder_.size()) {}
+        : CodeGenerator(Xbyak::DEFAULT_MAX_CODE_SIZE, Xbyak::AutoGrow), machine_(machine) {}
 
     /// Where the function begins.
     /// @param place  of the part among the parts of a program with tiles of `tile` pixels
@@ -100,6 +97,12 @@ class Generator : public Xbyak::CodeGenerator {
     }
 
   private:
+    /// Registers of a kind.
+    struct File {
+        int first, end;  // those that values may have
+        std::vector<std::int32_t> holder = std::vector(static_cast<std::size_t>(end), kNone);
+        std::vector<bool> is_locked = std::vector<bool>(holder.size());
+    };
     struct State {
         int reg = -1;
         bool is_mask = false;  // in k
@@ -155,12 +158,11 @@ class Generator : public Xbyak::CodeGenerator {
 
     void begin(const VectorCode& code) {
         state_.assign(static_cast<std::size_t>(code.value_count), {});
-        std::fill(holder_.begin(), holder_.end(), kNone);
-        unlock();
+        vectors_ = {0, machine_.registers};
+        masks_ = {kFirstMask, kMaskEnd};
         address_ = 0;
         row_index_ = kNone;
         index_pair_.fill(kNone);
-        mask_holder_.fill(kNone);
         free_slots_.clear();
         for (int slot = 0; slot < slot_count_; ++slot)
             free_slots_.push_back(slot);
@@ -170,6 +172,8 @@ class Generator : public Xbyak::CodeGenerator {
                 if (operand.is_value()) state(operand.value).uses.push_back(i);
             }
             if (step.mask != kNone) state(step.mask).uses.push_back(i);
+            if (step.result != kNone)
+                state(step.result).is_mask = machine_.has_avx512 && makes_mask(step.op);
         }
     }
 
@@ -201,14 +205,10 @@ class Generator : public Xbyak::CodeGenerator {
         for (const auto& [constant, count] : uses)
             by_uses.emplace(count, constant);
         for (const auto& [count, constant] : by_uses) {
-            if (free_registers() <= most_alive + kSpare) break;
+            if (vectors_.end <= most_alive + kSpare) break;
             kept_.push_back(constant.first);
-            load_constant(vector(free_registers()), constant.first, constant.second);
+            load_constant(vector(--vectors_.end), constant.first, constant.second);
         }
-    }
-    /// The others have constants.
-    [[nodiscard]] int free_registers() const {
-        return machine_.registers - static_cast<int>(kept_.size());
     }
     /// Of a constant, or kNone.
     [[nodiscard]] int kept_in(const VectorOperand& operand) const {
@@ -226,7 +226,11 @@ class Generator : public Xbyak::CodeGenerator {
     [[nodiscard]] Xbyak::Xmm vector(int reg) const {
         return {machine_.has_avx512 ? Xbyak::Operand::ZMM : Xbyak::Operand::YMM, reg};
     }
-    void unlock() { std::fill(is_locked_.begin(), is_locked_.end(), false); }
+    void unlock() {
+        for (File* file : {&vectors_, &masks_})
+            std::fill(file->is_locked.begin(), file->is_locked.end(), false);
+    }
+    File& file_of(const State& s) { return s.is_mask ? masks_ : vectors_; }
     Xbyak::Address slot_of(int slot) {
         return ptr[rsp + static_cast<std::size_t>(slot * machine_.bytes())];
     }
@@ -239,32 +243,40 @@ class Generator : public Xbyak::CodeGenerator {
     }
 
     /// A register that holds nothing, not locked.
-    int take() {
+    int take(File& file) {
         int best = -1;
         std::size_t latest = 0;
-        for (int r = 0; r < free_registers(); ++r) {
+        for (int r = file.first; r < file.end; ++r) {
             const auto i = static_cast<std::size_t>(r);
-            if (is_locked_[i]) continue;
-            if (holder_[i] == kNone) {
-                is_locked_[i] = true;
-                return r;
+            if (file.is_locked[i]) continue;
+            if (file.holder[i] == kNone) {
+                best = r;
+                break;
             }
-            const std::size_t use = next_use(holder_[i]);
+            const std::size_t use = next_use(file.holder[i]);
             if (best < 0 || use > latest) {
                 best = r;
                 latest = use;
             }
         }
-        State& s = state(holder_[static_cast<std::size_t>(best)]);
-        if (s.slot < 0) {
-            s.slot = take_slot();
-            vmovaps(slot_of(s.slot), vector(best));
+        std::int32_t& holder = file.holder[static_cast<std::size_t>(best)];
+        if (holder != kNone) {
+            State& s = state(holder);
+            if (s.slot < 0) {
+                s.slot = take_slot();
+                if (s.is_mask) {
+                    kmovw(slot_of(s.slot), Xbyak::Opmask(best));
+                } else {
+                    vmovaps(slot_of(s.slot), vector(best));
+                }
+            }
+            s.reg = -1;
+            holder = kNone;
         }
-        s.reg = -1;
-        holder_[static_cast<std::size_t>(best)] = kNone;
-        is_locked_[static_cast<std::size_t>(best)] = true;
+        file.is_locked[static_cast<std::size_t>(best)] = true;
         return best;
     }
+    int take() { return take(vectors_); }
 
     /// The operand in a register, which stays its own until the instruction is written.
     Xbyak::Xmm in_register(const VectorOperand& operand, bool wide) {
@@ -276,11 +288,10 @@ class Generator : public Xbyak::CodeGenerator {
         }
         State& s = state(operand.value);
         if (s.reg < 0) {
-            s.reg = take();
-            holder_[static_cast<std::size_t>(s.reg)] = operand.value;
+            hold(operand.value, take());
             vmovaps(vector(s.reg), slot_of(s.slot));
         }
-        is_locked_[static_cast<std::size_t>(s.reg)] = true;
+        vectors_.is_locked[static_cast<std::size_t>(s.reg)] = true;
         return vector(s.reg);
     }
     void load_constant(const Xbyak::Xmm& r, std::int32_t offset, bool wide) {
@@ -316,8 +327,7 @@ class Generator : public Xbyak::CodeGenerator {
             ++s.next;
         if (s.next < s.uses.size()) return;
         if (s.reg >= 0) {
-            const auto r = static_cast<std::size_t>(s.reg);
-            (s.is_mask ? mask_holder_[r] : holder_[r]) = kNone;
+            file_of(s).holder[static_cast<std::size_t>(s.reg)] = kNone;
             s.reg = -1;
         }
         if (s.slot >= 0) {
@@ -334,9 +344,13 @@ class Generator : public Xbyak::CodeGenerator {
         return s.uses.back() <= position_;
     }
 
+    void hold(std::int32_t value, int reg) {
+        State& s = state(value);
+        s.reg = reg;
+        file_of(s).holder[static_cast<std::size_t>(reg)] = value;
+    }
     void define(std::int32_t value, int reg) {
-        state(value).reg = reg;
-        holder_[static_cast<std::size_t>(reg)] = value;
+        hold(value, reg);
         unlock();
     }
     /// For the result, when the operands have been read: may be the register of one of them.
@@ -368,39 +382,18 @@ class Generator : public Xbyak::CodeGenerator {
         return vector(r);
     }
 
-    /// Does for a mask what take() and define() do for a vector. An instruction reads or writes at
-    /// most one mask.
-    Xbyak::Opmask take_mask(std::int32_t value) {
-        int best = kFirstMask;
-        for (int k = kFirstMask; k <= kLastMask; ++k) {
-            const auto use = [&](int at) {
-                const std::int32_t holds = mask_holder_[static_cast<std::size_t>(at)];
-                return holds == kNone ? std::numeric_limits<std::size_t>::max() : next_use(holds);
-            };
-            if (use(k) > use(best)) best = k;
-        }
-        std::int32_t& holder = mask_holder_[static_cast<std::size_t>(best)];
-        if (holder != kNone) {
-            State& s = state(holder);
-            if (s.slot < 0) {
-                s.slot = take_slot();
-                kmovw(slot_of(s.slot), Xbyak::Opmask(best));
-            }
-            s.reg = -1;
-        }
-        holder = value;
-        state(value).reg = best;
-        state(value).is_mask = true;
-        return Xbyak::Opmask(best);
-    }
     Xbyak::Opmask mask(std::int32_t value) {
         const State& s = state(value);
-        if (s.reg < 0) kmovw(take_mask(value), slot_of(s.slot));
+        if (s.reg < 0) {
+            hold(value, take(masks_));
+            kmovw(Xbyak::Opmask(s.reg), slot_of(s.slot));
+        }
         return Xbyak::Opmask(s.reg);
     }
     Xbyak::Opmask new_mask(const VectorInstruction& step) {
         release(step);
-        return take_mask(step.result);
+        define(step.result, take(masks_));
+        return Xbyak::Opmask(state(step.result).reg);
     }
 
     // --- instructions ----------------------------------------------------------------------------
@@ -668,7 +661,7 @@ class Generator : public Xbyak::CodeGenerator {
                 const Z upper = half(vector(take()));
                 vcvtpd2ps(upper, high);
                 release(step);
-                is_locked_[static_cast<std::size_t>(upper.getIdx())] = true;
+                vectors_.is_locked[static_cast<std::size_t>(upper.getIdx())] = true;
                 const Z r = vector(take());
                 vcvtpd2ps(half(r), low);
                 if (machine_.has_avx512) {
@@ -827,10 +820,8 @@ class Generator : public Xbyak::CodeGenerator {
 
     VectorMachine machine_;
     std::vector<State> state_;
-    std::vector<std::int32_t> holder_;  // by register
-    std::vector<bool> is_locked_;
+    File vectors_{}, masks_{};
     std::vector<std::int32_t> kept_;  // constants in the last registers: offsets in the pool
-    std::array<std::int32_t, 8> mask_holder_{};
     std::vector<int> free_slots_, dropped_slots_;
     int slot_count_ = 0;
     PixelLayout layout_ = PixelLayout::rgb;

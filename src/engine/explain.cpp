@@ -148,8 +148,7 @@ class Explanation {
     void write_machine_code(const simd::Code& code) {
         if (!code.machine) return line("\nMachine code: none, the program is interpreted");
         const std::optional<simd::VectorProgram> program = simd::translate(code);
-        line("\nMachine code: {} bytes of numbers and tables",
-             code.numbers.pool.size() * simd::kVectorBytes);
+        line("\nMachine code: {} bytes of numbers", code.numbers.pool.size() * simd::kVectorBytes);
         constexpr const char* kLayouts[] = {"RGB pixels", "RGBA pixels"};
         for (const auto layout : {simd::PixelLayout::rgb, simd::PixelLayout::rgba}) {
             const auto l = static_cast<std::size_t>(layout);

@@ -294,13 +294,16 @@ class Generator : public Xbyak::CodeGenerator {
         vectors_.is_locked[static_cast<std::size_t>(s.reg)] = true;
         return vector(s.reg);
     }
+    Xbyak::Address constant(std::int32_t offset) {
+        return ptr[rax + static_cast<std::size_t>(offset)];
+    }
     void load_constant(const Xbyak::Xmm& r, std::int32_t offset, bool wide) {
         if (!machine_.has_avx512) {
-            vmovaps(r, table(offset));
+            vmovaps(r, constant(offset));
         } else if (wide) {
-            vbroadcastsd(zmm(r), table(offset));
+            vbroadcastsd(zmm(r), constant(offset));
         } else {
-            vbroadcastss(r, table(offset));
+            vbroadcastss(r, constant(offset));
         }
     }
     [[nodiscard]] bool is_in_memory(const VectorOperand& operand) {
@@ -309,7 +312,7 @@ class Generator : public Xbyak::CodeGenerator {
     /// An operand that is in memory, as the last operand of an instruction.
     Xbyak::Address in_memory(const VectorOperand& operand) {
         if (operand.is_constant())
-            return machine_.has_avx512 ? ptr_b[rax + operand.pool] : table(operand.pool);
+            return machine_.has_avx512 ? ptr_b[rax + operand.pool] : constant(operand.pool);
         return slot_of(state(operand.value).slot);
     }
 
@@ -508,16 +511,12 @@ class Generator : public Xbyak::CodeGenerator {
         const int offset = 64 * (1 + number + 4 * step.block) + 4 * pixel;
         return ptr[rbp - static_cast<std::size_t>(kKeptBytes - offset)];
     }
-    template <class T>
-    Xbyak::Address table(T offset) {
-        return ptr[rax + static_cast<std::size_t>(offset)];
-    }
-
     /// From what r10 holds then.
     int distance_to(const void* address) {
         const auto to = reinterpret_cast<std::uintptr_t>(address);
         const auto distance = static_cast<std::intptr_t>(to - address_);
-        if (address_ != 0 && distance >= 0 && distance < 64) return static_cast<int>(distance);
+        constexpr std::intptr_t kFar = sizeof(CompiledCurve);
+        if (address_ != 0 && distance >= 0 && distance < kFar) return static_cast<int>(distance);
         address_ = to;
         mov(r10, to);
         return 0;
@@ -729,13 +728,15 @@ class Generator : public Xbyak::CodeGenerator {
             }
             case VectorOp::permute_16: {
                 const Z index = in_register(step.in[0], false);
-                return vpermps(zmm(result_after(step)), zmm(index), table(step.offset));
+                const int at = distance_to(step.address);
+                return vpermps(zmm(result_after(step)), zmm(index), ptr[r10 + at]);
             }
             case VectorOp::permute_32: {
                 const Z index = in_register(step.in[0], false);
                 const Z r = result_apart(step);
-                vmovaps(r, table(step.offset));
-                return vpermt2ps(r, index, table(step.offset + 64));
+                const int at = distance_to(step.address);
+                vmovaps(r, ptr[r10 + at]);
+                return vpermt2ps(r, index, ptr[r10 + at + 64]);
             }
             case VectorOp::gather: {
                 Z index = in_register(step.in[0], false);

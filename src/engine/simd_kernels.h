@@ -196,7 +196,7 @@ struct alignas(kVectorBytes) ConstantVector {
 struct Numbers {
     /// One vector full of each, for the interpreter.
     std::vector<ConstantVector> constants;
-    /// Numbers and tables of machine code.
+    /// Those of machine code.
     std::vector<ConstantVector> pool;
 };
 

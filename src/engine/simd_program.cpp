@@ -797,15 +797,11 @@ struct Form {
     std::vector<bool> in_double;
     std::vector<Selected> selected;
 
-    [[nodiscard]] Code assemble(const Target& target) const {
-        CurveIndex curve_index;
-        return assemble(target, curve_index);
-    }
-    Code assemble(const Target& target, CurveIndex& curve_index) const {
+    Code assemble(const Target& target, CurveIndex* curve_index = nullptr) const {
         Assembler assembler(tape, in_double, selected);
         Code code = assembler.assemble(target);
         code.source = source;
-        curve_index = assembler.curve_index();
+        if (curve_index) *curve_index = assembler.curve_index();
         return code;
     }
 };
@@ -864,14 +860,9 @@ std::vector<Code> compile_for_all_targets(const Pipeline& pipeline, double max_e
     std::map<CurveForm, Form> forms;
     std::vector<Code> codes;
     for (const Target& target : targets()) {
-        auto form = forms.find(target.curve_form);
-        if (form == forms.end()) {
-            form = forms
-                       .emplace(target.curve_form,
-                                make_form(pipeline, {}, max_error, target.curve_form))
-                       .first;
-        }
-        codes.push_back(form->second.assemble(target));
+        if (!forms.contains(target.curve_form))
+            forms.emplace(target.curve_form, make_form(pipeline, {}, max_error, target.curve_form));
+        codes.push_back(forms.at(target.curve_form).assemble(target));
     }
     return codes;
 }
@@ -889,7 +880,7 @@ Steps compile_in_steps(const Pipeline& pipeline, const LiveUniforms& uniforms, d
                        const Target& target) {
     Form form = make_form(pipeline, uniforms, max_error, target.curve_form);
     Steps steps;
-    steps.code = form.assemble(target, steps.curve_index);
+    steps.code = form.assemble(target, &steps.curve_index);
     steps.tape = form.tape.code();
     steps.outputs = form.tape.outputs();
     steps.in_double = std::move(form.in_double);

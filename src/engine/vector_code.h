@@ -53,7 +53,7 @@ enum class VectorOp : std::uint8_t {
     to_index,  // from floats, or from doubles to half a vector
     to_float,  // from whole numbers
     // Tables
-    permute_16,   // the element of 16 floats at `offset` that a says; AVX-512
+    permute_16,   // the element of 16 floats at `address` that a says; AVX-512
     permute_32,   // AVX-512
     gather,       // of the numbers at `address`, that of index a
     spill_index,  // the whole numbers a, on the stack, number `immediate`
@@ -116,7 +116,7 @@ struct VectorCode {
 struct VectorProgram {
     /// By the layout of the pixels.
     std::array<std::vector<VectorCode>, 2> parts;
-    std::vector<unsigned char> pool;     // constants and tables; to be aligned to 64
+    std::vector<unsigned char> pool;     // constants; to be aligned to 64
     std::vector<UniformPlace> uniforms;  // in the pool
     std::size_t tile = 0;                // in pixels
 };

@@ -16,7 +16,7 @@
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace simd {
 
-/// Constants and tables, each once.
+/// Constants, each once.
 class Pool {
   public:
     /// @param copies  bytes that a number fills with copies of itself; 0 for one copy
@@ -26,7 +26,7 @@ class Pool {
     VectorOperand bits(T value) {
         const std::vector<T> copies(std::max<std::size_t>(copies_ / sizeof value, 1), value);
         const std::size_t size = copies.size() * sizeof value;
-        return {VectorOperand::kNone, place(copies.data(), size, size)};
+        return {VectorOperand::kNone, place(copies.data(), size)};
     }
     /// A number that may become another.
     /// @param is_rounded  to float before it is taken as double
@@ -43,19 +43,15 @@ class Pool {
         uniforms_.push_back({source, offset, static_cast<std::uint32_t>(size), wide, is_rounded});
         return {VectorOperand::kNone, static_cast<std::int32_t>(offset)};
     }
-    template <class T>
-    std::uint32_t table(const T* numbers, std::size_t count) {
-        return static_cast<std::uint32_t>(place(numbers, count * sizeof(T), kVectorBytes));
-    }
     std::vector<unsigned char> take() { return std::move(bytes_); }
     std::vector<UniformPlace> take_uniforms() { return std::move(uniforms_); }
 
   private:
-    std::int32_t place(const void* data, std::size_t size, std::size_t alignment) {
+    std::int32_t place(const void* data, std::size_t size) {
         const auto [it, is_new] =
             offset_.try_emplace(std::string(static_cast<const char*>(data), size), 0);
         if (is_new) {
-            bytes_.resize((bytes_.size() + alignment - 1) / alignment * alignment);
+            bytes_.resize((bytes_.size() + size - 1) / size * size);
             it->second = static_cast<std::int32_t>(bytes_.size());
             bytes_.insert(bytes_.end(), it->first.begin(), it->first.end());
         }
@@ -387,23 +383,22 @@ hn::Vector<T> gather(hn::Tag<T> d, std::span<const T> samples, std::size_t first
 
 /// Numbers that permutes of AVX-512 pick from.
 struct PermutedTable {
-    std::uint32_t offset;
+    const float* numbers;
     int size;
 
     [[nodiscard]] VF at(VI index) const {
         Writer* const w = index.writer;
         const VectorOp op = size == 16 ? VectorOp::permute_16 : VectorOp::permute_32;
-        const VF low = {w, w->emit({.op = op, .offset = offset, .in = {index.operand}})};
+        const VF low = {w, w->emit({.op = op, .address = numbers, .in = {index.operand}})};
         if (size <= 32) return low;
-        const auto second = static_cast<std::uint32_t>(offset + 32 * sizeof(float));
-        const VF high = {w, w->emit({.op = op, .offset = second, .in = {index.operand}})};
+        const VF high = {w, w->emit({.op = op, .address = numbers + 32, .in = {index.operand}})};
         const hn::Tag<float> d = {w};
         const auto is_high = has_minus(d, hn::BitCast(d, hn::ShiftLeft<26>(index)));
         return hn::IfThenElse(is_high, high, low);
     }
 };
-inline PermutedTable table(hn::Tag<float> d, const float* numbers, int size) {
-    return {d.writer->pool().table(numbers, static_cast<std::size_t>(size)), size};
+inline PermutedTable table(hn::Tag<float> /*d*/, const float* numbers, int size) {
+    return {numbers, size};
 }
 
 /// See GatheredRows: loads of rows.

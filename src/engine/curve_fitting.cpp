@@ -96,7 +96,7 @@ class CurveFitter {
             value_[i].fill(code_[i].value);  // of constants
         uses_.resize(code_.size());
         for (std::size_t i = 0; i < code_.size(); ++i) {
-            for (const std::uint32_t operand : operands_of(i))
+            for (const std::uint32_t operand : variables_of(i))
                 ++uses_[operand];
         }
         for (std::size_t i = 0; i < code_.size(); ++i) {
@@ -119,17 +119,16 @@ class CurveFitter {
     }
 
   private:
-    [[nodiscard]] std::vector<std::uint32_t> operands_of(std::size_t i) const {
-        const TapeInstruction& step = code_[i];
-        std::vector<std::uint32_t> result = {step.a, step.b, step.c};
-        result.resize(static_cast<std::size_t>(operand_count(step.op)));
+    /// Those that are no constants.
+    [[nodiscard]] std::vector<std::uint32_t> variables_of(std::size_t i) const {
+        std::vector<std::uint32_t> result = operands_of(code_[i]);
         std::erase_if(result, [&](std::uint32_t v) { return code_[v].op == ExprOp::constant; });
         return result;
     }
 
     /// The last value that all of i's inputs pass through on their way to i.
     [[nodiscard]] std::int64_t dominator_of(std::size_t i) const {
-        const std::vector<std::uint32_t> operands = operands_of(i);
+        const std::vector<std::uint32_t> operands = variables_of(i);
         if (operands.empty()) return kNone;
         std::int64_t common = operands.front();
         for (const std::uint32_t operand : operands) {
@@ -151,7 +150,7 @@ class CurveFitter {
         for (std::uint32_t k = i; k > root; --k) {
             if (!is_inside[k]) continue;
             result.push_back(k);
-            for (const std::uint32_t operand : operands_of(k))
+            for (const std::uint32_t operand : variables_of(k))
                 is_inside[operand] = true;
         }
         std::reverse(result.begin(), result.end());
@@ -162,7 +161,7 @@ class CurveFitter {
         if (tried_[i]) return;
         tried_[i] = true;
         // The coefficients of a matrix on one and the same curve: one curve, not three.
-        const std::vector<std::uint32_t> operands = operands_of(i);
+        const std::vector<std::uint32_t> operands = variables_of(i);
         if (operands.size() == 1 && uses_[operands[0]] > 1 && cost_of(code_[i]) <= kCheap)
             return fold_value(operands[0]);
         std::vector<std::uint32_t> roots;  // the farthest last
@@ -199,7 +198,7 @@ class CurveFitter {
             ++uses_[output];
         for (std::size_t i = code_.size(); i-- > 0;) {
             if (uses_[i] == 0) continue;
-            for (const std::uint32_t operand : operands_of(i))
+            for (const std::uint32_t operand : operands_of(code_[i]))
                 ++uses_[operand];
         }
     }
@@ -237,9 +236,7 @@ class CurveFitter {
             append(step.table);
             append(step.lattice);
             append(step.curve);
-            const std::array<std::uint32_t, 3> operands = {step.a, step.b, step.c};
-            for (int k = 0; k < operand_count(step.op); ++k) {
-                const std::uint32_t v = operands[static_cast<std::size_t>(k)];
+            for (const std::uint32_t v : operands_of(step)) {
                 const bool is_constant = code_[v].op == ExprOp::constant;
                 append(is_constant);
                 if (is_constant) {
@@ -400,20 +397,11 @@ class CurveFitter {
     }
 
     void drop_unread() {
-        std::vector<bool> is_read(code_.size());
-        for (const std::uint32_t output : outputs_)
-            is_read[output] = true;
-        for (std::size_t i = code_.size(); i-- > 0;) {
-            if (!is_read[i]) continue;
-            const TapeInstruction& step = code_[i];
-            const std::array<std::uint32_t, 3> operands = {step.a, step.b, step.c};
-            for (int k = 0; k < operand_count(step.op); ++k)
-                is_read[operands[static_cast<std::size_t>(k)]] = true;
-        }
+        count_uses();
         std::vector<std::uint32_t> moved(code_.size());
         std::vector<TapeInstruction> kept;
         for (std::size_t i = 0; i < code_.size(); ++i) {
-            if (!is_read[i]) continue;
+            if (uses_[i] == 0) continue;
             TapeInstruction step = code_[i];
             if (operand_count(step.op) > 0) {
                 step.a = moved[step.a];

@@ -42,9 +42,6 @@ constexpr std::uint8_t kLessEqual = 0x12;
 constexpr std::uint8_t kGreaterEqual = 0x1D;
 constexpr std::uint8_t kGreater = 0x1E;
 
-/// Of a part among those of a program.
-enum class Place : std::uint8_t { only, first, later };
-
 /// Straight-line code in a loop over blocks of pixels. Registers are given as the code is
 /// written; where none is free, the value that is needed latest goes to the stack (Belady).
 class Generator : public Xbyak::CodeGenerator {
@@ -53,14 +50,12 @@ class Generator : public Xbyak::CodeGenerator {
         : CodeGenerator(Xbyak::DEFAULT_MAX_CODE_SIZE, Xbyak::AutoGrow), machine_(machine) {}
 
     /// Where the function begins.
-    /// @param place  of the part among the parts of a program with tiles of `tile` pixels
-    std::size_t write(const VectorCode& code, PixelLayout layout, Place place, std::size_t tile,
+    /// @param fetch_ahead, claim_ahead  see fetch(); not at all where the first is 0
+    std::size_t write(const VectorCode& code, PixelLayout layout, int fetch_ahead, int claim_ahead,
                       int interleaved_blocks) {
         layout_ = layout;
-        const int tile_bytes = static_cast<int>(tile) / machine_.lanes * pixel_bytes();
-        fetch_ahead_ = place == Place::only ? kFetchAhead : place == Place::first ? tile_bytes : 0;
-        // The last part writes this tile's pixels when the first is long done.
-        claim_ahead_ = place == Place::only ? kFetchAhead : 0;
+        fetch_ahead_ = fetch_ahead;
+        claim_ahead_ = claim_ahead;
         slot_count_ = 0;
         align(32);
         const std::size_t entry = getSize();
@@ -630,15 +625,13 @@ class Generator : public Xbyak::CodeGenerator {
                     }
                 });
             }
-            case VectorOp::shift_right: {
-                const Z a = in_register(step.in[0], wide);
-                const Z r = result_after(step);
-                return wide ? vpsrlq(r, a, step.immediate) : vpsrad(r, a, step.immediate);
-            }
+            case VectorOp::shift_right:
             case VectorOp::shift_left: {
                 const Z a = in_register(step.in[0], wide);
                 const Z r = result_after(step);
-                return wide ? vpsllq(r, a, step.immediate) : vpslld(r, a, step.immediate);
+                if (step.op == VectorOp::shift_left)
+                    return wide ? vpsllq(r, a, step.immediate) : vpslld(r, a, step.immediate);
+                return wide ? vpsrlq(r, a, step.immediate) : vpsrad(r, a, step.immediate);
             }
             case VectorOp::promote_low: {
                 const Z a = in_register(step.in[0], false);
@@ -842,19 +835,22 @@ class Assembled final : public MachineCode {
         std::array<std::vector<std::size_t>, 2> entry;
         for (std::size_t layout = 0; layout < entry.size(); ++layout) {
             std::vector<VectorCode>& parts = program_.parts[layout];
+            const bool is_whole = parts.size() == 1;
+            const int pixel_bytes = static_cast<PixelLayout>(layout) == PixelLayout::rgb ? 12 : 16;
             for (std::size_t part = 0; part < parts.size(); ++part) {
-                const Place place = part > 0            ? Place::later
-                                    : parts.size() == 1 ? Place::only
-                                                        : Place::first;
+                // The last of several parts writes a tile's pixels when the first is long done.
+                const int claim_ahead = is_whole ? kFetchAhead : 0;
+                const int next_tile = part == 0 ? static_cast<int>(program_.tile) * pixel_bytes : 0;
+                const int fetch_ahead = is_whole ? kFetchAhead : next_tile;
                 // The processor itself begins the next turn of a short program, and 16 registers
                 // hold little of two blocks: side by side, Hable (118 instructions) is 7 % slower,
                 // and AgX of Sobotka (145) 10 % faster.
                 constexpr std::size_t kShort = 130;
-                const bool is_alone = place == Place::only && !machine.has_avx512 &&
-                                      parts[part].instructions.size() <= kShort;
+                const bool is_alone =
+                    is_whole && !machine.has_avx512 && parts[part].instructions.size() <= kShort;
                 entry[layout].push_back(
-                    generator_.write(parts[part], static_cast<PixelLayout>(layout), place,
-                                     program_.tile, is_alone ? 1 : kInterleaved));
+                    generator_.write(parts[part], static_cast<PixelLayout>(layout), fetch_ahead,
+                                     claim_ahead, is_alone ? 1 : kInterleaved));
                 bytes_[layout].push_back(generator_.getSize() - entry[layout].back());
             }
             parts.clear();  // they are machine code now

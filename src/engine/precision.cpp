@@ -290,8 +290,8 @@ class PrecisionChooser {
             const std::uint32_t i = rest.back();
             rest.pop_back();
             const TapeInstruction& step = code_[i];
-            const int operands = operand_count(step.op);
-            if (operands == 0 || seen[i]) continue;
+            const std::vector<std::uint32_t> operands = operands_of(step);
+            if (operands.empty() || seen[i]) continue;
             seen[i] = true;
             // No curve is as exact as a double.
             if (step.curve) {
@@ -299,8 +299,7 @@ class PrecisionChooser {
             } else {
                 put_in_double(i);
             }
-            const std::array<std::uint32_t, 3> operand = {step.a, step.b, step.c};
-            rest.insert(rest.end(), operand.begin(), operand.begin() + operands);
+            rest.insert(rest.end(), operands.begin(), operands.end());
         }
     }
 

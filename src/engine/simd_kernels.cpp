@@ -198,12 +198,10 @@ struct Source {
         if (wide) return demote(load_doubles(i));
         return hn::Load(d, reinterpret_cast<const float*>(data) + i * step);
     }
-    HWY_INLINE Vec<DFOfDD> load(DFOfDD d, std::size_t i, int /*half*/) const {
-        return hn::Load(d, reinterpret_cast<const float*>(data) + i * step);
-    }
     HWY_INLINE Vec<DD> load(DD d, std::size_t i) const {
         if (wide) return hn::Load(d, reinterpret_cast<const double*>(data) + i * step);
-        return hn::PromoteTo(d, load(DFOfDD(), i, 0));
+        const auto narrow = hn::Load(DFOfDD(), reinterpret_cast<const float*>(data) + i * step);
+        return hn::PromoteTo(d, narrow);
     }
     HWY_INLINE Doubles load_doubles(std::size_t i) const {
         const DD d;

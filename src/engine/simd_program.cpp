@@ -27,6 +27,8 @@ namespace {
 constexpr std::size_t kCacheBytes = 24UL * 1024;
 
 constexpr std::int64_t kNone = -1;
+/// Doubles that still can be added.
+constexpr double kMostWide = 1e300;
 
 // ---------------------------------------------------------------------------------------------
 // Pass 1: rewrites on the tape
@@ -75,18 +77,17 @@ class FloatTape {
         for (std::uint32_t i = 0; i < code.size(); ++i) {
             TapeInstruction& step = code[i];
             step.source = i;
-            const int operands = operand_count(step.op);
             // As constants are multiplied by their reciprocals: see add().
             if (step.op == ExprOp::divide && !tape.is_number(i) &&
                 code[step.b].op == ExprOp::uniform) {
                 step.op = ExprOp::multiply;
                 step.b = tape.reciprocal(step.b);
             }
-            if (!tape.is_number(i) || operands == 0) continue;
+            if (!tape.is_number(i) || operand_count(step.op) == 0) continue;
             step.value = scalar_op(step.op, code[step.a].value, code[step.b].value,
                                    code[step.c].value, step.table);
-            const std::array<std::uint32_t, 3> read = {step.a, step.b, step.c};
-            if (std::none_of(read.begin(), read.begin() + operands, [&](std::uint32_t operand) {
+            const std::vector<std::uint32_t> read = operands_of(step);
+            if (std::none_of(read.begin(), read.end(), [&](std::uint32_t operand) {
                     return code[operand].op == ExprOp::uniform;
                 })) {
                 continue;
@@ -147,19 +148,13 @@ class FloatTape {
     std::uint32_t constant(double value) {
         const auto bits = std::bit_cast<std::uint64_t>(value);
         if (auto it = constants_.find(bits); it != constants_.end()) return it->second;
-        TapeInstruction step;
-        step.value = value;
-        code_.push_back(step);
+        code_.push_back({.value = value});
         constants_.emplace(bits, last());
         return last();
     }
 
     std::uint32_t push(ExprOp op, std::uint32_t a, std::uint32_t b = 0) {
-        TapeInstruction step;
-        step.op = op;
-        step.a = a;
-        step.b = b;
-        code_.push_back(step);
+        code_.push_back({.op = op, .a = a, .b = b});
         return last();
     }
 
@@ -207,6 +202,15 @@ bool are_siblings(const Selected& x, const Selected& y) {
         default:
             return false;
     }
+}
+
+/// What is computed of positions and slopes has its place in floats.
+bool fits_floats(const Table& table) {
+    for (std::size_t i = 0; i < table.positions.size(); ++i) {
+        const double slope = i > 0 ? cell_slope(table, i - 1) : 0;
+        if (!(std::max(std::fabs(table.positions[i]), std::fabs(slope)) < 1e30)) return false;
+    }
+    return true;
 }
 
 /// The operation of the same name.
@@ -265,12 +269,6 @@ class Selector {
         std::reverse(result.begin(), result.end());
         gather_siblings(result);
         return result;
-    }
-
-    static std::vector<std::uint32_t> operands_of(const TapeInstruction& step) {
-        std::vector<std::uint32_t> operands = {step.a, step.b, step.c};
-        operands.resize(static_cast<std::size_t>(operand_count(step.op)));
-        return operands;
     }
 
   private:
@@ -426,6 +424,7 @@ class Selector {
             case ExprOp::lookup:
                 current_.table = step.table;
                 current_.curve = step.curve;
+                if (!step.curve && !fits_floats(*step.table)) current_.wide = true;
                 return emit(step.curve                      ? Op::curve
                             : step.table->positions.empty() ? Op::lookup
                                                             : Op::lookup_nonuniform,
@@ -578,9 +577,7 @@ class Assembler {
     }
 
     std::size_t define(std::uint32_t value, bool wide) {
-        Selected s;
-        s.value = value;
-        steps_.push_back(s);
+        steps_.push_back({.value = value});
         is_wide_.push_back(wide);
         slot_of_[value] = static_cast<std::int64_t>(steps_.size() - 1);
         return steps_.size() - 1;
@@ -620,15 +617,12 @@ class Assembler {
     }
 
     [[nodiscard]] Operand place(std::size_t slot) const {
-        Operand result;
-        result.wide = is_wide_[slot];
         const std::size_t offset = is_wide_[slot]
                                        ? (narrow_.register_count * sizeof(float) +
                                           wide_.register_of[slot] * sizeof(double)) *
                                              tile_
                                        : narrow_.register_of[slot] * sizeof(float) * tile_;
-        result.offset = static_cast<std::uint32_t>(offset);
-        return result;
+        return {.offset = static_cast<std::uint32_t>(offset), .wide = is_wide_[slot]};
     }
 
     Operand operand(std::uint32_t value, bool user_is_wide) {
@@ -651,11 +645,7 @@ class Assembler {
                     {step.source, static_cast<std::uint32_t>(offset), kVectorBytes, wide, false});
             fill(constants_.back().bytes.data(), kVectorBytes, step.value, wide);
         }
-        Operand result;
-        result.constant = true;
-        result.wide = wide;
-        result.offset = static_cast<std::uint32_t>(it->second * kVectorBytes);
-        return result;
+        return {static_cast<std::uint32_t>(it->second * kVectorBytes), true, wide};
     }
 
     /// Where the result goes, and what it is made with.
@@ -680,30 +670,32 @@ class Assembler {
         const std::vector<double>& positions = tables[0]->positions;
         result.cells = positions.size();
         result.length = tables.size() > 1 ? 8 : 4;
-        const double length = positions.back() - positions.front();
+        const auto begin_of = [&](double position) {
+            const double x = std::clamp(position, -kMostWide, kMostWide);
+            return is_wide ? x : static_cast<double>(float_from(x));
+        };
+        const double length = begin_of(positions.back()) - begin_of(positions.front());
         // Twice as many parts as cells: few parts have more than one boundary.
-        if (length > 0)
+        if (length > 1e-30)
             result.parts_per_unit =
                 static_cast<double>(2 * std::bit_ceil(positions.size())) / length;
         std::vector<std::size_t> part;  // in which each cell begins, as the kernel computes it
-        const auto part_of = [&](auto begin, auto first, auto parts_per_unit) {
-            part.push_back(static_cast<std::size_t>((begin - first) * parts_per_unit));
+        const auto part_of = [&](auto begin, auto first) {
+            using T = decltype(begin);
+            return static_cast<std::size_t>((begin - first) *
+                                            static_cast<T>(result.parts_per_unit));
         };
         for (std::size_t i = 0; i < positions.size(); ++i) {
-            const double begin =
-                is_wide ? positions[i] : static_cast<double>(float_from(positions[i]));
+            const double begin = begin_of(positions[i]);
             add(result.begin, begin, is_wide);
-            if (is_wide) {
-                part_of(begin, positions[0], result.parts_per_unit);
-            } else {
-                part_of(result.begin.narrow[i], result.begin.narrow[0],
-                        static_cast<float>(result.parts_per_unit));
-            }
+            part.push_back(is_wide ? part_of(begin, result.begin.wide[0])
+                                   : part_of(result.begin.narrow[i], result.begin.narrow[0]));
             add(result.rows, begin, is_wide);
             for (const Table* table : tables) {
                 const bool is_line =
                     table->interpolation == Table::Interpolation::linear && i + 1 < result.cells;
-                const double slope = is_line ? cell_slope(*table, i) : 0;
+                const double slope =
+                    is_line ? std::clamp(cell_slope(*table, i), -kMostWide, kMostWide) : 0;
                 add(result.rows, table->samples[i] + slope * (begin - positions[i]), is_wide);
                 add(result.rows, slope, is_wide);
             }
@@ -726,47 +718,38 @@ class Assembler {
         return result;
     }
 
-    std::uint32_t lattice(const Lattice& source, bool is_wide) {
-        auto [it, is_new] =
-            lattice_index_.try_emplace(&source, static_cast<std::uint32_t>(lattices_.size()));
-        if (is_new) {
-            lattices_.emplace_back();
-            lattices_.back().edge = source.edge();
-        }
-        SampledLattice& sampled = lattices_[it->second];
-        const auto fill = [&](auto& nodes) {
-            if (!nodes.empty()) return;
-            nodes.resize(source.nodes().size() / 3 * 4);
-            using T = std::remove_reference_t<decltype(nodes[0])>;
-            for (std::size_t i = 0; i < source.nodes().size(); ++i)
-                nodes[i / 3 * 4 + i % 3] = static_cast<T>(source.nodes()[i]);
-        };
-        if (is_wide) {
-            fill(sampled.nodes.wide);
-        } else {
-            fill(sampled.nodes.narrow);
-        }
+    /// Where the form of a source is among all, made where it is the first time.
+    template <class Source, class Form, class Make>
+    static std::uint32_t find(std::map<const Source*, std::uint32_t>& index, const Source& source,
+                              std::vector<Form>& all, const Make& make) {
+        const auto [it, is_new] =
+            index.try_emplace(&source, static_cast<std::uint32_t>(all.size()));
+        if (is_new) all.push_back(make());
         return it->second;
+    }
+
+    std::uint32_t lattice(const Lattice& source, bool is_wide) {
+        const std::uint32_t found = find(lattice_index_, source, lattices_, [&] {
+            return SampledLattice{source.edge(), {}};
+        });
+        Samples& nodes = lattices_[found].nodes;
+        if (!(is_wide ? nodes.wide.empty() : nodes.narrow.empty())) return found;
+        for (std::size_t i = 0; i < source.nodes().size(); ++i) {
+            add(nodes, source.nodes()[i], is_wide);
+            if (i % 3 == 2) add(nodes, 0, is_wide);
+        }
+        return found;
     }
 
     std::uint32_t curve(const CompiledCurve& source) {
-        const auto [it, is_new] =
-            curve_index_.try_emplace(&source, static_cast<std::uint32_t>(curves_.size()));
-        if (is_new) curves_.push_back(source);
-        return it->second;
+        return find(curve_index_, source, curves_, [&] { return source; });
     }
 
     std::uint32_t table(const Table& source) {
-        auto [it, is_new] =
-            table_index_.try_emplace(&source, static_cast<std::uint32_t>(tables_.size()));
-        if (is_new) {
-            SampledTable sampled;
-            sampled.samples.wide = source.samples;
-            sampled.samples.narrow.assign(source.samples.begin(), source.samples.end());
-            sampled.interpolation = source.interpolation;
-            tables_.push_back(std::move(sampled));
-        }
-        return it->second;
+        return find(table_index_, source, tables_, [&] {
+            const std::vector<double>& samples = source.samples;
+            return SampledTable{{{samples.begin(), samples.end()}, samples}, source.interpolation};
+        });
     }
 
     const std::vector<TapeInstruction>& tape_;

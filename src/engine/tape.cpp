@@ -49,9 +49,7 @@ std::uint32_t Tape::add(const Expr& expr,
     }
     if (step.op == ExprOp::divide && !is_number && is_live_[step.b] &&
         !reciprocal_.contains(step.b)) {
-        TapeInstruction one;
-        one.value = 1;
-        push(one, true, false);
+        push({.value = 1}, true, false);
         TapeInstruction reciprocal = step;
         reciprocal.a = static_cast<std::uint32_t>(code_.size() - 1);
         push(reciprocal, true, true);
@@ -107,18 +105,12 @@ RegisterAllocation allocate_registers(const std::vector<std::array<std::int64_t,
     result.register_of.assign(n, 0);
     std::vector<std::uint32_t> free;
     for (std::size_t i = 0; i < n; ++i) {
-        std::array<std::int64_t, 4> released{-1, -1, -1, -1};
-        for (std::size_t k = 0; k < 4; ++k) {
-            const std::int64_t operand = operands[i][k];
+        for (const std::int64_t operand : operands[i]) {
             if (operand < 0) continue;
             const auto v = static_cast<std::size_t>(operand);
-            bool again = false;  // the same operand twice is released once
-            for (const std::int64_t r : released)
-                again = again || r == operand;
-            if (last_use[v] == i && needs_register[v] && !again) {
-                free.push_back(result.register_of[v]);
-                released[k] = operand;
-            }
+            if (last_use[v] != i) continue;
+            last_use[v] = n;  // the same operand twice is released once
+            if (needs_register[v]) free.push_back(result.register_of[v]);
         }
         if (!needs_register[i]) continue;
         if (free.empty()) {

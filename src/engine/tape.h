@@ -28,6 +28,12 @@ struct TapeInstruction {
     const ExprNode* node = nullptr;        // where it came from
 };
 
+/// As many as the operation has.
+[[nodiscard]] inline std::vector<std::uint32_t> operands_of(const TapeInstruction& step) {
+    const std::array<std::uint32_t, 3> all = {step.a, step.b, step.c};
+    return {all.begin(), all.begin() + operand_count(step.op)};
+}
+
 /// The same number for every pixel.
 [[nodiscard]] constexpr bool is_number(ExprOp op) noexcept {
     return op == ExprOp::constant || op == ExprOp::uniform;

@@ -26,7 +26,13 @@ class Pool {
     VectorOperand bits(T value) {
         const std::vector<T> copies(std::max<std::size_t>(copies_ / sizeof value, 1), value);
         const std::size_t size = copies.size() * sizeof value;
-        return {VectorOperand::kNone, place(copies.data(), size)};
+        const auto [it, is_new] =
+            offset_.try_emplace(std::string(reinterpret_cast<const char*>(copies.data()), size), 0);
+        if (is_new) {
+            it->second = static_cast<std::int32_t>(take_room(size));
+            std::memcpy(bytes_.data() + it->second, copies.data(), size);
+        }
+        return {VectorOperand::kNone, it->second};
     }
     /// A number that may become another.
     /// @param is_rounded  to float before it is taken as double
@@ -36,9 +42,7 @@ class Pool {
                 return {VectorOperand::kNone, static_cast<std::int32_t>(place.offset)};
         }
         const std::size_t size = std::max(copies_, wide ? sizeof(double) : sizeof(float));
-        bytes_.resize((bytes_.size() + size - 1) / size * size);
-        const auto offset = static_cast<std::uint32_t>(bytes_.size());
-        bytes_.resize(bytes_.size() + size);
+        const auto offset = static_cast<std::uint32_t>(take_room(size));
         fill(bytes_.data() + offset, size, value, wide);
         uniforms_.push_back({source, offset, static_cast<std::uint32_t>(size), wide, is_rounded});
         return {VectorOperand::kNone, static_cast<std::int32_t>(offset)};
@@ -47,15 +51,10 @@ class Pool {
     std::vector<UniformPlace> take_uniforms() { return std::move(uniforms_); }
 
   private:
-    std::int32_t place(const void* data, std::size_t size) {
-        const auto [it, is_new] =
-            offset_.try_emplace(std::string(static_cast<const char*>(data), size), 0);
-        if (is_new) {
-            bytes_.resize((bytes_.size() + size - 1) / size * size);
-            it->second = static_cast<std::int32_t>(bytes_.size());
-            bytes_.insert(bytes_.end(), it->first.begin(), it->first.end());
-        }
-        return it->second;
+    std::size_t take_room(std::size_t size) {
+        const std::size_t offset = (bytes_.size() + size - 1) / size * size;
+        bytes_.resize(offset + size);
+        return offset;
     }
 
     std::size_t copies_;

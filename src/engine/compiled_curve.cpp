@@ -99,7 +99,7 @@ double at(const CurveFunction& f, double x) {
 template <class Place>
 Coefficients interpolate(const CurveFunction& f, const Place& place, int degree) {
     const ChebyshevNumbers& numbers = ChebyshevNumbers::of(degree + 1);
-    const auto n = static_cast<std::size_t>(degree + 1);
+    const auto n = static_cast<std::size_t>(degree) + 1;
     Coefficients value{};
     for (std::size_t i = 0; i < n; ++i)
         value[i] = place(numbers.node[i]);
@@ -722,7 +722,8 @@ int CompiledCurve::cost() const noexcept {
         return 36 + (rows->length > 4 ? 28 : 0) + 4 * static_cast<int>(rows->restarts.size()) +
                (is_precise ? 24 : 0);
     }
-    const int steps = std::bit_width(static_cast<unsigned>(segments)) - 1;  // of the search
+    const int steps =
+        static_cast<int>(std::bit_width(static_cast<unsigned>(segments))) - 1;  // of the search
     const int of_cells = cells == 0 ? steps * (segments <= 32 ? 4 : 8) : 2 * (cells <= 32 ? 1 : 3);
     const int of_segments = (degree + 3) * (segments <= 32 ? 1 : 3);
     const int of_doubles = is_precise ? 24 : 0;

@@ -31,7 +31,7 @@ struct CurveTolerance {
 enum class CurveForm : std::uint8_t {
     none,
     segments,  // few and long, for permutes over whole tables (AVX-512): no branch and no gather
-    rows,      // many and short, for loads of neighboring numbers (AVX2)
+    rows,      // many and short, for loads of neighboring numbers (AVX2, NEON)
     rows_unfused,  // the same with products and sums rounded one by one (SSE4)
 };
 

@@ -506,7 +506,7 @@ class Generator : public Xbyak::CodeGenerator {
         const int offset = 64 * (1 + number + 4 * step.block) + 4 * pixel;
         return ptr[rbp - static_cast<std::size_t>(kKeptBytes - offset)];
     }
-    /// From what r10 holds then.
+    /// The distance of the address from r10; loads r10 where it is too far away.
     int distance_to(const void* address) {
         const auto to = reinterpret_cast<std::uintptr_t>(address);
         const auto distance = static_cast<std::intptr_t>(to - address_);

@@ -38,7 +38,7 @@ class MachineCode {
 
     /// Runs one part over blocks of as many pixels as the target's vectors have lanes.
     /// @param tile     values that come from other parts or go there
-    /// @param in, out  of the first and the last part. May be the same.
+    /// @param in, out  of the parts that read or write pixels. May be the same.
     void run(std::size_t part, PixelLayout layout, const Numbers& numbers, unsigned char* tile,
              const float* in, float* out, std::size_t blocks) const noexcept {
         function_[static_cast<std::size_t>(layout)][part](tile, in, out, blocks,

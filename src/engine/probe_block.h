@@ -81,7 +81,7 @@ class ProbeBlock {
 
 /// Slope of the table at x; 0 beyond its ends.
 [[nodiscard]] double table_slope(const Table& table, double x);
-/// What it has risen by since the cell that x is in began.
+/// The rise of the table from the beginning of x's cell to x.
 [[nodiscard]] double table_rise(const Table& table, double x);
 /// Where cell i of a table with two samples or more begins.
 [[nodiscard]] double cell_begin(const Table& table, std::size_t i);

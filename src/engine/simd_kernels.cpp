@@ -125,7 +125,7 @@ struct IndexedTable {
 };
 HWY_INLINE IndexedTable table(DF /*d*/, const float* numbers, int size) { return {numbers, size}; }
 
-#if HWY_TARGET > HWY_AVX3 && HWY_TARGET != HWY_SCALAR
+#if HWY_MAX_BYTES == 16 || (HWY_TARGET > HWY_AVX3 && HWY_TARGET <= HWY_AVX2)
 
 /// See GatheredRows: twice as fast.
 class Rows {

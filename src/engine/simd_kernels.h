@@ -139,8 +139,8 @@ struct SampledTable {
     Table::Interpolation interpolation = Table::Interpolation::linear;
 };
 
-/// Up to three tables with the same positions. What is before the first and behind the last
-/// position counts as that.
+/// Up to three tables with the same positions. Numbers before the first position count as the
+/// first, and numbers behind the last as the last.
 struct NonuniformTables {
     /// Equal parts between them, and in which cell each of them begins. Bisection finds the cell
     /// of a number: positions that are halves have 15,360 cells in one part.
@@ -171,10 +171,10 @@ struct Instruction {
     /// Of a logarithm, or a power with a constant exponent: its operand is at least the smallest
     /// normal float.
     bool is_positive = false;
-    /// Where up to three results go. One that is not there, or that nobody reads, is marked as a
-    /// constant.
-    std::array<Operand, 3> out;
-    std::array<Operand, 4> in;
+    static constexpr Operand kUnused = {0, true, false};
+    /// Where up to three results go. One that nobody reads is unused.
+    std::array<Operand, 3> out = {kUnused, kUnused, kUnused};
+    std::array<Operand, 4> in = {kUnused, kUnused, kUnused, kUnused};
     std::array<double, 9> k{};  // coefficients of dot3, exponent of power_constant
     std::uint32_t table = 0;    // of a lookup, a curve, a lattice: its index among those
 };
@@ -227,7 +227,7 @@ namespace simd {
 struct VectorMachine {
     int lanes;      // floats in a vector: the pixels of a block
     int registers;  // for vectors
-    /// Registers for masks, broadcasts in operands, permutes of whole tables, exponents.
+    /// Registers for masks, broadcasts in operands, permutes of whole tables.
     bool has_avx512;
 
     [[nodiscard]] constexpr int bytes() const { return lanes * 4; }
@@ -272,8 +272,8 @@ struct Code {
     bool is_one_function = false;
     /// Pixels per tile: a multiple of kLaneMultiple, such that the registers fit into the file.
     std::size_t tile = 0;
-    /// The same as machine code, where it could be made. Refers to the lattices: a
-    /// program is moved, not copied.
+    /// The same as machine code, where it could be made. Refers to the tables, lattices and curves:
+    /// a program is moved, not copied.
     std::shared_ptr<const MachineCode> machine;
 
     Code() = default;

@@ -504,8 +504,6 @@ class Assembler {
             step.op = s.op;
             step.wide = s.wide || s.op == Op::sine || s.op == Op::cosine || s.op == Op::atan2;
             step.is_positive = s.is_positive;
-            for (Operand& out : step.out)
-                out.constant = true;
             if (s.op == Op::lookup) step.table = table(*s.table);
             if (s.op == Op::curve) step.table = curve(*s.curve);
             if (s.op == Op::lattice) step.table = lattice(*s.lattice, step.wide);
@@ -696,7 +694,9 @@ class Assembler {
                     table->interpolation == Table::Interpolation::linear && i + 1 < result.cells;
                 const double slope =
                     is_line ? std::clamp(cell_slope(*table, i), -kMostWide, kMostWide) : 0;
-                add(result.rows, table->samples[i] + slope * (begin - positions[i]), is_wide);
+                // Before the first position, the first sample exactly.
+                const double distance = i > 0 || is_wide ? begin - positions[i] : 0;
+                add(result.rows, table->samples[i] + slope * distance, is_wide);
                 add(result.rows, slope, is_wide);
             }
             while ((result.rows.narrow.size() + result.rows.wide.size()) %

@@ -28,7 +28,7 @@ struct TapeInstruction {
     const ExprNode* node = nullptr;        // where it came from
 };
 
-/// As many as the operation has.
+/// The operands of the step, as many as its operation has.
 [[nodiscard]] inline std::vector<std::uint32_t> operands_of(const TapeInstruction& step) {
     const std::array<std::uint32_t, 3> all = {step.a, step.b, step.c};
     return {all.begin(), all.begin() + operand_count(step.op)};

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <map>
 
 #include "engine/schedule.h"
@@ -17,14 +16,14 @@ namespace {
 constexpr std::int32_t kNone = VectorOperand::kNone;
 /// Bytes of a tile: stays in a first-level cache of 32 KiB.
 constexpr std::size_t kTileBytes = std::size_t{24} * 1024;
-/// Parts are divided where that costs least: as many units as there are vectors to hand on, and one
-/// more. Of long parts, the processor cannot begin with the next pixels while it waits for results:
-/// they cost the square of their length in this unit. With 89, eight operators are 2 % slower
-/// (Emerald Rapids), with 145, too, but not with AVX-512.
+/// A cut costs one unit, and one more for each vector handed on. A part of n instructions costs
+/// (n / kLengthOfOneVector)^2: in a long part, the processor cannot begin with the next pixels
+/// while it waits for results. With 89, eight operators are 2 % slower (Emerald Rapids). With 145,
+/// they are slower with AVX2 only.
 constexpr double kLengthOfOneVector = 114;
 constexpr std::size_t kLongestPart = 2000;
 
-/// Of a value.
+/// The element of a value.
 auto& at(auto& by_value, std::int32_t v) { return by_value[static_cast<std::size_t>(v)]; }
 
 /// Where the parts of a program end, and which vectors they hand on.
@@ -38,9 +37,9 @@ class Division {
         const std::size_t n = code.instructions.size();
         // Before each instruction: how many vectors are alive. Masks and indices stay where they
         // are.
-        constexpr int kNeverCut = 1 << 24;
-        std::vector<int> alive(n + 1);
-        const auto add = [&](std::size_t from, std::size_t to, int count) {
+        constexpr double kNeverCut = kInfinity;
+        std::vector<double> alive(n + 1);
+        const auto add = [&](std::size_t from, std::size_t to, double count) {
             for (std::size_t i = from + 1; i <= to; ++i)
                 alive[i] += count;
         };
@@ -58,7 +57,7 @@ class Division {
         for (std::size_t v = 0; v < first_.size(); ++v)
             add(first_[v], last_[v], makes_mask(code.instructions[first_[v]].op) ? kNeverCut : 1);
         // By where a part ends: the least cost up to there, and where the part begins.
-        std::vector<double> cost(n + 1, std::numeric_limits<double>::infinity());
+        std::vector<double> cost(n + 1, kInfinity);
         std::vector<std::size_t> begin(n + 1);
         cost[0] = 0;
         for (std::size_t end = 1; end <= n; ++end) {
@@ -140,8 +139,7 @@ struct Lanes {
 /// Writes the program with the interpreter's registers in the processor's.
 class Translator {
   public:
-    Translator(const Code& code, Pool& pool)
-        : code_(code), pool_(pool), writer_(pool, *code.target->machine) {}
+    Translator(const Code& code, Pool& pool) : code_(code), pool_(pool), writer_(pool) {}
 
     VectorCode write(PixelLayout layout) {
         read_inputs(layout);

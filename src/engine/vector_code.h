@@ -85,7 +85,7 @@ struct VectorInstruction {
     bool wide = false;  // doubles
     std::uint8_t immediate = 0;
     std::uint8_t block = 0;                      // of those that one turn of the loop computes
-    std::uint32_t offset = 0;                    // in the pool, or in the tile: bytes
+    std::uint32_t offset = 0;                    // in the tile: bytes
     const void* address = nullptr;               // of that table
     std::int32_t result = VectorOperand::kNone;  // a mask, of a comparison
     std::int32_t mask = VectorOperand::kNone;
@@ -102,7 +102,7 @@ enum class PixelLayout : std::uint8_t {
     rgba,  // the fourth channel keeps its value
 };
 
-/// A part of the program.
+/// A program, or a part of it.
 struct VectorCode {
     std::vector<VectorInstruction> instructions;
     std::int32_t value_count = 0;

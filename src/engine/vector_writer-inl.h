@@ -63,16 +63,15 @@ class Pool {
     std::map<std::string, std::int32_t> offset_;  // by the bytes themselves
 };
 
-/// Writes vector instructions for one part.
+/// Writes the vector instructions of a program.
 class Writer {
   public:
     using Number = VectorOperand;  // of a vector: a value or a constant
 
-    Writer(Pool& pool, const VectorMachine& machine) : pool_(pool), machine_(machine) {}
+    explicit Writer(Pool& pool) : pool_(pool) {}
 
     VectorCode take() { return std::move(code_); }
     [[nodiscard]] Pool& pool() { return pool_; }
-    [[nodiscard]] bool has_avx512() const { return machine_.has_avx512; }
 
     Number emit(VectorInstruction step) {
         step.result = code_.value_count++;
@@ -168,7 +167,6 @@ class Writer {
 
   private:
     Pool& pool_;
-    VectorMachine machine_;
     VectorCode code_;
     int spilled_ = 0;  // of spill_index, the last one
 };

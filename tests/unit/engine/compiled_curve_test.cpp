@@ -199,8 +199,8 @@ TEST_P(CompiledCurveForm, KernelsComputeWhatItSays) {
             simd::Instruction step;
             step.op = simd::Op::curve;
             step.wide = is_precise;
-            step.out[0].offset = sizeof(float) * simd::kMaxTile;
-            step.out[1].constant = step.out[2].constant = true;
+            step.in[0] = {.offset = 0};
+            step.out[0] = {.offset = sizeof(float) * simd::kMaxTile};
             code.instructions.push_back(step);
             code.output = {step.out[0], step.out[0], step.out[0]};
             // Pixels are limited to half floats' numbers before anything else.

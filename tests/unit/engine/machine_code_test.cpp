@@ -285,7 +285,7 @@ TEST_P(MachineCode, TouchesNothingBehindTheLastPixel) {
     ASSERT_NE(memory, MAP_FAILED);
     ASSERT_EQ(mprotect(static_cast<char*>(memory) + 3 * page, page, PROT_NONE), 0);
     auto* end = reinterpret_cast<float*>(static_cast<char*>(memory) + 3 * page);
-    // One curve; curves and matrices; steps over a tile.
+    // One curve; curves and matrices; several parts.
     for (const char* name : {"hable", "agx_blender", "aces_20"}) {
         const simd::Code code =
             compile(build_view(make_view(resolve_operator(name), "lin_rec709", 0, "srgb")));

@@ -143,8 +143,8 @@ class Ends {
     void set(CompiledCurve& curve, double first, double last) const {
         const bool has_least = least_.times > 8 || least_.value >= std::min(first, last);
         const bool has_most = most_.times > 8 || -most_.value <= std::max(first, last);
-        curve.least = has_least ? to_float(least_.value) : -kMost;
-        curve.most = has_most ? to_float(-most_.value) : kMost;
+        curve.least = has_least ? -float_from(-least_.value) : -kMost;
+        curve.most = has_most ? float_from(-most_.value) : kMost;
     }
 
   private:

@@ -276,9 +276,8 @@ HWY_INLINE void over_curve(const Frame& given, const Instruction& step, const Co
     const CurveEnds<DD> wide_ends(DD(), curve);
     for (std::size_t i = 0; i < frame.count; i += hn::Lanes(d)) {
         const Doubles exact = source.load_doubles(i);
-        const auto narrow = source.load(d, i);
         store_result(frame, out, i,
-                     precise_curve_value(d, ends, wide_ends, polynomial, narrow,
+                     precise_curve_value(d, ends, wide_ends, polynomial, source.load(d, i),
                                          source.wide ? &exact : nullptr));
     }
 }

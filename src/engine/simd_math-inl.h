@@ -520,21 +520,17 @@ HWY_INLINE void interpolate(D d, const Vec<D>* given, const SampledLattice& latt
 /// Ends of a curve, vectors from the start: what a kernel writes may not be the curve.
 template <class D>
 struct CurveEnds {
-    Vec<D> lo, hi, least, most, at_lo;
+    Vec<D> lo, hi, least, most, at_lo, rest_at_lo;
 
     HWY_INLINE CurveEnds(D d, const CompiledCurve& curve)
         : lo(set(d, static_cast<double>(curve.lo))),
           hi(set(d, static_cast<double>(curve.hi))),
           least(set(d, static_cast<double>(curve.least))),
           most(set(d, static_cast<double>(curve.most))),
-          at_lo(set(d, curve.at_lo)) {}
+          at_lo(set(d, curve.at_lo)),
+          rest_at_lo(set(d, curve.at_lo - static_cast<double>(static_cast<float>(curve.at_lo)))) {}
 
-    HWY_INLINE Vec<D> limit(Vec<D> x) const { return hn::Min(hn::Max(x, lo), hi); }
-    HWY_INLINE Vec<D> finish(Vec<D> x, Vec<D> y) const {
-        const auto limited = hn::Min(hn::Max(y, least), most);
-        // NaN is not above lo.
-        return hn::IfThenElse(hn::Gt(x, lo), limited, at_lo);
-    }
+    HWY_INLINE Vec<D> limit(Vec<D> y) const { return hn::Min(hn::Max(y, least), most); }
 };
 
 /// A curve's result is y t + first; of a precise curve y + first, added in double.
@@ -611,7 +607,7 @@ class RowPolynomial {
           is_aligned_(restarts_.empty() &&
                       rows.base % (std::uint32_t{1} << static_cast<unsigned>(shift_)) == 0) {}
 
-    /// @param x  not below 0
+    /// @param x  at most the curve's end
     /// @param rest  see SegmentPolynomial
     HWY_INLINE Polynomial<D> operator()(D d, Vec<D> x, const Vec<D>* rest) const {
         const auto tag = bits_tag(d);
@@ -662,33 +658,33 @@ class RowPolynomial {
 };
 
 template <class D, class P>
-HWY_INLINE Vec<D> curve_value(D d, const CurveEnds<D>& ends, const P& polynomial, Vec<D> given) {
-    const auto x = ends.limit(given);
-    const Polynomial<D> p = polynomial(d, x, nullptr);
-    return ends.finish(x, hn::MulAdd(p.y, p.t, p.first));
+HWY_INLINE Vec<D> curve_value(D d, const CurveEnds<D>& ends, const P& polynomial, Vec<D> x) {
+    const Polynomial<D> p = polynomial(d, hn::Min(x, ends.hi), nullptr);
+    const auto y = ends.limit(hn::MulAdd(p.y, p.t, p.first));
+    return hn::IfThenElse(hn::Gt(x, ends.lo), y, ends.at_lo);  // NaN is not above
 }
 
 /// Of a precise curve.
 /// @param wide_ends  the same ends in double
-/// @param exact      what was rounded to `given`; null where nothing was
+/// @param exact      what was rounded to x; null where nothing was
 template <class D, class DD>
 HWY_INLINE Doubles precise_curve_value(D d, const CurveEnds<D>& ends,
                                        const CurveEnds<DD>& wide_ends, const auto& polynomial,
-                                       Vec<D> given, const Doubles* exact) {
-    const auto x = ends.limit(given);
+                                       Vec<D> x, const Doubles* exact) {
     auto rest = hn::Zero(d);
     if (exact) {
         Doubles lost;
         for (int h = 0; h < kHalves; ++h)
-            lost.half[h] = hn::Sub(exact->half[h], promote(given, h));
-        rest = hn::IfThenElseZero(hn::Eq(given, x), demote(lost));
+            lost.half[h] = hn::Sub(exact->half[h], promote(x, h));
+        rest = hn::IfThenElseZero(hn::Le(x, ends.hi), demote(lost));
     }
-    const Polynomial<D> p = polynomial(d, x, exact ? &rest : nullptr);
+    const Polynomial<D> p = polynomial(d, hn::Min(x, ends.hi), exact ? &rest : nullptr);
+    const auto is_above = hn::Gt(x, ends.lo);
+    const auto first = hn::IfThenElse(is_above, p.first, ends.at_lo);
+    const auto y = hn::IfThenElse(is_above, p.y, ends.rest_at_lo);
     Doubles result;
-    for (int h = 0; h < kHalves; ++h) {
-        const auto y = hn::Add(promote(p.first, h), promote(p.y, h));
-        result.half[h] = wide_ends.finish(promote(x, h), y);
-    }
+    for (int h = 0; h < kHalves; ++h)
+        result.half[h] = wide_ends.limit(hn::Add(promote(first, h), promote(y, h)));
     return result;
 }
 

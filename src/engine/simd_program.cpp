@@ -230,7 +230,8 @@ static_assert(std::all_of(std::begin(kScalarOperations), std::end(kScalarOperati
 
 class Selector {
   public:
-    Selector(const FloatTape& tape, const std::vector<bool>& in_double)
+    /// @param in_double  gets those, too, that are computed and read in double anyway
+    Selector(const FloatTape& tape, std::vector<bool>& in_double)
         : code_(tape.code()), in_double_(in_double), uses_(code_.size()), is_needed_(code_.size()) {
         for (const TapeInstruction& step : code_) {
             for (const std::uint32_t operand : operands_of(step))
@@ -254,16 +255,22 @@ class Selector {
             match(code_[i]);
             // Rounding is monotone, so rounding the operands gives the rounded result, except for
             // the sign of a zero.
-            const bool rounds_before = current_.op == Op::clamp || current_.op == Op::minimum ||
-                                       current_.op == Op::maximum || current_.op == Op::negate ||
-                                       current_.op == Op::absolute;
+            const bool rounds_before = !is_read_in_double_[i] &&
+                                       (current_.op == Op::clamp || current_.op == Op::minimum ||
+                                        current_.op == Op::maximum || current_.op == Op::negate ||
+                                        current_.op == Op::absolute);
             if (rounds_before) current_.wide = in_double_[i];
-            for (const std::int64_t operand : current_.operands) {
-                if (operand == kNone) continue;
-                const auto v = static_cast<std::size_t>(operand);
+            const auto each_operand = [&](const auto& visit) {
+                for (const std::int64_t v : current_.operands)
+                    if (v != kNone) visit(static_cast<std::size_t>(v));
+            };
+            each_operand([&](std::size_t v) {
                 is_needed_[v] = true;
                 if (in_double_[v] && !current_.curve && !rounds_before) current_.wide = true;
-            }
+            });
+            if (current_.wide && is_read_in_double_[i]) in_double_[i] = true;
+            if (current_.wide && !current_.curve)
+                each_operand([&](std::size_t v) { is_read_in_double_[v] = true; });
             result.push_back(current_);
         }
         std::reverse(result.begin(), result.end());
@@ -443,9 +450,10 @@ class Selector {
     }
 
     const std::vector<TapeInstruction>& code_;
-    const std::vector<bool>& in_double_;
+    std::vector<bool>& in_double_;
     std::vector<int> uses_;
     std::vector<bool> is_needed_;
+    std::vector<bool> is_read_in_double_ = std::vector<bool>(code_.size());
     Selected current_;
 };
 

@@ -222,6 +222,43 @@ TEST_P(CompiledCurveForm, KernelsComputeWhatItSays) {
     }
 }
 
+/// What a precise curve gives up to its end is a double: here 0.1, less the float next to it.
+TEST_P(CompiledCurveForm, PreciseOnesBeginWithADouble) {
+    const auto f = [](double x) { return std::pow(std::fmax(x, 0), 1.5) + 0.1; };
+    const CurveTolerance tolerance = tolerance_of({"", f, {-64, 64}, {}, 1e-12}, true);
+    const auto curve = compile_curve(each(f), {-64, 64}, {}, tolerance, GetParam(), true);
+    ASSERT_TRUE(curve);
+    constexpr std::uint32_t kPlane = sizeof(float) * simd::kMaxTile;
+    simd::Code code;
+    code.tile = simd::kMaxTile;
+    code.curves.push_back(*curve);
+    code.reads_input = {true, true, false};
+    code.input_offset = {0, kPlane, 0};
+    simd::Instruction step;
+    step.op = simd::Op::curve;
+    step.wide = true;
+    step.out[0] = {.offset = 2 * kPlane, .wide = true};
+    step.in[0] = {.offset = 0};
+    code.instructions.push_back(step);
+    step.op = simd::Op::subtract;
+    step.in[0] = step.out[0];
+    step.in[1] = {.offset = kPlane};
+    step.out[0] = {.offset = 0};
+    code.instructions.push_back(step);
+    code.output = {step.out[0], step.out[0], step.out[0]};
+    const std::vector<float> x = {0.0F, -1.0F, -0.0F, std::nanf("")};
+    const std::vector<float> subtracted(x.size(), 0.1F);
+    std::vector<float> y(x.size()), others(x.size());
+    for (const simd::Target& target : simd::targets()) {
+        if (target.curve_form != GetParam()) continue;
+        code.target = &target;
+        simd::run(code, {x.data(), subtracted.data(), x.data()}, 1,
+                  {y.data(), others.data(), others.data()}, 1, x.size());
+        for (std::size_t i = 0; i < x.size(); ++i)
+            EXPECT_FLOAT_EQ(y[i], -1.4901161e-9F) << x[i] << " on " << target.target;
+    }
+}
+
 TEST(CompiledCurve, AWholeChannelIsOneInstruction) {
     for (const simd::Target& target : simd::targets()) {
         if (target.curve_form == CurveForm::none) continue;

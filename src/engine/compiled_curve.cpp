@@ -139,7 +139,7 @@ class Ends {
         most_.add(-y);
     }
     /// Between the places of a dip there may be a lower one, but what it has at its ends, or again
-    /// and again, is an end.
+    /// and again, is an end. Rounded outwards: what it has there is not limited to less.
     void set(CompiledCurve& curve, double first, double last) const {
         const bool has_least = least_.times > 8 || least_.value >= std::min(first, last);
         const bool has_most = most_.times > 8 || -most_.value <= std::max(first, last);

@@ -83,7 +83,8 @@ struct CompiledCurve {
 
     float lo = 0;
     float hi = 0;
-    /// The result at lo, and before it: black is black exactly.
+    /// The result at lo, and before it: black is black exactly. Kernels give a precise curve's as
+    /// the sum of two floats.
     double at_lo = 0;
     /// The least and the largest result, where the function has such ends.
     float least = 0;

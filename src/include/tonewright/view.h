@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -49,12 +51,18 @@ struct Display {
 [[nodiscard]] TONEWRIGHT_API const Display& find_display(std::string_view name,
                                                          const std::vector<std::string>& others);
 
-/// Color of a source picture: light in some primaries, linear or encoded by a curve.
+/// Color of a source picture: light in some primaries, linear or encoded.
 struct SourceColor {
     std::string name;  // an input space's id, "sRGB", ...; unique
     Primaries primaries;
     /// Stored numbers -> scene-linear. Empty: the numbers are linear.
     Pipeline decode = {};
+    /// True for absolute luminance (PQ, HLG, cd/m2): decoded 1.0 is kReferenceWhite cd/m2.
+    bool is_absolute = false;
+    /// Runs before `decode`, for encodings that no Pipeline can hold, such as the LUTs of an ICC
+    /// profile: stored numbers -> numbers that `decode` takes. Interleaved RGB; in and out may be
+    /// the same; safe to use from several threads at once. Empty: none.
+    std::function<void(const float* in, float* out, std::size_t count)> convert = {};
 };
 /// Finds an input space by id, title or alias, or an encoding of pictures: a display (its code
 /// values), `Rec709` (the camera curve of ITU-R BT.709), `GammaX.Y`, or a curve with an input

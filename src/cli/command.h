@@ -55,6 +55,7 @@ struct ViewOptions {
 void add_list(CommandLine& program);
 void add_eval(CommandLine& program);
 void add_apply(CommandLine& program);
+void add_info(CommandLine& program);
 void add_meter(CommandLine& program);
 void add_bake(CommandLine& program);
 void add_shader(CommandLine& program);

@@ -39,7 +39,7 @@ void add_compare(CommandLine& program) {
         .suggest(suggest_source_colors)
         .show_default()
         .group(output);
-    add_max_pixels(command, options->max_pixels).group(output);
+    add_picture_choice(command, options->picture, "Picture");
     const Option columns =
         command.add("--columns", options->columns, "pictures in a row (default: as fits)")
             .value("N")

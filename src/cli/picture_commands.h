@@ -33,6 +33,7 @@ class PictureCommands {
     virtual void compare(const CompareOptions& options) const = 0;
     virtual void chart(const ChartOptions& options) const = 0;
     virtual void sheet(const SheetOptions& options) const = 0;
+    virtual void info(const InfoOptions& options) const = 0;
 
     /// Scene-linear RGB of a picture: every pixel up to a million, then every n-th.
     [[nodiscard]] virtual std::vector<float> read_pixels(const std::string& path) const = 0;
@@ -61,6 +62,6 @@ extern "C" const PictureCommands* tonewright_picture_commands(const char* build)
 inline constexpr const char* kPictureCommandsEntry = "tonewright_picture_commands";
 /// The release, and the number of this interface: increase it with every change of the interface
 /// or of the options.
-inline constexpr const char* kPictureCommandsBuild = TONEWRIGHT_VERSION " interface 7";
+inline constexpr const char* kPictureCommandsBuild = TONEWRIGHT_VERSION " interface 8";
 
 TONEWRIGHT_NAMESPACE_END

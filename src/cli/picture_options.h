@@ -13,16 +13,21 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// How pictures are read: subimage, alpha, threads, time limit.
-struct PictureInput {
-    int subimage = 0;
+/// Which picture of a file is read. @see ReadOptions
+struct PictureChoice {
+    std::string subimage;
+    std::string layer;
+    /// Unset: the default of the library.
+    std::optional<double> max_pixels = {};
+};
+
+/// How pictures are read: the choice, alpha, threads, time limit.
+struct PictureInput : PictureChoice {
     int threads = 0;
     /// Seconds; each picture then has its own process. 0: no limit.
     double timeout = 0;
     bool unpremult = false;
     bool no_unpremult = false;
-    /// Unset: the defaults of the library.
-    std::optional<double> max_pixels = {};
 };
 
 /// Treatment of the frames of a shot by `apply`.
@@ -112,7 +117,7 @@ struct CompareOptions {
     std::optional<double> split;
     bool is_horizontal = false;
     bool has_no_labels = false;
-    std::optional<double> max_pixels = {};
+    PictureChoice picture;
 };
 
 struct ChartOptions {
@@ -127,7 +132,14 @@ struct SheetOptions {
     std::vector<std::string> pictures;
     int columns = 4;
     int cell_width = 480;
-    std::optional<double> max_pixels = {};
+    PictureChoice choice;
+};
+
+struct InfoOptions {
+    std::vector<std::string> pictures;
+    std::string input = "auto";
+    bool json = false;
+    PictureChoice choice;
 };
 
 /// A picture of the page.
@@ -135,7 +147,7 @@ struct ReportPictureOptions {
     std::string path;  // empty: the chart
     /// A larger picture is made smaller.
     int width = 960;
-    std::optional<double> max_pixels = {};
+    PictureChoice choice;
     /// Local operators, which the page cannot run.
     std::vector<std::string> local_operators;
 };

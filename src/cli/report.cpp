@@ -37,7 +37,7 @@ struct Options {
     std::vector<std::string> pictures;
     std::vector<std::string> operators;
     int width = 960;
-    std::optional<double> max_pixels;
+    PictureChoice choice;
     bool no_parity = false;
 };
 
@@ -146,7 +146,7 @@ class PageContents {
         ReportPictureOptions wanted;
         wanted.path = path;
         wanted.width = options_.width;
-        wanted.max_pixels = options_.max_pixels;
+        wanted.choice = options_.choice;
         for (const ResolvedOperator& op : operators_) {
             if (!op.op->is_local()) continue;
             wanted.local_operators.push_back(operator_text(op));
@@ -413,7 +413,7 @@ void add_report(CommandLine& program) {
         .show_default()
         .range(320, 8192)
         .group(contents);
-    add_max_pixels(command, options->max_pixels).group(contents);
+    add_picture_choice(command, options->choice, "Pictures");
     command.add_flag("--no-parity", options->no_parity, "leave out the parity table")
         .group(contents);
     command.footer(

@@ -86,6 +86,20 @@ Option add_max_pixels(const Command& command, std::optional<double>& value) {
         .range(1, 1e12);
 }
 
+void add_picture_choice(const Command& command, PictureChoice& choice, const char* group) {
+    command
+        .add("--layer", choice.layer,
+             "layer of an EXR file (default: R, G, B, else the first that is a picture)")
+        .value("NAME")
+        .group(group);
+    command
+        .add("--subimage", choice.subimage,
+             "part or page: its name or its number from 0 (default: the first picture)")
+        .value("N")
+        .group(group);
+    add_max_pixels(command, choice.max_pixels).group(group);
+}
+
 void add_picture_input(const Command& command, PictureInput& options) {
     const char* const group = "Pictures";
     command.add("--threads", options.threads, "number of threads; 0 uses all cores")
@@ -99,14 +113,7 @@ void add_picture_input(const Command& command, PictureInput& options) {
         .value("SECONDS")
         .range(0.1, 1e6)
         .group(group);
-    command
-        .add("--subimage", options.subimage,
-             "subimage of a multi-part file (view or page), counted from 0")
-        .value("N")
-        .show_default()
-        .range(0, 1 << 20)
-        .group(group);
-    add_max_pixels(command, options.max_pixels).group(group);
+    add_picture_choice(command, options, group);
     const Option yes =
         command.add_flag("--unpremult", options.unpremult,
                          "divide color by alpha first (default: if the alpha is associated)");

@@ -34,7 +34,9 @@ void add_lut_options(const Command& command, LutOptions& options, const Option& 
 /// --max-pixels.
 Option add_max_pixels(const Command& command, std::optional<double>& value);
 
-/// --max-pixels, --subimage, --threads, --timeout, --unpremult, --no-unpremult.
+/// --layer, --subimage, --max-pixels.
+void add_picture_choice(const Command& command, PictureChoice& choice, const char* group);
+/// --layer, --max-pixels, --subimage, --threads, --timeout, --unpremult, --no-unpremult.
 void add_picture_input(const Command& command, PictureInput& options);
 
 /// Adds --delta, --percentiles, --key, ... and --meter-region.

@@ -29,7 +29,7 @@ void add_sheet(CommandLine& program) {
         .show_default()
         .range(16, 16384)
         .group(group);
-    add_max_pixels(command, options->max_pixels).group(group);
+    add_picture_choice(command, options->choice, "Pictures");
     command.footer("Example:\n  tonewright sheet -o sheet.png Hable=hable.png AgX=agx.png");
     command.action([options] {
         const ResultLine line;

@@ -11,8 +11,12 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
+OIIO::ImageBuf read_image(const std::string& path, const ReadOptions& options) {
+    return with_memory_for(path, [&] { return PictureReader(path, 0, options).read_all(); });
+}
+
 OIIO::ImageBuf read_image(const std::string& path, double max_pixels) {
-    return with_memory_for(path, [&] { return PictureReader(path, 0, 0, max_pixels).read_all(); });
+    return read_image(path, {.max_pixels = max_pixels});
 }
 
 void write_image_atomically(const OIIO::ImageBuf& image, const std::string& path,

@@ -53,7 +53,7 @@ Lut read_lut_picture(const std::string& path) {
         // Checked before memory is allocated for its pixels.
         (void)layout_of(path, in->spec().width, in->spec().height);
     }
-    return lut_of_picture(read_image(path), path);
+    return lut_of_picture(upright(read_image(path)), path);
 }
 
 Lut lut_of_picture(const OIIO::ImageBuf& picture, const std::string& path) {

@@ -13,6 +13,7 @@
 
 #include "base/format_number.h"
 #include "base/strings.h"
+#include "image/picture_description.h"
 #include "image/picture_file.h"
 #include "image/scene_meter.h"
 #include "image/source_picture.h"
@@ -100,14 +101,32 @@ SceneMeter measure_picture(const ImageSpec& spec, const MeterOptions& options,
     return meter;
 }
 
+namespace {
+
+SceneMeter measure_whole(const ImageBuf& src, const MeterOptions& options,
+                         SceneMeter::Figures figures, int nthreads) {
+    const ImageSpec spec = described_spec(src);
+    const SourceColor color = source_color(spec, options.input);
+    if (color.convert)
+        return measure_whole(converted_picture(src, color), options, figures, nthreads);
+    return measure_picture(spec, options, figures, nthreads, pass_over(src, options));
+}
+
+}  // namespace
+
 SceneMeter measure_file(const std::string& path, const MeterOptions& options,
                         SceneMeter::Figures figures, int nthreads, std::size_t batch_bytes) {
-    const ImageSpec spec =
-        PictureReader(path, nthreads, options.subimage, options.max_pixels).spec();
+    const auto open = [&] {
+        PictureReader reader(path, nthreads, options.read);
+        reader.convert_colors(options.input);
+        return reader.spec();
+    };
+    const ImageSpec spec = open();
     check_pixel_type("source", spec.format);
     const ROI window = measured_window(spec, options);
     return measure_picture(spec, options, figures, nthreads, [&](SceneMeter& meter) {
-        PictureReader reader(path, nthreads, options.subimage, options.max_pixels);
+        PictureReader reader(path, nthreads, options.read);
+        reader.convert_colors(options.input);
         if (spec.depth > 1) {
             const ImageBuf volume = reader.read_all();
             pass_over(volume, options)(meter);
@@ -139,24 +158,22 @@ SceneStatistics measure_scene(const ImageBuf& src, std::string_view input,
     options.input = input;
     options.unpremult = unpremult;
     options.region = roi;
-    return measure_picture(src.spec(), options, SceneMeter::Figures::statistics, nthreads,
-                           pass_over(src, options))
-        .statistics();
+    return measure_whole(src, options, SceneMeter::Figures::statistics, nthreads).statistics();
 }
 
 Metering meter(const ImageBuf& src, const MeterOptions& options, int nthreads) {
     check_meter_options(options);
     check_source(src);
     require_pixels(src.spec(), options);
-    return measure_picture(src.spec(), options, SceneMeter::Figures::all, nthreads,
-                           pass_over(src, options))
-        .metering();
+    return measure_whole(src, options, SceneMeter::Figures::all, nthreads).metering();
 }
 
 Metering meter_file(const std::string& path, const MeterOptions& options, int nthreads) {
     check_meter_options(options);
     const ImageSpec spec = about_picture(path, [&] {
-        return PictureReader(path, nthreads, options.subimage, options.max_pixels).spec();
+        const PictureReader reader(path, nthreads, options.read);
+        report_header(reader.spec(), options.input, options.read);
+        return reader.spec();
     });
     try {
         require_pixels(spec, options);

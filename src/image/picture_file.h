@@ -15,6 +15,7 @@
 
 #include "base/atomic_file.h"
 #include "base/input_file.h"
+#include "image/picture_description.h"
 #include "image/source_picture.h"
 #include "tonewright/error.h"
 #include "tonewright/image_io.h"
@@ -62,17 +63,21 @@ decltype(auto) about_picture(const std::string& path, const Step& step) {
 /// a half-black picture. Nothing goes through OIIO's cache.
 class TONEWRIGHT_API PictureReader {
   public:
+    /// Chooses the picture of the file, and describes it to the callbacks of `options`.
     /// @param nthreads  0: OIIO's `threads` attribute.
-    /// @throws FileError  missing, unreadable, of unknown format, without that subimage, deep, or
-    ///                    with more pixels than `max_pixels`. One line.
-    explicit PictureReader(const std::string& path, int nthreads = 0, int subimage = 0,
-                           double max_pixels = kMaxPixels);
+    /// @throws FileError  missing, unreadable, of unknown format, without that subimage or layer,
+    ///                    deep, or with more pixels than the limit. One line.
+    explicit PictureReader(const std::string& path, int nthreads = 0,
+                           const ReadOptions& options = {});
     ~PictureReader();
     PictureReader(const PictureReader&) = delete;
     PictureReader& operator=(const PictureReader&) = delete;
 
-    /// As in an ImageBuf in memory.
+    /// As in an ImageBuf in memory, with the facts of the header (header_tags.h).
     [[nodiscard]] const OIIO::ImageSpec& spec() const { return spec_; }
+    /// From now on, delivers float light of pictures whose encoding no Pipeline can hold.
+    /// @throws PictureError, Error  @see describe_picture
+    void convert_colors(std::string_view input);
     /// Rows are read in multiples of this, from the first one on: the height of a tile, or 1.
     [[nodiscard]] int row_step() const;
     /// Reads rows [ybegin, yend) of all channels, interleaved and packed.
@@ -84,11 +89,22 @@ class TONEWRIGHT_API PictureReader {
 
   private:
     void check(bool was_read) const;
+    void choose_subimage(const ReadOptions& options);
+    void choose_layer(const ReadOptions& options);
+    void deliver(const std::vector<int>& channels);
+    void check_size(double max_pixels) const;
+    /// Rows as the file has them, in the delivered order of channels.
+    void read_stored(int ybegin, int yend, std::byte* to);
 
     std::string path_;
-    int subimage_;
+    int subimage_ = 0;
     std::unique_ptr<OIIO::ImageInput> in_;
-    OIIO::ImageSpec spec_;
+    OIIO::ImageSpec spec_;             // of what is delivered
+    OIIO::ImageSpec stored_;           // before conversion
+    int stored_channels_ = 0;          // of the file
+    std::vector<int> channels_;        // of the file that are delivered; empty: all in their order
+    std::vector<std::byte> scratch_;   // rows with all channels
+    std::optional<SourceColor> color_; // to convert from; none: no conversion
 };
 
 /// Bytes that are read, processed and written at a time.
@@ -104,6 +120,10 @@ inline constexpr std::size_t kBatchBytes = std::size_t{16} << 20;
 /// The spec of rows [ybegin, yend) of a picture, untiled.
 [[nodiscard]] TONEWRIGHT_API OIIO::ImageSpec spec_of_rows(const OIIO::ImageSpec& picture,
                                                           int ybegin, int yend);
+
+/// The note and the warnings about what a header says go to the callbacks of `options`.
+TONEWRIGHT_API void report_header(const OIIO::ImageSpec& spec, std::string_view input,
+                                  const ReadOptions& options);
 
 /// Reads a picture to its end and discards it.
 /// @throws FileError  it is not complete
@@ -132,6 +152,9 @@ class TONEWRIGHT_API PictureWriter {
     void open(const OIIO::ImageSpec& picture);
     /// After opening: the better pixel type for the rows, half or float. Both give the same file.
     [[nodiscard]] OIIO::TypeDesc row_type() const;
+    /// True if files of the format store Exif's orientation and programs follow it. Others need
+    /// upright pixels.
+    [[nodiscard]] bool keeps_orientation() const;
     /// After opening: true if the format takes the last row first.
     [[nodiscard]] bool is_bottom_up() const;
     /// The next rows of the picture, or the picture.

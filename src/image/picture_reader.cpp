@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <charconv>
 #include <climits>
 #include <cstdint>
 #include <filesystem>
@@ -12,6 +13,8 @@
 
 #include "base/input_file.h"
 #include "base/strings.h"
+#include "image/header_tags.h"
+#include "image/layers.h"
 #include "image/picture_file.h"
 #include "image/source_picture.h"
 #include "tonewright/image_io.h"
@@ -139,6 +142,10 @@ std::string why_not_open(const std::string& path, const std::string& reported) {
     return first_line(reported);
 }
 
+/// More subimages are not looked at: a damaged TIFF file may declare an endless chain.
+constexpr int kMostSubimages = 1000;
+constexpr int kMostNames = 8;
+
 /// OpenImageIO 2.4 stores errors by the address of a reader and by thread. If another thread
 /// destroys a reader, its errors remain for the next reader at that address.
 void forget_errors(const OIIO::ImageInput& in) { (void)in.geterror(); }
@@ -167,38 +174,192 @@ std::unique_ptr<OIIO::ImageInput> open_picture(const std::string& path,
     return in;
 }
 
-PictureReader::PictureReader(const std::string& path, int nthreads, int subimage, double max_pixels)
-    : path_(path), subimage_(subimage), in_(open_picture(path, nullptr, max_pixels)) {
+PictureReader::PictureReader(const std::string& path, int nthreads, const ReadOptions& options)
+    : path_(path), in_(open_picture(path, nullptr, options.max_pixels)) {
     // ImageBuf is not used: it asks the shared cache, which may have an older file of this name,
     // and it ignores errors that a reader reports while it delivers pixels.
     in_->threads(nthreads);
-    if (!in_->seek_subimage(subimage, 0))
-        cannot_read(path, fmt::format("it has no subimage {}; the first is 0", subimage));
+    choose_subimage(options);
     spec_ = in_->spec();
     if (spec_.deep)
         cannot_read(path, "the picture is deep; expected flat pixels (oiiotool --flatten)");
+    const std::string_view format = in_->format_name();
+    complete_header(path, format, spec_);
+    const std::string extension = extension_of(path);
+    if (!extension.empty()) spec_.attribute(file_tag::kExtension, extension.substr(1));
     spec_.channelformats.clear();  // all channels are read in the widest of them
     complete_channel_names(spec_);
+    stored_channels_ = spec_.nchannels;
+    check_size(options.max_pixels);
+    const std::string name = spec_.get_string_attribute("oiio:subimagename");
+    spec_.attribute(file_tag::kSubimage,
+                    name.empty() ? fmt::to_string(subimage_)
+                                 : fmt::format("{} ({})", subimage_, printable(name)));
+    choose_layer(options);
+    stored_ = spec_;
+    if (format == "dpx") check_dpx_size(path);
+}
+
+PictureReader::~PictureReader() = default;
+
+void PictureReader::check_size(double max_pixels) const {
     const double pixels =
         static_cast<double>(spec_.width) * spec_.height * std::max(spec_.depth, 1);
     if (pixels > max_pixels) {
-        refuse_size(path, spec_.width, spec_.height, max_pixels);
+        refuse_size(path_, spec_.width, spec_.height, max_pixels);
     }
     std::error_code error;
-    const auto bytes = static_cast<double>(std::filesystem::file_size(path, error));
+    const auto bytes = static_cast<double>(std::filesystem::file_size(path_, error));
     if (error) return;  // no regular file
     // The densest compressions of black (DWAB of wide rows) compress 300,000 bytes to one.
     constexpr double kDensest = 1e6;
     constexpr double kHarmless = 64 << 20;
     const double claimed = pixels * static_cast<double>(spec_.pixel_bytes());
     if (claimed > std::max(kDensest * bytes, kHarmless)) {
-        cannot_read(path, fmt::format("it declares {} x {} pixels of {} channels in {:.0f} bytes",
-                                      spec_.width, spec_.height, spec_.nchannels, bytes));
+        cannot_read(path_, fmt::format("it declares {} x {} pixels of {} channels in {:.0f} bytes",
+                                       spec_.width, spec_.height, spec_.nchannels, bytes));
     }
-    if (std::string_view(in_->format_name()) == "dpx") check_dpx_size(path);
 }
 
-PictureReader::~PictureReader() = default;
+void PictureReader::choose_subimage(const ReadOptions& options) {
+    const std::string_view format = in_->format_name();
+    const auto note = [&](const std::string& text) {
+        if (options.note) options.note(text);
+    };
+    const auto name_of = [](const OIIO::ImageSpec& spec) {
+        return std::string(spec.get_string_attribute("oiio:subimagename"));
+    };
+    if (!options.subimage.empty()) {
+        int number = -1;
+        const std::string& text = options.subimage;
+        const auto [end, error] =
+            std::from_chars(text.data(), text.data() + text.size(), number);
+        std::string names;
+        if (error != std::errc() || end != text.data() + text.size()) {
+            number = -1;
+            for (int i = 0; i < kMostSubimages && in_->seek_subimage(i, 0); ++i) {
+                const std::string name = name_of(in_->spec());
+                if (OIIO::Strutil::iequals(name, text)) number = i;
+                if (number >= 0) break;
+                if (!name.empty()) names += (names.empty() ? "" : ", ") + printable(name);
+            }
+            forget_errors(*in_);
+        }
+        subimage_ = number;
+        if (number >= 0 && in_->seek_subimage(number, 0)) return;
+        cannot_read(path_, fmt::format("it has no subimage {}; the first is 0{}", printable(text),
+                                       names.empty() ? "" : ", and names are " + names));
+    }
+    // Frames of movies are decoded one after the other; PSD and HEIF files begin with the picture.
+    if (in_->spec().get_int_attribute("oiio:Movie", 0) != 0 || format == "psd" ||
+        format == "heif" || !in_->seek_subimage(1, 0)) {
+        forget_errors(*in_);
+        if (!in_->seek_subimage(0, 0)) cannot_read(path_, "it has no picture");
+        return;
+    }
+    std::vector<Layer> pictures;   // by the names of their parts
+    std::vector<int> parts;
+    std::string names;
+    int count = 0;
+    for (; count < kMostSubimages && in_->seek_subimage(count, 0); ++count) {
+        const OIIO::ImageSpec& spec = in_->spec();
+        const std::string name = name_of(spec);
+        if (count < kMostNames)
+            names += (names.empty() ? "" : ", ") +
+                     (name.empty() ? fmt::to_string(count) : printable(name));
+        if (spec.deep) continue;
+        for (Layer layer : color_layers(spec)) {
+            if (layer.name.empty()) layer.name = name;
+            // The default view of a stereo file is the first one: OpenEXR, "Multi-View".
+            pictures.push_back(std::move(layer));
+            parts.push_back(count);
+        }
+    }
+    forget_errors(*in_);
+    if (count > kMostNames) names += ", ...";
+    if (format == "openexr") {
+        if (const Layer* picture = picture_layer(pictures))
+            subimage_ = parts[static_cast<std::size_t>(picture - pictures.data())];
+    }
+    if (!in_->seek_subimage(subimage_, 0)) cannot_read(path_, "it has no picture");
+    const std::string name = name_of(in_->spec());
+    note(fmt::format("subimage is {}{}, of {}; --subimage chooses another", subimage_,
+                     name.empty() ? "" : fmt::format(" ({})", printable(name)),
+                     format == "openexr" ? names : fmt::to_string(count)));
+}
+
+void PictureReader::choose_layer(const ReadOptions& options) {
+    const bool has_layers = std::string_view(in_->format_name()) == "openexr";
+    const std::vector<Layer> layers = has_layers ? color_layers(spec_) : std::vector<Layer>();
+    if (!options.layer.empty()) {
+        const Layer* layer = find_layer(layers, options.layer);
+        if (!layer) {
+            cannot_read(path_, fmt::format("it has no layer {}; {}", printable(options.layer),
+                                           layers.empty()
+                                               ? "it has no layers in color"
+                                               : "expected one of " + layer_names(layers)));
+        }
+        deliver(layer->channels);
+        const auto count = layer->channels.size();
+        for (std::size_t i = 0; i < count; ++i)
+            spec_.channelnames[i] = std::string(1, "RGBA"[i]);
+        spec_.attribute(file_tag::kLayer, layer->name);
+        return;
+    }
+    if (!has_layers || spec_.nchannels < 3) return;
+    const auto warn = [&](const std::string& text) {
+        if (options.warn) options.warn(text);
+    };
+    const Layer* layer = picture_layer(layers);
+    if (!layer) {
+        const std::string taken =
+            fmt::format("{}, {}, {}", printable(spec_.channelnames[0]),
+                        printable(spec_.channelnames[1]), printable(spec_.channelnames[2]));
+        const bool is_luminance = spec_.channelindex("RY") >= 0 || spec_.channelindex("BY") >= 0;
+        if (!is_luminance)
+            warn(fmt::format("no layer is a picture in color: channels {} are taken{}", taken,
+                             layers.empty() ? "" : "; --layer chooses another"));
+        return;
+    }
+    std::vector<int> order = layer->channels;
+    for (int c = 0; c < spec_.nchannels; ++c) {
+        if (std::find(order.begin(), order.end(), c) == order.end()) order.push_back(c);
+    }
+    const bool has_alpha = layer->channels.size() > 3;
+    deliver(order);
+    // OpenImageIO takes the first alpha of the file, which may be another layer's.
+    spec_.alpha_channel = has_alpha ? 3 : -1;
+    spec_.attribute(file_tag::kLayer, layer->name);
+    if (layers.size() > 1 && options.note) {
+        options.note(fmt::format("layer is {}, of {}; --layer chooses another",
+                                 layer->name.empty() ? "RGB" : printable(layer->name),
+                                 layer_names(layers)));
+    }
+}
+
+void PictureReader::deliver(const std::vector<int>& channels) {
+    const OIIO::ImageSpec all = spec_;
+    spec_.nchannels = static_cast<int>(channels.size());
+    spec_.channelnames.clear();
+    spec_.alpha_channel = spec_.z_channel = -1;
+    bool is_identity = static_cast<int>(channels.size()) == all.nchannels;
+    for (std::size_t i = 0; i < channels.size(); ++i) {
+        const int c = channels[i];
+        spec_.channelnames.push_back(all.channelnames[static_cast<std::size_t>(c)]);
+        if (c == all.alpha_channel) spec_.alpha_channel = static_cast<int>(i);
+        if (c == all.z_channel) spec_.z_channel = static_cast<int>(i);
+        is_identity = is_identity && c == static_cast<int>(i);
+    }
+    if (channels.size() == 4 && spec_.alpha_channel < 0) spec_.alpha_channel = 3;
+    channels_ = is_identity ? std::vector<int>() : channels;
+}
+
+void PictureReader::convert_colors(std::string_view input) {
+    SourceColor color = source_color(stored_, input);
+    if (!color.convert) return;
+    spec_ = converted_spec(stored_, color);
+    color_ = std::move(color);
+}
 
 int PictureReader::row_step() const { return std::max(spec_.tile_height, 1); }
 
@@ -210,25 +371,74 @@ void PictureReader::check(bool was_read) const {
                 reported.empty() ? "the file is truncated or damaged" : first_line(reported));
 }
 
-void PictureReader::read_rows(int ybegin, int yend, std::byte* to) {
-    const OIIO::ImageSpec& s = spec_;
+void PictureReader::read_stored(int ybegin, int yend, std::byte* to) {
+    const OIIO::ImageSpec& s = stored_;
+    const auto rows = static_cast<std::size_t>(yend - ybegin);
+    const std::size_t bytes = s.format.size();
+    const std::size_t pixels = rows * static_cast<std::size_t>(s.width);
+    std::byte* into = to;
+    if (!channels_.empty()) {
+        scratch_.resize(pixels * bytes * static_cast<std::size_t>(stored_channels_));
+        into = scratch_.data();
+    }
     forget_errors(*in_);
     // This reader delivers less than it declares, without an error.
     if (std::string_view(in_->format_name()) == "dpx")
-        std::fill_n(to, s.scanline_bytes() * static_cast<std::size_t>(yend - ybegin), std::byte{});
+        std::fill_n(into, pixels * bytes * static_cast<std::size_t>(stored_channels_), std::byte{});
     check(s.tile_width > 0
               ? in_->read_tiles(subimage_, 0, s.x, s.x + s.width, ybegin, yend, s.z, s.z + 1, 0,
-                                s.nchannels, s.format, to)
-              : in_->read_scanlines(subimage_, 0, ybegin, yend, s.z, 0, s.nchannels, s.format, to));
+                                stored_channels_, s.format, into)
+              : in_->read_scanlines(subimage_, 0, ybegin, yend, s.z, 0, stored_channels_, s.format,
+                                    into));
+    if (channels_.empty()) return;
+    const auto from_step = bytes * static_cast<std::size_t>(stored_channels_);
+    for (std::size_t i = 0; i < pixels; ++i) {
+        const std::byte* pixel = scratch_.data() + i * from_step;
+        for (const int c : channels_) {
+            std::copy_n(pixel + static_cast<std::size_t>(c) * bytes, bytes, to);
+            to += bytes;
+        }
+    }
+}
+
+void PictureReader::read_rows(int ybegin, int yend, std::byte* to) {
+    if (!color_) {
+        read_stored(ybegin, yend, to);
+        return;
+    }
+    const OIIO::ImageSpec rows = spec_of_rows(stored_, ybegin, yend);
+    std::vector<std::byte> stored(rows.image_bytes());
+    read_stored(ybegin, yend, stored.data());
+    const ImageBuf light = converted_picture(ImageBuf(rows, stored.data()), *color_);
+    if (!light.get_pixels(light.roi(), OIIO::TypeFloat, to)) check(false);
 }
 
 ImageBuf PictureReader::read_all() {
     // Cleared, because some readers deliver less than they declare.
-    ImageBuf image = with_memory_for(path_, [&] { return black_picture(spec_); });
-    forget_errors(*in_);
-    check(in_->read_image(subimage_, 0, 0, spec_.nchannels, image.spec().format,
-                          image.localpixels()));
-    return image;
+    ImageBuf image = with_memory_for(path_, [&] { return black_picture(stored_); });
+    if (channels_.empty()) {
+        forget_errors(*in_);
+        check(in_->read_image(subimage_, 0, 0, stored_channels_, image.spec().format,
+                              image.localpixels()));
+    } else {
+        // Parts of OpenEXR files are flat: rows are all there is.
+        const int step = rows_of_batch(stored_.scanline_bytes(), row_step(), stored_.height);
+        const int yend = stored_.y + stored_.height;
+        auto* to = static_cast<std::byte*>(image.localpixels());
+        for (int y = stored_.y; y < yend; y += step) {
+            const int end = std::min(y + step, yend);
+            read_stored(y, end, to);
+            to += stored_.scanline_bytes() * static_cast<std::size_t>(end - y);
+        }
+    }
+    return color_ ? converted_picture(image, *color_) : std::move(image);
+}
+
+void report_header(const OIIO::ImageSpec& spec, std::string_view input,
+                   const ReadOptions& options) {
+    if (!options.warn) return;
+    for (const std::string& line : describe_picture(spec, input).ignored)
+        options.warn(line);
 }
 
 int rows_of_batch(std::size_t bytes_per_row, int step, int height, std::size_t batch_bytes) {

@@ -493,6 +493,8 @@ OIIO::TypeDesc PictureWriter::row_type() const {
                                                                        : OIIO::TypeFloat;
 }
 
+bool PictureWriter::keeps_orientation() const { return format() == "jpeg" || format() == "tiff"; }
+
 bool PictureWriter::is_bottom_up() const {
     return format() == "openexr" &&
            out_->spec().get_string_attribute("openexr:lineOrder") == "decreasingY";
@@ -595,7 +597,7 @@ void PictureWriter::finish() {
         if (const int error = proxy_->finish()) fail(reason_of(error));
     } else {
         try {
-            PictureReader written(temporary_->path().string(), 0, 0, kUnlimited);
+            PictureReader written(temporary_->path().string(), 0, {.max_pixels = kUnlimited});
             check_is_complete(written);  // there is no other proof
         } catch (const FileError&) {
             fail("what was written cannot be read back (disk full?)");

@@ -33,8 +33,10 @@ bool is_done(const Tonemapper& tonemapper, const FrameFiles& frame,
              const SequenceOptions& options) {
     if (!is_newer(frame.out, frame.in)) return false;
     try {
-        const PictureReader source(frame.in, 0, frame.subimage, options.max_pixels);
-        PictureReader result(frame.out, 0, 0, kUnlimited);
+        ReadOptions read = options.read;
+        read.warn = read.note = nullptr;
+        const PictureReader source(frame.in, 0, read);
+        PictureReader result(frame.out, 0, {.max_pixels = kUnlimited});
         const OIIO::ImageSpec is = result.spec();
         const OIIO::ImageSpec should = PictureWriter(frame.out, options.write)
                                            .file_spec(result_spec(tonemapper, source.spec()));
@@ -69,14 +71,15 @@ void tonemap_files(const Tonemapper& tonemapper, std::vector<FrameFiles>& frames
     const Tonemapper& any = without_statistics ? *without_statistics : tonemapper;
     std::atomic<std::size_t> next = 0;
     std::mutex mutex;
-    WriteOptions write = options.write;
     std::mutex warn_mutex;
-    if (options.write.warn) {
-        write.warn = [&](const std::string& text) {
+    using Callback = std::function<void(const std::string&)>;
+    const auto guarded = [&](const Callback& call, const std::string& name) -> Callback {
+        if (!call) return {};
+        return [&warn_mutex, &call, name](const std::string& text) {
             const std::lock_guard lock(warn_mutex);
-            options.write.warn(text);
+            call(name.empty() ? text : name + ": " + text);
         };
-    }
+    };
     const auto work = [&](std::size_t job) {
         const auto nthreads =
             static_cast<int>(std::max<std::size_t>((threads + jobs - 1 - job) / jobs, 1));
@@ -85,10 +88,17 @@ void tonemap_files(const Tonemapper& tonemapper, std::vector<FrameFiles>& frames
             try {
                 frame.is_skipped = options.skip_existing && is_done(any, frame, options);
                 if (!frame.is_skipped) {
+                    const bool is_named = options.names_pictures;
+                    const std::string in = is_named ? frame.in : std::string();
+                    WriteOptions write = options.write;
+                    write.warn = guarded(options.write.warn, is_named ? frame.out : in);
+                    ReadOptions read = options.read;
+                    read.warn = guarded(options.read.warn, in);
+                    read.note = guarded(options.read.note, in);
                     std::optional<Tonemapper> own;
                     if (frame.exposure_stops) own = tonemapper.with_exposure(*frame.exposure_stops);
-                    tonemap_file(own ? *own : tonemapper, frame.in, frame.out, write, nthreads,
-                                 frame.subimage, options.max_pixels);
+                    tonemap_file(own ? *own : tonemapper, frame.in, frame.out, write, read,
+                                 nthreads);
                 }
             } catch (const std::exception& e) {
                 frame.error = e.what();

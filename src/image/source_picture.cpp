@@ -27,56 +27,6 @@ int find_alpha(const OIIO::ImageSpec& spec) {
     return -1;
 }
 
-/// The attributes that state a picture's color.
-constexpr std::array kColorMetadata = {"oiio:UnassociatedAlpha", "oiio:ColorSpace",
-                                       "colorInteropID", "acesImageContainerFlag",
-                                       "chromaticities"};
-
-/// Names that state no color.
-bool is_no_name(std::string_view name) {
-    constexpr std::array kNone = {"", "scene_linear", "unknown", "raw", "data"};
-    return std::any_of(kNone.begin(), kNone.end(), [&](const char* none) {
-        return OIIO::Strutil::iequals(OIIO::string_view(name), none);
-    });
-}
-
-/// Linear light of the primaries of an OpenEXR file.
-SourceColor color_of_chromaticities(const float* floats) {
-    std::array<double, 8> xy{};
-    std::copy_n(floats, xy.size(), xy.begin());
-    const Primaries primaries = {
-        "chromaticities", {xy[0], xy[1]}, {xy[2], xy[3]}, {xy[4], xy[5]}, {xy[6], xy[7]}};
-    // The file has floats, so primaries near those of a known space count as that space.
-    constexpr double kRounding = 1e-6;
-    const auto is_near = [](const Chromaticity& a, const Chromaticity& b) {
-        return std::fabs(a.x - b.x) <= kRounding && std::fabs(a.y - b.y) <= kRounding;
-    };
-    for (const InputSpace& space : all_input_spaces()) {
-        const Primaries& p = space.primaries;
-        if (is_near(p.red, primaries.red) && is_near(p.green, primaries.green) &&
-            is_near(p.blue, primaries.blue) && is_near(p.whitepoint, primaries.whitepoint)) {
-            return {space.id, p};
-        }
-    }
-    std::string text;
-    bool are_numbers = true;
-    for (int i = 0; i < 8; ++i) {
-        text += fmt::format("{}{}", i > 0 ? "," : "", floats[i]);
-        if (!(std::fabs(floats[i]) <= 10)) are_numbers = false;
-    }
-    // Three primaries on a line give no colors, and a white without luminance is not white.
-    const double area =
-        (primaries.green.x - primaries.red.x) * (primaries.blue.y - primaries.red.y) -
-        (primaries.blue.x - primaries.red.x) * (primaries.green.y - primaries.red.y);
-    if (!are_numbers || !(std::fabs(area) > 1e-6) || !(primaries.whitepoint.y > 0)) {
-        throw PictureError(
-            fmt::format("chromaticities of the picture are {}; expected red, green, blue "
-                        "and white, or an input space that you name",
-                        text));
-    }
-    return {"chromaticities " + text, primaries};
-}
-
 /// With the name of its file.
 std::string error_of(const OIIO::ImageBuf& picture) {
     const std::string text = first_line(picture.geterror());
@@ -85,37 +35,6 @@ std::string error_of(const OIIO::ImageBuf& picture) {
 }
 
 }  // namespace
-
-SourceColor source_color(const OIIO::ImageSpec& spec, std::string_view input) {
-    if (!is_same_name(input, kAutoInput)) return find_source_color(input);
-    for (const char* attribute : {"oiio:ColorSpace", "colorInteropID"}) {
-        const std::string name = spec.get_string_attribute(attribute);
-        if (is_no_name(name)) continue;
-        try {
-            SourceColor color = find_source_color(name);
-            if (color.name != "lin_rec709") return color;
-        } catch (const Error& e) {
-            throw PictureError(
-                fmt::format("{} of the picture: {}; or name an input space", attribute, e.what()));
-        }
-    }
-    if (spec.get_int_attribute("acesImageContainerFlag", 0) == 1)
-        return find_source_color("lin_ap0");
-    const OIIO::ParamValue* xy =
-        spec.find_attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8));
-    if (xy) return color_of_chromaticities(static_cast<const float*>(xy->data()));
-    return find_source_color("lin_rec709");
-}
-
-OIIO::ImageSpec with_color_metadata_alone(const OIIO::ImageSpec& spec) {
-    OIIO::ImageSpec result = spec;
-    result.extra_attribs.clear();
-    for (const char* name : kColorMetadata) {
-        if (const OIIO::ParamValue* value = spec.find_attribute(name))
-            result.extra_attribs.push_back(*value);
-    }
-    return result;
-}
 
 void complete_channel_names(OIIO::ImageSpec& spec) {
     const auto is_there = [&](int channel) { return channel < spec.nchannels; };

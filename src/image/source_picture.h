@@ -10,7 +10,6 @@
 
 #include "image/pixel_access.h"
 #include "tonewright/tonemap.h"
-#include "tonewright/view.h"
 
 /// Pictures of any pixel type that are read span by span, in memory or in OIIO's cache.
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -42,17 +41,6 @@ struct ChannelLayout {
 /// True if color must be un-premultiplied.
 [[nodiscard]] TONEWRIGHT_API bool divides_by_alpha(const OIIO::ImageSpec& spec,
                                                    TonemapOptions::Unpremult unpremult);
-
-/// The color of a picture's numbers.
-///
-/// @param input    a name (@see find_source_color), or `auto`: @see TonemapOptions::input
-/// @throws Error         `input` is an unknown name
-/// @throws PictureError  the picture has an unknown name, or impossible chromaticities
-[[nodiscard]] TONEWRIGHT_API SourceColor source_color(const OIIO::ImageSpec& spec,
-                                                      std::string_view input);
-
-/// Only the fields that these functions read, because rows do not need the texts of their picture.
-[[nodiscard]] TONEWRIGHT_API OIIO::ImageSpec with_color_metadata_alone(const OIIO::ImageSpec& spec);
 
 /// @param what    "source" or "destination"
 /// @throws PictureError  for a type that OIIO has no pixels of.

@@ -29,6 +29,7 @@
 #include "base/format_number.h"
 #include "base/strings.h"
 #include "image/color_tags.h"
+#include "image/picture_description.h"
 #include "image/scene_planes.h"
 #include "image/source_picture.h"
 #include "tonewright/engine.h"
@@ -593,7 +594,11 @@ void run_picture(const PictureMap& with, ImageBuf& dst, const ImageBuf& src, ROI
 void Tonemapper::State::run(ImageBuf& dst, const ImageBuf& src, ROI roi, int nthreads,
                             Progress& progress) const {
     check_source(src);
-    const SourceColor source = source_color(src.spec(), options.input);
+    const SourceColor source = source_color(described_spec(src), options.input);
+    if (source.convert) {
+        run(dst, converted_picture(src, source), roi, nthreads, progress);
+        return;
+    }
     if (!depends_on_picture) {
         const std::shared_ptr<const Prepared> prepared = prepared_for(source);
         if (prepared->to_light) {

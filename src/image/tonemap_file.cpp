@@ -222,17 +222,20 @@ class FilePass {
 }  // namespace
 
 void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
-                        const WriteOptions& write, int nthreads, std::size_t batch_bytes,
-                        int subimage, double max_pixels) {
+                        const WriteOptions& write, const ReadOptions& read, int nthreads,
+                        std::size_t batch_bytes) {
     nthreads = thread_count(nthreads);
     PictureWriter writer(out, write,
                          nthreads);  // reports a wrong name before it reads a large file
-    PictureReader reader(in, nthreads, subimage, max_pixels);
+    PictureReader reader(in, nthreads, read);
     check_pixel_type("source", reader.spec().format);
     (void)channel_layout(reader.spec());
-    (void)source_color(reader.spec(), tonemapper.options().input);
-    if (reader.spec().depth > 1 || tonemapper.needs_whole_picture()) {
-        const ImageBuf source = reader.read_all();
+    report_header(reader.spec(), tonemapper.options().input, read);
+    reader.convert_colors(tonemapper.options().input);
+    const bool turns = orientation_of(reader.spec()) != 1 && !writer.keeps_orientation();
+    if (reader.spec().depth > 1 || tonemapper.needs_whole_picture() || turns) {
+        ImageBuf source = reader.read_all();
+        if (turns) source = upright(std::move(source));
         ImageBuf result;
         run(tonemapper, result, source, nthreads);
         give_date(result.specmod(), in);
@@ -245,8 +248,8 @@ void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, con
         MeterOptions options;
         options.input = tonemapper.options().input;
         options.unpremult = tonemapper.options().unpremult;
-        options.subimage = subimage;
-        options.max_pixels = max_pixels;
+        options.read = read;
+        options.read.warn = options.read.note = nullptr;
         own = tonemapper.with_statistics(
             measure_file(in, options, SceneMeter::Figures::statistics, nthreads, batch_bytes)
                 .statistics());
@@ -279,18 +282,16 @@ void check_overwriting(const std::string& command, const std::vector<FrameFiles>
 }
 
 void tonemap_file(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
-                  const WriteOptions& options, int nthreads, int subimage, double max_pixels) {
-    about_picture(in, [&] {
-        tonemap_in_batches(tonemapper, in, out, options, nthreads, kBatchBytes, subimage,
-                           max_pixels);
-    });
+                  const WriteOptions& write, const ReadOptions& read, int nthreads) {
+    about_picture(in,
+                  [&] { tonemap_in_batches(tonemapper, in, out, write, read, nthreads, kBatchBytes); });
 }
 
 void tonemap_file(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
-                  const OIIO::TypeDesc& type, int nthreads, int subimage) {
-    WriteOptions options;
-    options.type = type;
-    tonemap_file(tonemapper, in, out, options, nthreads, subimage);
+                  const OIIO::TypeDesc& type, int nthreads) {
+    WriteOptions write;
+    write.type = type;
+    tonemap_file(tonemapper, in, out, write, {}, nthreads);
 }
 
 TONEWRIGHT_NAMESPACE_END

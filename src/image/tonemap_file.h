@@ -23,8 +23,8 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// @throws Error  without the picture's name
 TONEWRIGHT_API void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in,
                                        const std::string& out, const WriteOptions& write,
-                                       int nthreads, std::size_t batch_bytes, int subimage = 0,
-                                       double max_pixels = kMaxPixels);
+                                       const ReadOptions& read, int nthreads,
+                                       std::size_t batch_bytes);
 
 /// Checks that no output replaces an input, also through links. With --in-place, a picture may
 /// replace itself, but never another.

@@ -256,7 +256,7 @@ class TonemappedInput final : public ImageInput {
             MeterOptions options;
             options.input = tonemapper_->options().input;
             options.unpremult = tonemapper_->options().unpremult;
-            options.subimage = subimage;
+            options.read.subimage = fmt::to_string(subimage);
             const SceneStatistics statistics =
                 measure_file(path_, options, SceneMeter::Figures::statistics, threads())
                     .statistics();

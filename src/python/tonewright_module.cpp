@@ -478,8 +478,8 @@ WriteOptions::Alpha parse_alpha(const std::string& text) {
 
 void tonemap_into_file(const std::string& in, const std::string& out, const std::string& op,
                        const std::string& type, const std::string& alpha, int nthreads,
-                       int subimage, bool is_in_place, double max_pixels,
-                       const py::kwargs& arguments) {
+                       const std::string& subimage, const std::string& layer, bool is_in_place,
+                       double max_pixels, const py::kwargs& arguments) {
     check_overwriting("tonemap_file", {{in, out}}, is_in_place);
     TonemapOptions options = parse_options(op, arguments);
     WriteOptions write;
@@ -496,7 +496,40 @@ void tonemap_into_file(const std::string& in, const std::string& out, const std:
     write.type = pixel_type;
     write.says_how = true;
     write.warn = [&](const std::string& text) { warn(fmt::format("{}: {}", out, text)); };
-    tonemap_file(Tonemapper(options), in, out, write, nthreads, subimage, max_pixels);
+    ReadOptions read = {.subimage = subimage, .layer = layer, .max_pixels = max_pixels};
+    read.warn = [&](const std::string& text) { warn(fmt::format("{}: {}", in, text)); };
+    tonemap_file(Tonemapper(options), in, out, write, read, nthreads);
+}
+
+/// What the header of a picture says; the keys of `tonewright info --json`.
+py::dict describe_file(const std::string& path, const std::string& input,
+                       const std::string& subimage, const std::string& layer) {
+    ReadOptions read = {.subimage = subimage, .layer = layer};
+    std::vector<std::string> told;
+    read.warn = read.note = [&](const std::string& text) { told.push_back(text); };
+    PictureDescription said;
+    {
+        const py::gil_scoped_release release;
+        said = about_picture(path, [&] {
+            return describe_picture(PictureReader(path, 1, read).spec(), input);
+        });
+    }
+    said.ignored.insert(said.ignored.begin(), told.begin(), told.end());
+    const Primaries& p = said.color.primaries;
+    py::dict d;
+    d["space"] = said.color.name;
+    d["transfer"] = said.transfer;
+    d["primaries"] =
+        py::make_tuple(p.red.x, p.red.y, p.green.x, p.green.y, p.blue.x, p.blue.y);
+    d["white"] = py::make_tuple(p.whitepoint.x, p.whitepoint.y);
+    d["orientation"] = said.orientation;
+    d["layer"] = said.layer;
+    d["subimage"] = said.subimage;
+    d["units"] = said.units;
+    d["alpha"] = said.alpha;
+    d["rule"] = said.rule;
+    d["ignored"] = said.ignored;
+    return d;
 }
 
 py::dict describe(const Metering& metering, const ExposureRule& rule, double delta) {
@@ -525,15 +558,15 @@ py::dict describe(const Metering& metering, const ExposureRule& rule, double del
 
 py::dict meter_any(const py::object& image, const std::string& method, std::optional<double> key,
                    double compensation, double delta, double low, double high,
-                   const std::string& input, const std::string& unpremult, int subimage,
-                   int nthreads, double max_pixels) {
+                   const std::string& input, const std::string& unpremult,
+                   const std::string& subimage, const std::string& layer, int nthreads,
+                   double max_pixels) {
     TonemapOptions alpha;
     set_tonemap_argument(alpha, "unpremult", unpremult);
     MeterOptions options;
     options.input = input;
     options.unpremult = alpha.unpremult;
-    options.subimage = subimage;
-    options.max_pixels = max_pixels;
+    options.read = {.subimage = subimage, .layer = layer, .max_pixels = max_pixels};
     options.delta = delta;
     options.low_percentile = low;
     options.high_percentile = high;
@@ -637,9 +670,11 @@ PYBIND11_MODULE(_tonewright, m) {
           py::arg("roi"), py::arg("nthreads"), py::arg("progress"));
     m.def("tonemap_file", &tw::tonemap_into_file, py::arg("source"), py::arg("target"),
           py::arg("op"), py::kw_only(), py::arg("type"), py::arg("alpha"), py::arg("nthreads"),
-          py::arg("subimage"), py::arg("in_place"), py::arg("max_pixels"));
+          py::arg("subimage"), py::arg("layer"), py::arg("in_place"), py::arg("max_pixels"));
     m.def("evaluate", &tw::evaluate_colors, py::arg("op"), py::arg("colors"));
     m.def("meter", &tw::meter_any);
+    m.def("info", &tw::describe_file, py::arg("image"), py::arg("input"), py::arg("subimage"),
+          py::arg("layer"));
     m.def("operators", [] { return tw::describe_all(tw::all_operators()); });
     m.def("displays", [] { return tw::describe_all(tw::all_displays()); });
     m.def("applications", [] { return tw::describe_all(tw::all_lut_applications()); });

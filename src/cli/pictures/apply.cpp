@@ -79,10 +79,6 @@ WriteOptions write_options_of(const ApplyOptions& options, const std::string& ou
     return write;
 }
 
-double max_pixels_of(const ApplyOptions& options) {
-    return options.picture.max_pixels.value_or(kMaxPixels);
-}
-
 /// Without alpha, color is taken as it is.
 TonemapOptions::Unpremult alpha_of(const ApplyOptions& options) {
     return options.alpha == "keep" ? alpha_of(options.picture) : TonemapOptions::Unpremult::no;
@@ -183,16 +179,18 @@ void apply_lut(const ApplyOptions& options, const LutFile& lut, const FrameFiles
             text.replace(at, kRemedy.size(), "bake the LUT with --display linear");
         hear(text);
     };
-    auto quiet = std::make_optional<QuietStderr>();
-    const OIIO::ImageBuf source = read_image(file.in, max_pixels_of(options));
-    quiet.reset();
-    const SourceColor color = about_picture(file.in, [&] {
+    OIIO::ImageBuf source = read_picture(file.in, options.picture, options.input);
+    SourceColor color = about_picture(file.in, [&] {
         (void)channel_layout(source.spec());
         return source_color(source.spec(), options.input);
     });
+    if (color.convert) {
+        source = converted_picture(source, color);
+        color = source_color(source.spec(), kAutoInput);
+    }
     const LutOptions input = with_stated_input(options.lut, color.name);
     const Pipeline before = before_lut("apply", input, options, color);
-    quiet.emplace();
+    auto quiet = std::make_optional<QuietStderr>();
     const SimdEngine encode(before);
     OIIO::ImageBuf result;
     const auto map = [&](const float* in, float* out, std::size_t count) {
@@ -246,17 +244,18 @@ int apply_lut(const ApplyOptions& options, ApplyFiles& files) {
 
 /// "render.exr (640 x 360 half, lin_rec709) -> out.png: AgX (agx_blender), exposure +1, sRGB,
 /// 0.12 s"
-void print_result(const FrameFiles& file, const Tonemapper& tonemapper, const ResultLine& line) {
+void print_result(const FrameFiles& file, const Tonemapper& tonemapper, const ReadOptions& read,
+                  const ResultLine& line) {
     if (!says_what_was_done()) return;
     const TonemapOptions& options = tonemapper.options();
     const ResolvedOperator op =
         resolve_picture_operator(options.op, options.settings, options.look, options.others);
-    const PictureReader reader(file.in, 1, file.subimage, kUnlimited);
+    const PictureReader reader(file.in, 1, read);
     const OIIO::ImageSpec& spec = reader.spec();
+    const PictureDescription said = describe_picture(spec, options.input);
     std::string text = fmt::format(
-        "apply: {} ({} x {} {}, {}) -> {}: {} ({}), exposure {:+.3g}, display {}", file.in,
-        spec.width, spec.height, spec.format.c_str(), source_color(spec, options.input).name,
-        file.out, op.op->view, operator_text(op),
+        "apply: {} ({} x {} {}, {} by {}) -> {}: {} ({}), exposure {:+.3g}, display {}", file.in,
+        spec.width, spec.height, spec.format.c_str(), said.color.name, said.rule, file.out, op.op->view, operator_text(op),
         file.exposure_stops.value_or(options.exposure_stops), options.display);
     if (message_options().is_verbose) text += fmt::format(", {} threads", thread_count(0));
     line.print(text);
@@ -265,8 +264,8 @@ void print_result(const FrameFiles& file, const Tonemapper& tonemapper, const Re
 void write_with_legend(const Tonemapper& tonemapper, const FrameFiles& file,
                        const ApplyOptions& options, const WriteOptions& write) {
     OIIO::ImageBuf picture;
-    if (!tonemapper(picture, read_image(file.in, max_pixels_of(options)), {},
-                    options.picture.threads))
+    const OIIO::ImageBuf source = read_picture(file.in, options.picture, options.input);
+    if (!tonemapper(picture, source, {}, options.picture.threads))
         throw FileError(file.in + ": " + first_line(picture.geterror()));
     write_image_atomically(with_legend(picture), file.out, write);
 }
@@ -321,7 +320,6 @@ int run_apply(const ApplyOptions& given) {
         options.out = files.files.front().out;
         const auto prepare = [&](std::vector<FrameFiles>& all, const std::vector<int>& numbers) {
             for (FrameFiles& frame : all)
-                frame.subimage = options.picture.subimage;
             meter_frames(tonemapper, all, numbers, options);
         };
         tell_default();
@@ -339,6 +337,8 @@ int run_apply(const ApplyOptions& given) {
     remove_leftovers({file.out});
     Warnings warnings(file.out);
     write.warn = warnings.hearer();
+    ReadMessages messages(file.in);
+    const ReadOptions read = messages.hearing(read_options_of(options.picture));
     const ResultLine result;
     try {
         const QuietStderr quiet;
@@ -348,18 +348,18 @@ int run_apply(const ApplyOptions& given) {
         if (options.has_legend) {
             write_with_legend(tonemapper, file, options, write);
         } else if (options.picture.timeout > 0) {
-            tonemap_contained(tonemapper, file, write, options.picture);
+            tonemap_contained(tonemapper, file, write, read, options.picture);
         } else {
-            tonemap_file(tonemapper, file.in, file.out, write, options.picture.threads,
-                         file.subimage, max_pixels_of(options));
+            tonemap_file(tonemapper, file.in, file.out, write, read, options.picture.threads);
         }
     } catch (const FileError& e) {
         if (!is_frame_pattern(file.in)) throw;
         throw FileError(std::string(e.what()) + "; for the frames of a shot, use --frames 1-100");
     }
+    messages.print();
     warnings.print();
     tell_default();
-    print_result(file, tonemapper, result);
+    print_result(file, tonemapper, read_options_of(options.picture), result);
     return kOk;
 }
 

@@ -149,21 +149,38 @@ void print_summary(const Plan& plan) {
     print_summary(text, written == count && plan.held_count == 0);
 }
 
-/// For the process of a picture: keeps the warnings, which the program then repeats.
-WriteOptions with_kept_warnings(const WriteOptions& write, std::vector<std::string>& warnings) {
-    WriteOptions keeping = write;
-    keeping.warn = [&warnings, warn = write.warn](const std::string& text) {
-        if (warn) warn(text);  // throws with --strict
-        warnings.push_back(one_line(text));
-    };
-    return keeping;
-}
+/// Messages of the process of a picture, which the program then repeats.
+struct KeptMessages {
+    std::vector<std::string> writing;
+    std::vector<std::string> reading;
+    std::vector<std::string> notes;
 
-void repeat_warnings(const Json& warnings, const WriteOptions& write) {
-    if (!write.warn) return;
-    for (const Json& text : std::get<Json::Array>(warnings.value()))
-        write.warn(std::get<std::string>(text.value()));
-}
+    /// Replaces the callbacks.
+    void keep(WriteOptions& write, ReadOptions& read) {
+        const auto keeping = [](std::vector<std::string>& to,
+                                const std::function<void(const std::string&)>& call) {
+            return [&to, call](const std::string& text) {
+                if (call) call(text);  // throws with --strict
+                to.push_back(one_line(text));
+            };
+        };
+        write.warn = keeping(writing, write.warn);
+        read.warn = keeping(reading, read.warn);
+        read.note = keeping(notes, read.note);
+    }
+    [[nodiscard]] Json json() const {
+        return {{"writing", writing}, {"reading", reading}, {"notes", notes}};
+    }
+    static void repeat(const Json& kept, const WriteOptions& write, const ReadOptions& read) {
+        for (const auto& [name, call] : {std::pair("writing", &write.warn),
+                                         std::pair("reading", &read.warn),
+                                         std::pair("notes", &read.note)}) {
+            for (const Json& text : std::get<Json::Array>(kept.at(name).value())) {
+                if (*call) (*call)(std::get<std::string>(text.value()));
+            }
+        }
+    }
+};
 
 void run(const Tonemapper& tonemapper, std::vector<FrameFiles>& files, SequenceOptions options,
          const PictureInput& picture, const char* what) {
@@ -199,20 +216,22 @@ void tonemap_contained(const Tonemapper& tonemapper, std::vector<FrameFiles>& fi
     const std::size_t jobs = std::clamp<std::size_t>(open.size(), 1, wanted);
     const auto threads_each = static_cast<int>(std::max<std::size_t>(threads / jobs, 1));
     const auto work = [&](std::size_t i) {
-        use_threads({.threads = threads_each});
+        PictureInput threads_of_one;
+        threads_of_one.threads = threads_each;
+        use_threads(threads_of_one);
         SequenceOptions one = options;
         one.jobs = 1;
         one.nthreads = threads_each;
         one.done = {};
-        std::vector<std::string> warnings;
-        one.write = with_kept_warnings(options.write, warnings);
+        KeptMessages messages;
+        messages.keep(one.write, one.read);
         std::vector<FrameFiles> files_of_one = {*open[i]};
         tonemap_files(tonemapper, files_of_one, one);
         const FrameFiles& file = files_of_one.front();
         return Json{{"error", one_line(file.error)},
                     {"is_file_error", file.is_file_error},
                     {"is_skipped", file.is_skipped},
-                    {"warnings", warnings}}
+                    {"messages", messages.json()}}
             .dump();
     };
     run_contained(names, jobs, picture.timeout, work,
@@ -225,7 +244,7 @@ void tonemap_contained(const Tonemapper& tonemapper, std::vector<FrameFiles>& fi
                           file.error = std::get<std::string>(told.at("error").value());
                           file.is_file_error = std::get<bool>(told.at("is_file_error").value());
                           file.is_skipped = std::get<bool>(told.at("is_skipped").value());
-                          repeat_warnings(told.at("warnings"), options.write);
+                          KeptMessages::repeat(told.at("messages"), options.write, options.read);
                       } else {
                           remove_leftovers({file.out});
                       }
@@ -234,19 +253,24 @@ void tonemap_contained(const Tonemapper& tonemapper, std::vector<FrameFiles>& fi
 }
 
 void tonemap_contained(const Tonemapper& tonemapper, const FrameFiles& file,
-                       const WriteOptions& write, const PictureInput& picture) {
+                       const WriteOptions& write, const ReadOptions& read,
+                       const PictureInput& picture) {
     const auto work = [&](std::size_t) {
-        use_threads({.threads = picture.threads});
-        std::vector<std::string> warnings;
-        tonemap_file(tonemapper, file.in, file.out, with_kept_warnings(write, warnings),
-                     picture.threads, file.subimage, picture.max_pixels.value_or(kMaxPixels));
-        return Json(warnings).dump();
+        PictureInput threads;
+        threads.threads = picture.threads;
+        use_threads(threads);
+        KeptMessages messages;
+        WriteOptions own_write = write;
+        ReadOptions own_read = read;
+        messages.keep(own_write, own_read);
+        tonemap_file(tonemapper, file.in, file.out, own_write, own_read, picture.threads);
+        return messages.json().dump();
     };
     run_contained({file.in}, 1, picture.timeout, work,
                   [&](std::size_t, const ContainedResult& result) {
                       if (!result.error.empty()) remove_leftovers({file.out});
                       result.require();
-                      repeat_warnings(Json::parse(result.value), write);
+                      KeptMessages::repeat(Json::parse(result.value), write, read);
                   });
 }
 
@@ -258,13 +282,15 @@ int apply_to_frames(
     Warnings warnings(options.out);
     write.warn = warnings.hearer();
     prepare(plan.frames, plan.numbers);
+    ReadMessages messages(options.in);
     SequenceOptions sequence;
     sequence.write = write;
+    sequence.read = messages.hearing(read_options_of(options.picture));
     sequence.skip_existing = options.frames.skip_existing;
     sequence.jobs = options.frames.jobs;
     sequence.nthreads = options.picture.threads;
-    sequence.max_pixels = options.picture.max_pixels.value_or(kMaxPixels);
     run(tonemapper, plan.frames, sequence, options.picture, "frames");
+    messages.print();
     warnings.print();
     print_summary(plan);
     return exit_code_of(plan.frames);
@@ -272,13 +298,16 @@ int apply_to_frames(
 
 int apply_to_files(const Tonemapper& tonemapper, const ApplyOptions& options,
                    std::vector<FrameFiles>& files, WriteOptions write) {
-    Warnings warnings(options.output);
+    Warnings warnings({});
+    ReadMessages messages({});
     write.warn = warnings.hearer();
     SequenceOptions sequence;
     sequence.write = write;
+    sequence.read = messages.hearing(read_options_of(options.picture));
+    sequence.names_pictures = true;
     sequence.nthreads = options.picture.threads;
-    sequence.max_pixels = options.picture.max_pixels.value_or(kMaxPixels);
     run(tonemapper, files, sequence, options.picture, "pictures");
+    messages.print();
     warnings.print();
     const std::size_t failed = print_failures(files);
     const std::size_t written = files.size() - failed;

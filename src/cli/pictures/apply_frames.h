@@ -34,6 +34,7 @@ void tonemap_contained(const Tonemapper& tonemapper, std::vector<FrameFiles>& fi
 /// tonemap_file() with a timeout: in its own process.
 /// @throws  as tonemap_file(); FileError for a crash and the timeout
 void tonemap_contained(const Tonemapper& tonemapper, const FrameFiles& file,
-                       const WriteOptions& write, const PictureInput& picture);
+                       const WriteOptions& write, const ReadOptions& read,
+                       const PictureInput& picture);
 
 TONEWRIGHT_NAMESPACE_END

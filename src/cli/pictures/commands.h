@@ -14,6 +14,7 @@ int run_meter(const MeterCommandOptions& options);
 void run_compare(CompareOptions options);
 void run_chart(const ChartOptions& options);
 void run_sheet(const SheetOptions& options);
+void run_info(const InfoOptions& options);
 [[nodiscard]] std::vector<float> read_picture_pixels(const std::string& path);
 void write_plot_picture(const CurvePlot& plot, const std::string& path, int width);
 [[nodiscard]] Lut load_lut_picture(const std::string& path);

@@ -189,7 +189,7 @@ void compare_pictures(CompareOptions options) {
                         "file",
                         options.file));
     }
-    OIIO::ImageBuf picture = read_picture(options.in, options.max_pixels);
+    OIIO::ImageBuf picture = read_picture(options.in, options.picture, options.input);
     const QuietStderr quiet;
     const SourceColor source = about_picture(options.in, [&] {
         (void)channel_layout(picture.spec());
@@ -197,7 +197,7 @@ void compare_pictures(CompareOptions options) {
     });
     const std::string remark =
         fmt::format("{}, {}, shown on sRGB", exposure_text(options.exposure), title_of(source));
-    if (!options.split && !source.decode.empty()) {
+    if (source.convert || (!options.split && !source.decode.empty())) {
         // Code values are not light, so they are not scaled.
         picture = to_rec709_light(picture, source, options.in);
         options.input = "lin_rec709";

@@ -108,7 +108,7 @@ std::vector<FrameFiles> into_folder(const std::vector<std::string>& inputs,
                             "different file names",
                             other->second, input, out));
         }
-        files.push_back({input, out, {}, options.picture.subimage});
+        files.push_back({input, out, {}});
     }
     return files;
 }
@@ -178,7 +178,7 @@ ApplyFiles files_of(const ApplyOptions& options) {
                         "extension in the output's name",
                         options.format));
     }
-    return {true, {{inputs.front(), output, {}, options.picture.subimage}}};
+    return {true, {{inputs.front(), output, {}}}};
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -80,7 +80,8 @@ Json to_json(const MeterOptions& options) {
     if (const OIIO::ROI& r = options.region; r.defined())
         region = Json::array({r.xbegin, r.ybegin, r.width(), r.height()});
     return {{"input", options.input},
-            {"subimage", options.subimage},
+            {"subimage", options.read.subimage},
+            {"layer", options.read.layer},
             {"unpremult", options.unpremult == Unpremult::automatic
                               ? Json("as the picture says")
                               : Json(options.unpremult == Unpremult::yes)},

@@ -68,8 +68,7 @@ MeterOptions meter_options_of(const ExposureOptions& options, const std::string&
                               const PictureInput& picture) {
     MeterOptions o;
     o.input = input;
-    o.subimage = picture.subimage;
-    o.max_pixels = picture.max_pixels.value_or(kMaxPixels);
+    o.read = read_options_of(picture);
     o.unpremult = alpha_of(picture);
     if (!options.region.empty()) o.region = parse_region(options.region);
     o.delta = options.delta;

@@ -21,6 +21,7 @@ class Commands : public PictureCommands {
     void compare(const CompareOptions& options) const override { run_compare(options); }
     void chart(const ChartOptions& options) const override { run_chart(options); }
     void sheet(const SheetOptions& options) const override { run_sheet(options); }
+    void info(const InfoOptions& options) const override { run_info(options); }
     [[nodiscard]] std::vector<float> read_pixels(const std::string& path) const override {
         return read_picture_pixels(path);
     }

@@ -13,6 +13,7 @@
 #include "base/strings.h"
 #include "cli/messages.h"
 #include "cli/pictures/commands.h"
+#include "image/picture_file.h"
 #include "tonewright/engine.h"
 #include "tonewright/image_io.h"
 
@@ -38,7 +39,7 @@ bool is_same_file(const std::string& a, const std::string& b) {
 }
 
 void Warnings::add(const std::string& text) {
-    const std::string named = fmt::format("{}: {}", name_, text);
+    const std::string named = name_.empty() ? text : fmt::format("{}: {}", name_, text);
     if (message_options().is_strict) warn(named);  // throws
     if (std::find(texts_.begin(), texts_.end(), named) == texts_.end()) texts_.push_back(named);
 }
@@ -47,6 +48,37 @@ void Warnings::print() {
     for (const std::string& text : texts_)
         warn(text);
     texts_.clear();
+}
+
+void Notes::add(const std::string& text) {
+    const std::string named = name_.empty() ? text : fmt::format("{}: {}", name_, text);
+    if (std::find(texts_.begin(), texts_.end(), named) == texts_.end()) texts_.push_back(named);
+}
+
+void Notes::print() {
+    for (const std::string& text : texts_) {
+        if (!message_options().is_quiet) print_message(text);
+    }
+    texts_.clear();
+}
+
+ReadOptions read_options_of(const PictureChoice& choice) {
+    ReadOptions options;
+    options.subimage = choice.subimage;
+    options.layer = choice.layer;
+    options.max_pixels = choice.max_pixels.value_or(kMaxPixels);
+    return options;
+}
+
+ReadOptions ReadMessages::hearing(ReadOptions options) {
+    options.warn = warnings_.hearer();
+    options.note = [this](const std::string& text) { notes_.add(text); };
+    return options;
+}
+
+void ReadMessages::print() {
+    notes_.print();
+    warnings_.print();
 }
 
 TonemapOptions::Unpremult alpha_of(const PictureInput& input) {
@@ -62,13 +94,26 @@ void use_threads(const PictureInput& input) {
     OIIO::attribute("exr_threads", input.threads == 1 ? -1 : input.threads);
 }
 
-OIIO::ImageBuf read_picture(const std::string& path, std::optional<double> max_pixels) {
-    const QuietStderr quiet;
-    return read_image(path, max_pixels.value_or(kMaxPixels));
+OIIO::ImageBuf read_picture(const std::string& path, const PictureChoice& choice,
+                            std::string_view input) {
+    ReadMessages messages(path);
+    const ReadOptions options = messages.hearing(read_options_of(choice));
+    OIIO::ImageBuf picture = [&] {
+        const QuietStderr quiet;
+        OIIO::ImageBuf stored = read_image(path, options);
+        return with_memory_for(path, [&] { return upright(std::move(stored)); });
+    }();
+    about_picture(path, [&] { report_header(picture.spec(), input, options); });
+    messages.print();
+    return picture;
 }
 
 OIIO::ImageBuf to_rec709_light(const OIIO::ImageBuf& picture, const SourceColor& source,
                                const std::string& path) {
+    if (source.convert) {
+        OIIO::ImageBuf light = converted_picture(picture, source);
+        return to_rec709_light(light, source_color(light.spec(), kAutoInput), path);
+    }
     Pipeline stages = source.decode;
     stages.emplace_back(MatrixStage{rgb_to_rgb(source.primaries, kRec709)});
     const SimdEngine engine(stages);
@@ -82,11 +127,15 @@ OIIO::ImageBuf to_rec709_light(const OIIO::ImageBuf& picture, const SourceColor&
 }
 
 std::vector<float> read_picture_pixels(const std::string& path) {
-    const OIIO::ImageBuf image = read_picture(path);
+    const OIIO::ImageBuf stored = read_picture(path);
+    if (stored.nchannels() < 3) {
+        throw FileError(fmt::format("verify: picture {} has {} channels; expected 3", path,
+                                    stored.nchannels()));
+    }
+    const SourceColor source =
+        about_picture(path, [&] { return source_color(stored.spec(), kAutoInput); });
+    const OIIO::ImageBuf image = to_rec709_light(stored, source, path);
     const int channels = image.nchannels();
-    if (channels < 3)
-        throw FileError(
-            fmt::format("verify: picture {} has {} channels; expected 3", path, channels));
     const auto& spec = image.spec();
     const auto step = static_cast<int>(spec.image_pixels() / 1000000 + 1);
     std::vector<float> pixel(static_cast<std::size_t>(channels));

@@ -52,6 +52,19 @@ class Warnings {
     std::vector<std::string> texts_;
 };
 
+/// Collects lines that say what was decided, as Warnings does. Not with --quiet, and no error with
+/// --strict.
+class Notes {
+  public:
+    explicit Notes(std::string name) : name_(std::move(name)) {}
+    void add(const std::string& text);
+    void print();
+
+  private:
+    std::string name_;
+    std::vector<std::string> texts_;
+};
+
 [[nodiscard]] TonemapOptions::Unpremult alpha_of(const PictureInput& input);
 
 /// Sets the number of threads of OpenImageIO and OpenEXR. With a timeout, does nothing: the
@@ -63,9 +76,26 @@ void use_threads(const PictureInput& input);
 [[nodiscard]] OIIO::ImageBuf to_rec709_light(const OIIO::ImageBuf& picture,
                                              const SourceColor& source, const std::string& path);
 
-/// read_image() without messages of other libraries on the terminal.
-/// @param max_pixels  of --max-pixels
-[[nodiscard]] OIIO::ImageBuf read_picture(const std::string& path,
-                                          std::optional<double> max_pixels = {});
+/// The options of the library, without callbacks.
+[[nodiscard]] ReadOptions read_options_of(const PictureChoice& choice);
+
+/// What a command says about the picture that it reads. print() after QuietStderr has ended.
+class ReadMessages {
+  public:
+    /// @param name  of the picture, or of the pictures
+    explicit ReadMessages(const std::string& name) : warnings_(name), notes_(name) {}
+    /// The options with callbacks to this object, which must live as long as they do.
+    [[nodiscard]] ReadOptions hearing(ReadOptions options);
+    void print();
+
+  private:
+    Warnings warnings_;
+    Notes notes_;
+};
+
+/// read_image() without messages of other libraries on the terminal, upright.
+/// @param input  color of the picture, @see TonemapOptions::input; for warnings about its header
+[[nodiscard]] OIIO::ImageBuf read_picture(const std::string& path, const PictureChoice& choice = {},
+                                          std::string_view input = kAutoInput);
 
 TONEWRIGHT_NAMESPACE_END

@@ -42,7 +42,7 @@ OIIO::ImageBuf light_of(const ReportPictureOptions& options) {
         const int width = std::min(options.width, kLargestChart);
         return make_chart(width, width * 9 / 16);
     }
-    OIIO::ImageBuf picture = read_picture(options.path, options.max_pixels);
+    OIIO::ImageBuf picture = read_picture(options.path, options.choice);
     const QuietStderr quiet;
     const SourceColor source = about_picture(options.path, [&] {
         (void)channel_layout(picture.spec());

@@ -20,7 +20,7 @@ void run_sheet(const SheetOptions& options) {
                 "sheet: -o is {}, the same file as an input; expected another file", options.file));
         }
         labeled.emplace_back(equals == std::string::npos ? text : text.substr(0, equals),
-                             read_picture(path, options.max_pixels));
+                             read_picture(path, options.choice));
         try {
             check_shown_window(labeled.back().second);
         } catch (const PictureError& e) {

@@ -16,15 +16,39 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// floats each. A file of a kilobyte can declare more than fits into memory.
 inline constexpr double kMaxPixels = 1e9;
 
-/// Reads a whole picture into memory, in the pixel type of the file: first subimage, full
-/// resolution.
+/// Which picture of a file is read, and how much of it.
+struct ReadOptions {
+    /// Subimage (a part of an OpenEXR file, a page, a frame): its number, counted from 0, or its
+    /// name. Empty: of OpenEXR files the first part with a picture in color, else the first.
+    std::string subimage = {};
+    /// Layer of an OpenEXR file, whose channels alone are read then: its name, or the last parts of
+    /// it ("Combined" of "ViewLayer.Combined"), in any case. Empty: R, G, B; else a layer with a
+    /// usual name of a picture (Combined, beauty, rgba, ...); else the first one in color that is
+    /// no data (ambient occlusion, depth, normals, cryptomattes, ...). Other channels follow.
+    std::string layer = {};
+    /// Limit of the pixels that the file may declare.
+    double max_pixels = kMaxPixels;
+    /// Receives warnings about the file, one line each, without its name: tags that are not used.
+    std::function<void(const std::string&)> warn = {};
+    /// Receives the choice of layer and subimage where there was one, one line without the name.
+    std::function<void(const std::string&)> note = {};
+};
+
+/// Reads a whole picture into memory, in the pixel type of the file, at full resolution. The
+/// picture keeps its orientation in `Orientation`.
 ///
 /// Stricter than ImageBuf::read(): every report of the reader is an error, so a truncated file
 /// never gives a half-black picture (ImageBuf accepts truncated TIFF and JPEG files). Nothing stays
 /// in OIIO's cache, so a changed file is read again.
 ///
-/// @throws FileError  missing, truncated, unreadable, of unknown format, deep, or with more pixels
-///                    than `max_pixels` (checked before memory is allocated). One line.
+/// Facts of the header that OpenImageIO drops become attributes `tonewright:file:*`, by which
+/// tonemap() knows the color (cICP of PNG, PRIMARIES of Radiance, ...).
+///
+/// @throws FileError  missing, truncated, unreadable, of unknown format, deep, without the layer or
+///                    the subimage, or with more pixels than the limit (checked before memory is
+///                    allocated). One line.
+[[nodiscard]] TONEWRIGHT_API OIIO::ImageBuf read_image(const std::string& path,
+                                                       const ReadOptions& options);
 [[nodiscard]] TONEWRIGHT_API OIIO::ImageBuf read_image(const std::string& path,
                                                        double max_pixels = kMaxPixels);
 

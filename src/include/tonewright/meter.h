@@ -27,10 +27,8 @@ struct MeterOptions {
     /// As in tonemap(). If alpha counts, pixels whose alpha is 0 or not finite are left out, unless
     /// all are.
     TonemapOptions::Unpremult unpremult = TonemapOptions::Unpremult::automatic;
-    /// Subimage of a file.
-    int subimage = 0;
-    /// Limit for files. @see read_image
-    double max_pixels = kMaxPixels;
+    /// How a file is read.
+    ReadOptions read = {};
     /// Pixels to measure, in the picture's coordinates. Default: the data window. Its channels are
     /// ignored.
     OIIO::ROI region = {};

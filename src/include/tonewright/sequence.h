@@ -17,8 +17,6 @@ struct FrameFiles {
     std::string out;
     /// Replaces the tonemapper's exposure, in stops.
     std::optional<double> exposure_stops = {};
-    /// Subimage of `in`.
-    int subimage = 0;
     /// The error, in one line; empty: none.
     std::string error = {};
     /// True if the error is a FileError.
@@ -37,8 +35,10 @@ struct SequenceOptions {
     int jobs = 0;
     /// Threads for all frames together; each frame has at least one. 0: OIIO's `threads` attribute.
     int nthreads = 0;
-    /// Limit for each frame. @see read_image
-    double max_pixels = kMaxPixels;
+    /// How each frame is read. `warn` and `note` are called from one thread at a time.
+    ReadOptions read = {};
+    /// Warnings and notes begin with the name of their picture.
+    bool names_pictures = false;
     /// Called after each frame, from one thread at a time.
     std::function<void(const FrameFiles&)> done = {};
 };

@@ -56,10 +56,11 @@ struct TonemapOptions {
     std::string look = {};
     /// Exposure before the operator, in stops, [-64, 64].
     double exposure_stops = 0;
-    /// Color of the source: a name that find_source_color() knows, or `auto`: the first of these
-    /// that the metadata has. `oiio:ColorSpace`, unless it is the linear Rec.709 that readers
-    /// assume (sRGB and other code values are decoded first); `colorInteropID`; ACES2065-1 if
-    /// `acesImageContainerFlag` is set; linear light of `chromaticities`; linear Rec.709.
+    /// Color of the source: a name that find_source_color() knows, or `auto`: what the metadata
+    /// says, in the order of the picture's format (docs/conventions.md), else the default of the
+    /// format. Of a picture without a format, the first of these counts: `oiio:ColorSpace`, unless
+    /// it is linear Rec.709; `colorInteropID`; ACES2065-1 if `acesImageContainerFlag` is set; linear
+    /// light of `chromaticities`; linear Rec.709.
     std::string input = std::string(kAutoInput);
     /// Display (id, title or alias), or `linear`, or `native`.
     std::string display = "srgb";
@@ -199,8 +200,9 @@ TONEWRIGHT_API bool map_colors(
     int nthreads = 0) noexcept;
 
 /// Tone maps a file to a file. The result equals that of read_image(), tonemap() and
-/// write_image_atomically() to the last byte, but needs memory for some rows only. It reads one
-/// subimage (a part of an OpenEXR file, or a page). A picture without a date gets that of the
+/// write_image_atomically() to the last byte, but needs memory for some rows only. A picture that
+/// lies on its side (`Orientation`) is turned if the format of `out` has no such tag (all but JPEG
+/// and TIFF), which needs memory for all of it. A picture without a date gets that of the
 /// environment variable SOURCE_DATE_EPOCH, else its file's (UTC). Some formats would record the
 /// current time, and a second run would give other bytes.
 ///
@@ -214,11 +216,9 @@ TONEWRIGHT_API bool map_colors(
 /// @throws FileError  @see read_image, write_image_atomically; a picture that cannot be tone mapped
 TONEWRIGHT_API void tonemap_file(const Tonemapper& tonemapper, const std::string& in,
                                  const std::string& out,
-                                 const OIIO::TypeDesc& type = OIIO::TypeUnknown, int nthreads = 0,
-                                 int subimage = 0);
+                                 const OIIO::TypeDesc& type = OIIO::TypeUnknown, int nthreads = 0);
 TONEWRIGHT_API void tonemap_file(const Tonemapper& tonemapper, const std::string& in,
-                                 const std::string& out, const WriteOptions& options,
-                                 int nthreads = 0, int subimage = 0,
-                                 double max_pixels = kMaxPixels);
+                                 const std::string& out, const WriteOptions& write,
+                                 const ReadOptions& read = {}, int nthreads = 0);
 
 TONEWRIGHT_NAMESPACE_END

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     Path = Union[str, bytes, _os.PathLike]
     Picture = Union[npt.NDArray[Any], "OpenImageIO.ImageBuf"]
 
-__all__ = ["__version__", "applications", "bake", "displays", "evaluate", "make_config", "meter", "operators", "tonemap",
+__all__ = ["__version__", "applications", "bake", "displays", "evaluate", "info", "make_config", "meter", "operators", "tonemap",
            "tonemap_file", "verify"]
 
 
@@ -115,14 +115,15 @@ def tonemap(image: Picture, op: str, *, settings: Mapping[str, Any] | None = Non
 def tonemap_file(source: Path, target: Path, op: str, *, settings: Mapping[str, Any] | None = None, exposure: float = 0,
                  input: str = "auto", display: str = "srgb", look: str = "", reference_white: float = 100,
                  unpremult: str | bool = "auto", statistics: str = "picture", dtype: str | None = None,
-                 alpha: str = "keep", subimage: int = 0, nthreads: int = 0, in_place: bool = False,
-                 max_pixels: float = 1e9) -> None:
+                 alpha: str = "keep", subimage: int | str = "", layer: str = "", nthreads: int = 0,
+                 in_place: bool = False, max_pixels: float = 1e9) -> None:
     """Tone map a picture file into another file, as `tonewright apply` does. Its warnings are UserWarnings.
 
     target: replaced only when the new file is complete; its extension sets the format.
     dtype: "uint8", "uint16", "half" or "float" (default: the format's).
     alpha: "keep", "ignore" (leave it out) or "opaque" (make it 1).
-    subimage: subimage of a multi-part file, counted from 0.
+    subimage: part or page of the file: its number from 0 or its name (default: the first picture).
+    layer: layer of an EXR file (default: R, G, B, else the first that is a picture).
     in_place: allow the target to be the source, which is lost then.
     max_pixels: most pixels that the source may declare.
     Other options: as tonemap().
@@ -133,7 +134,7 @@ def tonemap_file(source: Path, target: Path, op: str, *, settings: Mapping[str, 
     options.update(unpremult=_choice("unpremult", unpremult), statistics=_text("statistics", statistics))
     _tonewright.tonemap_file(_path("source", source), _path("target", target), _text("op", op),
                              type="" if dtype is None else _text("dtype", dtype), alpha=_text("alpha", alpha),
-                             nthreads=_operator.index(nthreads), subimage=_operator.index(subimage),
+                             nthreads=_operator.index(nthreads), subimage=str(subimage), layer=_text("layer", layer),
                              in_place=bool(in_place), max_pixels=_number("max_pixels", max_pixels), **options)
 
 
@@ -153,7 +154,7 @@ def evaluate(op: str, colors: npt.ArrayLike, *, settings: Mapping[str, Any] | No
 
 def meter(image: Path | Picture, *, method: str = "log-average", key: float | None = None, compensation: float = 0,
           delta: float = 1e-3, percentiles: tuple[float, float] = (0, 100), input: str = "auto",
-          unpremult: str | bool = "auto", subimage: int = 0, nthreads: int = 0,
+          unpremult: str | bool = "auto", subimage: int | str = "", layer: str = "", nthreads: int = 0,
           max_pixels: float = 1e9) -> dict[str, Any]:
     """Measure the luminance of a picture and suggest an exposure, in stops, as `tonewright meter` does.
 
@@ -173,7 +174,20 @@ def meter(image: Path | Picture, *, method: str = "log-average", key: float | No
     return _tonewright.meter(image, _text("method", method), None if key is None else _number("key", key),
                              _number("compensation", compensation), _number("delta", delta), _number("percentiles", low),
                              _number("percentiles", high), _text("input", input), _choice("unpremult", unpremult),
-                             _operator.index(subimage), _operator.index(nthreads), _number("max_pixels", max_pixels))
+                             str(subimage), _text("layer", layer), _operator.index(nthreads),
+                             _number("max_pixels", max_pixels))
+
+
+def info(image: Path, *, input: str = "auto", subimage: int | str = "", layer: str = "") -> dict[str, Any]:
+    """Return what the header of a picture file says, as `tonewright info --json` does.
+
+    The dict has space, transfer, primaries (xy of red, green, blue), white (xy), orientation (Exif's, 1 is upright), layer,
+    subimage, units ("relative" or "cd/m2"), alpha ("none", "associated" or "straight"), rule (what decided the space) and
+    ignored (lines about tags that are not used).
+
+    Example: tonewright.info("photo.jpg")["space"]
+    """
+    return _tonewright.info(_path("image", image), _text("input", input), str(subimage), _text("layer", layer))
 
 
 def operators() -> list[dict[str, Any]]:

@@ -1,0 +1,423 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "image/header_tags.h"
+
+#include <OpenImageIO/strutil.h>
+#include <OpenImageIO/tiffutils.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <fstream>
+#include <optional>
+#include <span>
+#include <sstream>
+
+#include "base/format_number.h"
+#include "base/strings.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+namespace {
+
+using OIIO::ImageSpec;
+using OIIO::TypeDesc;
+
+/// No profile of a picture is longer. A chunk that declares more is skipped.
+constexpr std::uint64_t kLongestBlock = std::uint64_t{64} << 20;
+/// Headers with more blocks are hostile.
+constexpr int kMostBlocks = 100000;
+
+/// A file that is read block by block. Past its end, everything is 0 and ok() is false.
+class HeaderFile {
+  public:
+    explicit HeaderFile(const std::string& path) : file_(path, std::ios::binary) {
+        file_.seekg(0, std::ios::end);
+        size_ = static_cast<std::uint64_t>(std::max<std::streamoff>(file_.tellg(), 0));
+        file_.seekg(0);
+    }
+    [[nodiscard]] bool ok() const { return static_cast<bool>(file_); }
+    [[nodiscard]] std::uint64_t size() const { return size_; }
+    [[nodiscard]] std::uint64_t position() {
+        return static_cast<std::uint64_t>(std::max<std::streamoff>(file_.tellg(), 0));
+    }
+    bool seek(std::uint64_t to) {
+        if (to > size_) return false;
+        file_.seekg(static_cast<std::streamoff>(to));
+        return ok();
+    }
+    /// The next bytes; empty if there are not so many, or too many.
+    std::string bytes(std::uint64_t count) {
+        if (count > kLongestBlock || position() + count > size_) {
+            file_.setstate(std::ios::failbit);
+            return {};
+        }
+        std::string text(count, '\0');
+        file_.read(text.data(), static_cast<std::streamsize>(count));
+        return ok() ? text : std::string();
+    }
+    std::uint64_t number(unsigned count, bool is_little) {
+        return parse(bytes(count), 0, count, is_little);
+    }
+    /// 0 where the text is too short.
+    static std::uint64_t parse(std::string_view text, std::size_t at, unsigned count,
+                               bool is_little) {
+        std::uint64_t value = 0;
+        if (at + count > text.size()) return 0;
+        for (unsigned i = 0; i < count; ++i) {
+            const std::size_t byte = is_little ? at + count - 1 - i : at + i;
+            value = value << 8U | static_cast<unsigned char>(text[byte]);
+        }
+        return value;
+    }
+    std::string line() {
+        std::string text;
+        std::getline(file_, text);
+        return text;
+    }
+
+  private:
+    std::ifstream file_;
+    std::uint64_t size_ = 0;
+};
+
+void set_bytes(ImageSpec& spec, const char* name, const std::string& bytes) {
+    if (bytes.empty()) return;
+    spec.attribute(name, TypeDesc(TypeDesc::UINT8, static_cast<int>(bytes.size())), bytes.data());
+}
+
+void set_primaries(ImageSpec& spec, const char* name, const std::array<float, 8>& xy) {
+    spec.attribute(name, TypeDesc(TypeDesc::FLOAT, 8), xy.data());
+}
+
+/// W3C PNG (third edition), 11.3.2: everything that states color comes before the first IDAT.
+void read_png(HeaderFile& file, ImageSpec& spec) {
+    (void)file.bytes(8);
+    std::array<float, 8> white_first{};
+    bool has_chroma = false;
+    for (int i = 0; i < kMostBlocks && file.ok(); ++i) {
+        const std::uint64_t length = file.number(4, false);
+        const std::string type = file.bytes(4);
+        const std::uint64_t next = file.position() + length + 4;
+        if (type == "IDAT" || type == "IEND" || !file.ok()) break;
+        const auto wanted = {"cICP", "sRGB", "gAMA", "cHRM", "acTL", "mDCV", "eXIf"};
+        std::string data;
+        if (std::find(wanted.begin(), wanted.end(), type) != wanted.end()) data = file.bytes(length);
+        const auto u32 = [&](std::size_t at) { return HeaderFile::parse(data, at, 4, false); };
+        if (type == "cICP" && data.size() == 4) {
+            std::array<int, 4> points{};
+            for (std::size_t k = 0; k < 4; ++k)
+                points[k] = static_cast<unsigned char>(data[k]);
+            spec.attribute(kCicpTag, TypeDesc(TypeDesc::INT, 4), points.data());
+        } else if (type == "sRGB" && data.size() == 1) {
+            spec.attribute(file_tag::kSrgb, static_cast<int>(data[0]));
+        } else if (type == "gAMA" && data.size() == 4 && u32(0) > 0) {
+            spec.attribute(file_tag::kGamma, static_cast<float>(1e5 / static_cast<double>(u32(0))));
+        } else if (type == "cHRM" && data.size() == 32) {
+            for (std::size_t k = 0; k < 8; ++k)
+                white_first[k] = static_cast<float>(static_cast<double>(u32(4 * k)) * 1e-5);
+            has_chroma = true;
+        } else if (type == "acTL" && data.size() == 8 && u32(0) > 1) {
+            add_ignored(spec, fmt::format("acTL: the picture is the first of {} frames", u32(0)));
+        } else if (type == "eXIf" && !data.empty()) {
+            // OpenImageIO 2.4 does not read it; the orientation in it counts.
+            OIIO::decode_exif(OIIO::string_view(data.data(), data.size()), spec);
+        }
+        if (!file.seek(next)) break;
+    }
+    if (has_chroma) {
+        const auto& w = white_first;
+        set_primaries(spec, file_tag::kPrimaries, {w[2], w[3], w[4], w[5], w[6], w[7], w[0], w[1]});
+    }
+}
+
+/// Numbers of a line of a Radiance header.
+std::vector<double> numbers_of(std::string_view text) {
+    std::vector<double> numbers;
+    std::istringstream words{std::string(text)};
+    words.imbue(std::locale::classic());
+    for (double value = 0; words >> value;)
+        numbers.push_back(value);
+    return numbers;
+}
+
+/// Stops of a factor, signed.
+std::string stops_of(double factor) { return fmt::format("{:+.2f}", std::log2(factor)); }
+
+/// Radiance: G. Ward, "Radiance File Formats" (filefmts.pdf), "Picture File Format".
+void read_radiance(HeaderFile& file, ImageSpec& spec) {
+    double exposure = 1;
+    std::array<double, 3> correction = {1, 1, 1};
+    std::vector<double> primaries;
+    bool is_xyz = false;
+    constexpr int kMostLines = 1000;
+    for (int i = 0; i < kMostLines && file.ok(); ++i) {
+        const std::string line = file.line();
+        const std::string_view text = trimmed(line);
+        if (text.empty()) break;
+        const auto value_of = [&](std::string_view name) -> std::optional<std::string_view> {
+            if (!text.starts_with(name)) return std::nullopt;
+            const std::string_view rest = trimmed(text.substr(name.size()));
+            if (!rest.starts_with('=')) return std::nullopt;
+            return trimmed(rest.substr(1));
+        };
+        if (const auto v = value_of("EXPOSURE")) {
+            const std::vector<double> n = numbers_of(*v);
+            if (n.size() == 1 && n[0] > 0 && std::isfinite(n[0])) exposure *= n[0];
+        } else if (const auto c = value_of("COLORCORR")) {
+            const std::vector<double> n = numbers_of(*c);
+            for (std::size_t k = 0; n.size() == 3 && k < 3; ++k)
+                correction[k] *= n[k];
+        } else if (const auto p = value_of("PRIMARIES")) {
+            primaries = numbers_of(*p);
+        } else if (const auto f = value_of("FORMAT")) {
+            is_xyz = f->find("xyze") != std::string_view::npos;
+        }
+    }
+    // Radiance and pfstools divide by both numbers; OpenImageIO, ImageMagick, libvips, ffmpeg and
+    // viewers show the pixels as they are stored. So do we, because hosts must agree.
+    if (exposure != 1) {
+        add_ignored(spec, fmt::format("EXPOSURE: it is {}, and pixels are taken as stored, as most "
+                                      "readers do; for radiance before it, use --exposure {}",
+                                      shortest(exposure), stops_of(1 / exposure)));
+    }
+    if (correction != std::array<double, 3>{1, 1, 1}) {
+        add_ignored(spec, fmt::format("COLORCORR: it is {} {} {}, and pixels are taken as stored, "
+                                      "as most readers do",
+                                      shortest(correction[0]), shortest(correction[1]),
+                                      shortest(correction[2])));
+    }
+    if (is_xyz) {
+        // CIE XYZ itself, with Radiance's white of equal energy.
+        set_primaries(spec, "chromaticities", {1, 0, 0, 1, 0, 0, 1.0F / 3, 1.0F / 3});
+        return;
+    }
+    if (primaries.empty()) return;
+    std::array<float, 8> xy{};
+    const bool is_complete = primaries.size() == xy.size();
+    for (std::size_t k = 0; is_complete && k < xy.size(); ++k)
+        xy[k] = static_cast<float>(primaries[k]);
+    // ImageMagick writes zeros for "unknown".
+    const bool is_absent = std::all_of(xy.begin(), xy.end(), [](float v) { return v == 0; });
+    // libvips writes Radiance's default primaries into every file, whatever its colors are.
+    constexpr std::array kDefault = {0.640, 0.330, 0.290, 0.600, 0.150, 0.060, 0.3333, 0.3333};
+    bool is_default = true;
+    for (std::size_t k = 0; k < xy.size(); ++k)
+        is_default = is_default && std::fabs(xy[k] - kDefault[k]) < 5e-4;
+    if (!is_complete) {
+        add_ignored(spec, fmt::format("PRIMARIES: it has {} numbers; expected 8",
+                                      primaries.size()));
+    } else if (!is_absent && !is_default) {
+        set_primaries(spec, "chromaticities", xy);
+    }
+}
+
+/// WebP container specification (RIFF): VP8X, ICCP, EXIF, ANIM.
+void read_webp(HeaderFile& file, ImageSpec& spec) {
+    (void)file.bytes(12);
+    for (int i = 0; i < kMostBlocks && file.ok(); ++i) {
+        const std::string type = file.bytes(4);
+        const std::uint64_t length = file.number(4, true);
+        const std::uint64_t next = file.position() + length + (length & 1U);
+        if (!file.ok()) break;
+        if (type == "ICCP") set_bytes(spec, "ICCProfile", file.bytes(length));
+        if (type == "EXIF") {
+            std::string data = file.bytes(length);
+            if (data.starts_with(std::string_view("Exif\0\0", 6))) data.erase(0, 6);
+            OIIO::decode_exif(OIIO::string_view(data.data(), data.size()), spec);
+        }
+        if (type == "ANIM") add_ignored(spec, "ANIM: the picture is the first frame of several");
+        if (!file.seek(next)) break;
+    }
+}
+
+/// Microsoft's BITMAPV4HEADER and BITMAPV5HEADER.
+void read_bmp(HeaderFile& file, ImageSpec& spec) {
+    const std::string head = file.bytes(14 + 40);
+    const std::uint64_t size = HeaderFile::parse(head, 14, 4, true);
+    if (!file.ok() || size < 108 || size > 124 || !file.seek(14)) return;
+    const std::string v = file.bytes(size);
+    const auto u32 = [&](std::size_t at) { return HeaderFile::parse(v, at, 4, true); };
+    constexpr std::uint64_t kCalibrated = 0;
+    constexpr std::uint64_t kSrgb = 0x73524742;      // "sRGB"
+    constexpr std::uint64_t kWindows = 0x57696E20;   // "Win "
+    constexpr std::uint64_t kEmbedded = 0x4D424544;  // "MBED"
+    constexpr std::uint64_t kLinked = 0x4C494E4B;    // "LINK"
+    const std::uint64_t space = u32(56);
+    if (space == kSrgb || space == kWindows) {
+        spec.attribute(file_tag::kSrgb, 0);
+    } else if (space == kLinked) {
+        add_ignored(spec, "bV5CSType: the ICC profile is another file");
+    } else if (space == kEmbedded && size >= 124) {
+        if (file.seek(14 + u32(112))) set_bytes(spec, "ICCProfile", file.bytes(u32(116)));
+    } else if (space == kCalibrated) {
+        // X, Y, Z of red, green and blue as fixed-point numbers with 30 bits after the point, then
+        // gammas with 16.
+        std::array<float, 8> xy{};
+        std::array<double, 3> white{};
+        bool is_stated = true;
+        for (std::size_t c = 0; c < 3; ++c) {
+            std::array<double, 3> xyz{};
+            double sum = 0;
+            for (std::size_t k = 0; k < 3; ++k) {
+                xyz[k] = static_cast<double>(u32(60 + 12 * c + 4 * k)) / double{1 << 30};
+                white[k] += xyz[k];
+                sum += xyz[k];
+            }
+            is_stated = is_stated && sum > 0;
+            xy[2 * c] = static_cast<float>(xyz[0] / sum);
+            xy[2 * c + 1] = static_cast<float>(xyz[1] / sum);
+        }
+        const double gamma = static_cast<double>(u32(96)) / 65536;
+        // Most writers leave all of it 0.
+        if (!is_stated || !(gamma > 0)) return;
+        const double sum = white[0] + white[1] + white[2];
+        xy[6] = static_cast<float>(white[0] / sum);
+        xy[7] = static_cast<float>(white[1] / sum);
+        set_primaries(spec, file_tag::kPrimaries, xy);
+        spec.attribute(file_tag::kGamma, static_cast<float>(gamma));
+    }
+}
+
+/// TIFF 6.0 and BigTIFF: the tags of color that OpenImageIO does not list.
+void read_tiff(HeaderFile& file, ImageSpec& spec) {
+    const std::string start = file.bytes(8);
+    if (start.size() != 8) return;
+    const bool is_little = start[0] == 'I';
+    const bool is_big = HeaderFile::parse(start, 2, 2, is_little) == 43;
+    const unsigned word = is_big ? 8 : 4;
+    const std::uint64_t directory =
+        is_big ? file.number(8, is_little) : HeaderFile::parse(start, 4, 4, is_little);
+    if (!file.seek(directory)) return;
+    const std::uint64_t count = std::min<std::uint64_t>(file.number(is_big ? 8 : 2, is_little),
+                                                        4096);
+    const std::string entries = file.bytes(count * (4 + 2 * word));
+    std::vector<double> white;
+    std::vector<double> primaries;
+    bool has_transfer = false;
+    for (std::uint64_t i = 0; i < count; ++i) {
+        const std::size_t at = i * (4 + 2 * word);
+        const auto field = [&](std::size_t offset, unsigned bytes) {
+            return HeaderFile::parse(entries, at + offset, bytes, is_little);
+        };
+        const std::uint64_t tag = field(0, 2);
+        constexpr std::uint64_t kWhitePoint = 318;
+        constexpr std::uint64_t kPrimaryChromaticities = 319;
+        constexpr std::uint64_t kTransferFunction = 301;
+        has_transfer = has_transfer || tag == kTransferFunction;
+        if (tag != kWhitePoint && tag != kPrimaryChromaticities) continue;
+        constexpr std::uint64_t kRational = 5;
+        const std::uint64_t numbers = field(4, word);
+        if (field(2, 2) != kRational || numbers > 6 || !file.seek(field(4 + word, word))) continue;
+        std::vector<double>& to = tag == kWhitePoint ? white : primaries;
+        for (std::uint64_t k = 0; k < numbers; ++k) {
+            const auto above = static_cast<double>(file.number(4, is_little));
+            const auto below = static_cast<double>(file.number(4, is_little));
+            to.push_back(below > 0 ? above / below : 0);
+        }
+    }
+    if (white.size() == 2 && primaries.size() == 6) {
+        std::array<float, 8> xy{};
+        std::copy(primaries.begin(), primaries.end(), xy.begin());
+        std::copy(white.begin(), white.end(), xy.begin() + 6);
+        set_primaries(spec, file_tag::kPrimaries, xy);
+    }
+    if (has_transfer && !spec.find_attribute("ICCProfile"))
+        add_ignored(spec, "TransferFunction: its table is not read");
+}
+
+/// ISO/IEC 10918-1: markers up to the first scan.
+void read_jpeg(HeaderFile& file, ImageSpec& spec) {
+    if (file.number(2, false) != 0xFFD8) return;
+    bool has_gain_map = false;
+    for (int i = 0; i < kMostBlocks && file.ok(); ++i) {
+        const std::uint64_t marker = file.number(2, false);
+        constexpr std::uint64_t kScan = 0xFFDA;
+        if (marker == kScan || marker < 0xFF00) break;
+        const std::uint64_t length = file.number(2, false);
+        const std::uint64_t next = file.position() + std::max<std::uint64_t>(length, 2) - 2;
+        constexpr std::uint64_t kApp2 = 0xFFE2;
+        if (marker == kApp2 && length > 30) {
+            constexpr std::string_view kIso = "urn:iso:std:iso:ts:21496:-1";
+            has_gain_map = has_gain_map || file.bytes(kIso.size()) == kIso;
+        }
+        if (!file.seek(next)) break;
+    }
+    if (has_gain_map || spec.find_attribute("hdrgm:Version"))
+        add_ignored(spec, "gain map: the picture for SDR displays is read");
+}
+
+/// Tags of OpenEXR that describe another rendering than the pixels.
+void read_openexr(ImageSpec& spec) {
+    for (const char* name : {"renderingTransform", "lookModTransform"}) {
+        if (!spec.find_attribute(name)) continue;
+        add_ignored(spec, fmt::format("{}: the transform {} is not applied", name,
+                                      printable(spec.get_string_attribute(name))));
+    }
+    const float white = spec.get_float_attribute("whiteLuminance", 0);
+    if (white > 0) {
+        add_ignored(spec, fmt::format("whiteLuminance: 1.0 is {} cd/m2, and pixels are taken as "
+                                      "relative",
+                                      shortest(static_cast<double>(white))));
+    }
+    if (const auto* neutral = spec.find_attribute("adoptedNeutral", TypeDesc(TypeDesc::FLOAT, 2))) {
+        const auto* xy = static_cast<const float*>(neutral->data());
+        add_ignored(spec, fmt::format("adoptedNeutral: colors are not adapted to the white {}, {}",
+                                      shortest(static_cast<double>(xy[0])),
+                                      shortest(static_cast<double>(xy[1]))));
+    }
+}
+
+/// Encodings that OpenImageIO 2.4 delivers as if they were RGB.
+void check_photometric(ImageSpec& spec) {
+    const std::string space = spec.get_string_attribute("tiff:ColorSpace");
+    const int photometric = spec.get_int_attribute("tiff:PhotometricInterpretation", 0);
+    // TIFF 6.0, Adobe's TIFF Technical Notes, and SGI's LogLuv (G. Ward Larson, 1998).
+    const char* name = photometric == 8       ? "CIELab"
+                       : photometric == 9     ? "ICCLab"
+                       : photometric == 10    ? "ITULab"
+                       : photometric == 32844 ? "LogL"
+                       : photometric == 32845 ? "LogLuv"
+                                              : nullptr;
+    if (!name) return;
+    spec.attribute(file_tag::kImpossible,
+                   fmt::format("PhotometricInterpretation is {} ({}); expected RGB or gray: convert "
+                               "it first, such as to OpenEXR",
+                               photometric, name));
+}
+
+}  // namespace
+
+void add_ignored(ImageSpec& spec, const std::string& line) {
+    std::string all = spec.get_string_attribute(file_tag::kIgnored);
+    if (!all.empty()) all += '\n';
+    spec.attribute(file_tag::kIgnored, all + line);
+}
+
+std::vector<std::string> ignored_of(const ImageSpec& spec) {
+    std::vector<std::string> lines;
+    std::istringstream text(std::string(spec.get_string_attribute(file_tag::kIgnored)));
+    for (std::string line; std::getline(text, line);)
+        lines.push_back(line);
+    return lines;
+}
+
+void complete_header(const std::string& path, std::string_view format, ImageSpec& spec) {
+    spec.attribute(file_tag::kFormat, std::string(format));
+    spec.attribute(file_tag::kColorSpace, spec.get_string_attribute("oiio:ColorSpace"));
+    HeaderFile file(path);
+    if (format == "openexr") read_openexr(spec);
+    if (!file.ok() || file.size() == 0) return;
+    if (format == "png") read_png(file, spec);
+    if (format == "hdr") read_radiance(file, spec);
+    if (format == "webp") read_webp(file, spec);
+    if (format == "bmp") read_bmp(file, spec);
+    if (format == "jpeg") read_jpeg(file, spec);
+    if (format == "tiff") {
+        check_photometric(spec);
+        read_tiff(file, spec);
+    }
+}
+
+TONEWRIGHT_NAMESPACE_END

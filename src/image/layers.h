@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Layers of OpenEXR files: groups of channels with a common name, "ViewLayer.Combined.R".
+#pragma once
+
+#include <OpenImageIO/imageio.h>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tonewright/version.h"
+
+TONEWRIGHT_NAMESPACE_BEGIN
+
+/// A group of channels that holds a picture in color.
+struct Layer {
+    /// Common part of the names: "ViewLayer.Combined"; empty for R, G, B.
+    std::string name;
+    /// Indices of red, green, blue and, if the layer has it, alpha.
+    std::vector<int> channels;
+};
+
+/// The layers in color, in the order of the file.
+/// Names end in R, G, B; r, g, b; or red, green, blue, after a `.` or nothing.
+[[nodiscard]] TONEWRIGHT_API std::vector<Layer> color_layers(const OIIO::ImageSpec& spec);
+
+/// True for names of layers that hold data and no picture: ambient occlusion, depth, normals,
+/// positions, motion, cryptomattes, masks, object indices, UV coordinates.
+[[nodiscard]] TONEWRIGHT_API bool is_data_layer(std::string_view name);
+
+/// The layer that is the picture, or null if the file has none in color. The first of these that
+/// exists: R, G, B; a layer with a name of renderers' pictures (Combined, beauty, rgba, ...); the
+/// first layer that holds no data.
+[[nodiscard]] TONEWRIGHT_API const Layer* picture_layer(const std::vector<Layer>& layers);
+
+/// A layer by its name, or by the last parts of it ("Combined" of "ViewLayer.Combined"). Ignores
+/// case. Null if there is none, or several.
+[[nodiscard]] TONEWRIGHT_API const Layer* find_layer(const std::vector<Layer>& layers,
+                                                     std::string_view name);
+
+/// The names, for messages: "RGB, AO, ViewLayer.Combined"; long lists end in "...".
+[[nodiscard]] TONEWRIGHT_API std::string layer_names(const std::vector<Layer>& layers);
+
+TONEWRIGHT_NAMESPACE_END

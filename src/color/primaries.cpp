@@ -88,11 +88,13 @@ constexpr Matrix3 kCat02 = {
     {{0.7328, 0.4296, -0.1624}, {-0.7036, 1.6975, 0.0061}, {0.0030, 0.0136, 0.9834}}};
 
 /// Gamuts whose makers state their matrix to ACES2065-1 with CAT02 instead of Bradford: the
-/// Academy's input transforms by ARRI (CSC.Arri.LogC3_to_ACES.a2.v1, CSC.Arri.LogC4_to_ACES.a2.v1)
-/// and by Sony (CSC.Sony.SLog3_SGamut3_to_ACES.a2.v1, CSC.Sony.SLog3_SGamut3Cine_to_ACES.a2.v1).
+/// Academy's input transforms by ARRI (CSC.Arri.LogC3_to_ACES.a2.v1, CSC.Arri.LogC4_to_ACES.a2.v1),
+/// by Sony (CSC.Sony.SLog3_SGamut3_to_ACES.a2.v1, CSC.Sony.SLog3_SGamut3Cine_to_ACES.a2.v1) and by
+/// Canon (CSC.Canon.CanonLog2_CGamut-D55_to_ACES.a2.v1).
 /// Blackmagic Design states none for DaVinci Wide Gamut.
 bool is_adapted_by_cat02(const Primaries& p) {
-    return p == kArriWideGamut3 || p == kArriWideGamut4 || p == kSGamut3 || p == kSGamut3Cine;
+    return p == kArriWideGamut3 || p == kArriWideGamut4 || p == kSGamut3 || p == kSGamut3Cine ||
+           p == kCinemaGamut;
 }
 
 /// Adapts with Bradford if the whites differ.

@@ -28,6 +28,29 @@ Expr bt709_inverse_oetf(const Expr& code) {
 }
 
 namespace {
+Expr mirror(const Expr& x, const Expr& of_magnitude) {
+    return select(less(x, 0), -named("magnitude", of_magnitude), of_magnitude);
+}
+}  // namespace
+
+Expr smpte_240m_decode(const Expr& code) {
+    return select(less(code, 4 * 0.0228), code / 4,
+                  pow((max(code, 4 * 0.0228) + 0.1115) / 1.1115, 1 / 0.45));
+}
+
+Expr xvycc_decode(const Expr& code) { return mirror(code, bt1886_decode(abs(code))); }
+
+Expr bt1361_decode(const Expr& code) {
+    return select(less(code, 0), -bt1886_decode(-4 * code) / 4, bt1886_decode(code));
+}
+
+Expr log_range_decode(const Expr& code, double decades) {
+    return exp2((max(code, 0) - 1) * (decades * std::log2(10.0)));
+}
+
+Expr st428_decode(const Expr& code) { return power_decode(code, 2.6) * (52.37 / 48); }
+
+namespace {
 // SMPTE ST 2084:2014, 5.1, as printed there.
 constexpr double kPqM1 = 2610.0 / 4096 * (1.0 / 4);
 constexpr double kPqM2 = 2523.0 / 4096 * 128;
@@ -39,10 +62,6 @@ constexpr double kPqC3 = 2392.0 / 4096 * 32;
 constexpr double kHlgA = 0.17883277;
 constexpr double kHlgB = 1 - 4 * kHlgA;                  // 0.28466892
 const double kHlgC = 0.5 - kHlgA * std::log(4 * kHlgA);  // 0.55991073
-
-Expr mirror(const Expr& x, const Expr& of_magnitude) {
-    return select(less(x, 0), -named("magnitude", of_magnitude), of_magnitude);
-}
 }  // namespace
 
 Expr pq_encode_nits(const Expr& nits) {
@@ -99,6 +118,11 @@ Expr acescct_encode(const Expr& linear) {
 Expr acescct_decode(const Expr& code) {
     return select(less_equal(code, kCctBreakCode), (code - kCctOffset) / kCctSlope,
                   exp2(code * 17.52 - 9.72));
+}
+
+Expr acescc_decode(const Expr& code) {
+    const Expr light = exp2(code * 17.52 - 9.72);
+    return select(less(code, (9.72 - 15) / 17.52), (light - std::exp2(-16)) * 2, light);
 }
 
 namespace {
@@ -172,6 +196,38 @@ Expr davinci_intermediate_encode(const Expr& linear) {
 Expr davinci_intermediate_decode(const Expr& code) {
     return select(less_equal(code, kDaVinciLogCut), code / kDaVinciM,
                   exp2(code / kDaVinciC - kDaVinciB) - kDaVinciA);
+}
+
+Expr canon_log2_decode(const Expr& code) {
+    constexpr double kOffset = 0.092864125;
+    const Expr light = (exp10(abs(code - kOffset) / 0.24136077) - 1) * (0.9 / 87.099375);
+    return select(less(code, kOffset), -light, light);
+}
+
+Expr canon_log3_decode(const Expr& code) {
+    constexpr double kSlope = 0.36726845;
+    constexpr double kUnit = 0.9 / 14.98325;
+    return select(less(code, 0.097465473), (1 - exp10((0.12783901 - code) / kSlope)) * kUnit,
+                  select(less_equal(code, 0.15277891), (code - 0.12512219) * (0.9 / 1.9754798),
+                         (exp10((code - 0.12240537) / kSlope) - 1) * kUnit));
+}
+
+Expr panasonic_vlog_decode(const Expr& code) {
+    return select(less(code, 0.181), (code - 0.125) / 5.6,
+                  exp10((code - 0.598206) / 0.241514) - 0.00873);
+}
+
+Expr red_log3g10_decode(const Expr& code) {
+    return select(less(code, 0), code / 15.1927, (exp10(code / 0.224282) - 1) / 155.975327) - 0.01;
+}
+
+Expr cineon_decode(const Expr& code) {
+    constexpr double kDensityOfCode = 0.002;
+    constexpr double kGamma = 0.6;
+    constexpr double kBlack = 95;
+    constexpr double kWhite = 685;
+    const double black = std::pow(10, (kBlack - kWhite) * kDensityOfCode / kGamma);
+    return (exp10((code * 1023 - kWhite) * (kDensityOfCode / kGamma)) - black) / (1 - black);
 }
 
 Expr unity_logc_encode(const Expr& linear) {

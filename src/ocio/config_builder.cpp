@@ -50,7 +50,7 @@ bool has_code_below_black(const Display& display) {
     return !display.is_hdr && ReferenceEngine(display.encode)({-1, -1, -1})[0] != 0;
 }
 
-OCIO::TransformRcPtr log_to_linear(const ConfigModel::LogCurve& curve) {
+OCIO::TransformRcPtr log_to_linear(const LogCurve& curve) {
     const double log_slope[] = {curve.log_slope, curve.log_slope, curve.log_slope};
     const double log_offset[] = {curve.log_offset, curve.log_offset, curve.log_offset};
     const double linear_slope[] = {curve.linear_slope, curve.linear_slope, curve.linear_slope};

@@ -2,6 +2,7 @@
 #include "ocio/model.h"
 #include "base/strings.h"
 #include "pipeline/stand_ins.h"
+#include "tonewright/format_color.h"
 #include "tonewright/registry.h"
 
 #include <fmt/format.h>
@@ -19,10 +20,6 @@ namespace {
 
 using Space = ConfigModel::Space;
 using SpaceKind = ConfigModel::SpaceKind;
-
-constexpr const char* kTextureSpace = "sRGB - Texture";
-constexpr const char* kVideoSpace = "Gamma 2.4 Rec.709 - Texture";
-constexpr const char* kFilmSpace = "Cineon";
 
 struct StandardView {
     const char* id;
@@ -49,232 +46,6 @@ constexpr std::array<StandardView, 12> kStandardViews = {{
     {"false_color"},
 }};
 
-/// Spaces with built-in transforms in OpenColorIO 2.0; names and aliases as in the ACES configs.
-struct BuiltinSpace {
-    const char* name;
-    std::vector<std::string> aliases;
-    const char* family;
-    const char* description;
-    const char* style;
-    const char* interop_id = "";
-};
-
-const std::vector<BuiltinSpace>& builtin_spaces() {
-    static const std::vector<BuiltinSpace> spaces = {
-        {"ACEScct",
-         {"acescct_ap1", "ACES - ACEScct"},
-         "ACES",
-         "Academy S-2016-001: AP1, log with a linear toe; for grading.",
-         "ACEScct_to_ACES2065-1",
-         "ocio:acescct_ap1_scene"},
-        {"ACEScc",
-         {"acescc_ap1", "ACES - ACEScc"},
-         "ACES",
-         "Academy S-2014-003: AP1, pure log; for grading.",
-         "ACEScc_to_ACES2065-1",
-         "ocio:acescc_ap1_scene"},
-        {"ADX10",
-         {"Input - ADX - ADX10"},
-         "Input/Film",
-         "Film scans of 10 bits, SMPTE ST 2065-3, with the Academy's unbuild.",
-         "ADX10_to_ACES2065-1",
-         "ocio:adx10_apd_scene"},
-        {"ADX16",
-         {"Input - ADX - ADX16"},
-         "Input/Film",
-         "Film scans of 16 bits, SMPTE ST 2065-3, with the Academy's unbuild.",
-         "ADX16_to_ACES2065-1",
-         "ocio:adx16_apd_scene"},
-        {"ARRI LogC3 (EI800)",
-         {"arri_logc3_ei800", "logc3ei800_alexawide",
-          "Input - ARRI - V3 LogC (EI800) - Wide Gamut"},
-         "Input/ARRI",
-         "ARRI LogC3 of exposure index 800, ALEXA Wide Gamut.",
-         "ARRI_ALEXA-LOGC-EI800-AWG_to_ACES2065-1",
-         "ocio:arrilogc3_awg3_scene"},
-        {"CanonLog2 CinemaGamut D55",
-         {"canonlog2_cgamut_d55", "Input - Canon - Canon-Log2 - Cinema Gamut (Daylight)"},
-         "Input/Canon",
-         "Canon Log 2, Cinema Gamut, daylight.",
-         "CANON_CLOG2-CGAMUT_to_ACES2065-1",
-         "ocio:canonlog2_cgamutd55_scene"},
-        {"CanonLog3 CinemaGamut D55",
-         {"canonlog3_cgamut_d55", "Input - Canon - Canon-Log3 - Cinema Gamut (Daylight)"},
-         "Input/Canon",
-         "Canon Log 3, Cinema Gamut, daylight.",
-         "CANON_CLOG3-CGAMUT_to_ACES2065-1",
-         "ocio:canonlog3_cgamutd55_scene"},
-        {"V-Log V-Gamut",
-         {"vlog_vgamut", "Input - Panasonic - V-Log - V-Gamut"},
-         "Input/Panasonic",
-         "Panasonic V-Log, V-Gamut.",
-         "PANASONIC_VLOG-VGAMUT_to_ACES2065-1",
-         "ocio:vlog_vgamut_scene"},
-        {"Log3G10 REDWideGamutRGB",
-         {"log3g10_rwg", "Input - RED - REDLog3G10 - REDWideGamutRGB"},
-         "Input/RED",
-         "RED Log3G10, REDWideGamutRGB.",
-         "RED_LOG3G10-RWG_to_ACES2065-1",
-         "ocio:redlog3g10_rwg_scene"},
-        {"REDLogFilm REDWideGamutRGB",
-         {"redlogfilm_rwg"},
-         "Input/RED",
-         "REDlogFilm, REDWideGamutRGB.",
-         "RED_REDLOGFILM-RWG_to_ACES2065-1"},
-        {"S-Log3 S-Gamut3",
-         {"slog3_sgamut3", "Input - Sony - S-Log3 - S-Gamut3"},
-         "Input/Sony",
-         "Sony S-Log3, S-Gamut3.",
-         "SONY_SLOG3-SGAMUT3_to_ACES2065-1",
-         "ocio:slog3_sgamut3_scene"},
-        {"S-Log3 S-Gamut3.Cine",
-         {"slog3_sgamut3cine", "Input - Sony - S-Log3 - S-Gamut3.Cine"},
-         "Input/Sony",
-         "Sony S-Log3, S-Gamut3.Cine.",
-         "SONY_SLOG3-SGAMUT3.CINE_to_ACES2065-1",
-         "ocio:slog3_sgamut3cine_scene"},
-        {"S-Log3 Venice S-Gamut3",
-         {"slog3_sgamut3_venice", "Input - Sony - S-Log3 - Venice S-Gamut3"},
-         "Input/Sony",
-         "Sony VENICE, S-Log3, S-Gamut3.",
-         "SONY_SLOG3-SGAMUT3-VENICE_to_ACES2065-1",
-         "ocio:slog3_sgamut3venice_scene"},
-        {"S-Log3 Venice S-Gamut3.Cine",
-         {"slog3_sgamut3cine_venice", "Input - Sony - S-Log3 - Venice S-Gamut3.Cine"},
-         "Input/Sony",
-         "Sony VENICE, S-Log3, S-Gamut3.Cine.",
-         "SONY_SLOG3-SGAMUT3.CINE-VENICE_to_ACES2065-1",
-         "ocio:slog3_sgamut3cinevenice_scene"},
-    };
-    return spaces;
-}
-
-/// Log spaces without a built-in transform in OpenColorIO 2.0.
-struct LogSpace {
-    const char* name;
-    std::vector<std::string> aliases;
-    const char* family;
-    const char* description;
-    const Primaries* primaries;
-    ConfigModel::LogCurve curve;
-    const char* interop_id = "";
-};
-
-/// ARRI, "LogC4 Logarithmic Color Space, Specification", 2022, section 4.1.
-ConfigModel::LogCurve arri_logc4() {
-    const double a = (std::exp2(18) - 16) / 117.45;
-    const double b = (1023.0 - 95) / 1023;
-    const double c = 95.0 / 1023;
-    ConfigModel::LogCurve curve;
-    curve.log_slope = b / 14;
-    curve.log_offset = c - 6 * b / 14;
-    curve.linear_slope = a;
-    curve.linear_offset = 64;
-    curve.linear_break = (std::exp2(14 * (-c / b) + 6) - 64) / a;
-    return curve;
-}
-
-/// Blackmagic Design, "DaVinci Resolve 17 Wide Gamut Intermediate", 2021.
-ConfigModel::LogCurve davinci_intermediate() {
-    constexpr double kB = 7;
-    constexpr double kC = 0.07329248;
-    ConfigModel::LogCurve curve;
-    curve.log_slope = kC;
-    curve.log_offset = kB * kC;
-    curve.linear_offset = 0.0075;
-    curve.linear_break = 0.00262409;
-    return curve;
-}
-
-/// Kodak, "Conversion of 10-bit Log Film Data To 8-bit Linear or Video Data for The Cineon Digital
-/// Film System", 1995: 0.002 density a code, film gamma 0.6, black at 95, white at 685.
-ConfigModel::LogCurve cineon() {
-    constexpr double kGamma = 0.6;
-    constexpr double kDensityOfCode = 0.002;
-    constexpr double kBlack = 95;
-    constexpr double kWhite = 685;
-    const double black = std::pow(10, (kBlack - kWhite) * kDensityOfCode / kGamma);
-    ConfigModel::LogCurve curve;
-    curve.base = 10;
-    curve.log_slope = kGamma / kDensityOfCode / 1023;
-    curve.log_offset = kWhite / 1023;
-    curve.linear_slope = 1 - black;
-    curve.linear_offset = black;
-    return curve;
-}
-
-const std::vector<LogSpace>& log_spaces() {
-    static const std::vector<LogSpace> spaces = {
-        {"ARRI LogC4",
-         {"arri_logc4"},
-         "Input/ARRI",
-         "ARRI LogC4, ARRI Wide Gamut 4.",
-         &kArriWideGamut4,
-         arri_logc4(),
-         "ocio:arrilogc4_awg4_scene"},
-        {"DaVinci Intermediate WideGamut",
-         {"davinci_intermediate_widegamut"},
-         "Input/Blackmagic",
-         "DaVinci Intermediate, DaVinci Wide Gamut.",
-         &kDaVinciWideGamut,
-         davinci_intermediate()},
-        // OpenImageIO reports KodakLog for a DPX tagged as logarithmic, and for every Cineon file.
-        {kFilmSpace,
-         {"cineon_film", "KodakLog", "Cineon Log"},
-         "Input/Film",
-         "Kodak Cineon film scans (.cin, .dpx): black at code 95 of 1023, white at 685, Rec.709 "
-         "primaries.",
-         &kRec709,
-         cineon()},
-    };
-    return spaces;
-}
-
-/// Pictures and textures in the code values of a display's curve, also for other primaries.
-struct TextureSpace {
-    const char* name;
-    std::vector<std::string> aliases;
-    const char* display;
-    const Primaries* primaries;
-    const char* interop_id;
-};
-
-const std::vector<TextureSpace>& texture_spaces() {
-    static const std::vector<TextureSpace> spaces = {
-        {kTextureSpace,
-         {"srgb_tx", "Utility - sRGB - Texture", "sRGB Encoded Rec.709 (sRGB)"},
-         "srgb",
-         &kRec709,
-         "srgb_rec709_scene"},
-        {"Gamma 2.2 Rec.709 - Texture",
-         {"g22_rec709_tx", "Gamma 2.2 Encoded Rec.709"},
-         "g22",
-         &kRec709,
-         "g22_rec709_scene"},
-        {kVideoSpace,
-         {"g24_rec709_tx", "g24_rec709_scene", "Gamma 2.4 Encoded Rec.709"},
-         "rec1886",
-         &kRec709,
-         "ocio:g24_rec709_scene"},
-        {"sRGB Encoded AP1 - Texture",
-         {"srgb_encoded_ap1_tx", "srgb_ap1"},
-         "srgb",
-         &kAP1,
-         "srgb_ap1_scene"},
-        {"Gamma 2.2 AP1 - Texture",
-         {"g22_ap1_tx", "Gamma 2.2 Encoded AP1"},
-         "g22",
-         &kAP1,
-         "g22_ap1_scene"},
-        {"sRGB Encoded P3-D65 - Texture",
-         {"srgb_encoded_p3d65_tx"},
-         "srgb",
-         &kP3D65,
-         "srgb_p3d65_scene"},
-    };
-    return spaces;
-}
-
 /// Ids of the supported spaces: Color Interop Forum, "Color Space Encodings for Texture Assets and
 /// CG Rendering", 2025, and its ids of displays.
 constexpr std::array<std::string_view, 12> kForumIds = {
@@ -289,6 +60,46 @@ std::string interop_id(const Item& item) {
         if (std::find(kForumIds.begin(), kForumIds.end(), alias) != kForumIds.end()) return alias;
     }
     return "";
+}
+
+Space space_of(const EncodedSpace& space) {
+    Space result;
+    result.name = space.title;
+    result.aliases = space.aliases;
+    result.family = space.family;
+    result.description = space.description;
+    result.categories = {"file-io"};
+    result.interop_id = space.interop_id;
+    switch (space.kind) {
+        case EncodedSpace::Kind::builtin:
+            result.kind = SpaceKind::builtin;
+            result.encoding = "log";
+            if (space.family == "ACES") result.categories.emplace_back("working-space");
+            result.style = space.style;
+            break;
+        case EncodedSpace::Kind::log:
+            result.kind = SpaceKind::log;
+            result.encoding = "log";
+            result.primaries = &space.primaries;
+            result.curve = space.curve;
+            break;
+        case EncodedSpace::Kind::texture:
+            result.kind = SpaceKind::texture;
+            result.encoding = "sdr-video";
+            result.categories.emplace_back("texture");
+            result.primaries = &space.primaries;
+            result.display = &find_display(space.display);
+            break;
+        case EncodedSpace::Kind::data:
+            result.kind = SpaceKind::data;
+            result.encoding = "data";
+            break;
+        case EncodedSpace::Kind::display_reference:
+            result.kind = SpaceKind::display_reference;
+            result.encoding = "display-linear";
+            break;
+    }
+    return result;
 }
 
 std::vector<std::pair<std::string, std::string>> role_table(const std::string& working) {
@@ -523,16 +334,15 @@ std::vector<ConfigModel::FileRule> make_file_rules(const std::string& working) {
     const std::vector<ConfigModel::FileRule> by_word = rules_by_word();
     rules.insert(rules.end(), by_word.begin(), by_word.end());
     rules.push_back({"linear tx", working, "", R"(.*\.(?:exr|hdr|EXR|HDR)\.tx)"});
-    for (const char* extension : {"exr", "hdr", "pfm"})
-        rules.push_back({extension, working, extension, ""});
-    for (const char* extension : {"png", "jpg", "jpeg", "tif", "tiff", "tga", "bmp", "gif", "webp",
-                                  "psd", "heic", "heif", "jxl", "avif", "jp2", "j2k", "tx"})
-        rules.push_back({extension, kTextureSpace, extension, ""});
-    // Files of film scanners and log recorders; other DPX files state their space in the name.
-    for (const char* extension : {"dpx", "cin"})
-        rules.push_back({extension, kFilmSpace, extension, ""});
-    for (const char* extension : {"mov", "mp4", "mxf", "mkv", "avi"})
-        rules.push_back({extension, kVideoSpace, extension, ""});
+    for (const FormatColor& format : all_format_colors()) {
+        if (!format.has_file_rule) continue;
+        const bool is_linear = format.meaning == FormatMeaning::linear;
+        for (const std::string_view extension : format.extensions) {
+            rules.push_back({std::string(extension),
+                             is_linear ? working : std::string(format.integer_space),
+                             std::string(extension), ""});
+        }
+    }
     return rules;
 }
 
@@ -731,66 +541,8 @@ ConfigModel make_config_model(const ConfigOptions& options) {
              "",
              interop_id(space)});
     }
-    for (const BuiltinSpace& space : builtin_spaces()) {
-        const bool is_working = std::string_view(space.family) == "ACES";
-        model.spaces.push_back({SpaceKind::builtin, space.name, space.aliases, space.family,
-                                space.description, "log",
-                                is_working ? std::vector<std::string>{"file-io", "working-space"}
-                                           : std::vector<std::string>{"file-io"},
-                                nullptr, nullptr, space.style, space.interop_id});
-    }
-    for (const LogSpace& space : log_spaces()) {
-        model.spaces.push_back({SpaceKind::log,
-                                space.name,
-                                space.aliases,
-                                space.family,
-                                space.description,
-                                "log",
-                                {"file-io"},
-                                space.primaries,
-                                nullptr,
-                                "",
-                                space.interop_id,
-                                space.curve});
-    }
-    for (const TextureSpace& space : texture_spaces()) {
-        const Display& display = find_display(space.display);
-        model.spaces.push_back({SpaceKind::texture,
-                                space.name,
-                                space.aliases,
-                                "Utility/Texture",
-                                "Pictures and textures with " + std::string(space.primaries->name) +
-                                    " primaries in the code values of " + display.source +
-                                    ", decoded to scene-linear.",
-                                "sdr-video",
-                                {"file-io", "texture"},
-                                space.primaries,
-                                &display,
-                                "",
-                                space.interop_id});
-    }
-    model.spaces.push_back({SpaceKind::data,
-                            kDataSpace,
-                            {"Utility - Raw", "Generic Data", "Non-Colour Data", "Raw"},
-                            "Utility",
-                            "Data that is not color (normals, depth, masks): never converted.",
-                            "data",
-                            {"file-io"},
-                            nullptr,
-                            nullptr,
-                            "",
-                            "data"});
-    model.spaces.push_back({SpaceKind::display_reference,
-                            "CIE-XYZ-D65",
-                            {"cie_xyz_d65_display"},
-                            "Display",
-                            "Display reference: CIE XYZ, D65, Y = 1 is display white.",
-                            "display-linear",
-                            {"file-io"},
-                            nullptr,
-                            nullptr,
-                            "",
-                            "ocio:lin_ciexyzd65_display"});
+    for (const EncodedSpace& space : all_encoded_spaces())
+        model.spaces.push_back(space_of(space));
     // Adds all display spaces, also those of displays that are left out, because pictures may be in
     // their code values.
     for (const Display& display : all_displays()) {

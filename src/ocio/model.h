@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "pipeline/encoded_spaces.h"
 #include "tonewright/ocio.h"
 #include "tonewright/view.h"
 
@@ -25,19 +26,8 @@ struct ConfigModel {
         display_reference,
         display
     };
-    /// Scene-linear is (base^((code - log_offset) / log_slope) - linear_offset) / linear_slope:
-    /// parameters of OpenColorIO's LogAffineTransform.
-    struct LogCurve {
-        double base = 2;
-        double log_slope = 1;
-        double log_offset = 0;
-        double linear_slope = 1;
-        double linear_offset = 0;
-        /// Below this value the curve continues as a straight line.
-        std::optional<double> linear_break = {};
-    };
     struct Space {
-        SpaceKind kind;
+        SpaceKind kind = SpaceKind::data;
         std::string name;
         std::vector<std::string> aliases;
         std::string family;
@@ -96,7 +86,6 @@ struct ConfigModel {
 ///                use: over 63 bytes, duplicates, an alias that is a role.
 [[nodiscard]] TONEWRIGHT_API ConfigModel make_config_model(const ConfigOptions& options = {});
 
-inline constexpr const char* kDataSpace = "Non-Color";
 inline constexpr const char* kUntonemappedView = "Un-tone-mapped";
 inline constexpr const char* kRawView = "Raw";
 /// Display color spaces have the display's name, which Blender looks for. With this suffix, as in

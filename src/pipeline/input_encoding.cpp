@@ -42,9 +42,26 @@ constexpr std::array<FixedEncoding, 9> kFixedEncodings = {{
      "lin_rec709"},
 }};
 
+constexpr std::array kEncodingsWithNumbers = {"pq", "hlg", "log2", "linear"};
+
 bool parse_number(std::string_view s, double& value) {
     const auto r = std::from_chars(s.data(), s.data() + s.size(), value);
     return r.ec == std::errc() && r.ptr == s.data() + s.size() && std::isfinite(value);
+}
+
+constexpr double kPqPeak = 10000;  // SMPTE ST 2084
+constexpr double kHlgPeak = 1000;  // ITU-R BT.2100-2, the display with a system gamma of 1.2
+
+/// "name", or "name:WHITE".
+double parse_white(std::string_view text, std::string_view name, double peak) {
+    const std::size_t colon = text.find(':');
+    if (colon == std::string_view::npos) return kReferenceWhite;
+    double white = 0;
+    if (!parse_number(text.substr(colon + 1), white) || !(white > 0) || white > peak) {
+        throw Error("input encoding is " + std::string(text) + "; expected " + std::string(name) +
+                    ":WHITE, the cd/m2 of scene-linear 1.0 in (0, " + shortest(peak) + "]");
+    }
+    return white;
 }
 
 struct Range {
@@ -71,10 +88,10 @@ Range parse_range(std::string_view text, std::string_view name, Range fallback) 
 
 std::vector<std::string> input_encoding_names() {
     std::vector<std::string> names;
-    names.reserve(std::size(kFixedEncodings) + 3);
+    names.reserve(std::size(kFixedEncodings) + std::size(kEncodingsWithNumbers));
     for (const FixedEncoding& fixed : kFixedEncodings)
         names.emplace_back(fixed.id);
-    for (const char* name : {"pq", "log2", "linear"})
+    for (const char* name : kEncodingsWithNumbers)
         names.emplace_back(name);
     return names;
 }
@@ -95,20 +112,29 @@ InputEncoding parse_input_encoding(std::string_view text) {
         return e;
     }
     if (name == "pq") {
-        double white = kReferenceWhite;
-        const std::size_t colon = text.find(':');
-        if (colon != std::string_view::npos &&
-            (!parse_number(text.substr(colon + 1), white) || !(white > 0) || white > 10000)) {
-            throw Error("input encoding is " + std::string(text) +
-                        "; expected pq:WHITE, the cd/m2 of scene-linear 1.0 in (0, 10000]");
-        }
+        const double white = parse_white(text, name, kPqPeak);
         e.id = "pq:" + shortest(white);
         e.title = "PQ (SMPTE ST 2084), scene-linear 1 at " + shortest(white) + " cd/m2";
         e.encode = pq_encode_nits(x * white);
         e.decode = pq_decode_nits(x) / white;
         e.default_input = "lin_rec2020";
         e.scene_lo = 0;
-        e.scene_hi = 10000 / white;
+        e.scene_hi = kPqPeak / white;
+        return e;
+    }
+    if (name == "hlg") {
+        const double white = parse_white(text, name, kHlgPeak);
+        // Gray, for which the OOTF of the display is a power of this channel.
+        const double gray = evaluate(hlg_inverse_ootf_luminance(x), white / kHlgPeak);
+        e.id = "hlg:" + shortest(white);
+        e.title =
+            "HLG (ITU-R BT.2100), scene light; scene-linear 1 is the gray that a display of " +
+            shortest(kHlgPeak) + " cd/m2 shows at " + shortest(white) + " cd/m2";
+        e.encode = hlg_oetf(x * gray);
+        e.decode = hlg_inverse_oetf(x) / gray;
+        e.default_input = "lin_rec2020";
+        e.scene_lo = 0;
+        e.scene_hi = 1 / gray;
         return e;
     }
     if (name == "log2") {
@@ -139,10 +165,10 @@ InputEncoding parse_input_encoding(std::string_view text) {
         return e;
     }
     std::vector<NamedChoice> choices;
-    choices.reserve(std::size(kFixedEncodings) + 3);
+    choices.reserve(std::size(kFixedEncodings) + std::size(kEncodingsWithNumbers));
     for (const FixedEncoding& fixed : kFixedEncodings)
         choices.push_back({fixed.id, {fixed.title}});
-    for (const char* other : {"pq", "log2", "linear"})
+    for (const char* other : kEncodingsWithNumbers)
         choices.push_back({other});
     throw Error("input encoding is " + std::string(text) + "; expected " +
                 join_choices(input_encoding_names()) + did_you_mean(name, choices));

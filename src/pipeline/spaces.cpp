@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <optional>
+#include <utility>
 
 #include "base/format_number.h"
 #include "base/strings.h"
-#include "tonewright/view.h"
+#include "pipeline/encoded_spaces.h"
+#include "pipeline/spaces.h"
+#include "tonewright/input_encoding.h"
+#include "tonewright/source_color.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -74,35 +79,51 @@ Display pq_display(std::string id, std::string title, std::vector<std::string> a
             .largest_light = kPqLargest / kReferenceWhite};
 }
 
+constexpr double kHlgUnit = kHdrPeak / kReferenceWhite;
+constexpr Vector3 kBt2100Luminance = {0.2627, 0.6780, 0.0593};  // ITU-R BT.2100-2, table 5
+
+Pipeline hlg_decode(const Vector3& luminance) {
+    const Expr x = Expr::input(0);
+    return {
+        named("decode", curve_stage(hlg_inverse_oetf(x), hlg_oetf(x))),
+        ToneScaleStage{ToneScaleStage::Norm::luminance, luminance, hlg_ootf_luminance(x)},
+        MatrixStage{scale(kIdentity3, kHlgUnit)},
+    };
+}
+
 Display hlg_display() {
     const Expr x = Expr::input(0);
-    const double unit = kHdrPeak / kReferenceWhite;
-    const auto luminance = [](const Expr& f) {
-        // ITU-R BT.2100-2, table 5
-        return ToneScaleStage{ToneScaleStage::Norm::luminance, {0.2627, 0.6780, 0.0593}, f};
-    };
     return {.id = "rec2100_hlg",
             .title = "Rec.2100-HLG",
             .aliases = {"rec2100_hlg_display", "hlg_rec2020_display"},
             .primaries = kRec2020,
-            .encode = {MatrixStage{scale(kIdentity3, 1 / unit)},
-                       luminance(hlg_inverse_ootf_luminance(x)),
+            .encode = {MatrixStage{scale(kIdentity3, 1 / kHlgUnit)},
+                       ToneScaleStage{ToneScaleStage::Norm::luminance, kBt2100Luminance,
+                                      hlg_inverse_ootf_luminance(x)},
                        named("encode", curve_stage(hlg_oetf(x), hlg_inverse_oetf(x))),
                        // A color with one bright channel has a luminance below 1, so its scene
                        // value may exceed 1 at the largest display value.
                        ClampStage{0, 1}},
-            .decode = {named("decode", curve_stage(hlg_inverse_oetf(x), hlg_oetf(x))),
-                       luminance(hlg_ootf_luminance(x)), MatrixStage{scale(kIdentity3, unit)}},
+            .decode = hlg_decode(kBt2100Luminance),
             .source = "ITU-R BT.2100-2 HLG, a display of 1000 cd/m2",
             .is_hdr = true,
             .peak = kHdrPeak,
-            .largest_light = unit};
+            .largest_light = kHlgUnit};
 }
 
-/// Clamps like the input of every engine.
-SourceColor encoded(std::string name, Pipeline decode, const Primaries& primaries) {
-    decode.push_back(ClampStage{-kHalfMax, kHalfMax});
-    return {std::move(name), primaries, std::move(decode)};
+/// The color of "cicp:P/T", the name that color_of_code_points() gives.
+std::optional<SourceColor> by_code_points(std::string_view name) {
+    constexpr std::string_view kPrefix = "cicp:";
+    const std::string folded = folded_name(name);
+    if (!folded.starts_with(kPrefix)) return std::nullopt;
+    int primaries = 0;
+    int transfer = 0;
+    const char* const end = folded.data() + folded.size();
+    const auto [slash, error] = std::from_chars(folded.data() + kPrefix.size(), end, primaries);
+    if (error != std::errc() || slash == end || *slash != '/') return std::nullopt;
+    const auto [rest, second_error] = std::from_chars(slash + 1, end, transfer);
+    if (second_error != std::errc() || rest != end) return std::nullopt;
+    return color_of_code_points(primaries, transfer);
 }
 
 /// The X.Y of "GammaX.Y", as OIIO names powers of Rec.709; or 0.
@@ -119,31 +140,144 @@ double exponent_of(std::string_view name) {
     return is_number && exponent >= 0.1 && exponent <= 10 ? exponent : 0;
 }
 
-/// `<curve>_<primaries>_<scene|display>`, the curve `lin`, `srgb` or `gNN` (a power, in tenths).
+/// Ids of the Color Interop Forum that no display and no space of the config has: "Color Space
+/// Encodings for Texture Assets and CG Rendering", "Display Color Space Encodings", 2026.
+constexpr std::array kOtherInteropIds = {"lin_adobergb_scene",
+                                         "lin_ciexyzd65_scene",
+                                         "g18_rec709_scene",
+                                         "g22_adobergb_scene",
+                                         "srgbe_p3d65_display",
+                                         "g22_adobergb_display",
+                                         "g26_p3d65_display",
+                                         "g26_xyzd65_display",
+                                         "pq_xyzd65_display",
+                                         "lin_rec709_display",
+                                         "lin_p3d65_display",
+                                         "lin_rec2020_display",
+                                         "unknown"};
+
+/// Other names, and names with a number.
+constexpr std::array<std::pair<const char*, const char*>, 3> kOtherNames = {{
+    {"Rec709", "camera curve of ITU-R BT.709, inverted"},
+    {"GammaX.Y", "power of Rec.709, such as Gamma1.8"},
+    {"cicp:P/T", "code points of ITU-T H.273: primaries and transfer, such as cicp:9/16"},
+}};
+
+/// Primaries in the Color Interop Forum's ids.
+std::optional<Primaries> interop_primaries(const std::string& name) {
+    if (name == "adobergb") return kAdobeRgb;
+    if (name == "ciexyzd65" || name == "xyzd65") return kXyzD65;
+    if (const InputSpace* space = look_up(all_input_spaces(), "lin_" + name))
+        return space->primaries;
+    return std::nullopt;
+}
+
+/// The curve of one of those ids: `srgb`, `srgbe` (negatives mirror), `pq`, or `gNN`, a power in
+/// tenths.
+std::optional<Expr> interop_curve(const std::string& curve, const Primaries& primaries) {
+    const Expr x = Expr::input();
+    if (curve == "srgb") return srgb_decode(x);
+    if (curve == "srgbe") return select(less(x, 0), -srgb_decode(-x), srgb_decode(x));
+    if (curve == "pq") return pq_decode_nits(x) / kReferenceWhite;
+    int tenths = 0;
+    const char* const end = curve.data() + curve.size();
+    if (curve.size() != 3 || curve.front() != 'g') return std::nullopt;
+    const auto [stop, error] = std::from_chars(curve.data() + 1, end, tenths);
+    if (error != std::errc() || stop != end || tenths < 1) return std::nullopt;
+    // Digital cinema's code values leave room above white.
+    if (tenths == 26 && primaries == kXyzD65) return st428_decode(x);
+    // Adobe RGB (1998) has 2 51/256.
+    if (tenths == 22 && primaries == kAdobeRgb) return power_decode(x, 563.0 / 256);
+    return power_decode(x, tenths / 10.0);
+}
+
+/// `<curve>_<primaries>_<scene|display>`.
 std::optional<SourceColor> by_interop_pattern(std::string_view text) {
     const std::string name = folded_name(text);
     const std::size_t first = name.find('_');
     const std::size_t last = name.rfind('_');
     if (first == std::string_view::npos || first == last) return std::nullopt;
     const std::string curve = name.substr(0, first);
-    const InputSpace* space =
-        look_up(all_input_spaces(), "lin_" + name.substr(first + 1, last - first - 1));
+    const std::optional<Primaries> primaries =
+        interop_primaries(name.substr(first + 1, last - first - 1));
     const std::string state = name.substr(last + 1);
-    if (!space || !(state == "scene" || state == "display")) return std::nullopt;
-    if (curve == "lin") return SourceColor{space->id, space->primaries};
-    const Expr x = Expr::input();
-    if (curve == "srgb") return encoded(name, {curve_stage(srgb_decode(x))}, space->primaries);
-    int tenths = 0;
-    const auto [end, error] =
-        std::from_chars(curve.data() + 1, curve.data() + curve.size(), tenths);
-    if (curve.size() != 3 || curve.front() != 'g' || error != std::errc() ||
-        end != curve.data() + curve.size() || tenths < 1) {
-        return std::nullopt;
+    if (!primaries || !(state == "scene" || state == "display")) return std::nullopt;
+    if (curve == "lin") {
+        for (const InputSpace& space : all_input_spaces()) {
+            if (space.primaries == *primaries) return SourceColor{space.id, space.primaries};
+        }
+        return SourceColor{name, *primaries};
     }
-    return encoded(name, {curve_stage(power_decode(x, tenths / 10.0))}, space->primaries);
+    const std::optional<Expr> decode = interop_curve(curve, *primaries);
+    if (!decode) return std::nullopt;
+    SourceColor color = encoded_color(name, {curve_stage(*decode)}, *primaries);
+    color.is_absolute = curve == "pq";
+    return color;
+}
+
+/// A space of the config that is neither linear nor a display.
+std::optional<SourceColor> by_encoded_space(std::string_view name) {
+    for (const EncodedSpace& space : all_encoded_spaces()) {
+        const bool is_named =
+            is_same_name(space.title, name) || is_same_name(space.interop_id, name) ||
+            std::any_of(space.aliases.begin(), space.aliases.end(),
+                        [&](const std::string& alias) { return is_same_name(alias, name); });
+        if (!is_named) continue;
+        if (space.decode.empty()) return SourceColor{space.title, space.primaries};
+        return encoded_color(space.title, space.decode, space.primaries);
+    }
+    return std::nullopt;
+}
+
+/// An encoding of LUTs, with its parameters and its default primaries.
+std::optional<SourceColor> by_input_encoding(std::string_view name) {
+    const std::string id = folded_name(name.substr(0, name.find(':')));
+    const std::vector<std::string> ids = input_encoding_names();
+    if (std::find(ids.begin(), ids.end(), id) == ids.end()) return std::nullopt;
+    const InputEncoding encoding = parse_input_encoding(name);
+    const Primaries& primaries = find_input_space(encoding.default_input).primaries;
+    SourceColor color = encoded_color(encoding.id, {curve_stage(encoding.decode)}, primaries);
+    color.is_absolute = id == name && id == "pq";
+    return color;
+}
+
+std::optional<SourceColor> look_up_color(std::string_view name) {
+    if (const InputSpace* space = look_up(all_input_spaces(), name))
+        return SourceColor{space->id, space->primaries};
+    if (const Display* display = look_up(all_displays(), name)) return color_of_display(*display);
+    const Expr x = Expr::input();
+    if (is_same_name(name, "Rec709"))
+        return encoded_color("Rec709", {curve_stage(bt709_inverse_oetf(x))}, kRec709);
+    if (const double exponent = exponent_of(name); exponent > 0) {
+        return encoded_color("Gamma" + shortest(exponent), {curve_stage(power_decode(x, exponent))},
+                             kRec709);
+    }
+    // The forum's id of files whose color nobody knows. Who names it wants the numbers.
+    if (is_same_name(name, "unknown")) return SourceColor{"unknown", kRec709};
+    for (const auto& find :
+         {by_interop_pattern, by_encoded_space, by_input_encoding, by_code_points}) {
+        if (std::optional<SourceColor> color = find(name)) return color;
+    }
+    return std::nullopt;
 }
 
 }  // namespace
+
+SourceColor encoded_color(std::string name, Pipeline decode, const Primaries& primaries) {
+    decode.push_back(ClampStage{-kHalfMax, kHalfMax});
+    return {std::move(name), primaries, std::move(decode)};
+}
+
+SourceColor color_of_display(const Display& display) {
+    SourceColor color = encoded_color(display.title, display.decode, display.primaries);
+    color.is_absolute = display.is_hdr;
+    return color;
+}
+
+Pipeline hlg_display_decode(const Primaries& primaries) {
+    if (primaries == kRec2020) return hlg_decode(kBt2100Luminance);
+    return hlg_decode(rgb_to_xyz(primaries)[1]);
+}
 
 const std::vector<InputSpace>& all_input_spaces() {
     // Aliases: names of the same space in Blender 3 and 4, OIIO, the ACES configs and the interop
@@ -211,26 +345,41 @@ const InputSpace& find_input_space(std::string_view name) {
 }
 
 SourceColor find_source_color(std::string_view name) {
-    if (const InputSpace* space = look_up(all_input_spaces(), name))
-        return {space->id, space->primaries};
-    if (const Display* display = look_up(all_displays(), name))
-        return encoded(display->title, display->decode, display->primaries);
-    const Expr x = Expr::input();
-    if (is_same_name(name, "Rec709"))
-        return encoded("Rec709", {curve_stage(bt709_inverse_oetf(x))}, kRec709);
-    if (const double exponent = exponent_of(name); exponent > 0) {
-        return encoded("Gamma" + shortest(exponent), {curve_stage(power_decode(x, exponent))},
-                       kRec709);
+    if (std::optional<SourceColor> color = look_up_color(name)) return *color;
+    // A namespace before an id of the Color Interop Forum: "An ID for Color Interop", 1.0.0.
+    if (const std::size_t colon = name.find(':'); colon != std::string_view::npos) {
+        if (std::optional<SourceColor> color = look_up_color(name.substr(colon + 1))) return *color;
     }
-    // CIE XYZ itself: its primaries are X, Y and Z.
-    if (is_same_name(name, "lin_ciexyzd65_scene"))
-        return {"lin_ciexyzd65_scene", {"CIE XYZ", {1, 0}, {0, 1}, {0, 0}, kD65}};
-    if (std::optional<SourceColor> color = by_interop_pattern(name)) return *color;
-    // Throws the message of the input spaces, with all names.
-    return {find_named(all_input_spaces(), name, "input space",
-                       {"sRGB", "Rec709", "Gamma2.2", "a display"})
-                .id,
-            kRec709};
+    std::vector<NamedChoice> choices;
+    for (const SourceColorName& source : all_source_color_names()) {
+        choices.push_back({source.id, source.aliases});
+        choices.back().names.push_back(source.title);
+    }
+    throw Error("input space is " + std::string(name) +
+                "; expected a name of `tonewright list --inputs`, such as lin_rec709, sRGB or "
+                "ACEScct" +
+                did_you_mean(name, choices));
+}
+
+std::vector<SourceColorName> all_source_color_names() {
+    std::vector<SourceColorName> names;
+    using Kind = SourceColorName::Kind;
+    for (const InputSpace& space : all_input_spaces())
+        names.push_back({space.id, space.title, space.aliases, Kind::linear});
+    for (const Display& display : all_displays())
+        names.push_back({display.id, display.title, display.aliases, Kind::display});
+    for (const EncodedSpace& space : all_encoded_spaces()) {
+        std::vector<std::string> aliases = space.aliases;
+        if (!space.interop_id.empty()) aliases.push_back(space.interop_id);
+        names.push_back({space.title, space.title, aliases, Kind::config});
+    }
+    for (const char* id : kOtherInteropIds)
+        names.push_back({id, id, {}, Kind::interop});
+    for (const std::string& id : input_encoding_names())
+        names.push_back({id, parse_input_encoding(id).title, {}, Kind::encoding});
+    for (const auto& [id, title] : kOtherNames)
+        names.push_back({id, title, {}, Kind::other});
+    return names;
 }
 
 const Display& find_display(std::string_view name) {

@@ -59,6 +59,12 @@ inline constexpr Primaries kAP1 = {
 inline constexpr Primaries kEGamut = {
     "FilmLight E-Gamut", {0.8, 0.3177}, {0.18, 0.9}, {0.065, -0.0805}, kD65};
 
+/// CIE XYZ itself, whose gray is D65: values of D65 stay as they are, and X = Y = Z is no gray.
+inline constexpr Primaries kXyzD65 = {"CIE XYZ", {1, 0}, {0, 1}, {0, 0}, kD65};
+/// Adobe RGB (1998) Color Image Encoding, 2005, section 4.3.1.
+inline constexpr Primaries kAdobeRgb = {
+    "Adobe RGB", {0.64, 0.33}, {0.21, 0.71}, {0.15, 0.06}, kD65};
+
 /// ARRI, "ALEXA Log C Curve, Usage in VFX", 2017: Wide Gamut 3.
 inline constexpr Primaries kArriWideGamut3 = {
     "ARRI Wide Gamut 3", {0.6840, 0.3130}, {0.2210, 0.8480}, {0.0861, -0.1020}, kD65};
@@ -73,6 +79,16 @@ inline constexpr Primaries kSGamut3Cine = {
 /// Blackmagic Design, "DaVinci Resolve 17 Wide Gamut Intermediate", 2021.
 inline constexpr Primaries kDaVinciWideGamut = {
     "DaVinci Wide Gamut", {0.8000, 0.3130}, {0.1682, 0.9877}, {0.0790, -0.1155}, kD65};
+
+/// Canon, "Canon Log Gamma Curves", 2018: Cinema Gamut.
+inline constexpr Primaries kCinemaGamut = {
+    "Cinema Gamut", {0.7400, 0.2700}, {0.1700, 1.1400}, {0.0800, -0.1000}, kD65};
+/// Panasonic, "V-Log/V-Gamut Reference Manual", 2014.
+inline constexpr Primaries kVGamut = {
+    "V-Gamut", {0.730, 0.280}, {0.165, 0.840}, {0.100, -0.030}, kD65};
+/// RED, "White Paper on REDWideGamutRGB and Log3G10", 2017.
+inline constexpr Primaries kRedWideGamutRgb = {
+    "REDWideGamutRGB", {0.780308, 0.304253}, {0.121595, 1.493994}, {0.095612, -0.084589}, kD65};
 
 /// XYZ of a chromaticity with Y = 1.
 [[nodiscard]] TONEWRIGHT_API Vector3 xyz_of(Chromaticity xy) noexcept;
@@ -120,6 +136,22 @@ inline constexpr Vector3 kRec709Weights = {0.2126, 0.7152, 0.0722};
 /// straight part.
 [[nodiscard]] TONEWRIGHT_API Expr bt709_inverse_oetf(const Expr& code);
 
+// Further code values of ITU-T H.273 (07/2021), table 3, as light of a display.
+
+/// SMPTE 240M (1999), the transfer characteristic of its reference reproducer. Negatives follow the
+/// straight part.
+[[nodiscard]] TONEWRIGHT_API Expr smpte_240m_decode(const Expr& code);
+/// IEC 61966-2-4 (xvYCC) on a display of ITU-R BT.1886: its 2.4 power. Negatives mirror.
+[[nodiscard]] TONEWRIGHT_API Expr xvycc_decode(const Expr& code);
+/// ITU-R BT.1361, extended gamut, on a display of ITU-R BT.1886. Negatives mirror at a quarter of
+/// the scale.
+[[nodiscard]] TONEWRIGHT_API Expr bt1361_decode(const Expr& code);
+/// Logarithmic: 10^(decades (c - 1)). Code 0 and below are 10^-decades, the largest light of that
+/// code, so that the curve has no jump.
+[[nodiscard]] TONEWRIGHT_API Expr log_range_decode(const Expr& code, double decades);
+/// SMPTE ST 428-1: 52.37/48 c^2.6, where 1.0 is the reference white of 48 cd/m2.
+[[nodiscard]] TONEWRIGHT_API Expr st428_decode(const Expr& code);
+
 /// SMPTE ST 2084:2014 inverse EOTF: luminance in cd/m2 [0, 10000] -> code value [0, 1].
 /// Negatives mirror.
 [[nodiscard]] TONEWRIGHT_API Expr pq_encode_nits(const Expr& nits);
@@ -144,6 +176,10 @@ inline constexpr Vector3 kRec709Weights = {0.2126, 0.7152, 0.0722};
 /// Its inverse, without the standard's clamp at 65504.
 [[nodiscard]] TONEWRIGHT_API Expr acescct_decode(const Expr& code);
 
+/// Academy S-2014-003, ACEScc: log code value -> AP1 scene-linear, without the standard's clamp at
+/// 65504.
+[[nodiscard]] TONEWRIGHT_API Expr acescc_decode(const Expr& code);
+
 // Scene-linear light -> log code value of cameras and grading systems, and the inverses. Below the
 // toe they continue as straight lines.
 
@@ -159,6 +195,18 @@ inline constexpr Vector3 kRec709Weights = {0.2126, 0.7152, 0.0722};
 /// Blackmagic Design, "DaVinci Resolve 17 Wide Gamut Intermediate", 2021.
 [[nodiscard]] TONEWRIGHT_API Expr davinci_intermediate_encode(const Expr& linear);
 [[nodiscard]] TONEWRIGHT_API Expr davinci_intermediate_decode(const Expr& code);
+/// Canon, "Canon Log Gamma Curves", 2018: Canon Log 2 and Canon Log 3. The paper's formula has 1.0
+/// at a reflectance of 90 %, so that its result counts 0.9. Codes below black mirror.
+[[nodiscard]] TONEWRIGHT_API Expr canon_log2_decode(const Expr& code);
+[[nodiscard]] TONEWRIGHT_API Expr canon_log3_decode(const Expr& code);
+/// Panasonic, "V-Log/V-Gamut Reference Manual", 2014.
+[[nodiscard]] TONEWRIGHT_API Expr panasonic_vlog_decode(const Expr& code);
+/// RED, "White Paper on REDWideGamutRGB and Log3G10", 2017.
+[[nodiscard]] TONEWRIGHT_API Expr red_log3g10_decode(const Expr& code);
+/// Kodak, "Conversion of 10-bit Log Film Data To 8-bit Linear or Video Data for The Cineon Digital
+/// Film System", 1995: 0.002 density a code, film gamma 0.6, black at code 95 of 1023 and white at
+/// 685. REDlogFilm is the same curve.
+[[nodiscard]] TONEWRIGHT_API Expr cineon_decode(const Expr& code);
 /// Unity's LogC: ALEXA's for EI 1000, without the toe. Core render pipeline, Color.hlsl,
 /// LinearToLogC.
 [[nodiscard]] TONEWRIGHT_API Expr unity_logc_encode(const Expr& linear);

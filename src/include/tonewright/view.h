@@ -64,10 +64,18 @@ struct SourceColor {
     /// the same; safe to use from several threads at once. Empty: none.
     std::function<void(const float* in, float* out, std::size_t count)> convert = {};
 };
-/// Finds an input space by id, title or alias, or an encoding of pictures: a display (its code
-/// values), `Rec709` (the camera curve of ITU-R BT.709), `GammaX.Y`, or a curve with an input
-/// space's primaries by the Color Interop Forum's pattern (`srgb_ap1_scene`, `g22_rec709_scene`).
-/// Ignores case; `-`, `_` and blanks are equal.
+/// Finds the color of a picture by a name of all_source_color_names() (source_color.h), the first
+/// of:
+/// * an input space by id, title or alias; a display, for its code values
+/// * `Rec709` (the camera curve of ITU-R BT.709), `GammaX.Y`
+/// * an id of the Color Interop Forum, or another curve and other primaries in the pattern of its
+///   ids (`g22_rec2020_scene`). `unknown` is linear Rec.709.
+/// * another space of the config by title, alias or interop id: logs of cameras, film, textures.
+///   The numbers of data (`Raw`) are taken as linear Rec.709.
+/// * an encoding that parse_input_encoding() takes, with its default input space
+/// * `cicp:P/T`: code points of ITU-T H.273
+///
+/// Ignores case; `-`, `_` and blanks are equal. A namespace before an id (`ocio:`) is dropped.
 /// @throws Error  with the nearest name
 [[nodiscard]] TONEWRIGHT_API SourceColor find_source_color(std::string_view name);
 

@@ -2,7 +2,6 @@
 #include "image/header_tags.h"
 
 #include <OpenImageIO/strutil.h>
-#include <OpenImageIO/tiffutils.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -87,6 +86,24 @@ void set_bytes(ImageSpec& spec, const char* name, const std::string& bytes) {
     spec.attribute(name, TypeDesc(TypeDesc::UINT8, static_cast<int>(bytes.size())), bytes.data());
 }
 
+/// The orientation of an Exif block, which is a small TIFF file (JEITA CP-3451, 4.5). OpenImageIO
+/// 2.4 does not read the block in PNG and WebP.
+void read_exif(std::string_view exif, ImageSpec& spec) {
+    if (exif.starts_with(std::string_view("Exif\0\0", 6))) exif.remove_prefix(6);
+    const bool is_little = exif.starts_with("II");
+    if (!is_little && !exif.starts_with("MM")) return;
+    const std::uint64_t directory = HeaderFile::parse(exif, 4, 4, is_little);
+    if (directory > exif.size()) return;
+    const std::uint64_t count = HeaderFile::parse(exif, directory, 2, is_little);
+    for (std::uint64_t i = 0; i < count; ++i) {
+        const std::size_t at = directory + 2 + 12 * i;
+        constexpr std::uint64_t kOrientation = 274;
+        if (HeaderFile::parse(exif, at, 2, is_little) != kOrientation) continue;
+        spec.attribute("Orientation",
+                       static_cast<int>(HeaderFile::parse(exif, at + 8, 2, is_little)));
+    }
+}
+
 void set_primaries(ImageSpec& spec, const char* name, const std::array<float, 8>& xy) {
     spec.attribute(name, TypeDesc(TypeDesc::FLOAT, 8), xy.data());
 }
@@ -121,8 +138,7 @@ void read_png(HeaderFile& file, ImageSpec& spec) {
         } else if (type == "acTL" && data.size() == 8 && u32(0) > 1) {
             add_ignored(spec, fmt::format("acTL: the picture is the first of {} frames", u32(0)));
         } else if (type == "eXIf" && !data.empty()) {
-            // OpenImageIO 2.4 does not read it; the orientation in it counts.
-            OIIO::decode_exif(OIIO::string_view(data.data(), data.size()), spec);
+            read_exif(data, spec);
         }
         if (!file.seek(next)) break;
     }
@@ -204,7 +220,7 @@ void read_radiance(HeaderFile& file, ImageSpec& spec) {
     constexpr std::array kDefault = {0.640, 0.330, 0.290, 0.600, 0.150, 0.060, 0.3333, 0.3333};
     bool is_default = true;
     for (std::size_t k = 0; k < xy.size(); ++k)
-        is_default = is_default && std::fabs(xy[k] - kDefault[k]) < 5e-4;
+        is_default = is_default && std::fabs(static_cast<double>(xy[k]) - kDefault[k]) < 5e-4;
     if (!is_complete) {
         add_ignored(spec, fmt::format("PRIMARIES: it has {} numbers; expected 8",
                                       primaries.size()));
@@ -222,11 +238,7 @@ void read_webp(HeaderFile& file, ImageSpec& spec) {
         const std::uint64_t next = file.position() + length + (length & 1U);
         if (!file.ok()) break;
         if (type == "ICCP") set_bytes(spec, "ICCProfile", file.bytes(length));
-        if (type == "EXIF") {
-            std::string data = file.bytes(length);
-            if (data.starts_with(std::string_view("Exif\0\0", 6))) data.erase(0, 6);
-            OIIO::decode_exif(OIIO::string_view(data.data(), data.size()), spec);
-        }
+        if (type == "EXIF") read_exif(file.bytes(length), spec);
         if (type == "ANIM") add_ignored(spec, "ANIM: the picture is the first frame of several");
         if (!file.seek(next)) break;
     }

@@ -2,6 +2,7 @@
 #include "image/picture_description.h"
 
 #include <OpenImageIO/imagebufalgo.h>
+#include <OpenImageIO/imagebufalgo_util.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,7 +16,6 @@
 #include "image/color_tags.h"
 #include "image/header_tags.h"
 #include "image/source_picture.h"
-#include "lut/icc.h"
 #include "lut/icc_source.h"
 #include "tonewright/engine.h"
 #include "tonewright/format_color.h"
@@ -139,12 +139,20 @@ Finding by_icc(const ImageSpec& spec) {
     const ParamValue* value = spec.find_attribute("ICCProfile");
     if (!value || value->type().basetype != TypeDesc::UINT8) return std::nullopt;
     const std::string_view bytes(static_cast<const char*>(value->data()), value->datasize());
-    if (!has_icc()) return std::nullopt;
+    IccSource icc;
     try {
-        return Found{color_of_icc(bytes, spec.nchannels < 3 ? 1 : 3), "ICC profile"};
+        icc = color_of_icc(bytes, spec.nchannels < 3 ? 1 : 3, "the picture");
     } catch (const Error& e) {
         throw PictureError(fmt::format("{}; or name an input space", e.what()));
     }
+    if (icc.code_points) {
+        const auto [primaries, transfer] = *icc.code_points;
+        if (std::optional<SourceColor> color = color_of_code_points(primaries, transfer))
+            return Found{std::move(*color), "cicp of the ICC profile"};
+    }
+    const bool is_named = !icc.description.empty() && icc.color.name != icc.description;
+    return Found{std::move(icc.color),
+                 is_named ? fmt::format("ICC profile {}", icc.description) : "ICC profile"};
 }
 
 Finding by_srgb_chunk(const ImageSpec& spec) {
@@ -325,7 +333,7 @@ void add_contradictions(std::vector<std::string>& ignored, const ImageSpec& spec
         const ReferenceEngine engine(stages);
         std::array<std::array<double, 3>, 3> light{};
         for (std::size_t i = 0; i < kCodes.size(); ++i)
-            light[i] = engine.run(kCodes[i]);
+            light[i] = engine(kCodes[i]);
         return light;
     };
     const auto differ = [&](const SourceColor& a, const SourceColor& b) {

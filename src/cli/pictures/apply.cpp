@@ -319,7 +319,6 @@ int run_apply(const ApplyOptions& given) {
         options.in = files.files.front().in;
         options.out = files.files.front().out;
         const auto prepare = [&](std::vector<FrameFiles>& all, const std::vector<int>& numbers) {
-            for (FrameFiles& frame : all)
             meter_frames(tonemapper, all, numbers, options);
         };
         tell_default();

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -19,7 +20,7 @@ namespace {
 /// "Rec.709", or the coordinates.
 std::string text_of(const Primaries& p) {
     for (const InputSpace& space : all_input_spaces()) {
-        if (space.primaries == p) return p.name;
+        if (space.primaries == p) return std::string(p.name);
     }
     std::vector<std::string> numbers;
     for (const Chromaticity& c : {p.red, p.green, p.blue})

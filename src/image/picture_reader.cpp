@@ -15,6 +15,7 @@
 #include "base/strings.h"
 #include "image/header_tags.h"
 #include "image/layers.h"
+#include "image/heif_reader.h"
 #include "image/picture_file.h"
 #include "image/source_picture.h"
 #include "tonewright/image_io.h"
@@ -157,6 +158,7 @@ std::unique_ptr<OIIO::ImageInput> open_picture(const std::string& path,
     // A reader would wait forever for the end of a pipe. A name without a file may be one that a
     // reader understands: "shot.exr.tonewright?op=hable".
     if (const std::string why = why_no_file(path); !why.empty()) cannot_read(path, why);
+    if (is_heif(path)) return open_heif(path, max_pixels);
     check_jpeg2000_size(path, max_pixels);
     std::unique_ptr<OIIO::ImageInput> in;
     if (path.find('?') != std::string::npos && why_not_readable(path).empty()) {

@@ -2,7 +2,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <memory>
 
 #include "base/atomic_file.h"
@@ -55,23 +58,55 @@ std::string counted(std::size_t count, std::string_view noun) {
     return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
+/// True if the file has these contents already.
+bool is_written(const std::filesystem::path& path, const std::string& contents) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error) ||
+        std::filesystem::file_size(path, error) != contents.size())
+        return false;
+    std::ifstream file(path, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(file), {}) == contents;
+}
+
+/// Links to the folder of the tables, relative, so that both folders can be moved together.
+void link_folders(const std::filesystem::path& tables, const ExtendedConfig& changed,
+                  std::vector<std::filesystem::path>& written) {
+    namespace fs = std::filesystem;
+    for (const std::string& link : changed.missing_links) {
+        std::error_code error;
+        const fs::path target = fs::relative(tables, fs::path(link).parent_path(), error);
+        if (!error) fs::create_directory_symlink(target, link, error);
+        if (error) {
+            throw FileError(fmt::format("write: {}: {}; expected a link to {}", link,
+                                        error.message(), tables.string()));
+        }
+        written.emplace_back(link);
+        fmt::print("linked {} to {}\n", link, target.string());
+    }
+}
+
 /// Replaces the config after all checks; until then the old one stays. A run that is killed between
 /// config and record leaves the new record as NAME.new, which the next run finds.
-void replace_config(const std::string& path, const ExtendedConfig& changed,
-                    const Options& options) {
+void replace_config(const ExtendedConfig& changed, const Options& options) {
     namespace fs = std::filesystem;
+    const std::string& path = changed.path;
     const fs::path folder = fs::absolute(path).parent_path();
     std::vector<fs::path> written;
     const fs::path record = folder / changed.record.path;
     const fs::path new_record = record.string() + ".new";
+    // Files that an earlier release wrote beside a link are where the link to the folder belongs.
+    const bool is_moved = std::any_of(changed.unused_files.begin(), changed.unused_files.end(),
+                                      [](const fs::path& file) { return file.is_absolute(); });
     std::vector<ExtendedView> views;
     try {
         require_writable_folder(record.parent_path().string());
         for (const GeneratedFile& file : changed.files) {
             const fs::path table = folder / file.path;
-            if (fs::exists(table)) continue;  // its name has the hash of its contents
+            // Its name has the hash of its contents, unless it was damaged since.
+            if (is_written(table, file.contents)) continue;
+            std::error_code ignored;
+            if (!fs::exists(table, ignored)) written.push_back(table);
             write_text_atomically(table.string(), file.contents);
-            written.push_back(table);
         }
         {
             // Beside the config, so that its relative paths work; never kept.
@@ -82,6 +117,7 @@ void replace_config(const std::string& path, const ExtendedConfig& changed,
                 throw FileError("write: " + path + ": " + reason_of(error));
             views = changed.check(trial.path().string());
         }
+        if (!is_moved) link_folders(record.parent_path(), changed, written);
         if (options.has_backup) write_backup(path);
         written.push_back(new_record);
         write_text_atomically(new_record.string(), changed.record.contents);
@@ -94,9 +130,15 @@ void replace_config(const std::string& path, const ExtendedConfig& changed,
             fs::remove(new_record, error);
         }
         if (error) throw FileError("write: " + record.string() + ": " + error.message());
-        for (const std::string& file : changed.unused_files)
+        for (const std::string& file : changed.unused_files) {
             fs::remove(folder / file, ignored);
+            if (is_moved) fs::remove((folder / file).parent_path(), ignored);  // if it is empty
+        }
         fs::remove(record.parent_path(), ignored);  // if it is empty
+        if (is_moved) link_folders(record.parent_path(), changed, written);
+        for (const std::string& link : changed.folder_links) {
+            if (!fs::exists(record.parent_path(), ignored)) fs::remove(link, ignored);
+        }
     } catch (...) {
         std::error_code ignored;
         for (const fs::path& file : written)
@@ -104,13 +146,18 @@ void replace_config(const std::string& path, const ExtendedConfig& changed,
         fs::remove(record.parent_path(), ignored);
         throw;
     }
+    if (path != options.into) fmt::print("edited {}, to which {} links\n", path, options.into);
     for (const auto& [kind, names] : changed.added) {
         if (!names.empty())
             fmt::print("added {}: {}\n", counted(names.size(), kind), fmt::join(names, ", "));
     }
-    if (!changed.unused_files.empty())
-        fmt::print("removed {} from {}/\n", counted(changed.unused_files.size(), "table"),
-                   (folder / changed.record.path).parent_path().filename().string());
+    const auto tables = std::count_if(
+        changed.unused_files.begin(), changed.unused_files.end(),
+        [](const fs::path& file) { return file.string().find(".yaml") == std::string::npos; });
+    if (tables > 0) {
+        fmt::print("removed {} from {}/\n", counted(static_cast<std::size_t>(tables), "table"),
+                   record.parent_path().filename().string());
+    }
     if (views.empty()) return;
     fmt::print("\n{:<28} {:<40} {:>9} {:>9}\n", "display", "view", "max error", "99.9 %");
     for (const ExtendedView& v : views)
@@ -147,7 +194,13 @@ int run_config(Options& options) {
             return options.is_removed ? reduce_config(options.into)
                                       : extend_config(options.into, wanted, options.is_updated);
         }();
-        replace_config(options.into, changed, options);
+        std::error_code ignored;
+        const auto names = std::filesystem::hard_link_count(changed.path, ignored);
+        if (!ignored && names > 1) {
+            warn(fmt::format("{} has {} hard links: only this name gets the new contents",
+                             changed.path, names));
+        }
+        replace_config(changed, options);
         return kOk;
     }
     if (options.folder.empty() && options.archive.empty())

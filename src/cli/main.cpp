@@ -89,6 +89,16 @@ std::string exit_codes() {
     return codes;
 }
 
+/// These variables let OpenColorIO measure with other optimizations, and hide displays, views and
+/// spaces. They override what a caller asks for, and OpenColorIO has no other way around them.
+/// Files and measurements must not depend on them. A library must not change the environment of
+/// its application, but a program may, before it has threads.
+void ignore_overrides_of_opencolorio() {
+    for (const char* name : {"OCIO_OPTIMIZATION_FLAGS", "OCIO_ACTIVE_DISPLAYS", "OCIO_ACTIVE_VIEWS",
+                             "OCIO_INACTIVE_COLORSPACES"})
+        ::unsetenv(name);
+}
+
 int run(int argc, char** argv) {
     const std::string command = argc > 1 ? one_line(argv[1]) + ": " : "";
     try {
@@ -135,8 +145,8 @@ int run(int argc, char** argv) {
         return report(e.what(), kFile);
     } catch (const Error& e) {
         return report(e.what(), kUsage);
-    } catch (const std::exception& e) {
-        return report(e.what(), kCheckFailed);
+    } catch (const std::exception& e) {  // of a library, about the contents of a file
+        return report(command + one_line(e.what()), kFile);
     }
 }
 
@@ -144,6 +154,7 @@ int run(int argc, char** argv) {
 TONEWRIGHT_NAMESPACE_END
 
 int main(int argc, char** argv) {
+    tonewright::ignore_overrides_of_opencolorio();
     tonewright::remove_unfinished_files_on_signals();
     const int exit_code = tonewright::run(argc, argv);
     // OpenImageIO 2.4 hangs in a destructor after an exception passed a lock of its cache.

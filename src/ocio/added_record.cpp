@@ -41,6 +41,13 @@ std::vector<std::string> texts(const YAML::Node& list) {
     return found;
 }
 
+/// An edited record must not remove files elsewhere.
+bool is_table(const std::string& file) {
+    const fs::path path(file);
+    return path.parent_path() == kAddedFolder && path.has_filename() && path.filename() != "." &&
+           path.filename() != "..";
+}
+
 /// Number of characters before `at` that match the end of `before`.
 std::size_t common_before(const std::string& text, std::size_t at, const std::string& before) {
     std::size_t count = 0;
@@ -73,7 +80,7 @@ std::size_t find_piece(const std::string& text, const AddedRecord::Piece& piece)
 }  // namespace
 
 std::string AddedRecord::path_of(const std::string& config) {
-    return "tonewright/" + fs::path(config).filename().string() + ".yaml";
+    return std::string(kAddedFolder) + "/" + fs::path(config).filename().string() + ".yaml";
 }
 
 std::optional<AddedRecord> AddedRecord::find(const std::string& config,
@@ -90,6 +97,12 @@ std::optional<AddedRecord> AddedRecord::find(const std::string& config,
             record.pieces.push_back(
                 {piece["before"].as<std::string>(), piece["text"].as<std::string>()});
         record.files = texts(root["files"]);
+        for (const std::string& file : record.files) {
+            if (!is_table(file)) {
+                throw FileError("read: " + path + ": file is " + printable(file) +
+                                "; expected a table in tonewright/");
+            }
+        }
         const YAML::Node options = root["options"];
         record.options.views = texts(options["views"]);
         record.options.displays = texts(options["displays"]);

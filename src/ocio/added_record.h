@@ -10,6 +10,9 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
+/// Folder beside a config for the tables and the record.
+inline constexpr const char* kAddedFolder = "tonewright";
+
 /// Record of the entries that `--into` added to a config, in a file beside the config's tables. It
 /// allows their removal after other changes of the config.
 struct AddedRecord {

@@ -63,7 +63,7 @@ class Linter {
         try {
             config_->validate();
         } catch (const OCIO::Exception& e) {
-            add(Level::error, "config", std::string("OpenColorIO refuses it: ") + e.what());
+            add(Level::error, "config", "OpenColorIO refuses it: " + one_line(e.what()));
         }
         if (config_->getMajorVersion() < 2) {
             add(Level::warning, "config",
@@ -230,7 +230,7 @@ class Linter {
                     (void)config_->getProcessor(from, to)->getDefaultCPUProcessor();
                 } catch (const OCIO::Exception& e) {
                     add(way[0] == 't' ? Level::error : Level::note, where,
-                        std::string(way) + ": " + e.what());
+                        std::string(way) + ": " + one_line(e.what()));
                 }
             };
             const bool is_forward_only = !space->getTransform(OCIO::COLORSPACE_DIR_TO_REFERENCE) &&
@@ -245,13 +245,15 @@ class Linter {
         }
         for (int i = 0; i < config_->getNumViewTransforms(); ++i) {
             const char* name = config_->getViewTransformNameByIndex(i);
-            const auto transform = config_->getViewTransform(name);
-            check_transform(std::string("view transform ") + name,
-                            transform->getTransform(OCIO::VIEWTRANSFORM_DIR_FROM_REFERENCE));
+            if (const auto transform = config_->getViewTransform(name)) {
+                check_transform(std::string("view transform ") + name,
+                                transform->getTransform(OCIO::VIEWTRANSFORM_DIR_FROM_REFERENCE));
+            }
         }
         for (int i = 0; i < config_->getNumLooks(); ++i) {
             const char* name = config_->getLookNameByIndex(i);
-            check_transform(std::string("look ") + name, config_->getLook(name)->getTransform());
+            if (const auto look = config_->getLook(name))
+                check_transform(std::string("look ") + name, look->getTransform());
         }
     }
 
@@ -285,16 +287,14 @@ class Linter {
         } else if (space->getReferenceSpaceType() != OCIO::REFERENCE_SPACE_DISPLAY) {
             add(Level::error, where, "its space " + space_name + " is no display space");
         }
-        OCIO::ConstProcessorRcPtr processor;
         try {
-            processor = config_->getProcessor("scene_linear", display.c_str(), view.c_str(),
-                                              OCIO::TRANSFORM_DIR_FORWARD);
+            const OCIO::ConstProcessorRcPtr processor = config_->getProcessor(
+                "scene_linear", display.c_str(), view.c_str(), OCIO::TRANSFORM_DIR_FORWARD);
+            check_numbers(where, processor);
+            if (with_gpu_ && OcioGpu::unavailable_reason().empty()) check_gpu(where, processor);
         } catch (const OCIO::Exception& e) {
-            add(Level::error, where, e.what());
-            return;
+            add(Level::error, where, one_line(e.what()));
         }
-        check_numbers(where, processor);
-        if (with_gpu_ && OcioGpu::unavailable_reason().empty()) check_gpu(where, processor);
     }
 
     void check_numbers(const std::string& where, const OCIO::ConstProcessorRcPtr& processor) {

@@ -460,10 +460,8 @@ SampleSet every_nth(const SampleSet& all, std::size_t n) {
     return chosen;
 }
 
-}  // namespace
-
-VerifyResult verify(const VerifyOptions& options,
-                    const std::function<void(const ParityRow&)>& on_row) {
+VerifyResult measure_all(const VerifyOptions& options,
+                         const std::function<void(const ParityRow&)>& on_row) {
     // The views of a config from Tonewright, on its displays. In other configs, a view such as AgX
     // may be a different one.
     const bool is_of_config = options.operators.empty() && !options.config.empty();
@@ -594,7 +592,8 @@ VerifyResult verify(const VerifyOptions& options,
                 lowering.insert(0, "chain: ");
             }
         } catch (const OCIO::Exception& e) {
-            throw Error("verify: " + view.op.label + ": " + e.what());
+            throw FileError(fmt::format("verify: {}: {} on {}: {}", options.config, view.op.label,
+                                        view.display, one_line(e.what())));
         }
         const auto cpu = [&](OCIO::OptimizationFlags flags) {
             OcioCpu(processor, flags).run_rgb(samples.rgb.data(), shown.data(), samples.size());
@@ -662,6 +661,17 @@ VerifyResult verify(const VerifyOptions& options,
         }
     }
     return {std::move(rows), std::move(shaders.not_executed)};
+}
+
+}  // namespace
+
+VerifyResult verify(const VerifyOptions& options,
+                    const std::function<void(const ParityRow&)>& on_row) {
+    try {
+        return measure_all(options, on_row);
+    } catch (const OCIO::Exception& e) {
+        throw FileError(fmt::format("verify: {}: {}", options.config, one_line(e.what())));
+    }
 }
 
 std::string parity_heading() {

@@ -71,13 +71,21 @@ struct ExtendedView {
 
 /// An existing config after views were added or removed.
 struct ExtendedConfig {
+    /// The file to replace: the given name, or the file that this symbolic link leads to.
+    std::string path;
     /// Tables, by their paths relative to the config; their names have a hash of their contents.
     std::vector<GeneratedFile> files;
     /// A file for later updates and removals, relative to the config. Write it as PATH.new before
     /// you replace the config, and rename it afterward. After reduce_config(), remove both instead.
     GeneratedFile record;
-    /// Tables that are no longer used, by their paths relative to the config.
+    /// Tables that are no longer used, by their paths relative to the config. Absolute paths are
+    /// those of files that an earlier release wrote beside a symbolic link.
     std::vector<std::string> unused_files;
+    /// OpenColorIO looks for tables beside the name that it opens. Make symbolic links with these
+    /// names to the folder of the tables, after the unused files are gone.
+    std::vector<std::string> missing_links;
+    /// Symbolic links to the folder of the tables. Remove them if that folder is gone.
+    std::vector<std::string> folder_links;
     /// The config: the old text, byte for byte, with insertions or without them.
     std::string text;
     /// Names of the added items, by kind: "view transform", "look", "view", "color space".
@@ -99,8 +107,9 @@ struct ExtendedConfig {
 ///                    custom, exposure_stops
 /// @param is_updated  removes the earlier additions first; if all options are empty, repeats the
 ///                    earlier ones
-/// @throws FileError  the config cannot be read
-/// @throws Error      the config lacks an interchange role or such a display, or a name is taken
+/// @throws FileError  the config cannot be read, OpenColorIO refuses it, or it lacks an interchange
+///                    role, a space or such a display
+/// @throws Error      an option is wrong, or a name is taken
 [[nodiscard]] TONEWRIGHT_API ExtendedConfig extend_config(const std::string& path,
                                                           const ConfigOptions& options,
                                                           bool is_updated = false);

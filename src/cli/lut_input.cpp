@@ -22,7 +22,11 @@ LutFile open_lut(const std::string& path, const std::string& interpolation,
                  const std::function<Lut(const std::string&)>& read_picture) {
     silence_opencolorio();
     const LutInterpolation between = parse_lut_interpolation(interpolation);
-    if (!is_lut_picture(path)) return LutFile(path, between);
+    if (!is_lut_picture(path)) {
+        LutFile lut(path, between);
+        if (!lut.note().empty()) warn(path + ": " + lut.note());
+        return lut;
+    }
     return LutFile(read_picture(path), between);
 }
 

@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "base/strings.h"
 #include "tonewright/error.h"
@@ -29,6 +30,10 @@ constexpr int kLargestCube = 129;
 constexpr int kLargestTable = 1048576;
 /// Longest line in formats that OpenColorIO reads by line into a buffer of 4096.
 constexpr std::size_t kLongestLine = 4000;
+
+/// OpenColorIO 2.1 copies these words into buffers of 16 and 64 without a look at their length.
+constexpr std::size_t kLongestDepth = 15;
+constexpr std::size_t kLongestFrom = 63;
 
 constexpr std::string_view kBlank = " \t\r\v\f";
 
@@ -95,6 +100,16 @@ class Text {
     }
     [[nodiscard]] std::string_view line() const { return line_; }
 
+    /// Skips the line, whose first word is a keyword of an application. It may change the meaning
+    /// of the table, so the user must know.
+    void ignore_keyword(std::string_view keyword) {
+        if (!note_.empty()) return;
+        note_ =
+            fmt::format("line {}: keyword {} is unknown and ignored", number_, printable(keyword));
+    }
+    /// One line about what was ignored; empty if nothing was.
+    [[nodiscard]] const std::string& note() const { return note_; }
+
     [[nodiscard]] int line_number() const { return number_; }
 
     [[noreturn]] void fail(const std::string& reason) const { fail_at(number_, reason); }
@@ -158,8 +173,25 @@ class Text {
     std::string_view rest_;
     std::string_view line_;
     std::string_view words_;
+    std::string note_;
     int number_ = 0;
 };
+
+bool begins_keyword(std::string_view word) {
+    return std::isalpha(static_cast<unsigned char>(word.front())) != 0;
+}
+
+/// Three equal sizes of a 3D LUT.
+int read_edge(Text& text) {
+    int n = 0;
+    for (int c = 0; c < 3; ++c) {
+        const int size = text.size("size", text.word(), 2, kLargestCube);
+        if (c > 0 && size != n) text.refuse("three equal sizes");
+        n = size;
+    }
+    if (!text.word().empty()) text.refuse("three sizes");
+    return n;
+}
 
 /// Rows of three numbers, as many as declared.
 class Rows {
@@ -191,6 +223,12 @@ bool begins_number(std::string_view word) {
     return std::isdigit(static_cast<unsigned char>(word.front())) || word.front() == '-' ||
            word.front() == '+' || word.front() == '.' || lowercase(word) == "nan" ||
            lowercase(word) == "inf";
+}
+
+/// Keywords that are misspelled or not supported, and whose meaning would be lost.
+bool is_known_to_others(std::string_view key) {
+    return key.starts_with("lut_1d_") || key.starts_with("lut_2d_") || key.starts_with("lut_3d_") ||
+           key.starts_with("domain_");
 }
 
 CubeText read_cube(Text& text) {
@@ -232,6 +270,11 @@ CubeText read_cube(Text& text) {
             table.lo.fill(text.number(first, text.word()));
             table.hi.fill(text.number(first, text.word()));
             if (!(table.lo[0] < table.hi[0])) text.refuse("the first number below the second");
+        } else if (begins_keyword(first) && !is_known_to_others(key) && !has("lut_1d_size") &&
+                   !has("lut_3d_size")) {
+            // OpenColorIO and ffmpeg skip such lines there, and fail at them after the size.
+            text.ignore_keyword(first);
+            continue;
         } else {
             text.refuse("keyword", first,
                         "TITLE, LUT_1D_SIZE, LUT_3D_SIZE, DOMAIN_MIN, DOMAIN_MAX, "
@@ -258,14 +301,169 @@ CubeText read_cube(Text& text) {
         table.hi = hi;
     }
     rows.finish(text);
+    result.note = text.note();
     return result;
 }
 
 void check_cube(Text& text) { (void)read_cube(text); }
 
+/// DaVinci's .dat, as ffmpeg reads it: a size (33 without one), then rows with blue fastest.
+CubeText read_dat(Text& text) {
+    CubeText result;
+    if (!text.next_filled()) text.end("3DLUTSIZE or three numbers");
+    result.cube.size = 33;
+    const std::string_view first = text.word();
+    if (first == "3DLUTSIZE") {
+        result.cube.size = text.size(first, text.word(), 2, kLargestCube);
+        if (!text.word().empty()) text.refuse("no more on this line");
+        if (!text.next_filled()) text.end("three numbers");
+    } else {
+        text.rewind();
+    }
+    Rows rows;
+    rows.expect(cubed(result.cube.size));
+    std::vector<float> blue_fastest;
+    do {
+        const std::array<float, 3> row = rows.add(text);
+        blue_fastest.insert(blue_fastest.end(), row.begin(), row.end());
+    } while (text.next_filled());
+    rows.finish(text);
+    const auto n = static_cast<std::size_t>(result.cube.size);
+    result.cube.rows.resize(blue_fastest.size());
+    for (std::size_t i = 0; i < n * n * n; ++i) {
+        const std::size_t to = (i % n * n + i / n % n) * n + i / (n * n);
+        std::copy_n(&blue_fastest[3 * i], 3, &result.cube.rows[3 * to]);
+    }
+    return result;
+}
+
+void check_dat(Text& text) { (void)read_dat(text); }
+
+/// FilmLight's Truelight cube: values of the 1D LUT are positions in the 3D LUT, from 0 to N - 1.
+void check_cub(Text& text) {
+    if (!text.next_line() || !lowercase(text.line()).starts_with("# truelight cube"))
+        text.refuse("# Truelight Cube v2.0");
+    std::size_t lengths[2] = {0, 0};  // of the 1D and of the 3D LUT
+    std::size_t found[2] = {0, 0};
+    std::optional<std::size_t> section;
+    while (text.next_line()) {
+        const std::string_view first = text.word();
+        if (first.empty()) continue;
+        if (first.front() != '#') {
+            if (!section) text.refuse("# InputLUT or # Cube before the first row");
+            text.rewind();
+            text.numbers(3);
+            if (++found[*section] > lengths[*section]) text.too_many_rows(lengths[*section]);
+            continue;
+        }
+        const std::string_view key = text.word();
+        const std::string name = lowercase(key);
+        if (name == "width") {
+            if (lengths[1] > 0) text.fail("width appears twice; expected once");
+            lengths[1] = cubed(read_edge(text));
+        } else if (name == "lutlength") {
+            if (lengths[0] > 0) text.fail("lutLength appears twice; expected once");
+            lengths[0] = static_cast<std::size_t>(text.size(key, text.word(), 2, kLargestTable));
+            if (!text.word().empty()) text.refuse("one size");
+        } else if (name == "inputlut") {
+            section = 0;
+        } else if (name == "cube") {
+            section = 1;
+        } else if (name == "end") {
+            break;
+        }
+    }
+    for (const std::size_t i : {0, 1}) {
+        if (found[i] < lengths[i]) text.end_early(found[i], lengths[i]);
+    }
+    if (lengths[0] + lengths[1] == 0) text.fail("the file has no table; expected # width");
+}
+
+/// Nuke's .vf: a 3D LUT with blue fastest.
+void check_vf(Text& text) {
+    if (!text.next_line() || !lowercase(text.line()).starts_with("#inventor"))
+        text.refuse("#Inventor V2.1 ascii");
+    Rows rows;
+    bool has_size = false;
+    bool is_open = false;
+    while (text.next_filled()) {
+        const std::string_view first = text.word();
+        const std::string key = lowercase(first);
+        if (is_open) {
+            text.rewind();
+            rows.add(text);
+        } else if (key == "grid_size") {
+            if (has_size) text.fail("grid_size appears twice; expected once");
+            has_size = true;
+            rows.expect(cubed(read_edge(text)));
+        } else if (key == "global_transform") {
+            for (int i = 0; i < 16; ++i)
+                (void)text.number(first, text.word());
+            if (!text.word().empty()) text.refuse("16 numbers");
+        } else if (key == "data") {
+            is_open = true;
+        } else if (begins_keyword(first)) {
+            text.ignore_keyword(first);
+        } else {
+            text.refuse("keyword", first, "grid_size, global_transform or data");
+        }
+    }
+    if (!is_open) text.end("data");
+    rows.finish(text);
+}
+
+/// Pandora's .mga and .m3d: an index and three whole numbers a row.
+void check_pandora(Text& text) {
+    std::size_t rows = 0;
+    std::size_t expected = 0;
+    bool has_depth = false;
+    bool is_open = false;
+    while (text.next_filled()) {
+        const std::string_view first = text.word();
+        const std::string key = lowercase(first);
+        const auto value = [&](std::string_view wanted) {
+            if (lowercase(text.word()) != wanted) text.refuse(fmt::format("{} {}", key, wanted));
+        };
+        if (is_open) {
+            constexpr int kLargest = 131071;  // twice the 16-bit range
+            (void)text.size("index", first, 0, std::numeric_limits<int>::max());
+            for (int c = 0; c < 3; ++c)
+                (void)text.size("number", text.word(), -kLargest, kLargest);
+            if (!text.word().empty()) text.refuse("an index and three numbers");
+            if (++rows > expected) text.too_many_rows(expected);
+            continue;
+        }
+        if (key == "channel") {
+            value("3d");
+        } else if (key == "in") {
+            expected = static_cast<std::size_t>(
+                text.size(first, text.word(), 8, kLargestCube * kLargestCube * kLargestCube));
+            const double edge = std::round(std::cbrt(static_cast<double>(expected)));
+            if (cubed(static_cast<int>(edge)) != expected)
+                text.refuse("in and N x N x N, such as 4913 with N = 17");
+        } else if (key == "out") {
+            (void)text.size(first, text.word(), 2, 65536);
+            has_depth = true;
+        } else if (key == "format") {
+            value("lut");
+        } else if (key == "values") {
+            for (const char* channel : {"red", "green", "blue"})
+                value(channel);
+            is_open = true;
+        } else {
+            text.refuse("keyword", first, "channel, in, out, format or values");
+        }
+        if (!text.word().empty()) text.refuse("no more on this line");
+        if (is_open && (expected == 0 || !has_depth)) text.refuse("in and out before values");
+    }
+    if (!is_open) text.end("values red green blue");
+    if (rows < expected) text.end_early(rows, expected);
+}
+
 /// Iridas .itx: a 3D LUT without a domain.
 void check_itx(Text& text) {
     Rows rows;
+    bool has_size = false;
     while (text.next_filled()) {
         const std::string_view first = text.word();
         if (begins_number(first)) {
@@ -273,11 +471,20 @@ void check_itx(Text& text) {
             rows.add(text);
         } else if (lowercase(first) == "lut_3d_size" && rows.found() == 0) {
             rows.expect(cubed(text.size(first, text.word(), 2, kLargestCube)));
+            has_size = true;
+        } else if (!has_size && begins_keyword(first) && !is_known_to_others(lowercase(first))) {
+            text.ignore_keyword(first);
         } else {
             text.refuse("LUT_3D_SIZE or three numbers");
         }
     }
     rows.finish(text);
+}
+
+/// OpenColorIO reads "Length9" like "Length 9".
+bool begins_spi1d_keyword(std::string_view key) {
+    return key.starts_with("Version") || key.starts_with("From") || key.starts_with("Length") ||
+           key.starts_with("Components");
 }
 
 void check_spi1d(Text& text) {
@@ -300,6 +507,8 @@ void check_spi1d(Text& text) {
             components = text.size(key, text.word(), 1, 3);
         } else if (key == "{") {
             is_open = true;
+        } else if (begins_keyword(key) && !begins_spi1d_keyword(key)) {
+            text.ignore_keyword(key);
         } else {
             text.refuse("keyword", key, "Version, From, Length, Components or {");
         }
@@ -330,13 +539,7 @@ void check_spi3d(Text& text) {
     if (!text.next_line()) text.end("3 3");
     text.numbers(2);
     if (!text.next_line()) text.end("three sizes");
-    int n = 0;
-    for (int c = 0; c < 3; ++c) {
-        const int size = text.size("size", text.word(), 2, kLargestCube);
-        if (c > 0 && size != n) text.refuse("three equal sizes");
-        n = size;
-    }
-    if (!text.word().empty()) text.refuse("three sizes");
+    const int n = read_edge(text);
     std::vector<bool> is_there(cubed(n));
     std::size_t found = 0;
     while (text.next_filled()) {
@@ -428,8 +631,10 @@ void check_3dl(Text& text) {
             const std::string key = lowercase(first);
             const bool is_depth = key.starts_with("lut") && key.size() <= 5 &&
                                   key.find_first_not_of("0123456789", 3) == std::string::npos;
-            if (key != "3dmesh" && key != "mesh" && key != "gamma" && !is_depth)
+            if (key == "3dmesh" || key == "mesh" || key == "gamma" || is_depth) continue;
+            if (rows > 0 || has_mesh || !begins_keyword(first))
                 text.refuse("keyword", first, "3DMESH, Mesh, gamma, LUT8 or three numbers");
+            text.ignore_keyword(first);
             continue;
         }
         constexpr int kLargest = 131071;  // twice the 16-bit range
@@ -468,6 +673,7 @@ void check_lut(Text& text) {
             // Discreet: "LUT: 3 1024", then one number per line.
             const int tables = text.size("number of tables", count, 1, 4);
             const int entries = text.size("length", text.word(), 2, 65536);
+            if (text.word().size() > kLongestDepth) text.refuse("a depth such as 16f");
             const auto expected =
                 static_cast<std::size_t>(tables) * static_cast<std::size_t>(entries);
             std::size_t found = 0;
@@ -843,9 +1049,43 @@ class XmlText {
     int line_ = 1;
 };
 
+/// Removes blanks and a whole number from the beginning, like scanf's %d.
+bool skip_integer(std::string_view& text) {
+    text.remove_prefix(std::min(text.find_first_not_of(kBlank), text.size()));
+    if (text.starts_with('-') || text.starts_with('+')) text.remove_prefix(1);
+    const std::size_t digits = std::min(text.find_first_not_of("0123456789"), text.size());
+    text.remove_prefix(digits);
+    return digits > 0;
+}
+
+std::size_t length_of_word(std::string_view& text) {
+    text.remove_prefix(std::min(text.find_first_not_of(kBlank), text.size()));
+    const std::size_t length = std::min(text.find_first_of(kBlank), text.size());
+    text.remove_prefix(length);
+    return length;
+}
+
+/// Words that OpenColorIO's readers of .spi1d and of Discreet's tables copy into small buffers.
+/// @param is_first  the first line that is neither blank nor a comment
+void check_buffers(const Text& text, bool is_first) {
+    std::string_view line = trimmed(text.line());
+    if (line.starts_with("From")) {
+        std::string_view rest = line.substr(4);
+        if (length_of_word(rest) > kLongestFrom || length_of_word(rest) > kLongestFrom)
+            text.fail(fmt::format("a word after From is long; expected at most {} characters",
+                                  kLongestFrom));
+    }
+    if (!is_first) return;
+    (void)length_of_word(line);
+    if (skip_integer(line) && skip_integer(line) && length_of_word(line) > kLongestDepth)
+        text.fail(fmt::format("a word after two sizes is long; expected at most {} characters",
+                              kLongestDepth));
+}
+
 /// If OpenColorIO's reader of a format fails, it tries all others. None of them may find a size to
 /// allocate in free text (comments, metadata, descriptions).
-void check_for_other_readers(Text& text, std::string_view bytes) {
+/// @param is_own_mark  the first line belongs to the format of the extension
+void check_for_other_readers(Text& text, std::string_view bytes, bool is_own_mark) {
     struct Size {
         std::string_view name;
         int largest;
@@ -858,12 +1098,17 @@ void check_for_other_readers(Text& text, std::string_view bytes) {
     };
     const bool is_first = text.next_line();
     const std::string first = lowercase(text.line());
-    if (is_first && (first.starts_with("# truelight") || first.starts_with("#inventor")))
+    if (is_first && !is_own_mark &&
+        (first.starts_with("# truelight") || first.starts_with("#inventor")))
         text.refuse("no Truelight cube, and no Nuke .vf");
+    bool has_words = false;
     if (bytes.substr(std::min<std::size_t>(36, bytes.size()), 4) == "acsp")
         text.fail("the file has the signature of an ICC profile; expected text");
     do {
         const std::string line = lowercase(text.word().substr(0, 64));
+        const bool is_filled = !line.empty() && line.front() != '#';
+        check_buffers(text, is_filled && !has_words);
+        has_words = has_words || is_filled;
         const Size* size = std::find_if(std::begin(kSizes), std::end(kSizes),
                                         [&](const Size& s) { return line.starts_with(s.name); });
         if (size == std::end(kSizes)) continue;
@@ -879,12 +1124,16 @@ void check_for_other_readers(Text& text, std::string_view bytes) {
     } while (text.next_line());
 }
 
+/// Editors on Windows write it, and OpenColorIO's readers trip over it.
+std::string_view without_byte_order_mark(std::string_view text) {
+    constexpr std::string_view kMark = "\xEF\xBB\xBF";
+    return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
+}
+
 Text begin(const std::string& path, std::string_view text) {
     Text lines(path, text);
     if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
         lines.fail("the file is empty; expected a LUT");
-    if (text.starts_with("\xEF\xBB\xBF"))
-        lines.fail("the file begins with a byte order mark; expected plain text");
     return lines;
 }
 
@@ -905,6 +1154,11 @@ constexpr Format kFormats[] = {
     {".lut", check_lut},
     {".itx", check_itx},
     {".spimtx", check_spimtx},
+    {".cub", check_cub},
+    {".vf", check_vf},
+    {".mga", check_pandora},
+    {".m3d", check_pandora},
+    {".dat", check_dat},
     {".cc", nullptr, "ColorCorrection"},
 };
 
@@ -920,7 +1174,9 @@ const std::vector<std::string>& lut_text_extensions() {
     return extensions;
 }
 
-void check_lut_text(const std::string& path, std::string_view text) {
+std::string check_lut_text(const std::string& path, std::string& bytes) {
+    const std::string_view text =
+        bytes.erase(0, bytes.size() - without_byte_order_mark(bytes).size());
     const std::string extension = extension_of(path);
     for (const Format& format : kFormats) {
         if (extension != format.extension) continue;
@@ -931,8 +1187,8 @@ void check_lut_text(const std::string& path, std::string_view text) {
             XmlText(path, text, format.root).check();
         }
         Text again = begin(path, text);
-        check_for_other_readers(again, text);
-        return;
+        check_for_other_readers(again, text, extension == ".cub" || extension == ".vf");
+        return lines.note();
     }
     throw FileError(fmt::format("read: {}: extension is {}; expected {}", path,
                                 extension.empty() ? "missing" : extension,
@@ -940,8 +1196,8 @@ void check_lut_text(const std::string& path, std::string_view text) {
 }
 
 CubeText parse_cube(const std::string& path, std::string_view text) {
-    Text lines = begin(path, text);
-    return read_cube(lines);
+    Text lines = begin(path, without_byte_order_mark(text));
+    return extension_of(path) == ".dat" ? read_dat(lines) : read_cube(lines);
 }
 
 TONEWRIGHT_NAMESPACE_END

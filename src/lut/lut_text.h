@@ -18,10 +18,14 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// for the end of a .csp's metadata. If one reader fails, OpenColorIO tries all others. So a file
 /// must have the format of its extension, and no free text that makes another reader allocate
 /// memory. Accepts files found in practice: CRLF, comments, empty lines, no TITLE, DOMAIN_MIN and
-/// DOMAIN_MAX or LUT_3D_INPUT_RANGE. Needs almost no memory.
-/// @param path  its extension determines the format
+/// DOMAIN_MAX or LUT_3D_INPUT_RANGE, keywords of applications before the size. Needs almost no
+/// memory.
+/// @param path   its extension determines the format
+/// @param bytes  loses a byte order mark, which OpenColorIO's readers do not accept
+/// @returns  one line about a keyword that is unknown and ignored; empty if there is none.
 /// @throws FileError  with path, line and reason.
-TONEWRIGHT_API void check_lut_text(const std::string& path, std::string_view text);
+[[nodiscard]] TONEWRIGHT_API std::string check_lut_text(const std::string& path,
+                                                        std::string& bytes);
 
 /// A .cube: a 1D LUT, a 3D LUT or both, and the range of each.
 struct CubeText {
@@ -33,10 +37,12 @@ struct CubeText {
     };
     Table table;
     Table cube;
+    /// One line about a keyword that is unknown and ignored; empty if there is none.
+    std::string note;
 };
 
-/// Adobe's and Resolve's .cube. OpenColorIO's readers do not accept a TITLE together with a range,
-/// which many files have.
+/// Adobe's and Resolve's .cube, and DaVinci's .dat by its extension. OpenColorIO's readers do not
+/// accept a TITLE together with a range, which many files have.
 /// @throws FileError  with path, line and reason.
 [[nodiscard]] TONEWRIGHT_API CubeText parse_cube(const std::string& path, std::string_view text);
 

@@ -50,6 +50,7 @@ TableFile read_cube(const std::string& path, const std::string& bytes) {
         add_range(table.stages, cube.cube.lo, cube.cube.hi);
         table.stages.emplace_back(lattice_of(cube.cube.size, cube.cube.rows));
     }
+    table.note = cube.note;
     return table;
 }
 
@@ -95,7 +96,7 @@ TableFile read_own(const std::string& path, const std::string& extension) {
         throw FileError("read: " + path + ": " + reason);
     });
     TableFile table;
-    if (extension == ".cube") {
+    if (extension == ".cube" || extension == ".dat") {
         table = read_cube(path, bytes);
     } else if (extension == ".raw") {
         table = table_file_of(parse_raw_lut(path, bytes), path);
@@ -255,7 +256,7 @@ TableReader table_reader(TableReader next) {
     const auto cache = std::make_shared<Cache>(kFiles);
     return [cache, next = std::move(next)](const std::string& path) {
         const std::string extension = extension_of(path);
-        constexpr std::array kOwn = {".cube", ".raw", ".dds", ".icc", ".icm"};
+        constexpr std::array kOwn = {".cube", ".dat", ".raw", ".dds", ".icc", ".icm"};
         const bool is_own = std::find(kOwn.begin(), kOwn.end(), extension) != kOwn.end();
         const auto read = [&] {
             require_regular_file(path);

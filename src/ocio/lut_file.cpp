@@ -216,9 +216,10 @@ std::string checked_bytes(const std::string& path) {
 
 }  // namespace
 
-OCIO::ConstGroupTransformRcPtr lut_transforms(const std::string& path, std::string& contents) {
+OCIO::ConstGroupTransformRcPtr lut_transforms(const std::string& path, std::string& contents,
+                                              std::string& note) {
     contents = checked_bytes(path);
-    check_lut_text(path, contents);
+    note = check_lut_text(path, contents);
     const PrivateCopy copy(path, contents);
     try {
         return make_processor(group_of(copy.path()))->createGroupTransform();
@@ -239,13 +240,14 @@ struct LutFile::Form {
     std::optional<DeviceLink> link;
     std::optional<Lut> table;
     bool is_trilinear = false;
+    std::string note;
 };
 
 LutFile::LutFile(const std::string& path, LutInterpolation interpolation) {
     auto form = std::make_unique<Form>();
     form->is_trilinear = interpolation == LutInterpolation::trilinear;
     const std::string extension = extension_of(path);
-    const std::string bytes = checked_bytes(path);
+    std::string bytes = checked_bytes(path);
     if (is_device_link(extension)) {
         if (form->is_trilinear) {
             throw Error("interpolation is trilinear; expected tetrahedral for " + path +
@@ -257,11 +259,12 @@ LutFile::LutFile(const std::string& path, LutInterpolation interpolation) {
     } else if (extension == ".dds") {
         form->table = parse_dds(path, bytes);
     } else {
-        if (extension == ".cube") {
-            form->ocio.emplace(
-                make_cpu(path, path, group_of(parse_cube(path, bytes)), interpolation));
+        if (extension == ".cube" || extension == ".dat") {
+            const CubeText cube = parse_cube(path, bytes);
+            form->note = cube.note;
+            form->ocio.emplace(make_cpu(path, path, group_of(cube), interpolation));
         } else {
-            check_lut_text(path, bytes);
+            form->note = check_lut_text(path, bytes);
             const PrivateCopy copy(path, bytes);
             form->ocio.emplace(make_cpu(path, copy.path(), group_of(copy.path()), interpolation));
         }
@@ -278,6 +281,8 @@ LutFile::LutFile(Lut table, LutInterpolation interpolation) {
 LutFile::~LutFile() = default;
 LutFile::LutFile(LutFile&&) noexcept = default;
 LutFile& LutFile::operator=(LutFile&&) noexcept = default;
+
+const std::string& LutFile::note() const { return form_->note; }
 
 void LutFile::run_rgb(const float* in, float* out, std::size_t count) const {
     if (form_->ocio) {

@@ -247,7 +247,9 @@ TableReader ocio_table_reader(TableReader next) {
             std::find(known.begin(), known.end(), extension_of(path)) != known.end();
         if (!is_known && next) return next(path);
         std::string contents;
-        TableFile table = Converter(path).convert(lut_transforms(path, contents));
+        std::string note;
+        TableFile table = Converter(path).convert(lut_transforms(path, contents, note));
+        if (table.note.empty()) table.note = note;
         describe_table(table, path, contents);
         return table;
     };

@@ -13,12 +13,12 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace tonewright;  // NOLINT(google-build-using-namespace): this is its program
     if (size == 0) return 0;
-    const std::string bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
+    std::string bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
     const std::vector<std::string>& text = lut_text_extensions();
     const std::size_t kind = data[0] % (text.size() + 2);
     try {
         if (kind < text.size()) {
-            check_lut_text("x" + text[kind], bytes);
+            (void)check_lut_text("x" + text[kind], bytes);
         } else if (kind == text.size()) {
             for (const float v : parse_raw_lut("x.raw", bytes).values) {
                 if (!std::isfinite(v)) std::abort();

@@ -19,7 +19,8 @@ enum class LutInterpolation : unsigned char { automatic, tetrahedral, trilinear 
 
 /// A LUT file of any format, ready to run.
 ///
-/// OpenColorIO runs .cube, .clf, .ctf, .spi1d, .spi3d, .csp, .3dl, .lut, .itx, .spimtx and .cc.
+/// OpenColorIO runs .cube, .dat, .clf, .ctf, .spi1d, .spi3d, .csp, .3dl, .lut, .itx, .spimtx, .cub,
+/// .vf, .mga, .m3d and .cc.
 /// Little CMS runs ICC device links (.icc, .icm). Tonewright's own interpolation runs raw floats
 /// (.raw: the size of the grid follows from the size of the file), volumes (.dds) and other tables,
 /// such as the pictures of read_lut_picture().
@@ -42,6 +43,9 @@ class TONEWRIGHT_API LutFile {
 
     /// Interleaved RGB; safe to use from several threads at once.
     void run_rgb(const float* in, float* out, std::size_t count) const;
+
+    /// One line about a keyword of the file that is unknown and ignored; empty if there is none.
+    [[nodiscard]] const std::string& note() const;
 
   private:
     struct Form;

@@ -307,6 +307,17 @@ CubeText read_cube(Text& text) {
 
 void check_cube(Text& text) { (void)read_cube(text); }
 
+/// Triplets of a 3D LUT in the other order.
+std::vector<float> red_fastest(const std::vector<float>& blue_fastest, int size) {
+    const auto n = static_cast<std::size_t>(size);
+    std::vector<float> turned(blue_fastest.size());
+    for (std::size_t i = 0; i < n * n * n; ++i) {
+        const std::size_t to = (i % n * n + i / n % n) * n + i / (n * n);
+        std::copy_n(&blue_fastest[3 * i], 3, &turned[3 * to]);
+    }
+    return turned;
+}
+
 /// DaVinci's .dat, as ffmpeg reads it: a size (33 without one), then rows with blue fastest.
 CubeText read_dat(Text& text) {
     CubeText result;
@@ -328,12 +339,7 @@ CubeText read_dat(Text& text) {
         blue_fastest.insert(blue_fastest.end(), row.begin(), row.end());
     } while (text.next_filled());
     rows.finish(text);
-    const auto n = static_cast<std::size_t>(result.cube.size);
-    result.cube.rows.resize(blue_fastest.size());
-    for (std::size_t i = 0; i < n * n * n; ++i) {
-        const std::size_t to = (i % n * n + i / n % n) * n + i / (n * n);
-        std::copy_n(&blue_fastest[3 * i], 3, &result.cube.rows[3 * to]);
-    }
+    result.cube.rows = red_fastest(blue_fastest, result.cube.size);
     return result;
 }
 
@@ -402,6 +408,8 @@ void check_vf(Text& text) {
             if (!text.word().empty()) text.refuse("16 numbers");
         } else if (key == "data") {
             is_open = true;
+        } else if (key == "element_size" || key == "world_origin") {
+            continue;  // the same as global_transform, in parts
         } else if (begins_keyword(first)) {
             text.ignore_keyword(first);
         } else {
@@ -412,38 +420,29 @@ void check_vf(Text& text) {
     rows.finish(text);
 }
 
-/// Pandora's .mga and .m3d: an index and three whole numbers a row.
-void check_pandora(Text& text) {
-    std::size_t rows = 0;
-    std::size_t expected = 0;
-    bool has_depth = false;
+/// Pandora's .mga and .m3d: whole numbers, with blue fastest. OpenColorIO reads rows with an index
+/// before the three numbers, ffmpeg rows without one.
+CubeText read_pandora(Text& text) {
+    constexpr int kLargest = 131071;  // twice the 16-bit range
+    CubeText result;
+    int largest = 0;
     bool is_open = false;
-    while (text.next_filled()) {
+    while (!is_open && text.next_filled()) {
         const std::string_view first = text.word();
         const std::string key = lowercase(first);
         const auto value = [&](std::string_view wanted) {
             if (lowercase(text.word()) != wanted) text.refuse(fmt::format("{} {}", key, wanted));
         };
-        if (is_open) {
-            constexpr int kLargest = 131071;  // twice the 16-bit range
-            (void)text.size("index", first, 0, std::numeric_limits<int>::max());
-            for (int c = 0; c < 3; ++c)
-                (void)text.size("number", text.word(), -kLargest, kLargest);
-            if (!text.word().empty()) text.refuse("an index and three numbers");
-            if (++rows > expected) text.too_many_rows(expected);
-            continue;
-        }
         if (key == "channel") {
             value("3d");
         } else if (key == "in") {
-            expected = static_cast<std::size_t>(
-                text.size(first, text.word(), 8, kLargestCube * kLargestCube * kLargestCube));
-            const double edge = std::round(std::cbrt(static_cast<double>(expected)));
-            if (cubed(static_cast<int>(edge)) != expected)
+            const int nodes =
+                text.size(first, text.word(), 8, kLargestCube * kLargestCube * kLargestCube);
+            result.cube.size = static_cast<int>(std::lround(std::cbrt(nodes)));
+            if (cubed(result.cube.size) != static_cast<std::size_t>(nodes))
                 text.refuse("in and N x N x N, such as 4913 with N = 17");
         } else if (key == "out") {
-            (void)text.size(first, text.word(), 2, 65536);
-            has_depth = true;
+            largest = text.size(first, text.word(), 2, 65536) - 1;
         } else if (key == "format") {
             value("lut");
         } else if (key == "values") {
@@ -454,11 +453,32 @@ void check_pandora(Text& text) {
             text.refuse("keyword", first, "channel, in, out, format or values");
         }
         if (!text.word().empty()) text.refuse("no more on this line");
-        if (is_open && (expected == 0 || !has_depth)) text.refuse("in and out before values");
     }
     if (!is_open) text.end("values red green blue");
-    if (rows < expected) text.end_early(rows, expected);
+    if (result.cube.size == 0 || largest == 0) text.refuse("in and out before values");
+    const std::size_t expected = cubed(result.cube.size);
+    std::vector<float> blue_fastest;
+    std::size_t columns = 0;
+    while (text.next_filled()) {
+        std::vector<int> row;
+        for (std::string_view word = text.word(); !word.empty() && row.size() < 5;
+             word = text.word())
+            row.push_back(text.size("number", word, -kLargest, std::numeric_limits<int>::max()));
+        if (columns == 0) columns = row.size();
+        if (row.size() != columns || columns < 3 || columns > 4)
+            text.refuse("three numbers, or an index and three numbers");
+        if (blue_fastest.size() == 3 * expected) text.too_many_rows(expected);
+        for (std::size_t c = columns - 3; c < columns; ++c) {
+            if (row[c] > kLargest) text.refuse(fmt::format("numbers of at most {}", kLargest));
+            blue_fastest.push_back(static_cast<float>(row[c]) / static_cast<float>(largest));
+        }
+    }
+    if (blue_fastest.size() < 3 * expected) text.end_early(blue_fastest.size() / 3, expected);
+    result.cube.rows = red_fastest(blue_fastest, result.cube.size);
+    return result;
 }
+
+void check_pandora(Text& text) { (void)read_pandora(text); }
 
 /// Iridas .itx: a 3D LUT without a domain.
 void check_itx(Text& text) {
@@ -1195,9 +1215,16 @@ std::string check_lut_text(const std::string& path, std::string& bytes) {
                                 join_choices(lut_text_extensions())));
 }
 
+bool is_parsed_here(const std::string& extension) {
+    return extension == ".cube" || extension == ".dat" || extension == ".mga" ||
+           extension == ".m3d";
+}
+
 CubeText parse_cube(const std::string& path, std::string_view text) {
     Text lines = begin(path, without_byte_order_mark(text));
-    return extension_of(path) == ".dat" ? read_dat(lines) : read_cube(lines);
+    const std::string extension = extension_of(path);
+    if (extension == ".dat") return read_dat(lines);
+    return extension == ".cube" ? read_cube(lines) : read_pandora(lines);
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -96,7 +96,7 @@ TableFile read_own(const std::string& path, const std::string& extension) {
         throw FileError("read: " + path + ": " + reason);
     });
     TableFile table;
-    if (extension == ".cube" || extension == ".dat") {
+    if (is_parsed_here(extension)) {
         table = read_cube(path, bytes);
     } else if (extension == ".raw") {
         table = table_file_of(parse_raw_lut(path, bytes), path);
@@ -256,7 +256,8 @@ TableReader table_reader(TableReader next) {
     const auto cache = std::make_shared<Cache>(kFiles);
     return [cache, next = std::move(next)](const std::string& path) {
         const std::string extension = extension_of(path);
-        constexpr std::array kOwn = {".cube", ".dat", ".raw", ".dds", ".icc", ".icm"};
+        constexpr std::array kOwn = {".cube", ".dat", ".mga", ".m3d",
+                                     ".raw",  ".dds", ".icc", ".icm"};
         const bool is_own = std::find(kOwn.begin(), kOwn.end(), extension) != kOwn.end();
         const auto read = [&] {
             require_regular_file(path);

@@ -259,7 +259,7 @@ LutFile::LutFile(const std::string& path, LutInterpolation interpolation) {
     } else if (extension == ".dds") {
         form->table = parse_dds(path, bytes);
     } else {
-        if (extension == ".cube" || extension == ".dat") {
+        if (is_parsed_here(extension)) {
             const CubeText cube = parse_cube(path, bytes);
             form->note = cube.note;
             form->ocio.emplace(make_cpu(path, path, group_of(cube), interpolation));

@@ -104,6 +104,13 @@ GOOD = {
                 f'outBitDepth="32f">\n<Array dim="{SIZE} {SIZE} {SIZE} 3">\n' + rows(BLUE_FASTEST)
                 + "</Array>\n</LUT3D>\n</ProcessList>\n",
     "cube.itx": f"LUT_3D_SIZE {SIZE}\n" + rows(CUBE),
+    "cube.cub": f"# Truelight Cube v2.0\n# width {SIZE} {SIZE} {SIZE}\n# Cube\n" + rows(CUBE),
+    "both.cub": f"# Truelight Cube v2.0\n# lutLength 9\n# width {SIZE} {SIZE} {SIZE}\n# InputLUT\n"
+                + rows(TRIPLES * (SIZE - 1)) + "# Cube\n" + rows(CUBE) + "# end\n",
+    "cube.vf": f"#Inventor V2.1 ascii\ngrid_size {SIZE} {SIZE} {SIZE}\ndata\n" + rows(BLUE_FASTEST),
+    "cube.m3d": f"channel 3d\nin {SIZE ** 3}\nout 4096\nformat lut\nvalues red green blue\n" + "".join(
+        f"{i} {r} {g} {b}\n" for i, (r, g, b) in enumerate(np.round(BLUE_FASTEST * 4095).astype(int).reshape(-1, 3))),
+    "cube.dat": f"3DLUTSIZE {SIZE}\n" + rows(BLUE_FASTEST),
 }
 
 # OpenColorIO tries all of its readers on whatever the reader of the extension does not take: nothing of one format may
@@ -142,7 +149,7 @@ def expected_of(name, colors, is_trilinear=False):
     curve = linear(TRIPLES, np.clip(colors, 0, 1))
     if "1d" in stem or stem == "curve":
         return curve
-    cube = CUBE_3DL if extension == "3dl" else CUBE
+    cube = {"3dl": CUBE_3DL, "m3d": np.round(CUBE * 4095) / 4095}.get(extension, CUBE)
     return interpolate(cube, curve if stem == "both" else colors, is_trilinear)
 
 
@@ -237,6 +244,11 @@ SIZES = {
     "curve.clf": ("9 1", "{} 1"),
     "cube.ctf": (f"{SIZE} {SIZE} {SIZE} 3", "{0} {0} {0} 3"),
     "cube.itx": (f"LUT_3D_SIZE {SIZE}", "LUT_3D_SIZE {}"),
+    "cube.cub": (f"# width {SIZE} {SIZE} {SIZE}", "# width {0} {0} {0}"),
+    "both.cub": ("# lutLength 9", "# lutLength {}"),
+    "cube.vf": (f"grid_size {SIZE} {SIZE} {SIZE}", "grid_size {0} {0} {0}"),
+    "cube.m3d": (f"in {SIZE ** 3}", "in {}"),
+    "cube.dat": (f"3DLUTSIZE {SIZE}", "3DLUTSIZE {}"),
 }
 # 1500 a side are 40 GB of floats, 950 are 10 GB.
 DECLARED = ["0", "1", "-1", "2", "950", "1500", "2147483647", "99999999999999999999", "x", "3.5", ""]
@@ -256,7 +268,6 @@ def text_corpus():
         yield name, "it is empty", b""
         yield name, "it is blank", b"\n \r\n\t\n"
         yield name, "it is UTF-16", text.encode("utf-16")
-        yield name, "it has a byte order mark", b"\xef\xbb\xbf" + text.encode()
         yield name, "it has a NUL", with_row(text, lambda row: row + "\0").encode()
         yield name, "it is a PNG", png(HALD_PIXELS)
         yield name, "it is another format", b"<html><body>404 Not Found</body></html>\n"
@@ -269,6 +280,7 @@ def text_corpus():
             ("adobe.cube", "two sizes", f"LUT_3D_SIZE {SIZE}", f"LUT_3D_SIZE {SIZE}\nLUT_3D_SIZE {SIZE}"),
             ("adobe.cube", "no size", f"LUT_3D_SIZE {SIZE}\n", ""),
             ("adobe.cube", "an unknown keyword", "DOMAIN_MIN", "LUT_IN_VIDEO_RANGE\nDOMAIN_MIN"),
+            ("adobe.cube", "a misspelled size", f"LUT_3D_SIZE {SIZE}", f"LUT_3D_SIZ {SIZE}"),
             ("adobe.cube", "a keyword cut short", "DOMAIN_MAX", "DOMAIN_M"),
             ("adobe.cube", "DOMAIN_MIN of two numbers", "DOMAIN_MIN 0 0 0", "DOMAIN_MIN 0 0"),
             ("adobe.cube", "DOMAIN_MAX of letters", "DOMAIN_MAX 1 1 1", "DOMAIN_MAX 1 1 a"),
@@ -299,7 +311,7 @@ def text_corpus():
             ("cube.csp", "a prelut of ten milliards", "2\n0 1\n0 1\n", "9999999999\n0 1\n0 1\n"),
             ("cube.csp", "unequal sizes", "\n3 3 3\n", "\n3 3 4\n"),
             ("cube.3dl", "a number of no depth", "0 256 512", "0 256 99999999"),
-            ("cube.3dl", "an unknown keyword", "LUT8", "hello"),
+            ("cube.3dl", "an unknown keyword behind the rows", "LUT8", "hello"),
             ("cube.lut", "an unknown type", "Type 3D", "Type RGBA"),
             ("cube.lut", "no type", "Type 3D\n", ""),
             ("cube.lut", "no From", "From 0 1\n", ""),
@@ -366,6 +378,8 @@ def foreign_corpus():
                        ("nan.spimtx", MATRIX.replace("0.5", "nan")), ("word.spimtx", MATRIX.replace("0.5", "x")),
                        ("entities.cc", '<!DOCTYPE x [<!ENTITY a "aaaaaaaaaa">]>\n' + CORRECTION),
                        ("open.cc", CORRECTION.replace("</SOPNode>", "")),
+                       ("depth.lut", "LUT: 1 2 " + "1" * 16 + "\n0\n255\n"), ("from.spi1d", GOOD["curve.spi1d"].replace(
+                           "From 0 1", "From 0 1." + "0" * 62)),
                        ("infinite.cc", CORRECTION.replace("0 0 0.1", "0 -1e90 0.1")),
                        ("utf16.cc", CORRECTION.encode("utf-16-le").decode("latin1"))):
         yield name, name, text.encode("latin1")
@@ -825,6 +839,8 @@ def check_wild(report, command, folder):
         path = folder / f"crlf_{name}"
         path.write_bytes(GOOD[name].replace("\n", "\r\n").encode())
         report.compare(f"CRLF: {name}", evaluate_lut(command, path, COLORS), expected_of(name, COLORS), FLOAT32)
+        path.write_bytes(b"\xef\xbb\xbf" + GOOD[name].encode())
+        report.compare(f"a byte order mark: {name}", evaluate_lut(command, path, COLORS), expected_of(name, COLORS), FLOAT32)
 
 
 def check_xml(report, command, folder):

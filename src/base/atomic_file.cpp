@@ -17,6 +17,7 @@
 #include <set>
 #include <system_error>
 #include <thread>
+#include <tuple>
 #include <utility>
 
 #include "base/input_file.h"
@@ -33,10 +34,13 @@ std::string reason_of(int error_number) { return std::generic_category().message
 namespace {
 
 /// The final target, after symbolic links.
-/// @returns  empty, with the reason in `why`, if no file can be there
-fs::path resolve_target(const std::string& path, std::string& why) {
+/// @param why  the reason, if no file can be there
+fs::path resolve_target(const std::string& path, AtomicFile::Kind kind, std::string& why) {
     std::error_code error;
     fs::path target = path;
+    why.clear();
+    if (kind == AtomicFile::Kind::of_program && fs::is_symlink(fs::symlink_status(target, error)))
+        return target;
     why = why_no_file(path);
     if (!why.empty()) return target;
     if (fs::is_symlink(fs::symlink_status(target, error))) {
@@ -154,11 +158,11 @@ void remove_unfinished_files() noexcept {
 
 void remove_unfinished_files_on_signals() { set_end_handler(end_by_signal); }
 
-void remove_leftovers(const std::vector<std::string>& paths) {
+void remove_leftovers(const std::vector<std::string>& paths, AtomicFile::Kind kind) {
     std::map<fs::path, std::set<std::pair<std::string, std::string>>> names_of_folders;
     for (const std::string& path : paths) {
         std::string why;
-        const fs::path target = resolve_target(path, why);
+        const fs::path target = resolve_target(path, kind, why);
         const fs::path folder = target.parent_path();
         names_of_folders[folder.empty() ? "." : folder].insert(name_parts(target));
     }
@@ -191,12 +195,17 @@ FileCreation::~FileCreation() {
     --own_creations;
 }
 
-AtomicFile::AtomicFile(const std::string& path) {
-    target_ = resolve_target(path, refusal_);
+AtomicFile::AtomicFile(const std::string& path, Kind kind) : kind_(kind) {
+    target_ = resolve_target(path, kind, refusal_);
     const auto [stem, extension] = name_parts(target_);
     path_ = target_.parent_path() / fmt::format(".{}.{}.{}.{:016x}.tmp{}", stem, machine_tag(),
                                                 this_process(), random_bits(), extension);
     unfinished_ = register_unfinished(path_.string());
+}
+
+AtomicFile::AtomicFile(const std::string& path, const std::string& like)
+    : AtomicFile(path, Kind::of_user) {
+    like_ = like;
 }
 
 AtomicFile::~AtomicFile() {
@@ -207,14 +216,21 @@ AtomicFile::~AtomicFile() {
     release_unfinished(unfinished_);
 }
 
+fs::path AtomicFile::like() const {
+    if (kind_ == Kind::of_program) return {};
+    return is_file_itself(target_) ? target_ : like_;
+}
+
 int AtomicFile::check_target() const {
+    if (kind_ == Kind::of_program) return 0;  // it is replaced if the folder allows it
     const int error = check_access(target_, true);
     return error == ENOENT ? 0 : error;
 }
 
 int AtomicFile::create() {
     const FileCreation creation;
-    return create_new(path_);
+    // Nobody has more access to the unfinished file than to the old one.
+    return create_new(path_, kind_ == Kind::of_program || is_file_itself(like()));
 }
 
 int AtomicFile::write(std::string_view contents) {
@@ -233,19 +249,20 @@ int AtomicFile::write(std::string_view contents) {
 }
 
 int AtomicFile::keep() {
-    if (const int error = replace(target_, path_)) return error;
+    if (const int error = replace(target_, path_, like())) return error;
     path_.clear();
     release_unfinished(unfinished_);
     return 0;
 }
 
 namespace {
-void write_whole(const std::string& path, std::string_view contents) {
+void write_whole(const std::string& path, std::string_view contents,
+                 AtomicFile::Kind kind = AtomicFile::Kind::of_user) {
     const auto refuse = [&](const std::string& reason) {
         throw FileError("write: " + path + ": " + reason);
     };
     const auto fail = [&](int error) { refuse(reason_of(error)); };
-    AtomicFile target(path);
+    AtomicFile target(path, kind);
     if (!target.refusal().empty()) refuse(target.refusal());
     if (const int error = target.check_target()) fail(error);
     int error = target.write(contents);
@@ -266,9 +283,93 @@ void make_folder(const fs::path& folder) {
 }
 }  // namespace
 
-void write_text_atomically(const std::string& path, std::string_view contents) {
-    remove_leftovers({path});
-    write_whole(path, contents);
+void write_text_atomically(const std::string& path, std::string_view contents,
+                           AtomicFile::Kind kind) {
+    remove_leftovers({path}, kind);
+    write_whole(path, contents, kind);
+}
+
+namespace {
+
+/// The nearest folder above that exists.
+fs::path existing_folder(fs::path folder) {
+    std::error_code error;
+    while (!folder.empty() && folder != folder.root_path() && !fs::is_directory(folder, error))
+        folder = folder.parent_path();
+    return folder.empty() ? "." : folder;
+}
+
+/// Creates a file there for a moment.
+bool joins_letters(const fs::path& folder) {
+    AtomicFile trial((existing_folder(folder) / ".tonewright").string());
+    const int file = trial.create();
+    if (file < 0) return false;  // the output itself reports why
+    ::close(file);
+    std::string capitals = trial.path().filename().string();
+    for (char& c : capitals)
+        c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+    return identity_of(trial.path().parent_path() / capitals).has_value();
+}
+
+/// An output that does not exist yet.
+struct NewFile {
+    int folder = 0;  // a number for each
+    std::string name;
+    const std::string* path = nullptr;
+};
+
+/// The folders of outputs, by all their names.
+class Folders {
+  public:
+    int number_of(const fs::path& folder) {
+        const auto known = by_name_.find(folder);
+        if (known != by_name_.end()) return known->second;
+        std::error_code error;
+        const fs::path real = fs::weakly_canonical(folder, error);
+        const auto number = static_cast<int>(by_target_.size());
+        const int found = by_target_.emplace(error ? folder : real, number).first->second;
+        return by_name_.emplace(folder, found).first->second;
+    }
+
+  private:
+    std::map<fs::path, int> by_name_, by_target_;
+};
+
+}  // namespace
+
+void require_separate_files(std::string_view what, const std::vector<std::string>& paths) {
+    const auto refuse = [&](const std::string& a, const std::string& b) {
+        throw Error(fmt::format("{}: outputs {} and {} are one file; expected different files",
+                                what, a, b));
+    };
+    std::map<std::pair<std::uint64_t, std::uint64_t>, const std::string*> old_files;
+    std::vector<NewFile> new_files;
+    Folders folders;
+    for (const std::string& path : paths) {
+        std::string why;
+        const fs::path target = resolve_target(path, AtomicFile::Kind::of_user, why);
+        if (const auto file = identity_of(target)) {
+            const auto [other, is_new] = old_files.emplace(*file, &path);
+            if (!is_new && *other->second != path) refuse(*other->second, path);
+        } else {
+            const int folder = folders.number_of(fs::absolute(target).parent_path());
+            new_files.push_back({folder, target.filename().string(), &path});
+        }
+    }
+    // Names that differ in capital letters only stand side by side.
+    const auto key = [](const NewFile& file) {
+        return std::tuple(file.folder, lowercase(file.name), file.name);
+    };
+    std::sort(new_files.begin(), new_files.end(),
+              [&](const NewFile& a, const NewFile& b) { return key(a) < key(b); });
+    for (std::size_t i = 1; i < new_files.size(); ++i) {
+        const NewFile& a = new_files[i - 1];
+        const NewFile& b = new_files[i];
+        if (a.folder != b.folder || *a.path == *b.path) continue;
+        const bool is_one = a.name == b.name || (lowercase(a.name) == lowercase(b.name) &&
+                                                 joins_letters(fs::path(*a.path).parent_path()));
+        if (is_one) refuse(*a.path, *b.path);
+    }
 }
 
 void require_writable_file(const std::string& path) {

@@ -32,8 +32,19 @@ class TONEWRIGHT_API FileCreation {
 /// last because it selects the format. Nobody can guess the name and put a link there.
 class TONEWRIGHT_API AtomicFile {
   public:
-    /// Touches nothing yet. Follows symbolic links.
-    explicit AtomicFile(const std::string& path);
+    enum class Kind {
+        /// A link stays, and the file that it leads to is replaced. A new file has the permissions
+        /// that the umask says. While an old one is replaced, only this user can read the new one.
+        of_user,
+        /// As in a cache: a link is replaced, and no other user can read the file.
+        of_program,
+    };
+
+    /// Touches nothing yet.
+    explicit AtomicFile(const std::string& path, Kind kind = Kind::of_user);
+    /// For a file that is written from the contents of another one, as a backup is.
+    /// @param like  where the target is new, it gets the access of this file
+    AtomicFile(const std::string& path, const std::string& like);
     /// Removes the temporary file unless it was kept.
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;
@@ -56,20 +67,35 @@ class TONEWRIGHT_API AtomicFile {
     /// Creates the temporary file with these contents.
     /// @returns  0 or an errno.
     [[nodiscard]] int write(std::string_view contents);
-    /// Gives the temporary file the permissions of the old one, syncs it and renames it.
+    /// Gives the temporary file the access of the old one (owner and group as far as this user may,
+    /// permissions without setuid and setgid, access control list), syncs it and renames it.
     /// @returns  0 or an errno.
     [[nodiscard]] int keep();
 
   private:
+    /// The file whose access the new one gets; empty if there is none.
+    [[nodiscard]] std::filesystem::path like() const;
+
+    Kind kind_ = Kind::of_user;
     std::string refusal_;
     std::filesystem::path target_;
+    std::filesystem::path like_;  // of a new target
     std::filesystem::path path_;  // empty once kept
     std::atomic<const char*>* unfinished_ = nullptr;
 };
 
 /// Writes a whole file, and removes what killed runs left of it. @throws FileError  "write: <path>:
 /// <reason>"
-TONEWRIGHT_API void write_text_atomically(const std::string& path, std::string_view contents);
+TONEWRIGHT_API void write_text_atomically(const std::string& path, std::string_view contents,
+                                          AtomicFile::Kind kind = AtomicFile::Kind::of_user);
+
+/// Two of these outputs would be one file: through links, hard links too, or because the disk does
+/// not tell capital letters (ASCII) from small ones. The second would replace the first. Equal
+/// names are one output.
+/// @param what    "apply"
+/// @throws Error  "<what>: outputs <path> and <path> are one file; expected different files"
+TONEWRIGHT_API void require_separate_files(std::string_view what,
+                                           const std::vector<std::string>& paths);
 
 /// Throws what write_text_atomically() will throw, before a long computation.
 TONEWRIGHT_API void require_writable_file(const std::string& path);
@@ -83,7 +109,8 @@ TONEWRIGHT_API void require_writable_folder(const std::string& folder);
 /// Removes the temporary files of these targets that killed runs left: those of processes of this
 /// machine that no longer exist, and those that are older than a day (processes of other machines
 /// cannot be asked). Files that cannot be removed stay.
-TONEWRIGHT_API void remove_leftovers(const std::vector<std::string>& paths);
+TONEWRIGHT_API void remove_leftovers(const std::vector<std::string>& paths,
+                                     AtomicFile::Kind kind = AtomicFile::Kind::of_user);
 
 /// Removes unfinished files and new empty folders, for a process that ends at once. Without memory;
 /// also for signal handlers. Threads that create a file afterward stop there.

@@ -19,6 +19,39 @@ std::string why_no_file(bool is_folder, bool is_regular) {
     return is_regular ? "" : "is no regular file (a pipe or a device); expected a file";
 }
 
+struct Descriptor {
+    int number = -1;
+    ~Descriptor() {
+        if (number >= 0) ::close(number);
+    }
+};
+
+/// @param why  the reason, where it cannot be read
+std::string contents_of(const Descriptor& file, std::size_t longest, std::string& why) {
+    std::string bytes;
+    struct stat status {};
+    if (file.number < 0 || ::fstat(file.number, &status) != 0) {
+        why = reason_of(errno);
+        return bytes;
+    }
+    const auto size = static_cast<std::size_t>(status.st_size);
+    why = why_no_file(S_ISDIR(status.st_mode), S_ISREG(status.st_mode));
+    if (why.empty() && size > longest)
+        why = fmt::format("it has {} bytes; expected at most {}", size, longest);
+    if (why.empty()) bytes.resize(size);
+    std::size_t count = 0;
+    while (why.empty() && count < size) {
+        const auto n = ::read(file.number, bytes.data() + count, piece_of(size - count));
+        if (n > 0) {
+            count += static_cast<std::size_t>(n);
+        } else if (n == 0 || errno != EINTR) {
+            why = n == 0 ? fmt::format("ends early, after {} of {} bytes", count, size)
+                         : reason_of(errno);
+        }
+    }
+    return bytes;
+}
+
 }  // namespace
 
 std::string why_no_file(const std::string& path) {
@@ -41,40 +74,21 @@ std::string why_not_readable(const std::string& path) {
 
 std::string read_file(const std::string& path, std::size_t longest,
                       const std::function<void(const std::string&)>& fail) {
-    struct Descriptor {
-        int number = -1;
-        ~Descriptor() {
-            if (number >= 0) ::close(number);
-        }
-    };
-    std::string bytes;
     // Opens regular files only, because opening a device may have side effects.
-    if (const std::string why = why_not_readable(path); !why.empty()) {
-        fail(why);
-        return bytes;
-    }
-    const Descriptor file = {open_to_read(path)};
-    struct stat status {};
-    if (file.number < 0 || ::fstat(file.number, &status) != 0) {
-        fail(reason_of(errno));
-        return bytes;
-    }
-    const auto size = static_cast<std::size_t>(status.st_size);
-    std::string why = why_no_file(S_ISDIR(status.st_mode), S_ISREG(status.st_mode));
-    if (why.empty() && size > longest)
-        why = fmt::format("it has {} bytes; expected at most {}", size, longest);
-    if (why.empty()) bytes.resize(size);
-    std::size_t count = 0;
-    while (why.empty() && count < size) {
-        const auto n = ::read(file.number, bytes.data() + count, piece_of(size - count));
-        if (n > 0) {
-            count += static_cast<std::size_t>(n);
-        } else if (n == 0 || errno != EINTR) {
-            why = n == 0 ? fmt::format("ends early, after {} of {} bytes", count, size)
-                         : reason_of(errno);
-        }
-    }
+    std::string why = why_not_readable(path);
+    std::string bytes;
+    if (why.empty()) bytes = contents_of({open_to_read(path)}, longest, why);
     if (!why.empty()) fail(why);
+    return bytes;
+}
+
+std::optional<std::string> read_own_file(const std::string& path, std::size_t longest) {
+    const Descriptor file = {open_own_file(path)};
+    if (file.number < 0) return std::nullopt;
+    std::string why;
+    std::string bytes = contents_of(file, longest, why);
+    if (!why.empty()) return std::nullopt;
+    mark_as_used(file.number);
     return bytes;
 }
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <functional>
 #include <new>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -28,6 +29,12 @@ TONEWRIGHT_API void require_regular_file(const std::string& path);
 [[nodiscard]] TONEWRIGHT_API std::string read_file(
     const std::string& path, std::size_t longest,
     const std::function<void(const std::string& reason)>& fail);
+
+/// The contents of a file of the program's own, such as one of the cache, and marks it as used now.
+/// Nothing if there is none, it is longer, or another user may have written it: a link, a file of
+/// another user but root, or one that others may write to.
+[[nodiscard]] TONEWRIGHT_API std::optional<std::string> read_own_file(const std::string& path,
+                                                                      std::size_t longest);
 
 /// Runs `step`. Where the memory does not do for it, the message has the file's name.
 /// @throws FileError  "<path>: not enough memory", and what the step throws

@@ -9,13 +9,12 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <string_view>
 #include <utility>
 
 #include "base/atomic_file.h"
+#include "base/input_file.h"
 #include "base/strings.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -49,13 +48,9 @@ std::string header_of(const std::string& key, std::size_t count, std::uint64_t s
 }
 
 std::optional<std::vector<double>> read(const fs::path& path, const std::string& key) {
-    std::error_code error;
-    if (!fs::is_regular_file(path, error)) return std::nullopt;
-    const std::uintmax_t size = fs::file_size(path, error);
-    if (error || size > kLargestFolder) return std::nullopt;
-    std::ifstream file(path, std::ios::binary);
-    std::string text(static_cast<std::size_t>(size), '\0');
-    if (!file.read(text.data(), static_cast<std::streamsize>(size))) return std::nullopt;
+    const std::optional<std::string> contents = read_own_file(path.string(), kLargestFolder);
+    if (!contents) return std::nullopt;
+    const std::string& text = *contents;
     const std::string beginning = fmt::format("{}{}\n", kBeginning, key);
     if (!text.starts_with(beginning)) return std::nullopt;
     const std::size_t end = text.find('\n', beginning.size());
@@ -67,8 +62,6 @@ std::optional<std::vector<double>> read(const fs::path& path, const std::string&
         return std::nullopt;
     std::vector<double> numbers(count);
     std::memcpy(numbers.data(), bytes.data(), bytes.size());
-    // The most recently used come last.
-    fs::last_write_time(path, fs::file_time_type::clock::now(), error);
     return numbers;
 }
 
@@ -82,8 +75,9 @@ void drop_oldest(const fs::path& folder) {
     std::vector<File> files;
     std::uintmax_t whole = 0;
     for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-        if (it->path().extension() != kEnding) continue;
         std::error_code of_file;
+        if (it->path().extension() != kEnding || !fs::is_regular_file(it->symlink_status(of_file)))
+            continue;
         const File file = {it->last_write_time(of_file), it->path(), it->file_size(of_file)};
         if (of_file) continue;
         whole += file.size;
@@ -97,14 +91,29 @@ void drop_oldest(const fs::path& folder) {
     }
 }
 
-void write(const fs::path& path, const std::string& key, const std::vector<double>& numbers) {
+/// The XDG Base Directory Specification asks for permission 0700.
+///
+/// A folder that exists is used as it is: it may be a link to another disk, and a site may share
+/// it. What others can do there is harmless. They cannot make a file that is believed, because a
+/// file must belong to this user or root, and be closed to other writers. They cannot lead a write
+/// elsewhere, because it replaces a name in this folder and follows no link. They can delete files,
+/// which costs the time to compute them.
+bool make_private_folder(const fs::path& folder) {
     std::error_code error;
-    fs::create_directories(path.parent_path(), error);
-    if (error) return;
+    if (fs::is_directory(folder, error)) return true;
+    fs::create_directories(folder, error);
+    if (error) return false;
+    fs::permissions(folder, fs::perms::owner_all, error);
+    return true;
+}
+
+void write(const fs::path& path, const std::string& key, const std::vector<double>& numbers) {
+    if (!make_private_folder(path.parent_path())) return;
     const std::string bytes = bytes_of(numbers);
     try {
         write_text_atomically(path.string(),
-                              header_of(key, numbers.size(), check_sum(bytes)) + bytes);
+                              header_of(key, numbers.size(), check_sum(bytes)) + bytes,
+                              AtomicFile::Kind::of_program);
     } catch (const std::exception&) {
         return;  // the numbers are known anyway
     }
@@ -112,6 +121,14 @@ void write(const fs::path& path, const std::string& key, const std::vector<doubl
 }
 
 }  // namespace
+
+NumberCheck numbers_in(std::size_t count, double least, double most) {
+    return [=](const std::vector<double>& numbers) {
+        return numbers.size() == count &&
+               std::all_of(numbers.begin(), numbers.end(),
+                           [&](double x) { return x >= least && x <= most; });
+    };
+}
 
 std::string cache_folder() {
     const auto from = [](const char* variable) -> fs::path {
@@ -127,12 +144,13 @@ std::string cache_folder() {
 }
 
 std::vector<double> cached_numbers(const std::string& name, const std::string& key,
+                                   const NumberCheck& is_usable,
                                    const std::function<std::vector<double>()>& make) {
     const std::string folder = cache_folder();
     if (folder.empty()) return make();
     const fs::path path =
         fs::path(folder) / fmt::format("{}_{}{}", name, content_hash(key), kEnding);
-    if (auto known = read(path, key)) return *std::move(known);
+    if (auto known = read(path, key); known && is_usable(*known)) return *std::move(known);
     std::vector<double> numbers = make();
     write(path, key, numbers);
     return numbers;

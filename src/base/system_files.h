@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "tonewright/version.h"
 
@@ -20,14 +23,26 @@ TONEWRIGHT_NAMESPACE_BEGIN
 [[nodiscard]] bool has_ended(int process);
 
 [[nodiscard]] int check_access(const std::filesystem::path& path, bool is_for_writing);
+/// True for a file, also one without access; false for a link.
+[[nodiscard]] bool is_file_itself(const std::filesystem::path& path);
 /// Fails where anything has the name, and follows no link.
-[[nodiscard]] int create_new(const std::filesystem::path& path);
+/// @param is_private  only this user has access; else what the umask and the folder say
+[[nodiscard]] int create_new(const std::filesystem::path& path, bool is_private);
 /// A pipe cannot block this.
 [[nodiscard]] int open_to_read(const std::filesystem::path& path);
-/// Gives a written file the permissions of the target, if there is one, and then its name.
-/// Both survive a loss of power.
-[[nodiscard]] int replace(const std::filesystem::path& target,
-                          const std::filesystem::path& written);
+/// Opens only a file that no other user can have written: no link, owned by this user or root, and
+/// not writable by others. Else -1, without an errno.
+[[nodiscard]] int open_own_file(const std::filesystem::path& path);
+/// Sets the time of the last change to now.
+void mark_as_used(int file);
+/// Gives a written file the access that `like` has, if that is a file: owner and group as far as
+/// the user may, permissions without setuid and setgid, and access control list. Then gives it the
+/// name of the target. Both survive a loss of power.
+[[nodiscard]] int replace(const std::filesystem::path& target, const std::filesystem::path& written,
+                          const std::filesystem::path& like);
+/// The device and the number of what is there, after links; nothing if nothing is.
+[[nodiscard]] std::optional<std::pair<std::uint64_t, std::uint64_t>> identity_of(
+    const std::filesystem::path& path);
 /// What one call reads or writes: Windows counts in 32 bits.
 [[nodiscard]] inline unsigned piece_of(std::size_t bytes) {
     return static_cast<unsigned>(std::min<std::size_t>(bytes, std::size_t{1} << 30));

@@ -5,6 +5,7 @@
 #include <io.h>
 #include <process.h>
 #include <sys/stat.h>
+#include <sys/utime.h>
 // After the others.
 #include <windows.h>
 
@@ -39,7 +40,13 @@ int check_access(const fs::path& path, bool is_for_writing) {
     return ::_waccess(path.c_str(), is_for_writing ? 2 : 4) == 0 ? 0 : errno;
 }
 
-int create_new(const fs::path& path) {
+bool is_file_itself(const fs::path& path) {
+    std::error_code none;
+    return fs::is_regular_file(fs::symlink_status(path, none));
+}
+
+// A file has the access control list of its folder.
+int create_new(const fs::path& path, bool /*is_private*/) {
     return ::_wopen(path.c_str(), _O_WRONLY | _O_CREAT | _O_EXCL | _O_BINARY | _O_NOINHERIT,
                     _S_IREAD | _S_IWRITE);
 }
@@ -48,7 +55,20 @@ int open_to_read(const fs::path& path) {
     return ::_wopen(path.c_str(), _O_RDONLY | _O_BINARY | _O_NOINHERIT);
 }
 
-int replace(const fs::path& target, const fs::path& written) {
+// The cache's folder is in the user's profile, which other users cannot write to.
+int open_own_file(const fs::path& path) { return is_file_itself(path) ? open_to_read(path) : -1; }
+
+void mark_as_used(int file) { (void)::_futime64(file, nullptr); }
+
+// File numbers of Windows are not in `stat`: names stand for them.
+std::optional<std::pair<std::uint64_t, std::uint64_t>> identity_of(const fs::path& path) {
+    std::error_code error;
+    const fs::path full = fs::canonical(path, error);
+    if (error) return std::nullopt;
+    return std::pair<std::uint64_t, std::uint64_t>(0, fs::hash_value(full));
+}
+
+int replace(const fs::path& target, const fs::path& written, const fs::path& /*like*/) {
     // Windows syncs files that are open for writing only.
     const int file = ::_wopen(written.c_str(), _O_RDWR | _O_BINARY | _O_NOINHERIT);
     if (file < 0) return errno;

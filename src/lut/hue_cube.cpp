@@ -13,6 +13,7 @@
 #include "base/number_cache.h"
 #include "base/random.h"
 #include "lut/cube_solver.h"
+#include "lut/fit_key.h"
 #include "lut/in_parallel.h"
 #include "lut/picture_color.h"
 #include "tonewright/engine.h"
@@ -755,8 +756,9 @@ class Maker {
             }
         };
         draw_block(0);
-        const std::vector<double> nodes =
-            cached_numbers("hue_cube", key_of(places, codes, std::min(kBlock, count)), [&] {
+        const std::vector<double> nodes = cached_numbers(
+            "hue_cube", key_of(places, codes, std::min(kBlock, count)),
+            numbers_in(cube_number_count(options_.edge)), [&] {
                 in_parallel((count + kBlock - 1) / kBlock, options_.thread_count, draw_block);
                 return fit_nodes(places, codes);
             });

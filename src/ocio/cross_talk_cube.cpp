@@ -134,7 +134,14 @@ std::shared_ptr<const CrossTalkCube> cross_talk_cube(const CrossTalkStage& stage
     return cache.get(key, [&] {
         std::vector<double> nodes;
         if (options.is_fitted) {
-            nodes = cached_numbers("cube", key_of(problem, top), [&] {
+            // The code of the largest half float is far below it. The last number is a share of the
+            // axis.
+            const NumberCheck are_nodes =
+                numbers_in(cube_number_count(problem.edge) + 1, -kHalfMax, kHalfMax);
+            const auto is_usable = [&](const std::vector<double>& numbers) {
+                return are_nodes(numbers) && numbers.back() >= 0 && numbers.back() < 1;
+            };
+            nodes = cached_numbers("cube", key_of(problem, top), is_usable, [&] {
                 const double share = choose_share_of_lights(problem, top);
                 problem.axis = make_log_axis(top, problem.edge, share);
                 std::vector<double> numbers = fit_cube(problem);

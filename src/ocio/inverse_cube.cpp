@@ -118,7 +118,8 @@ Pipeline fitted_inverse(const Pipeline& forward, const Primaries& primaries, dou
                             problem.edge, key_of_numbers({peak}), key_of_primaries(primaries),
                             key_of_pipeline(problem.before), key_of_pipeline(problem.forward));
             std::vector<double> nodes =
-                cached_numbers("inverse_cube", key, [&] { return fit_inverse_cube(problem); });
+                cached_numbers("inverse_cube", key, numbers_in(cube_number_count(problem.edge)),
+                               [&] { return fit_inverse_cube(problem); });
             // No picture reaches values above the brightest one.
             for (double& code : nodes)
                 code = std::clamp(code, -1.0, 1.0);

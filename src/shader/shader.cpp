@@ -334,7 +334,12 @@ ShaderErrors known_errors(const ShaderRequest& request, const ShaderProgram& pro
         request.view.exposure_stops, static_cast<int>(request.curves), fmt::join(functions, " "));
     for (const auto& [name, value] : values_of(request))
         key += fmt::format(", {} {}", name, value);
-    const std::vector<double> numbers = cached_numbers("shader_errors", key, [&] {
+    // Three errors, and the index of a function, or the count of functions for none.
+    const NumberCheck are_errors = numbers_in(4, 0, kInfinity);
+    const auto is_usable = [&](const std::vector<double>& numbers) {
+        return are_errors(numbers) && numbers[3] <= static_cast<double>(functions.size());
+    };
+    const std::vector<double> numbers = cached_numbers("shader_errors", key, is_usable, [&] {
         const ShaderErrors errors = measure_shader(request);
         const auto place = std::find(functions.begin(), functions.end(), errors.arises_in);
         return std::vector<double>{errors.in_float, errors.guaranteed, errors.vulkan_estimate,

@@ -88,9 +88,11 @@ void read_number_cache(const std::string& text) {
     const std::string key = text.substr(0, std::min<std::size_t>(text.find('\n'), 40));
     (void)folder.write("tonewright/x_" + content_hash(key) + ".numbers", text);
     const std::vector<double> made = {0.5, 2};
-    (void)cached_numbers("x", key, [&] { return made; });
-    if (cached_numbers("x", key, [&] { return made; }) !=
-        cached_numbers("x", key, [] { return std::vector<double>{3}; }))
+    const NumberCheck is_usable = numbers_in(2, 0, 2);
+    (void)cached_numbers("x", key, is_usable, [&] { return made; });
+    const std::vector<double> numbers = cached_numbers("x", key, is_usable, [&] { return made; });
+    if (!is_usable(numbers) ||
+        numbers != cached_numbers("x", key, is_usable, [] { return std::vector<double>{3}; }))
         std::abort();
     std::filesystem::remove_all(folder.path() + "/tonewright");
 }

@@ -75,7 +75,8 @@ def view(operator, rgb, settings=None, look="", exposure=0.0, input="lin_rec709"
         facts = shown_on._replace(peak=shown_on.peak * UNIT / reference_white) if shown_on.is_hdr else shown_on
         settings = {**{name: decide(facts) for name, decide in FROM_DISPLAY.get(operator, {}).items()}, **settings}
     working = WORKING[operator]
-    scene = sanitize(rgb) @ rgb_to_rgb(INPUTS[input], working).T * 2.0**exposure
+    # A sun of 300,000 at -17 stops keeps its color: the limit comes after the exposure.
+    scene = sanitize(np.asarray(rgb, float) * 2.0**exposure) @ rgb_to_rgb(INPUTS[input], working).T
     out = OPERATORS[operator](scene, **settings, **({"look": look} if look else {}))
     if display == "native":
         return out

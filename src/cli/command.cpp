@@ -39,7 +39,10 @@ Settings ViewOptions::settings() const {
 View ViewOptions::view() const {
     ResolvedOperator resolved = resolve_operator(op, settings(), look, operator_files());
     warn_of(resolved);
-    return make_view(std::move(resolved), input, exposure, display, reference_white);
+    const InputSpace& space = find_input_space(input);
+    return make_view(std::move(resolved),
+                     in_units({space.id, space.primaries}, parse_input_units(input_units)),
+                     exposure, display, reference_white);
 }
 
 const OperatorSet& operator_files() {

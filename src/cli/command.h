@@ -35,6 +35,7 @@ struct ViewOptions {
     std::string input = "lin_rec709";
     std::string display = "srgb";
     double reference_white = kReferenceWhite;
+    std::string input_units = "relative";
     /// Names of the options that the command line has, such as `--input`.
     std::set<std::string> given = {};
 

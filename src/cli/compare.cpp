@@ -39,6 +39,7 @@ void add_compare(CommandLine& program) {
         .suggest(suggest_source_colors)
         .show_default()
         .group(output);
+    add_input_units(command, options->input_units, options->reference_white, output);
     add_picture_choice(command, options->picture, "Picture");
     const Option columns =
         command.add("--columns", options->columns, "pictures in a row (default: as fits)")

@@ -13,6 +13,7 @@
 #include "base/strings.h"
 #include "cli/messages.h"
 #include "lut/stated_input.h"
+#include "pipeline/exposure.h"
 #include "tonewright/lut.h"
 #include "tonewright/registry.h"
 
@@ -110,9 +111,10 @@ Pipeline before_lut(const char* command, const LutOptions& options, const ViewOp
     if (!(std::fabs(view.exposure) <= 64))
         throw Error("exposure is " + shortest(view.exposure) + "; expected [-64, 64] stops");
     const InputSpace& to = space_before(options, encoding);
-    Pipeline stages = input.decode;
-    const Matrix3 matrix = rgb_to_rgb(input.primaries, to.primaries);
-    stages.push_back(MatrixStage{scale(matrix, std::exp2(view.exposure))});
+    const SourceColor source = in_units(input, parse_input_units(view.input_units));
+    Pipeline stages = exposed_stages(
+        source.decode, scene_scale(source, view.reference_white) * std::exp2(view.exposure));
+    stages.push_back(MatrixStage{rgb_to_rgb(source.primaries, to.primaries)});
     stages.push_back(curve_stage(encoding.encode));
     return stages;
 }

@@ -32,6 +32,7 @@ void add_meter(CommandLine& program) {
         .suggest(suggest_source_colors)
         .group("Pictures")
         .show_default();
+    add_input_units(command, options->input_units, options->reference_white, "Pictures");
     add_picture_input(command, options->picture);
     add_exposure_options(command, options->metering, nullptr);
     add_shot_options(command, options->shot, frames, nullptr);

@@ -45,7 +45,8 @@ struct ExposureOptions {
     std::string region;
     double delta = 1e-3;
     std::string percentiles = "0,100";
-    std::string histogram_range = "-8,3.5";
+    /// Empty: the library's, which grows.
+    std::string histogram_range;
     int histogram_bins = 256;
     bool exact = false;
     std::string key;
@@ -97,6 +98,8 @@ struct MeterCommandOptions {
     std::vector<std::string> in;
     std::string frames;
     std::string input = "auto";
+    std::string input_units = "relative";
+    double reference_white = kReferenceWhite;
     bool json = false;
     PictureInput picture;
     ExposureOptions metering;
@@ -110,6 +113,8 @@ struct CompareOptions {
     std::string pictures;
     double exposure = 0;
     std::string input = "auto";
+    std::string input_units = "relative";
+    double reference_white = kReferenceWhite;
     int columns = 0;
     int cell_width = 480;
     bool has_false_color = false;
@@ -145,6 +150,8 @@ struct InfoOptions {
 /// A picture of the page.
 struct ReportPictureOptions {
     std::string path;  // empty: the chart
+    std::string input_units = "relative";
+    double reference_white = kReferenceWhite;
     /// A larger picture is made smaller.
     int width = 960;
     PictureChoice choice;

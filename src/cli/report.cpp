@@ -37,6 +37,8 @@ struct Options {
     std::vector<std::string> pictures;
     std::vector<std::string> operators;
     int width = 960;
+    std::string input_units = "relative";
+    double reference_white = kReferenceWhite;
     PictureChoice choice;
     bool no_parity = false;
 };
@@ -146,6 +148,8 @@ class PageContents {
         ReportPictureOptions wanted;
         wanted.path = path;
         wanted.width = options_.width;
+        wanted.input_units = options_.input_units;
+        wanted.reference_white = options_.reference_white;
         wanted.choice = options_.choice;
         for (const ResolvedOperator& op : operators_) {
             if (!op.op->is_local()) continue;
@@ -413,6 +417,7 @@ void add_report(CommandLine& program) {
         .show_default()
         .range(320, 8192)
         .group(contents);
+    add_input_units(command, options->input_units, options->reference_white, contents);
     add_picture_choice(command, options->choice, "Pictures");
     command.add_flag("--no-parity", options->no_parity, "leave out the parity table")
         .group(contents);

@@ -16,8 +16,12 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// --set, --look.
 void add_operator_options(const Command& command, ViewOptions& options);
 
-/// These and --exposure, --input, --display, --reference-white.
+/// These and --exposure, --input, --display, --input-units, --reference-white.
 void add_view_options(const Command& command, ViewOptions& options);
+
+/// --input-units, --reference-white.
+void add_input_units(const Command& command, std::string& units, double& reference_white,
+                     const char* group);
 
 /// --input-encoding, --lut-space, for a command that has one operator.
 /// @param group  the title in the help

@@ -74,7 +74,8 @@ double cost_in_double(const TapeInstruction& step) {
 Interval interval_of(const TapeInstruction& step, const Interval& a, const Interval& b,
                      const Interval& c) {
     if (step.op == ExprOp::constant) return {step.value, step.value};
-    if (step.op == ExprOp::input) return {-kHalfMax, kHalfMax};
+    if (step.op == ExprOp::input)
+        return step.is_limited ? Interval{-kHalfMax, kHalfMax} : Interval{};
     if (step.op == ExprOp::uniform) return {step.least, step.most};
     return tonewright::interval_of(step.op, a, b, c, step.table, step.lattice);
 }
@@ -103,7 +104,7 @@ class CurveFitter {
             const TapeInstruction& step = code_[i];
             const auto of = [&](std::uint32_t v) { return v < i ? interval_[v] : Interval{}; };
             interval_.push_back(interval_of(step, of(step.a), of(step.b), of(step.c)));
-            dominator_.push_back(dominator_of(i));
+            dominator_.push_back(is_unlimited_exposure(i) ? kNone : dominator_of(i));
         }
         tried_.resize(code_.size());
     }
@@ -112,8 +113,10 @@ class CurveFitter {
         for (const std::uint32_t output : outputs_)
             fold_value(output);
         count_uses();
-        for (const TapeInstruction& step : code_) {
-            if (step.curve) skip_limits_before(step.a);
+        for (TapeInstruction& step : code_) {
+            if (!step.curve) continue;
+            skip_limits_before(step.a);
+            skip_limit_of_exposure(step);
         }
         drop_unread();
     }
@@ -123,6 +126,17 @@ class CurveFitter {
     [[nodiscard]] std::vector<std::uint32_t> variables_of(std::size_t i) const {
         std::vector<std::uint32_t> result = operands_of(code_[i]);
         std::erase_if(result, [&](std::uint32_t v) { return code_[v].op == ExprOp::constant; });
+        return result;
+    }
+
+    /// An input without limits, or a step from it to its limit, which is no function for a curve:
+    /// fits have an end, and exposures are uniforms.
+    [[nodiscard]] bool is_unlimited_exposure(std::size_t i) {
+        const TapeInstruction& step = code_[i];
+        bool result = step.op == ExprOp::input && !step.is_limited;
+        for (const std::uint32_t operand : variables_of(i))
+            result = result || (is_unlimited_[operand] && !is_limited_exposure(code_, operand));
+        is_unlimited_.push_back(result);
         return result;
     }
 
@@ -219,6 +233,14 @@ class CurveFitter {
                 return;
             product.a = limit.a;
         }
+    }
+
+    /// A curve over positive numbers limits its exposed input by itself.
+    void skip_limit_of_exposure(TapeInstruction& step) {
+        if (!is_limited_exposure(code_, step.a)) return;
+        const CompiledCurve& curve = *step.curve;
+        if (curve.lo >= 0 && static_cast<double>(curve.hi) <= kHalfMax)
+            step.a = exposure_steps(code_, step.a).back();
     }
 
     /// The steps between a root and a value as text, the same for channels that are treated alike.
@@ -425,6 +447,7 @@ class CurveFitter {
     std::vector<std::int64_t> dominator_;
     std::vector<int> uses_;
     std::vector<bool> tried_;
+    std::vector<bool> is_unlimited_;
     RunInstruction operations_ = reference_operations();
     std::vector<std::array<double, kBlock>> value_;
     std::size_t work_ = 0;

@@ -194,7 +194,7 @@ bool is_level(ExprOp op) {
 
 }  // namespace
 
-GradientEngine::GradientEngine(const Pipeline& pipeline) : tape_(compose(pipeline)) {
+GradientEngine::GradientEngine(const Pipeline& pipeline) : tape_(pipeline) {
     const std::vector<TapeInstruction>& code = tape_.code();
     const auto operands = [](const TapeInstruction& step) {
         std::vector<std::uint32_t> read = {step.a, step.b, step.c};
@@ -262,7 +262,8 @@ void GradientEngine::run(const std::array<const double*, 3>& in, const std::arra
             if (instruction.op == ExprOp::input) {
                 const auto k = static_cast<std::size_t>(instruction.input);
                 for (std::size_t i = 0; i < n; ++i)
-                    y[i] = sanitize(in[k][begin + i]);
+                    y[i] = instruction.is_limited ? sanitize(in[k][begin + i])
+                                                  : without_nan(in[k][begin + i]);
                 std::fill_n(row(step.out, 1 + k), n, 1.0);
                 continue;
             }

@@ -171,7 +171,8 @@ class PrecisionChooser {
                 !terms.empty()) {
                 keep_in_double(i);
                 for (const std::uint32_t term : terms) {
-                    if (is_exposed_input(term)) keep_in_double(term);
+                    for (const std::uint32_t step : exposure_steps(code_, term))
+                        keep_in_double(step);
                 }
             }
             // In float the rounding of y log2(x) grows with it, and kernels have no better for an
@@ -271,18 +272,10 @@ class PrecisionChooser {
             values.push_back(left ? term.b : term.a);
             may_cancel = may_cancel || code_[left ? term.a : term.b].value < 0 ||
                          code_[values.back()].op == ExprOp::input ||
-                         is_exposed_input(values.back());
+                         !exposure_steps(code_, values.back()).empty();
         }
         return may_cancel ? values : std::vector<std::uint32_t>{};
     }
-    /// An input times a number, its exposure.
-    [[nodiscard]] bool is_exposed_input(std::size_t i) const {
-        const TapeInstruction& step = code_[i];
-        return step.op == ExprOp::multiply &&
-               ((is_number(code_[step.a].op) && code_[step.b].op == ExprOp::input) ||
-                (is_number(code_[step.b].op) && code_[step.a].op == ExprOp::input));
-    }
-
     void keep_index_in_double(std::uint32_t index) {
         std::vector<bool> seen(code_.size());
         std::vector<std::uint32_t> rest = {index};

@@ -404,8 +404,10 @@ void ProbeBlock::run(std::uint32_t i, const Vector3* colors) {
     const auto& b = value_[step.b].lane;
     const auto& c = value_[step.c].lane;
     if (step.op == ExprOp::input) {
+        // Probes are colors after the exposure.
+        const double exposure = step.is_limited ? 1 : step.value;
         for (std::size_t l = 0; l < size_; ++l)
-            out[l] = colors[l][static_cast<std::size_t>(step.input)];
+            out[l] = colors[l][static_cast<std::size_t>(step.input)] / exposure;
     } else if (step.op == ExprOp::lattice) {
         for (std::size_t l = 0; l < size_; ++l)
             out[l] = (*step.lattice)(step.input, a[l], b[l], c[l]);

@@ -114,7 +114,7 @@ struct ReferenceEngine::Program {
     std::vector<Step> steps;
     std::array<Row, 3> outputs;
 
-    explicit Program(const Pipeline& pipeline) : tape(compose(pipeline)) {
+    explicit Program(const Pipeline& pipeline) : tape(pipeline) {
         const std::vector<TapeInstruction>& code = tape.code();
         std::vector<std::array<std::int64_t, 4>> operands;
         std::vector<bool> needs_register;
@@ -178,8 +178,9 @@ void ReferenceEngine::run(const std::array<const double*, 3>& in, const std::arr
             double* const result = registers.data() + step.out.offset;
             if (step.instruction->op == ExprOp::input) {
                 const double* plane = in[static_cast<std::size_t>(step.instruction->input)] + begin;
+                const bool is_limited = step.instruction->is_limited;
                 for (std::size_t k = 0; k < n; ++k)
-                    result[k] = sanitize(plane[k]);
+                    result[k] = is_limited ? sanitize(plane[k]) : without_nan(plane[k]);
             } else if (step.instruction->op == ExprOp::lattice) {
                 LatticeChannels channels;
                 const auto add = [&](const Program::Step& same) {
@@ -214,7 +215,8 @@ Vector3 ReferenceEngine::operator()(const Vector3& rgb) const noexcept {
         const TapeInstruction& instruction = *step.instruction;
         double& result = registers[step.out.index];
         if (instruction.op == ExprOp::input) {
-            result = sanitize(rgb[static_cast<std::size_t>(instruction.input)]);
+            const double x = rgb[static_cast<std::size_t>(instruction.input)];
+            result = instruction.is_limited ? sanitize(x) : without_nan(x);
         } else if (instruction.op == ExprOp::lattice) {
             result =
                 (*instruction.lattice)(instruction.input, read(step.a), read(step.b), read(step.c));

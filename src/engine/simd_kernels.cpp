@@ -457,8 +457,9 @@ void run(const Code& code, const Numbers& numbers, const std::array<const float*
         const auto keep = [&](Vec<DF> r, Vec<DF> g, Vec<DF> b, std::size_t i) HWY_ATTR {
             const Vec<DF> rgb[3] = {r, g, b};
             for (std::size_t c = 0; c < 3; ++c) {
-                if (code.reads_input[c])
-                    store_result(frame, {code.input_offset[c]}, i, sanitized(d, rgb[c]));
+                if (!code.reads_input[c]) continue;
+                const Vec<DF> x = code.limits_input ? sanitized(d, rgb[c]) : without_nan(d, rgb[c]);
+                store_result(frame, {code.input_offset[c]}, i, x);
             }
         };
         read_pixels(from(in, in_stride, begin), in_stride, n, padded, keep);

@@ -183,7 +183,7 @@ struct Instruction {
 inline constexpr std::size_t kMaxTile = 256;
 inline constexpr std::size_t kVectorBytes = 64;   // the widest vector there is
 inline constexpr std::size_t kLaneMultiple = 16;  // floats in it
-/// Numbers beyond this, infinity too, count as this; NaN as 0.
+/// Numbers beyond this, infinity too, count as this; NaN as 0. See limits_input().
 inline constexpr float kLargestInput = 65504.0F;
 /// On the stack of the running thread.
 inline constexpr std::size_t kRegisterFileBytes = std::size_t{64} * 1024;
@@ -256,6 +256,8 @@ struct Code {
     /// Float registers of the three input channels; a channel that is not read has none.
     std::array<std::uint32_t, 3> input_offset{};
     std::array<bool, 3> reads_input{};
+    /// Inputs are limited to +-kLargestInput. Otherwise the program limits them after its exposure.
+    bool limits_input = true;
     /// Never wide.
     std::array<Operand, 3> output;
     std::vector<Instruction> instructions;

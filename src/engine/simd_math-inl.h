@@ -60,10 +60,16 @@ HWY_INLINE Vec<D> limited(D d, Vec<D> x, double limit) {
     return hn::Min(hn::Max(x, set(d, -limit)), set(d, limit));
 }
 
+/// NaN -> 0.
+template <class D>
+HWY_INLINE Vec<D> without_nan(D /*d*/, Vec<D> x) {
+    return hn::IfThenElseZero(hn::Eq(x, x), x);
+}
+
 /// NaN -> 0, then limited to +-65504.
 template <class D>
 HWY_INLINE Vec<D> sanitized(D d, Vec<D> x) {
-    return limited(d, hn::IfThenElseZero(hn::Eq(x, x), x), static_cast<double>(kLargestInput));
+    return limited(d, without_nan(d, x), static_cast<double>(kLargestInput));
 }
 
 // Min and Max of the processor return their second operand when equal or not ordered; with the

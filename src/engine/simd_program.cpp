@@ -314,7 +314,7 @@ class Selector {
         const TapeInstruction& step = code_[i];
         switch (step.op) {
             case ExprOp::input:
-                return true;
+                return step.is_limited;
             case ExprOp::constant:
                 return std::fabs(step.value) <= kLargest;
             case ExprOp::uniform:
@@ -326,7 +326,7 @@ class Selector {
             case ExprOp::subtract:
             case ExprOp::minimum:
             case ExprOp::maximum:
-                return is_finite(step.a) && is_finite(step.b);
+                return (is_finite(step.a) && is_finite(step.b)) || is_limited_exposure(code_, i);
             default:
                 return false;
         }
@@ -501,6 +501,7 @@ class Assembler {
             if (origin.op == ExprOp::input) {
                 const auto channel = static_cast<std::size_t>(origin.input);
                 code.reads_input[channel] = true;
+                code.limits_input = origin.is_limited;
                 code.input_offset[channel] = place(slot).offset;
                 continue;
             }
@@ -827,7 +828,7 @@ Form make_form(const Pipeline& pipeline, const LiveUniforms& uniforms, double ma
                CurveForm curve_form) {
     ++compiled_forms;
     const bool has_curves = curve_form != CurveForm::none;
-    const auto source = std::make_shared<const Tape>(compose(simplify(pipeline)), uniforms);
+    const auto source = std::make_shared<const Tape>(simplify(pipeline), uniforms);
     const FloatTape plain(*source);
     Sensitivity sensitivity;
     const std::vector<std::vector<double>> ends = numbers_at_ends(*source, uniforms);

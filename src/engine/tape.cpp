@@ -8,11 +8,31 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-Tape::Tape(const std::array<Expr, 3>& outputs, const LiveUniforms& uniforms)
-    : uniforms_(uniforms), keep_(outputs.begin(), outputs.end()) {
+Tape::Tape(const Pipeline& pipeline, const LiveUniforms& uniforms)
+    : Tape(compose(pipeline), uniforms, tonewright::limits_input(pipeline)) {}
+
+Tape::Tape(const std::array<Expr, 3>& outputs, const LiveUniforms& uniforms, bool limits_input)
+    : uniforms_(uniforms), limits_input_(limits_input), keep_(outputs.begin(), outputs.end()) {
     std::unordered_map<const ExprNode*, std::uint32_t> seen;
     for (std::size_t i = 0; i < 3; ++i)
         outputs_[i] = add(outputs[i], seen);
+    if (!limits_input_) note_exposures();
+}
+
+void Tape::note_exposures() {
+    UniformValues typical;
+    for (const auto& [name, uniform] : uniforms_)
+        typical[name] = uniform.typical;
+    const std::vector<double> numbers = evaluate_numbers(typical);
+    for (const TapeInstruction& step : code_) {
+        if (step.op != ExprOp::multiply) continue;
+        const auto note = [&](std::uint32_t input, std::uint32_t number) {
+            if (code_[input].op == ExprOp::input && is_number_[number])
+                code_[input].value = numbers[number];
+        };
+        note(step.a, step.b);
+        note(step.b, step.a);
+    }
 }
 
 std::uint32_t Tape::add(const Expr& expr,
@@ -32,7 +52,10 @@ std::uint32_t Tape::add(const Expr& expr,
         step.most = range->second.most;
     }
     if (expr.is_constant()) step.value = expr.value();
-    if (expr.op() == ExprOp::input) step.input = expr.input_index();
+    if (expr.op() == ExprOp::input) {
+        step.input = expr.input_index();
+        step.is_limited = limits_input_;
+    }
     if (expr.op() == ExprOp::lookup) step.table = expr.table().get();
     if (expr.op() == ExprOp::lattice) {
         step.lattice = expr.lattice().get();
@@ -85,6 +108,36 @@ std::vector<double> Tape::evaluate_numbers(const UniformValues& uniforms) const 
         value[i] = scalar_op(step.op, value[step.a], value[step.b], value[step.c], step.table);
     }
     return value;
+}
+
+std::vector<std::uint32_t> exposure_steps(const std::vector<TapeInstruction>& code,
+                                          std::uint32_t i) {
+    std::vector<std::uint32_t> steps;
+    for (; code[i].op == ExprOp::minimum || code[i].op == ExprOp::maximum; i = code[i].a) {
+        if (code[code[i].b].op != ExprOp::constant) return {};
+        steps.push_back(i);
+    }
+    const TapeInstruction& product = code[i];
+    if (product.op != ExprOp::multiply) return {};
+    const auto is_exposure = [&](std::uint32_t input, std::uint32_t number) {
+        return code[input].op == ExprOp::input && is_number(code[number].op);
+    };
+    if (!is_exposure(product.a, product.b) && !is_exposure(product.b, product.a)) return {};
+    steps.push_back(i);
+    return steps;
+}
+
+bool is_limited_exposure(const std::vector<TapeInstruction>& code, std::uint32_t i) {
+    const std::vector<std::uint32_t> steps = exposure_steps(code, i);
+    bool has_least = false;
+    bool has_most = false;
+    for (const std::uint32_t step : steps) {
+        if (code[step].op == ExprOp::multiply) continue;
+        const double limit = code[code[step].b].value;
+        has_least = has_least || (code[step].op == ExprOp::maximum && limit >= -kHalfMax);
+        has_most = has_most || (code[step].op == ExprOp::minimum && limit <= kHalfMax);
+    }
+    return has_least && has_most;
 }
 
 RegisterAllocation allocate_registers(const std::vector<std::array<std::int64_t, 4>>& operands,

@@ -11,6 +11,7 @@
 #include "expr/scalar_ops.h"
 #include "tonewright/engine.h"
 #include "tonewright/expr.h"
+#include "tonewright/pipeline.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
@@ -18,9 +19,10 @@ TONEWRIGHT_NAMESPACE_BEGIN
 struct TapeInstruction {
     ExprOp op = ExprOp::constant;
     std::uint32_t a = 0, b = 0, c = 0;
-    double value = 0;                      // of a constant; typical, of a uniform
+    double value = 0;                      // of a constant; typical, of a uniform or an exposure
     double least = 0, most = 0;            // of a uniform: its range
     int input = 0;                         // of an input; channel of a lattice
+    bool is_limited = true;                // of an input: within +-kHalfMax. See limits_input()
     std::uint32_t source = 0;              // of a uniform: see simd::UniformPlace
     const Table* table = nullptr;          // of a lookup; owned by the tape
     const Lattice* lattice = nullptr;      // owned by the tape
@@ -39,12 +41,22 @@ struct TapeInstruction {
     return op == ExprOp::constant || op == ExprOp::uniform;
 }
 
+/// The steps that expose an input, up to i, the last first: its product with a number, or the
+/// limits of such a product. Empty if i is something else.
+[[nodiscard]] std::vector<std::uint32_t> exposure_steps(const std::vector<TapeInstruction>& code,
+                                                        std::uint32_t i);
+/// True if i is the limit of an input that engines do not limit: a number within +-kHalfMax.
+[[nodiscard]] bool is_limited_exposure(const std::vector<TapeInstruction>& code, std::uint32_t i);
+
 /// Expressions as straight-line code in single-assignment form: every node once, operands first.
 /// No pass has touched it: running it in double is evaluate(), bit for bit.
 class Tape {
   public:
     /// @param uniforms  those that the expressions may have
-    explicit Tape(const std::array<Expr, 3>& outputs, const LiveUniforms& uniforms = {});
+    /// @param limits_input  false: the expressions limit their inputs
+    explicit Tape(const std::array<Expr, 3>& outputs, const LiveUniforms& uniforms = {},
+                  bool limits_input = true);
+    explicit Tape(const Pipeline& pipeline, const LiveUniforms& uniforms = {});
 
     [[nodiscard]] const std::vector<TapeInstruction>& code() const noexcept { return code_; }
     [[nodiscard]] const std::array<std::uint32_t, 3>& outputs() const noexcept { return outputs_; }
@@ -62,10 +74,13 @@ class Tape {
     std::uint32_t add(const Expr& expr, std::unordered_map<const ExprNode*, std::uint32_t>& seen);
     std::vector<TapeInstruction> code_;
     void push(const TapeInstruction& step, bool is_number, bool is_live);
+    /// Inputs without limits get their typical exposure as their value.
+    void note_exposures();
     std::vector<bool> is_number_;
     std::vector<bool> is_live_;  // a number that uniforms decide on
     std::unordered_map<std::uint32_t, std::uint32_t> reciprocal_;
     LiveUniforms uniforms_;
+    bool limits_input_ = true;
     std::array<std::uint32_t, 3> outputs_{};
     std::vector<Expr> keep_;  // keeps nodes (and their tables) alive
 };

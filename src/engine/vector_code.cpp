@@ -181,7 +181,9 @@ class Translator {
             if (!code_.reads_input[c]) continue;
             const VF x = {&writer_, given[c]};
             const std::uint32_t at = code_.input_offset[c];
-            lanes_[at].narrow = is_read_by_curves_alone(at) ? x : sanitized(float_tag(), x);
+            lanes_[at].narrow = is_read_by_curves_alone(at) ? x
+                                : code_.limits_input        ? sanitized(float_tag(), x)
+                                                            : without_nan(float_tag(), x);
         }
     }
 

@@ -19,6 +19,7 @@
 #include "image/color_tags.h"
 #include "image/contact_sheet.h"
 #include "image/source_picture.h"
+#include "tonewright/engine.h"
 #include "tonewright/error.h"
 #include "tonewright/pipeline.h"
 
@@ -71,9 +72,12 @@ ImageBuf shown_scene(const ImageBuf& picture, const ROI& part) {
             auto* to = static_cast<float*>(scene.pixeladdr(spec.x, y));
             for (std::size_t x = 0; x < static_cast<std::size_t>(part.width()); ++x) {
                 for (const int c : channels) {
-                    constexpr auto kMax = static_cast<float>(kHalfMax);
+                    // So large that the sums of the filter are finite.
+                    constexpr float kMax = 0x1p100F;
                     const float value = row[x * all + static_cast<std::size_t>(c)];
-                    *to++ = std::isnan(value) ? 0 : std::clamp(value, -kMax, kMax);
+                    *to++ = std::isinf(value)
+                                ? static_cast<float>(sanitize(static_cast<double>(value)))
+                                : std::clamp(std::isnan(value) ? 0 : value, -kMax, kMax);
                 }
             }
         }

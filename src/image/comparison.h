@@ -14,8 +14,8 @@ TONEWRIGHT_NAMESPACE_BEGIN
 ///
 /// Smaller, pixels are means of light, without negative lobes: 12 operators on it take no longer
 /// than one on the picture, and noise and fine detail are those of the small picture. Larger, they
-/// are repeated. At its own size a picture is left as it is. NaN is 0, and channels are limited to
-/// +-65504 before, so that one pixel does not spoil its neighbors.
+/// are repeated. At its own size a picture is left as it is. NaN is 0, and infinities are +-65504
+/// before, so that one pixel does not spoil its neighbors.
 ///
 /// @param width    of the result, pixels
 /// @throws Error         deep, or cannot be read

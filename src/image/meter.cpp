@@ -75,9 +75,10 @@ PicturePass pass_over(const ImageBuf& src, const MeterOptions& options) {
 
 void check_meter_options(const MeterOptions& o) {
     (void)source_color({}, o.input);
+    check_number("reference white", o.reference_white, 50, 1000);
     check_number("delta", o.delta, 1e-10, 1);
-    check_number("histogram minimum", o.histogram_min, -64, 16);
-    check_number("histogram maximum", o.histogram_max, -64, 16);
+    check_number("histogram minimum", o.histogram_min, -64, 128);
+    check_number("histogram maximum", o.histogram_max, -64, 128);
     check_number("bins", o.bins, 3, 4096);
     check_number("low percentile", o.low_percentile, 0, 100);
     check_number("high percentile", o.high_percentile, 0, 100);
@@ -150,15 +151,30 @@ SceneMeter measure_file(const std::string& path, const MeterOptions& options,
     });
 }
 
-SceneStatistics measure_scene(const ImageBuf& src, std::string_view input,
-                              TonemapOptions::Unpremult unpremult, ROI roi, int nthreads) {
-    (void)source_color({}, input);  // reports a wrong name before it opens a picture
+MeterOptions meter_options(const TonemapOptions& options) {
+    MeterOptions result;
+    result.input = options.input;
+    result.input_units = options.input_units;
+    result.reference_white = options.reference_white;
+    result.unpremult = options.unpremult;
+    return result;
+}
+
+SceneStatistics measure_scene(const ImageBuf& src, const TonemapOptions& as, ROI roi,
+                              int nthreads) {
+    (void)source_color({}, as.input);  // reports a wrong name before it opens a picture
     check_source(src);
-    MeterOptions options;
-    options.input = input;
-    options.unpremult = unpremult;
+    MeterOptions options = meter_options(as);
     options.region = roi;
     return measure_whole(src, options, SceneMeter::Figures::statistics, nthreads).statistics();
+}
+
+SceneStatistics measure_scene(const ImageBuf& src, std::string_view input,
+                              TonemapOptions::Unpremult unpremult, ROI roi, int nthreads) {
+    TonemapOptions options;
+    options.input = input;
+    options.unpremult = unpremult;
+    return measure_scene(src, options, roi, nthreads);
 }
 
 Metering meter(const ImageBuf& src, const MeterOptions& options, int nthreads) {

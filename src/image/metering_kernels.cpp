@@ -228,7 +228,7 @@ HWY_INLINE void add_up(const Pixels& pixels, std::size_t count, const Weighing& 
     const VD infinity = hn::Set(d, std::numeric_limits<double>::infinity());
     const VD offset = hn::Set(d, weighing.delta);
     const auto limit = [](VD x, double least) HWY_ATTR {
-        return hn::Min(hn::Max(x, hn::Set(DD(), least)), hn::Set(DD(), kHalfMax));
+        return hn::Min(hn::Max(x, hn::Set(DD(), least)), hn::Set(DD(), kLargestLight));
     };
     // For each of the eight lanes, in any vector.
     std::array<std::array<double, kLanes>, 3> sum, lost, top;
@@ -249,8 +249,8 @@ HWY_INLINE void add_up(const Pixels& pixels, std::size_t count, const Weighing& 
                 VD r, g, b;
                 block.load(k, r, g, b);
                 if constexpr (kConverts) {
-                    const VD x = limit(r, -kHalfMax), y = limit(g, -kHalfMax);
-                    const VD z = limit(b, -kHalfMax);
+                    const VD x = limit(r, -kLargestLight), y = limit(g, -kLargestLight);
+                    const VD z = limit(b, -kLargestLight);
                     r = weighted((*weighing.to_rec709)[0], x, y, z);
                     g = weighted((*weighing.to_rec709)[1], x, y, z);
                     b = weighted((*weighing.to_rec709)[2], x, y, z);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "tonewright/pipeline.h"
@@ -21,6 +22,9 @@ inline constexpr std::size_t kBlock = 64;
 [[nodiscard]] constexpr std::size_t padded(std::size_t count) {
     return (count + kBlock - 1) / kBlock * kBlock;
 }
+
+/// Largest channel: the largest float. Products of four luminances have their place in a double.
+inline constexpr auto kLargestLight = static_cast<double>(std::numeric_limits<float>::max());
 
 /// r, g, b, alpha.
 using Planes = std::array<std::array<double, kSpan>, 4>;
@@ -82,7 +86,7 @@ struct Weighing {
     const Matrix3* to_rec709;  // null: colors are in Rec.709
     double delta;              // added to luminances inside the logarithm, [1e-12, 1]
 };
-/// For colors without NaN, which become colors of Rec.709, [0, kHalfMax].
+/// For colors without NaN, which become colors of Rec.709, [0, kLargestLight].
 /// @param luminance  of each pixel
 [[nodiscard]] SpanLight add_up(Planes& planes, std::size_t count, const Weighing& weighing,
                                std::array<double, kSpan>& luminance,

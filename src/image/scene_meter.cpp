@@ -16,7 +16,9 @@
 #include <cmath>
 #include <mutex>
 #include <new>
+#include <numeric>
 #include <optional>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -154,8 +156,39 @@ struct Measured {
     }
 };
 
+/// A histogram that grows leaves at most this share of the pixels beyond either end.
+constexpr double kShareBeyond = 5e-4;
 /// Luminances below are black to the histogram.
 constexpr double kHistogramBlack = 1e-6;
+
+/// The places of bins: bin i > 0 begins at log2 L = at(i), and bin 0 is black. Bins of the options
+/// are 1 to bins - 1, the last of which has all that is brighter. A histogram that grows has
+/// further ones, at 0 and below and at bins and above.
+struct BinScale {
+    double minimum;
+    double range;
+    int steps;  // bins of the range
+
+    explicit BinScale(const MeterOptions& options)
+        : minimum(options.histogram_min),
+          range(options.histogram_max - options.histogram_min),
+          steps(options.bins - 2) {}
+
+    [[nodiscard]] double at(double bin) const { return minimum + range * (bin - 1) / steps; }
+    /// The lowest and the last bin of a histogram that grows: from black to the largest float.
+    [[nodiscard]] std::pair<int, int> widest() const {
+        const double per_stop = steps / range;
+        const double below = (minimum - std::log2(kHistogramBlack)) * per_stop;
+        const double above = (kMostStops - minimum) * per_stop;
+        return {std::min(1, 1 - static_cast<int>(std::clamp(below, 0.0, kMostBins))),
+                std::max(steps + 1, 1 + static_cast<int>(std::clamp(above, 0.0, kMostBins)))};
+    }
+
+  private:
+    static constexpr double kMostStops = 128;
+    /// At either end, so that numbers of bins have 16 bits.
+    static constexpr double kMostBins = 30'000;
+};
 
 /// The bins of a histogram, without logarithms: a table by exponent and first digits, and the next
 /// edge if one is within such a step.
@@ -165,16 +198,19 @@ class Bins {
     /// wait for the other.
     static constexpr std::size_t kCopies = 4;
 
-    explicit Bins(const MeterOptions& options) {
-        const int last = options.bins - 1;
-        const double range = options.histogram_max - options.histogram_min;
-        edges_.assign(static_cast<std::size_t>(options.bins) + 1, kInfinity);
+    explicit Bins(const MeterOptions& options) : scale_(options), last_(options.bins - 1) {
+        if (options.grows_histogram) {
+            std::tie(first_, last_) = scale_.widest();
+        } else if (options.histogram_min > std::log2(kHistogramBlack)) {
+            --first_;  // counts what lies below the range
+        }
+        edges_.assign(size() + 1, kInfinity);
         edges_[0] = 0;
         edges_[1] = kHistogramBlack;
         // The last bin has what is clamped to 1.
-        for (int i = 2; i <= last; ++i) {
-            edges_[static_cast<std::size_t>(i)] = std::max(
-                std::exp2(options.histogram_min + range * (i - 1) / (last - 1)), kHistogramBlack);
+        for (int i = first_ + 1; i <= last_; ++i) {
+            edges_[static_cast<std::size_t>(i - first_ + 1)] =
+                std::max(std::exp2(scale_.at(i)), kHistogramBlack);
         }
         // As few digits as distinguish the edges, because the table shares the cache with pixels.
         for (digits_ = kFewestDigits; digits_ < kMostDigits; ++digits_) {
@@ -183,14 +219,22 @@ class Bins {
         has_narrow_ = has_narrow_bin();
         for (const double edge : edges_)
             places_.push_back(place_of(edge));
-        steps_.reserve(key_of(kHalfMax) + 1);
+        steps_.reserve(key_of(kLargest) + 1);
         std::size_t bin = 0;
-        for (std::size_t key = 0; key <= key_of(kHalfMax); ++key) {
+        for (std::size_t key = 0; key <= key_of(kLargest); ++key) {
             const auto least = static_cast<std::int64_t>(key) << (kDigits - digits_);
             while (least >= places_[bin + 1])
                 ++bin;
             steps_.push_back(static_cast<std::uint16_t>(bin));
         }
+    }
+
+    [[nodiscard]] const BinScale& scale() const noexcept { return scale_; }
+    /// The bin behind that of black. @see BinScale
+    [[nodiscard]] int first() const noexcept { return first_; }
+    /// Bins, with that of black.
+    [[nodiscard]] std::size_t size() const noexcept {
+        return static_cast<std::size_t>(last_ - first_) + 2;
     }
 
     /// Counts luminances.
@@ -223,6 +267,8 @@ class Bins {
     static constexpr int kFewestDigits = 3;
     static constexpr int kMostDigits = 8;
     static constexpr double kFirst = 0x1p-20;
+    /// Luminances are sums of channels up to light::kLargestLight.
+    static constexpr double kLargest = 1.01 * light::kLargestLight;
     static_assert(kHistogramBlack > kFirst);
 
     /// Bits that increase with luminance, starting with those of kFirst.
@@ -236,7 +282,7 @@ class Bins {
     }
     /// Several edges are within a step.
     [[nodiscard]] bool has_narrow_bin() const noexcept {
-        for (std::size_t i = 2; i < edges_.size() && edges_[i] <= kHalfMax; ++i) {
+        for (std::size_t i = 2; i < edges_.size() && edges_[i] <= kLargest; ++i) {
             if (key_of(edges_[i]) == key_of(edges_[i - 1])) return true;
         }
         return false;
@@ -248,6 +294,9 @@ class Bins {
         return bin;
     }
 
+    BinScale scale_;
+    int first_ = 1;
+    int last_;
     std::vector<double> edges_;         // bin i is [edges_[i], edges_[i + 1])
     std::vector<std::int64_t> places_;  // of the edges
     std::vector<std::uint16_t> steps_;  // the bin of the least luminance of each step
@@ -278,7 +327,7 @@ class RowMeter {
           access_(*pixel_access(type_)),
           size_(static_cast<std::ptrdiff_t>(type_.size())),
           weighing_{plan.converts ? &plan.to_rec709 : nullptr, plan.options.delta},
-          counts_(Bins::kCopies * static_cast<std::size_t>(plan.options.bins)) {}
+          counts_(Bins::kCopies * plan.bins.size()) {}
 
     /// @returns  false when the picture could not be read.
     bool measure(int xbegin, int xend, int y, int z, Measured& row) {
@@ -378,8 +427,11 @@ class RowMeter {
             const bool is_nan =
                 std::any_of(color.begin(), color.end(), [](double x) { return std::isnan(x); });
             ++(is_nan ? row.nan : row.infinite);
-            for (std::size_t c = 0; c < 3; ++c)
-                limited_[c][limited] = sanitize(color[c] / (plan_.divides ? alpha : 1));
+            // Infinities tell no number: they are the largest half float, not the largest float.
+            for (std::size_t c = 0; c < 3; ++c) {
+                const double x = color[c] / (plan_.divides ? alpha : 1);
+                limited_[c][limited] = std::isinf(x) ? sanitize(x) : without_nan(x);
+            }
             ++limited;
         }
         // Divides by alpha in whole blocks.
@@ -417,43 +469,87 @@ class RowMeter {
     std::vector<std::uint64_t> counts_;  // of the histogram
 };
 
+/// A histogram and the places of its bins.
+struct Histogram {
+    BinScale scale;
+    int first;  // behind black
+    std::vector<std::uint64_t> counts;
+    std::uint64_t below = 0;
+    std::uint64_t above = 0;
+
+    [[nodiscard]] int last() const { return first + static_cast<int>(counts.size()) - 2; }
+    [[nodiscard]] std::uint64_t at(int bin) const {
+        return counts[static_cast<std::size_t>(bin - first) + 1];
+    }
+    [[nodiscard]] std::uint64_t all() const {
+        return std::accumulate(counts.begin() + 1, counts.end(), std::uint64_t{0});
+    }
+};
+
+/// The histogram between the limits of the options, or beyond them as far as the picture reaches.
+Histogram histogram_of(const Bins& bins, const std::vector<std::uint64_t>& counts,
+                       const MeterOptions& options) {
+    const Histogram whole = {bins.scale(), bins.first(), counts};
+    int first = 1;
+    int last = options.bins - 1;
+    // The widest histogram ends one bin before black, which lies in its first bin.
+    std::uint64_t below = 0;
+    for (int bin = whole.first; bin < first; ++bin)
+        below += whole.at(bin);
+    std::uint64_t above = 0;
+    for (int bin = last; bin <= whole.last(); ++bin)
+        above += whole.at(bin);
+    if (options.grows_histogram) {
+        const auto allowed = static_cast<double>(whole.all()) * kShareBeyond;
+        while (first > whole.first && static_cast<double>(below) > allowed)
+            below -= whole.at(--first);
+        while (last < whole.last() && static_cast<double>(above) > allowed)
+            above -= whole.at(last++);
+    }
+    Histogram result = {bins.scale(), first, {}, below, above};
+    result.counts.assign(static_cast<std::size_t>(last - first) + 2, 0);
+    result.counts[0] = counts[0];
+    for (int bin = whole.first; bin <= whole.last(); ++bin) {
+        result.counts[static_cast<std::size_t>(std::clamp(bin, first, last) - first) + 1] +=
+            whole.at(bin);
+    }
+    return result;
+}
+
 /// 2^(mean log2) of the bins, each weighted with its pixels between the percentiles.
-double average_of_bins(const std::vector<std::uint64_t>& histogram, const MeterOptions& options) {
-    std::uint64_t all = 0;
-    for (std::size_t i = 1; i < histogram.size(); ++i)
-        all += histogram[i];
-    const double low = static_cast<double>(all) * options.low_percentile / 100;
-    const double high = static_cast<double>(all) * options.high_percentile / 100;
+double average_of_bins(const Histogram& histogram, const MeterOptions& options) {
+    const auto all = static_cast<double>(histogram.all());
+    const double low = all * options.low_percentile / 100;
+    const double high = all * options.high_percentile / 100;
     double before = 0;
     double sum = 0;
     double weights = 0;
-    for (std::size_t i = 1; i < histogram.size(); ++i) {
-        const double after = before + static_cast<double>(histogram[i]);
+    for (int i = histogram.first; i <= histogram.last(); ++i) {
+        const double after = before + static_cast<double>(histogram.at(i));
         const double weight = std::max(std::min(after, high) - std::max(before, low), 0.0);
         sum += weight * static_cast<double>(i);
         weights += weight;
         before = after;
     }
-    const double range = options.histogram_max - options.histogram_min;
     const double bin = (weights > 0 ? sum / weights : 0) - 1;
-    return std::exp2(bin / (options.bins - 2) * range + options.histogram_min);
+    const BinScale& scale = histogram.scale;
+    return std::exp2(bin / scale.steps * scale.range + scale.minimum);
 }
 
 /// Luminance below which `rank` pixels of the histogram are.
-double luminance_at(const std::vector<std::uint64_t>& histogram, double rank,
-                    const MeterOptions& options) {
+double luminance_at(const Histogram& histogram, double rank) {
     double before = 0;
-    std::size_t bin = 1;
-    while (bin + 1 < histogram.size() &&
-           (histogram[bin] == 0 || before + static_cast<double>(histogram[bin]) < rank))
-        before += static_cast<double>(histogram[bin++]);
+    int bin = histogram.first;
+    while (bin < histogram.last() &&
+           (histogram.at(bin) == 0 || before + static_cast<double>(histogram.at(bin)) < rank))
+        before += static_cast<double>(histogram.at(bin++));
     const double within =
-        histogram[bin] == 0
+        histogram.at(bin) == 0
             ? 0
-            : std::clamp((rank - before) / static_cast<double>(histogram[bin]), 0.0, 1.0);
-    const double range = options.histogram_max - options.histogram_min;
-    return std::exp2((static_cast<double>(bin - 1) + within) / (options.bins - 2) * range +
-                     options.histogram_min);
+            : std::clamp((rank - before) / static_cast<double>(histogram.at(bin)), 0.0, 1.0);
+    const BinScale& scale = histogram.scale;
+    return std::exp2((static_cast<double>(bin - 1) + within) / scale.steps * scale.range +
+                     scale.minimum);
 }
 
 /// Partially sorts: the value of this rank is at its position, and smaller ones are before it.
@@ -499,19 +595,22 @@ struct SceneMeter::State {
 
 SceneMeter::SceneMeter(const OIIO::ImageSpec& spec, const MeterOptions& options, Cover cover,
                        Figures figures, int nthreads) {
-    const SourceColor source = source_color(spec, options.input);
-    const Matrix3 to_rec709 = rgb_to_rgb(source.primaries, kRec709);
+    const SourceColor source = in_units(source_color(spec, options.input), options.input_units);
+    const Matrix3 to_rec709 =
+        scale(rgb_to_rgb(source.primaries, kRec709), scene_scale(source, options.reference_white));
     std::optional<ReferenceEngine> decode;
     if (!source.decode.empty()) decode.emplace(source.decode);
     ChannelLayout layout = channel_layout(spec);
     if (options.unpremult == TonemapOptions::Unpremult::no || cover == Cover::ignored)
         layout.alpha = -1;
+    Bins bins(options);
+    std::vector<std::uint64_t> histogram(bins.size());
     state_ = std::make_unique<State>(
         State{{options, figures, layout, divides_by_alpha(spec, options.unpremult),
-               to_rec709 != kIdentity3, to_rec709, std::move(decode), Bins(options)},
+               to_rec709 != kIdentity3, to_rec709, std::move(decode), std::move(bins)},
               nthreads,
               {},
-              std::vector<std::uint64_t>(static_cast<std::size_t>(options.bins))});
+              std::move(histogram)});
 }
 
 SceneMeter::~SceneMeter() = default;
@@ -574,8 +673,13 @@ Metering SceneMeter::metering() const {
     m.scene = statistics();
     m.scene_count = light.count + all.limited.count;
     m.scene_lit_count = light.lit_count + all.limited.lit_count;
-    m.histogram = state_->histogram;
-    m.histogram_average = average_of_bins(m.histogram, options);
+    const Histogram histogram = histogram_of(state_->plan.bins, state_->histogram, options);
+    m.histogram = histogram.counts;
+    m.histogram_min = histogram.scale.at(histogram.first);
+    m.histogram_max = histogram.scale.at(histogram.last());
+    m.below_histogram = histogram.below;
+    m.above_histogram = histogram.above;
+    m.histogram_average = average_of_bins(histogram, options);
     if (light.count == 0) return m;
     m.log_average = light.log_with_delta.geometric_mean(light.count);
     m.mean = light.mean_luminance();
@@ -598,8 +702,8 @@ Metering SceneMeter::metering() const {
         }
     } else {
         for (const double percent : Metering::kPercents) {
-            m.percentiles.push_back(luminance_at(
-                m.histogram, static_cast<double>(measurable) * percent / 100, options));
+            m.percentiles.push_back(
+                luminance_at(histogram, static_cast<double>(measurable) * percent / 100));
         }
     }
     return m;

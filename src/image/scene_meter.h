@@ -50,6 +50,9 @@ using PicturePass = std::function<void(SceneMeter&)>;
                                                         SceneMeter::Figures figures, int nthreads,
                                                         const PicturePass& pass);
 
+/// How tonemap() with these options reads a picture: color, alpha, units and white.
+[[nodiscard]] TONEWRIGHT_API MeterOptions meter_options(const TonemapOptions& options);
+
 /// Meters a file, or the rows of a region of it.
 /// @throws Error  without the file's name, unless it is a FileError
 [[nodiscard]] TONEWRIGHT_API SceneMeter measure_file(const std::string& path,

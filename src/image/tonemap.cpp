@@ -111,7 +111,8 @@ TonemapOptions in_places(TonemapOptions options) {
 
 View view_of(const TonemapOptions& options, const Settings& settings, const SourceColor& source) {
     return make_view(resolve_picture_operator(options.op, settings, options.look, options.others),
-                     source, options.exposure_stops, options.display, options.reference_white);
+                     in_units(source, options.input_units), options.exposure_stops, options.display,
+                     options.reference_white);
 }
 
 /// True if some of the operator's parameters come from a picture.
@@ -168,11 +169,23 @@ struct PictureMap {
 void run_picture(const PictureMap& with, ImageBuf& dst, const ImageBuf& src, ROI roi, int nthreads,
                  Progress& progress);
 
+/// Limit of the light that local operators get. They apply the exposure themselves, because their
+/// statistics are those before it, so the limit is that of exposed light. At exposures above 0 it
+/// is that of light itself, so that statistics do not depend on the exposure.
+double light_limit(const View& view) {
+    return kHalfMax * std::exp2(std::max(-view.exposure_stops, 0.0));
+}
+
 /// The input of a local operator: light of Rec.709, not negative.
 Pipeline light_stages(const View& view) {
+    const double limit = light_limit(view);
     Pipeline stages = view.input_decode;
+    const bool is_linear = stages.empty();
+    if (view.input_scale != 1)
+        stages.emplace_back(MatrixStage{scale(kIdentity3, view.input_scale)});
+    stages.emplace_back(ClampStage{-limit, limit, is_linear});
     stages.emplace_back(MatrixStage{rgb_to_rgb(view.input_primaries, kRec709)});
-    stages.emplace_back(ClampStage{0, kHalfMax});
+    stages.emplace_back(ClampStage{0, limit});
     return stages;
 }
 
@@ -191,6 +204,7 @@ Pipeline engine_stages(View view, const LiveUniforms& uniforms) {
     if (view.op.op->is_local()) {
         view.input_primaries = kRec709;
         view.input_decode = {};
+        view.input_scale = 1;
         view.exposure_stops = 0;
     }
     return build_live_view(view, uniform_names(uniforms));
@@ -219,7 +233,12 @@ struct Prepared {
           uniforms(program.uniforms),
           engine(program.engine.with_uniforms(values())) {
         if (view.op.params == program.view.op.params) keeps_gray_ = program.keeps_gray_;
-        if (program.to_light) to_light.emplace(program.to_light->with_uniforms({}));
+        if (!program.to_light) return;
+        if (light_limit(view) == light_limit(program.view)) {
+            to_light.emplace(program.to_light->with_uniforms({}));
+        } else {
+            to_light.emplace(light_stages(view));
+        }
     }
 
     /// True if a gray picture stays gray, at all live exposures.
@@ -264,9 +283,10 @@ struct Tonemapper::State {
           depends_on_picture(tonewright::depends_on_picture(options)),
           programs_(std::make_shared<Programs>(kMostPrepared)) {
         if (depends_on_picture) statistics_ = live_statistics(operator_of(options));
-        // Reports wrong options before there is a picture.
-        is_local =
-            view_of(options, options.settings, source_color({}, options.input)).op.op->is_local();
+        // Reports wrong options before there is a picture, which may say that it is absolute.
+        SourceColor source = source_color({}, options.input);
+        source.is_absolute = source.is_absolute || is_same_name(options.input, kAutoInput);
+        is_local = view_of(options, options.settings, source).op.op->is_local();
     }
 
     /// At another exposure, with the same programs.
@@ -612,8 +632,7 @@ void Tonemapper::State::run(ImageBuf& dst, const ImageBuf& src, ROI roi, int nth
         return;
     }
     // Statistics of the whole picture, so that regions match.
-    const SceneStatistics statistics =
-        measure_scene(src, options.input, options.unpremult, {}, nthreads);
+    const SceneStatistics statistics = measure_scene(src, options, {}, nthreads);
     State(*this, statistics).run(dst, src, roi, nthreads, progress);
 }
 

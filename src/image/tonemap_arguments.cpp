@@ -35,7 +35,8 @@ Choice parse_choice(std::string_view name, const std::string& value,
 
 const std::vector<std::string>& tonemap_argument_names() {
     static const std::vector<std::string> names = {
-        "op", "look", "exposure", "input", "display", "reference_white", "unpremult", "statistics"};
+        "op",        "look",      "exposure", "input", "display", "input_units", "reference_white",
+        "unpremult", "statistics"};
     return names;
 }
 
@@ -67,6 +68,8 @@ void set_tonemap_argument(TonemapOptions& options, std::string_view name,
         options.display = value;
     } else if (name == "reference_white") {
         options.reference_white = parse_number(name, value);
+    } else if (name == "input_units") {
+        options.input_units = parse_input_units(value);
     } else if (name == "unpremult") {
         options.unpremult = parse_choice<Unpremult>(
             name, value,

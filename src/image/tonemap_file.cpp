@@ -47,6 +47,7 @@ void say_how(ImageSpec& picture, const TonemapOptions& options) {
     std::string display = options.display;
     if (options.reference_white != kReferenceWhite)
         display += fmt::format(", reference white {}", shortest(options.reference_white));
+    if (options.input_units == InputUnits::luminance) display += ", input in cd/m2";
     picture.attribute("Software",
                       fmt::format("Tonewright {}: {}, exposure {}, display {}", TONEWRIGHT_VERSION,
                                   operator_text(op), exposure, display));
@@ -245,9 +246,7 @@ void tonemap_in_batches(const Tonemapper& tonemapper, const std::string& in, con
     }
     std::optional<Tonemapper> own;
     if (tonemapper.takes_statistics()) {
-        MeterOptions options;
-        options.input = tonemapper.options().input;
-        options.unpremult = tonemapper.options().unpremult;
+        MeterOptions options = meter_options(tonemapper.options());
         options.read = read;
         options.read.warn = options.read.note = nullptr;
         own = tonemapper.with_statistics(

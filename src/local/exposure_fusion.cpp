@@ -103,7 +103,7 @@ Pipeline tone_curve() {
 
 /// The tone curve at an exposure.
 SimdEngine engine_of(double gain) {
-    Pipeline stages = {MatrixStage{scale(kIdentity3, gain)}};
+    Pipeline stages = {MatrixStage{scale(kIdentity3, gain)}, ClampStage{-kHalfMax, kHalfMax, true}};
     for (const Stage& stage : tone_curve())
         stages.push_back(stage);
     return SimdEngine(stages);

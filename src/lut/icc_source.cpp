@@ -179,8 +179,7 @@ const std::vector<Known>& known_colors() {
         const auto power = [&](const char* name, const Primaries& primaries, double exponent) {
             add({name,
                  primaries,
-                 {curve_stage(power_decode(Expr::input(), exponent)),
-                  ClampStage{-kHalfMax, kHalfMax}}});
+                 {curve_stage(power_decode(Expr::input(), exponent))}});
         };
         // Adobe RGB (1998) Color Image Encoding, version 2005-05, 4.3.1 and 4.3.4.
         power("Adobe RGB (1998)", {"Adobe RGB", {0.64, 0.33}, {0.21, 0.71}, {0.15, 0.06}, kD65},
@@ -272,8 +271,6 @@ SourceColor color_of_matrix(const IccTags& tags, const std::string& description,
         defining += tags.find(name);
     SourceColor color = {unique_name(description, defining), kRec709, {stage_of(curves)}};
     add_colorants(color, colorants);
-    // Clamps like the input of every engine.
-    color.decode.push_back(ClampStage{-kHalfMax, kHalfMax});
     return color;
 }
 
@@ -292,7 +289,7 @@ SourceColor color_of_gray(const IccTags& tags, bool has_lightness, const std::st
     if (const SourceColor* known = find_known(to_connection(kRec709), curves)) return *known;
     return {unique_name(description, (has_lightness ? "L" : "Y") + std::string(tags.find("kTRC"))),
             kRec709,
-            {stage_of(curves), ClampStage{-kHalfMax, kHalfMax}}};
+            {stage_of(curves)}};
 }
 
 /// textDescriptionType of version 2; multiLocalizedUnicodeType of version 4, ICC.1:2022, 10.15.

@@ -264,7 +264,6 @@ std::optional<SourceColor> look_up_color(std::string_view name) {
 }  // namespace
 
 SourceColor encoded_color(std::string name, Pipeline decode, const Primaries& primaries) {
-    decode.push_back(ClampStage{-kHalfMax, kHalfMax});
     return {std::move(name), primaries, std::move(decode)};
 }
 

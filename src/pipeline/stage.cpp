@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <span>
 
@@ -209,6 +210,13 @@ Pipeline bind_uniforms(const Pipeline& pipeline, const UniformValues& values) {
     return bound;
 }
 
+bool limits_input(const Pipeline& pipeline) {
+    return std::none_of(pipeline.begin(), pipeline.end(), [](const Stage& stage) {
+        const auto* clamp = std::get_if<ClampStage>(&stage);
+        return clamp && clamp->is_input_limit;
+    });
+}
+
 std::array<Expr, 3> compose(const Pipeline& pipeline) {
     std::array<Expr, 3> rgb = {Expr::input(0), Expr::input(1), Expr::input(2)};
     for (const Stage& stage : pipeline)
@@ -232,7 +240,8 @@ Pipeline simplify(const Pipeline& pipeline) {
         if (clamp && clamp_before && clamp->lo <= clamp_before->hi &&
             clamp_before->lo <= clamp->hi) {
             *clamp_before = {std::max(clamp->lo, clamp_before->lo),
-                             std::min(clamp->hi, clamp_before->hi)};
+                             std::min(clamp->hi, clamp_before->hi),
+                             clamp->is_input_limit || clamp_before->is_input_limit};
             continue;
         }
         out.push_back(stage);

@@ -2,6 +2,7 @@
 #include "tonewright/view.h"
 #include "base/format_number.h"
 #include "base/strings.h"
+#include "pipeline/exposure.h"
 #include "pipeline/invert.h"
 
 #include <algorithm>
@@ -28,7 +29,43 @@ Pipeline decode_stages(const ResolvedOperator& resolved) {
 
 void append(Pipeline& to, const Pipeline& from) { to.insert(to.end(), from.begin(), from.end()); }
 
+Pipeline exposed_input(const View& view, bool is_exposure_live) {
+    const Expr exposure = is_exposure_live ? exp2(Expr::uniform(std::string(kExposureUniform)))
+                                           : Expr(std::exp2(view.exposure_stops));
+    return exposed_stages(view.input_decode, view.input_scale * exposure);
+}
+
 }  // namespace
+
+Pipeline exposed_stages(const Pipeline& decode, const Expr& factor) {
+    Pipeline stages = decode;
+    const bool is_linear = stages.empty();
+    if (!factor.is_constant()) {
+        stages.push_back(named("expose", curve_stage(Expr::input() * factor)));
+    } else if (factor.value() != 1) {
+        stages.push_back(MatrixStage{scale(kIdentity3, factor.value()), "expose"});
+    } else if (is_linear) {
+        return stages;
+    }
+    stages.push_back(ClampStage{-kHalfMax, kHalfMax, is_linear});
+    return stages;
+}
+
+InputUnits parse_input_units(std::string_view text) {
+    constexpr InputUnits kUnits[] = {InputUnits::relative, InputUnits::luminance};
+    return kUnits[find_choice("input units", std::string(text), {"relative", "cd/m2"})];
+}
+
+SourceColor in_units(SourceColor source, InputUnits units) {
+    if (units == InputUnits::relative || source.is_absolute) return source;
+    source.is_absolute = true;
+    source.scale /= kReferenceWhite;
+    return source;
+}
+
+double scene_scale(const SourceColor& source, double reference_white) {
+    return source.scale * (source.is_absolute ? kReferenceWhite / reference_white : 1);
+}
 
 void check_exposure(double stops) {
     if (!(std::fabs(stops) <= 64))
@@ -49,16 +86,20 @@ View make_view(ResolvedOperator op, SourceColor input, double exposure_stops,
         throw Error("reference white is " + shortest(reference_white) +
                     "; expected [50, 1000] cd/m2");
     }
-    View view{std::move(op),   std::move(input.name), exposure_stops,         std::string(display),
-              reference_white, input.primaries,       std::move(input.decode)};
+    const bool is_absolute = input.is_absolute;
+    const double input_scale = scene_scale(input, reference_white);
+    View view{std::move(op),   std::move(input.name), exposure_stops,          std::string(display),
+              reference_white, input.primaries,       std::move(input.decode), input_scale};
     for (const std::string_view output : {kLinearOutput, kNativeOutput}) {
         if (is_same_name(display, output)) view.display = output;
     }
     const bool is_display = view.display != kLinearOutput && view.display != kNativeOutput;
-    if (reference_white != kReferenceWhite && !(is_display && find_display(display).is_hdr)) {
+    if (reference_white != kReferenceWhite && !is_absolute &&
+        !(is_display && find_display(display).is_hdr)) {
         throw Error("reference white is " + shortest(reference_white) + "; expected " +
                     shortest(kReferenceWhite) + " with display " + std::string(display) +
-                    ", which is not an HDR display");
+                    ", which is not an HDR display, and input " + view.input +
+                    ", which is not in cd/m2");
     }
     if (!is_display) return view;
     const std::vector<std::string> others{std::string(kLinearOutput), std::string(kNativeOutput)};
@@ -101,14 +142,8 @@ Pipeline build_live_view(const View& view, const std::vector<std::string>& unifo
     const Operator& op = *view.op.op;
     std::vector<std::string> parameters = uniforms;
     const bool is_exposure_live = std::erase(parameters, kExposureUniform) > 0;
-    Pipeline stages = view.input_decode;
-    if (is_exposure_live) {
-        const Expr stops = Expr::uniform(std::string(kExposureUniform));
-        stages.push_back(named("expose", curve_stage(Expr::input() * exp2(stops))));
-    }
-    const double exposure = is_exposure_live ? 1 : std::exp2(view.exposure_stops);
-    const Matrix3 to_working = rgb_to_rgb(view.input_primaries, op.working);
-    stages.push_back(MatrixStage{scale(to_working, exposure), "to_working"});
+    Pipeline stages = exposed_input(view, is_exposure_live);
+    stages.push_back(MatrixStage{rgb_to_rgb(view.input_primaries, op.working), "to_working"});
     append(stages, parameters.empty() ? view.op.build() : build_live(view.op, parameters));
     if (view.display == kNativeOutput) return stages;
     if (view.display == kLinearOutput) {
@@ -167,7 +202,8 @@ Pipeline build_inverse_view(const View& view) {
     }
     append(stages, inverse());
     const Matrix3 to_input = rgb_to_rgb(op.working, view.input_primaries);
-    stages.push_back(MatrixStage{scale(to_input, std::exp2(-view.exposure_stops))});
+    stages.push_back(
+        MatrixStage{scale(to_input, std::exp2(-view.exposure_stops) / view.input_scale)});
     return stages;
 }
 

@@ -253,9 +253,7 @@ class TonemappedInput final : public ImageInput {
         const std::lock_guard lock(mutex_);
         auto found = measured_.find(subimage);
         if (found == measured_.end()) {
-            MeterOptions options;
-            options.input = tonemapper_->options().input;
-            options.unpremult = tonemapper_->options().unpremult;
+            MeterOptions options = meter_options(tonemapper_->options());
             options.read.subimage = fmt::to_string(subimage);
             const SceneStatistics statistics =
                 measure_file(path_, options, SceneMeter::Figures::statistics, threads())

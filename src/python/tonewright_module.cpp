@@ -289,8 +289,9 @@ py::array_t<Value> checked_colors(const py::object& given) {
 py::array evaluate_colors(const std::string& op, const py::object& colors,
                           const py::kwargs& arguments) {
     const TonemapOptions options = parse_options(op, arguments);
-    const SourceColor input =
-        find_source_color(is_same_name(options.input, kAutoInput) ? "lin_rec709" : options.input);
+    const SourceColor input = in_units(
+        find_source_color(is_same_name(options.input, kAutoInput) ? "lin_rec709" : options.input),
+        options.input_units);
     const View view =
         make_view(resolve_operator(options.op, options.settings, options.look, options.others),
                   input, options.exposure_stops, options.display, options.reference_white);
@@ -545,6 +546,8 @@ py::dict describe(const Metering& metering, const ExposureRule& rule, double del
     d["minimum"] = metering.minimum;
     d["maximum"] = metering.maximum;
     d["histogram_average"] = metering.histogram_average;
+    d["histogram_range"] = py::make_tuple(metering.histogram_min, metering.histogram_max);
+    d["outside"] = metering.share_outside();
     py::dict percentiles;
     for (std::size_t i = 0; i < metering.percentiles.size(); ++i)
         percentiles[py::float_(Metering::kPercents[i])] = metering.percentiles[i];
@@ -558,13 +561,15 @@ py::dict describe(const Metering& metering, const ExposureRule& rule, double del
 
 py::dict meter_any(const py::object& image, const std::string& method, std::optional<double> key,
                    double compensation, double delta, double low, double high,
-                   const std::string& input, const std::string& unpremult,
-                   const std::string& subimage, const std::string& layer, int nthreads,
-                   double max_pixels) {
+                   const std::string& input, const std::string& input_units, double reference_white,
+                   const std::string& unpremult, const std::string& subimage,
+                   const std::string& layer, int nthreads, double max_pixels) {
     TonemapOptions alpha;
     set_tonemap_argument(alpha, "unpremult", unpremult);
     MeterOptions options;
     options.input = input;
+    options.input_units = parse_input_units(input_units);
+    options.reference_white = reference_white;
     options.unpremult = alpha.unpremult;
     options.read = {.subimage = subimage, .layer = layer, .max_pixels = max_pixels};
     options.delta = delta;

@@ -56,7 +56,8 @@ class ProgramMaker {
     explicit ProgramMaker(const UniformRanges& uniforms) : uniforms_(uniforms) {}
 
     ShaderProgram make(const Pipeline& pipeline) {
-        limit({-kHalfMax, kHalfMax});
+        range_.fill({-kInfinity, kInfinity});
+        if (limits_input(pipeline)) limit({-kHalfMax, kHalfMax});
         for (const NamedStage& named : simplify_named(pipeline))
             std::visit([&](const auto& s) { add(s, named.name); }, named.stage);
         return std::move(program_);

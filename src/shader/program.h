@@ -61,7 +61,8 @@ struct ShaderProgram {
     std::map<double, std::string> names = {};
 };
 
-/// The first step limits the color to +-kHalfMax, as every engine does.
+/// The first step, or the one after the exposure, limits the color to +-kHalfMax, as in every
+/// engine.
 /// @param uniforms  for every uniform that the pipeline reads
 [[nodiscard]] ShaderProgram make_program(const Pipeline& pipeline, const UniformRanges& uniforms);
 

@@ -54,7 +54,7 @@ def relative(actual, expected):
 
 def luminance(planes):
     rgb = np.stack([planes[c].astype(np.float64) for c in "RGB"], -1)
-    return (np.clip(rgb, 0, 65504) @ WEIGHTS).ravel()
+    return (np.clip(rgb, 0, np.finfo(np.float32).max) @ WEIGHTS).ravel()
 
 
 def figures(tool, report, path, name):
@@ -67,13 +67,24 @@ def figures(tool, report, path, name):
                 "mean": light.mean(), "minimum": lit.min(), "maximum": light.max()}
     for figure, value in expected.items():
         report.bound(f"{name}: {figure}", relative(of[figure], value), 1e-9)
-    share = np.clip((np.log2(np.maximum(light, 1e-30)) + 8) / 11.5, 0, 1)
-    bins = np.where(light < 1e-6, 0, np.floor(share * 254 + 1)).astype(int)
-    counts = np.bincount(bins, minlength=256)
-    report.check(f"{name}: histogram", found["histogram"] == counts.tolist())
-    inside = np.arange(256) @ counts / max(light.size - counts[0], 1) - 1
+    # Bins 1 to 254 are the range, 255 is above it. More are added until at most 0.05 % lie beyond either end.
+    place = np.floor((np.log2(light[light >= 1e-6]) + 8) / 11.5 * 254).astype(int) + 1
+    first, last, allowed = 1, 255, 5e-4 * place.size
+    lowest = 1 - int((-8 - np.log2(1e-6)) * 254 / 11.5)
+    while first > lowest and (place < first).sum() > allowed:
+        first -= 1
+    while (place >= last).sum() > allowed:
+        last += 1
+    outside = ((place < first) | (place >= last)).sum()
+    place = np.clip(place, first, last)
+    counts = [light.size - place.size, *np.bincount(place - first, minlength=last - first + 1).tolist()]
+    report.check(f"{name}: histogram", found["histogram"] == counts)
+    told = found["histogram_range"]
+    report.bound(f"{name}: its range", max(abs(told["low"] - ((first - 1) / 254 * 11.5 - 8)),
+                                           abs(told["high"] - ((last - 1) / 254 * 11.5 - 8))), 1e-12)
+    report.check(f"{name}: pixels outside", told["below"] + told["above"] == outside)
     report.bound(f"{name}: average of the histogram",
-                 relative(of["histogram_average"], 2 ** (inside / 254 * 11.5 - 8)), 1e-12)
+                 relative(of["histogram_average"], 2 ** ((place.mean() - 1) / 254 * 11.5 - 8)), 1e-12)
     exact = tool.meter(path, "--exact", "--percentiles", "40,95", "--method", "histogram")[0]
     by_size = np.sort(light[light >= 1e-6])
     for percent, value in exact["luminance"]["percentiles"].items():
@@ -114,6 +125,49 @@ def pixels(tool, report):
     report.bound("its mean", relative(found["luminance"]["mean"], 4.25), 1e-15)
     found = tool.meter("a.exr", "--no-unpremult", "--meter-region", "0,3,6,1")[0]
     report.bound("without division", relative(found["luminance"]["mean"], 1), 1e-15)
+
+
+def ranges(tool, report):
+    """A render in cd/m2, far above the usual range of the histogram, and a sun."""
+    gray = np.linspace(2000, 5000, 4096, dtype=np.float32).reshape(64, 64)
+    write_exr(tool.folder / "nits.exr", {c: gray for c in "RGB"})
+    mean = np.log2(gray.astype(float)).mean()
+    found = tool.meter("nits.exr")[0]
+    # A bin counts as its lower end: 0 to 11.5/254 stops less.
+    report.bound("a bright picture: average of a histogram that grows",
+                 abs(np.log2(found["luminance"]["histogram_average"]) - mean + 11.5 / 508), 11.5 / 508)
+    report.check("and its range", found["histogram_range"]["high"] > np.log2(4900) and found["histogram_range"]["outside"] < 1e-3)
+    for command in (("meter", "nits.exr", "--json"),
+                    ("apply", "nits.exr", "nits.png", "--operator", "hable", "--auto-exposure", "histogram", "-q")):
+        done = tool.run(*command, "--histogram-range=-8,3.5")
+        report.check(f"{command[0]}: a range that holds nothing is said", done.returncode == 0 and done.stderr.count("\n") == 1
+                     and "nits.exr: 100 % of the picture lies outside the histogram's range, -8,3.5" in done.stderr,
+                     done.stderr)
+        done = tool.run(*command, "--histogram-range=-8,13")
+        report.check(f"{command[0]}: one that holds all is not", done.returncode == 0 and not done.stderr, done.stderr)
+    one, two = (tool.meter("nits.exr", "--input-units", "cd/m2", *white)[0]["luminance"]["mean"] / gray.mean(dtype=float)
+                for white in ((), ("--reference-white", 203)))
+    report.bound("cd/m2: 100 of them are 1", relative(one, 1 / 100), 1e-12)
+    report.bound("or the reference white", relative(two, 1 / 203), 1e-12)
+    tool.run("apply", "nits.exr", "white.exr", "--operator", "linear:divisor=100", "--display", "linear", "-d", "float",
+             "--input-units", "cd/m2", "--reference-white", 203)
+    shown = read_planes(tool.folder / "white.exr", tool.folder)["R"]
+    report.bound("apply: cd/m2", np.abs(shown / (gray / 203 / 100) - 1).max(), 3e-7)  # three roundings of floats
+    tool.refused("a white that nothing has", 2, "reference white is 203; expected 100", "apply", "nits.exr", "bad.png",
+                 "--operator", "hable", "--input", "lin_rec709", "--reference-white", 203)
+    tool.refused("units that do not exist", 2, "input units is nits; expected relative or cd/m2", "meter", "nits.exr",
+                 "--input-units", "nits")
+    # A sun of 300,000: limited after the exposure, it is as bright as it is.
+    write_exr(tool.folder / "sun.exr", {c: np.full((8, 8), x, np.float32) for c, x in zip("RGB", (3e5, 2e5, 8e4))})
+    mean = float(np.array((3e5, 2e5, 8e4)) @ WEIGHTS)
+    for method in ("log-average", "mean", "max"):
+        found = tool.meter("sun.exr", "--method", method)[0]
+        report.bound(f"a sun: {method}", abs(found["exposure"] - np.log2((1 if method == "max" else 0.18) / mean)), 1e-8)
+    tool.run("apply", "sun.exr", "shown.exr", "--operator", "reinhard", "--display", "linear", "-d", "float", "--exposure", "-17")
+    shown = read_planes(tool.folder / "shown.exr", tool.folder)
+    for channel, x in zip("RGB", (3e5, 2e5, 8e4)):
+        x /= 2**17
+        report.bound(f"a sun at -17 stops: {channel}", np.abs(shown[channel] - x / (x + 1)).max(), 1e-6)  # the engine's bound
 
 
 def single(tool, report):
@@ -339,6 +393,7 @@ def main():
         if memorial and share_of([True, False], 2)[0]:
             figures(tool, report, memorial, "memorial.hdr")
         pixels(tool, report)
+        ranges(tool, report)
         single(tool, report)
         shots(tool, report)
         refusals(tool, report)

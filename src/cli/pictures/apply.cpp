@@ -91,6 +91,12 @@ PictureInput picture_of(const ApplyOptions& options) {
     return picture;
 }
 
+MeterOptions meter_options_of(const ApplyOptions& options) {
+    return meter_options_of(options.metering,
+                            {options.input, options.input_units, options.reference_white},
+                            picture_of(options));
+}
+
 /// A frame that took too long to meter is not tone mapped: if it were faster the second time, it
 /// would have another frame's exposure.
 void take_error(const MeteredShot& shot, FrameFiles& frame) {
@@ -126,9 +132,12 @@ void meter_frames(Tonemapper& tonemapper, std::vector<FrameFiles>& frames,
     {
         const QuietStderr quiet;
         ProgressBar bar(quiet.before(), metered.size());
-        shot = meter_shot(options.in, all,
-                          meter_options_of(options.metering, options.input, picture_of(options)),
-                          options.shot.cache, options.picture, [&](std::size_t) { bar.add(true); });
+        shot = meter_shot(options.in, all, meter_options_of(options), options.shot.cache,
+                          options.picture, [&](std::size_t) { bar.add(true); });
+    }
+    if (has_exposures && rule.method == ExposureRule::Method::histogram) {
+        for (const MeteredPicture& picture : shot.pictures)
+            warn_of_histogram(picture);
     }
     if (has_statistics) tonemapper = tonemapper.with_statistics(shot.statistics());
     if (!has_exposures) return;
@@ -153,15 +162,15 @@ void meter_each(std::vector<FrameFiles>& files, const ApplyOptions& options) {
     paths.reserve(files.size());
     for (const FrameFiles& file : files)
         paths.push_back(file.in);
-    const std::vector<MeteredPicture> metered = meter_pictures(
-        paths, meter_options_of(options.metering, options.input, picture_of(options)),
-        options.shot.cache, options.picture);
+    const std::vector<MeteredPicture> metered =
+        meter_pictures(paths, meter_options_of(options), options.shot.cache, options.picture);
     for (std::size_t i = 0; i < files.size(); ++i) {
         // If there are several, tone mapping reports the reason.
         if (files.size() == 1 && metered[i].is_file_error) throw FileError(metered[i].error);
         if (files.size() == 1 && !metered[i].error.empty()) throw Error(metered[i].error);
         if (options.picture.timeout > 0) files[i].error = metered[i].error;
         if (!metered[i].error.empty()) continue;
+        if (rule.method == ExposureRule::Method::histogram) warn_of_histogram(metered[i]);
         files[i].exposure_stops =
             options.exposure +
             suggested_exposure(
@@ -289,6 +298,7 @@ int run_apply(const ApplyOptions& given) {
     tonemap.input = options.input;
     tonemap.display = options.display;
     tonemap.reference_white = options.reference_white;
+    tonemap.input_units = parse_input_units(options.input_units);
     tonemap.unpremult = alpha_of(options);
     tonemap.dither = options.dither;
     tonemap.statistics = parse_statistics(options.statistics);

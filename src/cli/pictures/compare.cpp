@@ -52,6 +52,8 @@ Rendering rendering_of(const ResolvedOperator& op, const CompareOptions& options
     tonemap.look = op.params.look();
     tonemap.exposure_stops = options.exposure;
     tonemap.input = options.input;
+    tonemap.input_units = parse_input_units(options.input_units);
+    tonemap.reference_white = options.reference_white;
     tonemap.others = operator_files();
     return {op, Tonemapper(tonemap)};
 }
@@ -73,10 +75,14 @@ std::vector<Rendering> renderings_of(const CompareOptions& options) {
 
 /// Operators that measure the picture measure all of it, once.
 void take_statistics(std::vector<Rendering>& renderings, const OIIO::ImageBuf& picture,
-                     const std::string& input) {
+                     const CompareOptions& options) {
     const auto takes = [](const Rendering& r) { return r.tonemapper.takes_statistics(); };
     if (!std::any_of(renderings.begin(), renderings.end(), takes)) return;
-    const SceneStatistics statistics = measure_scene(picture, input);
+    TonemapOptions as;
+    as.input = options.input;
+    as.input_units = parse_input_units(options.input_units);
+    as.reference_white = options.reference_white;
+    const SceneStatistics statistics = measure_scene(picture, as);
     for (Rendering& r : renderings) {
         if (takes(r)) r.tonemapper = r.tonemapper.with_statistics(statistics);
     }
@@ -193,17 +199,20 @@ void compare_pictures(CompareOptions options) {
     const QuietStderr quiet;
     const SourceColor source = about_picture(options.in, [&] {
         (void)channel_layout(picture.spec());
-        return source_color(picture.spec(), options.input);
+        return in_units(source_color(picture.spec(), options.input),
+                        parse_input_units(options.input_units));
     });
     const std::string remark =
         fmt::format("{}, {}, shown on sRGB", exposure_text(options.exposure), title_of(source));
     if (source.convert || (!options.split && !source.decode.empty())) {
         // Code values are not light, so they are not scaled.
-        picture = to_rec709_light(picture, source, options.in);
+        picture = to_rec709_light(picture, source, options.reference_white, options.in);
         options.input = "lin_rec709";
+        options.input_units = "relative";
+        options.reference_white = kReferenceWhite;
         renderings = renderings_of(options);
     }
-    about_picture(options.in, [&] { take_statistics(renderings, picture, options.input); });
+    about_picture(options.in, [&] { take_statistics(renderings, picture, options); });
     with_memory_for(options.in, [&] {
         if (options.split) {
             write_split(options, renderings, picture);

@@ -72,7 +72,7 @@ bool is_utf8() {
 }
 
 /// Bins side by side as bars, log2 of luminance from left to right.
-void draw_histogram(const Metering& metering, const MeterOptions& options, double metered) {
+void draw_histogram(const Metering& metering, double metered) {
     constexpr std::size_t kColumns = 76;
     constexpr std::size_t kRows = 8;
     const std::vector<std::uint64_t>& bins = metering.histogram;
@@ -110,16 +110,16 @@ void draw_histogram(const Metering& metering, const MeterOptions& options, doubl
         line.erase(line.find_last_not_of(' ') + 1);
         fmt::print("{}\n", line);
     }
-    const double range = options.histogram_max - options.histogram_min;
+    const double range = metering.histogram_max - metering.histogram_min;
     const auto column_of = [&](double log2_luminance) {
         return 2 + static_cast<std::ptrdiff_t>(
-                       std::floor((log2_luminance - options.histogram_min) / range * kColumns));
+                       std::floor((log2_luminance - metering.histogram_min) / range * kColumns));
     };
     std::string ticks(kColumns + 4, ' ');
     std::string labels(kColumns + 4, ' ');
     const int step = std::max(1, static_cast<int>(std::ceil(range / 12)));
-    const int first = static_cast<int>(std::ceil(options.histogram_min / step)) * step;
-    for (int stop = first; stop <= options.histogram_max; stop += step) {
+    const int first = static_cast<int>(std::ceil(metering.histogram_min / step)) * step;
+    for (int stop = first; stop <= metering.histogram_max; stop += step) {
         const std::string label = stop == 0 ? "0" : fmt::format("{:+}", stop);
         const auto at =
             std::min<std::size_t>(static_cast<std::size_t>(column_of(stop)), kColumns + 1);
@@ -135,10 +135,12 @@ void draw_histogram(const Metering& metering, const MeterOptions& options, doubl
         fmt::print("{}\n", *line);
     }
     fmt::print("  log2 of luminance, 0 = diffuse white, -2.47 = mid gray; ^ metered\n");
+    fmt::print("  range {:.4g} to {:.4g}; {:.3g} % of the picture outside\n",
+               metering.histogram_min, metering.histogram_max, 100 * metering.share_outside());
 }
 
 void print_picture(const Metered& metered, const MeterCommandOptions& options,
-                   const MeterOptions& how, const ExposureRule& rule) {
+                   const ExposureRule& rule) {
     const Metering& m = metered.picture.metering;
     fmt::print("{}\n\n", one_line(metered.picture.path));
     fmt::print("  pixels      {} counted, {} of them black", m.counted, m.black);
@@ -168,7 +170,7 @@ void print_picture(const Metered& metered, const MeterCommandOptions& options,
             fmt::print("{:>9.3g}", luminance);
         fmt::print("\n");
     }
-    draw_histogram(m, how, chosen);
+    draw_histogram(m, chosen);
     if (metered.adapted) fmt::print("\n  adapted exposure {:+.2f}\n", *metered.adapted);
 }
 
@@ -263,7 +265,9 @@ int run_meter(const MeterCommandOptions& options) {
     int exit_code = kOk;
     use_threads(options.picture);
     const ExposureRule rule = rule_of(options.metering);
-    const MeterOptions how = meter_options_of(options.metering, options.input, options.picture);
+    const MeterOptions how = meter_options_of(
+        options.metering, {options.input, options.input_units, options.reference_white},
+        options.picture);
     const std::vector<Metered> all = meter_all(options, how, rule);
     if (options.json) {
         Json pictures = Json::array();
@@ -274,10 +278,11 @@ int run_meter(const MeterCommandOptions& options) {
     } else if (all.size() > 1) {
         print_table(all, options, rule);
     } else if (all.front().picture.error.empty()) {
-        print_picture(all.front(), options, how, rule);
+        print_picture(all.front(), options, rule);
     }
     for (const Metered& metered : all) {
         const MeteredPicture& picture = metered.picture;
+        warn_of_histogram(picture);
         if (picture.error.empty()) continue;
         exit_code = std::max<int>(exit_code, picture.is_file_error ? kFile : kUsage);
         print_message("meter: " + picture.error);

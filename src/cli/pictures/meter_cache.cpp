@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kFormat = "tonewright_meter_cache";
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 
 std::string absolute(const std::string& path) {
     std::error_code error;
@@ -49,6 +49,11 @@ Metering metering_from(const Json& j) {
             percentiles.at(shortest(percent)).get_to(m.percentiles.emplace_back());
     }
     j.at("histogram").get_to(m.histogram);
+    const Json& range = j.at("histogram_range");
+    range.at("low").get_to(m.histogram_min);
+    range.at("high").get_to(m.histogram_max);
+    range.at("below").get_to(m.below_histogram);
+    range.at("above").get_to(m.above_histogram);
     const Json& scene = j.at("statistics");
     scene.at("log_average").get_to(m.scene.log_average);
     scene.at("mean_luminance").get_to(m.scene.mean_luminance);
@@ -80,6 +85,8 @@ Json to_json(const MeterOptions& options) {
     if (const OIIO::ROI& r = options.region; r.defined())
         region = Json::array({r.xbegin, r.ybegin, r.width(), r.height()});
     return {{"input", options.input},
+            {"input_units", options.input_units == InputUnits::luminance ? "cd/m2" : "relative"},
+            {"reference_white", options.reference_white},
             {"subimage", options.read.subimage},
             {"layer", options.read.layer},
             {"unpremult", options.unpremult == Unpremult::automatic
@@ -88,6 +95,7 @@ Json to_json(const MeterOptions& options) {
             {"region", region},
             {"delta", options.delta},
             {"histogram_range", Json::array({options.histogram_min, options.histogram_max})},
+            {"histogram_grows", options.grows_histogram},
             {"bins", options.bins},
             {"percentiles", Json::array({options.low_percentile, options.high_percentile})},
             {"exact", options.exact}};
@@ -112,6 +120,12 @@ Json to_json(const Metering& m) {
               {"histogram_average", m.histogram_average},
               {"percentiles", percentiles}}},
             {"histogram", m.histogram},
+            {"histogram_range",
+             {{"low", m.histogram_min},
+              {"high", m.histogram_max},
+              {"below", m.below_histogram},
+              {"above", m.above_histogram},
+              {"outside", m.share_outside()}}},
             {"statistics",
              {{"log_average", m.scene.log_average},
               {"mean_luminance", m.scene.mean_luminance},

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <mutex>
 #include <set>
 #include <thread>
 
+#include "cli/messages.h"
 #include "cli/pictures/contained.h"
 #include "cli/pictures/frames.h"
 #include "cli/pictures/meter_cache.h"
@@ -64,18 +66,23 @@ static_assert(ExposureOptions{}.delta == MeterOptions{}.delta &&
               ShotOptions{}.fps == Adaptation{}.fps);
 #endif
 
-MeterOptions meter_options_of(const ExposureOptions& options, const std::string& input,
+MeterOptions meter_options_of(const ExposureOptions& options, const MeteredInput& input,
                               const PictureInput& picture) {
     MeterOptions o;
-    o.input = input;
+    o.input = input.space;
+    o.input_units = parse_input_units(input.units);
+    o.reference_white = input.reference_white;
     o.read = read_options_of(picture);
     o.unpremult = alpha_of(picture);
     if (!options.region.empty()) o.region = parse_region(options.region);
     o.delta = options.delta;
-    const auto range = parse_numbers("--histogram-range", options.histogram_range, 2,
-                                     "log2 of two luminances, such as -8,3.5");
-    o.histogram_min = range[0];
-    o.histogram_max = range[1];
+    if (!options.histogram_range.empty()) {
+        const auto range = parse_numbers("--histogram-range", options.histogram_range, 2,
+                                         "log2 of two luminances, such as -8,3.5");
+        o.histogram_min = range[0];
+        o.histogram_max = range[1];
+        o.grows_histogram = false;
+    }
     o.bins = options.histogram_bins;
     const auto percents =
         parse_numbers("--percentiles", options.percentiles, 2, "two percentages, such as 40,95");
@@ -192,6 +199,17 @@ std::vector<MeteredPicture> meter_pictures(const std::vector<std::string>& paths
     });
     known.save();
     return pictures;
+}
+
+void warn_of_histogram(const MeteredPicture& picture) {
+    constexpr double kMostOutside = 0.01;
+    const Metering& m = picture.metering;
+    if (!picture.error.empty() || !(m.share_outside() > kMostOutside)) return;
+    warn(fmt::format(
+        "{}: {:.3g} % of the picture lies outside the histogram's range, {:g},{:g} in log2 of "
+        "luminance; leave out --histogram-range, or set one that holds {:.3g},{:.3g}",
+        picture.path, 100 * m.share_outside(), m.histogram_min, m.histogram_max,
+        std::log2(m.minimum), std::log2(m.maximum)));
 }
 
 MeteredShot meter_shot(const std::string& pattern, std::vector<int> frames,

@@ -12,9 +12,15 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
+/// What a picture's numbers mean. @see TonemapOptions
+struct MeteredInput {
+    std::string space;
+    std::string units;
+    double reference_white;
+};
 /// @throws Error
 [[nodiscard]] MeterOptions meter_options_of(const ExposureOptions& options,
-                                            const std::string& input, const PictureInput& picture);
+                                            const MeteredInput& input, const PictureInput& picture);
 /// @throws Error
 [[nodiscard]] ExposureRule rule_of(const ExposureOptions& options);
 /// @throws Error
@@ -39,6 +45,9 @@ struct MeteredPicture {
 [[nodiscard]] std::vector<MeteredPicture> meter_pictures(
     const std::vector<std::string>& paths, const MeterOptions& options, const std::string& cache,
     const PictureInput& input, const std::function<void(std::size_t)>& done = {});
+
+/// Warns if more than 1 % of a metered picture lies outside the histogram.
+void warn_of_histogram(const MeteredPicture& picture);
 
 /// Exposures and statistics of a metered shot.
 struct MeteredShot {

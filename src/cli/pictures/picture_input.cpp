@@ -14,6 +14,7 @@
 #include "cli/messages.h"
 #include "cli/pictures/commands.h"
 #include "image/picture_file.h"
+#include "pipeline/exposure.h"
 #include "tonewright/engine.h"
 #include "tonewright/image_io.h"
 
@@ -109,12 +110,13 @@ OIIO::ImageBuf read_picture(const std::string& path, const PictureChoice& choice
 }
 
 OIIO::ImageBuf to_rec709_light(const OIIO::ImageBuf& picture, const SourceColor& source,
-                               const std::string& path) {
+                               double reference_white, const std::string& path) {
     if (source.convert) {
-        OIIO::ImageBuf light = converted_picture(picture, source);
-        return to_rec709_light(light, source_color(light.spec(), kAutoInput), path);
+        const OIIO::ImageBuf light = converted_picture(picture, source);
+        return to_rec709_light(light, source_color(light.spec(), kAutoInput), reference_white,
+                               path);
     }
-    Pipeline stages = source.decode;
+    Pipeline stages = exposed_stages(source.decode, scene_scale(source, reference_white));
     stages.emplace_back(MatrixStage{rgb_to_rgb(source.primaries, kRec709)});
     const SimdEngine engine(stages);
     OIIO::ImageBuf scene;

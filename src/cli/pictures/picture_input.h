@@ -72,9 +72,11 @@ class Notes {
 void use_threads(const PictureInput& input);
 
 /// Scene-linear Rec.709 light of a picture with the color `source`.
+/// @param reference_white  of absolute sources, cd/m2
 /// @throws FileError  a picture that cannot be read
 [[nodiscard]] OIIO::ImageBuf to_rec709_light(const OIIO::ImageBuf& picture,
-                                             const SourceColor& source, const std::string& path);
+                                             const SourceColor& source, double reference_white,
+                                             const std::string& path);
 
 /// The options of the library, without callbacks.
 [[nodiscard]] ReadOptions read_options_of(const PictureChoice& choice);

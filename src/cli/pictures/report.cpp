@@ -47,10 +47,12 @@ OIIO::ImageBuf light_of(const ReportPictureOptions& options) {
     const SourceColor source = about_picture(options.path, [&] {
         (void)channel_layout(picture.spec());
         check_shown_window(picture);
-        return source_color(picture.spec(), kAutoInput);
+        return in_units(source_color(picture.spec(), kAutoInput),
+                        parse_input_units(options.input_units));
     });
     return with_memory_for(options.path, [&] {
-        const OIIO::ImageBuf light = to_rec709_light(picture, source, options.path);
+        const OIIO::ImageBuf light =
+            to_rec709_light(picture, source, options.reference_white, options.path);
         return shown_window(light).width() > options.width ? resize_scene(light, options.width)
                                                            : light;
     });

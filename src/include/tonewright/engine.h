@@ -14,7 +14,11 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// The first step of every engine: NaN -> 0, then the limits +-kHalfMax.
+/// The first step of every engine: NaN -> 0.
+[[nodiscard]] inline double without_nan(double x) noexcept { return x != x ? 0.0 : x; }
+
+/// The first step for pipelines without an exposure: NaN -> 0, then the limits +-kHalfMax.
+/// @see limits_input()
 [[nodiscard]] inline double sanitize(double x) noexcept {
     return x != x ? 0.0 : (x < -kHalfMax ? -kHalfMax : (x > kHalfMax ? kHalfMax : x));
 }

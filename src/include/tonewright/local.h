@@ -25,7 +25,8 @@ struct ScenePlanes {
     int width = 0;   // at least 1
     int height = 0;  // at least 1
     /// Red, green and blue of Rec.709, row by row without gaps: scene-linear before exposure,
-    /// within [0, 65504]. They become the operator's output: finite, not negative.
+    /// within [0, 65504], or [0, 65504 / exposure] for exposures below 1. They become the
+    /// operator's output: finite, not negative.
     std::array<std::vector<float>, 3> rgb;
     /// 0: the pixel is left out of statistics, because its alpha is 0. Empty, or all 0: all pixels
     /// count.

@@ -15,15 +15,18 @@
 /// Metering: the luminance of a picture, the exposure that follows from it, and the exposure of a
 /// shot over time.
 ///
-/// Luminance is relative (0.2126, 0.7152, 0.0722), of Rec.709 light: channels are limited to
-/// +-65504 and converted from `input`; then negatives become 0. 1 is diffuse white; EV100 takes it
-/// as 1 cd/m2.
+/// Luminance is relative (0.2126, 0.7152, 0.0722), of Rec.709 light: channels are converted from
+/// `input`; then negatives become 0. Light is measured before exposure, over the whole range of
+/// floats. 1 is diffuse white; EV100 takes it as 1 cd/m2.
 TONEWRIGHT_NAMESPACE_BEGIN
 
 /// Pixels and figures to measure.
 struct MeterOptions {
     /// @see TonemapOptions::input
     std::string input = std::string(kAutoInput);
+    /// As in TonemapOptions. Reference whites other than the default are accepted for all pictures.
+    InputUnits input_units = InputUnits::relative;
+    double reference_white = kReferenceWhite;
     /// As in tonemap(). If alpha counts, pixels whose alpha is 0 or not finite are left out, unless
     /// all are.
     TonemapOptions::Unpremult unpremult = TonemapOptions::Unpremult::automatic;
@@ -35,11 +38,15 @@ struct MeterOptions {
     /// Added to every luminance inside the logarithm of the log average, [1e-10, 1]; also the least
     /// metered luminance.
     double delta = 1e-3;
-    /// Limits of the histogram, log2 of luminance, [-64, 16]. Values outside count in the first and
-    /// last bins.
+    /// Limits of the histogram, log2 of luminance, [-64, 128]. Values outside count in the first
+    /// and last bins.
     double histogram_min = -8;
     double histogram_max = 3.5;
-    /// Bins, [3, 4096]; the first is black (below 1e-6).
+    /// Adds bins of the same width at either end until at most 0.05 % of the pixels that are not
+    /// black lie beyond it. Pictures within the limits get the same figures with and without it.
+    /// Bins keep their places, so that the figures of a shot do not jump from frame to frame.
+    bool grows_histogram = true;
+    /// Bins between the limits, with that of black (below 1e-6), [3, 4096].
     int bins = 256;
     /// The histogram's average takes the pixels between these percentiles, without black, 0 <= low
     /// < high <= 100.
@@ -80,6 +87,12 @@ struct Metering {
     /// has luminances below 1e-6, bin i > 0 those with floor(clamp((log2 L - min)/(max - min)) *
     /// (bins - 2) + 1) = i.
     std::vector<std::uint64_t> histogram;
+    /// Limits of that histogram: those of the options, or beyond them.
+    double histogram_min = 0;
+    double histogram_max = 0;
+    /// Pixels that are not black, with luminances below and above those limits.
+    std::uint64_t below_histogram = 0;
+    std::uint64_t above_histogram = 0;
     /// 2^(mean of the bins' lower ends) over the pixels that are not black, between the
     /// percentiles; just below the lower limit if all are black. With MeterOptions::exact, from
     /// their luminances.
@@ -88,6 +101,14 @@ struct Metering {
     /// bin, or exact. Empty if all are black.
     static constexpr double kPercents[] = {1, 5, 25, 50, 75, 95, 99};
     std::vector<double> percentiles;
+
+    /// Share of the pixels that are not black and lie outside the histogram.
+    [[nodiscard]] double share_outside() const {
+        const std::uint64_t all = histogram.empty() ? 0 : counted - histogram[0];
+        return all == 0 ? 0
+                        : static_cast<double>(below_histogram + above_histogram) /
+                              static_cast<double>(all);
+    }
 
     /// As in measure_scene(): NaN counts as 0, and infinities are limited.
     SceneStatistics scene;

@@ -19,8 +19,9 @@
 
 TONEWRIGHT_NAMESPACE_BEGIN
 
-/// Largest finite half float. Every backend limits scene-linear values to this range, because
-/// OpenColorIO's half-domain tables end there. All backends then agree for every input.
+/// Largest finite half float. Every backend limits scene-linear values to this range after the
+/// exposure, because OpenColorIO's half-domain tables end there. All backends then agree for every
+/// input.
 inline constexpr double kHalfMax = 65504.0;
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -77,6 +78,9 @@ struct HexconeStage {
 struct ClampStage {
     double lo = 0;
     double hi = kInfinity;
+    /// The limit of scene-linear values, in a view that exposes its input first. Engines give such
+    /// a pipeline all numbers, not those within +-kHalfMax. @see limits_input()
+    bool is_input_limit = false;
 };
 
 /// A channel-mixing stage: three functions of red, green and blue (inputs 0, 1, 2), which no chain
@@ -120,6 +124,8 @@ template <class NamedStage>
 /// The three outputs, as expressions of `rgb`.
 [[nodiscard]] TONEWRIGHT_API std::array<Expr, 3> apply_stage(const Stage& stage,
                                                              const std::array<Expr, 3>& rgb);
+/// True if engines limit the input to +-kHalfMax: no stage of the pipeline is the input's limit.
+[[nodiscard]] TONEWRIGHT_API bool limits_input(const Pipeline& pipeline);
 /// The whole pipeline as three expressions of inputs 0, 1, 2.
 [[nodiscard]] TONEWRIGHT_API std::array<Expr, 3> compose(const Pipeline& pipeline);
 /// Drops identities, multiplies neighboring matrices (in double), and joins neighboring clamps. The

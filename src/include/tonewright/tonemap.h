@@ -64,8 +64,11 @@ struct TonemapOptions {
     std::string input = std::string(kAutoInput);
     /// Display (id, title or alias), or `linear`, or `native`.
     std::string display = "srgb";
-    /// Luminance of scene-linear 1.0 on an HDR display, cd/m2, [50, 1000].
+    /// Luminance of scene-linear 1.0 in absolute sources (PQ, HLG, cd/m2) and on an HDR display,
+    /// cd/m2, [50, 1000]. Other pictures on other displays accept the default only.
     double reference_white = kReferenceWhite;
+    /// Units of the source's decoded numbers. Those in cd/m2 are divided by `reference_white`.
+    InputUnits input_units = InputUnits::relative;
     Unpremult unpremult = Unpremult::automatic;
     /// Dithers 8-bit files by half a code value: sets `oiio:dither`, which OIIO's writers follow.
     bool dither = false;
@@ -77,8 +80,8 @@ struct TonemapOptions {
 /// Measures the statistics of a picture, for operators whose parameters come from it.
 ///
 /// Relative luminance (0.2126, 0.7152, 0.0722) and channels of Rec.709 light, for each pixel as in
-/// tonemap(): NaN becomes 0, channels are limited to +-65504 and converted from `input`, negatives
-/// become 0. Statistics describe the picture before exposure.
+/// tonemap(), before exposure and without its limit: NaN becomes 0, infinities become +-65504,
+/// channels are converted from `input`, negatives become 0.
 ///
 /// If alpha counts (`unpremult` is not `no`), color is un-premultiplied as in tonemap(), and pixels
 /// whose alpha is 0 or not finite are left out. If all are, the picture is measured as it is.
@@ -93,6 +96,10 @@ struct TonemapOptions {
 measure_scene(const OIIO::ImageBuf& src, std::string_view input = kAutoInput,
               TonemapOptions::Unpremult unpremult = TonemapOptions::Unpremult::automatic,
               OIIO::ROI roi = {}, int nthreads = 0);
+/// The same, of a picture as tonemap() reads it with these options: color, alpha, units and white.
+[[nodiscard]] TONEWRIGHT_API SceneStatistics measure_scene(const OIIO::ImageBuf& src,
+                                                           const TonemapOptions& options,
+                                                           OIIO::ROI roi = {}, int nthreads = 0);
 
 /// A view that is ready to run on pictures. It is compiled once for each source color, at the first
 /// picture, and serves every frame of a shot. Safe to use from several threads at once, on
@@ -148,7 +155,8 @@ class TONEWRIGHT_API Tonemapper {
 /// 3. Associated color is un-premultiplied first and premultiplied last (`options.unpremult`).
 /// Color
 ///    of pixels whose alpha is 0 or not finite is taken as it is, because it represents emission.
-/// 4. NaN becomes 0, and every channel is limited to +-65504 before the view. The result is finite.
+/// 4. NaN becomes 0, and every channel is limited to +-65504 after the exposure. The result is
+///    finite.
 /// 5. Statistics are those of the whole source, for every region, so regions that are rendered one
 ///    by one match. (This does not hold in place, because the source and its metadata change.
 ///    Measure first, and name the input.)

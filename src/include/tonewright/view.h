@@ -59,6 +59,9 @@ struct SourceColor {
     Pipeline decode = {};
     /// True for absolute luminance (PQ, HLG, cd/m2): decoded 1.0 is kReferenceWhite cd/m2.
     bool is_absolute = false;
+    /// Factor on the decoded numbers, > 0. It is applied with the exposure, before values are
+    /// limited to +-kHalfMax.
+    double scale = 1;
     /// Runs before `decode`, for encodings that no Pipeline can hold, such as the LUTs of an ICC
     /// profile: stored numbers -> numbers that `decode` takes. Interleaved RGB; in and out may be
     /// the same; safe to use from several threads at once. Empty: none.
@@ -82,6 +85,21 @@ struct SourceColor {
 /// Luminance of scene-linear 1.0 on OpenColorIO's HDR displays, cd/m2.
 inline constexpr double kReferenceWhite = 100;
 
+/// Units of a picture's linear numbers.
+enum class InputUnits : unsigned char {
+    relative,   // 1.0 is diffuse white
+    luminance,  // cd/m2, as in photometric renders: the reference white becomes 1.0
+};
+/// `relative` or `cd/m2`.
+/// @throws Error  for any other text, with the nearest name
+[[nodiscard]] TONEWRIGHT_API InputUnits parse_input_units(std::string_view text);
+/// The color of a source whose decoded numbers have these units. Absolute sources stay as they are.
+[[nodiscard]] TONEWRIGHT_API SourceColor in_units(SourceColor source, InputUnits units);
+/// Factor from the source's decoded numbers to scene-linear: of an absolute source, the reference
+/// white becomes 1.0.
+/// @param reference_white  cd/m2
+[[nodiscard]] TONEWRIGHT_API double scene_scale(const SourceColor& source, double reference_white);
+
 /// The two outputs that are not displays: `linear` is display-linear Rec.709, unclamped; `native`
 /// is the operator's own output.
 inline constexpr std::string_view kLinearOutput = "linear";
@@ -95,11 +113,13 @@ struct View {
     double exposure_stops = 0;
     /// Id of a display, or `linear`, or `native`.
     std::string display = "srgb";
-    /// Luminance of scene-linear 1.0 on an HDR display, cd/m2.
+    /// Luminance of scene-linear 1.0 in absolute sources and on an HDR display, cd/m2.
     double reference_white = kReferenceWhite;
     Primaries input_primaries = kRec709;
-    /// Stored numbers of the source -> scene-linear in those primaries. Empty for input spaces.
+    /// Stored numbers of the source -> light in those primaries. Empty for input spaces.
     Pipeline input_decode = {};
+    /// Factor from that light to scene-linear. @see scene_scale()
+    double input_scale = 1;
 };
 
 /// @throws Error  the exposure is out of range
@@ -108,10 +128,9 @@ TONEWRIGHT_API void check_exposure(double stops);
 /// @param op        the result of resolve_operator(). This function sets the parameters that the
 ///                  display decides.
 /// @param exposure  stops, finite, within [-64, 64]
-/// @param reference_white  luminance of scene-linear 1.0 on an HDR display, cd/m2, within [50,
-/// 1000]
-///                  (Report ITU-R BT.2408: 203). SDR displays, `linear` and `native` accept the
-///                  default only.
+/// @param reference_white  luminance of scene-linear 1.0 in absolute sources and on an HDR display,
+///                  cd/m2, within [50, 1000] (Report ITU-R BT.2408: 203). If the source is relative
+///                  and the display is SDR, `linear` or `native`, only the default is accepted.
 /// @throws Error    unknown input space or display; exposure or reference white out of range
 [[nodiscard]] TONEWRIGHT_API View make_view(ResolvedOperator op, std::string_view input,
                                             double exposure_stops, std::string_view display,
@@ -140,9 +159,10 @@ struct DisplayLimit {
 [[nodiscard]] TONEWRIGHT_API Pipeline display_light_stages(const ResolvedOperator& op,
                                                            const DisplayLimit& limit);
 
-/// The whole view as stages. Its input is scene-linear in the view's input space, or the stored
-/// numbers that the view decodes, after sanitize() of engine.h: NaN -> 0, then each channel limited
-/// to +-kHalfMax.
+/// The whole view as stages: decoding, exposure, the limit +-kHalfMax, the operator, the display.
+/// Its input is scene-linear in the view's input space, or the stored numbers that the view
+/// decodes, where NaN is 0. Engines limit stored numbers to +-kHalfMax. Without decoding and
+/// exposure, they also are the limit, and the stages have none. @see limits_input()
 [[nodiscard]] TONEWRIGHT_API Pipeline build_view(const View& view);
 
 /// The name of the exposure, in stops, as a uniform.

@@ -11,7 +11,7 @@ Functions that take an operator share these options:
     input            "auto" (as the picture says), a color space ("acescg") or an encoding ("sRGB", "Gamma2.2")
     display          "srgb", "rec1886", "rec2100_pq", ... (see displays()), "linear" or "native"
     look             look of the operator
-    reference_white  luminance of scene-linear 1.0 on HDR displays, in cd/m2
+    reference_white  luminance of scene-linear 1.0 in inputs of PQ, HLG or cd/m2 and on HDR displays, in cd/m2
 
 A wrong type raises TypeError, a wrong value ValueError, a file OSError or one of its subclasses. Too little memory raises
 MemoryError. Warnings about a file are UserWarnings; with `python -W error`, they are errors and the file is not written.
@@ -83,8 +83,8 @@ def _options(settings: Mapping[str, Any] | None, exposure: float, input: str, di
 
 
 def tonemap(image: Picture, op: str, *, settings: Mapping[str, Any] | None = None, exposure: float = 0, input: str = "auto",
-            display: str = "srgb", look: str = "", reference_white: float = 100, unpremult: str | bool = "auto",
-            statistics: str = "picture", axis: int | None = None, roi: OpenImageIO.ROI | None = None, nthreads: int = 0,
+            display: str = "srgb", look: str = "", reference_white: float = 100, input_units: str = "relative",
+            unpremult: str | bool = "auto", statistics: str = "picture", axis: int | None = None, roi: OpenImageIO.ROI | None = None, nthreads: int = 0,
             progress: Callable[[float], object] | None = None) -> Picture:
     """Tone map a picture and return the result as float32 values of the same kind.
 
@@ -92,6 +92,7 @@ def tonemap(image: Picture, op: str, *, settings: Mapping[str, Any] | None = Non
     float64, uint8, uint16 or uint32; integers represent [0, 1]. The first three channels are color (or the first of one or
     two channels); the fourth (or second) is alpha.
     op: operator id, optionally with :preset, or the path of a .tone file or a LUT.
+    input_units: units of linear numbers: "relative" (1.0 is diffuse white) or "cd/m2", divided by reference_white.
     unpremult: "auto", "yes" or "no": un-premultiply color first.
     statistics: "picture" (measure it for operators that need it) or "defaults".
     axis: the axis of the channels of an array, such as 0 for (channels, height, width).
@@ -102,7 +103,8 @@ def tonemap(image: Picture, op: str, *, settings: Mapping[str, Any] | None = Non
     Example: tonewright.tonemap(OpenImageIO.ImageBuf("shot.exr"), "agx_blender", exposure=1)
     """
     options = _options(settings, exposure, input, display, look, reference_white)
-    options.update(unpremult=_choice("unpremult", unpremult), statistics=_text("statistics", statistics))
+    options.update(input_units=_text("input_units", input_units), unpremult=_choice("unpremult", unpremult),
+                   statistics=_text("statistics", statistics))
     if axis is not None:
         if not isinstance(image, _np.ndarray) or image.ndim != 3:
             raise ValueError("axis is given; expected an array of three dimensions")
@@ -114,9 +116,9 @@ def tonemap(image: Picture, op: str, *, settings: Mapping[str, Any] | None = Non
 
 def tonemap_file(source: Path, target: Path, op: str, *, settings: Mapping[str, Any] | None = None, exposure: float = 0,
                  input: str = "auto", display: str = "srgb", look: str = "", reference_white: float = 100,
-                 unpremult: str | bool = "auto", statistics: str = "picture", dtype: str | None = None,
-                 alpha: str = "keep", subimage: int | str = "", layer: str = "", nthreads: int = 0,
-                 in_place: bool = False, max_pixels: float = 1e9) -> None:
+                 input_units: str = "relative", unpremult: str | bool = "auto", statistics: str = "picture",
+                 dtype: str | None = None, alpha: str = "keep", subimage: int | str = "", layer: str = "",
+                 nthreads: int = 0, in_place: bool = False, max_pixels: float = 1e9) -> None:
     """Tone map a picture file into another file, as `tonewright apply` does. Its warnings are UserWarnings.
 
     target: replaced only when the new file is complete; its extension sets the format.
@@ -131,7 +133,8 @@ def tonemap_file(source: Path, target: Path, op: str, *, settings: Mapping[str, 
     Example: tonewright.tonemap_file("shot.exr", "shot.png", "hable", settings={"white": 8})
     """
     options = _options(settings, exposure, input, display, look, reference_white)
-    options.update(unpremult=_choice("unpremult", unpremult), statistics=_text("statistics", statistics))
+    options.update(input_units=_text("input_units", input_units), unpremult=_choice("unpremult", unpremult),
+                   statistics=_text("statistics", statistics))
     _tonewright.tonemap_file(_path("source", source), _path("target", target), _text("op", op),
                              type="" if dtype is None else _text("dtype", dtype), alpha=_text("alpha", alpha),
                              nthreads=_operator.index(nthreads), subimage=str(subimage), layer=_text("layer", layer),
@@ -154,7 +157,8 @@ def evaluate(op: str, colors: npt.ArrayLike, *, settings: Mapping[str, Any] | No
 
 def meter(image: Path | Picture, *, method: str = "log-average", key: float | None = None, compensation: float = 0,
           delta: float = 1e-3, percentiles: tuple[float, float] = (0, 100), input: str = "auto",
-          unpremult: str | bool = "auto", subimage: int | str = "", layer: str = "", nthreads: int = 0,
+          input_units: str = "relative", reference_white: float = 100, unpremult: str | bool = "auto",
+          subimage: int | str = "", layer: str = "", nthreads: int = 0,
           max_pixels: float = 1e9) -> dict[str, Any]:
     """Measure the luminance of a picture and suggest an exposure, in stops, as `tonewright meter` does.
 
@@ -164,6 +168,7 @@ def meter(image: Path | Picture, *, method: str = "log-average", key: float | No
     compensation: stops on top of the metered exposure.
     delta: added to each luminance inside the logarithm.
     percentiles: "histogram" averages between these.
+    input_units, reference_white: as tonemap().
     max_pixels: most pixels that a file may declare.
 
     Example: tonewright.meter("shot.exr")["exposure"]
@@ -173,7 +178,8 @@ def meter(image: Path | Picture, *, method: str = "log-average", key: float | No
         image = _path("image", image)
     return _tonewright.meter(image, _text("method", method), None if key is None else _number("key", key),
                              _number("compensation", compensation), _number("delta", delta), _number("percentiles", low),
-                             _number("percentiles", high), _text("input", input), _choice("unpremult", unpremult),
+                             _number("percentiles", high), _text("input", input), _text("input_units", input_units),
+                             _number("reference_white", reference_white), _choice("unpremult", unpremult),
                              str(subimage), _text("layer", layer), _operator.index(nthreads),
                              _number("max_pixels", max_pixels))
 

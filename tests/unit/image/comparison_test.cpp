@@ -162,6 +162,21 @@ TEST(ResizeScene, IsAMeanOfLight) {
     EXPECT_NEAR(at(scene, 25, 12, 2), 1, 0.05);
 }
 
+TEST(ResizeScene, ASunKeepsItsColor) {
+    ImageBuf picture = counted(64, 64, 3, 1);
+    for (int y = 16; y < 48; ++y) {
+        for (int x = 16; x < 48; ++x) {
+            const float sun[] = {3e5F, 2e5F, 8e4F};
+            picture.setpixel(x, y, sun);
+        }
+    }
+    const ImageBuf small = resize_scene(picture, 16);
+    // Of the filter's weights, whose sum is 1, a few roundings.
+    EXPECT_NEAR(at(small, 8, 8, 0), 3e5, 1);
+    EXPECT_NEAR(at(small, 8, 8, 1), 2e5, 1);
+    EXPECT_NEAR(at(small, 8, 8, 2), 8e4, 1);
+}
+
 TEST(ResizeScene, OneBadPixelDoesNotSpoilItsNeighbors) {
     ImageBuf picture = counted(64, 64, 3, 1);
     const float bad[] = {std::numeric_limits<float>::quiet_NaN(),

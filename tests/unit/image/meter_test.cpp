@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <tuple>
 
 #include "tonewright/engine.h"
@@ -158,7 +159,9 @@ TEST(Meter, EqualsItsDefinition) {
         ++histogram[L < 1e-6 ? 0 : static_cast<std::size_t>(t * 254 + 1)];
     }
     const auto n = static_cast<long double>(all.size());
-    const Metering m = meter(picture);
+    MeterOptions options;
+    options.grows_histogram = false;
+    const Metering m = meter(picture, options);
     expect_near(m.log_average, static_cast<double>(std::exp(logs / n)));
     expect_near(m.mean, static_cast<double>(sum / n));
     EXPECT_EQ(m.histogram, histogram);
@@ -183,6 +186,7 @@ TEST(Meter, NarrowAndOddHistograms) {
         MeterOptions options;
         options.histogram_min = shape.min;
         options.histogram_max = shape.max;
+        options.grows_histogram = false;
         options.bins = shape.bins;
         std::vector<std::uint64_t> histogram(static_cast<std::size_t>(shape.bins));
         for (const double L : all) {
@@ -192,6 +196,103 @@ TEST(Meter, NarrowAndOddHistograms) {
         }
         EXPECT_EQ(meter(picture, options).histogram, histogram) << shape.min << " " << shape.bins;
     }
+}
+
+/// Grays of a scene: from `from` to `to`, in log2 of luminance, and one in `every` of `other`.
+std::vector<double> scene_of(double from, double to, int every = 0, double other = 0) {
+    constexpr int kCount = 4000;
+    std::vector<double> values;
+    for (int i = 0; i < kCount; ++i) {
+        const bool is_other = every > 0 && i % every == 0;
+        values.push_back(std::exp2(is_other ? other : from + (to - from) * i / kCount));
+    }
+    return values;
+}
+
+// By the definition: bins of 11.5/254 stops, added at either end until 0.05 % lie beyond it.
+TEST(Meter, HistogramGrowsToHoldThePicture) {
+    struct Case {
+        std::vector<double> values;
+        double least, most;  // of the limits
+    };
+    const double bin = 11.5 / 254;
+    for (const Case& one : {Case{scene_of(-7, 3), -8, 3.5}, Case{scene_of(11, 12.3), -8, 12.3},
+                            Case{scene_of(-14, -3), -14, 3.5}, Case{scene_of(-19, 40), -19, 40},
+                            Case{scene_of(-3, 3, 50, 18.2), -8, 18.2},
+                            // One pixel of 4000 is 0.025 %.
+                            Case{scene_of(-3, 3, 4000, 18.2), -8, 3.5}}) {
+        const Metering m = meter(grays(one.values));
+        EXPECT_NEAR(m.histogram_min, one.least, bin);
+        EXPECT_NEAR(m.histogram_max, one.most, bin);
+        EXPECT_LE(m.share_outside(), 1e-3);
+        EXPECT_EQ(std::accumulate(m.histogram.begin(), m.histogram.end(), std::uint64_t{0}), 4000U);
+        EXPECT_EQ(m.histogram.size(), std::lround((m.histogram_max - m.histogram_min) / bin) + 2);
+        double mean = 0;
+        for (const double x : one.values)
+            mean += std::log2(x) / 4000;
+        // A bin counts as its lower end; 0.025 % of 15 stops.
+        EXPECT_NEAR(std::log2(m.histogram_average), mean - bin / 2, bin / 2 + 0.004);
+        MeterOptions fixed;
+        fixed.grows_histogram = false;
+        const Metering narrow = meter(grays(one.values), fixed);
+        EXPECT_EQ(narrow.histogram.size(), 256U);
+        EXPECT_EQ(narrow.histogram_max, 3.5);
+        std::uint64_t outside = 0;
+        for (const double x : one.values)
+            outside += std::log2(x) < -8 || std::log2(x) >= 3.5 ? 1 : 0;
+        EXPECT_EQ(narrow.below_histogram + narrow.above_histogram, outside);
+    }
+}
+
+TEST(Meter, GrowingChangesNoFigureOfAPictureWithinTheLimits) {
+    const ImageBuf picture = grays(scene_of(-7.9, 3.4, 3, -30));
+    MeterOptions fixed;
+    fixed.grows_histogram = false;
+    EXPECT_TRUE(same(meter(picture), meter(picture, fixed)));
+}
+
+// Frames of a shot that gets brighter, step by step, from below the limits through them: each frame
+// is brighter by as much, but for the width of a bin, also where its histogram begins to grow.
+TEST(Meter, HistogramsOfAShotDoNotJump) {
+    const double bin = 11.5 / 254;
+    constexpr double kStep = 0.05;
+    for (const int every : {0, 7, 99, 101, 1999}) {  // suns of 0 to 14 %, also about 1 and 0.05 %
+        double before = 0;
+        for (double stops = -20; stops < 30; stops += kStep) {
+            const Metering m = meter(grays(scene_of(stops - 4, stops, every, stops + 9)));
+            const double here = std::log2(m.histogram_average);
+            // Black below 1e-6 is not in the mean; the darkest frames lose pixels to it.
+            if (stops - 4 > -19.9 && before != 0) {
+                EXPECT_GE(here, before) << stops << " " << every;
+                EXPECT_NEAR(here - before, kStep, bin) << stops << " " << every;
+            }
+            before = here;
+        }
+    }
+}
+
+TEST(Meter, SeesTheWholeRangeOfFloats) {
+    const double most = static_cast<double>(std::numeric_limits<float>::max());
+    EXPECT_EQ(meter(colors({{3e5F, 3e5F, 3e5F}})).maximum, 3e5);
+    const Metering m = meter(colors({{3e38F, 1e38F, 1}, {1, 2, 3}}));
+    expect_near(m.maximum,
+                0.2126 * static_cast<double>(3e38F) + 0.7152 * static_cast<double>(1e38F) + 0.0722);
+    expect_near(meter(grays({1e300})).maximum, most);
+    const double stops = suggested_exposure(meter(grays({3e5, 3e5})).mean, {});
+    EXPECT_NEAR(stops, std::log2(0.18 / 3e5), 1e-12);
+}
+
+TEST(Meter, AbsoluteLuminanceIsDividedByTheReferenceWhite) {
+    MeterOptions options;
+    options.input_units = InputUnits::luminance;
+    expect_near(meter(grays({406, 406}), options).mean, 4.06);
+    options.reference_white = 203;
+    expect_near(meter(grays({406, 406}), options).mean, 2);
+    // SMPTE ST 2084 of 203 cd/m2.
+    options.input = "rec2100_pq";
+    EXPECT_NEAR(meter(grays({0.580688881042, 0.580688881042}), options).mean, 1, 1e-10);
+    options.reference_white = 49;
+    EXPECT_THROW(check_meter_options(options), Error);
 }
 
 TEST(Meter, PercentilesAreTrimmed) {

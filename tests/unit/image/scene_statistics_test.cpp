@@ -132,13 +132,21 @@ TEST(SceneStatistics, WithoutLightTheyAreZero) {
 
 TEST(SceneStatistics, EveryPixelIsSanitized) {
     // NaN is 0, infinity the largest half float, a negative 0: channel by channel.
-    expect_statistics(measure_scene(row_of({{kNan, 1, -7}, {-kInf, 0, 1e30F}})),
+    expect_statistics(measure_scene(row_of({{kNan, 1, -7}, {-kInf, 0, kInf}})),
                       {std::sqrt(0.7152 * 0.0722 * 65504),
                        (0.7152 + 0.0722 * 65504) / 2,
                        0.7152,
                        0.0722 * 65504,
                        {0, 0.5, 32752},
                        {0, 1, 65504}});
+    // All other floats are what they are, also beyond halves.
+    expect_statistics(measure_scene(row_of({{kNan, 1, -7}, {-kInf, 0, 0x1p100F}})),
+                      {std::sqrt(0.7152 * 0.0722 * 0x1p100),
+                       0.0722 * 0x1p99,
+                       0.7152,
+                       0.0722 * 0x1p100,
+                       {0, 0.5, 0x1p99},
+                       {0, 1, 0x1p100}});
 }
 
 TEST(SceneStatistics, AreOfRec709Light) {
@@ -158,8 +166,9 @@ TEST(SceneStatistics, AreOfRec709Light) {
     // Grays are grays in every space, within the rounding of the matrix.
     const SceneStatistics gray = measure_scene(row_of({{3}}), "lin_ap0");
     expect_statistics(gray, {3, 3, 3, 3, {3, 3, 3}, {3, 3, 3}}, 1e-14);
-    // The conversion can exceed what the source was limited to.
-    EXPECT_EQ(measure_scene(row_of({{65504, 0, 0}}), "lin_ap1").maximum_rgb[0], 65504);
+    // The limit of half floats comes after the exposure, which statistics are before.
+    EXPECT_NEAR(measure_scene(row_of({{65504, 0, 0}}), "lin_ap1").maximum_rgb[0],
+                65504 * 1.7050509927, 65504 * 1e-10);
 }
 
 TEST(SceneStatistics, SumsLoseNothing) {

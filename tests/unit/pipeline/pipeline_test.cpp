@@ -1194,6 +1194,42 @@ TEST(View, DisplaysDecideWhatTheUserDoesNot) {
     EXPECT_EQ(preset.op.params.choice("range"), "hdr") << "a preset is the user's word";
 }
 
+TEST(View, ReferenceWhiteIsOneInAbsoluteSources) {
+    // SMPTE ST 2084 of 203 and 100 cd/m2.
+    constexpr double pq_203 = 0.580688881042;
+    constexpr double pq_100 = 0.508078421517;
+    const auto view = [](SourceColor source, const char* display, double white, double stops = 0) {
+        return build_view(
+            make_view(resolve_operator("clamp"), std::move(source), stops, display, white));
+    };
+    const SourceColor pq = find_source_color("rec2100_pq");
+    const auto gray = [](double x) { return Vector3{x, x, x}; };
+    expect_rgb(shown(view(pq, "linear", 203), gray(pq_203)), gray(1), 1e-11);
+    expect_rgb(shown(view(pq, "linear", 203), gray(pq_100)), gray(100 / 203.0), 1e-11);
+    expect_rgb(shown(view(pq, "linear", 100), gray(pq_100)), gray(1), 1e-11);
+    // 75 % HLG is 203 cd/m2 on a display of 1000 (Report ITU-R BT.2408).
+    const SourceColor hlg = find_source_color("rec2100_hlg");
+    expect_rgb(shown(view(hlg, "linear", 406), gray(0.7498774)), gray(0.5), 1e-6);
+    expect_rgb(shown(view(hlg, "linear", 100, -2), gray(0.7498774)), gray(2.03 / 4), 1e-6);
+    // The number counts for both, so that it changes no code value up to white.
+    for (const double white : {100.0, 203.0}) {
+        for (const double x : {0.1, 0.3, pq_100})
+            expect_rgb(shown(view(pq, "rec2100_pq", white), gray(x)), gray(x), 1e-9);
+    }
+    // Linear numbers in cd/m2, also beyond half floats: the disk of the sun has 1.6e9 cd/m2.
+    const SourceColor nits = in_units(find_source_color("lin_rec709"), InputUnits::luminance);
+    expect_rgb(shown(view(nits, "linear", 203), {203, 101.5, 0}), {1, 0.5, 0}, 1e-14);
+    expect_rgb(shown(view(nits, "linear", 100, -24), {1.6e9, 4e8, 100}),
+               {1.6e7 / 16777216, 4e6 / 16777216, 1 / 16777216.0}, 1e-14);
+    EXPECT_EQ(in_units(pq, InputUnits::luminance).scale, pq.scale) << "PQ already is absolute";
+    EXPECT_NE(error_of([&] {
+                  (void)view(find_source_color("lin_ap1"), "srgb", 203);
+              }).find("reference white is 203; expected 100 with display srgb"),
+              std::string::npos);
+    EXPECT_NE(error_of([&] { (void)parse_input_units("nits"); }).find("input units is nits"),
+              std::string::npos);
+}
+
 TEST(View, ReferenceWhiteHasAnInterval) {
     for (const double white : {49.0, 1001.0, std::nan("")}) {
         EXPECT_NE(error_of([&] {

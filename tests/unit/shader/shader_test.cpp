@@ -357,6 +357,22 @@ TEST(Shader, ExposureIsAnArgumentInStops) {
         EXPECT_NEAR(evaluate(a[c], color), evaluate(b[c], color), 1e-15);  // two roundings
 }
 
+TEST(Shader, ExposureComesBeforeTheLimit) {
+    ShaderRequest request = request_of("reinhard");
+    request.uniforms = {"exposure"};
+    const ShaderProgram live =
+        make_program(build_live_view(request.view, request.uniforms), {{"exposure", {-64, 64}}});
+    request.view.exposure_stops = -17;
+    const ShaderProgram constant = make_program(build_view(request.view), {});
+    const std::array<double, 3> sun = {3e5, 2e5, 8e4};
+    for (std::size_t c = 0; c < 3; ++c) {
+        const double x = sun[c] / 131072;
+        EXPECT_NEAR(evaluate(compose(constant)[c], sun), x / (x + 1), 1e-15);
+        EXPECT_NEAR(evaluate(bind_uniforms(compose(live)[c], {{"exposure", -17}}), sun),
+                    x / (x + 1), 1e-15);
+    }
+}
+
 // Curves in front of an argument and behind it, and one that reads it.
 TEST(Shader, FittedCurvesLeaveArgumentsAlone) {
     ShaderRequest request = request_of("uchimura", "", "srgb");

@@ -68,6 +68,13 @@ void add_file_options(const Command& command, ApplyOptions& options) {
         .range(1, 100)
         .group(group);
     command
+        .add("--subsampling", options.subsampling,
+             "chroma of a JPEG: 4:4:4, 4:2:2, 4:2:0 or 4:1:1 (default 4:4:4 from quality 90 on, "
+             "else 4:2:0)")
+        .value("RATIO")
+        .suggest({"4:4:4", "4:2:2", "4:2:0", "4:1:1"})
+        .group(group);
+    command
         .add_flag("--no-metadata", options.has_no_metadata,
                   "do not write version, operator, exposure and display into the file")
         .group(group);

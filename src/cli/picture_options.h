@@ -87,6 +87,9 @@ struct ApplyOptions : ViewOptions {
     std::string alpha = "keep";
     std::string compression;
     int quality = 0;
+    std::string subsampling;
+    bool verifies_output = false;
+    double mix = 1;
     bool has_no_metadata = false;
     PictureInput picture;
     LutOptions lut;

@@ -175,6 +175,8 @@ class TONEWRIGHT_API PictureWriter {
     [[nodiscard]] OIIO::ImageBuf checked(OIIO::ImageBuf&& changed) const;
     [[nodiscard]] std::string_view format() const;
     void check_compression() const;
+    void check_subsampling() const;
+    void set_compression(OIIO::ImageSpec& spec) const;
     /// Limitations of the file, in one warning.
     void warn_of_limits(const OIIO::ImageSpec& wanted, const std::string& missing) const;
     void watch_cover(const OIIO::ImageBuf& rows);

@@ -250,12 +250,14 @@ PictureWriter::PictureWriter(const std::string& path, WriteOptions options, int 
     }
     out_->threads(nthreads);
     check_compression();
+    check_subsampling();
 }
 
 std::string_view PictureWriter::format() const { return out_->format_name(); }
 
 void PictureWriter::check_compression() const {
-    const auto& [type, alpha, text, quality, max_pixels, says_how, warn] = options_;
+    const std::string& text = options_.compression;
+    const int quality = options_.quality;
     const FormatCompressions* known = compressions_of(format());
     const std::size_t colon = std::min(text.find(':'), text.size());
     const std::string name = text.substr(0, colon);
@@ -294,6 +296,42 @@ void PictureWriter::check_compression() const {
                             has_number ? text.substr(colon + 1) : fmt::to_string(quality),
                             with.empty() ? fmt::format("none, because {} is lossless", format())
                                          : "--compression " + join_choices(with) + " with it"));
+}
+
+void PictureWriter::check_subsampling() const {
+    const std::string& text = options_.subsampling;
+    if (text.empty()) return;
+    if (format() != "jpeg") {
+        throw Error(fmt::format("{}: subsampling is {}; expected none, because {}", path_, text,
+                                format() == "webp" || format() == "heif"
+                                    ? fmt::format("the writer of {} has one kind only (4:2:0)",
+                                                  format() == "webp" ? "WebP" : "HEIF and AVIF")
+                                    : fmt::format("only JPEG has it, and not {}", format())));
+    }
+    const std::vector<std::string> names = {"4:4:4", "4:2:2", "4:2:0", "4:1:1"};
+    if (std::find(names.begin(), names.end(), text) != names.end()) return;
+    throw Error(fmt::format("{}: subsampling is {}; expected {}{}", path_, text,
+                            join_choices(names), did_you_mean(text, names)));
+}
+
+void PictureWriter::set_compression(ImageSpec& spec) const {
+    // The source's compression may be one of another format, or have a quality of its own.
+    const FormatCompressions* known = compressions_of(format());
+    const std::string name = spec.get_string_attribute("compression");
+    const bool is_known = known && std::find(known->names.begin(), known->names.end(),
+                                             name.substr(0, name.find(':'))) != known->names.end();
+    if (!is_known || options_.quality > 0) erase_attributes(spec, "compression");
+    if (!options_.compression.empty()) spec.attribute("compression", options_.compression);
+    if (options_.quality > 0) spec.attribute("CompressionQuality", options_.quality);
+    if (format() != "jpeg") return;
+    // Half the resolution of chroma shows most where a thin line is saturated: pure red on black
+    // becomes half as bright. ImageMagick and libvips use the same limit.
+    constexpr int kFullChromaQuality = 90;
+    constexpr int kDefaultQuality = 98;  // of OpenImageIO's writer
+    const int quality = spec.decode_compression_metadata("jpeg", kDefaultQuality).second;
+    spec.attribute("jpeg:subsampling", !options_.subsampling.empty()   ? options_.subsampling
+                                       : quality >= kFullChromaQuality ? "4:4:4"
+                                                                       : "4:2:0");
 }
 
 PictureWriter::~PictureWriter() = default;
@@ -377,12 +415,7 @@ ImageSpec PictureWriter::plan(const ImageSpec& picture) {
     spec.set_format(type == OIIO::TypeUnknown ? picture.format : type);
     if (type != OIIO::TypeUnknown)
         erase_attributes(spec, "oiio:BitsPerSample");  // overrules the type
-    if (!options_.compression.empty()) {
-        spec.attribute("compression", options_.compression);
-    } else if (options_.quality > 0) {
-        erase_attributes(spec, "compression");  // the source's may have a quality of its own
-    }
-    if (options_.quality > 0) spec.attribute("CompressionQuality", options_.quality);
+    set_compression(spec);
     if (format() != "openexr" && format() != "png") erase_attributes(spec, "tonewright:*");
     return spec;
 }

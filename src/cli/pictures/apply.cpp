@@ -72,9 +72,11 @@ WriteOptions write_options_of(const ApplyOptions& options, const std::string& ou
     write.alpha = parse_alpha(options);
     write.compression = options.compression;
     write.quality = options.quality;
+    write.subsampling = options.subsampling;
     if (options.picture.max_pixels) write.max_pixels = *options.picture.max_pixels;
     write.says_how = !options.has_no_metadata;
-    if (options.given.contains("--compression") || options.given.contains("--quality"))
+    if (options.given.contains("--compression") || options.given.contains("--quality") ||
+        options.given.contains("--subsampling"))
         (void)PictureWriter(out, write);
     return write;
 }

@@ -3,6 +3,7 @@
 
 #include <OpenImageIO/imagebuf.h>
 
+#include <array>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -57,6 +58,8 @@ struct WriteOptions {
     /// Pixel type of the file; UNKNOWN: the buffer's, or OIIO's replacement for this format (8 bits
     /// for a float picture as PNG or JPEG, but 16 for PNG in PQ or HLG).
     OIIO::TypeDesc type = OIIO::TypeUnknown;
+    /// Bits of each channel of a DPX file, 10 or 12, with `type` UINT16. 0: all bits of the type.
+    int bits = 0;
     /// Treatment of the alpha channel.
     enum class Alpha : unsigned char {
         keep,
@@ -64,13 +67,25 @@ struct WriteOptions {
         ignore,
         /// Writes 1 everywhere.
         opaque,
+        /// Composites over `background`, and leaves alpha out.
+        over,
     };
     Alpha alpha = Alpha::keep;
+    /// With Alpha::over: R, G, B in the output's code values, as in ImageMagick's `-background`
+    /// and oiiotool's `--over`. The result is color + (1 - alpha) background in code values,
+    /// because browsers and editors show a picture with alpha that way.
+    std::array<float, 3> background = {};
     /// As oiiotool's `--compression`: a method of the format, with `:quality` if it has one. Empty:
     /// the source's if the format has it, else the format's default.
     std::string compression = {};
     /// As oiiotool's `--quality`, [1, 100]. 0: the format's default.
     int quality = 0;
+    /// Resolution of a JPEG file's chroma by oiiotool's names of `jpeg:subsampling`: 4:4:4, 4:2:2,
+    /// 4:2:0 or 4:1:1. Empty: 4:4:4 from quality 90 on, below that 4:2:0.
+    std::string subsampling = {};
+    /// Reads all pixels of the written file, and compares them with those that were to be written,
+    /// before the file gets its final name. Needs memory for a copy of the picture.
+    bool verifies = false;
     /// A picture in a format without a data window is padded with black to the display window, up
     /// to this many pixels, or four times those of the data window.
     double max_pixels = 1e8;

@@ -19,6 +19,8 @@ namespace {
 struct Claim {
     std::string color_space;  // empty: nothing
     Primaries primaries;
+    /// The name that find_source_color() knows. Empty: none.
+    std::string readable;
 };
 
 constexpr std::string_view kGamma = "Gamma";
@@ -27,7 +29,8 @@ Claim power_claim(double exponent, const Primaries& primaries) {
     // OIIO parses the number, and its writers (PNG's gAMA) need the point: "Gamma2.0".
     std::string number = shortest(exponent);
     if (number.find('.') == std::string::npos) number += ".0";
-    return {std::string(kGamma) + number, primaries};
+    const std::string name = std::string(kGamma) + number;
+    return {name, primaries, primaries == kRec709 ? name : ""};
 }
 
 /// How a display's code values are described in files, by its id.
@@ -35,18 +38,20 @@ struct DisplayCode {
     std::string_view id;
     IccCurve curve;          // of an SDR display
     CodePoints code_points;  // of an HDR display: ITU-T H.273, tables 2 and 3
+    /// Color Interop Forum, "Color Space Encodings for Interchange". Empty: it has none.
+    std::string_view interop_id;
 };
 constexpr CodePoints kNoPoints = {2, 2};  // "unspecified"
 constexpr double kSrgbPower = 2.4;
 constexpr std::array kDisplayCodes = {
-    DisplayCode{"srgb", {kSrgbPower, true}, kNoPoints},
-    DisplayCode{"display_p3", {kSrgbPower, true}, kNoPoints},
-    DisplayCode{"rec1886", {2.4}, kNoPoints},
-    DisplayCode{"rec2020", {2.4}, kNoPoints},
-    DisplayCode{"g22", {2.2}, kNoPoints},
-    DisplayCode{"rec2100_pq", {}, {9, 16}},
-    DisplayCode{"rec2100_hlg", {}, {9, 18}},
-    DisplayCode{"p3d65_pq", {}, {12, 16}},
+    DisplayCode{"srgb", {kSrgbPower, true}, kNoPoints, "srgb_rec709_display"},
+    DisplayCode{"display_p3", {kSrgbPower, true}, kNoPoints, "srgb_p3d65_display"},
+    DisplayCode{"rec1886", {2.4}, kNoPoints, "g24_rec709_display"},
+    DisplayCode{"rec2020", {2.4}, kNoPoints, ""},
+    DisplayCode{"g22", {2.2}, kNoPoints, "g22_rec709_display"},
+    DisplayCode{"rec2100_pq", {}, {9, 16}, "pq_rec2020_display"},
+    DisplayCode{"rec2100_hlg", {}, {9, 18}, "hlg_rec2020_display"},
+    DisplayCode{"p3d65_pq", {}, {12, 16}, "pq_p3d65_display"},
 };
 
 /// The X.Y of "GammaX.Y", or 0.
@@ -99,28 +104,65 @@ constexpr std::array kFormats = {
 };
 
 Claim claim_of_display(std::string_view name) {
-    if (name == kLinearOutput) return {"Linear", kRec709};
+    if (name == kLinearOutput) return {"Linear", kRec709, "lin_rec709"};
     const Display& display = find_display(name);
-    if (display.id == "srgb") return {"sRGB", display.primaries};
-    if (display.id == "g22") return power_claim(2.2, display.primaries);
+    Claim claim = {display.title, display.primaries, display.id};
+    if (display.id == "srgb") claim.color_space = "sRGB";
+    if (display.id == "g22") claim.color_space = power_claim(2.2, kRec709).color_space;
     // OIIO's "Rec709" is the camera curve of BT.709. Rec.1886 is the 2.4 power of a display.
-    if (display.id == "rec1886") return power_claim(2.4, display.primaries);
-    return {display.title, display.primaries};
+    if (display.id == "rec1886") claim.color_space = power_claim(2.4, kRec709).color_space;
+    return claim;
+}
+
+/// The space of scene-linear colors with these primaries, or null.
+const InputSpace* space_of(const Primaries& primaries) {
+    const std::vector<InputSpace>& spaces = all_input_spaces();
+    const auto found = std::find_if(spaces.begin(), spaces.end(), [&](const InputSpace& space) {
+        return space.primaries == primaries;
+    });
+    return found == spaces.end() ? nullptr : &*found;
 }
 
 Claim claim_of_operator(const ResolvedOperator& op) {
     if (const std::string display = op.output_display(); !display.empty())
         return claim_of_display(display);
     const Primaries primaries = op.output_primaries();
-    // OIIO's names imply Rec.709: for other primaries there is none.
-    if (!(primaries == kRec709)) return {"", primaries};
-    if (op.output() == OutputKind::display_linear) return {"Linear", kRec709};
-    return power_claim(op.op->code_power, kRec709);
+    if (op.output() == OutputKind::display_linear) {
+        const InputSpace* space = space_of(primaries);
+        // OIIO's names imply Rec.709: for other primaries there is none.
+        return {primaries == kRec709 ? "Linear" : "", primaries, space ? space->id : ""};
+    }
+    Claim claim = power_claim(op.op->code_power, primaries);
+    if (!(primaries == kRec709)) claim.color_space.clear();
+    return claim;
+}
+
+/// The Color Interop Forum's identifier, or empty: the forum's list has fewer pairs of a curve and
+/// primaries than its pattern of names allows.
+std::string interop_id_of(const Claim& claim) {
+    constexpr std::array<std::string_view, 5> kLinear = {"lin_rec709", "lin_rec2020", "lin_p3d65",
+                                                         "lin_ap0", "lin_ap1"};
+    if (std::find(kLinear.begin(), kLinear.end(), claim.readable) != kLinear.end())
+        return claim.readable + "_scene";
+    for (const DisplayCode& code : kDisplayCodes) {
+        const bool is_it =
+            code.id == claim.readable ||
+            (code.id == "g22" && claim.readable == power_claim(2.2, kRec709).readable) ||
+            (code.id == "rec1886" && claim.readable == power_claim(2.4, kRec709).readable);
+        if (is_it) return std::string(code.interop_id);
+    }
+    return {};
 }
 
 void tag(const Claim& claim, OIIO::ImageSpec& spec) {
     tag_as_unknown(spec);
     if (!claim.color_space.empty()) spec.attribute("oiio:ColorSpace", claim.color_space);
+    // OpenImageIO drops oiio:ColorSpace where it writes OpenEXR.
+    if (const std::string id = interop_id_of(claim); !id.empty()) {
+        spec.attribute("colorInteropID", id);
+    } else if (!claim.readable.empty()) {
+        spec.attribute("tonewright:display", claim.readable);
+    }
     if (claim.primaries == kRec709) return;  // the value of OpenEXR files without the attribute
     const Primaries& p = claim.primaries;
     std::array<float, 8> xy{};
@@ -150,7 +192,8 @@ void erase_attributes(OIIO::ImageSpec& spec, OIIO::string_view name) {
 void tag_as_unknown(OIIO::ImageSpec& spec) {
     // Each of these attributes described the source. If a writer prefers one of them to
     // oiio:ColorSpace (as DPX does), the file would be wrong. oiio:Gamma repeats the name
-    // "GammaX.Y", is deprecated, and makes OIIO's TGA writer divide by a power of alpha.
+    // "GammaX.Y", is deprecated, and makes OIIO's TGA writer divide by a power of alpha. A gain map
+    // (hdrgm and the container that names it) belongs to the source's pixels, and is not copied.
     for (const char* stale : {
              "oiio:ColorSpace",
              "oiio:Gamma",
@@ -178,6 +221,12 @@ void tag_as_unknown(OIIO::ImageSpec& spec) {
              "rla:GreenChroma",
              "rla:BlueChroma",
              "rla:WhitePoint",
+             "tonewright:*",
+             "hdrgm:*",
+             "Item:*",
+             "Container:*",
+             "GContainer:*",
+             "rdf:parseType",
          }) {
         erase_attributes(spec, stale);
     }

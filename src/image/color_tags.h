@@ -19,7 +19,9 @@ TONEWRIGHT_NAMESPACE_BEGIN
 TONEWRIGHT_API void erase_attributes(OIIO::ImageSpec& spec, OIIO::string_view name);
 
 /// Sets the metadata of a picture after `view`: `oiio:ColorSpace`, and `chromaticities` if they are
-/// not those of Rec.709. Removes the description of the source's colors.
+/// not those of Rec.709; for OpenEXR `colorInteropID` by the Color Interop Forum's list, or
+/// `tonewright:display`, a name of find_source_color(), where the list has none. Removes the
+/// description of the source's colors, and that of a gain map.
 TONEWRIGHT_API void tag_as_result_of(const View& view, OIIO::ImageSpec& spec);
 /// @param display  id of a display, or `linear`
 TONEWRIGHT_API void tag_as_shown_on(std::string_view display, OIIO::ImageSpec& spec);

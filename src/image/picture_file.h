@@ -165,6 +165,7 @@ class TONEWRIGHT_API PictureWriter {
 
   private:
     class FileProxy;
+    class LightLevelMeter;
 
     [[noreturn]] void fail(const std::string& reason) const;
     void check_disk() const;
@@ -195,7 +196,9 @@ class TONEWRIGHT_API PictureWriter {
     int last_row_ = 0;  // of the picture, exclusive
     int next_row_ = 0;  // of the window, or of the picture
     int rows_written_ = 0;
-    int rows_of_block_ = 0;  // of an OpenEXR file, else 0
+    int rows_of_block_ = 0;                          // of an OpenEXR file, else 0
+    std::unique_ptr<LightLevelMeter> light_levels_;  // of a PNG file in PQ or HLG, else null
+    std::size_t light_levels_place_ = 0;             // of their chunk in the file
     // The order matters: at its end, the writer writes to the proxy, which writes to the file.
     std::unique_ptr<AtomicFile> temporary_;
     std::unique_ptr<FileProxy> proxy_;  // null: OIIO opens the file itself

@@ -11,6 +11,7 @@
 #include <array>
 #include <cerrno>
 #include <charconv>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -31,7 +32,9 @@
 #include "image/color_tags.h"
 #include "image/picture_file.h"
 #include "image/png_chunks.h"
+#include "tonewright/engine.h"
 #include "tonewright/error.h"
+#include "tonewright/view.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -134,6 +137,13 @@ class PictureWriter::FileProxy final : public OIIO::Filesystem::IOProxy {
         inserted_ = std::move(bytes);
     }
 
+    /// Replaces bytes that were written.
+    /// @param place  in the file, after what was inserted
+    void patch(std::size_t place, std::string_view bytes) {
+        if (!errno_ && ::fseeko(file_, static_cast<off_t>(place), SEEK_SET) != 0) errno_ = errno;
+        put(bytes.data(), bytes.size());
+    }
+
     /// Begins to count the blocks of an OpenEXR file, each of which begins with its first row and
     /// its size in bytes, four bytes each.
     void begin_blocks() { next_block_ = m_pos; }
@@ -211,6 +221,54 @@ class PictureWriter::FileProxy final : public OIIO::Filesystem::IOProxy {
     std::string inserted_;  // not yet
     int64_t place_ = 0;
     int64_t shift_ = 0;  // of what follows it
+};
+
+/// Measures the light of rows that hold code values of an HDR display.
+class PictureWriter::LightLevelMeter {
+  public:
+    explicit LightLevelMeter(const Display& display) : to_light_(display.decode) {}
+
+    /// @param type   of the file, whose rounded values count
+    /// @param alpha  -1: none
+    void add(const ImageBuf& rows, const OIIO::TypeDesc& type, int alpha) {
+        const ROI part = rows.roi();
+        const auto channels = static_cast<std::size_t>(rows.nchannels());
+        const bool is_gray = channels < 3;
+        const float most = type == OIIO::TypeDesc::UINT8 ? 255 : 65535;
+        const auto width = static_cast<std::size_t>(part.width());
+        std::vector<float> pixels(width * channels);
+        std::vector<float> rgb(3 * width);
+        for (int y = part.ybegin; y < part.yend; ++y) {
+            ROI line = part;
+            line.ybegin = y;
+            line.yend = y + 1;
+            rows.get_pixels(line, OIIO::TypeFloat, pixels.data());
+            for (std::size_t i = 0; i < width; ++i) {
+                const float* pixel = &pixels[i * channels];
+                const bool is_hidden = alpha >= 0 && pixel[alpha] <= 0;
+                for (std::size_t c = 0; c < 3; ++c) {
+                    const float code = is_hidden ? 0 : pixel[is_gray ? 0 : c];
+                    rgb[3 * i + c] = std::round(std::clamp(code, 0.0F, 1.0F) * most) / most;
+                }
+            }
+            to_light_.run_rgb(rgb.data(), rgb.data(), width);
+            for (std::size_t i = 0; i < width; ++i) {
+                const double light = std::max({rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2]});
+                largest_ = std::max(largest_, light);
+                sum_ += light;
+            }
+            count_ += static_cast<double>(width);
+        }
+    }
+    [[nodiscard]] LightLevels levels() const {
+        return {largest_ * kReferenceWhite, sum_ / std::max(count_, 1.0) * kReferenceWhite};
+    }
+
+  private:
+    SimdEngine to_light_;
+    double largest_ = 0;
+    double sum_ = 0;
+    double count_ = 0;
 };
 
 // ---------------------------------------------------------------------------------------------
@@ -416,7 +474,10 @@ ImageSpec PictureWriter::plan(const ImageSpec& picture) {
     if (type != OIIO::TypeUnknown)
         erase_attributes(spec, "oiio:BitsPerSample");  // overrules the type
     set_compression(spec);
-    if (format() != "openexr" && format() != "png") erase_attributes(spec, "tonewright:*");
+    if (format() != "openexr") {  // the only format whose color tags they are
+        erase_attributes(spec, "colorInteropID");
+        if (format() != "png" || !options_.says_how) erase_attributes(spec, "tonewright:*");
+    }
     return spec;
 }
 
@@ -462,7 +523,13 @@ void PictureWriter::open(const ImageSpec& picture) {
     if (out_->supports("ioproxy") && format() != "tiff") {
         proxy_ = std::make_unique<FileProxy>(*temporary_);
         check_disk();
-        if (!color.chunk.empty()) proxy_->insert(kAfterPngHeader, color.chunk);
+        if (!color.chunk.empty()) {
+            // The levels are known at the end: until then, a chunk without light has their place.
+            proxy_->insert(kAfterPngHeader, color.chunk + clli_chunk({}));
+            light_levels_place_ = kAfterPngHeader + color.chunk.size();
+            light_levels_ =
+                std::make_unique<LightLevelMeter>(find_display(tagged_color(spec)->name));
+        }
         out_->set_ioproxy(proxy_.get());
         name = fs::path(path_).filename().string();
     } else {
@@ -587,6 +654,7 @@ void PictureWriter::write_part(const ImageBuf& rows) {
 
 void PictureWriter::write_fitted(const ImageBuf& rows) {
     const ROI part = rows.roi();
+    if (light_levels_) light_levels_->add(rows, out_->spec().format, alpha_);
     bool written = false;
     if (format() == "heif") {
         // OpenImageIO 2.4 copies rows as long as libheif's, which have padding: the last one needs
@@ -626,6 +694,7 @@ void PictureWriter::finish() {
     const bool is_heif = format() == "heif";
     if (!out_->close()) fail(first_line(out_->geterror()));
     out_.reset();  // some write their last bytes only now
+    if (light_levels_) proxy_->patch(light_levels_place_, clli_chunk(light_levels_->levels()));
     if (proxy_) {
         if (const int error = proxy_->finish()) fail(reason_of(error));
     } else {

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/png_chunks.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -39,6 +42,16 @@ std::string cicp_chunk(const CodePoints& points) {
     const std::array<char, 4> data = {static_cast<char>(points.primaries),
                                       static_cast<char>(points.transfer), kRgb, kFullRange};
     return png_chunk("cICP", {data.data(), data.size()});
+}
+
+std::string clli_chunk(const LightLevels& levels) {
+    std::string data;
+    for (const double level : {levels.largest, levels.mean}) {
+        constexpr double kMost = std::numeric_limits<std::uint32_t>::max();
+        append_big_endian(
+            data, static_cast<std::uint32_t>(std::clamp(std::round(level * 1e4), 0.0, kMost)));
+    }
+    return png_chunk("cLLI", data);
 }
 
 TONEWRIGHT_NAMESPACE_END

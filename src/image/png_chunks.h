@@ -28,4 +28,15 @@ inline constexpr std::size_t kAfterPngHeader = 33;
 /// The cICP chunk. W3C PNG (third edition), 11.3.2.6. It belongs before PLTE and IDAT.
 [[nodiscard]] TONEWRIGHT_API std::string cicp_chunk(const CodePoints& points);
 
+/// Light of a picture on its display, in cd/m2. CTA-861.3-A, annex P: the largest channel of a
+/// pixel (MaxCLL), and the mean of each pixel's largest channel (MaxFALL).
+struct LightLevels {
+    double largest = 0;
+    double mean = 0;
+};
+/// The cLLI chunk, always of the same size. W3C PNG (third edition), 11.3.2.8: before PLTE and
+/// IDAT, in units of 0.0001 cd/m2. An application that knows the levels need not reduce the
+/// picture to what its display shows.
+[[nodiscard]] TONEWRIGHT_API std::string clli_chunk(const LightLevels& levels);
+
 TONEWRIGHT_NAMESPACE_END

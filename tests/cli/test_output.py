@@ -10,6 +10,7 @@ import argparse
 import subprocess
 import sys
 import tempfile
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -28,8 +29,9 @@ class Writer:
         self.report, self.command, self.folder = report, command, folder
 
     def apply(self, source, name, *options):
-        """(exit code, standard error) of `apply` with the operator clamp."""
-        done = subprocess.run([self.command, "apply", source, self.folder / name, "--operator", "clamp", *options],
+        """(exit code, standard error) of `apply` with the operator clamp, unless the options name another."""
+        operator = [] if {"--operator", "--lut"} & set(options) else ["--operator", "clamp"]
+        done = subprocess.run([self.command, "apply", source, self.folder / name, *operator, *options],
                               capture_output=True, text=True, check=False)
         return done.returncode, done.stderr
 
@@ -102,12 +104,114 @@ def check_jpeg(to):
     to.refuses("--subsampling of PNG", source, "no.png", USAGE, "only JPEG has it", "--subsampling", "4:4:4")
 
 
+def scene(height=24, width=32, peak=20.0):
+    """Scene-linear colors of many stops, the same on every machine."""
+    rng = np.random.default_rng(5)
+    return (0.18 * 2.0 ** rng.uniform(-8, np.log2(peak / 0.18), (height, width, 3))).astype(np.float32)
+
+
+# Color Interop Forum, "Color Space Encodings for Interchange".
+INTEROP_IDS = {"srgb": "srgb_rec709_display", "display_p3": "srgb_p3d65_display", "rec1886": "g24_rec709_display",
+               "g22": "g22_rec709_display", "rec2100_pq": "pq_rec2020_display", "rec2100_hlg": "hlg_rec2020_display",
+               "p3d65_pq": "pq_p3d65_display", "linear": "lin_rec709_scene"}
+
+
+def check_exr_tags(to):
+    source = write(to.folder / "in.exr", spec_of(scene()), scene())
+
+    def tags(*options, source=source):
+        _, spec = to.written(source, "o.exr", *options)
+        return {name: spec.getattribute(name) for name in ("colorInteropID", "tonewright:display", "tonewright:operator")}
+    for display, wanted in INTEROP_IDS.items():
+        for options in ([], ["--no-metadata"]):
+            found = tags("--display", display, *options)
+            to.report.check(f"EXR of {display} {' '.join(options)}: {wanted}", found["colorInteropID"] == wanted, found)
+            to.report.check("provenance is there only if wanted",
+                            (found["tonewright:display"] is None) == bool(options), found)
+    found = tags("--display", "rec2020", "--no-metadata")
+    to.report.check("EXR of rec2020, of which the forum has no identifier: tonewright:display, always",
+                    found["colorInteropID"] is None and found["tonewright:display"] == "rec2020"
+                    and found["tonewright:operator"] is None, found)
+    for operator, wanted in (("agx_sobotka", "g22_rec709_display"), ("hable", "lin_rec709_scene")):
+        found = tags("--operator", operator, "--display", "native")
+        to.report.check(f"native output of {operator}: {wanted}", found["colorInteropID"] == wanted, found)
+
+    # What described the source does not describe the result.
+    stale = {"tonewright:display": "rec2020", "colorInteropID": "lin_ap1_scene", "hdrgm:Version": "1.0",
+             "Container:Directory": "GainMap", "Item:Semantic": "GainMap", "GContainer:X": "1", "rdf:parseType": "Resource"}
+    source = write(to.folder / "stale.exr", spec_of(scene(), attributes=stale), scene())
+    for name in ("o.exr", "o.png", "o.tif"):
+        _, spec = to.written(source, name, "--no-metadata")
+        left = [a.name for a in spec.extra_attribs
+                if a.name.startswith(("hdrgm", "Container", "Item:", "GContainer", "rdf:", "tonewright"))]
+        to.report.check(f"{name}: nothing of a gain map, or of the source's display, is left", not left, left)
+    _, spec = to.written(source, "o.exr")
+    to.report.check("the color tag is that of the result", spec.getattribute("colorInteropID") == "srgb_rec709_display")
+
+
+def pq_light(code):
+    """SMPTE ST 2084, equation 4: cd/m2."""
+    m1, m2, c1, c2, c3 = 2610 / 16384, 2523 / 32, 3424 / 4096, 2413 / 128, 2392 / 128
+    p = code ** (1 / m2)
+    return 10000 * (np.maximum(p - c1, 0) / (c2 - c3 * p)) ** (1 / m1)
+
+
+def hlg_light(code):
+    """ITU-R BT.2100-2, table 5, on a display of 1000 cd/m2."""
+    a, b, c = 0.17883277, 0.28466892, 0.55991073
+    light = np.where(code <= 0.5, code ** 2 / 3, (np.exp((np.maximum(code, 0.5) - c) / a) + b) / 12)
+    luminance = light @ [0.2627, 0.6780, 0.0593]
+    return 1000 * light * luminance[..., None] ** 0.2
+
+
+def chunks(path):
+    """Type and data of a PNG file's chunks; raises ValueError for a wrong check sum."""
+    data = path.read_bytes()[8:]
+    found = []
+    while data:
+        size = int.from_bytes(data[:4], "big")
+        kind, content = data[4:8].decode(), data[8:8 + size]
+        if zlib.crc32(data[4:8 + size]) != int.from_bytes(data[8 + size:12 + size], "big"):
+            raise ValueError(f"check sum of {kind}")
+        found.append((kind, content))
+        data = data[12 + size:]
+    return found
+
+
+def check_light_levels(to):
+    rgb = scene()
+    pictures = {"rgb": write(to.folder / "rgb.exr", spec_of(rgb), rgb),
+                "gray": write(to.folder / "gray.exr", spec_of(rgb[..., :1]), rgb[..., :1]),
+                "black": write(to.folder / "black.exr", spec_of(rgb * 0), rgb * 0),
+                # More rows than one batch has, so that the levels are those of all batches.
+                "tall": write(to.folder / "tall.exr", spec_of(np.tile(rgb, (60, 1, 1))), np.tile(rgb, (60, 1, 1)))}
+    for display, light in (("rec2100_pq", pq_light), ("p3d65_pq", pq_light), ("rec2100_hlg", hlg_light)):
+        for what, source in pictures.items():
+            for options in ([], ["-d", "uint8"]):
+                code, _ = to.written(source, "o.png", "--display", display, "--reference-white", "203", *options)
+                found = chunks(to.folder / "o.png")
+                kinds = [kind for kind, _ in found]
+                name = f"{display}, {what} {' '.join(options)}"
+                to.report.check(f"{name}: IHDR, cICP, cLLI, and later IDAT",
+                                kinds[:3] == ["IHDR", "cICP", "cLLI"] and "IDAT" in kinds[3:] and kinds.count("cLLI") == 1,
+                                kinds)
+                largest = light(np.repeat(code, 3 // code.shape[2], 2).astype(float)).max(-1)
+                is_levels = np.frombuffer(dict(found)["cLLI"], ">u4") * 1e-4
+                levels = np.array([largest.max(), largest.mean()])
+                # The engine decodes in single precision: 1e-6 of a code value, where PQ changes by a 20th of its light
+                # in 1/400. The chunk counts in 0.0001.
+                to.report.bound(f"{name}: MaxCLL {levels[0]:.1f}, MaxFALL {levels[1]:.1f}",
+                                (np.abs(is_levels - levels) - 1e-4).max(), 1e-4 * levels.max())
+    to.written(pictures["rgb"], "o.png")
+    to.report.check("no light levels of an SDR display", "cLLI" not in dict(chunks(to.folder / "o.png")))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("command", type=Path)
     command = parser.parse_args().command.resolve()
     report = Report()
-    for part in (check_jpeg,):
+    for part in (check_jpeg, check_exr_tags, check_light_levels):
         with tempfile.TemporaryDirectory(prefix="tonewright-") as folder:
             part(Writer(report, command, Path(folder)))
     return report.finish()

@@ -109,8 +109,12 @@ struct WriteOptions {
 /// replaced.
 ///
 /// The file states its color, from `oiio:ColorSpace` and `chromaticities`: PNG, JPEG and TIFF files
-/// get an ICC profile (sRGB in PNG: the chunk sRGB), PNG files in PQ or HLG the chunk cICP. A build
-/// without Little CMS writes no profiles. If a format cannot state the color, `warn` is called.
+/// get an ICC profile (sRGB in PNG: the chunk sRGB), PNG files in PQ or HLG the chunks cICP and
+/// cLLI (largest channel of a pixel, and mean over pixels of each pixel's largest channel, in
+/// cd/m2). A build without Little CMS writes no profiles. OpenEXR files get `chromaticities` and
+/// the attribute `colorInteropID`, or `tonewright:display` for colors that the Color Interop Forum
+/// has no identifier of, as tonemap() sets them; `oiio:ColorSpace` is not stored there. If a format
+/// cannot state the color, `warn` is called.
 ///
 /// @throws Error      compression or quality that the format does not have
 /// @throws FileError  unknown extension, folder missing or not writable, disk full, ... One line;

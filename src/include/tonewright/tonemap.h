@@ -162,8 +162,10 @@ class TONEWRIGHT_API Tonemapper {
 ///    Measure first, and name the input.)
 /// 6. The metadata of `dst` states its color: `oiio:ColorSpace` by OIIO's names ("sRGB", "Gamma2.4"
 ///    for Rec.1886, "Linear"), or else the display's title. `native` has none, unless the
-///    operator's output is linear or a power of Rec.709. Contradicting profiles, gammas and
-///    primaries are removed. `chromaticities` is set if the result is not Rec.709.
+///    operator's output is linear or a power of Rec.709. Contradicting profiles, gammas, primaries
+///    and gain maps are removed. `chromaticities` is set if the result is not Rec.709.
+///    `colorInteropID` is set where the Color Interop Forum has an identifier, otherwise
+///    `tonewright:display`: a name that `input` accepts.
 /// 7. A local operator (local.h) reads the whole data window for every region, so regions match. It
 ///    needs somewhat more than three floats a pixel of memory. Volumes are refused.
 ///

@@ -124,10 +124,27 @@ bool are_plain(const float* pixels, int channels, std::size_t count, bool has_al
     return true;
 }
 
-void divide_by_alpha(Planes& planes, std::size_t count) noexcept {
+/// divisor_of() of source_picture.h, with the same roundings.
+HWY_INLINE VD divisor_of(VD alpha, VD most, VD limit) {
+    const DD d;
+    const VD one = hn::Set(d, 1.0);
+    const VD surface = hn::Mul(limit, hn::Abs(alpha));
+    const VD share = hn::Div(hn::Sub(most, surface), most);
+    const VD mixed = hn::Add(alpha, hn::Mul(hn::Sub(one, alpha), share));
+    const VD of_emission = hn::IfThenElse(hn::Lt(alpha, hn::Zero(d)), one, mixed);
+    const auto is_emission = hn::And(hn::Gt(most, surface), hn::Lt(alpha, one));
+    return hn::IfThenElse(is_emission, of_emission, alpha);
+}
+
+void divide_by_alpha(Planes& planes, std::size_t count, double limit) noexcept {
     const DD d;
     for (std::size_t i = 0; i < padded(count); i += hn::Lanes(d)) {
-        const VD a = hn::LoadU(d, planes[3].data() + i);
+        const auto plane = [&](std::size_t c) { return hn::LoadU(d, planes[c].data() + i); };
+        // Not Max(), whose result for NaN depends on the instruction set.
+        VD most = hn::Set(d, -std::numeric_limits<double>::infinity());
+        for (std::size_t c = 0; c < 3; ++c)
+            most = hn::IfThenElse(hn::Lt(most, plane(c)), plane(c), most);
+        const VD a = divisor_of(plane(3), most, hn::Set(d, limit));
         for (std::size_t c = 0; c < 3; ++c) {
             double* x = planes[c].data() + i;
             hn::StoreU(hn::Div(hn::LoadU(d, x), a), d, x);
@@ -406,8 +423,9 @@ bool are_plain(const float* pixels, int channels, std::size_t count, bool has_al
     return with.are_plain(pixels, channels, count, has_alpha);
 }
 
-void divide_by_alpha(Planes& planes, std::size_t count, const Kernels& with) noexcept {
-    with.divide_by_alpha(planes, count);
+void divide_by_alpha(Planes& planes, std::size_t count, double limit,
+                     const Kernels& with) noexcept {
+    with.divide_by_alpha(planes, count, limit);
 }
 
 SpanLight add_up(Planes& planes, std::size_t count, const Weighing& weighing,

@@ -55,8 +55,9 @@ struct Kinds {
 [[nodiscard]] bool are_plain(const float* pixels, int channels, std::size_t count, bool has_alpha,
                              const Kernels& with = best_kernels()) noexcept;
 
-/// Color divided by alpha, of whole blocks.
-void divide_by_alpha(Planes& planes, std::size_t count,
+/// Color divided by divisor_of() its alpha, of whole blocks of finite numbers.
+/// @param limit  of surface_limit()
+void divide_by_alpha(Planes& planes, std::size_t count, double limit,
                      const Kernels& with = best_kernels()) noexcept;
 
 /// The sum of logarithms of a span as the logarithm of a product: mantissa 2^exponent.
@@ -105,7 +106,7 @@ struct Kernels {
     void (*split)(const float*, int, std::size_t, Planes&) noexcept = nullptr;
     Kinds (*kinds)(Planes&, std::size_t, bool) noexcept = nullptr;
     bool (*are_plain)(const float*, int, std::size_t, bool) noexcept = nullptr;
-    void (*divide_by_alpha)(Planes&, std::size_t) noexcept = nullptr;
+    void (*divide_by_alpha)(Planes&, std::size_t, double) noexcept = nullptr;
     void (*add_up_planes)(const Planes&, std::size_t, const Weighing&, double*,
                           SpanLight&) noexcept = nullptr;
     void (*add_up_packed)(const float*, int, std::size_t, const Weighing&, double*,

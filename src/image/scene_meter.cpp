@@ -310,6 +310,7 @@ struct Plan {
     SceneMeter::Figures figures;
     ChannelLayout layout;  // its alpha: -1 if alpha is ignored
     bool divides;
+    double surface_limit;  // for divisor_of(), before exposure
     bool converts;
     Matrix3 to_rec709;
     std::optional<ReferenceEngine> decode;  // none: the picture is linear
@@ -368,7 +369,9 @@ class RowMeter {
             n = sort_out(all, has_alpha, row, limited);
         }
         if (n > 0) {
-            if (has_alpha && plan_.divides && !kinds.all_opaque) light::divide_by_alpha(planes_, n);
+            if (has_alpha && plan_.divides && !kinds.all_opaque) {
+                light::divide_by_alpha(planes_, n, plan_.surface_limit);
+            }
             add_up(planes_, n, row.finite);
             count(n, row);
         }
@@ -427,9 +430,13 @@ class RowMeter {
             const bool is_nan =
                 std::any_of(color.begin(), color.end(), [](double x) { return std::isnan(x); });
             ++(is_nan ? row.nan : row.infinite);
+            const double divisor = plan_.divides
+                                       ? divisor_of(alpha, largest_of(color[0], color[1], color[2]),
+                                                    plan_.surface_limit)
+                                       : 1;
             // Infinities tell no number: they are the largest half float, not the largest float.
             for (std::size_t c = 0; c < 3; ++c) {
-                const double x = color[c] / (plan_.divides ? alpha : 1);
+                const double x = color[c] / divisor;
                 limited_[c][limited] = std::isinf(x) ? sanitize(x) : without_nan(x);
             }
             ++limited;
@@ -607,7 +614,8 @@ SceneMeter::SceneMeter(const OIIO::ImageSpec& spec, const MeterOptions& options,
     std::vector<std::uint64_t> histogram(bins.size());
     state_ = std::make_unique<State>(
         State{{options, figures, layout, divides_by_alpha(spec, options.unpremult),
-               to_rec709 != kIdentity3, to_rec709, std::move(decode), std::move(bins)},
+               surface_limit(options.unpremult, 0), to_rec709 != kIdentity3, to_rec709,
+               std::move(decode), std::move(bins)},
               nthreads,
               {},
               std::move(histogram)});

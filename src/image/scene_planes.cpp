@@ -35,11 +35,12 @@ RowLoop row_loop(int nthreads) {
 class LightReader {
   public:
     LightReader(const OIIO::ImageBuf& src, const SimdEngine& to_light, const ChannelLayout& layout,
-                bool divides, ScenePlanes& light)
+                bool divides, double limit, ScenePlanes& light)
         : src_(src),
           to_light_(to_light),
           layout_(layout),
           divides_(divides),
+          limit_(limit),
           light_(light),
           reader_(src) {}
 
@@ -64,7 +65,7 @@ class LightReader {
                                            &light_.rgb[2][first]};
         load_color(src_.spec().format, layout_.is_gray, source, rgb, n);
         if (!light_.counts.empty()) {
-            load_divisor(src_.spec().format, layout_.alpha, source, alpha_.data(),
+            load_divisor(src_.spec().format, layout_.alpha, source, rgb, limit_, alpha_.data(),
                          &light_.counts[first], n);
             for (float* plane : rgb) {
                 for (std::size_t i = 0; divides_ && i < n; ++i)
@@ -78,6 +79,7 @@ class LightReader {
     const SimdEngine& to_light_;
     ChannelLayout layout_;
     bool divides_;
+    double limit_;
     ScenePlanes& light_;
     SpanReader reader_;
     std::array<float, kSpan> alpha_{};
@@ -86,7 +88,7 @@ class LightReader {
 }  // namespace
 
 ScenePlanes read_light(const OIIO::ImageBuf& src, const SimdEngine& to_light,
-                       TonemapOptions::Unpremult unpremult, int nthreads) {
+                       TonemapOptions::Unpremult unpremult, double exposure_stops, int nthreads) {
     const OIIO::ImageSpec& spec = src.spec();
     const ChannelLayout layout = channel_layout(spec);
     if (spec.depth > 1) {
@@ -104,9 +106,10 @@ ScenePlanes read_light(const OIIO::ImageBuf& src, const SimdEngine& to_light,
         plane.resize(count);
     if (layout.alpha >= 0 && unpremult != TonemapOptions::Unpremult::no) light.counts.resize(count);
     const bool divides = divides_by_alpha(spec, unpremult);
+    const double limit = surface_limit(unpremult, exposure_stops);
     std::atomic<bool> unreadable = false;
     light.for_rows(light.height, [&](int begin, int end) {
-        LightReader reader(src, to_light, layout, divides, light);
+        LightReader reader(src, to_light, layout, divides, limit, light);
         for (int row = begin; row < end; ++row) {
             if (!reader.read(row)) unreadable = true;
         }

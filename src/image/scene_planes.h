@@ -13,8 +13,10 @@ TONEWRIGHT_NAMESPACE_BEGIN
 ///
 /// @param src       @see check_source
 /// @param to_light  scene-linear of the source -> Rec.709 light, not negative.
+/// @param exposure_stops  of the operator; the light itself is before exposure.
 /// @throws Error    more than one slice; no color; the picture cannot be read.
 [[nodiscard]] ScenePlanes read_light(const OIIO::ImageBuf& src, const SimdEngine& to_light,
-                                     TonemapOptions::Unpremult unpremult, int nthreads);
+                                     TonemapOptions::Unpremult unpremult, double exposure_stops,
+                                     int nthreads);
 
 TONEWRIGHT_NAMESPACE_END

@@ -135,14 +135,15 @@ void load_color(const OIIO::TypeDesc& type, bool is_gray, const SpanSource& sour
     }
 }
 
-void load_divisor(const OIIO::TypeDesc& type, int alpha, const SpanSource& source, float* to,
-                  std::uint8_t* covers, std::size_t n) noexcept {
+void load_divisor(const OIIO::TypeDesc& type, int alpha, const SpanSource& source,
+                  const std::array<float*, 3>& rgb, double limit, float* to, std::uint8_t* covers,
+                  std::size_t n) noexcept {
     const auto offset = static_cast<std::size_t>(alpha) * type.size();
     pixel_access(type)->load_float(source.pixels + offset, source.stride, to, n);
+    const auto most = static_cast<float>(limit);
     for (std::size_t i = 0; i < n; ++i) {
-        const bool is_divisor = to[i] != 0 && std::isfinite(to[i]);
-        if (!is_divisor) to[i] = 1;
-        if (covers) covers[i] = is_divisor ? 1 : 0;
+        if (covers) covers[i] = to[i] != 0 && std::isfinite(to[i]) ? 1 : 0;
+        to[i] = divisor_of(to[i], largest_of(rgb[0][i], rgb[1][i], rgb[2][i]), most);
     }
 }
 

@@ -3,9 +3,12 @@
 
 #include <OpenImageIO/imagebuf.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "image/pixel_access.h"
@@ -70,10 +73,48 @@ struct SpanSource {
 TONEWRIGHT_API void load_color(const OIIO::TypeDesc& type, bool is_gray, const SpanSource& source,
                                const std::array<float*, 3>& rgb, std::size_t n) noexcept;
 
-/// The divisor of color: alpha, or 1 if alpha is 0 or not finite.
-/// @param covers  null, or gets 1 where alpha is the divisor, else 0
+/// The most light of a surface, after exposure: AgX and the ACES curves reach white at 16.3. What
+/// exceeds it by its alpha is emission.
+inline constexpr double kMostSurfaceLight = 16;
+
+/// The limit for divisor_of(): kMostSurfaceLight before exposure, or infinity where the caller asks
+/// for plain division.
+[[nodiscard]] inline double surface_limit(TonemapOptions::Unpremult unpremult,
+                                          double exposure_stops) {
+    if (unpremult == TonemapOptions::Unpremult::yes) return HUGE_VAL;
+    return kMostSurfaceLight * std::exp2(-exposure_stops);
+}
+
+/// The largest of three numbers that is not NaN.
+template <class Float>
+[[nodiscard]] Float largest_of(Float r, Float g, Float b) noexcept {
+    // std::max() takes the first where the second is NaN.
+    return std::max(std::max(std::max(-std::numeric_limits<Float>::infinity(), r), g), b);
+}
+
+/// The divisor that un-premultiplies a color: alpha, or 1 if alpha is 0 or not finite. Flames and
+/// glass have light above what a surface with their alpha carries. Divided by alpha, it would
+/// become white, and black where white is multiplied by alpha again. The divisor of such colors
+/// goes from alpha to 1 as the share of emission in the color grows, so it is continuous in color
+/// and alpha.
+/// @param most   largest channel of the color
+/// @param limit  of surface_limit()
+template <class Float>
+[[nodiscard]] Float divisor_of(Float alpha, Float most, Float limit) noexcept {
+    if (alpha == 0 || !std::isfinite(alpha)) return 1;
+    if (alpha >= 1) return alpha;
+    const Float surface = limit * std::fabs(alpha);
+    if (!(most > surface)) return alpha;
+    if (alpha < 0 || std::isinf(most)) return 1;
+    return alpha + (1 - alpha) * ((most - surface) / most);
+}
+
+/// divisor_of() for a span.
+/// @param rgb     of load_color()
+/// @param covers  null, or gets 1 where alpha is finite and not 0, else 0
 TONEWRIGHT_API void load_divisor(const OIIO::TypeDesc& type, int alpha, const SpanSource& source,
-                                 float* to, std::uint8_t* covers, std::size_t n) noexcept;
+                                 const std::array<float*, 3>& rgb, double limit, float* to,
+                                 std::uint8_t* covers, std::size_t n) noexcept;
 
 /// Finds the spans of a picture. One for each thread.
 class TONEWRIGHT_API SpanReader {

@@ -54,6 +54,7 @@ struct ChannelPlan {
     bool gray_source = false;  // channel 0 alone is color
     bool gray_result = false;
     int alpha = -1;  // of the source, to divide by and multiply with; -1: color is taken as it is
+    double surface_limit = 0;  // for divisor_of()
     std::vector<CopiedChannel> copies;
 };
 
@@ -161,6 +162,8 @@ struct PictureMap {
     /// In messages.
     std::string label;
     TonemapOptions::Unpremult unpremult = TonemapOptions::Unpremult::automatic;
+    /// The exposure inside of `run`, in stops.
+    double exposure_stops = 0;
     /// Not null: replaces the color of the source in the data window.
     const ScenePlanes* light = nullptr;
 };
@@ -402,21 +405,29 @@ class RowRunner {
     void run_span(const SpanSource& source, int x, int y, std::byte* to, std::size_t n) {
         const std::ptrdiff_t to_stride = dst_.pixel_stride();
         const FloatSpan floats = as_floats(source, n);
-        const float* alpha = load_alpha(floats, n);
-        if (!run_interleaved(floats, alpha, to, to_stride, n)) {
+        const bool divides = needs_division(floats, n);
+        if (divides || !run_interleaved(floats, to, to_stride, n)) {
             const std::array<float*, 3> rgb = {planes_.data(), planes_.data() + kSpan,
                                                planes_.data() + 2 * kSpan};
+            float* const divisor = planes_.data() + 3 * kSpan;
             if (!source.pixels) {
                 for (float* plane : rgb)
                     std::fill_n(plane, n, 0.0F);
-            } else if (light_) {
-                copy_light(x, y, rgb, n);
             } else {
-                load_color(floats.type, plan_.gray_source, floats.source, rgb, n);
-                if (alpha) divide(rgb, alpha, n);
+                if (divides || !light_)
+                    load_color(floats.type, plan_.gray_source, floats.source, rgb, n);
+                if (divides) {
+                    load_divisor(floats.type, plan_.alpha, floats.source, rgb, plan_.surface_limit,
+                                 divisor, nullptr, n);
+                }
+                if (light_) {
+                    copy_light(x, y, rgb, n);  // which is divided already
+                } else if (divides) {
+                    divide(rgb, divisor, n);
+                }
             }
             map_({rgb[0], rgb[1], rgb[2]}, 1, rgb, 1, n);
-            if (alpha) multiply(rgb, alpha, n);
+            if (divides) multiply(rgb, divisor, n);
             store_color(rgb, to, to_stride, n);
         }
         for (const CopiedChannel& channel : plan_.copies)
@@ -441,15 +452,15 @@ class RowRunner {
 
     /// Interleaved floats need no planes: the engine reads and writes the pictures or their
     /// converted copies.
-    bool run_interleaved(const FloatSpan& from, const float* alpha, std::byte* to,
-                         std::ptrdiff_t to_stride, std::size_t n) {
+    bool run_interleaved(const FloatSpan& from, std::byte* to, std::ptrdiff_t to_stride,
+                         std::size_t n) {
         constexpr std::ptrdiff_t kFloat = sizeof(float);
         const auto is_aligned = [](const std::byte* p, std::ptrdiff_t stride) {
             return reinterpret_cast<std::uintptr_t>(p) % alignof(float) == 0 &&
                    stride % kFloat == 0;
         };
         const std::byte* pixels = from.source.pixels;
-        if (!pixels || light_ || plan_.gray_source || plan_.gray_result || alpha ||
+        if (!pixels || light_ || plan_.gray_source || plan_.gray_result ||
             from.type != OIIO::TypeFloat || !is_aligned(pixels, from.source.stride)) {
             return false;
         }
@@ -473,12 +484,15 @@ class RowRunner {
             std::copy_n(&light_->rgb[c][first], n, rgb[c]);
     }
 
-    /// The alpha to divide by; null if there is none, or if it is 1 everywhere.
-    const float* load_alpha(const FloatSpan& from, std::size_t n) noexcept {
-        if (plan_.alpha < 0 || !from.source.pixels) return nullptr;
+    /// False if there is no alpha to divide by, or if all divisors are 1.
+    bool needs_division(const FloatSpan& from, std::size_t n) noexcept {
+        if (plan_.alpha < 0 || !from.source.pixels) return false;
         float* alpha = planes_.data() + 3 * kSpan;
-        load_divisor(from.type, plan_.alpha, from.source, alpha, nullptr, n);
-        return std::all_of(alpha, alpha + n, [](float a) { return a == 1; }) ? nullptr : alpha;
+        const auto offset = static_cast<std::size_t>(plan_.alpha) * from.type.size();
+        pixel_access(from.type)->load_float(from.source.pixels + offset, from.source.stride, alpha,
+                                            n);
+        return !std::all_of(alpha, alpha + n,
+                            [](float a) { return divisor_of(a, 0.0F, 0.0F) == 1; });
     }
 
     static void divide(const std::array<float*, 3>& rgb, const float* alpha,
@@ -574,6 +588,7 @@ void run_picture(const PictureMap& with, ImageBuf& dst, const ImageBuf& src, ROI
                                           : std::string("the picture is in color")));
     }
     if (layout.alpha >= 0 && divides_by_alpha(source, with.unpremult)) plan.alpha = layout.alpha;
+    plan.surface_limit = surface_limit(with.unpremult, with.exposure_stops);
 
     const bool widens = plan.gray_source && !plan.gray_result;
     ImageSpec fresh = result_spec(source, widens);
@@ -622,7 +637,8 @@ void Tonemapper::State::run(ImageBuf& dst, const ImageBuf& src, ROI roi, int nth
     if (!depends_on_picture) {
         const std::shared_ptr<const Prepared> prepared = prepared_for(source);
         if (prepared->to_light) {
-            ScenePlanes light = read_light(src, *prepared->to_light, options.unpremult, nthreads);
+            ScenePlanes light = read_light(src, *prepared->to_light, options.unpremult,
+                                           options.exposure_stops, nthreads);
             light.exposure = static_cast<float>(std::exp2(options.exposure_stops));
             run_local_operator(prepared->view.op, light);
             run(*prepared, dst, src, roi, nthreads, progress, &light);
@@ -661,8 +677,9 @@ void Tonemapper::State::run(const Prepared& with, ImageBuf& dst, const ImageBuf&
         with.engine.run(in, in_stride, out, out_stride, count);
     };
     const bool keeps_gray = channel_layout(src.spec()).is_gray && with.keeps_gray();
-    run_picture({engine, keeps_gray, with.view.op.label, options.unpremult, light}, dst, src, roi,
-                nthreads, progress);
+    run_picture(
+        {engine, keeps_gray, with.view.op.label, options.unpremult, options.exposure_stops, light},
+        dst, src, roi, nthreads, progress);
     tag_as_result_of(with.view, dst.specmod());
     if (options.dither) dst.specmod().attribute("oiio:dither", 1);
 }

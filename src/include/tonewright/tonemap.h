@@ -33,8 +33,9 @@ struct TonemapOptions {
     /// Treatment of associated color. A curve needs un-premultiplied color.
     enum class Unpremult : unsigned char {
         /// Divides by alpha before and multiplies after, unless `oiio:UnassociatedAlpha` is set.
+        /// Emission (point 3 of tonemap()) is not divided.
         automatic,
-        /// Divides by alpha before and multiplies after.
+        /// Divides by alpha before and multiplies after, also emission.
         yes,
         /// Leaves color as it is.
         no,
@@ -83,8 +84,9 @@ struct TonemapOptions {
 /// tonemap(), before exposure and without its limit: NaN becomes 0, infinities become +-65504,
 /// channels are converted from `input`, negatives become 0.
 ///
-/// If alpha counts (`unpremult` is not `no`), color is un-premultiplied as in tonemap(), and pixels
-/// whose alpha is 0 or not finite are left out. If all are, the picture is measured as it is.
+/// If alpha counts (`unpremult` is not `no`), color is un-premultiplied as in tonemap() at exposure
+/// 0, and pixels whose alpha is 0 or not finite are left out. If all are, the picture is measured
+/// as it is.
 ///
 /// @param src       any pixel type, tiled, cached or local
 /// @param input     @see TonemapOptions::input
@@ -153,8 +155,12 @@ class TONEWRIGHT_API Tonemapper {
 /// 2. One channel is gray, R = G = B; so is the first of two if the second is alpha. A gray picture
 ///    stays gray if the view keeps gray neutral; otherwise it becomes R, G, B (, A).
 /// 3. Associated color is un-premultiplied first and premultiplied last (`options.unpremult`).
-/// Color
-///    of pixels whose alpha is 0 or not finite is taken as it is, because it represents emission.
+///    Color of pixels whose alpha is 0 or not finite is taken as it is, because it represents
+///    emission. The same holds for light far above what alpha carries, such as flames and glass:
+///    divided, it would become white, and then nearly black. Let m be the largest channel,
+///    A = alpha, and L = 16 2^-exposure the most light of a surface. Where m <= L A, or A >= 1, the
+///    divisor is A. Elsewhere it is A + (1 - A) (1 - L A / m), which is continuous in color and
+///    alpha, and approaches 1 as alpha approaches 0.
 /// 4. NaN becomes 0, and every channel is limited to +-65504 after the exposure. The result is
 ///    finite.
 /// 5. Statistics are those of the whole source, for every region, so regions that are rendered one

@@ -69,7 +69,7 @@ std::string bytes_of(const light::Kernels& kernels, int channels, std::size_t co
     add(kinds.all_finite);
     add(kinds.all_cover);
     add(kinds.all_opaque);
-    if (has_alpha) light::divide_by_alpha(*planes, count, kernels);
+    if (has_alpha) light::divide_by_alpha(*planes, count, 16, kernels);
     for (int c = 0; c < channels; ++c) {
         const std::array<double, light::kSpan>& plane = (*planes)[static_cast<std::size_t>(c)];
         for (std::size_t i = 0; i < count; ++i)

@@ -663,6 +663,68 @@ TEST(Tonemap, AssociatedColorIsDividedByAlpha) {
     expect(Unpremult::yes, divided, 0.5);
 }
 
+/// The rule of tonemap.h, point 3, in double.
+double divisor_of_emission(double alpha, double most, double stops) {
+    const double surface = 16 * std::exp2(-stops) * alpha;
+    return most <= surface || alpha >= 1 ? alpha : alpha + (1 - alpha) * (1 - surface / most);
+}
+
+TEST(Tonemap, EmissionAboveSmallAlphaIsNotDivided) {
+    const Vector3 flame = {3, 1, 0.25};
+    for (const double stops : {0.0, 2.0, -3.0}) {
+        TonemapOptions options = hable();
+        options.exposure_stops = stops;
+        const ReferenceEngine engine = reference(options);
+        for (const double alpha : {1e-30, 1e-6, 1e-3, 0.03, 0.1, 3.0 / 16, 0.2, 0.5, 0.75, 2.0}) {
+            options.unpremult = Unpremult::automatic;
+            ImageBuf src(make_spec(1, 1, {"R", "G", "B", "A"}, TypeDesc::FLOAT));
+            set(src, 0, 0, {3, 1, 0.25F, static_cast<float>(alpha)});
+            const double d = divisor_of_emission(static_cast<float>(alpha), 3, stops);
+            const Vector3 want = engine(Vector3{flame[0] / d, flame[1] / d, flame[2] / d});
+            const std::vector<float> out = pixel(tonemap(src, options), 0, 0);
+            for (std::size_t c = 0; c < 3; ++c)
+                EXPECT_NEAR(out[c], d * want[c], kTolerance) << alpha << " " << stops;
+            EXPECT_EQ(out[3], static_cast<float>(alpha));
+            // Plain division on request.
+            options.unpremult = Unpremult::yes;
+            if (alpha < 1e-10) continue;  // beyond what a channel may be
+            const Vector3 divided =
+                engine(Vector3{flame[0] / alpha, flame[1] / alpha, flame[2] / alpha});
+            EXPECT_NEAR(pixel(tonemap(src, options), 0, 0)[0], alpha * divided[0], kTolerance);
+        }
+    }
+}
+
+TEST(Tonemap, EmissionIsContinuousInAlpha) {
+    // 1024 alphas from 0 to where the flame is a surface, whose result is a pixel each.
+    constexpr int kSteps = 1024;
+    ImageBuf src(make_spec(kSteps + 1, 1, {"R", "G", "B", "A"}, TypeDesc::FLOAT));
+    for (int i = 0; i <= kSteps; ++i)
+        set(src, i, 0, {3, 1, 0.25F, 0.25F * static_cast<float>(i) / kSteps});
+    const ImageBuf result = tonemap(src, hable());
+    for (int i = 1; i <= kSteps; ++i) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            // The divisor changes by at most 16/3 a unit of alpha, and the result by no more than
+            // the divisor times the slope of the curve, which is below 4 code values a unit.
+            EXPECT_NEAR(pixel(result, i, 0)[c], pixel(result, i - 1, 0)[c],
+                        4 * 16.0 / 3 * 0.25 / kSteps)
+                << i;
+        }
+    }
+}
+
+TEST(Tonemap, EmissionIsMeteredAsItIsToneMapped) {
+    for (const bool has_nan : {false, true}) {  // which takes another way through the meter
+        ImageBuf src(make_spec(3, 1, {"R", "G", "B", "A"}, TypeDesc::FLOAT));
+        set(src, 0, 0, {3, 3, 3, 1e-3F});
+        set(src, 1, 0, {0.5F, 0.5F, 0.5F, 0.25F});
+        set(src, 2, 0, {1, has_nan ? std::numeric_limits<float>::quiet_NaN() : 1, 1, 1});
+        const double flame = 3 / divisor_of_emission(1e-3F, 3, 0);
+        EXPECT_NEAR(measure_scene(src).maximum_luminance, flame, 1e-6 * flame);
+        EXPECT_NEAR(measure_scene(src, "auto", Unpremult::yes).maximum_luminance, 3000, 1e-3);
+    }
+}
+
 TEST(Tonemap, ColorWithoutUsableAlphaIsTakenAsItIs) {
     const float inf = std::numeric_limits<float>::infinity();
     ImageBuf src(make_spec(4, 1, {"R", "G", "B", "A"}, TypeDesc::FLOAT));
@@ -897,10 +959,11 @@ TEST(Tonemap, ContradictingMetadataGoes) {
         const ImageSpec& out = dst.spec();
         for (const char* gone :
              {"ICCProfile", "ICCProfile:device_class", "Exif:Gamma", "Exif:ColorSpace",
-              "oiio:Gamma", "colorInteropID", "dpx:Transfer", "chromaticities"}) {
+              "oiio:Gamma", "dpx:Transfer", "chromaticities"}) {
             EXPECT_EQ(out.find_attribute(gone), nullptr) << gone;
         }
         EXPECT_EQ(out.get_string_attribute("oiio:ColorSpace"), "sRGB");
+        EXPECT_EQ(out.get_string_attribute("colorInteropID"), "srgb_rec709_display");
         EXPECT_EQ(out.get_string_attribute("Copyright"), "somebody");
     }
     EXPECT_NE(src.spec().find_attribute("ICCProfile"), nullptr);

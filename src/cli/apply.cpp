@@ -49,9 +49,10 @@ void add_file_options(const Command& command, ApplyOptions& options) {
         .group(group);
     command
         .add("--alpha", options.alpha,
-             "`keep`, `ignore` (leave it out) or `opaque` (1); the last two do not divide by it")
+             "`keep`, `ignore` (leave it out), `opaque` (1), or `over:R,G,B` (composite over a "
+             "background in code values, [0, 1])")
         .value("ACTION")
-        .suggest({"keep", "ignore", "opaque"})
+        .suggest({"keep", "ignore", "opaque", "over:0,0,0"})
         .show_default()
         .group(group);
     command.add_flag("--in-place", options.is_in_place, "allow the output to replace the input")

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <charconv>
 #include <string_view>
 #include <utility>
 
 #include "base/atomic_file.h"
 #include "base/strings.h"
+#include "image/color_tags.h"
 #include "image/picture_file.h"
 #include "tonewright/image_io.h"
 
@@ -41,6 +45,43 @@ void write_image_atomically(const OIIO::ImageBuf& image, const std::string& path
     WriteOptions options;
     options.type = type;
     write_image_atomically(image, path, options);
+}
+
+OIIO::ImageBuf with_associated_alpha(const OIIO::ImageBuf& image) {
+    const int alpha = image.spec().alpha_channel;
+    if (alpha < 0 || image.spec().get_int_attribute("oiio:UnassociatedAlpha", 0) == 0) return image;
+    OIIO::ImageBuf result = image.copy(OIIO::TypeFloat);
+    multiply_by_alpha(result);
+    erase_attributes(result.specmod(), "oiio:UnassociatedAlpha");
+    return result;
+}
+
+void set_alpha(WriteOptions& options, std::string_view text) {
+    using Alpha = WriteOptions::Alpha;
+    constexpr std::string_view kOver = "over:";
+    const bool is_over = text.starts_with(kOver);
+    const std::string name(is_over ? "over:R,G,B" : text);
+    constexpr std::array kAlphas = {Alpha::keep, Alpha::ignore, Alpha::opaque, Alpha::over};
+    options.alpha = kAlphas[find_choice("alpha", name, {"keep", "ignore", "opaque", "over:R,G,B"})];
+    if (!is_over) {
+        if (options.alpha == Alpha::over) throw Error("alpha is over:R,G,B; expected numbers");
+        return;
+    }
+    const std::string numbers(text.substr(kOver.size()));
+    std::size_t at = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+        const std::size_t comma = std::min(numbers.find(',', at), numbers.size());
+        const char* const end = numbers.data() + comma;
+        float& value = options.background[c];
+        const auto [stop, error] = std::from_chars(numbers.data() + at, end, value);
+        const bool is_last = comma == numbers.size();
+        if (error != std::errc() || stop != end || !(value >= 0 && value <= 1) ||
+            is_last != (c == 2)) {
+            throw Error(fmt::format(
+                "alpha is {}; expected over:R,G,B with three code values in [0, 1]", text));
+        }
+        at = std::min(comma + 1, numbers.size());
+    }
 }
 
 OIIO::TypeDesc parse_pixel_type(std::string_view text) {

@@ -173,6 +173,7 @@ class TONEWRIGHT_API PictureWriter {
     /// writes no more of this call, and takes later rows from before the given ones.
     void check_blocks() const;
     [[nodiscard]] OIIO::ImageSpec plan(const OIIO::ImageSpec& picture);
+    void plan_alpha(OIIO::ImageSpec& spec);
     [[nodiscard]] OIIO::ImageBuf checked(OIIO::ImageBuf&& changed) const;
     [[nodiscard]] std::string_view format() const;
     void check_compression() const;
@@ -181,17 +182,22 @@ class TONEWRIGHT_API PictureWriter {
     /// Limitations of the file, in one warning.
     void warn_of_limits(const OIIO::ImageSpec& wanted, const std::string& missing) const;
     void watch_cover(const OIIO::ImageBuf& rows);
-    void warn_without_cover() const;
+    void warn_of_cover() const;
+    [[nodiscard]] OIIO::ImageBuf over_background(const OIIO::ImageBuf& rows) const;
     void write_part(const OIIO::ImageBuf& rows);
     void write_fitted(const OIIO::ImageBuf& rows);
 
     std::string path_;
     WriteOptions options_;
-    std::vector<int> channels_;        // to write; empty: all
-    int alpha_ = -1;                   // of those that are written
-    bool watches_cover_ = false;       // warns if alpha is 0 everywhere
-    bool has_cover_ = false;           // alpha is not 0 everywhere
-    std::optional<OIIO::ROI> window_;  // to write; none: all of the picture
+    std::vector<int> channels_;         // to write; empty: all
+    int alpha_ = -1;                    // of those that are written
+    bool watches_cover_ = false;        // warns if alpha is 0 everywhere
+    bool has_cover_ = false;            // alpha is not 0 everywhere
+    bool becomes_straight_ = false;     // the file divides color by alpha
+    bool multiplies_by_alpha_ = false;  // the picture has straight alpha, and the file has not
+    double pixel_count_ = 0;            // of what is written
+    double lost_count_ = 0;             // pixels whose light straight alpha cannot hold
+    std::optional<OIIO::ROI> window_;   // to write; none: all of the picture
     bool divides_by_alpha_ = false;
     int last_row_ = 0;  // of the picture, exclusive
     int next_row_ = 0;  // of the window, or of the picture

@@ -160,6 +160,11 @@ std::unique_ptr<OIIO::ImageInput> open_picture(const std::string& path,
     if (const std::string why = why_no_file(path); !why.empty()) cannot_read(path, why);
     if (is_heif(path)) return open_heif(path, max_pixels);
     check_jpeg2000_size(path, max_pixels);
+    // OpenImageIO multiplies straight color by alpha in the file's type: in 8 bits, little is left
+    // of color with low alpha.
+    OIIO::ImageSpec straight;
+    straight.attribute("oiio:UnassociatedAlpha", 1);
+    if (!config) config = &straight;
     std::unique_ptr<OIIO::ImageInput> in;
     if (path.find('?') != std::string::npos && why_not_readable(path).empty()) {
         // OpenImageIO would take the text after the ? as arguments of a reader.
@@ -167,13 +172,26 @@ std::unique_ptr<OIIO::ImageInput> open_picture(const std::string& path,
         in = OIIO::ImageInput::create(extension.empty() ? extension : extension.substr(1));
         if (in) forget_errors(*in);
         OIIO::ImageSpec spec;
-        const bool is_open = in && in->open(path, spec, config ? *config : OIIO::ImageSpec());
+        const bool is_open = in && in->open(path, spec, *config);
         if (!is_open && in) cannot_read(path, why_not_open(path, in->geterror()));
     } else {
         in = OIIO::ImageInput::open(path, config);
     }
     if (!in) cannot_read(path, why_not_open(path, OIIO::geterror()));
     return in;
+}
+
+/// Readers that follow the request for straight alpha do not all say so.
+static void mark_straight_alpha(OIIO::ImageSpec& spec, std::string_view format) {
+    constexpr int kPremultiplied = 4;  // Truevision TGA 2.0, attributes type
+    const bool is_straight =
+        format == "jpeg2000" ||
+        (format == "targa" && spec.get_int_attribute("targa:alpha_type") != kPremultiplied);
+    if (spec.alpha_channel < 0) {
+        spec.erase_attribute("oiio:UnassociatedAlpha");
+    } else if (is_straight) {
+        spec.attribute("oiio:UnassociatedAlpha", 1);
+    }
 }
 
 PictureReader::PictureReader(const std::string& path, int nthreads, const ReadOptions& options)
@@ -191,6 +209,7 @@ PictureReader::PictureReader(const std::string& path, int nthreads, const ReadOp
     if (!extension.empty()) spec_.attribute(file_tag::kExtension, extension.substr(1));
     spec_.channelformats.clear();  // all channels are read in the widest of them
     complete_channel_names(spec_);
+    mark_straight_alpha(spec_, format);
     stored_channels_ = spec_.nchannels;
     check_size(options.max_pixels);
     const std::string name = spec_.get_string_attribute("oiio:subimagename");

@@ -407,6 +407,18 @@ ImageBuf PictureWriter::checked(ImageBuf&& changed) const {
     return std::move(changed);
 }
 
+void PictureWriter::plan_alpha(ImageSpec& spec) {
+    using Alpha = WriteOptions::Alpha;
+    const bool is_straight =
+        spec.alpha_channel >= 0 && spec.get_int_attribute("oiio:UnassociatedAlpha", 0) != 0;
+    const bool keeps = format() == "png" || format() == "heif" || format() == "targa" ||
+                       format() == "jpeg2000" || format() == "tiff";
+    multiplies_by_alpha_ =
+        is_straight && (options_.alpha == Alpha::over || (options_.alpha == Alpha::keep && !keeps));
+    if (multiplies_by_alpha_ || spec.alpha_channel < 0 || options_.alpha == Alpha::ignore)
+        erase_attributes(spec, "oiio:UnassociatedAlpha");
+}
+
 ImageSpec PictureWriter::plan(const ImageSpec& picture) {
     ImageSpec spec = picture;
     spec.tile_width = spec.tile_height = spec.tile_depth = 0;  // those of the file it came from
@@ -414,7 +426,16 @@ ImageSpec PictureWriter::plan(const ImageSpec& picture) {
     // A single level is not a texture: OpenEXR's writer would wait for the others.
     if (spec.get_string_attribute("textureformat") == "Plain Texture")
         erase_attributes(spec, "textureformat");
-    channels_ = channels_to_write(spec, *out_, options_.alpha == WriteOptions::Alpha::ignore);
+    const bool is_over = options_.alpha == WriteOptions::Alpha::over && spec.alpha_channel >= 0;
+    const std::array<float, 3>& back = options_.background;
+    if (is_over && spec.nchannels < 3 && (back[0] != back[1] || back[1] != back[2])) {
+        throw Error(fmt::format(
+            "{}: alpha is over:{},{},{}; expected three equal numbers, because the picture is gray",
+            path_, back[0], back[1], back[2]));
+    }
+    plan_alpha(spec);
+    channels_ =
+        channels_to_write(spec, *out_, options_.alpha == WriteOptions::Alpha::ignore || is_over);
     if (!channels_.empty()) {
         // One pixel shows the format's names and order of channels.
         ImageSpec pixel = spec;
@@ -455,9 +476,13 @@ ImageSpec PictureWriter::plan(const ImageSpec& picture) {
 
     // PNG needs un-premultiplied color. OIIO's writer divides integers, rounding down, and for
     // "Gamma2.2" and similar spaces it divides by a power of alpha: 0.25 of 0.5 becomes 1.
-    divides_by_alpha_ = format() == "png" && spec.alpha_channel >= 0 &&
+    // HEIF's stores what it gets, and other programs take it for straight.
+    divides_by_alpha_ = (format() == "png" || format() == "heif") && spec.alpha_channel >= 0 &&
                         spec.get_int_attribute("oiio:UnassociatedAlpha", 0) == 0;
     if (divides_by_alpha_) spec.attribute("oiio:UnassociatedAlpha", 1);
+    becomes_straight_ = divides_by_alpha_ || format() == "webp" ||
+                        (spec.get_int_attribute("oiio:UnassociatedAlpha", 0) == 0 &&
+                         (format() == "targa" || format() == "jpeg2000"));
     alpha_ = spec.alpha_channel < spec.nchannels ? spec.alpha_channel : -1;
     // OpenEXR's viewers show color with zero alpha, and elements such as flames have nothing else.
     watches_cover_ =
@@ -567,30 +592,62 @@ void PictureWriter::warn_of_limits(const ImageSpec& wanted, const std::string& m
 }
 
 void PictureWriter::watch_cover(const ImageBuf& rows) {
-    if (!watches_cover_ || has_cover_) return;
+    if (!watches_cover_ || (has_cover_ && !becomes_straight_)) return;
     ROI line = rows.roi();
-    line.chbegin = alpha_;
-    line.chend = alpha_ + 1;
-    std::vector<float> alpha(static_cast<std::size_t>(line.width()));
-    for (int y = rows.ybegin(); y < rows.yend() && !has_cover_; ++y) {
+    line.zend = line.zbegin + 1;
+    const auto channels = static_cast<std::size_t>(rows.nchannels());
+    const auto colors = std::min(alpha_, 3);
+    // Half a code value of 8 bits, as all operators' white is 1.
+    constexpr float kVisible = 0.5F / 255;
+    std::vector<float> pixels(static_cast<std::size_t>(line.width()) * channels);
+    for (int y = rows.ybegin(); y < rows.yend(); ++y) {
         line.ybegin = y;
         line.yend = y + 1;
-        line.zend = line.zbegin + 1;
-        rows.get_pixels(line, OIIO::TypeFloat, alpha.data());
-        has_cover_ = std::any_of(alpha.begin(), alpha.end(), [](float a) { return a != 0; });
+        rows.get_pixels(line, OIIO::TypeFloat, pixels.data());
+        for (std::size_t i = 0; i < pixels.size(); i += channels) {
+            const float alpha = pixels[i + static_cast<std::size_t>(alpha_)];
+            if (alpha != 0) has_cover_ = true;
+            const float* const color = &pixels[i];
+            const float most = *std::max_element(color, color + colors);
+            if (most > std::max(alpha, 0.0F) + kVisible) ++lost_count_;
+        }
+        pixel_count_ += line.width();
     }
 }
 
-void PictureWriter::warn_without_cover() const {
-    if (!watches_cover_ || has_cover_ || !options_.warn) return;
-    options_.warn(
-        "alpha is 0 everywhere, so viewers show nothing; --alpha ignore leaves it out, --alpha "
-        "opaque makes it 1");
+void PictureWriter::warn_of_cover() const {
+    if (!watches_cover_ || !options_.warn) return;
+    if (!has_cover_) {
+        options_.warn(
+            "alpha is 0 everywhere, so viewers show nothing; --alpha ignore leaves it out, --alpha "
+            "opaque makes it 1");
+    } else if (becomes_straight_ && lost_count_ > 0) {
+        const double percent = 100 * lost_count_ / std::max(pixel_count_, 1.0);
+        options_.warn(fmt::format(
+            "{} % of the pixels have more light than their alpha carries (flames, "
+            "glass), and {} cannot hold it; --alpha opaque or ignore keeps it, as "
+            "does EXR",
+            percent < 0.1 ? "less than 0.1" : fmt::format("{:.2g}", percent), format()));
+    }
+}
+
+ImageBuf PictureWriter::over_background(const ImageBuf& rows) const {
+    ImageBuf result = rows.copy(OIIO::TypeFloat);
+    const int alpha = rows.spec().alpha_channel;
+    const int colors = std::min(alpha, 3);
+    const std::array<float, 3>& background = options_.background;
+    for (ImageBuf::Iterator<float> p(result); !p.done(); ++p) {
+        const float cover = std::isfinite(p[alpha]) ? std::clamp<float>(p[alpha], 0, 1) : 0;
+        for (int c = 0; c < colors; ++c)
+            p[c] = p[c] + (1 - cover) * background[static_cast<std::size_t>(c)];
+    }
+    return result;
 }
 
 OIIO::TypeDesc PictureWriter::row_type() const {
-    return out_->spec().format == OIIO::TypeHalf && !divides_by_alpha_ ? OIIO::TypeHalf
-                                                                       : OIIO::TypeFloat;
+    return out_->spec().format == OIIO::TypeHalf && !divides_by_alpha_ && !multiplies_by_alpha_
+               ? OIIO::TypeHalf
+               : OIIO::TypeFloat;
 }
 
 bool PictureWriter::keeps_orientation() const { return format() == "jpeg" || format() == "tiff"; }
@@ -607,6 +664,13 @@ void PictureWriter::write_rows(const ImageBuf& rows) {
         changed = checked(std::move(to));
         fitted = &changed;
     };
+    if (multiplies_by_alpha_) {
+        ImageBuf associated = fitted->copy(OIIO::TypeFloat);
+        multiply_by_alpha(associated);
+        change(std::move(associated));
+    }
+    if (options_.alpha == WriteOptions::Alpha::over && fitted->spec().alpha_channel >= 0)
+        change(over_background(*fitted));
     if (!channels_.empty()) {
         change(
             OIIO::ImageBufAlgo::channels(*fitted, static_cast<int>(channels_.size()), channels_));
@@ -690,7 +754,7 @@ void PictureWriter::check_blocks() const {
 }
 
 void PictureWriter::finish() {
-    warn_without_cover();
+    warn_of_cover();
     const bool is_heif = format() == "heif";
     if (!out_->close()) fail(first_line(out_->geterror()));
     out_.reset();  // some write their last bytes only now

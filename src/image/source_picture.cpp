@@ -135,6 +135,15 @@ void load_color(const OIIO::TypeDesc& type, bool is_gray, const SpanSource& sour
     }
 }
 
+void multiply_by_alpha(OIIO::ImageBuf& picture) {
+    const int alpha = picture.spec().alpha_channel;
+    const int colors = std::min(alpha, 3);
+    for (OIIO::ImageBuf::Iterator<float> p(picture); !p.done(); ++p) {
+        for (int c = 0; c < colors; ++c)
+            p[c] = p[c] * p[alpha];
+    }
+}
+
 void load_divisor(const OIIO::TypeDesc& type, int alpha, const SpanSource& source,
                   const std::array<float*, 3>& rgb, double limit, float* to, std::uint8_t* covers,
                   std::size_t n) noexcept {

@@ -92,6 +92,9 @@ template <class Float>
     return std::max(std::max(std::max(-std::numeric_limits<Float>::infinity(), r), g), b);
 }
 
+/// Multiplies color by alpha, in a float picture in memory.
+TONEWRIGHT_API void multiply_by_alpha(OIIO::ImageBuf& picture);
+
 /// The divisor that un-premultiplies a color: alpha, or 1 if alpha is 0 or not finite. Flames and
 /// glass have light above what a surface with their alpha carries. Divided by alpha, it would
 /// become white, and black where white is multiplied by alpha again. The divisor of such colors

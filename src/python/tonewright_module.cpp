@@ -11,7 +11,6 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
-#include <array>
 #include <cerrno>
 #include <cstddef>
 #include <exception>
@@ -471,12 +470,6 @@ py::dict bake_file(const std::string& op, const std::string& file, const std::st
     return result;
 }
 
-WriteOptions::Alpha parse_alpha(const std::string& text) {
-    using Alpha = WriteOptions::Alpha;
-    constexpr std::array<Alpha, 3> kAlphas = {Alpha::keep, Alpha::ignore, Alpha::opaque};
-    return kAlphas[find_choice("alpha", text, {"keep", "ignore", "opaque"})];
-}
-
 void tonemap_into_file(const std::string& in, const std::string& out, const std::string& op,
                        const std::string& type, const std::string& alpha, int nthreads,
                        const std::string& subimage, const std::string& layer, bool is_in_place,
@@ -484,8 +477,8 @@ void tonemap_into_file(const std::string& in, const std::string& out, const std:
     check_overwriting("tonemap_file", {{in, out}}, is_in_place);
     TonemapOptions options = parse_options(op, arguments);
     WriteOptions write;
-    write.alpha = parse_alpha(alpha);
-    if (write.alpha != WriteOptions::Alpha::keep) {
+    set_alpha(write, alpha);
+    if (write.alpha == WriteOptions::Alpha::ignore || write.alpha == WriteOptions::Alpha::opaque) {
         if (options.unpremult == TonemapOptions::Unpremult::yes)
             throw Error("alpha is " + alpha + "; expected keep where color is divided by alpha");
         // Without alpha, color is taken as it is.

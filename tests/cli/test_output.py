@@ -7,6 +7,7 @@ Pictures are made and read with OpenImageIO's Python. The last line is `N passed
 """
 
 import argparse
+import json
 import subprocess
 import sys
 import tempfile
@@ -14,6 +15,11 @@ import zlib
 from pathlib import Path
 
 import numpy as np
+
+try:
+    import OpenImageIO as oiio
+except ImportError:
+    oiio = None  # test_pictures skips
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 from test_pictures import read, spec_of, write  # noqa: E402
@@ -206,12 +212,91 @@ def check_light_levels(to):
     to.report.check("no light levels of an SDR display", "cLLI" not in dict(chunks(to.folder / "o.png")))
 
 
+def srgb(light):
+    light = np.clip(light, 0, 1)
+    return np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
+
+
+def check_alpha(to):
+    # A surface, its edge, a flame without alpha, and glass: more light than its alpha carries.
+    pixels = np.zeros((4, 8, 4), np.float32)
+    pixels[:, :4] = (0.2, 0.1, 0.05, 1)
+    pixels[:, 4] = (0.1, 0.05, 0.025, 0.5)
+    pixels[:, 5] = (0.6, 0.3, 0.1, 0)
+    pixels[:, 6:] = (0.6, 0.3, 0.1, 1e-4)
+    source = write(to.folder / "flame.exr", spec_of(pixels, alpha=True), pixels)
+    alpha = pixels[..., 3:].astype(float)
+    # tonemap.h, point 3: the divisor between alpha and 1.
+    share = np.clip(1 - 16 * alpha / np.maximum(pixels[..., :3].max(-1, keepdims=True), 1e-9), 0, 1)
+    divisor = np.where(alpha > 0, alpha + (1 - alpha) * share, 1)
+    code = srgb(pixels[..., :3] / divisor) * divisor
+
+    # OpenImageIO's JPEG of quality 100 with all chroma: 2 code values.
+    got, _ = to.written(source, "o.jpg", "--quality", "100")
+    to.report.bound("flames and glass shine in a JPEG", np.abs(got - code).max(), 2.5 / 255)
+    got, _ = to.written(source, "o.jpg", "--quality", "100", "--unpremult")
+    to.report.check("--unpremult divides emission, too, as before", got[0, 7].max() < 0.01, str(got[0, 7]))
+    got, spec = to.written(source, "o.png", "--alpha", "over:0.25,0.5,1", "-d", "uint16")
+    over = np.clip(code + (1 - alpha) * [0.25, 0.5, 1], 0, 1)
+    # 16 bits, and the engine's 1e-6.
+    to.report.bound("--alpha over composites in code values", np.abs(got - over).max(), 1e-5)
+    to.report.check("and writes no alpha", spec.nchannels == 3, spec.channelnames)
+    for wrong in ("over", "over:", "over:1,2,3", "over:0,0", "over:0,0,0,0", "over:a,b,c", "over:nan,0,0", "ovr"):
+        to.refuses(f"--alpha {wrong}", source, "no.png", USAGE, "alpha is ", "--alpha", wrong)
+    gray = pixels[..., 2:]
+    path = write(to.folder / "gray.exr", spec_of(gray, alpha=True), gray)
+    got, spec = to.written(path, "o.png", "--alpha", "over:0.5,0.5,0.5", "-d", "uint16")
+    to.report.bound("a gray picture over gray", abs(got[0, 0, 0] - srgb(0.05)), 1e-5)
+    to.refuses("a gray picture over a color", path, "no.png", USAGE, "equal", "--alpha", "over:1,0,0")
+
+    for name in ("o.png", "o.tga", "o.webp", "o.jp2"):
+        big = np.tile(pixels, (16, 8, 1))  # JPEG 2000 takes 32 pixels and more
+        path = write(to.folder / "big.exr", spec_of(big, alpha=True), big)
+        code_, said = to.apply(path, name)
+        to.report.check(f"{name}: one warning of the light that straight alpha loses, with its share",
+                        code_ == OK and said.count("more light than their alpha carries") == 1 and "38 %" in said
+                        and "--alpha opaque" in said, said)
+    for name in ("o.exr", "o.jpg", "o.tif"):
+        _, said = to.apply(source, name)
+        to.report.check(f"{name}: no such warning", "carries" not in said, said)
+    solid = write(to.folder / "solid.exr", spec_of(pixels[:, :5], alpha=True), pixels[:, :5])
+    to.report.check("no warning of surfaces and their edges", to.apply(solid, "o.png")[1] == "")
+
+
+def check_straight(to):
+    """8-bit files with low alpha: their color is not multiplied in 8 bits while it is read."""
+    color = np.array([200, 100, 50]) / 255
+    code = np.zeros((4, 16, 4))
+    code[..., :3] = color
+    code[..., 3] = np.arange(1, 17) / 255
+    straight = {"oiio:UnassociatedAlpha": 1}
+    for name in ("in.png", "in.tga", "in.tif"):
+        spec = spec_of(code, "uint8", alpha=True, attributes=straight)
+        source = write(to.folder / name, spec, code.astype(np.float32))
+        for out in ("o.png", "o.tga", "o.tif", "o.exr"):
+            to.written(source, out, "--input", "srgb")
+            image = oiio.ImageInput.open(str(to.folder / out), spec_of(code, attributes=straight))
+            got, spec = image.read_image("float"), image.spec()
+            image.close()
+            if out == "o.exr":
+                to.report.check("EXR has associated alpha", spec.getattribute("oiio:UnassociatedAlpha") is None)
+                got[..., :3] /= got[..., 3:]
+            # Half floats have 11 bits, alpha and color each; 8 bits are exact.
+            to.report.bound(f"{name} -> {out}: color at alpha 1/255 and more", np.abs(got[..., :3] - color).max(), 1.1e-3)
+            to.report.bound("and alpha", np.abs(got[..., 3] - code[..., 3]).max(), 1e-4)
+        lit = subprocess.run([to.command, "meter", source, "--input", "srgb", "--json"], capture_output=True, text=True,
+                             check=True)
+        light = np.where(color <= 0.04045, color / 12.92, ((color + 0.055) / 1.055) ** 2.4) @ [0.2126, 0.7152, 0.0722]
+        mean = json.loads(lit.stdout)["mean"]
+        to.report.bound(f"meter {name}", abs(mean - light), 1e-4 * light)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("command", type=Path)
     command = parser.parse_args().command.resolve()
     report = Report()
-    for part in (check_jpeg, check_exr_tags, check_light_levels):
+    for part in (check_jpeg, check_exr_tags, check_light_levels, check_alpha, check_straight):
         with tempfile.TemporaryDirectory(prefix="tonewright-") as folder:
             part(Writer(report, command, Path(folder)))
     return report.finish()

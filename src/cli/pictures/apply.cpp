@@ -46,30 +46,25 @@ OIIO::TypeDesc pixel_type_of(const ApplyOptions& options) {
                                 : parse_pixel_type(options.type);
 }
 
-WriteOptions::Alpha parse_alpha(const ApplyOptions& options) {
-    using Alpha = WriteOptions::Alpha;
-    const std::vector<std::pair<std::string, Alpha>> choices = {
-        {"keep", Alpha::keep}, {"ignore", Alpha::ignore}, {"opaque", Alpha::opaque}};
-    std::vector<std::string> names;
-    for (const auto& [name, alpha] : choices) {
-        names.push_back(name);
-        if (name != options.alpha) continue;
-        if (alpha != Alpha::keep && options.picture.unpremult) {
-            throw Error(fmt::format(
-                "apply: --alpha is {}; expected keep with --unpremult, which divides by alpha",
-                name));
-        }
-        return alpha;
-    }
-    throw Error(fmt::format("apply: --alpha is {}; expected {}{}", options.alpha,
-                            join_choices(names), did_you_mean(options.alpha, names)));
+/// True if color is un-premultiplied first, as far as the picture's alpha is associated.
+bool keeps_cover(const ApplyOptions& options) {
+    return options.alpha != "ignore" && options.alpha != "opaque";
 }
 
 /// @throws Error  the file name cannot have this output; checked before a large picture is read
 WriteOptions write_options_of(const ApplyOptions& options, const std::string& out) {
     WriteOptions write;
     write.type = pixel_type_of(options);
-    write.alpha = parse_alpha(options);
+    try {
+        set_alpha(write, options.alpha);
+    } catch (const Error& e) {
+        throw Error(std::string("apply: --") + e.what());
+    }
+    if (!keeps_cover(options) && options.picture.unpremult) {
+        throw Error(fmt::format(
+            "apply: --alpha is {}; expected keep with --unpremult, which divides by alpha",
+            options.alpha));
+    }
     write.compression = options.compression;
     write.quality = options.quality;
     write.subsampling = options.subsampling;
@@ -83,13 +78,13 @@ WriteOptions write_options_of(const ApplyOptions& options, const std::string& ou
 
 /// Without alpha, color is taken as it is.
 TonemapOptions::Unpremult alpha_of(const ApplyOptions& options) {
-    return options.alpha == "keep" ? alpha_of(options.picture) : TonemapOptions::Unpremult::no;
+    return keeps_cover(options) ? alpha_of(options.picture) : TonemapOptions::Unpremult::no;
 }
 
 /// For metering, which uses the same colors.
 PictureInput picture_of(const ApplyOptions& options) {
     PictureInput picture = options.picture;
-    if (options.alpha != "keep") picture.no_unpremult = true;
+    if (!keeps_cover(options)) picture.no_unpremult = true;
     return picture;
 }
 
@@ -278,7 +273,7 @@ void write_with_legend(const Tonemapper& tonemapper, const FrameFiles& file,
     const OIIO::ImageBuf source = read_picture(file.in, options.picture, options.input);
     if (!tonemapper(picture, source, {}, options.picture.threads))
         throw FileError(file.in + ": " + first_line(picture.geterror()));
-    write_image_atomically(with_legend(picture), file.out, write);
+    write_image_atomically(with_legend(with_associated_alpha(picture)), file.out, write);
 }
 
 }  // namespace

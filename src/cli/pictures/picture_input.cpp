@@ -102,7 +102,8 @@ OIIO::ImageBuf read_picture(const std::string& path, const PictureChoice& choice
     OIIO::ImageBuf picture = [&] {
         const QuietStderr quiet;
         OIIO::ImageBuf stored = read_image(path, options);
-        return with_memory_for(path, [&] { return upright(std::move(stored)); });
+        return with_memory_for(
+            path, [&] { return with_associated_alpha(upright(std::move(stored))); });
     }();
     about_picture(path, [&] { report_header(picture.spec(), input, options); });
     messages.print();

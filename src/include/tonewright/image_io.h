@@ -45,6 +45,9 @@ struct ReadOptions {
 /// Facts of the header that OpenImageIO drops become attributes `tonewright:file:*`, by which
 /// tonemap() knows the color (cICP of PNG, PRIMARIES of Radiance, ...).
 ///
+/// Straight alpha, as of PNG and TGA, stays straight: the attribute `oiio:UnassociatedAlpha` is 1.
+/// OpenImageIO would multiply color by alpha in the file's pixel type.
+///
 /// @throws FileError  missing, truncated, unreadable, of unknown format, deep, without the layer or
 ///                    the subimage, or with more pixels than the limit (checked before memory is
 ///                    allocated). One line.
@@ -124,6 +127,15 @@ TONEWRIGHT_API void write_image_atomically(const OIIO::ImageBuf& image, const st
                                            const WriteOptions& options);
 TONEWRIGHT_API void write_image_atomically(const OIIO::ImageBuf& image, const std::string& path,
                                            const OIIO::TypeDesc& type = OIIO::TypeUnknown);
+
+/// The same picture with associated alpha: if `oiio:UnassociatedAlpha` is set, as floats whose
+/// color is multiplied by alpha.
+[[nodiscard]] TONEWRIGHT_API OIIO::ImageBuf with_associated_alpha(const OIIO::ImageBuf& image);
+
+/// Sets `alpha` and `background` from `keep`, `ignore`, `opaque`, or `over:R,G,B` with numbers in
+/// [0, 1].
+/// @throws Error  for any other text, with the nearest name
+TONEWRIGHT_API void set_alpha(WriteOptions& options, std::string_view text);
 
 /// `uint8`, `uint16`, `half` or `float`, as in oiiotool's `-d`.
 /// @throws Error  for any other text, with the nearest name

@@ -123,7 +123,8 @@ def tonemap_file(source: Path, target: Path, op: str, *, settings: Mapping[str, 
 
     target: replaced only when the new file is complete; its extension sets the format.
     dtype: "uint8", "uint16", "half" or "float" (default: the format's).
-    alpha: "keep", "ignore" (leave it out) or "opaque" (make it 1).
+    alpha: "keep", "ignore" (leave it out), "opaque" (make it 1), or "over:R,G,B" (composite over a background in code
+    values, [0, 1]).
     subimage: part or page of the file: its number from 0 or its name (default: the first picture).
     layer: layer of an EXR file (default: R, G, B, else the first that is a picture).
     in_place: allow the target to be the source, which is lost then.

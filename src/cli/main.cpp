@@ -8,9 +8,11 @@
 #include <exception>
 #include <filesystem>
 #include <new>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <typeinfo>
 
 #include "base/atomic_file.h"
 #include "base/strings.h"
@@ -145,7 +147,9 @@ int run(int argc, char** argv) {
         return report(e.what(), kFile);
     } catch (const Error& e) {
         return report(e.what(), kUsage);
-    } catch (const std::exception& e) {  // of a library, about the contents of a file
+    } catch (const std::exception& e) {
+        // A warning with --strict is no class of its own, exceptions of libraries are.
+        if (typeid(e) == typeid(std::runtime_error)) return report(e.what(), kCheckFailed);
         return report(command + one_line(e.what()), kFile);
     }
 }

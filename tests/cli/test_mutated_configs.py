@@ -194,8 +194,9 @@ def files_of(folder):
 def run(command, arguments, home):
     environment = dict(os.environ, XDG_CACHE_HOME=str(home))
     try:
+        # A record without its views means a dozen.
         return subprocess.run(["prlimit", "--core=0", str(command), *map(str, arguments)], capture_output=True, text=True,
-                              errors="replace", check=False, timeout=60, env=environment)
+                              errors="replace", check=False, timeout=300, env=environment)
     except subprocess.TimeoutExpired:
         return subprocess.CompletedProcess(arguments, "a timeout", "", "")
 

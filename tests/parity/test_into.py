@@ -330,6 +330,200 @@ def check_edits(report, command, root):
                  and path.read_text() == edited, done.stderr)
 
 
+def shows(path, view, display="sRGB - Display"):
+    """Whether OpenColorIO finds the view and its tables."""
+    config = ocio.Config.CreateFromFile(str(path))
+    try:
+        config.getProcessor("aces_interchange", display, view, ocio.TRANSFORM_DIR_FORWARD).getDefaultCPUProcessor()
+    except ocio.Exception:
+        return False
+    return True
+
+
+def check_links(report, command, root):
+    """A config by the name of a link: the file itself is edited, and OpenColorIO finds the tables by both names."""
+    studio, shot, other = root / "studio", root / "shot", root / "show" / "other"
+    for folder in (studio, shot, other):
+        folder.mkdir(parents=True)
+    path, link, far = studio / "config.ocio", shot / "c.ocio", other / "config.ocio"
+    path.write_text(ACES)
+    link.symlink_to("../studio/config.ocio")
+    far.symlink_to("../../shot/c.ocio")  # through another link
+    (root / "mount").symlink_to("studio")  # a link above it
+    done = call(command, "--into", link, "--views", "hable", "--backup")
+    report.check("a link: --into", done.returncode == 0 and not done.stderr and f"edited {path.resolve()}" in done.stdout,
+                 done.stdout + done.stderr)
+    report.check("a link: the file is edited, the link stays", link.is_symlink() and "Hable" in path.read_text())
+    report.check("a link: tables, record and backup are beside the file", sorted(p.name for p in studio.iterdir())
+                 == ["config.ocio", "config.ocio.bak", "tonewright"] and (studio / "tonewright" / "config.ocio.yaml").exists())
+    report.check("a link: beside it is a link to the folder of the tables",
+                 sorted(p.name for p in shot.iterdir()) == ["c.ocio", "tonewright"]
+                 and os.readlink(shot / "tonewright") == "../studio/tonewright")
+    report.check("a link: OpenColorIO finds the tables by both names, and by a folder's link",
+                 all(shows(p, "Hable") for p in (path, link, root / "mount" / "config.ocio")))
+    done = call(command, "--into", root / "mount" / "config.ocio", "--update", "--views", "clamp")
+    report.check("a link above the config: --update", done.returncode == 0 and shows(path, "Standard") and shows(link, "Standard"),
+                 done.stderr)
+    done = call(command, "--into", far, "--update")
+    report.check("a link to a link: --update", done.returncode == 0 and all(shows(p, "Standard") for p in (path, link, far)),
+                 done.stderr)
+    done = call(command, "--into", path, "--views", "hable")
+    report.check("the file: --into after a link's", done.returncode == 0 and all(shows(p, "Hable") for p in (path, link, far)),
+                 done.stderr)
+    done = call(command, "--into", link, "--remove")
+    report.check("a link: --remove leaves the config byte for byte", done.returncode == 0 and path.read_text() == ACES
+                 and link.is_symlink() and not (studio / "tonewright").exists() and not os.path.lexists(shot / "tonewright"),
+                 done.stderr)
+    # A link that leads to a folder that is gone is ours.
+    done = call(command, "--into", far, "--views", "clamp")
+    report.check("a link to a folder that is gone is used again", done.returncode == 0 and shows(far, "Standard"), done.stderr)
+    call(command, "--into", far, "--remove")
+
+    # What OpenColorIO would take for the folder of the tables.
+    for what, make in (("a folder", lambda p: (p.mkdir(), (p / "mine.clf").write_text("x"))), ("a file", lambda p: p.write_text("x"))):
+        place = shot / "tonewright"
+        if os.path.lexists(place):
+            place.unlink()
+        make(place)
+        done = call(command, "--into", link, "--views", "clamp")
+        report.check(f"a link, and {what} of the name beside it: refused, with both names", done.returncode == 3
+                     and str(link) in done.stderr and str(path.resolve()) in done.stderr and done.stderr.count("\n") == 1
+                     and path.read_text() == ACES and not (studio / "tonewright").exists(), done.stderr)
+        shutil.rmtree(place) if place.is_dir() else place.unlink()
+    # In the folder of the config, nothing else is needed.
+    (studio / "current.ocio").symlink_to("config.ocio")
+    done = call(command, "--into", studio / "current.ocio", "--views", "clamp")
+    report.check("a link in the same folder", done.returncode == 0 and shows(studio / "current.ocio", "Standard")
+                 and (studio / "tonewright" / "config.ocio.yaml").exists(), done.stderr)
+    done = call(command, "--into", path, "--remove")
+    report.check("a link in the same folder: --remove by the other name", done.returncode == 0 and path.read_text() == ACES,
+                 done.stderr)
+    (studio / "gone.ocio").symlink_to("none.ocio")
+    done = call(command, "--into", studio / "gone.ocio", "--views", "clamp")
+    report.check("a link to nothing", done.returncode == 3 and "gone.ocio" in done.stderr and done.stderr.count("\n") == 1,
+                 done.stderr)
+    os.link(path, root / "hard.ocio")
+    done = call(command, "--into", path, "--views", "clamp")
+    report.check("a hard link: one line, and the other name keeps the old contents", done.returncode == 0
+                 and "2 hard links" in done.stderr and done.stderr.count("\n") == 1 and (root / "hard.ocio").read_text() == ACES
+                 and shows(path, "Standard"), done.stderr)
+
+
+# An identity, where a test needs a table of this name but not its numbers.
+TABLE = ('<?xml version="1.0" encoding="UTF-8"?>\n<ProcessList compCLFversion="3" id="x">\n<LUT1D inBitDepth="32f" '
+         'outBitDepth="32f">\n<Array dim="2 1">\n0\n1\n</Array>\n</LUT1D>\n</ProcessList>\n')
+
+
+def check_record(report, command, root):
+    """What commit 57376a0 wrote, as stored in tests/data/into_record, without its tables."""
+    stored = Path(__file__).resolve().parents[1] / "data" / "into_record"
+    before = (stored / "before.ocio").read_text()
+    tables = ("hable_curve_61ddf5e1.clf", "hable_inverse_curve_78754295.clf")
+    for way in ("by its name", "by a link"):
+        for action in ("--update", "--remove"):
+            folder = root / f"record {way} {action}"
+            shutil.copytree(stored, folder / "studio")
+            (folder / "studio" / "before.ocio").unlink()
+            path = real = folder / "studio" / "studio.ocio"
+            for table in tables:
+                (folder / "studio" / "tonewright" / table).write_text(TABLE)
+            if way == "by a link":  # it wrote record and tables beside the link, under the link's name
+                path = folder / "shot" / "s.ocio"
+                path.parent.mkdir()
+                path.symlink_to("../studio/studio.ocio")
+                (folder / "studio" / "tonewright").rename(folder / "shot" / "tonewright")
+                (folder / "shot" / "tonewright" / "studio.ocio.yaml").rename(folder / "shot" / "tonewright" / "s.ocio.yaml")
+            done = call(command, "--into", path, action)
+            report.check(f"57376a0's record {way}: {action}", done.returncode == 0 and not done.stderr, done.stderr)
+            if action == "--remove":
+                report.check(f"57376a0's record {way}: the config is as before", real.read_text() == before)
+                left = [p for p in folder.rglob("*") if "tonewright" in p.parts[len(folder.parts):]]
+                report.check(f"57376a0's record {way}: nothing is left", not left, left)
+                continue
+            report.check(f"57376a0's record {way}: the view is rebuilt, with its tables", shows(real, "Hable", "sRGB")
+                         and shows(path, "Hable", "sRGB"))
+            files = sorted(p.name for p in (folder / "studio" / "tonewright").iterdir())
+            report.check(f"57376a0's record {way}: tables and record beside the file", "studio.ocio.yaml" in files
+                         and len(files) == 3 and all("<Array dim=\"2 1\">" not in p.read_text()
+                                                     for p in (folder / "studio" / "tonewright").glob("*.clf")), files)
+            done = call(command, "--into", path, "--remove")
+            report.check(f"57376a0's record {way}: --remove after --update", done.returncode == 0 and real.read_text() == before,
+                         done.stderr)
+
+
+def check_faults(report, command, root):
+    """Configs that lack what they name, and damaged tables: one line with both names, exit code 3, nothing changed."""
+    path = root / "faulty.ocio"
+    for what, old, new, words in (
+            ("a role that names no space", "aces_interchange: ACES2065-1", "aces_interchange: ACES2065",
+             "role aces_interchange is ACES2065, which is no color space"),
+            ("the other role", "cie_xyz_d65_interchange: CIE-XYZ-D65", "cie_xyz_d65_interchange: XYZ",
+             "role cie_xyz_d65_interchange is XYZ, which is no color space"),
+            ("a role of a data space", "aces_interchange: ACES2065-1", "aces_interchange: Raw", "which is a data space"),
+            ("a view without its view transform", "{name: SDR Video, view_transform: SDR Video, display_colorspace: Rec",
+             "{name: SDR Video, view_transform: SDR Vdeo, display_colorspace: Rec", "SDR Vdeo"),
+            ("a view without its space", "display_colorspace: Rec.2100-PQ", "display_colorspace: Rec.2100", "Rec.2100"),
+            ("a shared view that is missing", "!<Views> [SDR Video]", "!<Views> [Film]", "Film"),
+            ("a view with a look that is missing", "view_transform: SDR Video, display_colorspace: Rec.2100-PQ",
+             "view_transform: SDR Video, display_colorspace: Rec.2100-PQ, looks: none", "none")):
+        text = ACES.replace(old, new)
+        path.write_text(text)
+        done = call(command, "--into", path, "--views", "clamp")
+        report.check(f"{what}: one line with both names, exit code 3", done.returncode == 3 and done.stderr.count("\n") == 1
+                     and words in done.stderr and "faulty.ocio" in done.stderr and text != ACES, (done.returncode, done.stderr))
+        report.check(f"{what}: nothing has changed", path.read_text() == text and not (root / "tonewright").exists())
+    # OpenColorIO ignores the case of views, and lists active ones only.
+    for name in ("hable", "Hable"):
+        text = ACES.replace("    - !<View> {name: SDR Video, view_transform: SDR Video, display_colorspace: Rec",
+                            f"    - !<View> {{name: {name}, colorspace: Raw}}\n    - !<View> {{name: SDR Video, view_transform: "
+                            "SDR Video, display_colorspace: Rec")
+        path.write_text(text)
+        done = call(command, "--into", path, "--views", "hable")
+        report.check(f"an inactive view {name}: a name that is taken", done.returncode == 2 and path.read_text() == text
+                     and "Hable already" in done.stderr, (done.returncode, done.stderr))
+    path.write_text(ACES)
+    call(command, "--into", path, "--views", "hable")
+    table = next((root / "tonewright").glob("hable_curve*.clf"))
+    whole = table.read_bytes()
+    table.write_bytes(whole[:300])
+    done = call(command, "--into", path, "--update")
+    report.check("a damaged table: --update writes it again", done.returncode == 0 and table.read_bytes() == whole, done.stderr)
+    record = root / "tonewright" / "faulty.ocio.yaml"
+    outside = root / "outside.clf"
+    outside.write_text("mine")
+    for name in ("../outside.clf", "tonewright/../../outside.clf", str(outside), "tonewright/..", "tonewright/"):
+        text = record.read_text()
+        record.write_text(text.replace('files:\n', f'files:\n  - "{name}"\n'))
+        done = call(command, "--into", path, "--remove")
+        report.check(f"a record of the table {name}: refused", done.returncode == 3 and outside.read_text() == "mine"
+                     and done.stderr.count("\n") == 1, (done.returncode, done.stderr))
+        record.write_text(text)
+
+
+def check_environment(report, command, root):
+    """OpenColorIO's variables change neither the bytes of a config nor what is measured."""
+    hostile = {"OCIO_OPTIMIZATION_FLAGS": "0", "OCIO_ACTIVE_DISPLAYS": "none", "OCIO_ACTIVE_VIEWS": "none",
+               "OCIO_INACTIVE_COLORSPACES": "ACEScg", "OCIO_USER_CATEGORIES": "x", "OCIO": "/nowhere/config.ocio"}
+    wanted = {}
+    for kind, more in (("plain", {}), ("variables", hostile)):
+        folder = root / f"environment {kind}"
+        folder.mkdir()
+        (folder / "mine.ocio").write_text(ACES)
+        environment = dict({k: v for k, v in os.environ.items() if not k.startswith("OCIO")}, **more)
+        for arguments in (["config", "-o", "new", "--views", "clamp,hable", "--displays", "sRGB"],
+                          ["config", "--into", "mine.ocio", "--views", "hable"],
+                          ["bake", "hable", "--format", "clf", "-o", "hable.clf", "--size", "17"],
+                          ["verify", "--config", "new", "--quick", "--no-gpu", "--json"]):
+            done = subprocess.run([command, *arguments], cwd=folder, env=environment, capture_output=True, text=True, check=False)
+            report.check(f"{kind}: {arguments[0]} {arguments[1]}", done.returncode == 0, done.stderr[-300:])
+            if arguments[0] == "verify":
+                (folder / "verify.json").write_text(done.stdout)
+        found = {p.relative_to(folder): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
+        wanted = wanted or found
+        changed = [str(p) for p in {**wanted, **found} if wanted.get(p) != found.get(p)]
+        report.check(f"{kind}: the same {len(found)} files", len(found) > 8 and not changed, changed)
+
+
 def check_theirs(report, command, folder, path, views):
     """A config that people have: into it, and nothing of theirs is changed."""
     before = numbers_of(path)
@@ -425,6 +619,10 @@ def main():
                                                                         if isinstance(k, tuple)}))
         check_text(report, command, Path(name))
         check_edits(report, command, Path(name))
+        for check in (check_links, check_record, check_faults, check_environment):
+            folder = Path(name) / check.__name__
+            folder.mkdir()
+            check(report, command, folder)
         check_published(report, command, Path(name))
         bare = Path(name) / "bare.ocio"
         bare.write_text(ACES.replace("cie_xyz_d65_interchange: CIE-XYZ-D65, ", ""))

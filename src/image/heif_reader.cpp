@@ -6,9 +6,6 @@
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 #include <libheif/heif.h>
-#if LIBHEIF_HAVE_VERSION(1, 19, 0)
-#include <libheif/heif_security.h>
-#endif
 
 #include <algorithm>
 #include <array>

@@ -39,8 +39,8 @@ if [ ! -f "$root/complete" ]; then
     inside apt-get -q update >"$work/log" 2>&1 || { cat "$work/log"; skip "no Debian mirror"; }
     mapfile -t compilers < <(numbered g++ | awk -F- '$2 >= 13'; numbered clang | tail -1)
     inside apt-get -q -y --no-install-recommends install "${packages[@]}" "${compilers[@]}" libgtest-dev opencolorio-tools git \
-        libheif-plugin-x265 libheif-plugin-libde265 libheif-plugin-aomenc \
-        python3-numpy python3-yaml python3-pyopencolorio python3-openimageio libheif-dev >"$work/log" 2>&1 ||
+        libheif-plugin-x265 libheif-plugin-libde265 libheif-plugin-aomenc libheif-plugin-dav1d \
+        python3-numpy python3-yaml python3-pyopencolorio python3-openimageio >"$work/log" 2>&1 ||
         { tail -60 "$work/log"; exit 1; }
     touch "$root/complete"
 fi

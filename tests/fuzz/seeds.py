@@ -194,3 +194,38 @@ for kind, text in enumerate((CONFIG, CONFIG, RECORD)):
 for size in range(5):
     for channels in (2, 3, 66, 131):
         (folder_of("picture") / f"{size}_{channels}").write_bytes(bytes([size, 0, 0, channels]) + struct.pack("<3f", 0, 0.5, 2))
+
+
+def profile(space, version, tags):
+    """ICC.1:2022, 7: an input profile with these tags."""
+    place, table, contents = 132 + 12 * len(tags), struct.pack(">I", len(tags)), b""
+    for name, tag in tags:
+        table += name + struct.pack(">2I", place + len(contents), len(tag))
+        contents += tag.ljust((len(tag) + 3) // 4 * 4, b"\0")
+    header = struct.pack(">I4xI", place + len(contents), version) + b"scnr" + space + b"XYZ " + bytes(12) + b"acsp" + bytes(28)
+    header += struct.pack(">3I", 0xF6D6, 0x10000, 0xD32D)
+    return header.ljust(128, b"\0") + table + contents
+
+
+def xyz(*numbers):
+    return b"XYZ " + bytes(4) + struct.pack(">3i", *(round(65536 * number) for number in numbers))
+
+
+def curves(curve):
+    return [(b"rTRC", curve), (b"gTRC", curve), (b"bTRC", curve)]
+
+
+COLORANTS = [(b"rXYZ", xyz(0.61, 0.31, 0.02)), (b"gXYZ", xyz(0.21, 0.63, 0.06)), (b"bXYZ", xyz(0.15, 0.06, 0.745))]
+GAMMA = b"curv" + struct.pack(">4xIH", 1, 563)
+SAMPLED = b"curv" + struct.pack(">4xI5H", 5, 0, 4096, 16384, 36864, 65535)
+PARAMETRIC = b"para" + struct.pack(">4xHxx5i", 3, 157286, 62119, 3417, 5073, 2651)
+PROFILES = {"gamma": profile(b"RGB ", 0x02400000, COLORANTS + curves(GAMMA)),
+            "sampled": profile(b"RGB ", 0x02400000, COLORANTS + curves(SAMPLED)),
+            "parametric": profile(b"RGB ", 0x04300000, COLORANTS + curves(PARAMETRIC)),
+            "cicp": profile(b"RGB ", 0x04400000, COLORANTS + curves(GAMMA) + [(b"cicp", b"cicp" + bytes(4) + b"\x09\x10\0\1")]),
+            "gray": profile(b"GRAY", 0x02400000, [(b"kTRC", SAMPLED), (b"desc", b"desc" + struct.pack(">4xI", 5) + b"Gray\0")])}
+for kind in ("mft1", "mft2", "mAB "):
+    PROFILES[kind.strip()] = profile(b"RGB ", 0x02400000 if kind.startswith("mft") else 0x04300000,
+                                     [(b"A2B0", device_link(kind)[144:])])
+for name, text in PROFILES.items():
+    (folder_of("icc") / name).write_bytes(bytes([name == "gray"]) + text)

@@ -45,6 +45,12 @@ View ViewOptions::view() const {
                      exposure, display, reference_white);
 }
 
+View ViewOptions::view(const SourceColor& color) const {
+    ResolvedOperator resolved = resolve_operator(op, settings(), look, operator_files());
+    warn_of(resolved);
+    return make_view(std::move(resolved), color, exposure, display, reference_white);
+}
+
 const OperatorSet& operator_files() {
     static const OperatorSet files(table_reader([](const std::string& path) {
         if (is_lut_picture(path)) return table_file_of(picture_commands().read_lut(path), path);

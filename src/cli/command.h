@@ -43,6 +43,8 @@ struct ViewOptions {
     [[nodiscard]] Settings settings() const;
     /// @throws Error
     [[nodiscard]] View view() const;
+    /// The same for a color instead of the name in `input`.
+    [[nodiscard]] View view(const SourceColor& color) const;
 };
 
 /// The reader of .tone files and LUTs as operators, for all commands.

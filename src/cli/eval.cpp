@@ -121,8 +121,7 @@ ColorMap through_floats(std::function<void(const float*, float*, std::size_t)> r
 }
 
 ColorMap map_of_lut(const Options& options) {
-    const InputSpace& input = find_input_space(options.input);
-    const SourceColor color = {input.id, input.primaries};
+    const SourceColor color = find_source_color(options.input);
     check_lut_options("eval", options.lut, options, color);
     const auto lut = with_memory_for(options.lut.file, [&] {
         return std::make_shared<const LutFile>(
@@ -130,7 +129,7 @@ ColorMap map_of_lut(const Options& options) {
                      [](const std::string& path) { return picture_commands().read_lut(path); }));
     });
     const Pipeline before =
-        before_lut("eval", with_stated_input(options.lut, input.id), options, color);
+        before_lut("eval", with_stated_input(options.lut, color.name), options, color);
     const auto encode = before.empty() ? nullptr : std::make_shared<const ReferenceEngine>(before);
     return through_floats([lut, encode](const float* in, float* out, std::size_t count) {
         if (!encode) {
@@ -142,6 +141,15 @@ ColorMap map_of_lut(const Options& options) {
         const std::vector<float> code(encoded.begin(), encoded.end());
         lut->run_rgb(code.data(), out, count);
     });
+}
+
+View view_of(const Options& options) {
+    const SourceColor color = find_source_color(options.input);
+    if (options.inverse && !color.decode.empty()) {
+        throw Error("eval: --input is " + color.name +
+                    "; expected a scene-linear space with --inverse");
+    }
+    return options.view(color);
 }
 
 Pipeline pipeline_of(const Options& options, const View& view) {
@@ -162,7 +170,7 @@ ColorMap map_of_operator(const Options& given) {
     const std::size_t kind =
         find_choice("eval: engine", options.engine, {"reference", "simd", "ocio", "ocio-gpu"});
     take_lut_options("eval", options.lut, options, true);
-    const View view = options.view();
+    const View view = view_of(options);
     const Pipeline pipeline = pipeline_of(options, view);
     if (kind == kReference) {
         const auto engine = std::make_shared<const ReferenceEngine>(pipeline);
@@ -192,7 +200,7 @@ ColorMap map_of_operator(const Options& given) {
 int run_explain(Options options) {
     check_has_operator(options);
     take_lut_options("eval", options.lut, options, true);
-    const View view = options.view();
+    const View view = view_of(options);
     const Pipeline pipeline = pipeline_of(options, view);
     fmt::print("{}", explain(pipeline, {}, view.op.op->bounds.simd_goal));
     return kOk;
@@ -216,6 +224,9 @@ void add_eval(CommandLine& program) {
         command.add("operator", options->op, "operator, operator:preset, .tone file or LUT");
     op.suggest(suggest_operators);
     add_view_options(command, *options);
+    command.option("--input")
+        .describe("color space of the input, linear or encoded (`tonewright list --inputs`)")
+        .suggest(suggest_input_colors);
     command
         .add("--engine", options->engine,
              "`reference` (double precision), `simd`, `ocio` or `ocio-gpu` (floats)")

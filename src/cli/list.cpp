@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 
@@ -18,6 +19,7 @@
 #include "tonewright/lut.h"
 #include "tonewright/lut_applications.h"
 #include "tonewright/registry.h"
+#include "tonewright/source_color.h"
 #include "tonewright/view.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -122,6 +124,36 @@ Json to_json(const std::vector<Operator>& operators) {
     return all;
 }
 
+using InputKind = SourceColorName::Kind;
+
+/// Groups of names for --input, in the order of the list.
+struct InputGroup {
+    InputKind kind;
+    const char* id;
+    const char* title;
+};
+constexpr std::array<InputGroup, 6> kInputGroups = {{
+    {InputKind::linear, "linear", "scene-linear spaces"},
+    {InputKind::config, "config", "other spaces of the OpenColorIO config"},
+    {InputKind::display, "display", "code values of displays"},
+    {InputKind::encoding, "encoding", "encodings of LUTs (bake --input-encoding)"},
+    {InputKind::interop, "interop", "other ids of the Color Interop Forum"},
+    {InputKind::other, "pattern", "other names"},
+}};
+
+Json inputs_to_json() {
+    Json inputs = Json::array();
+    for (const SourceColorName& name : all_source_color_names()) {
+        const auto* group = std::find_if(kInputGroups.begin(), kInputGroups.end(),
+                                         [&](const auto& g) { return g.kind == name.kind; });
+        inputs.push_back({{"id", name.id},
+                          {"title", name.title},
+                          {"aliases", name.aliases},
+                          {"kind", group->id}});
+    }
+    return inputs;
+}
+
 Json spaces_to_json() {
     Json displays = Json::array();
     for (const Display& d : all_displays()) {
@@ -134,7 +166,8 @@ Json spaces_to_json() {
     return {{"operators", to_json(all_operators())},
             {"local_operators", to_json(local_operators())},
             {"displays", displays},
-            {"spaces", spaces}};
+            {"spaces", spaces},
+            {"inputs", inputs_to_json()}};
 }
 
 std::string range_of(const ParameterSpec& p) {
@@ -246,9 +279,31 @@ void print_overview() {
         print_entry(d.id, width, {d.title + ":", d.source});
     print_entry(std::string(kLinearOutput), width, {"display-linear Rec.709, unclamped"});
     print_entry(std::string(kNativeOutput), width, {"the operator's own output, untouched"});
-    fmt::print("\nscene-linear input spaces (--input)\n");
+    fmt::print("\nscene-linear input spaces (--input; all names: tonewright list --inputs)\n");
     for (const InputSpace& s : all_input_spaces())
         print_entry(s.id, width, {s.title});
+}
+
+/// Each name with its title and its aliases.
+void print_inputs() {
+    const std::vector<SourceColorName> names = all_source_color_names();
+    std::size_t width = 0;
+    for (const SourceColorName& name : names)
+        width = std::max(width, name.id.size());
+    bool is_first = true;
+    for (const InputGroup& group : kInputGroups) {
+        fmt::print("{}{}\n", is_first ? "" : "\n", group.title);
+        is_first = false;
+        for (const SourceColorName& name : names) {
+            if (name.kind != group.kind) continue;
+            std::vector<std::string> words;
+            if (name.title != name.id) words.push_back(name.title);
+            words.insert(words.end(), name.aliases.begin(), name.aliases.end());
+            for (std::size_t i = 0; i + 1 < words.size(); ++i)
+                words[i] += ",";
+            print_entry(name.id, width, words);
+        }
+    }
 }
 
 }  // namespace
@@ -335,6 +390,7 @@ struct Options {
     bool json = false;
     bool markdown = false;
     bool views = false;
+    bool inputs = false;
     bool hosts = false;
     bool definition = false;
     std::string catalogue;
@@ -345,6 +401,14 @@ int run_list(const Options& options) {
         if (!options.op.empty())
             throw Error("list: operator is " + options.op + "; expected none with --catalogue");
         write_catalogue(options.catalogue);
+    } else if (options.inputs) {
+        if (!options.op.empty())
+            throw Error("list: operator is " + options.op + "; expected none with --inputs");
+        if (options.json) {
+            fmt::print("{}\n", inputs_to_json().dump(2));
+        } else {
+            print_inputs();
+        }
     } else if (options.hosts) {
         if (!options.op.empty())
             throw Error("list: operator is " + options.op + "; expected none with --hosts");
@@ -414,6 +478,15 @@ void add_list(CommandLine& program) {
             .excludes(markdown)
             .excludes(views);
     definition.group(contents);
+    const Option inputs =
+        command
+            .add_flag("--inputs", options->inputs,
+                      "list the names of --input for pictures: spaces, camera logs, displays, "
+                      "encodings")
+            .excludes(markdown)
+            .excludes(views)
+            .excludes(definition);
+    inputs.group(contents);
     const Option hosts =
         command
             .add_flag(
@@ -422,7 +495,8 @@ void add_list(CommandLine& program) {
                 "it")
             .excludes(markdown)
             .excludes(views)
-            .excludes(definition);
+            .excludes(definition)
+            .excludes(inputs);
     hosts.group(contents);
     command
         .add("--catalogue", options->catalogue,
@@ -432,6 +506,7 @@ void add_list(CommandLine& program) {
         .excludes(json)
         .excludes(markdown)
         .excludes(views)
+        .excludes(inputs)
         .excludes(hosts)
         .excludes(definition);
     command.footer(

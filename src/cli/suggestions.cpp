@@ -8,6 +8,7 @@
 #include "tonewright/lut_applications.h"
 #include "tonewright/registry.h"
 #include "tonewright/shader.h"
+#include "tonewright/source_color.h"
 #include "tonewright/view.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -122,9 +123,16 @@ Suggestions suggest_config_displays(const TypedValue& /*typed*/) { return ids_of
 
 Suggestions suggest_spaces(const TypedValue& /*typed*/) { return ids_of(all_input_spaces()); }
 
+Suggestions suggest_input_colors(const TypedValue& /*typed*/) {
+    Suggestions all;
+    for (const SourceColorName& name : all_source_color_names()) {
+        if (name.kind != SourceColorName::Kind::other) all.words.push_back({name.id, name.title});
+    }
+    return all;
+}
+
 Suggestions suggest_source_colors(const TypedValue& typed) {
-    Suggestions all = suggest_spaces(typed);
-    add_ids(all, all_displays());
+    Suggestions all = suggest_input_colors(typed);
     all.words.push_back({"auto", "what the file says"});
     return all;
 }

@@ -20,7 +20,9 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// Without them.
 [[nodiscard]] Suggestions suggest_config_displays(const TypedValue& typed);
 [[nodiscard]] Suggestions suggest_spaces(const TypedValue& typed);
-/// Names for --input of pictures: spaces, displays and `auto`.
+/// Names that find_source_color() takes.
+[[nodiscard]] Suggestions suggest_input_colors(const TypedValue& typed);
+/// Names for --input of pictures: these, and `auto`.
 [[nodiscard]] Suggestions suggest_source_colors(const TypedValue& typed);
 [[nodiscard]] Suggestions suggest_encodings(const TypedValue& typed);
 [[nodiscard]] Suggestions suggest_lut_formats(const TypedValue& typed);

@@ -26,6 +26,9 @@ std::optional<std::string_view> between(std::string_view text, std::string_view 
 std::string parametrized(std::string_view title) {
     if (const auto white = between(title, "PQ (SMPTE ST 2084), scene-linear 1 at ", " cd/m2"))
         return fmt::format("pq:{}", *white);
+    if (const auto white =
+            between(title, "HLG (ITU-R BT.2100) scene light, scene-linear 1 at ", " cd/m2"))
+        return fmt::format("hlg:{}", *white);
     for (const auto& [before, name] :
          {std::pair("log2(x / 0.18) from ", "log2"), std::pair("scene-linear from ", "linear")}) {
         const auto low = between(title, before, " to ");

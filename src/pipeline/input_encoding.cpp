@@ -127,9 +127,8 @@ InputEncoding parse_input_encoding(std::string_view text) {
         // Gray, for which the OOTF of the display is a power of this channel.
         const double gray = evaluate(hlg_inverse_ootf_luminance(x), white / kHlgPeak);
         e.id = "hlg:" + shortest(white);
-        e.title =
-            "HLG (ITU-R BT.2100), scene light; scene-linear 1 is the gray that a display of " +
-            shortest(kHlgPeak) + " cd/m2 shows at " + shortest(white) + " cd/m2";
+        e.title = "HLG (ITU-R BT.2100) scene light, scene-linear 1 at " + shortest(white) +
+                  " cd/m2 on a display of " + shortest(kHlgPeak);
         e.encode = hlg_oetf(x * gray);
         e.decode = hlg_inverse_oetf(x) / gray;
         e.default_input = "lin_rec2020";

@@ -112,6 +112,7 @@ Display hlg_display() {
 }
 
 /// The color of "cicp:P/T", the name that color_of_code_points() gives.
+/// @throws Error  such a name of values without a meaning
 std::optional<SourceColor> by_code_points(std::string_view name) {
     constexpr std::string_view kPrefix = "cicp:";
     const std::string folded = folded_name(name);
@@ -123,7 +124,13 @@ std::optional<SourceColor> by_code_points(std::string_view name) {
     if (error != std::errc() || slash == end || *slash != '/') return std::nullopt;
     const auto [rest, second_error] = std::from_chars(slash + 1, end, transfer);
     if (second_error != std::errc() || rest != end) return std::nullopt;
-    return color_of_code_points(primaries, transfer);
+    std::optional<SourceColor> color = color_of_code_points(primaries, transfer);
+    if (!color) {
+        throw Error("input space is " + std::string(name) + ", " +
+                    code_point_names(primaries, transfer) +
+                    "; expected values that ITU-T H.273, tables 2 and 3, specifies");
+    }
+    return color;
 }
 
 /// The X.Y of "GammaX.Y", as OIIO names powers of Rec.709; or 0.
@@ -142,19 +149,27 @@ double exponent_of(std::string_view name) {
 
 /// Ids of the Color Interop Forum that no display and no space of the config has: "Color Space
 /// Encodings for Texture Assets and CG Rendering", "Display Color Space Encodings", 2026.
-constexpr std::array kOtherInteropIds = {"lin_adobergb_scene",
-                                         "lin_ciexyzd65_scene",
-                                         "g18_rec709_scene",
-                                         "g22_adobergb_scene",
-                                         "srgbe_p3d65_display",
-                                         "g22_adobergb_display",
-                                         "g26_p3d65_display",
-                                         "g26_xyzd65_display",
-                                         "pq_xyzd65_display",
-                                         "lin_rec709_display",
-                                         "lin_p3d65_display",
-                                         "lin_rec2020_display",
-                                         "unknown"};
+struct InteropName {
+    const char* id;
+    const char* title;
+};
+constexpr std::array kOtherInteropNames = {
+    InteropName{"lin_adobergb_scene", "Linear AdobeRGB"},
+    InteropName{"lin_ciexyzd65_scene", "CIE XYZ-D65 - Scene-referred"},
+    InteropName{"g18_rec709_scene", "Gamma 1.8 Encoded Rec.709"},
+    InteropName{"g22_adobergb_scene", "Gamma 2.2 Encoded AdobeRGB"},
+    InteropName{"srgbe_p3d65_display", "Display P3 HDR - Display"},
+    InteropName{"g22_adobergb_display", "AdobeRGB - Display"},
+    InteropName{"g26_p3d65_display", "Gamma 2.6 P3-D65 - Display"},
+    InteropName{"g26_xyzd65_display", "DCDM G2.6-XYZ-D65 - Display"},
+    InteropName{"pq_xyzd65_display", "DCDM ST2084-XYZ-D65 - Display"},
+    InteropName{"lin_rec709_display", "Linear Rec.709 - Display-referred"},
+    InteropName{"lin_p3d65_display", "Linear P3-D65 - Display-referred"},
+    InteropName{"lin_rec2020_display", "Linear Rec.2020 - Display-referred"},
+};
+
+/// The forum's id of files whose color nobody knows.
+constexpr const char* kUnknownColor = "unknown";
 
 /// Other names, and names with a number.
 constexpr std::array<std::pair<const char*, const char*>, 3> kOtherNames = {{
@@ -236,8 +251,10 @@ std::optional<SourceColor> by_input_encoding(std::string_view name) {
     if (std::find(ids.begin(), ids.end(), id) == ids.end()) return std::nullopt;
     const InputEncoding encoding = parse_input_encoding(name);
     const Primaries& primaries = find_input_space(encoding.default_input).primaries;
-    SourceColor color = encoded_color(encoding.id, {curve_stage(encoding.decode)}, primaries);
-    color.is_absolute = id == name && id == "pq";
+    const bool is_absolute = is_same_name(name, "pq");  // without a white of its own
+    SourceColor color =
+        encoded_color(is_absolute ? "pq" : encoding.id, {curve_stage(encoding.decode)}, primaries);
+    color.is_absolute = is_absolute;
     return color;
 }
 
@@ -252,8 +269,10 @@ std::optional<SourceColor> look_up_color(std::string_view name) {
         return encoded_color("Gamma" + shortest(exponent), {curve_stage(power_decode(x, exponent))},
                              kRec709);
     }
-    // The forum's id of files whose color nobody knows. Who names it wants the numbers.
-    if (is_same_name(name, "unknown")) return SourceColor{"unknown", kRec709};
+    if (is_same_name(name, kUnknownColor)) return SourceColor{kUnknownColor, kRec709};
+    for (const InteropName& named : kOtherInteropNames) {
+        if (is_same_name(name, named.title)) return by_interop_pattern(named.id);
+    }
     for (const auto& find :
          {by_interop_pattern, by_encoded_space, by_input_encoding, by_code_points}) {
         if (std::optional<SourceColor> color = find(name)) return color;
@@ -340,6 +359,13 @@ const std::vector<Display>& all_displays() {
 }
 
 const InputSpace& find_input_space(std::string_view name) {
+    if (!look_up(all_input_spaces(), name) && look_up_color(name)) {
+        std::vector<std::string> ids;
+        for (const InputSpace& space : all_input_spaces())
+            ids.push_back(space.id);
+        throw Error("input space is " + std::string(name) + ", a color of pictures; expected " +
+                    join_choices(ids) + " (for a LUT of encoded colors: --input-encoding)");
+    }
     return find_named(all_input_spaces(), name, "input space", {});
 }
 
@@ -372,8 +398,12 @@ std::vector<SourceColorName> all_source_color_names() {
         if (!space.interop_id.empty()) aliases.push_back(space.interop_id);
         names.push_back({space.title, space.title, aliases, Kind::config});
     }
-    for (const char* id : kOtherInteropIds)
-        names.push_back({id, id, {}, Kind::interop});
+    for (const InteropName& name : kOtherInteropNames)
+        names.push_back({name.id, name.title, {}, Kind::interop});
+    names.push_back({kUnknownColor,
+                     "files whose color nobody knows: the numbers, as linear Rec.709",
+                     {},
+                     Kind::interop});
     for (const std::string& id : input_encoding_names())
         names.push_back({id, parse_input_encoding(id).title, {}, Kind::encoding});
     for (const auto& [id, title] : kOtherNames)

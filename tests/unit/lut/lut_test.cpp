@@ -102,6 +102,12 @@ const GrayCode kGrayCodes[] = {
     {"pq", 1, 0.5080784},
     {"pq:203", 1, 0.5806889},
     {"pq", 100, 1},
+    // ITU-R BT.2408: HDR reference white, 203 cd/m2 on a display of 1000, is 75 % HLG; its peak
+    // is 1.
+    {"hlg:203", 1, 0.7498774},
+    {"hlg:1000", 1, 1},
+    // sqrt(3 * 0.18 * 0.1^(1/1.2)) by ITU-R BT.2100-2
+    {"hlg", 0.18, 0.2815336},
     // IEC 61966-2-1
     {"srgb", 0.18, 0.4613561},
     // Color.hlsl, LinearToLogC: 0.244161 log10(5.555556 x + 0.047996) + 0.386036
@@ -225,9 +231,10 @@ TEST(InputEncoding, RefusesUnknownNames) {
     const auto error = [](std::string_view text) {
         return error_of([&] { (void)parse_input_encoding(text); });
     };
-    EXPECT_EQ(error("acescc"),
-              "input encoding is acescc; expected acescct, logc3, logc4, slog3, davinci, "
-              "unity_logc, unreal_log, srgb, reinhard, pq, log2 or linear; did you mean acescct?");
+    EXPECT_EQ(
+        error("acescc"),
+        "input encoding is acescc; expected acescct, logc3, logc4, slog3, davinci, "
+        "unity_logc, unreal_log, srgb, reinhard, pq, hlg, log2 or linear; did you mean acescct?");
     for (const char* text : {"pq:0", "pq:-1", "pq:nan", "pq:1e6", "pq:", "pq:100:2", "srgb:1"})
         EXPECT_NE(error(text).find(std::string("input encoding is ") + text), std::string::npos)
             << text;

@@ -524,9 +524,10 @@ ConfigModel make_config_model(const ConfigOptions& options) {
 
     for (const InputSpace& space : all_input_spaces()) {
         if (space.is_camera) continue;
-        std::vector<std::string> aliases = {space.id};
-        if (space.id == "lin_ap1") aliases.insert(aliases.begin(), "lin_ap1_acescg");
-        aliases.insert(aliases.end(), space.aliases.begin(), space.aliases.end());
+        // The ACES configs' own alias comes first.
+        std::vector<std::string> aliases = space.aliases;
+        const auto is_acescg = [](const std::string& alias) { return alias == "lin_ap1_acescg"; };
+        aliases.insert(std::find_if_not(aliases.begin(), aliases.end(), is_acescg), space.id);
         const bool is_aces = space.id == "lin_ap0" || space.id == "lin_ap1";
         model.spaces.push_back(
             {SpaceKind::scene_linear,
@@ -546,12 +547,10 @@ ConfigModel make_config_model(const ConfigOptions& options) {
     // Adds all display spaces, also those of displays that are left out, because pictures may be in
     // their code values.
     for (const Display& display : all_displays()) {
-        std::vector<std::string> aliases = {display.title + kDisplaySuffix};
-        aliases.insert(aliases.end(), display.aliases.begin(), display.aliases.end());
         model.spaces.push_back(
             {SpaceKind::display,
              display.title,
-             aliases,
+             display.aliases,
              "Display",
              display.source + (display.is_hdr ? "."
                                               : ". Values above white are not limited (pure "

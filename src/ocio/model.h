@@ -88,8 +88,5 @@ struct ConfigModel {
 
 inline constexpr const char* kUntonemappedView = "Un-tone-mapped";
 inline constexpr const char* kRawView = "Raw";
-/// Display color spaces have the display's name, which Blender looks for. With this suffix, as in
-/// the ACES configs, it is an alias.
-inline constexpr const char* kDisplaySuffix = " - Display";
 
 TONEWRIGHT_NAMESPACE_END

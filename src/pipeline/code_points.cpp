@@ -16,6 +16,7 @@ struct PrimariesRow {
     Primaries primaries;  // named for messages
 };
 
+constexpr int kXyz = 10;
 constexpr Chromaticity kIlluminantC = {0.310, 0.316};
 constexpr Chromaticity kDciWhite = {0.314, 0.351};
 
@@ -31,7 +32,7 @@ constexpr std::array kPrimaries = {
     PrimariesRow{7, {"SMPTE 240M", {0.630, 0.340}, {0.310, 0.595}, {0.155, 0.070}, kD65}},
     PrimariesRow{8, {"generic film", {0.681, 0.319}, {0.243, 0.692}, {0.145, 0.049}, kIlluminantC}},
     PrimariesRow{9, renamed("BT.2020", kRec2020)},
-    PrimariesRow{10, kXyzD65},
+    PrimariesRow{kXyz, {"CIE XYZ", {1, 0}, {0, 1}, {0, 0}, kD65}},
     PrimariesRow{11, {"DCI-P3", {0.680, 0.320}, {0.265, 0.690}, {0.150, 0.060}, kDciWhite}},
     PrimariesRow{12, renamed("Display P3", kP3D65)},
     PrimariesRow{22, {"EBU 3213-E", {0.630, 0.340}, {0.295, 0.605}, {0.155, 0.077}, kD65}},
@@ -110,10 +111,16 @@ constexpr std::array kDisplayPairs = {
 
 /// Ids of the Color Interop Forum for pairs that are no display of ours.
 std::string name_of(int primaries, int transfer) {
-    if (primaries == 10 && transfer == kLinear) return "lin_ciexyzd65_scene";
-    if (primaries == 10 && transfer == kPq) return "pq_xyzd65_display";
-    if (primaries == 10 && transfer == kSt428) return "g26_xyzd65_display";
+    if (primaries == kXyz && transfer == kLinear) return "lin_ciexyzd65_scene";
+    if (primaries == kXyz && transfer == kPq) return "pq_xyzd65_display";
+    if (primaries == kXyz && transfer == kSt428) return "g26_xyzd65_display";
     return "cicp:" + std::to_string(primaries) + "/" + std::to_string(transfer);
+}
+
+/// What the system gamma of HLG depends on; its display has BT.2020.
+Vector3 luminance_of(const PrimariesRow& gamut) {
+    if (gamut.value == kXyz) return {0, 1, 0};
+    return rgb_to_xyz(gamut.primaries)[1];
 }
 
 }  // namespace
@@ -132,13 +139,14 @@ std::optional<SourceColor> color_of_code_points(int primaries, int transfer) {
         }
     }
     const std::string name = name_of(primaries, transfer);
-    if (transfer == kLinear) return SourceColor{name, gamut->primaries};
-    const bool is_hlg = transfer == kHlg;
-    SourceColor color = encoded_color(name,
-                                      is_hlg ? hlg_display_decode(gamut->primaries)
-                                             : Pipeline{curve_stage(curve->decode(Expr::input()))},
-                                      gamut->primaries);
-    color.is_absolute = is_hlg || transfer == kPq;
+    if (transfer == kLinear && primaries != kXyz) return SourceColor{name, gamut->primaries};
+    Pipeline decode;
+    if (curve->decode) decode.push_back(curve_stage(curve->decode(Expr::input())));
+    if (transfer == kHlg) decode = hlg_display_decode(luminance_of(*gamut));
+    SourceColor color = primaries == kXyz
+                            ? xyz_color(name, std::move(decode))
+                            : encoded_color(name, std::move(decode), gamut->primaries);
+    color.is_absolute = transfer == kHlg || transfer == kPq;
     return color;
 }
 

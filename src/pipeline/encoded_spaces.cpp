@@ -266,7 +266,7 @@ const std::vector<EncodedSpace>& all_encoded_spaces() {
          .family = "Display",
          .description = "Display reference: CIE XYZ, D65, Y = 1 is display white.",
          .interop_id = "ocio:lin_ciexyzd65_display",
-         .primaries = kXyzD65},
+         .primaries = kRec709},
     };
     return spaces;
 }

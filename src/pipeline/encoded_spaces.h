@@ -42,7 +42,8 @@ struct EncodedSpace {
     /// configs have; empty if neither has one.
     std::string interop_id;
     Primaries primaries;
-    /// Code values -> scene-linear of these primaries. Empty: the numbers are linear, or no color.
+    /// Code values -> scene-linear of these primaries. Empty: the numbers are linear, or no color;
+    /// the display reference is CIE XYZ.
     Pipeline decode = {};
     std::string style = {};    // of a builtin
     LogCurve curve = {};       // of a log: the same as `decode`

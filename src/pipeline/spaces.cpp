@@ -82,15 +82,6 @@ Display pq_display(std::string id, std::string title, std::vector<std::string> a
 constexpr double kHlgUnit = kHdrPeak / kReferenceWhite;
 constexpr Vector3 kBt2100Luminance = {0.2627, 0.6780, 0.0593};  // ITU-R BT.2100-2, table 5
 
-Pipeline hlg_decode(const Vector3& luminance) {
-    const Expr x = Expr::input(0);
-    return {
-        named("decode", curve_stage(hlg_inverse_oetf(x), hlg_oetf(x))),
-        ToneScaleStage{ToneScaleStage::Norm::luminance, luminance, hlg_ootf_luminance(x)},
-        MatrixStage{scale(kIdentity3, kHlgUnit)},
-    };
-}
-
 Display hlg_display() {
     const Expr x = Expr::input(0);
     return {.id = "rec2100_hlg",
@@ -104,7 +95,7 @@ Display hlg_display() {
                        // A color with one bright channel has a luminance below 1, so its scene
                        // value may exceed 1 at the largest display value.
                        ClampStage{0, 1}},
-            .decode = hlg_decode(kBt2100Luminance),
+            .decode = hlg_display_decode(kBt2100Luminance),
             .source = "ITU-R BT.2100-2 HLG, a display of 1000 cd/m2",
             .is_hdr = true,
             .peak = kHdrPeak,
@@ -181,15 +172,18 @@ constexpr std::array<std::pair<const char*, const char*>, 3> kOtherNames = {{
 /// Primaries in the Color Interop Forum's ids.
 std::optional<Primaries> interop_primaries(const std::string& name) {
     if (name == "adobergb") return kAdobeRgb;
-    if (name == "ciexyzd65" || name == "xyzd65") return kXyzD65;
     if (const InputSpace* space = look_up(all_input_spaces(), "lin_" + name))
         return space->primaries;
     return std::nullopt;
 }
 
+bool is_xyz(std::string_view primaries) {
+    return primaries == "ciexyzd65" || primaries == "xyzd65";
+}
+
 /// The curve of one of those ids: `srgb`, `srgbe` (negatives mirror), `pq`, or `gNN`, a power in
 /// tenths.
-std::optional<Expr> interop_curve(const std::string& curve, const Primaries& primaries) {
+std::optional<Expr> interop_curve(const std::string& curve, const std::string& primaries) {
     const Expr x = Expr::input();
     if (curve == "srgb") return srgb_decode(x);
     if (curve == "srgbe") return select(less(x, 0), -srgb_decode(-x), srgb_decode(x));
@@ -200,9 +194,9 @@ std::optional<Expr> interop_curve(const std::string& curve, const Primaries& pri
     const auto [stop, error] = std::from_chars(curve.data() + 1, end, tenths);
     if (error != std::errc() || stop != end || tenths < 1) return std::nullopt;
     // Digital cinema's code values leave room above white.
-    if (tenths == 26 && primaries == kXyzD65) return st428_decode(x);
+    if (tenths == 26 && is_xyz(primaries)) return st428_decode(x);
     // Adobe RGB (1998) has 2 51/256.
-    if (tenths == 22 && primaries == kAdobeRgb) return power_decode(x, 563.0 / 256);
+    if (tenths == 22 && primaries == "adobergb") return power_decode(x, 563.0 / 256);
     return power_decode(x, tenths / 10.0);
 }
 
@@ -213,19 +207,22 @@ std::optional<SourceColor> by_interop_pattern(std::string_view text) {
     const std::size_t last = name.rfind('_');
     if (first == std::string_view::npos || first == last) return std::nullopt;
     const std::string curve = name.substr(0, first);
-    const std::optional<Primaries> primaries =
-        interop_primaries(name.substr(first + 1, last - first - 1));
+    const std::string gamut = name.substr(first + 1, last - first - 1);
+    const std::optional<Primaries> primaries = interop_primaries(gamut);
     const std::string state = name.substr(last + 1);
-    if (!primaries || !(state == "scene" || state == "display")) return std::nullopt;
+    if (!primaries && !is_xyz(gamut)) return std::nullopt;
+    if (state != "scene" && state != "display") return std::nullopt;
     if (curve == "lin") {
+        if (is_xyz(gamut)) return xyz_color(name, {});
         for (const InputSpace& space : all_input_spaces()) {
             if (space.primaries == *primaries) return SourceColor{space.id, space.primaries};
         }
         return SourceColor{name, *primaries};
     }
-    const std::optional<Expr> decode = interop_curve(curve, *primaries);
+    const std::optional<Expr> decode = interop_curve(curve, gamut);
     if (!decode) return std::nullopt;
-    SourceColor color = encoded_color(name, {curve_stage(*decode)}, *primaries);
+    SourceColor color = primaries ? encoded_color(name, {curve_stage(*decode)}, *primaries)
+                                  : xyz_color(name, {curve_stage(*decode)});
     color.is_absolute = curve == "pq";
     return color;
 }
@@ -238,6 +235,7 @@ std::optional<SourceColor> by_encoded_space(std::string_view name) {
             std::any_of(space.aliases.begin(), space.aliases.end(),
                         [&](const std::string& alias) { return is_same_name(alias, name); });
         if (!is_named) continue;
+        if (space.kind == EncodedSpace::Kind::display_reference) return xyz_color(space.title, {});
         if (space.decode.empty()) return SourceColor{space.title, space.primaries};
         return encoded_color(space.title, space.decode, space.primaries);
     }
@@ -286,15 +284,24 @@ SourceColor encoded_color(std::string name, Pipeline decode, const Primaries& pr
     return {std::move(name), primaries, std::move(decode)};
 }
 
+Pipeline hlg_display_decode(const Vector3& luminance) {
+    const Expr x = Expr::input(0);
+    return {
+        named("decode", curve_stage(hlg_inverse_oetf(x), hlg_oetf(x))),
+        ToneScaleStage{ToneScaleStage::Norm::luminance, luminance, hlg_ootf_luminance(x)},
+        MatrixStage{scale(kIdentity3, kHlgUnit)},
+    };
+}
+
+SourceColor xyz_color(std::string name, Pipeline decode) {
+    decode.push_back(MatrixStage{inverse(rgb_to_xyz(kRec709))});
+    return encoded_color(std::move(name), std::move(decode), kRec709);
+}
+
 SourceColor color_of_display(const Display& display) {
     SourceColor color = encoded_color(display.title, display.decode, display.primaries);
     color.is_absolute = display.is_hdr;
     return color;
-}
-
-Pipeline hlg_display_decode(const Primaries& primaries) {
-    if (primaries == kRec2020) return hlg_decode(kBt2100Luminance);
-    return hlg_decode(rgb_to_xyz(primaries)[1]);
 }
 
 const std::vector<InputSpace>& all_input_spaces() {
@@ -306,7 +313,7 @@ const std::vector<InputSpace>& all_input_spaces() {
          {"Linear Rec.709 (sRGB)", "Linear", "lin_rec709_srgb", "lin_srgb", "lin_rec709_scene",
           "Utility - Linear - sRGB"},
          kRec709},
-        {"lin_ap1", "ACEScg", {"lin_ap1_scene", "ACES - ACEScg"}, kAP1},
+        {"lin_ap1", "ACEScg", {"lin_ap1_acescg", "lin_ap1_scene", "ACES - ACEScg"}, kAP1},
         {"lin_ap0",
          "ACES2065-1",
          {"aces2065_1", "lin_ap0_scene", "ACES - ACES2065-1", "Linear ACES"},
@@ -333,8 +340,10 @@ const std::vector<InputSpace>& all_input_spaces() {
     return spaces;
 }
 
-const std::vector<Display>& all_displays() {
-    static const std::vector<Display> displays = {
+namespace {
+
+std::vector<Display> make_displays() {
+    std::vector<Display> displays = {
         sdr_display("srgb", "sRGB", {"srgb_display", "srgb_rec709_display"}, kRec709, srgb_encode,
                     srgb_decode, "IEC 61966-2-1:1999"),
         sdr_display("display_p3", "Display P3", {"displayp3_display", "srgb_p3d65_display"}, kP3D65,
@@ -355,6 +364,16 @@ const std::vector<Display>& all_displays() {
         pq_display("p3d65_pq", "P3-D65 PQ", {"st2084_p3d65_display", "pq_p3d65_display"}, kP3D65,
                    "SMPTE EG 432-1 primaries, D65, SMPTE ST 2084; linear 1 is 100 cd/m2"),
     };
+    // Its color space in the ACES configs; ours has the display's name, which Blender looks for.
+    for (Display& display : displays)
+        display.aliases.insert(display.aliases.begin(), display.title + " - Display");
+    return displays;
+}
+
+}  // namespace
+
+const std::vector<Display>& all_displays() {
+    static const std::vector<Display> displays = make_displays();
     return displays;
 }
 

@@ -104,7 +104,7 @@ void add_apply(CommandLine& program) {
     options->input = "auto";
     add_view_options(command, *options);
     command.option("--input")
-        .describe("color space of the input (`tonewright list --inputs`), or `auto`, as the file says")
+        .describe("color space (`tonewright list --inputs`), or `auto`, as the file says")
         .suggest(suggest_source_colors);
     command.option("--exposure").group("Exposure");
     const Option false_color =

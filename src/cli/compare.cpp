@@ -34,7 +34,7 @@ void add_compare(CommandLine& program) {
         .group(output);
     command
         .add("--input", options->input,
-             "color space of the input (`tonewright list --inputs`), or `auto`, as the file says")
+             "color space (`tonewright list --inputs`), or `auto`, as the file says")
         .value("SPACE")
         .suggest(suggest_source_colors)
         .show_default()

@@ -225,7 +225,7 @@ void add_eval(CommandLine& program) {
     op.suggest(suggest_operators);
     add_view_options(command, *options);
     command.option("--input")
-        .describe("color space of the input, linear or encoded (`tonewright list --inputs`)")
+        .describe("color space of the input (`tonewright list --inputs`)")
         .suggest(suggest_input_colors);
     command
         .add("--engine", options->engine,

@@ -27,7 +27,7 @@ void add_meter(CommandLine& program) {
     frames.value("RANGE").group("Pictures");
     command
         .add("--input", options->input,
-             "color space of the input (`tonewright list --inputs`), or `auto`, as the file says")
+             "color space (`tonewright list --inputs`), or `auto`, as the file says")
         .value("SPACE")
         .suggest(suggest_source_colors)
         .group("Pictures")

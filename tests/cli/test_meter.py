@@ -138,7 +138,7 @@ def ranges(tool, report):
                  abs(np.log2(found["luminance"]["histogram_average"]) - mean + 11.5 / 508), 11.5 / 508)
     report.check("and its range", found["histogram_range"]["high"] > np.log2(4900) and found["histogram_range"]["outside"] < 1e-3)
     for command in (("meter", "nits.exr", "--json"),
-                    ("apply", "nits.exr", "nits.png", "--operator", "hable", "--auto-exposure", "histogram", "-q")):
+                    ("apply", "nits.exr", "nits.png", "--operator", "hable", "--auto-exposure", "histogram")):
         done = tool.run(*command, "--histogram-range=-8,3.5")
         report.check(f"{command[0]}: a range that holds nothing is said", done.returncode == 0 and done.stderr.count("\n") == 1
                      and "nits.exr: 100 % of the picture lies outside the histogram's range, -8,3.5" in done.stderr,
@@ -161,7 +161,7 @@ def ranges(tool, report):
     write_exr(tool.folder / "sun.exr", {c: np.full((8, 8), x, np.float32) for c, x in zip("RGB", (3e5, 2e5, 8e4))})
     mean = float(np.array((3e5, 2e5, 8e4)) @ WEIGHTS)
     for method in ("log-average", "mean", "max"):
-        found = tool.meter("sun.exr", "--method", method)[0]
+        found = tool.meter("sun.exr", "--method", method, "--exposure-limits=-30,30")[0]
         report.bound(f"a sun: {method}", abs(found["exposure"] - np.log2((1 if method == "max" else 0.18) / mean)), 1e-8)
     tool.run("apply", "sun.exr", "shown.exr", "--operator", "reinhard", "--display", "linear", "-d", "float", "--exposure", "-17")
     shown = read_planes(tool.folder / "shown.exr", tool.folder)

@@ -132,10 +132,8 @@ void meter_frames(Tonemapper& tonemapper, std::vector<FrameFiles>& frames,
         shot = meter_shot(options.in, all, meter_options_of(options), options.shot.cache,
                           options.picture, [&](std::size_t) { bar.add(true); });
     }
-    if (has_exposures && rule.method == ExposureRule::Method::histogram) {
-        for (const MeteredPicture& picture : shot.pictures)
-            warn_of_histogram(picture);
-    }
+    if (has_exposures && rule.method == ExposureRule::Method::histogram)
+        warn_of_histograms(shot.pictures);
     if (has_statistics) tonemapper = tonemapper.with_statistics(shot.statistics());
     if (!has_exposures) return;
     const std::map<int, double> exposures =
@@ -151,15 +149,17 @@ void meter_frames(Tonemapper& tonemapper, std::vector<FrameFiles>& frames,
 }
 
 /// Each picture separately.
+/// @returns  the pictures whose exposure comes from a histogram
 /// @throws  the first error, if there is one picture only
-void meter_each(std::vector<FrameFiles>& files, const ApplyOptions& options) {
-    if (options.metering.method.empty()) return;
+std::vector<MeteredPicture> meter_each(std::vector<FrameFiles>& files,
+                                       const ApplyOptions& options) {
+    if (options.metering.method.empty()) return {};
     const ExposureRule rule = rule_of(options.metering);
     std::vector<std::string> paths;
     paths.reserve(files.size());
     for (const FrameFiles& file : files)
         paths.push_back(file.in);
-    const std::vector<MeteredPicture> metered =
+    std::vector<MeteredPicture> metered =
         meter_pictures(paths, meter_options_of(options), options.shot.cache, options.picture);
     for (std::size_t i = 0; i < files.size(); ++i) {
         // If there are several, tone mapping reports the reason.
@@ -167,12 +167,13 @@ void meter_each(std::vector<FrameFiles>& files, const ApplyOptions& options) {
         if (files.size() == 1 && !metered[i].error.empty()) throw Error(metered[i].error);
         if (options.picture.timeout > 0) files[i].error = metered[i].error;
         if (!metered[i].error.empty()) continue;
-        if (rule.method == ExposureRule::Method::histogram) warn_of_histogram(metered[i]);
         files[i].exposure_stops =
             options.exposure +
             suggested_exposure(
                 metered_luminance(metered[i].metering, rule.method, options.metering.delta), rule);
     }
+    if (rule.method != ExposureRule::Method::histogram) return {};
+    return metered;
 }
 
 void apply_lut(const ApplyOptions& options, const LutFile& lut, const FrameFiles& file) {
@@ -335,7 +336,7 @@ int run_apply(const ApplyOptions& given) {
     check_overwriting("apply", files.files, options.is_in_place);
     if (!files.is_single) {
         require_writable_folder(options.output);
-        meter_each(files.files, options);
+        warn_of_histograms(meter_each(files.files, options));
         tell_default();
         return apply_to_files(tonemapper, options, files.files, write);
     }
@@ -346,10 +347,11 @@ int run_apply(const ApplyOptions& given) {
     ReadMessages messages(file.in);
     const ReadOptions read = messages.hearing(read_options_of(options.picture));
     const ResultLine result;
+    std::vector<MeteredPicture> metered;
     try {
         const QuietStderr quiet;
         const ElapsedLine line("apply", quiet.before());
-        meter_each(files.files, options);
+        metered = meter_each(files.files, options);
         if (file.exposure_stops) tonemapper = tonemapper.with_exposure(*file.exposure_stops);
         if (options.has_legend) {
             write_with_legend(tonemapper, file, options, write);
@@ -364,6 +366,7 @@ int run_apply(const ApplyOptions& given) {
     }
     messages.print();
     warnings.print();
+    warn_of_histograms(metered);
     tell_default();
     print_result(file, tonemapper, read_options_of(options.picture), result);
     return kOk;

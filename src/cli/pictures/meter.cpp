@@ -282,7 +282,7 @@ int run_meter(const MeterCommandOptions& options) {
     }
     for (const Metered& metered : all) {
         const MeteredPicture& picture = metered.picture;
-        warn_of_histogram(picture);
+        if (const std::string text = histogram_warning(picture); !text.empty()) warn(text);
         if (picture.error.empty()) continue;
         exit_code = std::max<int>(exit_code, picture.is_file_error ? kFile : kUsage);
         print_message("meter: " + picture.error);

@@ -201,15 +201,21 @@ std::vector<MeteredPicture> meter_pictures(const std::vector<std::string>& paths
     return pictures;
 }
 
-void warn_of_histogram(const MeteredPicture& picture) {
+std::string histogram_warning(const MeteredPicture& picture) {
     constexpr double kMostOutside = 0.01;
     const Metering& m = picture.metering;
-    if (!picture.error.empty() || !(m.share_outside() > kMostOutside)) return;
-    warn(fmt::format(
+    if (!picture.error.empty() || !(m.share_outside() > kMostOutside)) return "";
+    return fmt::format(
         "{}: {:.3g} % of the picture lies outside the histogram's range, {:g},{:g} in log2 of "
         "luminance; leave out --histogram-range, or set one that holds {:.3g},{:.3g}",
         picture.path, 100 * m.share_outside(), m.histogram_min, m.histogram_max,
-        std::log2(m.minimum), std::log2(m.maximum)));
+        std::log2(m.minimum), std::log2(m.maximum));
+}
+
+void warn_of_histograms(const std::vector<MeteredPicture>& pictures) {
+    for (const MeteredPicture& picture : pictures) {
+        if (const std::string text = histogram_warning(picture); !text.empty()) warn(text);
+    }
 }
 
 MeteredShot meter_shot(const std::string& pattern, std::vector<int> frames,

@@ -46,8 +46,10 @@ struct MeteredPicture {
     const std::vector<std::string>& paths, const MeterOptions& options, const std::string& cache,
     const PictureInput& input, const std::function<void(std::size_t)>& done = {});
 
-/// Warns if more than 1 % of a metered picture lies outside the histogram.
-void warn_of_histogram(const MeteredPicture& picture);
+/// A warning if more than 1 % of a metered picture lies outside the histogram; empty: none.
+[[nodiscard]] std::string histogram_warning(const MeteredPicture& picture);
+/// Prints those of pictures.
+void warn_of_histograms(const std::vector<MeteredPicture>& pictures);
 
 /// Exposures and statistics of a metered shot.
 struct MeteredShot {

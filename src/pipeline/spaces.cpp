@@ -301,6 +301,9 @@ SourceColor xyz_color(std::string name, Pipeline decode) {
 SourceColor color_of_display(const Display& display) {
     SourceColor color = encoded_color(display.title, display.decode, display.primaries);
     color.is_absolute = display.is_hdr;
+    // HLG's exponential of larger codes leaves the range of doubles, and its OOTF would be infinity
+    // divided by infinity. Light of these codes is far beyond half floats.
+    if (display.is_hdr) color.decode.insert(color.decode.begin(), ClampStage{-8, 8});
     return color;
 }
 

@@ -76,6 +76,10 @@ void add_file_options(const Command& command, ApplyOptions& options) {
         .suggest({"4:4:4", "4:2:2", "4:2:0", "4:1:1"})
         .group(group);
     command
+        .add_flag("--verify-output", options.verifies_output,
+                  "read the written file and compare all pixels before it replaces the old one")
+        .group(group);
+    command
         .add_flag("--no-metadata", options.has_no_metadata,
                   "do not write version, operator, exposure and display into the file")
         .group(group);

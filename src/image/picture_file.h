@@ -174,8 +174,16 @@ class TONEWRIGHT_API PictureWriter {
     void check_blocks() const;
     [[nodiscard]] OIIO::ImageSpec plan(const OIIO::ImageSpec& picture);
     void plan_alpha(OIIO::ImageSpec& spec);
+    [[nodiscard]] OIIO::ImageBuf select_channels(const OIIO::ImageBuf& picture) const;
+    /// Compares the temporary file with what was to be written.
+    void check_written(const OIIO::ImageSpec& wanted, std::string_view file_format,
+                       bool is_avif) const;
+    void check_pixels(PictureReader& written, const OIIO::ImageSpec& wanted,
+                      std::string_view file_format) const;
     [[nodiscard]] OIIO::ImageBuf checked(OIIO::ImageBuf&& changed) const;
     [[nodiscard]] std::string_view format() const;
+    /// The format, or `avif`.
+    [[nodiscard]] std::string_view codec() const;
     void check_compression() const;
     void check_subsampling() const;
     void set_compression(OIIO::ImageSpec& spec) const;
@@ -199,8 +207,10 @@ class TONEWRIGHT_API PictureWriter {
     double lost_count_ = 0;             // pixels whose light straight alpha cannot hold
     std::optional<OIIO::ROI> window_;   // to write; none: all of the picture
     bool divides_by_alpha_ = false;
-    int last_row_ = 0;  // of the picture, exclusive
-    int next_row_ = 0;  // of the window, or of the picture
+    bool has_proxy_ = false;   // wrote through one
+    std::vector<float> kept_;  // what was written, for WriteOptions::verifies
+    int last_row_ = 0;         // of the picture, exclusive
+    int next_row_ = 0;         // of the window, or of the picture
     int rows_written_ = 0;
     int rows_of_block_ = 0;                          // of an OpenEXR file, else 0
     std::unique_ptr<LightLevelMeter> light_levels_;  // of a PNG file in PQ or HLG, else null

@@ -142,7 +142,10 @@ std::optional<SourceColor> color_of_code_points(int primaries, int transfer) {
     if (transfer == kLinear && primaries != kXyz) return SourceColor{name, gamut->primaries};
     Pipeline decode;
     if (curve->decode) decode.push_back(curve_stage(curve->decode(Expr::input())));
-    if (transfer == kHlg) decode = hlg_display_decode(luminance_of(*gamut));
+    if (transfer == kHlg) {
+        decode = hlg_display_decode(luminance_of(*gamut));
+        decode.insert(decode.begin(), ClampStage{-8, 8});  // as color_of_display() does
+    }
     SourceColor color = primaries == kXyz
                             ? xyz_color(name, std::move(decode))
                             : encoded_color(name, std::move(decode), gamut->primaries);

@@ -247,7 +247,7 @@ def check_alpha(to):
     path = write(to.folder / "gray.exr", spec_of(gray, alpha=True), gray)
     got, spec = to.written(path, "o.png", "--alpha", "over:0.5,0.5,0.5", "-d", "uint16")
     to.report.bound("a gray picture over gray", abs(got[0, 0, 0] - srgb(0.05)), 1e-5)
-    to.refuses("a gray picture over a color", path, "no.png", USAGE, "equal", "--alpha", "over:1,0,0")
+    to.refuses("a gray picture over a color", path, "no.png", FILE, "equal", "--alpha", "over:1,0,0")
 
     for name in ("o.png", "o.tga", "o.webp", "o.jp2"):
         big = np.tile(pixels, (16, 8, 1))  # JPEG 2000 takes 32 pixels and more
@@ -287,7 +287,7 @@ def check_straight(to):
         lit = subprocess.run([to.command, "meter", source, "--input", "srgb", "--json"], capture_output=True, text=True,
                              check=True)
         light = np.where(color <= 0.04045, color / 12.92, ((color + 0.055) / 1.055) ** 2.4) @ [0.2126, 0.7152, 0.0722]
-        mean = json.loads(lit.stdout)["mean"]
+        mean = json.loads(lit.stdout)["pictures"][0]["luminance"]["mean"]
         to.report.bound(f"meter {name}", abs(mean - light), 1e-4 * light)
 
 

@@ -68,6 +68,7 @@ WriteOptions write_options_of(const ApplyOptions& options, const std::string& ou
     write.compression = options.compression;
     write.quality = options.quality;
     write.subsampling = options.subsampling;
+    write.verifies = options.verifies_output;
     if (options.picture.max_pixels) write.max_pixels = *options.picture.max_pixels;
     write.says_how = !options.has_no_metadata;
     if (options.given.contains("--compression") || options.given.contains("--quality") ||

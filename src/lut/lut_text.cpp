@@ -1087,19 +1087,21 @@ std::size_t length_of_word(std::string_view& text) {
 
 /// Words that OpenColorIO's readers of .spi1d and of Discreet's tables copy into small buffers.
 /// @param is_first  the first line that is neither blank nor a comment
-void check_buffers(const Text& text, bool is_first) {
-    std::string_view line = trimmed(text.line());
+/// @returns  what is wrong; empty if nothing is
+std::string overlong_word(std::string_view line, bool is_first) {
+    line = trimmed(line);
     if (line.starts_with("From")) {
         std::string_view rest = line.substr(4);
         if (length_of_word(rest) > kLongestFrom || length_of_word(rest) > kLongestFrom)
-            text.fail(fmt::format("a word after From is long; expected at most {} characters",
-                                  kLongestFrom));
+            return fmt::format("a word after From is long; expected at most {} characters",
+                               kLongestFrom);
     }
-    if (!is_first) return;
+    if (!is_first) return "";
     (void)length_of_word(line);
     if (skip_integer(line) && skip_integer(line) && length_of_word(line) > kLongestDepth)
-        text.fail(fmt::format("a word after two sizes is long; expected at most {} characters",
-                              kLongestDepth));
+        return fmt::format("a word after two sizes is long; expected at most {} characters",
+                           kLongestDepth);
+    return "";
 }
 
 /// If OpenColorIO's reader of a format fails, it tries all others. None of them may find a size to
@@ -1127,7 +1129,8 @@ void check_for_other_readers(Text& text, std::string_view bytes, bool is_own_mar
     do {
         const std::string line = lowercase(text.word().substr(0, 64));
         const bool is_filled = !line.empty() && line.front() != '#';
-        check_buffers(text, is_filled && !has_words);
+        const std::string fault = overlong_word(text.line(), is_filled && !has_words);
+        if (!fault.empty()) text.fail(fault);
         has_words = has_words || is_filled;
         const Size* size = std::find_if(std::begin(kSizes), std::end(kSizes),
                                         [&](const Size& s) { return line.starts_with(s.name); });
@@ -1213,6 +1216,20 @@ std::string check_lut_text(const std::string& path, std::string& bytes) {
     throw FileError(fmt::format("read: {}: extension is {}; expected {}", path,
                                 extension.empty() ? "missing" : extension,
                                 join_choices(lut_text_extensions())));
+}
+
+void check_lut_words(const std::string& path, std::string_view bytes) {
+    bool has_words = false;
+    for (int number = 1; !bytes.empty(); ++number) {
+        const std::size_t end = std::min(bytes.find('\n'), bytes.size() - 1);
+        const std::string_view line = trimmed(bytes.substr(0, end + 1));
+        bytes.remove_prefix(end + 1);
+        const bool is_filled = !line.empty() && line.front() != '#';
+        const std::string fault = overlong_word(line, is_filled && !has_words);
+        if (!fault.empty())
+            throw FileError(fmt::format("read: {}: line {}: {}", path, number, fault));
+        has_words = has_words || is_filled;
+    }
 }
 
 bool is_parsed_here(const std::string& extension) {

@@ -27,6 +27,11 @@ TONEWRIGHT_NAMESPACE_BEGIN
 [[nodiscard]] TONEWRIGHT_API std::string check_lut_text(const std::string& path,
                                                         std::string& bytes);
 
+/// Refuses words that OpenColorIO 2.1 copies into buffers that are too small, in a file of any
+/// format that it will read: a config's LUT, which is not validated otherwise.
+/// @throws FileError  with path, line and reason.
+TONEWRIGHT_API void check_lut_words(const std::string& path, std::string_view bytes);
+
 /// A .cube: a 1D LUT, a 3D LUT or both, and the range of each.
 struct CubeText {
     struct Table {

@@ -9,6 +9,8 @@
 
 #include "base/input_file.h"
 #include "base/strings.h"
+#include "lut/lut_text.h"
+#include "lut/table_file.h"
 #include "tonewright/error.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -151,9 +153,15 @@ class ReferenceWalk {
     void check_file(const std::string& source) {
         if (!files_.insert(source).second) return;
         try {
-            require_regular_file(config_.getCurrentContext()->resolveFileLocation(source.c_str()));
+            const std::string file =
+                config_.getCurrentContext()->resolveFileLocation(source.c_str());
+            require_regular_file(file);
+            const auto ignore = [](const std::string& reason) {
+                throw OCIO::Exception(reason.c_str());
+            };
+            check_lut_words(file, read_file(file, kLargestLutFile, ignore));
         } catch (const OCIO::Exception&) {
-            return;  // missing: OpenColorIO reports it at its use
+            return;  // missing or unreadable: OpenColorIO reports it at its use
         } catch (const FileError& e) {
             throw FileError(fmt::format("{} ({} uses it as a LUT)", e.what(), path_));
         }

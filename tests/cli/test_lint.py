@@ -180,6 +180,12 @@ def main():
         code, found, err = lint(command, folder, text)
         report.check("OpenColorIO's own warning", code == 0 and err.count("\n") == 1 and "surprise" in err
                      and err.startswith("tonewright: OpenColorIO: "), err)
+        # OpenColorIO 2.1 copies some words of a LUT into small buffers, whatever the length.
+        text = GOOD.replace(LAST, LAST + space("table", "to_scene_reference: !<FileTransform> {src: long.lut}"))
+        (folder / "luts" / "long.lut").write_text(f"LUT: 1 2 {'1' * 16}\n0\n255\n")
+        code, _, err = lint(command, folder, text)
+        report.check("a LUT with a long word", code == 3 and err.count("\n") == 1 and "long.lut: line 1: a word after two sizes"
+                     in err and "uses it as a LUT" in err, f"{code} {err}")
         code, _, err = lint(command, folder, "not a config")
         report.check("no config", code == 3 and err.count("\n") >= 1 and str(folder) in err, f"{code} {err}")
         done = subprocess.run([command, "verify", "--no-gpu", "--config", folder / "none.ocio"], capture_output=True,

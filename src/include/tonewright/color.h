@@ -59,8 +59,6 @@ inline constexpr Primaries kAP1 = {
 inline constexpr Primaries kEGamut = {
     "FilmLight E-Gamut", {0.8, 0.3177}, {0.18, 0.9}, {0.065, -0.0805}, kD65};
 
-/// CIE XYZ itself, whose gray is D65: values of D65 stay as they are, and X = Y = Z is no gray.
-inline constexpr Primaries kXyzD65 = {"CIE XYZ", {1, 0}, {0, 1}, {0, 0}, kD65};
 /// Adobe RGB (1998) Color Image Encoding, 2005, section 4.3.1.
 inline constexpr Primaries kAdobeRgb = {
     "Adobe RGB", {0.64, 0.33}, {0.21, 0.71}, {0.15, 0.06}, kD65};

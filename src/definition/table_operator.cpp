@@ -74,9 +74,9 @@ std::string space_of(const Params& params, const std::string& stated_encoding,
 
 const std::vector<std::string>& table_extensions() {
     static const std::vector<std::string> all = {
-        ".cube",   ".clf", ".ctf", ".spi1d", ".spi3d", ".csp", ".3dl", ".lut", ".itx",
-        ".spimtx", ".cub", ".vf",  ".mga",   ".m3d",   ".dat", ".cc",  ".icc", ".icm",
-        ".raw",    ".dds", ".png", ".tif",   ".tiff",  ".exr", ".tga", ".bmp", ".dpx"};
+        ".cube", ".clf", ".ctf", ".spi1d", ".spi3d", ".csp",  ".3dl", ".lut", ".itx", ".spimtx",
+        ".cub",  ".vf",  ".mga", ".m3d",   ".dat",   ".look", ".cc",  ".icc", ".icm", ".raw",
+        ".dds",  ".png", ".tif", ".tiff",  ".exr",   ".tga",  ".bmp", ".dpx"};
     return all;
 }
 

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -1085,6 +1086,59 @@ std::size_t length_of_word(std::string_view& text) {
     return length;
 }
 
+/// The contents of the only element of this name.
+std::string_view element_of(const Text& text, std::string_view xml, const std::string& name) {
+    const std::string begin_tag = "<" + name + ">";
+    const std::string end_tag = "</" + name + ">";
+    const std::size_t begin = xml.find(begin_tag);
+    const std::size_t end = xml.find(end_tag);
+    if (begin == std::string_view::npos || end == std::string_view::npos || end < begin)
+        text.fail(fmt::format("{} is missing; expected it in LUT", begin_tag));
+    if (xml.find(begin_tag, begin + 1) != std::string_view::npos)
+        text.fail(fmt::format("{} appears twice; expected once", begin_tag));
+    return xml.substr(begin + begin_tag.size(), end - begin - begin_tag.size());
+}
+
+std::string without_quotes_and_blanks(std::string_view text) {
+    std::string kept(text);
+    std::erase_if(kept,
+                  [](char c) { return c == '"' || kBlank.find(c) != kBlank.npos || c == '\n'; });
+    return kept;
+}
+
+/// Iridas .look: the 3D LUT as hexadecimal digits of little-endian floats, with red fastest.
+CubeText read_look(const std::string& path, std::string_view xml) {
+    XmlText(path, xml, "look").check();
+    Text text(path, xml);
+    const std::string_view lut = element_of(text, xml, "LUT");
+    if (xml.find("<mask>") != std::string_view::npos &&
+        !without_quotes_and_blanks(element_of(text, xml, "mask")).empty())
+        text.fail("it has a mask; expected a look of the whole picture");
+    CubeText result;
+    result.cube.size = text.size("size", without_quotes_and_blanks(element_of(text, lut, "size")),
+                                 2, kLargestCube);
+    const std::string digits = without_quotes_and_blanks(element_of(text, lut, "data"));
+    const std::size_t expected = 3 * 8 * cubed(result.cube.size);
+    if (digits.size() != expected)
+        text.fail(fmt::format("data has {} digits; expected {}", digits.size(), expected));
+    for (std::size_t at = 0; at < digits.size(); at += 8) {
+        std::uint32_t bits = 0;
+        for (std::size_t byte = 4; byte-- > 0;) {
+            std::uint32_t value = 0;
+            const char* const first = digits.data() + at + 2 * byte;
+            if (std::from_chars(first, first + 2, value, 16).ptr != first + 2)
+                text.fail("data is " + printable(digits.substr(at, 8)) +
+                          "; expected hexadecimal digits");
+            bits = bits << 8U | value;
+        }
+        const float value = std::bit_cast<float>(bits);
+        if (!std::isfinite(value))
+            text.fail("data has a number that is not finite; expected finite ones");
+        result.cube.rows.push_back(value);
+    }
+    return result;
+}
+
 /// Words that OpenColorIO's readers of .spi1d and of Discreet's tables copy into small buffers.
 /// @param is_first  the first line that is neither blank nor a comment
 /// @returns  what is wrong; empty if nothing is
@@ -1182,6 +1236,7 @@ constexpr Format kFormats[] = {
     {".mga", check_pandora},
     {".m3d", check_pandora},
     {".dat", check_dat},
+    {".look", nullptr, "look"},
     {".cc", nullptr, "ColorCorrection"},
 };
 
@@ -1234,12 +1289,13 @@ void check_lut_words(const std::string& path, std::string_view bytes) {
 
 bool is_parsed_here(const std::string& extension) {
     return extension == ".cube" || extension == ".dat" || extension == ".mga" ||
-           extension == ".m3d";
+           extension == ".m3d" || extension == ".look";
 }
 
 CubeText parse_cube(const std::string& path, std::string_view text) {
     Text lines = begin(path, without_byte_order_mark(text));
     const std::string extension = extension_of(path);
+    if (extension == ".look") return read_look(path, without_byte_order_mark(text));
     if (extension == ".dat") return read_dat(lines);
     return extension == ".cube" ? read_cube(lines) : read_pandora(lines);
 }

@@ -46,11 +46,12 @@ struct CubeText {
     std::string note;
 };
 
-/// True for .cube, .dat, .mga and .m3d, which parse_cube() reads.
+/// True for .cube, .dat, .mga, .m3d and .look, which parse_cube() reads.
 [[nodiscard]] TONEWRIGHT_API bool is_parsed_here(const std::string& extension);
 
-/// Adobe's and Resolve's .cube, DaVinci's .dat, and Pandora's .mga and .m3d, by the extension.
-/// OpenColorIO's readers do not accept a TITLE together with a range, which many files have.
+/// Adobe's and Resolve's .cube, DaVinci's .dat, Pandora's .mga and .m3d, and Iridas's .look, by the
+/// extension. OpenColorIO's readers do not accept a TITLE together with a range, which many files
+/// have.
 /// @throws FileError  with path, line and reason.
 [[nodiscard]] TONEWRIGHT_API CubeText parse_cube(const std::string& path, std::string_view text);
 

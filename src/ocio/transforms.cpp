@@ -99,6 +99,9 @@ OCIO::ConstProcessorRcPtr make_processor(const LoweredOps& ops) {
     return make_processor(to_ocio(ops));
 }
 
+// OpenColorIO lets OCIO_OPTIMIZATION_FLAGS of the environment replace the flags of every caller, up
+// to its version 2.5. A library must not change the environment of its application, so the command
+// removes the variable before it starts a thread.
 OcioCpu::OcioCpu(const OCIO::ConstProcessorRcPtr& processor, OCIO::OptimizationFlags flags)
     : cpu_(processor->getOptimizedCPUProcessor(flags)) {}
 

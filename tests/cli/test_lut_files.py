@@ -112,6 +112,8 @@ GOOD = {
         f"{i} {r} {g} {b}\n" for i, (r, g, b) in enumerate(np.round(BLUE_FASTEST * 4095).astype(int).reshape(-1, 3))),
     "cube.dat": f"3DLUTSIZE {SIZE}\n" + rows(BLUE_FASTEST),
 }
+LOOK = (f'<?xml version="1.0" ?>\n<look>\n<LUT>\n<size>"{SIZE}"</size>\n<data>"'
+        + CUBE.astype("<f4").tobytes().hex().upper() + '"</data>\n</LUT>\n</look>\n')
 
 # OpenColorIO tries all of its readers on whatever the reader of the extension does not take: nothing of one format may
 # reach another's reader under the extension of a third. The last ones hang OpenColorIO 2.1, or declare gigabytes.
@@ -380,6 +382,12 @@ def foreign_corpus():
                        ("open.cc", CORRECTION.replace("</SOPNode>", "")),
                        ("depth.lut", "LUT: 1 2 " + "1" * 16 + "\n0\n255\n"), ("from.spi1d", GOOD["curve.spi1d"].replace(
                            "From 0 1", "From 0 1." + "0" * 62)),
+                       ("open.look", LOOK.replace("</look>", "")), ("few.look", LOOK.replace(f'"{SIZE}"', '"4"')),
+                       ("huge.look", LOOK.replace(f'"{SIZE}"', '"950"')), ("word.look", LOOK.replace(f'"{SIZE}"', '"x"')),
+                       ("nan.look", re.sub('(?<=<data>")........', "0000C07F", LOOK)),
+                       ("letters.look", re.sub('(?<=<data>")....', "xyzw", LOOK)),
+                       ("twice.look", LOOK.replace("<size>", "<size>3</size><size>")),
+                       ("mask.look", LOOK.replace("<LUT>", "<mask><a/></mask><LUT>")), ("none.look", "<look></look>\n"),
                        ("infinite.cc", CORRECTION.replace("0 0 0.1", "0 -1e90 0.1")),
                        ("utf16.cc", CORRECTION.encode("utf-16-le").decode("latin1"))):
         yield name, name, text.encode("latin1")

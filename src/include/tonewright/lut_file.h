@@ -20,7 +20,7 @@ enum class LutInterpolation : unsigned char { automatic, tetrahedral, trilinear 
 /// A LUT file of any format, ready to run.
 ///
 /// OpenColorIO runs .cube, .clf, .ctf, .spi1d, .spi3d, .csp, .3dl, .lut, .itx, .spimtx, .cub, .vf,
-/// .dat, .mga, .m3d and .cc.
+/// .dat, .mga, .m3d, .look and .cc.
 /// Little CMS runs ICC device links (.icc, .icm). Tonewright's own interpolation runs raw floats
 /// (.raw: the size of the grid follows from the size of the file), volumes (.dds) and other tables,
 /// such as the pictures of read_lut_picture().

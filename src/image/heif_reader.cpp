@@ -109,8 +109,10 @@ struct Boxes {
         const std::size_t count_bytes = contents[0] == 0 ? 2 : 4;
         for_each_box(contents.substr(4 + count_bytes),
                      [&](const std::string& type, std::string_view entry) {
-                         if (type != "infe" || entry.size() < 14) return;
+                         if (type != "infe" || entry.empty()) return;
+                         // ISO/IEC 14496-12, 8.11.6: version 3 has longer numbers of items.
                          const std::size_t at = entry[0] == 3 ? 10 : 8;
+                         if (entry.size() < at + 4) return;
                          has_tone_map = has_tone_map || entry.substr(at, 4) == "tmap";
                      });
     }

@@ -307,6 +307,23 @@ TEST_F(HeifReader, GivesProfilesAndExif) {
     EXPECT_EQ(s.width, kWidth);
 }
 
+// The item of a gain map stands beside the picture, and libheif 1.15 does not list it.
+TEST_F(HeifReader, NamesAGainMap) {
+    Picture p;
+    p.at = [](int x, int y) { return ramp(x, y, 10); };
+    p.exif = std::string("Exif\0\0nothing", 13);
+    const std::string path = write(p);
+    EXPECT_EQ(open_heif(path, 1e6)->spec().get_string_attribute("heif:GainMap"), "");
+    std::ifstream file(path, std::ios::binary);
+    std::string bytes{std::istreambuf_iterator<char>(file), {}};
+    const std::size_t type = bytes.find("Exif", bytes.find("iinf"));
+    ASSERT_LT(type, bytes.find("iprp"));
+    bytes.replace(type, 4, "tmap");
+    std::ofstream(path, std::ios::binary) << bytes;
+    EXPECT_EQ(open_heif(path, 1e6)->spec().get_string_attribute("heif:GainMap"),
+              "tmap (ISO 21496-1)");
+}
+
 // irot and imir: as for Exif, 6 shows the first row at the right.
 TEST_F(HeifReader, PixelsAreUpright) {
     for (const int orientation : {1, 2, 3, 4, 5, 6, 7, 8}) {

@@ -227,5 +227,19 @@ PROFILES = {"gamma": profile(b"RGB ", 0x02400000, COLORANTS + curves(GAMMA)),
 for kind in ("mft1", "mft2", "mAB "):
     PROFILES[kind.strip()] = profile(b"RGB ", 0x02400000 if kind.startswith("mft") else 0x04300000,
                                      [(b"A2B0", device_link(kind)[144:])])
+# ICC.1:2022, 10.16: curves, a matrix, a table.
+segment = b"parf" + struct.pack(">4xHxx4f", 0, 2, 1, 0, 0)
+curve = b"curf" + struct.pack(">4xHxx", 1) + segment
+place = 12 + 8 * 3
+elements = [b"cvst" + struct.pack(">4x2H", 3, 3) + struct.pack(">2I", place, len(curve)) * 3 + curve,
+            b"matf" + struct.pack(">4x2H12f", 3, 3, 0.6, 0.2, 0.1, 0.3, 0.6, 0.1, 0, 0.1, 0.7, 0, 0, 0),
+            b"clut" + struct.pack(">4x2H", 3, 3) + bytes([2] * 3 + [0] * 13)
+            + struct.pack(">24f", *(node >> axis & 1 for node in range(8) for axis in (2, 1, 0)))]
+places, contents = b"", b""
+for element in elements:
+    places += struct.pack(">2I", 16 + 8 * len(elements) + len(contents), len(element))
+    contents += element
+mpet = b"mpet" + struct.pack(">4x2HI", 3, 3, len(elements)) + places + contents
+PROFILES["mpet"] = profile(b"RGB ", 0x04300000, [(b"A2B0", device_link("mft2")[144:]), (b"D2B1", mpet)])
 for name, text in PROFILES.items():
     (folder_of("icc") / name).write_bytes(bytes([name == "gray"]) + text)

@@ -31,8 +31,8 @@ struct IccSource {
 /// so that its programs are shared. Every other color is named "ICC: ...", with a hash.
 ///
 /// Numbers outside [0, 1] follow a parametric curve's formula, and powers of negatives are 0.
-/// Sampled curves keep their first and last value. Tables limit their input to [0, 1]. LittleCMS
-/// does the same in float.
+/// Sampled curves keep their first and last value. Tables (but no float elements) limit their input
+/// to [0, 1]. LittleCMS does the same in float.
 ///
 /// @param profile   its bytes, at most 32 MiB
 /// @param channels  of color in the picture, 1 or 3. An RGB profile also serves gray pictures.

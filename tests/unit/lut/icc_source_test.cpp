@@ -8,6 +8,7 @@
 #include <lcms2.h>
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -401,6 +402,47 @@ TEST(IccSource, TablesThroughLittleCmsAreTheMatrixThatTheyHold) {
                 EXPECT_NEAR(ours[c], expected[c], 6e-4);
             expect_as_lcms(bytes, 1e-5);
         }
+    }
+}
+
+std::string floats(const std::vector<float>& values) {
+    std::string text;
+    for (const float v : values)
+        text += big(std::bit_cast<std::uint32_t>(v), 4);
+    return text;
+}
+
+// ICC.1:2022, 10.16: squares, then a matrix to XYZ. They win over A2B0.
+TEST(IccSource, FloatElementsAreUsed) {
+    const std::string curve = "curf" + big(0, 4) + big(1, 2) + big(0, 2) + "parf" + big(0, 4) +
+                              big(0, 2) + big(0, 2) + floats({2, 1, 0, 0});
+    std::string squares = "cvst" + big(0, 4) + big(3, 2) + big(3, 2);
+    for (int c = 0; c < 3; ++c)
+        squares += big(36, 4) + big(curve.size(), 4);
+    squares += curve;
+    const std::string matrix = "matf" + big(0, 4) + big(3, 2) + big(3, 2) +
+                               floats({0.6F, 0.2F, 0.1F, 0.3F, 0.6F, 0.1F, 0, 0.1F, 0.7F}) +
+                               floats({0, 0, 0});
+    const std::string tag = "mpet" + big(0, 4) + big(3, 2) + big(3, 2) + big(2, 4) + big(32, 4) +
+                            big(squares.size(), 4) + big(32 + squares.size(), 4) +
+                            big(matrix.size(), 4) + squares + matrix;
+    const std::string other = table_profile("mAB ", kHp);
+    const std::string table = other.substr(other.find("mAB "));
+    const IccSource source = color_of_icc(
+        profile_of({{"A2B0", table}, {"D2B1", tag}}, "RGB ", "XYZ ", 4, "scnr"), 3, "x");
+    EXPECT_TRUE(source.has_tables);
+    // XYZ of D50 to sRGB, as Bruce Lindbloom prints it; beyond 1, too.
+    const Matrix3 to_srgb = {{{3.1338561, -1.6168667, -0.4906146},
+                              {-0.9787684, 1.9161415, 0.0334540},
+                              {0.0719453, -0.2289914, 1.4052427}}};
+    const Matrix3 to_xyz = {{{0.6, 0.2, 0.1}, {0.3, 0.6, 0.1}, {0, 0.1, 0.7}}};
+    for (const Vector3& rgb : {Vector3{0.2, 0.5, 0.9}, Vector3{1, 1, 1}, Vector3{0.1, 0.3, 1.5}}) {
+        const Vector3 light = {rgb[0] * rgb[0], rgb[1] * rgb[1], rgb[2] * rgb[2]};
+        const Vector3 expected = multiply(multiply(to_srgb, to_xyz), light);
+        const Vector3 ours = to_rec709(source.color, rgb);
+        // His D50 has Z = 0.82521, that of ICC 0.8249.
+        for (std::size_t c = 0; c < 3; ++c)
+            EXPECT_NEAR(ours[c], expected[c], 1e-3);
     }
 }
 

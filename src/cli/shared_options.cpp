@@ -38,23 +38,20 @@ void add_view_options(const Command& command, ViewOptions& options) {
         .group(color);
     add_input_units(command, options.input_units, options.reference_white, color);
     command.option("--reference-white")
-        .describe(
-            "luminance of scene-linear 1.0 in inputs of PQ, HLG or cd/m2, and on HDR "
-            "displays; ITU-R BT.2408 has 203");
+        .describe("luminance of scene-linear 1.0 in absolute inputs and on HDR displays");
 }
 
 void add_input_units(const Command& command, std::string& units, double& reference_white,
                      const char* group) {
     command
-        .add("--input-units", units,
-             "units of linear input: `relative` (1.0 is diffuse white) or `cd/m2`")
+        .add("--input-units", units, "units of linear input: `relative` (1.0 is white) or `cd/m2`")
         .value("UNITS")
         .suggest({"relative", "cd/m2"})
         .show_default()
         .group(group);
     command
         .add("--reference-white", reference_white,
-             "luminance that is 1.0, of inputs in PQ, HLG or cd/m2; ITU-R BT.2408 has 203")
+             "luminance that becomes 1.0, of PQ, HLG and cd/m2")
         .value("CD/M2")
         .show_default()
         .group(group);
@@ -167,8 +164,7 @@ void add_exposure_options(const Command& command, ExposureOptions& options, cons
         "percentiles between which `histogram` averages, such as 40,95")
         .show_default();
     add("--histogram-range", options.histogram_range, "LOW,HIGH",
-        "range of the histogram, in log2 of luminance (default -8,3.5, and more where the picture "
-        "needs it)");
+        "range in log2 of luminance (default -8,3.5, and more if needed)");
     add("--histogram-bins", options.histogram_bins, "N",
         "number of histogram bins in that range; the first holds black")
         .show_default();

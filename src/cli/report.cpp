@@ -405,8 +405,8 @@ void add_report(CommandLine& program) {
     command.add("-o", options->file, "HTML file to write").value("FILE").required().group(contents);
     command
         .add("--operators", options->operators,
-             "operators, as `compare` takes them, or `all`: with presets and looks (default: "
-             "every operator without them)")
+             "operators, as for `compare`, or `all`, with presets and looks (default: all without "
+             "them)")
         .suggest(suggest_operators)
         .one_value_each()
         .separated_by(',')

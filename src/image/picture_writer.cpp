@@ -803,7 +803,7 @@ void PictureWriter::check_written(const ImageSpec& wanted, std::string_view file
     if (file_format == "null" || file_format == "term") return;
     std::optional<PictureReader> written;
     try {
-        written.emplace(temporary_->path().string(), 0, 0, kUnlimited);
+        written.emplace(temporary_->path().string(), 0, ReadOptions{.max_pixels = kUnlimited});
     } catch (const FileError& e) {
         fail(fmt::format("what was written cannot be read back: {}",
                          without_name(e.what(), temporary_->path().string())));

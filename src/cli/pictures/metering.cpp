@@ -61,8 +61,8 @@ OIIO::ROI parse_region(const std::string& text) {
 // `--help` shows the library's defaults. Clang 14 does not accept a structure with a std::string as
 // a constant.
 #ifndef __clang__
-static_assert(ExposureOptions{}.delta == MeterOptions{}.delta &&
-              ExposureOptions{}.histogram_bins == MeterOptions{}.bins &&
+static_assert(ExposureOptions{}.delta == kMeterDelta &&
+              ExposureOptions{}.histogram_bins == kMeterBins &&
               ShotOptions{}.fps == Adaptation{}.fps);
 #endif
 
@@ -171,7 +171,9 @@ std::vector<MeteredPicture> meter_pictures(const std::vector<std::string>& paths
         for (const std::size_t i : unknown)
             names.push_back(paths[i]);
         const auto meter = [&](std::size_t n) {
-            use_threads({.threads = threads_each});
+            PictureInput threads;
+            threads.threads = threads_each;
+            use_threads(threads);
             return to_json(meter_file(names[n], options, threads_each)).dump();
         };
         run_contained(names, workers, input.timeout, meter,

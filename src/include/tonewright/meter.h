@@ -20,6 +20,10 @@
 /// floats. 1 is diffuse white; EV100 takes it as 1 cd/m2.
 TONEWRIGHT_NAMESPACE_BEGIN
 
+/// Defaults of MeterOptions.
+inline constexpr double kMeterDelta = 1e-3;
+inline constexpr int kMeterBins = 256;
+
 /// Pixels and figures to measure.
 struct MeterOptions {
     /// @see TonemapOptions::input
@@ -37,7 +41,7 @@ struct MeterOptions {
     OIIO::ROI region = {};
     /// Added to every luminance inside the logarithm of the log average, [1e-10, 1]; also the least
     /// metered luminance.
-    double delta = 1e-3;
+    double delta = kMeterDelta;
     /// Limits of the histogram, log2 of luminance, [-64, 128]. Values outside count in the first
     /// and last bins.
     double histogram_min = -8;
@@ -47,7 +51,7 @@ struct MeterOptions {
     /// Bins keep their places, so that the figures of a shot do not jump from frame to frame.
     bool grows_histogram = true;
     /// Bins between the limits, with that of black (below 1e-6), [3, 4096].
-    int bins = 256;
+    int bins = kMeterBins;
     /// The histogram's average takes the pixels between these percentiles, without black, 0 <= low
     /// < high <= 100.
     double low_percentile = 0;
@@ -179,7 +183,7 @@ TONEWRIGHT_API void check_exposure_rule(const ExposureRule& rule);
 /// The luminance of a picture by a method; at least `delta`.
 [[nodiscard]] TONEWRIGHT_API double metered_luminance(const Metering& metering,
                                                       ExposureRule::Method method,
-                                                      double delta = MeterOptions{}.delta);
+                                                      double delta = kMeterDelta);
 
 /// Exposure for a metered luminance, in stops, with compensation.
 [[nodiscard]] TONEWRIGHT_API double suggested_exposure(double luminance, const ExposureRule& rule);

@@ -418,6 +418,7 @@ void write_generated_files(const std::string& folder, const std::vector<Generate
     paths.reserve(files.size());
     for (const GeneratedFile& file : files)
         paths.push_back((root / file.path).string());
+    require_separate_files("write", paths);
     remove_leftovers(paths);
     for (const GeneratedFile& file : files) {
         if (file.path != last) write(file);

@@ -59,26 +59,36 @@ std::string joined_words(std::string_view name) {
     return joined;
 }
 
-/// Length in bytes of the character that a text begins with; 0 for a control character or a byte
-/// that is not UTF-8. Controls of two bytes (C1) and marks that change the direction of writing
-/// count as controls.
-std::size_t utf8_length(std::string_view text) {
+/// The code point at the beginning of a text, and its bytes; no bytes where it is not UTF-8.
+struct Utf8Character {
+    std::uint32_t point = 0;
+    std::size_t length = 0;
+};
+Utf8Character utf8_character(std::string_view text) {
     const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-    if (byte(0) < 0x80) return byte(0) >= 0x20 && byte(0) != 0x7f ? 1 : 0;
+    if (byte(0) < 0x80) return {byte(0), 1};
     const std::size_t length = byte(0) >= 0xf0 ? 4 : byte(0) >= 0xe0 ? 3 : 2;
-    if (byte(0) < 0xc2 || byte(0) > 0xf4 || text.size() < length) return 0;
+    if (byte(0) < 0xc2 || byte(0) > 0xf4 || text.size() < length) return {};
     std::uint32_t point = byte(0) & (0x7f >> length);
     for (std::size_t i = 1; i < length; ++i) {
-        if ((byte(i) & 0xc0) != 0x80) return 0;
+        if ((byte(i) & 0xc0) != 0x80) return {};
         point = point << 6 | (byte(i) & 0x3f);
     }
     constexpr std::uint32_t kSmallest[] = {0, 0, 0x80, 0x800, 0x10000};
     const bool is_character =
         point >= kSmallest[length] && point <= 0x10ffff && (point < 0xd800 || point > 0xdfff);
-    const bool is_control = point < 0xa0 || (point >= 0x200e && point <= 0x200f) ||
-                            (point >= 0x2028 && point <= 0x202e) ||
-                            (point >= 0x2066 && point <= 0x2069);
-    return is_character && !is_control ? length : 0;
+    return is_character ? Utf8Character{point, length} : Utf8Character{};
+}
+
+/// Length in bytes of the character that a text begins with; 0 for a control character or a byte
+/// that is not UTF-8. Controls of two bytes (C1) and marks that change the direction of writing
+/// count as controls.
+std::size_t utf8_length(std::string_view text) {
+    const auto [point, length] = utf8_character(text);
+    const bool is_control =
+        point < 0x20 || (point >= 0x7f && point < 0xa0) || (point >= 0x200e && point <= 0x200f) ||
+        (point >= 0x2028 && point <= 0x202e) || (point >= 0x2066 && point <= 0x2069);
+    return is_control ? 0 : length;
 }
 
 }  // namespace
@@ -250,6 +260,21 @@ std::string one_line(std::string_view text, std::size_t longest) {
         }
     }
     return text.size() > longest && line.size() >= longest ? line + "..." : line;
+}
+
+std::string utf8_text(std::string_view text) {
+    std::string result;
+    result.reserve(text.size());
+    for (std::size_t i = 0; i < text.size();) {
+        const std::size_t length = utf8_character(text.substr(i)).length;
+        if (length == 0) {
+            result += fmt::format("\\x{:02x}", static_cast<unsigned char>(text[i]));
+        } else {
+            result += text.substr(i, length);
+        }
+        i += std::max<std::size_t>(length, 1);
+    }
+    return result;
 }
 
 std::string printable(std::string_view text, std::size_t longest) {

@@ -24,6 +24,9 @@ TONEWRIGHT_NAMESPACE_BEGIN
 /// Text beyond `longest` bytes becomes `...`.
 [[nodiscard]] TONEWRIGHT_API std::string one_line(std::string_view text,
                                                   std::size_t longest = 2000);
+/// The text, if it is UTF-8. Else with `\xe9` for every byte that is not, as Python's
+/// `backslashreplace` has it: the text can be shown, and names that differ stay different.
+[[nodiscard]] TONEWRIGHT_API std::string utf8_text(std::string_view text);
 /// Untrusted text, fit for a message of one line: every other byte than printable ASCII becomes
 /// `?`, and a long text ends in `...`.
 [[nodiscard]] TONEWRIGHT_API std::string printable(std::string_view text, std::size_t longest = 60);

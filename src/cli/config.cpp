@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "base/atomic_file.h"
+#include "base/input_file.h"
 #include "cli/archive.h"
 #include "cli/command.h"
 #include "cli/elapsed_line.h"
@@ -42,14 +43,13 @@ void write_backup(const std::string& path) {
     for (int number = 2; fs::exists(backup); ++number)
         backup = fmt::format("{}.bak{}", path, number);
     remove_leftovers({backup});
-    AtomicFile copy(backup);
-    std::error_code error;
-    {
-        const FileCreation creation;
-        fs::copy_file(path, copy.path(), error);  // with its permissions
-    }
-    if (!error) error = {copy.keep(), std::generic_category()};
-    if (error) throw FileError("write: " + backup + ": " + error.message());
+    const std::string text = read_file(path, std::string::npos, [&](const std::string& reason) {
+        throw FileError("read: " + path + ": " + reason);
+    });
+    AtomicFile copy(backup, path);
+    int error = copy.write(text);
+    if (error == 0) error = copy.keep();
+    if (error != 0) throw FileError("write: " + backup + ": " + reason_of(error));
     fmt::print("backup: {}\n", backup);
 }
 
@@ -112,7 +112,7 @@ void replace_config(const ExtendedConfig& changed, const Options& options) {
             // Beside the config, so that its relative paths work; never kept.
             const std::string name = (folder / ".tonewright.ocio").string();
             remove_leftovers({name});
-            AtomicFile trial(name);
+            AtomicFile trial(name, path);  // as private as the config
             if (const int error = trial.write(changed.text))
                 throw FileError("write: " + path + ": " + reason_of(error));
             views = changed.check(trial.path().string());

@@ -4,6 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <type_traits>
 
+#include "base/strings.h"
+
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
@@ -12,6 +14,7 @@ using Library = nlohmann::ordered_json;
 /// Levels of a text that parse() takes: from_library() calls itself for each.
 constexpr int kDeepest = 100;
 
+/// JSON is UTF-8, and names of files are bytes.
 Library to_library(const Json& json) {
     return std::visit(
         [](const auto& value) -> Library {
@@ -24,8 +27,10 @@ Library to_library(const Json& json) {
             } else if constexpr (std::is_same_v<T, Json::Object>) {
                 Library object = Library::object();
                 for (const auto& [name, member] : value)
-                    object.emplace(name, to_library(member));
+                    object.emplace(utf8_text(name), to_library(member));
                 return object;
+            } else if constexpr (std::is_same_v<T, std::string>) {
+                return utf8_text(value);
             } else {
                 return value;
             }

@@ -189,6 +189,7 @@ class TONEWRIGHT_API PictureWriter {
     void set_compression(OIIO::ImageSpec& spec) const;
     /// Limitations of the file, in one warning.
     void warn_of_limits(const OIIO::ImageSpec& wanted, const std::string& missing) const;
+    [[nodiscard]] std::string cut_off(const OIIO::ImageSpec& picture) const;
     void watch_cover(const OIIO::ImageBuf& rows);
     void warn_of_cover() const;
     [[nodiscard]] OIIO::ImageBuf over_background(const OIIO::ImageBuf& rows) const;

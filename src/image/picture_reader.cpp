@@ -224,6 +224,10 @@ PictureReader::PictureReader(const std::string& path, int nthreads, const ReadOp
 PictureReader::~PictureReader() = default;
 
 void PictureReader::check_size(double max_pixels) const {
+    if (spec_.width < 1 || spec_.height < 1) {
+        cannot_read(path_, fmt::format("it declares {} x {} pixels; expected at least 1 x 1",
+                                      spec_.width, spec_.height));
+    }
     const double pixels =
         static_cast<double>(spec_.width) * spec_.height * std::max(spec_.depth, 1);
     if (pixels > max_pixels) {

@@ -605,6 +605,8 @@ void PictureWriter::open(const ImageSpec& picture) {
         proxy_->begin_blocks();
     }
     warn_of_limits(spec, color.missing);
+    if (const std::string text = cut_off(picture); options_.warn && !text.empty())
+        options_.warn(text);
 }
 
 void PictureWriter::warn_of_limits(const ImageSpec& wanted, const std::string& missing) const {
@@ -621,6 +623,29 @@ void PictureWriter::warn_of_limits(const ImageSpec& wanted, const std::string& m
         limits.emplace_back("gradients in 8 bits show bands");
     }
     if (!limits.empty()) options_.warn(fmt::format("{}", fmt::join(limits, "; ")));
+}
+
+/// "the data window ... lies outside the display window"; empty if nothing is cut off.
+std::string PictureWriter::cut_off(const ImageSpec& picture) const {
+    const ROI data = picture.roi();
+    ROI shown = window_ ? OIIO::roi_intersection(data, picture.roi_full()) : data;
+    shown.chbegin = data.chbegin;
+    shown.chend = data.chend;
+    const double lost =
+        shown.defined() && shown.npixels() > 0
+            ? 1 - static_cast<double>(shown.npixels()) / static_cast<double>(data.npixels())
+            : 1;
+    if (lost <= 0) return {};
+    if (lost >= 1) {
+        return fmt::format(
+            "all of the data window lies outside the display window, so the picture "
+            "is black; {} has no data window",
+            format());
+    }
+    return fmt::format(
+        "{:.2g} % of the data window lies outside the display window and is left "
+        "out; {} has no data window",
+        100 * lost, format());
 }
 
 void PictureWriter::watch_cover(const ImageBuf& rows) {

@@ -4,10 +4,13 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <exception>
+#include <fstream>
 #include <mutex>
 #include <optional>
+#include <string_view>
 #include <system_error>
 #include <thread>
 
@@ -28,6 +31,32 @@ bool is_newer(const std::string& path, const std::string& than) {
     return a.tv_sec != b.tv_sec ? a.tv_sec > b.tv_sec : a.tv_nsec > b.tv_nsec;
 }
 
+/// The last bytes of formats whose readers accept a file without its end: the chunk IEND with its
+/// check sum (PNG, ISO/IEC 15948, 11.2.5), the markers EOI (JPEG, ISO/IEC 10918-1, B.1.1.3) and EOC
+/// (JPEG 2000, ISO/IEC 15444-1, A.4.4), and the trailer of GIF89a.
+bool has_its_end(const std::string& path) {
+    struct Format {
+        std::string_view begin, end;
+    };
+    using namespace std::string_view_literals;
+    static constexpr std::array<Format, 5> kFormats = {
+        {{"\x89PNG\r\n\x1A\n"sv, "\0\0\0\0IEND\xAE\x42\x60\x82"sv},
+         {"\xFF\xD8\xFF"sv, "\xFF\xD9"sv},
+         {"\xFF\x4F\xFF\x51"sv, "\xFF\xD9"sv},
+         {"\0\0\0\x0CjP  "sv, "\xFF\xD9"sv},
+         {"GIF8"sv, ";"sv}}};
+    std::ifstream file(path, std::ios::binary);
+    std::array<char, 12> begin{}, end{};
+    file.read(begin.data(), begin.size());
+    if (!file) return true;  // its reader knows
+    file.seekg(-static_cast<std::streamoff>(end.size()), std::ios::end);
+    file.read(end.data(), end.size());
+    const std::string_view first(begin.data(), begin.size()), last(end.data(), end.size());
+    return std::none_of(kFormats.begin(), kFormats.end(), [&](const Format& format) {
+        return first.starts_with(format.begin) && !last.ends_with(format.end);
+    });
+}
+
 /// @param tonemapper  one that takes no statistics
 bool is_done(const Tonemapper& tonemapper, const FrameFiles& frame,
              const SequenceOptions& options) {
@@ -41,11 +70,12 @@ bool is_done(const Tonemapper& tonemapper, const FrameFiles& frame,
         const OIIO::ImageSpec should = PictureWriter(frame.out, options.write)
                                            .file_spec(result_spec(tonemapper, source.spec()));
         if (is.width != should.width || is.height != should.height || is.depth != should.depth ||
+            is.nchannels != should.nchannels ||
             (should.format != OIIO::TypeUnknown && is.format != should.format)) {
             return false;
         }
         check_is_complete(result);
-        return true;
+        return has_its_end(frame.out);
     } catch (const std::exception&) {
         return false;  // the frame itself reports every error
     }

@@ -18,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/atomic_file.h"
 #include "base/format_number.h"
 #include "base/strings.h"
 #include "image/batch_queue.h"
@@ -278,6 +279,11 @@ void check_overwriting(const std::string& command, const std::vector<FrameFiles>
             fmt::format("{}: output is {}, the same file as the input {}; expected another file{}",
                         command, file.out, found->second->in, is_own ? ", or --in-place" : ""));
     }
+    std::vector<std::string> outs;
+    outs.reserve(files.size());
+    for (const FrameFiles& file : files)
+        outs.push_back(file.out);
+    require_separate_files(command, outs);
 }
 
 void tonemap_file(const Tonemapper& tonemapper, const std::string& in, const std::string& out,

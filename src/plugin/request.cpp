@@ -4,6 +4,7 @@
 #include <OpenImageIO/strutil.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <sstream>
 #include <string_view>
@@ -60,7 +61,54 @@ void read_request_file(const fs::path& path, Request& request) {
         throw FileError(path.string() + ": file is missing; expected a line file=PICTURE");
 }
 
+/// Where `:<digits>` at the end of a text begins, or the text's size.
+std::size_t end_without_number(std::string_view text) {
+    const std::size_t colon = text.rfind(':');
+    if (colon == std::string_view::npos || colon + 1 == text.size()) return text.size();
+    const bool is_number =
+        text.find_first_not_of("0123456789", colon + 1) == std::string_view::npos;
+    return is_number ? colon : text.size();
+}
+
 }  // namespace
+
+std::string without_contents(std::string_view message, const std::vector<std::string>& named) {
+    const auto is_named = [&](std::string_view text) {
+        return !text.empty() && std::any_of(named.begin(), named.end(), [&](const auto& own) {
+            return own.find(text) != std::string::npos;
+        });
+    };
+    std::string path;
+    std::string line;
+    constexpr std::string_view kOperation = "read: ";
+    constexpr std::string_view kLine = "line ";
+    if (message.starts_with(kOperation)) message.remove_prefix(kOperation.size());
+    while (!message.empty() && line.empty()) {
+        const std::string_view part = message.substr(0, message.find(": "));
+        message.remove_prefix(std::min(part.size() + 2, message.size()));
+        if (!path.empty() && part.starts_with(kLine)) {
+            const std::string_view number = part.substr(kLine.size());
+            if (number.find_first_not_of("0123456789") == std::string_view::npos) line = number;
+            break;
+        }
+        // `<path>:<line>` or `<path>:<line>:<column>`
+        std::string_view name = part;
+        while (!is_named(name) && end_without_number(name) < name.size())
+            name = name.substr(0, end_without_number(name));
+        if (!is_named(name)) break;
+        path = name;
+        if (name.size() < part.size()) {
+            const std::string_view numbers = part.substr(name.size() + 1);
+            line = numbers.substr(0, numbers.find(':'));
+        }
+    }
+    if (path.empty()) return "op names a file that cannot be read as one of an operator";
+    if (const std::string why = why_not_readable(path); !why.empty())
+        return fmt::format("{}: cannot read: {}", path, why);
+    return fmt::format(
+        "{}{}: cannot be read as the file of an operator; `tonewright list OPERATOR` says why",
+        path, line.empty() ? "" : ":" + line);
+}
 
 Request parse_request(const std::string& name) {
     Request request;

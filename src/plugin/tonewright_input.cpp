@@ -104,7 +104,7 @@ class TonemappedInput final : public ImageInput {
             const Opening opening(name);
             const Request request = parse_request(name);
             path_ = request.picture;
-            tonemapper_.emplace(parse_options(request.arguments, config));
+            take_options(parse_options(request.arguments, config));
             picture_ = open_picture(path_, &config);
             go_to(0, 0);
         });
@@ -208,6 +208,18 @@ class TonemappedInput final : public ImageInput {
             reported.empty() ? "the file is truncated or damaged" : first_line(reported)));
     }
 
+    /// @throws Error  without anything of the operator's file in it
+    void take_options(const TonemapOptions& options) {
+        try {
+            tonemapper_.emplace(options);
+        } catch (const FileError& e) {
+            std::vector<std::string> named = {options.op};
+            for (const auto& [name, value] : options.settings)
+                named.push_back(value);
+            throw FileError(without_contents(e.what(), named));
+        }
+    }
+
     /// Called with the lock.
     void go_to(int subimage, int miplevel) {
         auto found = levels_.find({subimage, miplevel});
@@ -215,6 +227,8 @@ class TonemappedInput final : public ImageInput {
             ImageSpec source = picture_->spec(subimage, miplevel);
             if (source.deep)
                 throw Error(path_ + " is deep; expected flat pixels (oiiotool --flatten)");
+            if (source.width < 1 || source.height < 1)
+                throw FileError(path_ + ": cannot read: the picture has no pixels");
             check_pixel_type("picture", source.format);
             source.channelformats.clear();  // all channels are read in the widest of them
             complete_channel_names(source);

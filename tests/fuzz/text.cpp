@@ -75,7 +75,9 @@ void read_meter_cache(const std::string& text) {
     static const PrivateFolder folder;
     const std::string path = folder.write("cache.json", text);
     MeterCache cache(path, {});
-    cache.add("x.exr", {1, 2}, {});
+    Metering metering;
+    metering.histogram.resize(static_cast<std::size_t>(MeterOptions{}.bins));
+    cache.add("x.exr", {1, 2}, metering);
     cache.save();
     if (!MeterCache(path, {}).find("x.exr", {1, 2})) std::abort();
 }

@@ -7,13 +7,16 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
 #include "base/atomic_file.h"
+#include "base/input_file.h"
 #include "base/strings.h"
 #include "cli/json.h"
 #include "cli/messages.h"
@@ -21,6 +24,7 @@
 #include "cli/pictures/frames.h"
 #include "cli/pictures/picture_input.h"
 #include "cli/pictures/progress_bar.h"
+#include "image/picture_file.h"
 #include "image/tonemap_file.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -51,10 +55,21 @@ class Shot {
     /// The frame that replaces a missing one. It depends on the files only, not on --frames, so
     /// every part of a shot gets the same frames.
     [[nodiscard]] std::optional<int> held(int frame) {
-        for (int earlier = frame - 1; earlier >= frame - kMostHeld; --earlier) {
-            if (has(earlier)) return earlier;
+        // Frames mostly come in order: no gap is searched twice.
+        int first = frame - kMostHeld;
+        std::optional<int> found;
+        if (searched_ && *searched_ < frame && *searched_ >= first) {
+            first = *searched_;
+            if (found_ && *found_ >= frame - kMostHeld) found = found_;
         }
-        return {};
+        for (int earlier = frame - 1; earlier >= first; --earlier) {
+            if (!has(earlier)) continue;
+            found = earlier;
+            break;
+        }
+        searched_ = frame;
+        found_ = found;
+        return found;
     }
 
     static constexpr int kMostHeld = 1000;
@@ -62,6 +77,7 @@ class Shot {
   private:
     std::string pattern_;
     std::map<int, bool> known_;
+    std::optional<int> searched_, found_;  // the last held frame that was asked for, and the answer
 };
 
 struct Plan {
@@ -71,37 +87,78 @@ struct Plan {
     std::size_t held_count = 0;
 };
 
+/// Every missing frame that an earlier one replaces, and that one.
+std::map<int, int> held_frames(Shot& shot, std::vector<int> numbers) {
+    std::sort(numbers.begin(), numbers.end());
+    std::map<int, int> held;
+    for (const int number : numbers) {
+        if (shot.has(number)) continue;
+        if (const std::optional<int> earlier = shot.held(number)) held[number] = *earlier;
+    }
+    return held;
+}
+
+/// The reason why a missing frame cannot be read; empty if a reader understands its name, as that
+/// of a picture that is computed.
+std::string why_missing(const std::string& name) {
+    const QuietStderr quiet;
+    try {
+        (void)open_picture(name);
+        return {};
+    } catch (const FileError&) {
+        return why_not_readable(name);
+    }
+}
+
+/// Refuses outputs that would be read as inputs after they were written.
+void check_inputs_stay(const Plan& plan, const std::string& out, const FrameOptions& options) {
+    const auto absolute = [](const std::string& name) {
+        return fs::absolute(name).lexically_normal().string();
+    };
+    std::set<std::string> ins;
+    for (const FrameFiles& frame : plan.frames)
+        ins.insert(absolute(frame.in));
+    for (const FrameFiles& frame : plan.frames) {
+        if (!ins.contains(absolute(frame.out))) continue;
+        throw Error(fmt::format(
+            "apply: output is {}, which is also an input frame; expected other files with {}", out,
+            options.skip_existing ? "--skip-existing" : "--missing hold"));
+    }
+}
+
 Plan plan_frames(const std::string& in, const std::string& out, const FrameOptions& options) {
     const Missing missing = parse_missing(options.missing);
-    Shot shot(in);
-    Plan plan;
-    std::set<std::string> ins, outs;
-    for (const int number : parse_frames(options.frames)) {
-        FrameFiles frame = {shot.name(number), frame_name("out", out, number)};
-        if (!outs.insert(fs::absolute(frame.out).lexically_normal()).second)
+    const std::vector<int> numbers = parse_frames(options.frames);
+    std::set<int> known;
+    for (const int number : numbers) {
+        if (!known.insert(number).second)
             throw Error(fmt::format("apply: --frames names frame {} twice; expected once", number));
-        if (missing != Missing::error && !shot.has(number)) {
+    }
+    Shot shot(in);
+    std::map<int, int> held;
+    if (missing == Missing::hold) held = held_frames(shot, numbers);
+    std::optional<std::string> reason;  // of every missing frame
+    Plan plan;
+    for (const int number : numbers) {
+        FrameFiles frame = {shot.name(number), frame_name("out", out, number)};
+        const auto earlier = held.find(number);
+        if (earlier != held.end()) {
+            frame.in = shot.name(earlier->second);
+            ++plan.held_count;
+        } else if (!shot.has(number)) {
             if (missing == Missing::skip) {
                 ++plan.missing_count;
                 continue;
             }
-            if (const std::optional<int> held = shot.held(number)) {
-                frame.in = shot.name(*held);
-                ++plan.held_count;
-            }
+            // A million of them must not take a million attempts to open a picture.
+            if (!reason) reason = why_missing(frame.in);
+            if (!reason->empty())
+                frame.error = fmt::format("{}: cannot read: {}", frame.in, *reason);
         }
-        ins.insert(fs::absolute(frame.in).lexically_normal());
         plan.numbers.push_back(number);
         plan.frames.push_back(std::move(frame));
     }
-    if (missing == Missing::hold || options.skip_existing) {
-        for (const std::string& name : outs) {
-            if (!ins.contains(name)) continue;
-            throw Error(fmt::format(
-                "apply: output is {}, which is also an input frame; expected other files with {}",
-                out, options.skip_existing ? "--skip-existing" : "--missing hold"));
-        }
-    }
+    if (missing == Missing::hold || options.skip_existing) check_inputs_stay(plan, out, options);
     return plan;
 }
 
@@ -110,11 +167,14 @@ Plan plan_frames(const std::string& in, const std::string& out, const FrameOptio
 std::size_t print_failures(const std::vector<FrameFiles>& files) {
     constexpr std::size_t kMostLines = 50;
     std::size_t failed = 0;
-    std::set<std::string> errors;  // warnings that --strict makes errors are the same for all
+    // Warnings that --strict makes errors are the same for all. A million errors are known by their
+    // hash.
+    std::unordered_set<std::size_t> errors;
     for (const FrameFiles& file : files) {
         if (file.error.empty()) continue;
         ++failed;
-        if (errors.insert(file.error).second && errors.size() <= kMostLines)
+        if (errors.insert(std::hash<std::string>()(file.error)).second &&
+            errors.size() <= kMostLines)
             print_message("apply: " + file.error);
     }
     if (errors.size() > kMostLines)
@@ -189,9 +249,19 @@ void run(const Tonemapper& tonemapper, std::vector<FrameFiles>& files, SequenceO
     options.done = [&](const FrameFiles& frame) { bar.add(!frame.is_skipped); };
     if (picture.timeout > 0) {
         tonemap_contained(tonemapper, files, options, picture);
-    } else {
-        tonemap_files(tonemapper, files, options);
+        return;
     }
+    // Missing frames have their error already.
+    std::vector<FrameFiles> open;
+    std::vector<std::size_t> places;
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        if (!files[i].error.empty()) continue;
+        places.push_back(i);
+        open.push_back(std::move(files[i]));
+    }
+    tonemap_files(tonemapper, open, options);
+    for (std::size_t i = 0; i < places.size(); ++i)
+        files[places[i]] = std::move(open[i]);
 }
 
 int exit_code_of(const std::vector<FrameFiles>& files) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <new>
 #include <utility>
 
@@ -96,19 +97,53 @@ OIIO::ImageBuf render(const Rendering& rendering, const OIIO::ImageBuf& scene,
     return shown;
 }
 
-/// Each picture at full size, in a file with its operator's name.
+/// The file of a picture at full size, with its operator's name.
+std::string picture_path(const CompareOptions& options, const Rendering& rendering) {
+    std::string name = operator_text(rendering.op);
+    for (char& c : name) {
+        const bool is_plain = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
+        if (!is_plain) c = '_';
+    }
+    return options.pictures + "/" + name + ".png";
+}
+
+/// @throws Error  an output is the input, or two outputs are one file
+void check_outputs(const CompareOptions& options, const std::vector<Rendering>& renderings) {
+    std::vector<std::string> outputs = {options.file};
+    std::map<std::string, std::string> operators;  // of the pictures
+    if (!options.pictures.empty()) {
+        for (const Rendering& r : renderings) {
+            const std::string path = picture_path(options, r);
+            const std::string op = operator_text(r.op);
+            const auto [other, is_new] = operators.emplace(path, op);
+            if (!is_new && other->second != op) {
+                throw Error(
+                    fmt::format("compare: pictures of {} and {} would both be written to {}; "
+                                "expected names that differ in letters or digits",
+                                other->second, op, path));
+            }
+            if (is_new) outputs.push_back(path);
+        }
+    }
+    for (const std::string& output : outputs) {
+        if (!is_same_file(options.in, output)) continue;
+        throw Error(
+            fmt::format("compare: {} is {}, the same file as the input; expected another {}",
+                        &output == &outputs.front() ? "-o" : "--pictures", output,
+                        &output == &outputs.front() ? "file" : "folder"));
+    }
+    // Also where the sheet is in the folder of the pictures.
+    if (operators.contains(options.file)) outputs.front() = "./" + options.file;
+    require_separate_files("compare", outputs);
+}
+
+/// Each picture at full size.
 void write_pictures(const CompareOptions& options, const std::vector<Rendering>& renderings,
                     const OIIO::ImageBuf& picture) {
     require_writable_folder(options.pictures);
-    for (const Rendering& r : renderings) {
-        std::string name = operator_text(r.op);
-        for (char& c : name) {
-            const bool is_plain = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
-            if (!is_plain) c = '_';
-        }
-        write_image_atomically(render(r, picture, options.in),
-                               options.pictures + "/" + name + ".png", OIIO::TypeUInt8);
-    }
+    for (const Rendering& r : renderings)
+        write_image_atomically(render(r, picture, options.in), picture_path(options, r),
+                               OIIO::TypeUInt8);
 }
 
 std::string name_of(const std::string& path) {
@@ -189,12 +224,7 @@ void compare_pictures(CompareOptions options) {
                                     options.has_false_color ? ", without --false-color" : ""));
         }
     }
-    if (is_same_file(options.in, options.file)) {
-        throw Error(
-            fmt::format("compare: -o is {}, the same file as the input; expected another "
-                        "file",
-                        options.file));
-    }
+    check_outputs(options, renderings);
     OIIO::ImageBuf picture = read_picture(options.in, options.picture, options.input);
     const QuietStderr quiet;
     const SourceColor source = about_picture(options.in, [&] {

@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -11,6 +13,7 @@
 #include "base/atomic_file.h"
 #include "base/format_number.h"
 #include "base/input_file.h"
+#include "base/strings.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -20,10 +23,35 @@ namespace fs = std::filesystem;
 constexpr const char* kFormat = "tonewright_meter_cache";
 constexpr int kVersion = 2;
 
+/// As the cache's JSON has it.
 std::string absolute(const std::string& path) {
     std::error_code error;
     const fs::path full = fs::absolute(path, error);
-    return (error ? fs::path(path) : full).lexically_normal().string();
+    return utf8_text((error ? fs::path(path) : full).lexically_normal().string());
+}
+
+/// False for figures that metering never gives, which somebody else wrote: the picture is metered
+/// again.
+bool is_possible(const Metering& m, const MeterOptions& options) {
+    std::vector<double> luminances = {m.log_average,
+                                      m.geometric_mean,
+                                      m.mean,
+                                      m.minimum,
+                                      m.maximum,
+                                      m.histogram_average,
+                                      m.scene.log_average,
+                                      m.scene.mean_luminance,
+                                      m.scene.minimum_luminance,
+                                      m.scene.maximum_luminance};
+    luminances.insert(luminances.end(), m.percentiles.begin(), m.percentiles.end());
+    const bool are_luminances = std::all_of(luminances.begin(), luminances.end(),
+                                            [](double x) { return std::isfinite(x) && x >= 0; });
+    const auto are_finite = [](const auto& numbers) {
+        return std::all_of(numbers.begin(), numbers.end(),
+                           [](double x) { return std::isfinite(x); });
+    };
+    return are_luminances && are_finite(m.scene.mean_rgb) && are_finite(m.scene.maximum_rgb) &&
+           m.histogram.size() >= static_cast<std::size_t>(options.bins);
 }
 
 }  // namespace
@@ -152,10 +180,11 @@ MeterCache::MeterCache(std::string path, const MeterOptions& options)
         all.at(kFormat).get_to(version);
         if (version != kVersion || all.at("options").dump() != options_) return;
         for (const auto& [picture, entry] : all.at("pictures").members()) {
-            Entry& known = entries_[picture];
+            Entry known;
             entry.at("bytes").get_to(known.stamp.bytes);
             entry.at("modified").get_to(known.stamp.modified);
             known.metering = metering_from(entry.at("metering"));
+            if (is_possible(known.metering, options)) entries_[picture] = std::move(known);
         }
     } catch (const JsonError&) {
         fail("is not a meter cache; expected a file that --meter-cache wrote, or a new name");

@@ -28,8 +28,8 @@ struct FrameFiles {
 struct SequenceOptions {
     /// `warn` is called from one thread at a time.
     WriteOptions write = {};
-    /// Keeps a frame's `out` if it is newer than `in`, has the expected size and pixel type, and
-    /// can be read to its end. The operator and the exposure of an earlier run are not known.
+    /// Keeps a frame's `out` if it is newer than `in`, has the expected size, channels and pixel
+    /// type, and is complete. The operator and the exposure of an earlier run are not known.
     bool skip_existing = false;
     /// Frames at the same time, each with its own memory. 0: as many as threads.
     int jobs = 0;

@@ -632,7 +632,7 @@ std::string PictureWriter::cut_off(const ImageSpec& picture) const {
     shown.chbegin = data.chbegin;
     shown.chend = data.chend;
     const double lost =
-        shown.defined() && shown.npixels() > 0
+        shown.width() > 0 && shown.height() > 0 && shown.depth() > 0
             ? 1 - static_cast<double>(shown.npixels()) / static_cast<double>(data.npixels())
             : 1;
     if (lost <= 0) return {};

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <string>
 
 TONEWRIGHT_NAMESPACE_BEGIN
@@ -36,7 +37,7 @@ class NumberCache : public testing::Test {
     }
 
     std::vector<double> get(const std::string& key, std::vector<double> numbers) {
-        return cached_numbers("test", key, [&] {
+        return cached_numbers("test", key, is_usable_, [&] {
             ++made_;
             return numbers;
         });
@@ -48,6 +49,7 @@ class NumberCache : public testing::Test {
         return path;
     }
 
+    NumberCheck is_usable_ = [](const std::vector<double>&) { return true; };
     fs::path root_;
     std::string before_;
     int made_ = 0;
@@ -84,6 +86,47 @@ TEST_F(NumberCache, IgnoresDamagedFiles) {
         EXPECT_EQ(made_, 1) << i;
         EXPECT_EQ(get("a", {}), numbers) << "replaced";
     }
+}
+
+TEST_F(NumberCache, IgnoresNumbersThatTheCallerCannotUse) {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    for (const std::vector<double>& bad :
+         {std::vector<double>{}, {1}, {1, 2, 3}, {1, kNone}, {1, 2.5}, {-0.5, 1}}) {
+        fs::remove_all(root_);
+        is_usable_ = [](const std::vector<double>&) { return true; };
+        (void)get("a", bad);  // a file with the right key and checksum
+        is_usable_ = numbers_in(2, 0, 2);
+        made_ = 0;
+        EXPECT_EQ(get("a", {0, 2}), (std::vector<double>{0, 2}));
+        EXPECT_EQ(made_, 1);
+        EXPECT_EQ(get("a", {1, 1}), (std::vector<double>{0, 2})) << "replaced";
+    }
+    EXPECT_TRUE(numbers_in(1, 0, std::numeric_limits<double>::infinity())(
+        {std::numeric_limits<double>::infinity()}));
+    EXPECT_FALSE(numbers_in(1)({std::numeric_limits<double>::infinity()}));
+}
+
+TEST_F(NumberCache, ItsFilesAreNoLinksAndNobodyElsesFiles) {
+    (void)get("a", {1});
+    const fs::path path = only_file();
+    EXPECT_EQ(fs::status(path).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+    EXPECT_EQ(fs::status(path.parent_path()).permissions(), fs::perms::owner_all);
+
+    const fs::path other = root_ / "other";
+    fs::rename(path, other);
+    fs::create_symlink(other, path);
+    EXPECT_EQ(get("a", {2}), std::vector<double>{2}) << "a link is not read";
+    EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(path))) << "but replaced";
+    fs::remove(path);
+    std::ofstream(other, std::ios::trunc) << "precious";
+    fs::create_symlink(other, path);
+    (void)get("a", {3});
+    std::string text;
+    std::getline(std::ifstream(other), text);
+    EXPECT_EQ(text, "precious") << "nothing is written through a link";
+
+    fs::permissions(path, fs::perms::others_write, fs::perm_options::add);
+    EXPECT_EQ(get("a", {4}), std::vector<double>{4}) << "others could have written it";
 }
 
 TEST_F(NumberCache, WorksWithoutAFolder) {

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Links, private files, access lists, windows and names that an attacker or an accident can make.
+
+    python3 tests/cli/test_hostile_files.py build/release/bin/tonewright
+
+The last line is `N passed, M failed`.
+"""
+
+import argparse
+import json
+import os
+import stat
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from shots import make_shot  # noqa: E402
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
+from pictures import Report  # noqa: E402
+
+OK, FAILED, USAGE, FILE = 0, 1, 2, 3
+CLAMP = ["--operator", "clamp"]
+BAKE = ["bake", "hable", "--format", "cube", "--input-encoding", "log2", "--size", "5", "-q", "-o"]
+
+
+def run(command, folder, *arguments):
+    """(exit code, standard output, lines on standard error)"""
+    done = subprocess.run([command, *arguments], cwd=folder, capture_output=True, check=False, timeout=300,
+                          env={**os.environ, "XDG_CACHE_HOME": str(folder / "cache")})
+    return done.returncode, done.stdout, done.stderr.decode(errors="replace").splitlines()
+
+
+def check_outputs(report, command, folder):
+    """Two outputs that are one file are refused before anything is written."""
+    out = folder / "o"
+    out.mkdir()
+    for kind in ("symbolic", "hard"):
+        for name in ("in.0001.png", "in.0002.png"):
+            (out / name).unlink(missing_ok=True)
+        target = folder / "same.png"
+        target.write_bytes(b"old")
+        for name in ("in.0001.png", "in.0002.png"):
+            if kind == "hard":
+                os.link(target, out / name)
+            else:
+                (out / name).symlink_to(target)
+        for arguments in (["in.0001.exr", "in.0002.exr", "-o", "o/", "--format", "png"],
+                          ["in.####.exr", "o/in.####.png", "--frames", "1-2"]):
+            code, _, lines = run(command, folder, "apply", *arguments, *CLAMP)
+            report.check(f"{kind} links: apply {' '.join(arguments)}",
+                         code == USAGE and len(lines) == 1 and "in.0001.png" in lines[0] and "in.0002.png" in lines[0], lines)
+        report.check(f"{kind} links: the old file", target.read_bytes() == b"old")
+    code, _, lines = run(command, folder, "compare", "in.0001.exr", "clamp", "-o", "p/clamp.png", "--pictures", "p")
+    report.check("compare: the sheet is one of the pictures", code == USAGE and len(lines) == 1, lines)
+
+
+def check_access(report, command, folder):
+    name = folder / "o.cube"
+    name.write_text("old")
+    name.chmod(0o4755)
+    report.check("bake", run(command, folder, *BAKE, name)[0] == OK)
+    report.check("setuid goes, other permissions stay", stat.S_IMODE(name.stat().st_mode) == 0o755, oct(name.stat().st_mode))
+    name.unlink()
+    before = os.umask(0o027)
+    run(command, folder, *BAKE, name)
+    os.umask(before)
+    report.check("a new file has what the umask says", stat.S_IMODE(name.stat().st_mode) == 0o640, oct(name.stat().st_mode))
+    if os.geteuid() == 0:
+        os.chown(name, 12345, 23456)
+        run(command, folder, *BAKE, name)
+        report.check("owner and group stay", (name.stat().st_uid, name.stat().st_gid) == (12345, 23456))
+    else:
+        print("skipped: owner and group (needs root)")
+
+
+def check_windows(report, command, folder):
+    try:
+        import numpy
+        import OpenImageIO as oiio
+    except ImportError as error:
+        print(f"skipped: data windows ({error})")
+        return
+    for at, share in ((100, "all"), (44, "44 %"), (42, "")):  # 8 x 8 pixels: of 6 x 6 in the window, 1 - 36/64 is lost
+        spec = oiio.ImageSpec(8, 8, 3, oiio.HALF)
+        spec.x = spec.y = at
+        spec.full_width = spec.full_height = 50
+        out = oiio.ImageOutput.create(str(folder / "w.exr"))
+        out.open(str(folder / "w.exr"), spec)
+        out.write_image(numpy.full((8, 8, 3), .5, numpy.float32))
+        out.close()
+        for name, expected in (("w.png", share), ("w2.exr", "")):
+            code, _, lines = run(command, folder, "apply", "w.exr", name, *CLAMP)
+            said = [line for line in lines if "window" in line]
+            report.check(f"data window at {at}, {name}", code == OK and len(said) == (1 if expected else 0)
+                         and all(expected in line for line in said), lines)
+
+
+def check_names(report, command, folder):
+    name = os.fsencode(folder) + b"/a\xe9.exr"
+    os.link(os.fsencode(folder / "in.0001.exr"), name)
+    code, out, lines = run(command, folder, "meter", name, "--json")
+    report.check("meter --json of a name that is not UTF-8", code == OK and b"a\\\\xe9.exr" in out and json.loads(out), lines)
+    code, _, lines = run(command, folder, "report", name, "-o", "r.html", "--width", "64")
+    report.check("report of a name that is not UTF-8", code == OK, lines)
+    os.unlink(name)
+
+
+def check_frames(report, command, folder):
+    code, _, lines = run(command, folder, "apply", "none.#######.exr", "x.#######.png", "--frames", "1-1000000", *CLAMP)
+    report.check("a million missing frames", code == FAILED and len(lines) < 60 and "1000000 failed: 1-1000000" in lines[-1], lines[-2:])
+    run(command, folder, "apply", "in.####.exr", "f.####.png", "--frames", "1-2", *CLAMP)
+    whole = (folder / "f.0001.png").read_bytes()
+    (folder / "f.0001.png").write_bytes(whole[:-12])  # without IEND
+    code, _, lines = run(command, folder, "apply", "in.####.exr", "f.####.png", "--frames", "1-2", "--skip-existing", *CLAMP)
+    report.check("a PNG without its end is made again", code == OK and (folder / "f.0001.png").read_bytes() == whole
+                 and "1 skipped" in lines[-1], lines)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("command", type=Path)
+    command = parser.parse_args().command.resolve()
+    report = Report()
+    for check in (check_outputs, check_access, check_windows, check_names, check_frames):
+        with tempfile.TemporaryDirectory(prefix="tonewright-") as name:
+            folder = Path(name)
+            make_shot(folder, [1, 2])
+            check(report, command, folder)
+    return report.finish()
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

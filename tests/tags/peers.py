@@ -41,11 +41,13 @@ LINEAR = (".exr", ".hdr", ".pfm")
 
 
 class Program:
-    """commands: shell text with %RUN%, %IN%, %OUT% and %TMP%; the first that succeeds counts, as a user would try."""
+    """commands: shell text with %RUN%, %IN%, %OUT% and %TMP%; the first that succeeds counts.
+
+    linear_commands: more of them for files whose numbers are linear by definition; the best one counts."""
 
     def __init__(self, title, executable, version, commands, suffix, newer=False, linear_commands=None):
         self.title, self.executable, self.version_words, self.suffix, self.newer = title, executable, version, suffix, newer
-        self.commands, self.linear_commands = commands, linear_commands or commands
+        self.commands, self.linear_commands = commands, linear_commands or []
 
     def launcher(self):
         return f"{NEWER} " if self.newer else ""
@@ -62,11 +64,11 @@ class Program:
         found = re.search(r"\d+\.\d+(\.\d+)*(-\d+)?", done.stdout + done.stderr) if done.returncode == 0 else None
         return found.group() if found else ""
 
-    def light(self, path, row, scratch):
-        """The pixel, or what the program said."""
-        out = scratch / f"out{self.suffix}"
-        said = ""
-        for command in self.linear_commands if path.suffix in LINEAR else self.commands:
+    def read(self, path, row, scratch):
+        """The pixel of each command that writes a picture, and what the last one that fails says."""
+        out, said, values = scratch / f"out{self.suffix}", "", []
+        linear = path.suffix in LINEAR or "float" in row.name
+        for command in dict.fromkeys(self.commands + self.linear_commands * linear):
             for old in scratch.glob("out*"):
                 old.unlink()
             words = command
@@ -75,14 +77,20 @@ class Program:
             try:
                 done = subprocess.run(words, shell=True, capture_output=True, text=True, errors="replace", timeout=120, cwd=scratch, check=False)
             except subprocess.TimeoutExpired:
-                return None, "no end after 120 s"
-            said = (done.stderr or done.stdout).strip()[-200:]
+                return values, "no end after 120 s"
             if done.returncode == 0 and out.is_file():
-                return pixel(out, row), ""
-        return None, said
+                values.append(self.light(pixel(out)))
+                if not linear:
+                    break
+            else:
+                said = (done.stderr or done.stdout).strip()[:300].replace("\n", " ")
+        return values, said
+
+    def light(self, value):
+        return value
 
 
-def pixel(path, row):
+def pixel(path):
     config = oiio.ImageSpec()
     config["oiio:UnassociatedAlpha"] = 1
     reader = oiio.ImageInput.open(str(path), config)
@@ -124,25 +132,23 @@ class Tonewright(Program):
     def __init__(self, command):
         super().__init__("Tonewright", str(command), "--version", ["%RUN% apply %IN% %OUT% --operator reinhard --display linear -d float -q"], ".exr")
 
-    def light(self, path, row, scratch):
-        value, said = super().light(path, row, scratch)
-        return (None if value is None else value / (1 - value)), said
+    def light(self, value):
+        return value / (1 - value)
 
 
-def verdict(program, value, row):
-    if value is None:
-        return "no picture"
-    want = np.array(row.rgb)
-    wants = [want, *(np.array(other) for other, _why in row.others)]
+def verdict(program, values, row):
+    """Of the commands, the best one counts."""
+    wants = [np.array(row.rgb), *(np.array(other) for other, _why in row.others)]
     if isinstance(program, Tonewright):
-        wants = [np.maximum(w, 0) for w in wants]
-    if any(np.all(np.abs(value - w) <= np.maximum(RELATIVE * np.abs(w), OF_LARGEST * np.abs(w).max())) for w in wants):
-        return "right"
+        wants = [np.maximum(want, 0) for want in wants]
     # Programs choose what 1.0 is for absolute luminance.
-    for nits in UNITS if any(word in row.tag for word in ABSOLUTE) else ():
-        if np.all(np.abs(value * nits / 100 - want) <= np.maximum(RELATIVE * np.abs(want), OF_LARGEST * np.abs(want).max())):
-            return f"right (1.0 is {nits} cd/m2)"
-    return " ".join(f"{v:.3f}" for v in value)
+    absolute = any(word in row.tag for word in ABSOLUTE)
+    for nits in (100, *(UNITS if absolute else ())):
+        for value in values:
+            for want in wants:
+                if np.all(np.abs(value * nits / 100 - want) <= np.maximum(RELATIVE * np.abs(want), OF_LARGEST * np.abs(want).max())):
+                    return "right" if nits == 100 else f"right (1.0 is {nits} cd/m2)"
+    return " ".join(f"{v:.3f}" for v in values[0]) if values else "no picture"
 
 
 def one(program, rows, files, scratch):
@@ -151,10 +157,10 @@ def one(program, rows, files, scratch):
     (folder / "srgb.icc").write_bytes(icc_matrix("rec709", SRGB_PARAMETRIC, 4))
     results = {}
     for row in rows:
-        value, said = program.light(files / row.name, row, folder)
-        results[row.name] = verdict(program, value, row)
-        if value is None:
-            print(f"{program.title}: {row.name}: {said.splitlines()[-1] if said else 'no picture'}", flush=True)
+        values, said = program.read(files / row.name, row, folder)
+        results[row.name] = verdict(program, values, row)
+        if not values:
+            print(f"{program.title}: {row.name}: {said}", flush=True)
     return results
 
 

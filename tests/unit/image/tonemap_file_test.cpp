@@ -69,7 +69,7 @@ class TonemapFile : public testing::Test {
         ASSERT_GT(wanted.size(), 100U);
         for (const int threads : {1, 3}) {
             const std::string path = folder_.file(out);
-            tonemap_in_batches(Tonemapper(options), in, path, written_as(type), threads,
+            tonemap_in_batches(Tonemapper(options), in, path, written_as(type), {}, threads,
                                kSmallBatch);
             EXPECT_TRUE(bytes_of(path) == wanted) << in << " -> " << out << ", " << threads;
             fs::remove(path);
@@ -141,13 +141,14 @@ TEST_F(TonemapFile, AnySubimage) {
     // Also of an operator that measures its picture.
     for (const char* op : {"hable", "drago"}) {
         for (int page = 0; page < 2; ++page) {
-            tonemap_file(Tonemapper({.op = op}), in, out, TypeDesc::FLOAT, 1, page);
+            tonemap_file(Tonemapper({.op = op}), in, out, written_as(TypeDesc::FLOAT),
+                         {.subimage = std::to_string(page)}, 1);
             EXPECT_TRUE(same_bits(read_image(out),
                                   tonemap(pages.at(static_cast<std::size_t>(page)), {.op = op})))
                 << op << ", " << page;
         }
     }
-    EXPECT_THROW(tonemap_file(Tonemapper({.op = "hable"}), in, out, OIIO::TypeUnknown, 1, 2),
+    EXPECT_THROW(tonemap_file(Tonemapper({.op = "hable"}), in, out, {}, {.subimage = "2"}, 1),
                  FileError);
 }
 
@@ -199,7 +200,7 @@ TEST_F(TonemapFile, GrayStaysGrayOrBecomesColor) {
     ASSERT_EQ(spec.nchannels, 1);
     for (const char* op : {"hable", "false_color"}) {
         const std::string out = folder_.file("out.exr"), whole = folder_.file("whole.exr");
-        tonemap_in_batches(Tonemapper({.op = op}), in, out, written_as(TypeDesc::HALF), 2,
+        tonemap_in_batches(Tonemapper({.op = op}), in, out, written_as(TypeDesc::HALF), {}, 2,
                            kSmallBatch);
         write_image_atomically(tonemap(read_image(in), {.op = op}), whole, TypeDesc::HALF);
         EXPECT_TRUE(bytes_of(out) == bytes_of(whole)) << op;
@@ -210,7 +211,7 @@ TEST_F(TonemapFile, OntoItself) {
     const std::string in = folder_.file("a.exr"), out = folder_.file("b.exr");
     put(spec_of({"R", "G", "B"}), in);
     tonemap_file(Tonemapper({.op = "hable"}), in, out, TypeDesc::HALF);
-    tonemap_in_batches(Tonemapper({.op = "hable"}), in, in, written_as(TypeDesc::HALF), 3,
+    tonemap_in_batches(Tonemapper({.op = "hable"}), in, in, written_as(TypeDesc::HALF), {}, 3,
                        kSmallBatch);
     EXPECT_TRUE(bytes_of(in) == bytes_of(out));
 }
@@ -234,7 +235,7 @@ TEST_F(TonemapFile, FailuresLeaveTheOldFile) {
     const auto run = [&](int threads) {
         return message_of([&] {
             tonemap_in_batches(Tonemapper({.op = "hable"}), in, out, written_as(TypeDesc::HALF),
-                               threads, kSmallBatch);
+                               {}, threads, kSmallBatch);
         });
     };
     const auto expect_old = [&] {

@@ -49,8 +49,7 @@ void add_file_options(const Command& command, ApplyOptions& options) {
         .group(group);
     command
         .add("--alpha", options.alpha,
-             "`keep`, `ignore` (leave it out), `opaque` (1), or `over:R,G,B` (composite over a "
-             "background in code values, [0, 1])")
+             "`keep`, `ignore` (leave out), `opaque` (1) or `over:R,G,B` (put over code values)")
         .value("ACTION")
         .suggest({"keep", "ignore", "opaque", "over:0,0,0"})
         .show_default()

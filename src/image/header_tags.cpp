@@ -21,6 +21,7 @@ TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
 
 using OIIO::ImageSpec;
+using OIIO::ParamValue;
 using OIIO::TypeDesc;
 
 /// No profile of a picture is longer. A chunk that declares more is skipped.
@@ -86,22 +87,58 @@ void set_bytes(ImageSpec& spec, const char* name, const std::string& bytes) {
     spec.attribute(name, TypeDesc(TypeDesc::UINT8, static_cast<int>(bytes.size())), bytes.data());
 }
 
-/// The orientation of an Exif block, which is a small TIFF file (JEITA CP-3451, 4.5). OpenImageIO
-/// 2.4 does not read the block in PNG and WebP.
-void read_exif(std::string_view exif, ImageSpec& spec) {
-    if (exif.starts_with(std::string_view("Exif\0\0", 6))) exif.remove_prefix(6);
-    const bool is_little = exif.starts_with("II");
-    if (!is_little && !exif.starts_with("MM")) return;
-    const std::uint64_t directory = HeaderFile::parse(exif, 4, 4, is_little);
-    if (directory > exif.size()) return;
-    const std::uint64_t count = HeaderFile::parse(exif, directory, 2, is_little);
-    for (std::uint64_t i = 0; i < count; ++i) {
-        const std::size_t at = directory + 2 + 12 * i;
-        constexpr std::uint64_t kOrientation = 274;
-        if (HeaderFile::parse(exif, at, 2, is_little) != kOrientation) continue;
-        spec.attribute("Orientation",
-                       static_cast<int>(HeaderFile::parse(exif, at + 8, 2, is_little)));
+/// An Exif block, which is a small TIFF file: JEITA CP-3451, 4.5.
+class ExifBlock {
+  public:
+    explicit ExifBlock(std::string_view bytes) : bytes_(bytes) {
+        if (bytes_.starts_with(std::string_view("Exif\0\0", 6))) bytes_.remove_prefix(6);
+        is_little_ = bytes_.starts_with("II");
     }
+    /// The directory that the header names.
+    [[nodiscard]] std::uint64_t first() const { return number(4, 4); }
+    /// Place of a tag's entry in a directory; 0: none.
+    [[nodiscard]] std::size_t find(std::uint64_t directory, std::uint64_t tag) const {
+        if (!(is_little_ || bytes_.starts_with("MM")) || directory > bytes_.size()) return 0;
+        const std::uint64_t count = number(directory, 2);
+        for (std::uint64_t i = 0; i < count; ++i) {
+            const std::size_t at = directory + 2 + 12 * i;
+            if (number(at, 2) == tag) return at;
+        }
+        return 0;
+    }
+    [[nodiscard]] std::uint64_t number(std::size_t at, unsigned count) const {
+        return HeaderFile::parse(bytes_, at, count, is_little_);
+    }
+    [[nodiscard]] std::string_view text(std::size_t at, std::size_t count) const {
+        return at < bytes_.size() ? bytes_.substr(at, count) : std::string_view();
+    }
+
+  private:
+    std::string_view bytes_;
+    bool is_little_ = false;
+};
+
+/// OpenImageIO 2.4 does not read the block in PNG and WebP.
+void read_orientation(std::string_view exif, ImageSpec& spec) {
+    const ExifBlock block(exif);
+    constexpr std::uint64_t kOrientation = 274;
+    if (const std::size_t at = block.find(block.first(), kOrientation))
+        spec.attribute("Orientation", static_cast<int>(block.number(at + 8, 2)));
+}
+
+/// The index of the interoperability directory, which OpenImageIO does not read: "R03" is DCF's
+/// optional color space, Adobe RGB.
+void read_interoperability(std::string_view exif, ImageSpec& spec) {
+    const ExifBlock block(exif);
+    constexpr std::uint64_t kExif = 0x8769;
+    constexpr std::uint64_t kInteroperability = 0xA005;
+    const std::size_t pointer = block.find(block.first(), kExif);
+    if (pointer == 0) return;
+    const std::size_t inner = block.find(block.number(pointer + 8, 4), kInteroperability);
+    if (inner == 0) return;
+    const std::size_t index = block.find(block.number(inner + 8, 4), 1);
+    if (index != 0)
+        spec.attribute("Exif:InteroperabilityIndex", std::string(block.text(index + 8, 3)));
 }
 
 void set_primaries(ImageSpec& spec, const char* name, const std::array<float, 8>& xy) {
@@ -118,15 +155,22 @@ void read_png(HeaderFile& file, ImageSpec& spec) {
         const std::string type = file.bytes(4);
         const std::uint64_t next = file.position() + length + 4;
         if (type == "IDAT" || type == "IEND" || !file.ok()) break;
-        const auto wanted = {"cICP", "sRGB", "gAMA", "cHRM", "acTL", "mDCV", "eXIf"};
+        constexpr std::array kRead = {"cICP", "sRGB", "gAMA", "cHRM", "acTL", "eXIf"};
         std::string data;
-        if (std::find(wanted.begin(), wanted.end(), type) != wanted.end()) data = file.bytes(length);
+        if (std::find(kRead.begin(), kRead.end(), type) != kRead.end()) data = file.bytes(length);
         const auto u32 = [&](std::size_t at) { return HeaderFile::parse(data, at, 4, false); };
         if (type == "cICP" && data.size() == 4) {
             std::array<int, 4> points{};
             for (std::size_t k = 0; k < 4; ++k)
                 points[k] = static_cast<unsigned char>(data[k]);
-            spec.attribute(kCicpTag, TypeDesc(TypeDesc::INT, 4), points.data());
+            constexpr int kUnspecified = 2;
+            if (points[0] == kUnspecified && points[1] == kUnspecified) {
+                add_ignored(spec, "cICP: 2/2 (unspecified) states no color");
+            } else {
+                spec.attribute(kCicpTag, TypeDesc(TypeDesc::INT, 4), points.data());
+            }
+        } else if (type == "iCCP" && !spec.find_attribute("ICCProfile")) {
+            add_ignored(spec, "iCCP: the ICC profile is damaged");
         } else if (type == "sRGB" && data.size() == 1) {
             spec.attribute(file_tag::kSrgb, static_cast<int>(data[0]));
         } else if (type == "gAMA" && data.size() == 4 && u32(0) > 0) {
@@ -138,7 +182,7 @@ void read_png(HeaderFile& file, ImageSpec& spec) {
         } else if (type == "acTL" && data.size() == 8 && u32(0) > 1) {
             add_ignored(spec, fmt::format("acTL: the picture is the first of {} frames", u32(0)));
         } else if (type == "eXIf" && !data.empty()) {
-            read_exif(data, spec);
+            read_orientation(data, spec);
         }
         if (!file.seek(next)) break;
     }
@@ -180,7 +224,12 @@ void read_radiance(HeaderFile& file, ImageSpec& spec) {
         };
         if (const auto v = value_of("EXPOSURE")) {
             const std::vector<double> n = numbers_of(*v);
-            if (n.size() == 1 && n[0] > 0 && std::isfinite(n[0])) exposure *= n[0];
+            if (n.size() == 1 && n[0] > 0 && std::isfinite(n[0])) {
+                exposure *= n[0];
+            } else {
+                add_ignored(spec, fmt::format("EXPOSURE: it is {}; expected a number above 0",
+                                              printable(*v)));
+            }
         } else if (const auto c = value_of("COLORCORR")) {
             const std::vector<double> n = numbers_of(*c);
             for (std::size_t k = 0; n.size() == 3 && k < 3; ++k)
@@ -190,6 +239,18 @@ void read_radiance(HeaderFile& file, ImageSpec& spec) {
         } else if (const auto f = value_of("FORMAT")) {
             is_xyz = f->find("xyze") != std::string_view::npos;
         }
+    }
+    // The line of the size follows the empty one. OpenImageIO 2.4 mixes up two of its eight forms.
+    const std::string size = file.line();
+    const std::size_t second = size.find_first_of("+-", 1);
+    if (size.size() > 1 && second != std::string::npos && second + 1 < size.size()) {
+        // From the sides where the first row and the first column are: JEITA CP-3451, 4.6.4.
+        const std::string order = {size[0], size[1], size[second], size[second + 1]};
+        constexpr std::array<std::string_view, 8> kOrders = {"-Y+X", "-Y-X", "+Y-X", "+Y+X",
+                                                             "+X-Y", "-X-Y", "-X+Y", "+X+Y"};
+        const auto* found = std::find(kOrders.begin(), kOrders.end(), order);
+        if (found != kOrders.end())
+            spec.attribute("Orientation", static_cast<int>(found - kOrders.begin()) + 1);
     }
     // Radiance and pfstools divide by both numbers; OpenImageIO, ImageMagick, libvips, ffmpeg and
     // viewers show the pixels as they are stored. So do we, because hosts must agree.
@@ -238,7 +299,11 @@ void read_webp(HeaderFile& file, ImageSpec& spec) {
         const std::uint64_t next = file.position() + length + (length & 1U);
         if (!file.ok()) break;
         if (type == "ICCP") set_bytes(spec, "ICCProfile", file.bytes(length));
-        if (type == "EXIF") read_exif(file.bytes(length), spec);
+        if (type == "EXIF") read_orientation(file.bytes(length), spec);
+        if (type == "ALPH" || (type == "VP8L" && spec.alpha_channel >= 0)) {
+            add_ignored(spec, "alpha: OpenImageIO multiplies colors by it in 8 bits, so dark ones "
+                              "lose digits");
+        }
         if (type == "ANIM") add_ignored(spec, "ANIM: the picture is the first frame of several");
         if (!file.seek(next)) break;
     }
@@ -343,21 +408,124 @@ void read_tiff(HeaderFile& file, ImageSpec& spec) {
 void read_jpeg(HeaderFile& file, ImageSpec& spec) {
     if (file.number(2, false) != 0xFFD8) return;
     bool has_gain_map = false;
+    bool has_profile = false;
     for (int i = 0; i < kMostBlocks && file.ok(); ++i) {
         const std::uint64_t marker = file.number(2, false);
         constexpr std::uint64_t kScan = 0xFFDA;
         if (marker == kScan || marker < 0xFF00) break;
-        const std::uint64_t length = file.number(2, false);
-        const std::uint64_t next = file.position() + std::max<std::uint64_t>(length, 2) - 2;
+        const std::uint64_t length = std::max<std::uint64_t>(file.number(2, false), 2) - 2;
+        const std::uint64_t next = file.position() + length;
+        constexpr std::uint64_t kApp1 = 0xFFE1;
         constexpr std::uint64_t kApp2 = 0xFFE2;
-        if (marker == kApp2 && length > 30) {
-            constexpr std::string_view kIso = "urn:iso:std:iso:ts:21496:-1";
-            has_gain_map = has_gain_map || file.bytes(kIso.size()) == kIso;
+        if (marker == kApp1 || marker == kApp2) {
+            const std::string data = file.bytes(length);
+            has_profile = has_profile || data.starts_with("ICC_PROFILE");
+            has_gain_map = has_gain_map || data.starts_with("urn:iso:std:iso:ts:21496:-1") ||
+                           data.find("hdrgm:") != std::string::npos;
+            if (marker == kApp1 && data.starts_with("Exif")) read_interoperability(data, spec);
+            if (marker == kApp1 && data.find("tiff:Orientation") != std::string::npos &&
+                !spec.find_attribute("Orientation"))
+                add_ignored(spec, "XMP tiff:Orientation: the orientation of Exif alone counts");
         }
         if (!file.seek(next)) break;
     }
-    if (has_gain_map || spec.find_attribute("hdrgm:Version"))
-        add_ignored(spec, "gain map: the picture for SDR displays is read");
+    if (has_gain_map) add_ignored(spec, "gain map: the picture for SDR displays is read");
+    if (has_profile && !spec.find_attribute("ICCProfile"))
+        add_ignored(spec, "ICC profile: a part is missing, or it is damaged");
+}
+
+/// Wavefront RLA: six numbers of 16 bits follow the windows, then the text of gamma (16 bytes) and
+/// those of red, green, blue and white (24 bytes each).
+void read_rla(HeaderFile& file, ImageSpec& spec) {
+    constexpr std::size_t kGamma = 28;
+    constexpr std::size_t kChroma = 44;
+    const std::string head = file.bytes(kChroma + 4 * std::size_t{24});
+    if (!file.ok()) return;
+    const auto numbers = [&](std::size_t at, std::size_t count) {
+        return numbers_of(head.substr(at, std::min(count, head.find('\0', at) - at)));
+    };
+    const std::vector<double> gamma = numbers(kGamma, 16);
+    if (gamma.size() == 1 && gamma[0] > 0)
+        spec.attribute(file_tag::kGamma, static_cast<float>(gamma[0]));
+    // What every writer puts there, whatever the colors are: not even a gamut.
+    constexpr std::array kUsual = {0.67, 0.08, 0.21, 0.71, 0.14, 0.33, 0.31, 0.316};
+    std::array<float, 8> xy{};
+    bool is_usual = true;
+    for (std::size_t c = 0; c < 4; ++c) {
+        const std::vector<double> pair = numbers(kChroma + 24 * c, 24);
+        if (pair.size() < 2) return;
+        for (std::size_t k = 0; k < 2; ++k) {
+            xy[2 * c + k] = static_cast<float>(pair[k]);
+            is_usual = is_usual && pair[k] == kUsual[2 * c + k];
+        }
+    }
+    if (!is_usual) set_primaries(spec, file_tag::kPrimaries, xy);
+}
+
+/// SMPTE ST 268:2003, table 1.
+void read_dpx(ImageSpec& spec) {
+    const std::string transfer = spec.get_string_attribute("dpx:Transfer");
+    if (OIIO::Strutil::istarts_with(transfer, "Z depth")) {
+        spec.attribute(file_tag::kImpossible,
+                       fmt::format("dpx:Transfer is {}; expected colors, not depth", transfer));
+    }
+    // OpenImageIO exchanges width and height, but not the order of the pixels.
+    if (spec.get_int_attribute("Orientation", 1) > 4) {
+        spec.attribute(file_tag::kImpossible,
+                       "the orientation is that of columns; expected rows: OpenImageIO cannot read "
+                       "these DPX files");
+    }
+    const int low = spec.get_int_attribute("dpx:LowData", 0);
+    const int high = spec.get_int_attribute("dpx:HighData", 0);
+    const int bits = std::clamp(spec.get_int_attribute("oiio:BitsPerSample", 10), 1, 16);
+    const int most = (1 << bits) - 1;
+    const bool is_density = transfer == "Printing density" || transfer == "Logarithmic";
+    const bool is_usual = (low == 0 && (high == 0 || high == most)) ||
+                          (is_density && low == 95 && high == 685);
+    if (!is_usual) {
+        add_ignored(spec, fmt::format("reference levels {} and {}: codes are taken as {}", low, high,
+                                      is_density ? "of 95 and 685" : "of 0 and the largest"));
+    }
+}
+
+/// Tags that OpenImageIO lists and that nobody applies.
+void name_others(std::string_view format, ImageSpec& spec) {
+    const std::string jpeg = spec.get_string_attribute("jpeg:ColorSpace");
+    if (jpeg == "CMYK" || jpeg == "YCbCrK")
+        add_ignored(spec, jpeg + ": CMYK is converted to RGB without a profile");
+    if (spec.get_string_attribute("tiff:ColorSpace") == "CMYK")
+        add_ignored(spec, "PhotometricInterpretation: CMYK is converted to RGB without a profile");
+    const auto is = [&](const char* name, const char* usual) {  // whole numbers or text
+        const ParamValue* value = spec.find_attribute(name);
+        return !value || value->get_string() == usual;
+    };
+    if (format == "fits" && (!is("Bscale", "1") || !is("Bzero", "0")))
+        add_ignored(spec, "BSCALE, BZERO: pixels are taken as stored");
+    if (format == "openexr" && spec.format == TypeDesc::UINT)
+        add_ignored(spec, "UINT channels: whole numbers are usually ids, not light");
+    if (spec.get_int_attribute("oiio:Movie", 0) != 0)
+        add_ignored(spec, "frames: the picture is the first frame of several");
+    for (const char* name : {"heif:GainMap", "heif:Sequence", "heif:Auxiliary"}) {
+        if (spec.find_attribute(name)) {
+            const std::string kind = name;
+            add_ignored(spec, kind == "heif:GainMap" ? "gain map: the primary picture is read"
+                              : kind == "heif:Sequence"
+                                  ? "tracks of pictures: the still picture is read"
+                                  : "auxiliary pictures: " +
+                                        printable(spec.get_string_attribute(name)));
+        }
+    }
+}
+
+/// Photoshop File Formats Specification: the mode is bytes 24 and 25.
+void read_psd(HeaderFile& file, ImageSpec& spec) {
+    if (!file.seek(24)) return;
+    constexpr std::uint64_t kCmyk = 4;
+    constexpr std::uint64_t kLab = 9;
+    const std::uint64_t mode = file.number(2, false);
+    if (mode == kCmyk) add_ignored(spec, "mode: CMYK is converted to RGB without a profile");
+    if (mode == kLab)
+        spec.attribute(file_tag::kImpossible, "mode is 9 (Lab); expected RGB or gray");
 }
 
 /// Tags of OpenEXR that describe another rendering than the pixels.
@@ -419,13 +587,17 @@ void complete_header(const std::string& path, std::string_view format, ImageSpec
     spec.attribute(file_tag::kFormat, std::string(format));
     spec.attribute(file_tag::kColorSpace, spec.get_string_attribute("oiio:ColorSpace"));
     HeaderFile file(path);
+    name_others(format, spec);
     if (format == "openexr") read_openexr(spec);
+    if (format == "dpx") read_dpx(spec);
     if (!file.ok() || file.size() == 0) return;
     if (format == "png") read_png(file, spec);
     if (format == "hdr") read_radiance(file, spec);
     if (format == "webp") read_webp(file, spec);
     if (format == "bmp") read_bmp(file, spec);
     if (format == "jpeg") read_jpeg(file, spec);
+    if (format == "rla") read_rla(file, spec);
+    if (format == "psd") read_psd(file, spec);
     if (format == "tiff") {
         check_photometric(spec);
         read_tiff(file, spec);

@@ -174,6 +174,7 @@ Finding by_gamma(const ImageSpec& spec) {
                              (xy ? (is_png ? "cHRM" : "primaries") : "");
     const Expr x = Expr::input();
     if (!(gamma > 0)) {
+        if (spec.format.is_floating_point()) return Found{{space, primaries}, rule};
         SourceColor color = find_source_color("sRGB");
         if (primaries == kRec709) return Found{color, rule};
         return Found{{"sRGB curve, " + space, primaries, color.decode}, rule};
@@ -299,6 +300,7 @@ std::vector<Rule> rules_of(std::string_view format) {
         return {by_interop_id, by_own_tag, by_icc, by_aces_flag, by_chromaticities, by_oiio_name};
     if (format == "hdr") return {by_chromaticities};
     if (format == "dpx" || format == "cineon") return {by_own_tag, by_dpx_transfer};
+    if (format == "rla") return {by_own_tag, by_gamma, by_oiio_name};
     if (format == "pnm") return {by_own_tag};  // OpenImageIO calls all of them "Rec709"
     if (format == "jpeg" || format == "webp" || format == "tiff" || format == "psd" ||
         format == "bmp" || format == "jpeg2000")
@@ -389,6 +391,41 @@ std::string transfer_of(const SourceColor& color) {
         if (find_display(id).title == color.name) return transfer;
     }
     return color.name;
+}
+
+/// ImageBufAlgo::transpose() with the pixel type of its source.
+OIIO::ImageBuf transposed(const OIIO::ImageBuf& picture) {
+    ImageSpec spec = picture.spec();
+    std::swap(spec.x, spec.y);
+    std::swap(spec.width, spec.height);
+    std::swap(spec.full_x, spec.full_y);
+    std::swap(spec.full_width, spec.full_height);
+    OIIO::ImageBuf result(spec);
+    OIIO::ImageBufAlgo::transpose(result, picture);
+    return result;
+}
+
+/// ImageBufAlgo::reorient() of OpenImageIO 2.4 turns 5 and 7 by 180 degrees too much.
+OIIO::ImageBuf turned_by(int orientation, const OIIO::ImageBuf& picture) {
+    namespace iba = OIIO::ImageBufAlgo;
+    switch (orientation) {  // JEITA CP-3451, 4.6.4: where the first row and column are
+        case 2:
+            return iba::flop(picture);
+        case 3:
+            return iba::rotate180(picture);
+        case 4:
+            return iba::flip(picture);
+        case 5:
+            return transposed(picture);
+        case 6:
+            return iba::rotate90(picture);
+        case 7:
+            return iba::rotate180(transposed(picture));
+        case 8:
+            return iba::rotate270(picture);
+        default:
+            return picture;
+    }
 }
 
 std::string alpha_kind(const ImageSpec& spec) {
@@ -541,12 +578,19 @@ int orientation_of(const ImageSpec& spec) {
 
 OIIO::ImageBuf upright(OIIO::ImageBuf picture) {
     if (orientation_of(picture.spec()) == 1) return picture;
-    OIIO::ImageBuf turned = OIIO::ImageBufAlgo::reorient(picture);
+    OIIO::ImageBuf turned = turned_by(orientation_of(picture.spec()), picture);
     if (turned.has_error() || !turned.localpixels()) {
         (void)turned.geterror();
         throw std::bad_alloc();
     }
-    turned.specmod().attribute("Orientation", 1);
+    // Some of these functions drop metadata, names and alpha.
+    const ImageSpec& stored = picture.spec();
+    ImageSpec& spec = turned.specmod();
+    spec.extra_attribs = stored.extra_attribs;
+    spec.channelnames = stored.channelnames;
+    spec.alpha_channel = stored.alpha_channel;
+    spec.z_channel = stored.z_channel;
+    spec.attribute("Orientation", 1);
     return turned;
 }
 

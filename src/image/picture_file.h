@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imageio.h>
 
@@ -98,6 +99,8 @@ class TONEWRIGHT_API PictureReader {
 
     std::string path_;
     int subimage_ = 0;
+    std::string bytes_;  // of a file that is read from memory
+    std::unique_ptr<OIIO::Filesystem::IOProxy> memory_;  // outlives the reader
     std::unique_ptr<OIIO::ImageInput> in_;
     OIIO::ImageSpec spec_;             // of what is delivered
     OIIO::ImageSpec stored_;           // before conversion

@@ -11,6 +11,8 @@
 #include <string_view>
 #include <system_error>
 
+#include <OpenImageIO/filesystem.h>
+
 #include "base/input_file.h"
 #include "base/strings.h"
 #include "image/header_tags.h"
@@ -146,6 +148,7 @@ std::string why_not_open(const std::string& path, const std::string& reported) {
 /// More subimages are not looked at: a damaged TIFF file may declare an endless chain.
 constexpr int kMostSubimages = 1000;
 constexpr int kMostNames = 8;
+constexpr std::array kColorNames = {'R', 'G', 'B', 'A'};
 
 /// OpenImageIO 2.4 stores errors by the address of a reader and by thread. If another thread
 /// destroys a reader, its errors remain for the next reader at that address.
@@ -194,8 +197,37 @@ static void mark_straight_alpha(OIIO::ImageSpec& spec, std::string_view format) 
     }
 }
 
+/// OpenImageIO refuses Radiance files of CIE XYZ, whose pixels have the same form.
+/// @returns  the file as one of RGB; empty for all other files
+static std::string radiance_of_xyz(const std::string& path) {
+    constexpr std::size_t kLongestHeader = 1 << 16;
+    constexpr std::string_view kXyz = "32-bit_rle_xyze";
+    constexpr std::string_view kRgb = "32-bit_rle_rgbe";
+    std::ifstream file(path, std::ios::binary);
+    std::string head(kLongestHeader, '\0');
+    file.read(head.data(), static_cast<std::streamsize>(head.size()));
+    head.resize(static_cast<std::size_t>(file.gcount()));
+    const std::size_t end = head.find("\n\n");
+    const std::size_t at = head.find(kXyz);
+    if (!head.starts_with("#?") || at == std::string::npos || at > end) return {};
+    constexpr std::size_t kLongest = std::size_t{4} << 30;
+    std::string bytes = read_file(path, kLongest, [&](const std::string& reason) {
+        cannot_read(path, reason);
+    });
+    return bytes.replace(at, kXyz.size(), kRgb);
+}
+
 PictureReader::PictureReader(const std::string& path, int nthreads, const ReadOptions& options)
-    : path_(path), in_(open_picture(path, nullptr, options.max_pixels)) {
+    : path_(path), bytes_(why_no_file(path).empty() ? radiance_of_xyz(path) : std::string()) {
+    if (bytes_.empty()) {
+        in_ = open_picture(path, nullptr, options.max_pixels);
+    } else {
+        memory_ = std::make_unique<OIIO::Filesystem::IOMemReader>(bytes_.data(), bytes_.size());
+        in_ = OIIO::ImageInput::create("hdr");
+        OIIO::ImageSpec spec;
+        if (!in_ || !in_->set_ioproxy(memory_.get()) || !in_->open(path, spec))
+            cannot_read(path, in_ ? first_line(in_->geterror()) : "this format is not supported");
+    }
     // ImageBuf is not used: it asks the shared cache, which may have an older file of this name,
     // and it ignores errors that a reader reports while it delivers pixels.
     in_->threads(nthreads);
@@ -275,9 +307,10 @@ void PictureReader::choose_subimage(const ReadOptions& options) {
         cannot_read(path_, fmt::format("it has no subimage {}; the first is 0{}", printable(text),
                                        names.empty() ? "" : ", and names are " + names));
     }
-    // Frames of movies are decoded one after the other; PSD and HEIF files begin with the picture.
+    // Frames of movies are decoded one after the other; PSD and HEIF files begin with the picture;
+    // OpenImageIO's reader of WebP does not find back.
     if (in_->spec().get_int_attribute("oiio:Movie", 0) != 0 || format == "psd" ||
-        format == "heif" || !in_->seek_subimage(1, 0)) {
+        format == "heif" || format == "webp" || !in_->seek_subimage(1, 0)) {
         forget_errors(*in_);
         if (!in_->seek_subimage(0, 0)) cannot_read(path_, "it has no picture");
         return;
@@ -327,7 +360,7 @@ void PictureReader::choose_layer(const ReadOptions& options) {
         deliver(layer->channels);
         const auto count = layer->channels.size();
         for (std::size_t i = 0; i < count; ++i)
-            spec_.channelnames[i] = std::string(1, "RGBA"[i]);
+            spec_.channelnames[i] = std::string(1, kColorNames[i]);
         spec_.attribute(file_tag::kLayer, layer->name);
         return;
     }
@@ -352,6 +385,9 @@ void PictureReader::choose_layer(const ReadOptions& options) {
     }
     const bool has_alpha = layer->channels.size() > 3;
     deliver(order);
+    // Other programs look for capital letters.
+    for (std::size_t i = 0; layer->name.empty() && i < layer->channels.size(); ++i)
+        spec_.channelnames[i] = std::string(1, kColorNames[i]);
     // OpenImageIO takes the first alpha of the file, which may be another layer's.
     spec_.alpha_channel = has_alpha ? 3 : -1;
     spec_.attribute(file_tag::kLayer, layer->name);

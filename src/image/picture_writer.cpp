@@ -417,7 +417,8 @@ ImageBuf PictureWriter::select_channels(const ImageBuf& picture) const {
     const bool becomes_rgb = channels_.size() >= 3 && channels_[0] == channels_[1];
     for (std::size_t c = 0; c < channels_.size(); ++c) {
         const bool is_new = (becomes_rgb && c < 3) || channels_[c] < 0;
-        names.push_back(is_new ? std::string(1, "RGBA"[c])
+        constexpr std::array kNew = {'R', 'G', 'B', 'A'};
+        names.push_back(is_new ? std::string(1, kNew.at(c))
                                : std::string(picture.spec().channel_name(channels_[c])));
     }
     ImageBuf selected = checked(OIIO::ImageBufAlgo::channels(
@@ -655,7 +656,8 @@ void PictureWriter::watch_cover(const ImageBuf& rows) {
     const auto channels = static_cast<std::size_t>(rows.nchannels());
     const auto colors = std::min(alpha_, 3);
     // Half a code value of 8 bits, as all operators' white is 1.
-    constexpr float kVisible = 0.5F / 255;
+    // Operators lift black by up to two codes of 8 bits (AgX: 0.7), also where nothing is.
+    constexpr float kVisible = 2.0F / 255;
     std::vector<float> pixels(static_cast<std::size_t>(line.width()) * channels);
     for (int y = rows.ybegin(); y < rows.yend(); ++y) {
         line.ybegin = y;
@@ -830,7 +832,9 @@ void PictureWriter::check_written(const ImageSpec& wanted, std::string_view file
     try {
         written.emplace(temporary_->path().string(), 0, ReadOptions{.max_pixels = kUnlimited});
     } catch (const FileError& e) {
-        fail(fmt::format("what was written cannot be read back: {}",
+        // Writers without our own file do not report a full disk.
+        fail(fmt::format("what was written cannot be read back{}: {}",
+                         has_proxy_ ? "" : " (disk full?)",
                          without_name(e.what(), temporary_->path().string())));
     }
     const ImageSpec& is = written->spec();
@@ -875,7 +879,9 @@ void PictureWriter::check_pixels(PictureReader& written, const ImageSpec& wanted
         try {
             return written.read_all().copy(OIIO::TypeFloat);
         } catch (const FileError& e) {
-            fail(fmt::format("what was written cannot be read back: {}",
+            // Writers without our own file do not report a full disk.
+        fail(fmt::format("what was written cannot be read back{}: {}",
+                         has_proxy_ ? "" : " (disk full?)",
                              without_name(e.what(), temporary_->path().string())));
         }
     }();

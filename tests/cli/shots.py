@@ -45,9 +45,12 @@ def make_shot(folder, numbers, width=48, height=32, name="in.{:04d}.exr", seed=1
     for number in numbers:
         rng = np.random.default_rng([seed, abs(number)])
         rgb = (2.0 ** rng.uniform(-10, 6, (height, width, 3)) * rng.choice([-0.1, 0, 1, 1], (height, width, 3)))
+        alpha = rng.choice([0, 0.25, 1], (height, width))[..., None]
+        # No more than a surface of that alpha shows: else each command warns that PNG loses light.
+        rgb = np.where(alpha < 1, np.minimum(rgb, 16 * alpha), rgb)
         path = folder / name.format(number)
         write_exr(path, {**{c: rgb[..., i].astype(np.float32) for i, c in enumerate("RGB")},
-                         "A": rng.choice([0, 0.25, 1], (height, width)).astype(np.float32)})
+                         "A": alpha[..., 0].astype(np.float32)})
         os.utime(path, (DATE, DATE))
 
 

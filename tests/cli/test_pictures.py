@@ -74,6 +74,12 @@ def read(path, subimage=0, level=0):
     oiio.ImageCache(True).invalidate(str(path), True)
     image = oiio.ImageBuf(str(path), subimage, level)
     pixels = image.get_pixels("float")
+    if pixels is not None and str(path).endswith(".png") and pixels.shape[-1] == 4:
+        # As stored: OpenImageIO multiplies by alpha in the file's 8 bits.
+        straight = oiio.ImageSpec()
+        straight.attribute("oiio:UnassociatedAlpha", 1)
+        stored = oiio.ImageInput.open(str(path), straight).read_image("float").astype(np.float32)
+        pixels = np.concatenate([stored[..., :3] * stored[..., 3:], stored[..., 3:]], axis=-1)
     if pixels is None or image.has_error:
         raise RuntimeError(f"{path}: {image.geterror()}")
     return pixels, image.spec()
@@ -107,6 +113,16 @@ def sanitized(rgb):
     return np.clip(np.nan_to_num(rgb.astype(float), nan=0, posinf=65504, neginf=-65504), -65504, 65504)
 
 
+def divisor(color, alpha, most=16):
+    """The rule of tonemap.h: alpha, or more where light is far above what alpha carries. `most` is the light of a surface."""
+    cover = np.where((alpha == 0) | ~np.isfinite(alpha), 1, alpha).astype(float)
+    largest = np.nan_to_num(np.nanmax(np.where(np.isnan(color), -np.inf, color), axis=-1).astype(float), posinf=np.inf)
+    emits = (cover < 1) & (cover > 0) & (largest > most * cover)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        blended = cover + (1 - cover) * (1 - most * cover / largest)
+    return np.where(emits, blended, cover)
+
+
 class Check:
     def __init__(self, report, command, scratch):
         self.report, self.command, self.scratch = report, command, Path(scratch)
@@ -124,7 +140,7 @@ class Check:
         color = pixels[..., :3].astype(np.float32) if pixels.shape[-1] >= 3 else np.repeat(pixels[..., :1], 3, axis=-1)
         cover = None
         if alpha is not None and divides:
-            cover = np.where((alpha == 0) | ~np.isfinite(alpha), 1, alpha).astype(np.float32)[..., None]
+            cover = divisor(color, alpha).astype(np.float32)[..., None]
             color = color / cover
         if decode or matrix is not None:
             color = sanitized(color)
@@ -187,7 +203,8 @@ def check_files(check, scratch):
         check.same(f"{width} x {height}", write(scratch / "line.exr", spec_of(line, "half"), line))
     check.same("RGBE", write(scratch / "rgbe.hdr", spec_of(np.abs(rgb)), np.abs(rgb)))
     unit = np.clip(rgb, 0, 1)
-    check.same("16-bit TIFF", write(scratch / "a.tif", spec_of(unit, "uint16"), unit))
+    check.same("16-bit TIFF", write(scratch / "a.tif", spec_of(unit, "uint16"), unit), options=("--input", "lin_rec709"))
+    check.same("16-bit TIFF without a tag is sRGB", scratch / "a.tif", 2e-7, decode=srgb_decode)
     check.same("float TIFF", write(scratch / "f.tif", spec_of(rgb), rgb))
 
 

@@ -237,7 +237,7 @@ def check_types(report, tw):
     functions = [getattr(tw, name) for name in tw.__all__ if callable(getattr(tw, name))]
     bare = [f.__name__ for f in functions if not f.__doc__ or set(inspect.signature(f).parameters) - set(f.__annotations__)
             or "return" not in f.__annotations__]
-    report.check(f"{len(functions)} functions with types and a docstring", len(functions) == 10 and not bare, bare)
+    report.check(f"{len(functions)} functions with types and a docstring", len(functions) == 11 and not bare, bare)
 
 
 def check_config(report, tw, command, scratch):
@@ -302,7 +302,7 @@ def check_warnings(report, tw, command, path, scratch):
              ["--display", "rec2100_pq", "--alpha", "ignore"], "JPEG does not say that its colors are "),
             ("code values in an EXR", path, "code.exr", {}, [], 'for linear light, use display="linear"'),
             ("opaque", blank, "opaque.png", {"alpha": "opaque"}, ["--alpha", "opaque"], None),
-            ("no cause", path, "plain.png", {}, [], None)):
+            ("no cause", path, "plain.exr", {"display": "linear"}, ["--display", "linear"], None)):
         target = scratch / name
         with warnings.catch_warnings(record=True) as heard:
             warnings.simplefilter("always")

@@ -160,6 +160,9 @@ H273_CURVES = {1: power(2.4), 4: power(2.2), 5: power(2.8), 6: power(2.4), 7: sm
 
 def h273(code, primaries, transfer):
     space = H273_PRIMARIES[primaries]
+    # The Color Interop Forum's pq_xyzd65_display and g26_xyzd65_display have primaries 10: CIE XYZ itself, whose gray is D65.
+    if space == "xyz":
+        return xyz_to_rec709(H273_CURVES[transfer](code))
     return to_rec709(hlg(code, space) if transfer == 18 else H273_CURVES[transfer](code), space)
 
 
@@ -903,7 +906,8 @@ def dpx_rows():
     for number, exif in ((0, 1), (1, 2), (2, 4), (3, 3), (4, 5), (5, 6), (6, 8), (7, 7)):
         add_corners(f"orientation-{number}.dpx", form, f"orientation {number}",
                     lambda n=number, e=exif: dpx(stored(e), 8, transfer=2, orientation=n), points=points,
-                    allow=(USED,) if number else (USED, NO_EFFECT))
+                    allow=(IMPOSSIBLE,) if number > 3 else (USED,) if number else (USED, NO_EFFECT),
+                    word="columns", why="OpenImageIO mixes up rows and columns" if number > 3 else "")
     add("plate.cin", "Cineon", "printing density", lambda: cineon(ten), cineon_light(code), others=log_others)
 
 
@@ -987,12 +991,12 @@ def small_rows():
 
 
 def rla_with(array, gamma=None, chroma=None):
-    """Header of RLA: gamma at 80 (16 bytes), the four chroma fields at 96 (24 bytes each)."""
+    """Header of RLA: gamma at 28 (16 bytes), the four chroma fields at 44 (24 bytes each)."""
     out = bytearray(with_oiio("rla", array))
     if gamma:
-        out[80:96] = gamma.encode().ljust(16, b"\0")
+        out[28:44] = gamma.encode().ljust(16, b"\0")
     for i, text in enumerate(chroma or ()):
-        out[96 + 24 * i:120 + 24 * i] = text.encode().ljust(24, b"\0")
+        out[44 + 24 * i:68 + 24 * i] = text.encode().ljust(24, b"\0")
     return bytes(out)
 
 
@@ -1078,7 +1082,8 @@ def modern_rows():
         add_corners(f"exif-{number}.webp", form, f"EXIF orientation {number}",
                     lambda n=number: webp_with(vp8l(stored(n)), *stored(n).shape[1::-1], exif=exif_block({274: (SHORT, n)})))
     add("animated.webp", form, "ANIM, two frames", lambda: webp_with(vp8l(eight), 8, 8, animated=True), SRGB8, allow=(NAMED,), word="frame|animat")
-    add("alpha.webp", form, "alpha", lambda: vp8l(pixels([*C8, 51])), SRGB8, alpha=0.2)
+    add("alpha.webp", form, "alpha", lambda: vp8l(pixels([*C8, 51])), SRGB8, alpha=0.2, allow=(USED, NAMED), word="alpha",
+        why="OpenImageIO 2.4 multiplies by alpha in 8 bits")
 
     form = "JPEG 2000"
     big = np.tile(eight[:1, :1], (64, 64, 1))

@@ -39,10 +39,28 @@ bool is_same_file(const std::string& a, const std::string& b) {
     return std::filesystem::equivalent(a, b, error) && !error;
 }
 
+namespace {
+
+/// True for texts that differ in digits alone: the figures of a shot differ from frame to frame,
+/// and one line for all of them is enough.
+bool is_same_kind(const std::string& a, const std::string& b) {
+    const auto without_digits = [](std::string text) {
+        std::erase_if(text, [](char c) { return (c >= '0' && c <= '9') || c == '.'; });
+        return text;
+    };
+    return without_digits(a) == without_digits(b);
+}
+
+}  // namespace
+
 void Warnings::add(const std::string& text) {
     const std::string named = name_.empty() ? text : fmt::format("{}: {}", name_, text);
     if (message_options().is_strict) warn(named);  // throws
-    if (std::find(texts_.begin(), texts_.end(), named) == texts_.end()) texts_.push_back(named);
+    const bool is_known =
+        std::any_of(texts_.begin(), texts_.end(), [&](const std::string& known) {
+            return name_.empty() ? known == named : is_same_kind(known, named);
+        });
+    if (!is_known) texts_.push_back(named);
 }
 
 void Warnings::print() {
@@ -65,6 +83,10 @@ void Notes::print() {
 
 ReadOptions read_options_of(const PictureChoice& choice) {
     ReadOptions options;
+    if (choice.subimage.starts_with('-')) {
+        throw Error("--subimage is " + printable(choice.subimage) +
+                    "; expected a number from 0, or a name");
+    }
     options.subimage = choice.subimage;
     options.layer = choice.layer;
     options.max_pixels = choice.max_pixels.value_or(kMaxPixels);

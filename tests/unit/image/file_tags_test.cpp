@@ -227,7 +227,8 @@ TEST(FileTags, AlphaThatIsZeroEverywhereIsAWarning) {
     }
     EXPECT_TRUE(warnings_of(blank, folder.file("a.jpg")).empty()) << "it has no alpha";
     EXPECT_TRUE(warnings_of(blank, folder.file("a.exr")).empty()) << "light without cover";
-    set(blank, 5, 4, {0.2F, 0.4F, 0.6F, 0.01F});
+    OIIO::ImageBufAlgo::fill(blank, {0.0F, 0.0F, 0.0F, 0.0F});
+    set(blank, 5, 4, {0.002F, 0.004F, 0.006F, 0.01F});
     EXPECT_TRUE(warnings_of(blank, folder.file("a.png")).empty());
 }
 

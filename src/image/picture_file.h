@@ -205,6 +205,7 @@ class TONEWRIGHT_API PictureWriter {
     int alpha_ = -1;                    // of those that are written
     bool watches_cover_ = false;        // warns if alpha is 0 everywhere
     bool has_cover_ = false;            // alpha is not 0 everywhere
+    float surface_light_ = 1;           // the most of an opaque surface
     bool becomes_straight_ = false;     // the file divides color by alpha
     bool multiplies_by_alpha_ = false;  // the picture has straight alpha, and the file has not
     double pixel_count_ = 0;            // of what is written

@@ -514,6 +514,10 @@ ImageSpec PictureWriter::plan(const ImageSpec& picture) {
         spec.alpha_channel >= 0 && spec.get_int_attribute("oiio:UnassociatedAlpha", 0) == 0;
     divides_by_alpha_ = is_associated && limits.alpha == FileAlpha::straight;
     if (divides_by_alpha_) spec.attribute("oiio:UnassociatedAlpha", 1);
+    // Displays end at 1, light does not: above it, an opaque surface is clipped, too.
+    const std::optional<TaggedColor> shown = tagged_color(picture);
+    const bool is_light = shown && shown->curve && shown->curve->exponent == 1;
+    surface_light_ = is_light ? static_cast<float>(kMostSurfaceLight) : 1.0F;
     becomes_straight_ =
         divides_by_alpha_ || (is_associated && limits.alpha == FileAlpha::straight_by_writer);
     alpha_ = spec.alpha_channel < spec.nchannels ? spec.alpha_channel : -1;
@@ -655,7 +659,6 @@ void PictureWriter::watch_cover(const ImageBuf& rows) {
     line.zend = line.zbegin + 1;
     const auto channels = static_cast<std::size_t>(rows.nchannels());
     const auto colors = std::min(alpha_, 3);
-    // Half a code value of 8 bits, as all operators' white is 1.
     // Operators lift black by up to two codes of 8 bits (AgX: 0.7), also where nothing is.
     constexpr float kVisible = 2.0F / 255;
     std::vector<float> pixels(static_cast<std::size_t>(line.width()) * channels);
@@ -668,7 +671,8 @@ void PictureWriter::watch_cover(const ImageBuf& rows) {
             if (alpha != 0) has_cover_ = true;
             const float* const color = &pixels[i];
             const float most = *std::max_element(color, color + colors);
-            if (most > std::max(alpha, 0.0F) + kVisible) ++lost_count_;
+            const float carried = surface_light_ * std::max(alpha, 0.0F);
+            if (alpha < 1 && most > carried + kVisible) ++lost_count_;
         }
         pixel_count_ += line.width();
     }

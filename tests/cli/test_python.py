@@ -325,7 +325,7 @@ def check_warnings(report, tw, command, path, scratch):
                 raises(report, f"tonemap_file: {what}: as an error", UserWarning, words,
                        lambda: tw.tonemap_file(source, target, "hable", **options))  # noqa: B023
             report.check(f"tonemap_file: {what}: no file then", not target.exists() and not list(scratch.glob(".*")))
-    raises(report, "tonemap_file: alpha", ValueError, "expected keep, ignore or opaque",
+    raises(report, "tonemap_file: alpha", ValueError, "expected keep, ignore, opaque or over:R,G,B",
            lambda: tw.tonemap_file(path, scratch / "d.exr", "hable", alpha="drop"))
     raises(report, "tonemap_file: alpha that divides", ValueError, "alpha is opaque; expected keep",
            lambda: tw.tonemap_file(path, scratch / "d.exr", "hable", alpha="opaque", unpremult="yes"))

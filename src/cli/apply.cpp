@@ -43,9 +43,11 @@ Option add_frame_options(const Command& command, FrameOptions& options) {
 /// How the file is written.
 void add_file_options(const Command& command, ApplyOptions& options) {
     const char* const group = "Output";
-    command.add("-d", options.type, "uint8, uint16, half or float (default: the format's)")
+    command
+        .add("-d", options.type,
+             "uint8, uint16, half or float, for DPX also uint10 and uint12 (default: the format's)")
         .value("TYPE")
-        .suggest({"uint8", "uint16", "half", "float"})
+        .suggest({"uint8", "uint10", "uint12", "uint16", "half", "float"})
         .group(group);
     command
         .add("--alpha", options.alpha,
@@ -124,6 +126,13 @@ void add_apply(CommandLine& program) {
         .suggest({"picture", "sequence", "defaults"})
         .show_default()
         .group("Operator");
+    command
+        .add("--mix", options->mix,
+             "share of the operator; the rest is a plain clamp, blended in code values")
+        .value("SHARE")
+        .show_default()
+        .range(0.0, 1.0)
+        .group("Operator");
     add_file_options(command, *options);
     command
         .add_flag("--dither", options->dither,
@@ -147,7 +156,7 @@ void add_apply(CommandLine& program) {
     add_lut_options(
         command, options->lut, op,
         {"--set", "--look", "--display", "--reference-white", "--statistics", "--frames",
-         "--false-color", "--auto-exposure", "--subimage", "--dither", "--timeout"});
+         "--false-color", "--mix", "--auto-exposure", "--subimage", "--dither", "--timeout"});
     command.common({"-o", "--format", "--operator", "--set", "--look", "--exposure",
                     "--auto-exposure", "--input", "--display", "-d", "--frames", "--skip-existing",
                     "--lut", "--input-encoding"});

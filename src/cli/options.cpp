@@ -470,6 +470,57 @@ std::string help_command(const CLI::App& command) {
     return fmt::format("`tonewright {} --help-all`", command.get_name());
 }
 
+/// Options that people know from oiiotool, ffmpeg and ImageMagick, and what does that job here.
+std::string hint_of(std::string_view typed) {
+    struct Hint {
+        std::string_view option;
+        std::string_view text;
+    };
+    static constexpr Hint kHints[] = {
+        {"--gamma",
+         "the display's curve is --display g22, or another one of `tonewright list displays`"},
+        {"-gamma",
+         "the display's curve is --display g22, or another one of `tonewright list displays`"},
+        {"--colorspace", "use --input SPACE and --display NAME"},
+        {"-colorspace", "use --input SPACE and --display NAME"},
+        {"--colorconvert", "use --input SPACE and --display NAME"},
+        {"--tocolorspace", "use --display NAME"},
+        {"--iscolorspace", "use --input SPACE"},
+        {"--ociodisplay", "use --operator NAME and --display NAME"},
+        {"--channels", "use --layer NAME, or oiiotool --ch R,G,B before"},
+        {"--ch", "use --layer NAME, or oiiotool --ch R,G,B before"},
+        {"--autoorient", "pictures are turned by their orientation anyway"},
+        {"-auto-orient", "pictures are turned by their orientation anyway"},
+        {"--resize", "use oiiotool --resize before, on scene-linear light"},
+        {"-resize", "use oiiotool --resize before, on scene-linear light"},
+        {"--crop", "use oiiotool --crop before"},
+        {"--cdl", "an ASC CDL is a LUT: use --lut FILE.cdl or .cc, or a .tone file"},
+        {"--mulc", "use --exposure STOPS"},
+        {"--powc", "use a .tone file"},
+        {"--unpremultiply", "use --unpremult"},
+        {"--flatten", "use --alpha over:R,G,B"},
+        {"--over", "use --alpha over:R,G,B"},
+        {"-flatten", "use --alpha over:R,G,B"},
+        {"-background", "use --alpha over:R,G,B"},
+        {"-alpha", "use --alpha keep, ignore, opaque or over:R,G,B"},
+        {"-depth", "use -d uint8 or uint16"},
+        {"-bitdepth", "use -d uint8, uint10, uint12 or uint16"},
+        {"-pix_fmt", "use -d uint8 or uint16"},
+        {"-quality", "use --quality N"},
+        {"-sampling-factor", "use --subsampling 4:4:4"},
+        {"-vf", "filters of ffmpeg take a LUT: use `tonewright bake --for ffmpeg`"},
+        {"-i", "the input is the first argument"},
+        {"-y", "an existing output is replaced anyway"},
+        {"-n", "use --skip-existing with --frames"},
+        {"--saturation", "use --set, or a .tone file; `tonewright list OPERATOR` shows parameters"},
+        {"--contrast", "use --set, or a .tone file; `tonewright list OPERATOR` shows parameters"},
+    };
+    const auto* const end = std::end(kHints);
+    const auto* const found = std::find_if(std::begin(kHints), end,
+                                           [&](const Hint& hint) { return hint.option == typed; });
+    return found == end ? std::string() : fmt::format("; {}", found->text);
+}
+
 /// An option that the command does not have.
 std::optional<std::string> unknown_option(const CLI::App& command) {
     const std::vector<std::string> extras = command.remaining();
@@ -483,8 +534,9 @@ std::optional<std::string> unknown_option(const CLI::App& command) {
             known.push_back("--" + text);
     }
     const std::string typed = option->substr(0, option->find('='));
+    const std::string hint = hint_of(typed);
     return fmt::format("{}: option is {}; expected one of {}{}", command.get_name(), typed,
-                       help_command(command), did_you_mean(typed, known));
+                       help_command(command), hint.empty() ? did_you_mean(typed, known) : hint);
 }
 
 /// An option or argument that is missing, or that excludes another.

@@ -80,6 +80,7 @@ struct ApplyOptions : ViewOptions {
     FrameOptions frames;
     std::string type;
     std::string statistics = "picture";
+    double mix = 1;
     bool is_false_color = false;
     bool has_legend = false;
     bool dither = false;
@@ -89,7 +90,6 @@ struct ApplyOptions : ViewOptions {
     int quality = 0;
     std::string subsampling;
     bool verifies_output = false;
-    double mix = 1;
     bool has_no_metadata = false;
     PictureInput picture;
     LutOptions lut;

@@ -84,6 +84,12 @@ void set_alpha(WriteOptions& options, std::string_view text) {
     }
 }
 
+void set_pixel_type(WriteOptions& options, std::string_view text) {
+    options.bits = text == "uint10" ? 10 : text == "uint12" ? 12 : 0;
+    options.type =
+        options.bits > 0 ? OIIO::TypeDesc(OIIO::TypeDesc::UINT16) : parse_pixel_type(text);
+}
+
 OIIO::TypeDesc parse_pixel_type(std::string_view text) {
     static const std::vector<std::pair<std::string, OIIO::TypeDesc>> types = {
         {"uint8", OIIO::TypeDesc::UINT8},

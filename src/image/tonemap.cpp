@@ -213,6 +213,54 @@ Pipeline engine_stages(View view, const LiveUniforms& uniforms) {
     return build_live_view(view, uniform_names(uniforms));
 }
 
+/// The limit of the light that an operator gets, and the stages before it, are those of every view.
+std::size_t stages_of_light(const Pipeline& stages) {
+    const auto limit = std::find_if(stages.begin(), stages.end(), [](const Stage& stage) {
+        const auto* clamp = std::get_if<ClampStage>(&stage);
+        return clamp && clamp->lo == -kHalfMax && clamp->hi == kHalfMax;
+    });
+    return limit == stages.end() ? 0 : static_cast<std::size_t>(limit - stages.begin()) + 1;
+}
+
+/// The engine's part of a view that is blended with a plain clamp's, in code values, as a mix node
+/// blends two pictures.
+Pipeline mixed_stages(const View& view, double share, const LiveUniforms& uniforms) {
+    Pipeline stages = engine_stages(view, uniforms);
+    if (share == 1) return stages;
+    // The view has checked its reference white.
+    SourceColor source = {view.input, view.input_primaries, view.input_decode};
+    source.is_absolute = true;
+    View plain = make_view(resolve_operator("clamp"), std::move(source), view.exposure_stops,
+                           view.display, view.reference_white);
+    plain.input_scale = view.input_scale;
+    LiveUniforms exposure = uniforms;
+    std::erase_if(exposure, [](const auto& item) { return item.first != kExposureUniform; });
+    const Pipeline other = engine_stages(std::move(plain), exposure);
+    // The light is computed once, and the limit stays the first stage that engines know.
+    const auto count = static_cast<std::ptrdiff_t>(stages_of_light(stages));
+    const std::array<Expr, 3> a = compose(Pipeline(stages.begin() + count, stages.end()));
+    const std::array<Expr, 3> b = compose(Pipeline(other.begin() + count, other.end()));
+    const auto blend = [&](std::size_t c) { return share * a[c] + (1 - share) * b[c]; };
+    stages.erase(stages.begin() + count, stages.end());
+    stages.emplace_back(CrossTalkStage{{blend(0), blend(1), blend(2)}});
+    return stages;
+}
+
+/// @throws Error  out of [0, 1], or of a view that cannot be blended
+void check_mix(double share, const View& view) {
+    if (!(share >= 0 && share <= 1))
+        throw Error(fmt::format("mix is {}; expected [0, 1]", shortest(share)));
+    if (share == 1) return;
+    if (view.op.op->is_local()) {
+        throw Error(fmt::format("mix is {}; expected 1 with {}, which looks at a pixel's "
+                                "surroundings",
+                                shortest(share), view.op.op->id));
+    }
+    if (view.display == kNativeOutput) {
+        throw Error(fmt::format("mix is {}; expected 1 with display native", shortest(share)));
+    }
+}
+
 /// @param uniforms  the statistics that are live
 LiveUniforms with_exposure(LiveUniforms uniforms, const View& view) {
     if (is_exposure_live(view))
@@ -224,10 +272,11 @@ LiveUniforms with_exposure(LiveUniforms uniforms, const View& view) {
 struct Prepared {
     /// A program for all live exposures, unless the view's own is fixed, and for all live
     /// statistics.
-    Prepared(View v, const LiveUniforms& statistics)
+    /// @param mix  share of the operator
+    Prepared(View v, const LiveUniforms& statistics, double mix)
         : view(std::move(v)),
           uniforms(with_exposure(statistics, view)),
-          engine(engine_stages(view, uniforms), uniforms, view.op.op->bounds.simd_goal) {
+          engine(mixed_stages(view, mix, uniforms), uniforms, view.op.op->bounds.simd_goal) {
         if (view.op.op->is_local()) to_light.emplace(light_stages(view));
     }
     /// The same program for another view that it serves.
@@ -289,7 +338,9 @@ struct Tonemapper::State {
         // Reports wrong options before there is a picture, which may say that it is absolute.
         SourceColor source = source_color({}, options.input);
         source.is_absolute = source.is_absolute || is_same_name(options.input, kAutoInput);
-        is_local = view_of(options, options.settings, source).op.op->is_local();
+        const View view = view_of(options, options.settings, source);
+        check_mix(options.mix, view);
+        is_local = view.op.op->is_local();
     }
 
     /// At another exposure, with the same programs.
@@ -660,7 +711,7 @@ std::shared_ptr<const Prepared> Tonemapper::State::prepared_for(const SourceColo
         for (const auto& [name, value] : options.settings)
             program += " " + name + (statistics_.contains(name) ? "" : "=" + value);
         const std::shared_ptr<const Prepared> compiled = programs_->get(program, [&] {
-            return Prepared(view_of(options, options.settings, source), statistics_);
+            return Prepared(view_of(options, options.settings, source), statistics_, options.mix);
         });
         // Making a view takes longer than all other steps, so only other statistics need a new one.
         View view =

@@ -36,7 +36,7 @@ Choice parse_choice(std::string_view name, const std::string& value,
 const std::vector<std::string>& tonemap_argument_names() {
     static const std::vector<std::string> names = {
         "op",        "look",      "exposure", "input", "display", "input_units", "reference_white",
-        "unpremult", "statistics"};
+        "unpremult", "statistics", "mix"};
     return names;
 }
 
@@ -70,6 +70,8 @@ void set_tonemap_argument(TonemapOptions& options, std::string_view name,
         options.reference_white = parse_number(name, value);
     } else if (name == "input_units") {
         options.input_units = parse_input_units(value);
+    } else if (name == "mix") {
+        options.mix = parse_number(name, value);
     } else if (name == "unpremult") {
         options.unpremult = parse_choice<Unpremult>(
             name, value,

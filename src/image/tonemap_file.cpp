@@ -49,9 +49,10 @@ void say_how(ImageSpec& picture, const TonemapOptions& options) {
     if (options.reference_white != kReferenceWhite)
         display += fmt::format(", reference white {}", shortest(options.reference_white));
     if (options.input_units == InputUnits::luminance) display += ", input in cd/m2";
+    const std::string mix = options.mix == 1 ? "" : ", mix " + shortest(options.mix);
     picture.attribute("Software",
-                      fmt::format("Tonewright {}: {}, exposure {}, display {}", TONEWRIGHT_VERSION,
-                                  operator_text(op), exposure, display));
+                      fmt::format("Tonewright {}: {}, exposure {}{}, display {}", TONEWRIGHT_VERSION,
+                                  operator_text(op), exposure, mix, display));
     picture.attribute("tonewright:operator", operator_text(op));
     picture.attribute("tonewright:exposure", exposure);
     picture.attribute("tonewright:display", display);

@@ -484,10 +484,8 @@ void tonemap_into_file(const std::string& in, const std::string& out, const std:
         // Without alpha, color is taken as it is.
         options.unpremult = TonemapOptions::Unpremult::no;
     }
-    const OIIO::TypeDesc pixel_type =
-        type.empty() ? OIIO::TypeDesc(OIIO::TypeUnknown) : parse_pixel_type(type);
+    if (!type.empty()) set_pixel_type(write, type);
     const py::gil_scoped_release release;
-    write.type = pixel_type;
     write.says_how = true;
     write.warn = [&](const std::string& text) { warn(fmt::format("{}: {}", out, text)); };
     ReadOptions read = {.subimage = subimage, .layer = layer, .max_pixels = max_pixels};

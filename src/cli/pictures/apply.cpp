@@ -23,6 +23,7 @@
 #include "cli/pictures/metering.h"
 #include "cli/pictures/picture_input.h"
 #include "cli/pictures/progress_bar.h"
+#include "cli/pictures/standard_streams.h"
 #include "image/color_tags.h"
 #include "image/picture_file.h"
 #include "image/source_picture.h"
@@ -41,11 +42,6 @@ TonemapOptions::Statistics parse_statistics(const std::string& text) {
                : TonemapOptions::Statistics::defaults;
 }
 
-OIIO::TypeDesc pixel_type_of(const ApplyOptions& options) {
-    return options.type.empty() ? OIIO::TypeDesc(OIIO::TypeUnknown)
-                                : parse_pixel_type(options.type);
-}
-
 /// True if color is un-premultiplied first, as far as the picture's alpha is associated.
 bool keeps_cover(const ApplyOptions& options) {
     return options.alpha != "ignore" && options.alpha != "opaque";
@@ -54,7 +50,7 @@ bool keeps_cover(const ApplyOptions& options) {
 /// @throws Error  the file name cannot have this output; checked before a large picture is read
 WriteOptions write_options_of(const ApplyOptions& options, const std::string& out) {
     WriteOptions write;
-    write.type = pixel_type_of(options);
+    if (!options.type.empty()) set_pixel_type(write, options.type);
     try {
         set_alpha(write, options.alpha);
     } catch (const Error& e) {
@@ -71,8 +67,8 @@ WriteOptions write_options_of(const ApplyOptions& options, const std::string& ou
     write.verifies = options.verifies_output;
     if (options.picture.max_pixels) write.max_pixels = *options.picture.max_pixels;
     write.says_how = !options.has_no_metadata;
-    if (options.given.contains("--compression") || options.given.contains("--quality") ||
-        options.given.contains("--subsampling"))
+    if (write.bits > 0 || options.given.contains("--compression") ||
+        options.given.contains("--quality") || options.given.contains("--subsampling"))
         (void)PictureWriter(out, write);
     return write;
 }
@@ -280,8 +276,9 @@ void write_with_legend(const Tonemapper& tonemapper, const FrameFiles& file,
 
 }  // namespace
 
-int run_apply(const ApplyOptions& given) {
-    ApplyOptions options = given;
+namespace {
+
+int run_on_files(ApplyOptions options) {
     use_threads(options.picture);
     ApplyFiles files = files_of(options);
     if (!options.lut.file.empty()) return apply_lut(options, files);
@@ -300,6 +297,7 @@ int run_apply(const ApplyOptions& given) {
     tonemap.input_units = parse_input_units(options.input_units);
     tonemap.unpremult = alpha_of(options);
     tonemap.dither = options.dither;
+    tonemap.mix = options.mix;
     tonemap.statistics = parse_statistics(options.statistics);
     const bool is_of_sequence = is_same_name(options.statistics, "sequence");
     const bool is_metered = options.given.contains("--auto-exposure") || is_of_sequence;
@@ -371,6 +369,22 @@ int run_apply(const ApplyOptions& given) {
     tell_default();
     print_result(file, tonemapper, read_options_of(options.picture), result);
     return kOk;
+}
+
+}  // namespace
+
+int run_apply(const ApplyOptions& given) {
+    ApplyOptions options = given;
+    const StandardStreams streams(options);
+    try {
+        const int exit_code = run_on_files(std::move(options));
+        streams.finish();
+        return exit_code;
+    } catch (const FileError& e) {
+        throw FileError(streams.with_dashes(e.what()));
+    } catch (const Error& e) {
+        throw Error(streams.with_dashes(e.what()));
+    }
 }
 
 TONEWRIGHT_NAMESPACE_END

@@ -141,4 +141,8 @@ TONEWRIGHT_API void set_alpha(WriteOptions& options, std::string_view text);
 /// @throws Error  for any other text, with the nearest name
 [[nodiscard]] TONEWRIGHT_API OIIO::TypeDesc parse_pixel_type(std::string_view text);
 
+/// Sets `type` and `bits` from the same names, or `uint10` and `uint12` (for DPX).
+/// @throws Error  for any other text, with the nearest name
+TONEWRIGHT_API void set_pixel_type(WriteOptions& options, std::string_view text);
+
 TONEWRIGHT_NAMESPACE_END

@@ -70,6 +70,9 @@ struct TonemapOptions {
     double reference_white = kReferenceWhite;
     /// Units of the source's decoded numbers. Those in cd/m2 are divided by `reference_white`.
     InputUnits input_units = InputUnits::relative;
+    /// Share of the operator, [0, 1]: the rest is a plain clamp (operator `clamp`) of the same view.
+    /// Both are blended in code values, as a mix node does. Not for local operators and `native`.
+    double mix = 1;
     Unpremult unpremult = Unpremult::automatic;
     /// Dithers 8-bit files by half a code value: sets `oiio:dither`, which OIIO's writers follow.
     bool dither = false;

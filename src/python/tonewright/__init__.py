@@ -84,8 +84,8 @@ def _options(settings: Mapping[str, Any] | None, exposure: float, input: str, di
 
 def tonemap(image: Picture, op: str, *, settings: Mapping[str, Any] | None = None, exposure: float = 0, input: str = "auto",
             display: str = "srgb", look: str = "", reference_white: float = 100, input_units: str = "relative",
-            unpremult: str | bool = "auto", statistics: str = "picture", axis: int | None = None, roi: OpenImageIO.ROI | None = None, nthreads: int = 0,
-            progress: Callable[[float], object] | None = None) -> Picture:
+            mix: float = 1, unpremult: str | bool = "auto", statistics: str = "picture", axis: int | None = None,
+            roi: OpenImageIO.ROI | None = None, nthreads: int = 0, progress: Callable[[float], object] | None = None) -> Picture:
     """Tone map a picture and return the result as float32 values of the same kind.
 
     image: an OpenImageIO.ImageBuf, or an array of shape (height, width) or (height, width, channels) of float16, float32,
@@ -93,6 +93,7 @@ def tonemap(image: Picture, op: str, *, settings: Mapping[str, Any] | None = Non
     two channels); the fourth (or second) is alpha.
     op: operator id, optionally with :preset, or the path of a .tone file or a LUT.
     input_units: units of linear numbers: "relative" (1.0 is diffuse white) or "cd/m2", divided by reference_white.
+    mix: share of the operator, [0, 1]; the rest is a plain clamp, blended in code values.
     unpremult: "auto", "yes" or "no": un-premultiply color first.
     statistics: "picture" (measure it for operators that need it) or "defaults".
     axis: the axis of the channels of an array, such as 0 for (channels, height, width).
@@ -103,8 +104,8 @@ def tonemap(image: Picture, op: str, *, settings: Mapping[str, Any] | None = Non
     Example: tonewright.tonemap(OpenImageIO.ImageBuf("shot.exr"), "agx_blender", exposure=1)
     """
     options = _options(settings, exposure, input, display, look, reference_white)
-    options.update(input_units=_text("input_units", input_units), unpremult=_choice("unpremult", unpremult),
-                   statistics=_text("statistics", statistics))
+    options.update(input_units=_text("input_units", input_units), mix=_number("mix", mix),
+                   unpremult=_choice("unpremult", unpremult), statistics=_text("statistics", statistics))
     if axis is not None:
         if not isinstance(image, _np.ndarray) or image.ndim != 3:
             raise ValueError("axis is given; expected an array of three dimensions")
@@ -116,13 +117,13 @@ def tonemap(image: Picture, op: str, *, settings: Mapping[str, Any] | None = Non
 
 def tonemap_file(source: Path, target: Path, op: str, *, settings: Mapping[str, Any] | None = None, exposure: float = 0,
                  input: str = "auto", display: str = "srgb", look: str = "", reference_white: float = 100,
-                 input_units: str = "relative", unpremult: str | bool = "auto", statistics: str = "picture",
+                 input_units: str = "relative", mix: float = 1, unpremult: str | bool = "auto", statistics: str = "picture",
                  dtype: str | None = None, alpha: str = "keep", subimage: int | str = "", layer: str = "",
                  nthreads: int = 0, in_place: bool = False, max_pixels: float = 1e9) -> None:
     """Tone map a picture file into another file, as `tonewright apply` does. Its warnings are UserWarnings.
 
     target: replaced only when the new file is complete; its extension sets the format.
-    dtype: "uint8", "uint16", "half" or "float" (default: the format's).
+    dtype: "uint8", "uint16", "half" or "float", for DPX also "uint10" and "uint12" (default: the format's).
     alpha: "keep", "ignore" (leave it out), "opaque" (make it 1), or "over:R,G,B" (composite over a background in code
     values, [0, 1]).
     subimage: part or page of the file: its number from 0 or its name (default: the first picture).
@@ -134,8 +135,8 @@ def tonemap_file(source: Path, target: Path, op: str, *, settings: Mapping[str, 
     Example: tonewright.tonemap_file("shot.exr", "shot.png", "hable", settings={"white": 8})
     """
     options = _options(settings, exposure, input, display, look, reference_white)
-    options.update(input_units=_text("input_units", input_units), unpremult=_choice("unpremult", unpremult),
-                   statistics=_text("statistics", statistics))
+    options.update(input_units=_text("input_units", input_units), mix=_number("mix", mix),
+                   unpremult=_choice("unpremult", unpremult), statistics=_text("statistics", statistics))
     _tonewright.tonemap_file(_path("source", source), _path("target", target), _text("op", op),
                              type="" if dtype is None else _text("dtype", dtype), alpha=_text("alpha", alpha),
                              nthreads=_operator.index(nthreads), subimage=str(subimage), layer=_text("layer", layer),

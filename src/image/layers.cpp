@@ -123,6 +123,42 @@ const Layer* find_layer(const std::vector<Layer>& layers, std::string_view name)
     return found;
 }
 
+std::vector<int> order_of(const Layer& layer, const OIIO::ImageSpec& spec) {
+    std::vector<int> order = layer.channels;
+    for (int c = 0; c < spec.nchannels; ++c) {
+        if (std::find(order.begin(), order.end(), c) == order.end()) order.push_back(c);
+    }
+    return order;
+}
+
+void reorder(OIIO::ImageSpec& spec, const std::vector<int>& channels, bool has_alpha) {
+    const std::vector<std::string> names = spec.channelnames;
+    const int depth = spec.z_channel;
+    spec.nchannels = static_cast<int>(channels.size());
+    spec.channelnames.clear();
+    spec.z_channel = -1;
+    for (std::size_t i = 0; i < channels.size(); ++i) {
+        spec.channelnames.push_back(names[static_cast<std::size_t>(channels[i])]);
+        if (channels[i] == depth) spec.z_channel = static_cast<int>(i);
+    }
+    // OpenImageIO takes the first alpha of the file, which may be another layer's.
+    spec.alpha_channel = has_alpha ? 3 : -1;
+    constexpr std::array kCapitals = {'R', 'G', 'B', 'A'};
+    const std::size_t count = has_alpha ? 4 : 3;
+    const bool has_name = spec.channelnames[0].find('.') != std::string::npos;
+    for (std::size_t i = 0; !has_name && i < count; ++i)
+        spec.channelnames[i] = std::string(1, kCapitals.at(i));
+}
+
+void reorder(const std::byte* from, int stored, const std::vector<int>& channels, std::size_t bytes,
+             std::size_t pixels, std::byte* to) {
+    const std::size_t step = bytes * static_cast<std::size_t>(stored);
+    for (std::size_t i = 0; i < pixels; ++i, from += step) {
+        for (const int c : channels)
+            to = std::copy_n(from + static_cast<std::size_t>(c) * bytes, bytes, to);
+    }
+}
+
 std::string layer_names(const std::vector<Layer>& layers) {
     constexpr std::size_t kMost = 8;
     std::string text;

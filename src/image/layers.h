@@ -5,6 +5,7 @@
 
 #include <OpenImageIO/imageio.h>
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,6 +39,21 @@ struct Layer {
 /// case. Null if there is none, or several.
 [[nodiscard]] TONEWRIGHT_API const Layer* find_layer(const std::vector<Layer>& layers,
                                                      std::string_view name);
+
+/// Channels with those of a layer first, and all others in their order.
+[[nodiscard]] TONEWRIGHT_API std::vector<int> order_of(const Layer& layer,
+                                                       const OIIO::ImageSpec& spec);
+/// The names and special channels of a spec in another order. Red, green, blue and alpha of a layer
+/// without a name get capital letters, which other programs look for.
+/// @param channels   that stay, in their new order
+/// @param has_alpha  the fourth is alpha; else none of the first is
+TONEWRIGHT_API void reorder(OIIO::ImageSpec& spec, const std::vector<int>& channels,
+                            bool has_alpha);
+/// Pixels in that order. `from` and `to` do not overlap.
+/// @param stored  channels of `from`
+/// @param bytes   of a sample
+TONEWRIGHT_API void reorder(const std::byte* from, int stored, const std::vector<int>& channels,
+                            std::size_t bytes, std::size_t pixels, std::byte* to);
 
 /// The names, for messages: "RGB, AO, ViewLayer.Combined"; long lists end in "...".
 [[nodiscard]] TONEWRIGHT_API std::string layer_names(const std::vector<Layer>& layers);

@@ -92,7 +92,7 @@ class TONEWRIGHT_API PictureReader {
     void check(bool was_read) const;
     void choose_subimage(const ReadOptions& options);
     void choose_layer(const ReadOptions& options);
-    void deliver(const std::vector<int>& channels);
+    void deliver(const std::vector<int>& channels, bool has_alpha);
     void check_size(double max_pixels) const;
     /// Rows as the file has them, in the delivered order of channels.
     void read_stored(int ybegin, int yend, std::byte* to);

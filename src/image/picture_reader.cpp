@@ -357,10 +357,10 @@ void PictureReader::choose_layer(const ReadOptions& options) {
                                                ? "it has no layers in color"
                                                : "expected one of " + layer_names(layers)));
         }
-        deliver(layer->channels);
+        deliver(layer->channels, layer->channels.size() > 3);
         const auto count = layer->channels.size();
         for (std::size_t i = 0; i < count; ++i)
-            spec_.channelnames[i] = std::string(1, kColorNames[i]);
+            spec_.channelnames[i] = std::string(1, kColorNames.at(i));
         spec_.attribute(file_tag::kLayer, layer->name);
         return;
     }
@@ -379,17 +379,7 @@ void PictureReader::choose_layer(const ReadOptions& options) {
                              layers.empty() ? "" : "; --layer chooses another"));
         return;
     }
-    std::vector<int> order = layer->channels;
-    for (int c = 0; c < spec_.nchannels; ++c) {
-        if (std::find(order.begin(), order.end(), c) == order.end()) order.push_back(c);
-    }
-    const bool has_alpha = layer->channels.size() > 3;
-    deliver(order);
-    // Other programs look for capital letters.
-    for (std::size_t i = 0; layer->name.empty() && i < layer->channels.size(); ++i)
-        spec_.channelnames[i] = std::string(1, kColorNames[i]);
-    // OpenImageIO takes the first alpha of the file, which may be another layer's.
-    spec_.alpha_channel = has_alpha ? 3 : -1;
+    deliver(order_of(*layer, spec_), layer->channels.size() > 3);
     spec_.attribute(file_tag::kLayer, layer->name);
     if (layers.size() > 1 && options.note) {
         options.note(fmt::format("layer is {}, of {}; --layer chooses another",
@@ -398,20 +388,11 @@ void PictureReader::choose_layer(const ReadOptions& options) {
     }
 }
 
-void PictureReader::deliver(const std::vector<int>& channels) {
-    const OIIO::ImageSpec all = spec_;
-    spec_.nchannels = static_cast<int>(channels.size());
-    spec_.channelnames.clear();
-    spec_.alpha_channel = spec_.z_channel = -1;
-    bool is_identity = static_cast<int>(channels.size()) == all.nchannels;
-    for (std::size_t i = 0; i < channels.size(); ++i) {
-        const int c = channels[i];
-        spec_.channelnames.push_back(all.channelnames[static_cast<std::size_t>(c)]);
-        if (c == all.alpha_channel) spec_.alpha_channel = static_cast<int>(i);
-        if (c == all.z_channel) spec_.z_channel = static_cast<int>(i);
-        is_identity = is_identity && c == static_cast<int>(i);
-    }
-    if (channels.size() == 4 && spec_.alpha_channel < 0) spec_.alpha_channel = 3;
+void PictureReader::deliver(const std::vector<int>& channels, bool has_alpha) {
+    bool is_identity = static_cast<int>(channels.size()) == spec_.nchannels;
+    for (std::size_t i = 0; i < channels.size(); ++i)
+        is_identity = is_identity && channels[i] == static_cast<int>(i);
+    reorder(spec_, channels, has_alpha);
     channels_ = is_identity ? std::vector<int>() : channels;
 }
 
@@ -452,14 +433,7 @@ void PictureReader::read_stored(int ybegin, int yend, std::byte* to) {
               : in_->read_scanlines(subimage_, 0, ybegin, yend, s.z, 0, stored_channels_, s.format,
                                     into));
     if (channels_.empty()) return;
-    const auto from_step = bytes * static_cast<std::size_t>(stored_channels_);
-    for (std::size_t i = 0; i < pixels; ++i) {
-        const std::byte* pixel = scratch_.data() + i * from_step;
-        for (const int c : channels_) {
-            std::copy_n(pixel + static_cast<std::size_t>(c) * bytes, bytes, to);
-            to += bytes;
-        }
-    }
+    reorder(scratch_.data(), stored_channels_, channels_, bytes, pixels, to);
 }
 
 void PictureReader::read_rows(int ybegin, int yend, std::byte* to) {

@@ -8,6 +8,7 @@
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <exception>
 #include <map>
@@ -21,6 +22,8 @@
 
 #include "base/input_file.h"
 #include "base/strings.h"
+#include "image/header_tags.h"
+#include "image/layers.h"
 #include "image/lut_picture.h"
 #include "image/picture_file.h"
 #include "image/scene_meter.h"
@@ -176,6 +179,8 @@ class TonemappedInput final : public ImageInput {
     struct Level {
         ImageSpec source;  // the fields that tonemap() reads
         ImageSpec result;
+        /// Of the file's channels, the picture's layer first; empty: as stored.
+        std::vector<int> order;
     };
 
     /// Runs `step`; its exceptions become the error of this reader.
@@ -232,13 +237,23 @@ class TonemappedInput final : public ImageInput {
             check_pixel_type("picture", source.format);
             source.channelformats.clear();  // all channels are read in the widest of them
             complete_channel_names(source);
+            complete_header(path_, picture_->format_name(), source);
+            std::vector<int> order;
+            const std::vector<Layer> layers = color_layers(source);
+            const bool has_layers = std::string_view(picture_->format_name()) == "openexr";
+            if (const Layer* layer = has_layers ? picture_layer(layers) : nullptr) {
+                order = order_of(*layer, source);
+                reorder(source, order, layer->channels.size() > 3);
+                if (std::is_sorted(order.begin(), order.end())) order.clear();
+            }
             ImageSpec result = result_spec(*tonemapper_, source);
             result.tile_width = source.tile_width;
             result.tile_height = source.tile_height;
             result.tile_depth = source.tile_depth;
             found = levels_
                         .emplace(std::pair(subimage, miplevel),
-                                 Level{with_color_metadata_alone(source), std::move(result)})
+                                 Level{with_color_metadata_alone(source), std::move(result),
+                                       std::move(order)})
                         .first;
         }
         subimage_ = subimage;
@@ -311,6 +326,13 @@ class TonemappedInput final : public ImageInput {
             spec.tile_width = spec.tile_height = spec.tile_depth = 0;
             return spec;
         };
+        std::vector<std::byte> ordered;
+        if (!level.order.empty()) {
+            ordered.resize(static_cast<std::size_t>(part.npixels()) * level.source.pixel_bytes());
+            reorder(from, level.source.nchannels, level.order, level.source.format.size(),
+                    static_cast<std::size_t>(part.npixels()), ordered.data());
+            from = ordered.data();
+        }
         const ImageBuf source(cut(level.source), from);
         const ImageSpec spec = cut(with_color_metadata_alone(level.result));
         const auto row = static_cast<OIIO::stride_t>(spec.pixel_bytes()) * row_pixels;

@@ -291,12 +291,54 @@ def check_straight(to):
         to.report.bound(f"meter {name}", abs(mean - light), 1e-4 * light)
 
 
+FORMATS = "png jpg webp tga bmp gif ico iff sgi dpx hdr ppm rla fits jp2 heic tif exr".split()
+
+
+def check_formats(to):
+    """Every layout, in every format: written, and read back as what was to be written."""
+    names = {1: ["Y"], 2: ["Y", "A"], 3: list("RGB"), 4: list("RGBA"), 5: [*"RGBA", "Z"]}
+    for count, channels in names.items():
+        code = np.tile(scene(40, 36)[..., :1], (1, 1, count)) * np.linspace(0.02, 0.05, count)
+        code[..., channels.index("A") if "A" in channels else count:] = 1
+        spec = spec_of(code.astype(np.float32), alpha="A" in channels, names=channels)
+        source = write(to.folder / "in.exr", spec, code.astype(np.float32))
+        for name in FORMATS:
+            code_, said = to.apply(source, f"o.{name}", "--verify-output", "--display",
+                                   "linear" if name in ("hdr", "exr") else "srgb")
+            to.report.check(f"{''.join(channels)} as {name}", code_ == OK, f"exit {code_}: {said}")
+    small = scene(16, 16)
+    source = write(to.folder / "in.exr", spec_of(small), small)
+    to.refuses("JPEG 2000 below 32 pixels", source, "no.jp2", FILE, "expected at least 32")
+    wide = np.zeros((1, 300, 3), np.float32)
+    to.refuses("ICO above 256 pixels", write(to.folder / "wide.exr", spec_of(wide), wide), "no.ico", FILE, "at most 256")
+    code_, said = to.apply(source, "o.avif")
+    if code_ == OK:  # where libheif has an encoder of AV1
+        brand = (to.folder / "o.avif").read_bytes()[8:12]
+        to.report.check("AVIF is AV1, also from a file with another compression", brand == b"avif", brand)
+    else:
+        to.report.check("AVIF without an encoder is refused", code_ == FILE and said.count("\n") == 1, said)
+    spec = spec_of(small)
+    spec.x, spec.y, spec.full_width, spec.full_height = -4, -2, 24, 20
+    source = write(to.folder / "window.exr", spec, small)
+    got, spec = to.written(source, "o.tif", "--verify-output")
+    to.report.check("TIFF has no windows with negative origin: it shows the display window",
+                    (spec.x, spec.y, spec.width, spec.height) == (0, 0, 24, 20), got.shape)
+    for bits in (10, 12):
+        _, spec = to.written(source, "o.dpx", "-d", f"uint{bits}", "--verify-output")
+        to.report.check(f"DPX of {bits} bits", spec.getattribute("oiio:BitsPerSample") == bits)
+    to.refuses("10 bits as PNG", source, "no.png", USAGE, "only DPX", "-d", "uint10")
+    for option, words in (("--gamma", "--display"), ("--cdl", "--lut"), ("--channels", "oiiotool"), ("-pix_fmt", "-d uint8")):
+        code_, said = to.apply(source, "no.png", option, "x")
+        to.report.check(f"a hint for {option}", code_ == USAGE and words in said, said)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("command", type=Path)
     command = parser.parse_args().command.resolve()
     report = Report()
-    for part in (check_jpeg, check_exr_tags, check_light_levels, check_alpha, check_straight):
+    for part in (check_jpeg, check_exr_tags, check_light_levels, check_alpha, check_straight,
+                 check_formats):
         with tempfile.TemporaryDirectory(prefix="tonewright-") as folder:
             part(Writer(report, command, Path(folder)))
     return report.finish()

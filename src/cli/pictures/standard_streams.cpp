@@ -61,10 +61,18 @@ StandardStreams::StandardStreams(ApplyOptions& options) {
         output = out_;
         options.format.clear();
     }
-    if (reads) read_input(options);
+    if (!reads) return;
+    try {
+        read_input(options);
+    } catch (...) {
+        remove_folder();  // there is no object yet that could
+        throw;
+    }
 }
 
-StandardStreams::~StandardStreams() {
+StandardStreams::~StandardStreams() { remove_folder(); }
+
+void StandardStreams::remove_folder() noexcept {
     std::error_code ignored;
     if (!folder_.empty()) std::filesystem::remove_all(folder_, ignored);
 }

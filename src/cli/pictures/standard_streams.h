@@ -28,6 +28,7 @@ class StandardStreams {
 
   private:
     void make_folder();
+    void remove_folder() noexcept;
     void read_input(ApplyOptions& options);
 
     std::string folder_;

@@ -116,9 +116,9 @@ int run(int argc, char** argv) {
             "  tonewright config -o ocio_config\n"
             "`tonewright COMMAND --help` explains a command. Exit codes: " +
             exit_codes() + ".");
-        for (const auto add : {add_apply, add_compare, add_info, add_meter, add_sheet, add_chart, add_bake,
-                               add_shader, add_config, add_list, add_import, add_eval, add_plot,
-                               add_check, add_verify, add_report})
+        for (const auto add : {add_apply, add_compare, add_info, add_meter, add_sheet, add_chart,
+                               add_bake, add_shader, add_config, add_list, add_import, add_eval,
+                               add_plot, add_check, add_verify, add_report})
             add(program);
         int exit_code = kOk;
         if (argc > 1 && std::string_view(argv[1]) == "complete") {  // for the scripts of shells

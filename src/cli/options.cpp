@@ -478,9 +478,9 @@ std::string hint_of(std::string_view typed) {
     };
     static constexpr Hint kHints[] = {
         {"--gamma",
-         "the display's curve is --display g22, or another one of `tonewright list displays`"},
+         "the display's curve is --display g22, or another one that `tonewright list` shows"},
         {"-gamma",
-         "the display's curve is --display g22, or another one of `tonewright list displays`"},
+         "the display's curve is --display g22, or another one that `tonewright list` shows"},
         {"--colorspace", "use --input SPACE and --display NAME"},
         {"-colorspace", "use --input SPACE and --display NAME"},
         {"--colorconvert", "use --input SPACE and --display NAME"},
@@ -508,7 +508,8 @@ std::string hint_of(std::string_view typed) {
         {"-pix_fmt", "use -d uint8 or uint16"},
         {"-quality", "use --quality N"},
         {"-sampling-factor", "use --subsampling 4:4:4"},
-        {"-vf", "filters of ffmpeg take a LUT: use `tonewright bake --for ffmpeg`"},
+        {"-f",  // what is left of -vf
+         "filters of ffmpeg take a LUT: use `tonewright bake --for ffmpeg`"},
         {"-i", "the input is the first argument"},
         {"-y", "an existing output is replaced anyway"},
         {"-n", "use --skip-existing with --frames"},

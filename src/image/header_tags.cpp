@@ -283,8 +283,8 @@ void read_radiance(HeaderFile& file, ImageSpec& spec) {
     for (std::size_t k = 0; k < xy.size(); ++k)
         is_default = is_default && std::fabs(static_cast<double>(xy[k]) - kDefault[k]) < 5e-4;
     if (!is_complete) {
-        add_ignored(spec, fmt::format("PRIMARIES: it has {} numbers; expected 8",
-                                      primaries.size()));
+        add_ignored(spec,
+                    fmt::format("PRIMARIES: it has {} numbers; expected 8", primaries.size()));
     } else if (!is_absent && !is_default) {
         set_primaries(spec, "chromaticities", xy);
     }
@@ -301,8 +301,9 @@ void read_webp(HeaderFile& file, ImageSpec& spec) {
         if (type == "ICCP") set_bytes(spec, "ICCProfile", file.bytes(length));
         if (type == "EXIF") read_orientation(file.bytes(length), spec);
         if (type == "ALPH" || (type == "VP8L" && spec.alpha_channel >= 0)) {
-            add_ignored(spec, "alpha: OpenImageIO multiplies colors by it in 8 bits, so dark ones "
-                              "lose digits");
+            add_ignored(spec,
+                        "alpha: OpenImageIO multiplies colors by it in 8 bits, so dark ones "
+                        "lose digits");
         }
         if (type == "ANIM") add_ignored(spec, "ANIM: the picture is the first frame of several");
         if (!file.seek(next)) break;
@@ -367,8 +368,8 @@ void read_tiff(HeaderFile& file, ImageSpec& spec) {
     const std::uint64_t directory =
         is_big ? file.number(8, is_little) : HeaderFile::parse(start, 4, 4, is_little);
     if (!file.seek(directory)) return;
-    const std::uint64_t count = std::min<std::uint64_t>(file.number(is_big ? 8 : 2, is_little),
-                                                        4096);
+    const std::uint64_t count =
+        std::min<std::uint64_t>(file.number(is_big ? 8 : 2, is_little), 4096);
     const std::string entries = file.bytes(count * (4 + 2 * word));
     std::vector<double> white;
     std::vector<double> primaries;
@@ -480,11 +481,11 @@ void read_dpx(ImageSpec& spec) {
     const int bits = std::clamp(spec.get_int_attribute("oiio:BitsPerSample", 10), 1, 16);
     const int most = (1 << bits) - 1;
     const bool is_density = transfer == "Printing density" || transfer == "Logarithmic";
-    const bool is_usual = (low == 0 && (high == 0 || high == most)) ||
-                          (is_density && low == 95 && high == 685);
+    const bool is_usual =
+        (low == 0 && (high == 0 || high == most)) || (is_density && low == 95 && high == 685);
     if (!is_usual) {
-        add_ignored(spec, fmt::format("reference levels {} and {}: codes are taken as {}", low, high,
-                                      is_density ? "of 95 and 685" : "of 0 and the largest"));
+        add_ignored(spec, fmt::format("reference levels {} and {}: codes are taken as {}", low,
+                                      high, is_density ? "of 95 and 685" : "of 0 and the largest"));
     }
 }
 
@@ -508,11 +509,11 @@ void name_others(std::string_view format, ImageSpec& spec) {
     for (const char* name : {"heif:GainMap", "heif:Sequence", "heif:Auxiliary"}) {
         if (spec.find_attribute(name)) {
             const std::string kind = name;
-            add_ignored(spec, kind == "heif:GainMap" ? "gain map: the primary picture is read"
-                              : kind == "heif:Sequence"
-                                  ? "tracks of pictures: the still picture is read"
-                                  : "auxiliary pictures: " +
-                                        printable(spec.get_string_attribute(name)));
+            add_ignored(spec,
+                        kind == "heif:GainMap" ? "gain map: the primary picture is read"
+                        : kind == "heif:Sequence"
+                            ? "tracks of pictures: the still picture is read"
+                            : "auxiliary pictures: " + printable(spec.get_string_attribute(name)));
         }
     }
 }
@@ -561,10 +562,11 @@ void check_photometric(ImageSpec& spec) {
                        : photometric == 32845 ? "LogLuv"
                                               : nullptr;
     if (!name) return;
-    spec.attribute(file_tag::kImpossible,
-                   fmt::format("PhotometricInterpretation is {} ({}); expected RGB or gray: convert "
-                               "it first, such as to OpenEXR",
-                               photometric, name));
+    spec.attribute(
+        file_tag::kImpossible,
+        fmt::format("PhotometricInterpretation is {} ({}); expected RGB or gray: convert "
+                    "it first, such as to OpenEXR",
+                    photometric, name));
 }
 
 }  // namespace

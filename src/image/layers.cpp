@@ -81,11 +81,12 @@ std::vector<Layer> color_layers(const OIIO::ImageSpec& spec) {
 bool is_data_layer(std::string_view name) {
     // Words of Blender, Arnold, RenderMan, V-Ray, Redshift, Cycles, Karma, Octane and Corona.
     constexpr std::array<std::string_view, 37> kData = {
-        "ao",       "occlusion", "depth",    "z",       "zdepth",   "normal",  "normals", "n",
-        "position", "p",         "pref",     "world",   "vector",   "motion",  "velocity", "mv",
-        "speed",    "crypto",    "cryptomatte", "matte", "mask",    "id",      "index",   "uv",
-        "st",       "mist",      "object",   "material", "asset",   "variance", "samples", "count",
-        "tangent",  "denoising", "debug",    "wireframe", "coverage"};
+        "ao",        "occlusion", "depth",   "z",      "zdepth",      "normal",    "normals",
+        "n",         "position",  "p",       "pref",   "world",       "vector",    "motion",
+        "velocity",  "mv",        "speed",   "crypto", "cryptomatte", "matte",     "mask",
+        "id",        "index",     "uv",      "st",     "mist",        "object",    "material",
+        "asset",     "variance",  "samples", "count",  "tangent",     "denoising", "debug",
+        "wireframe", "coverage"};
     const std::vector<std::string> words = words_of(name);
     return std::any_of(words.begin(), words.end(), [&](const std::string& word) {
         return std::find(kData.begin(), kData.end(), word) != kData.end();

@@ -112,20 +112,20 @@ Finding by_cicp(const ImageSpec& spec) {
     const std::string rule = format == "png" ? "cICP" : "nclx";
     std::optional<SourceColor> color = color_of_code_points(points[0], points[1]);
     if (!color) {
-        throw PictureError(fmt::format("{} of the picture is {}/{} ({}); expected code points of "
-                                       "ITU-T H.273 with a meaning, or name an input space",
-                                       rule, points[0], points[1],
-                                       code_point_names(points[0], points[1])));
+        throw PictureError(
+            fmt::format("{} of the picture is {}/{} ({}); expected code points of "
+                        "ITU-T H.273 with a meaning, or name an input space",
+                        rule, points[0], points[1], code_point_names(points[0], points[1])));
     }
     if (format == "png" && points[2] != 0) {
-        throw PictureError(fmt::format("cICP of the picture has matrix {}; expected 0 (RGB)",
-                                       points[2]));
+        throw PictureError(
+            fmt::format("cICP of the picture has matrix {}; expected 0 (RGB)", points[2]));
     }
     if (format == "png" && points[3] == 0) {
         // W3C PNG, 11.3.2.6: a video full range flag of 0 is narrow range, whose codes of 8 bits
         // are 16 to 235, and 2^(n-8) times that with n bits.
-        const int bits = spec.get_int_attribute("oiio:BitsPerSample",
-                                                static_cast<int>(8 * spec.format.size()));
+        const int bits =
+            spec.get_int_attribute("oiio:BitsPerSample", static_cast<int>(8 * spec.format.size()));
         const double scale_of = std::exp2(bits - 8) / (std::exp2(bits) - 1);
         const Expr x = Expr::input();
         const Expr full = (x - 16 * scale_of) / (219 * scale_of);
@@ -183,9 +183,10 @@ Finding by_gamma(const ImageSpec& spec) {
     const double power = std::round(static_cast<double>(gamma) * 1e3) / 1e3;
     if (power == 1) return Found{{space, primaries}, rule};
     if (!(power >= 0.1 && power <= 10)) {
-        throw PictureError(fmt::format("gamma of the picture is {}; expected [0.1, 10], or name an "
-                                       "input space",
-                                       shortest(power)));
+        throw PictureError(
+            fmt::format("gamma of the picture is {}; expected [0.1, 10], or name an "
+                        "input space",
+                        shortest(power)));
     }
     SourceColor color = find_source_color("Gamma" + shortest(power));
     if (primaries == kRec709) return Found{color, rule};
@@ -305,13 +306,14 @@ std::vector<Rule> rules_of(std::string_view format) {
     if (format == "jpeg" || format == "webp" || format == "tiff" || format == "psd" ||
         format == "bmp" || format == "jpeg2000")
         return {by_icc, by_interop_id, by_srgb_chunk, by_exif, by_gamma, by_own_tag};
-    return {by_cicp,        by_icc,       by_interop_id, by_own_tag,
-            by_oiio_name,   by_aces_flag, by_gamma,      by_chromaticities};
+    return {by_cicp,      by_icc,       by_interop_id, by_own_tag,
+            by_oiio_name, by_aces_flag, by_gamma,      by_chromaticities};
 }
 
 /// What files of the format hold if their header says nothing.
 Found default_of(const ImageSpec& spec, std::string_view format) {
-    const FormatColor* row = find_format_color(format, spec.get_string_attribute(file_tag::kExtension));
+    const FormatColor* row =
+        find_format_color(format, spec.get_string_attribute(file_tag::kExtension));
     const bool is_float = spec.format.is_floating_point();
     const std::string space(!row ? "lin_rec709" : is_float ? row->float_space : row->integer_space);
     std::string rule = "default";
@@ -345,8 +347,8 @@ void add_contradictions(std::vector<std::string>& ignored, const ImageSpec& spec
         constexpr double kSame = 0.02;  // of the largest channel: 2.2 and sRGB are the same
         for (std::size_t i = 0; i < x.size(); ++i) {
             for (std::size_t c = 0; c < 3; ++c) {
-                const double most = std::max({std::fabs(x[i][0]), std::fabs(x[i][1]),
-                                              std::fabs(x[i][2]), 1e-6});
+                const double most =
+                    std::max({std::fabs(x[i][0]), std::fabs(x[i][1]), std::fabs(x[i][2]), 1e-6});
                 if (!(std::fabs(x[i][c] - y[i][c]) <= kSame * most)) return true;
             }
         }
@@ -384,10 +386,10 @@ std::string transfer_of(const SourceColor& color) {
     if (color.convert) return "LUT of the profile";
     if (color.decode.empty()) return "linear";
     for (const auto& [id, transfer] :
-         {std::pair("srgb", "sRGB"), std::pair("display_p3", "sRGB"), std::pair("rec1886", "BT.1886"),
-          std::pair("rec2020", "BT.1886"), std::pair("g22", "gamma 2.2"),
-          std::pair("rec2100_pq", "PQ"), std::pair("rec2100_hlg", "HLG"),
-          std::pair("p3d65_pq", "PQ")}) {
+         {std::pair("srgb", "sRGB"), std::pair("display_p3", "sRGB"),
+          std::pair("rec1886", "BT.1886"), std::pair("rec2020", "BT.1886"),
+          std::pair("g22", "gamma 2.2"), std::pair("rec2100_pq", "PQ"),
+          std::pair("rec2100_hlg", "HLG"), std::pair("p3d65_pq", "PQ")}) {
         if (find_display(id).title == color.name) return transfer;
     }
     return color.name;
@@ -497,10 +499,10 @@ ImageSpec described_spec(const OIIO::ImageBuf& picture) {
     if (spec.find_attribute(file_tag::kFormat) || format.empty()) return spec;
     // OpenImageIO has read it. The name is what its reader gives, or a program has set another.
     const std::string space = spec.get_string_attribute("oiio:ColorSpace");
-    constexpr std::array kReaders = {"",           "sRGB",   "srgb_rec709_scene", "Linear",
-                                     "linear",     "Rec709", "lin_rec709",        "lin_rec709_scene"};
-    const bool is_linear = OIIO::Strutil::iequals(space, "linear") ||
-                           OIIO::Strutil::istarts_with(space, "lin_rec709");
+    constexpr std::array kReaders = {"",       "sRGB",   "srgb_rec709_scene", "Linear",
+                                     "linear", "Rec709", "lin_rec709",        "lin_rec709_scene"};
+    const bool is_linear =
+        OIIO::Strutil::iequals(space, "linear") || OIIO::Strutil::istarts_with(space, "lin_rec709");
     const FormatColor* row = find_format_color(format);
     const bool holds_light = row && row->meaning == FormatMeaning::linear;
     if ((is_linear && !holds_light) ||
@@ -542,8 +544,8 @@ ImageSpec converted_spec(const ImageSpec& spec, const SourceColor& color) {
 OIIO::ImageBuf converted_picture(const OIIO::ImageBuf& picture, const SourceColor& color) {
     const ImageSpec& spec = picture.spec();
     const bool is_gray = channel_layout(spec).is_gray;
-    const bool divides = spec.alpha_channel >= 0 &&
-                         divides_by_alpha(spec, TonemapOptions::Unpremult::automatic);
+    const bool divides =
+        spec.alpha_channel >= 0 && divides_by_alpha(spec, TonemapOptions::Unpremult::automatic);
     OIIO::ImageBuf result = picture.copy(OIIO::TypeFloat);
     if (!result.localpixels()) throw PictureError(first_line(result.geterror()));
     if (divides) OIIO::ImageBufAlgo::unpremult(result, result);

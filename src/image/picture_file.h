@@ -99,15 +99,15 @@ class TONEWRIGHT_API PictureReader {
 
     std::string path_;
     int subimage_ = 0;
-    std::string bytes_;  // of a file that is read from memory
+    std::string bytes_;                                  // of a file that is read from memory
     std::unique_ptr<OIIO::Filesystem::IOProxy> memory_;  // outlives the reader
     std::unique_ptr<OIIO::ImageInput> in_;
-    OIIO::ImageSpec spec_;             // of what is delivered
-    OIIO::ImageSpec stored_;           // before conversion
-    int stored_channels_ = 0;          // of the file
-    std::vector<int> channels_;        // of the file that are delivered; empty: all in their order
-    std::vector<std::byte> scratch_;   // rows with all channels
-    std::optional<SourceColor> color_; // to convert from; none: no conversion
+    OIIO::ImageSpec spec_;              // of what is delivered
+    OIIO::ImageSpec stored_;            // before conversion
+    int stored_channels_ = 0;           // of the file
+    std::vector<int> channels_;         // of the file that are delivered; empty: all in their order
+    std::vector<std::byte> scratch_;    // rows with all channels
+    std::optional<SourceColor> color_;  // to convert from; none: no conversion
 };
 
 /// Bytes that are read, processed and written at a time.

@@ -16,8 +16,8 @@
 #include "base/input_file.h"
 #include "base/strings.h"
 #include "image/header_tags.h"
-#include "image/layers.h"
 #include "image/heif_reader.h"
+#include "image/layers.h"
 #include "image/picture_file.h"
 #include "image/source_picture.h"
 #include "tonewright/image_io.h"
@@ -211,9 +211,8 @@ static std::string radiance_of_xyz(const std::string& path) {
     const std::size_t at = head.find(kXyz);
     if (!head.starts_with("#?") || at == std::string::npos || at > end) return {};
     constexpr std::size_t kLongest = std::size_t{4} << 30;
-    std::string bytes = read_file(path, kLongest, [&](const std::string& reason) {
-        cannot_read(path, reason);
-    });
+    std::string bytes =
+        read_file(path, kLongest, [&](const std::string& reason) { cannot_read(path, reason); });
     return bytes.replace(at, kXyz.size(), kRgb);
 }
 
@@ -245,9 +244,9 @@ PictureReader::PictureReader(const std::string& path, int nthreads, const ReadOp
     stored_channels_ = spec_.nchannels;
     check_size(options.max_pixels);
     const std::string name = spec_.get_string_attribute("oiio:subimagename");
-    spec_.attribute(file_tag::kSubimage,
-                    name.empty() ? fmt::to_string(subimage_)
-                                 : fmt::format("{} ({})", subimage_, printable(name)));
+    spec_.attribute(file_tag::kSubimage, name.empty()
+                                             ? fmt::to_string(subimage_)
+                                             : fmt::format("{} ({})", subimage_, printable(name)));
     choose_layer(options);
     stored_ = spec_;
     if (format == "dpx") check_dpx_size(path);
@@ -258,7 +257,7 @@ PictureReader::~PictureReader() = default;
 void PictureReader::check_size(double max_pixels) const {
     if (spec_.width < 1 || spec_.height < 1) {
         cannot_read(path_, fmt::format("it declares {} x {} pixels; expected at least 1 x 1",
-                                      spec_.width, spec_.height));
+                                       spec_.width, spec_.height));
     }
     const double pixels =
         static_cast<double>(spec_.width) * spec_.height * std::max(spec_.depth, 1);
@@ -289,8 +288,7 @@ void PictureReader::choose_subimage(const ReadOptions& options) {
     if (!options.subimage.empty()) {
         int number = -1;
         const std::string& text = options.subimage;
-        const auto [end, error] =
-            std::from_chars(text.data(), text.data() + text.size(), number);
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
         std::string names;
         if (error != std::errc() || end != text.data() + text.size()) {
             number = -1;
@@ -315,7 +313,7 @@ void PictureReader::choose_subimage(const ReadOptions& options) {
         if (!in_->seek_subimage(0, 0)) cannot_read(path_, "it has no picture");
         return;
     }
-    std::vector<Layer> pictures;   // by the names of their parts
+    std::vector<Layer> pictures;  // by the names of their parts
     std::vector<int> parts;
     std::string names;
     int count = 0;
@@ -352,10 +350,10 @@ void PictureReader::choose_layer(const ReadOptions& options) {
     if (!options.layer.empty()) {
         const Layer* layer = find_layer(layers, options.layer);
         if (!layer) {
-            cannot_read(path_, fmt::format("it has no layer {}; {}", printable(options.layer),
-                                           layers.empty()
-                                               ? "it has no layers in color"
-                                               : "expected one of " + layer_names(layers)));
+            cannot_read(path_,
+                        fmt::format("it has no layer {}; {}", printable(options.layer),
+                                    layers.empty() ? "it has no layers in color"
+                                                   : "expected one of " + layer_names(layers)));
         }
         deliver(layer->channels, layer->channels.size() > 3);
         const auto count = layer->channels.size();
@@ -427,11 +425,10 @@ void PictureReader::read_stored(int ybegin, int yend, std::byte* to) {
     // This reader delivers less than it declares, without an error.
     if (std::string_view(in_->format_name()) == "dpx")
         std::fill_n(into, pixels * bytes * static_cast<std::size_t>(stored_channels_), std::byte{});
-    check(s.tile_width > 0
-              ? in_->read_tiles(subimage_, 0, s.x, s.x + s.width, ybegin, yend, s.z, s.z + 1, 0,
-                                stored_channels_, s.format, into)
-              : in_->read_scanlines(subimage_, 0, ybegin, yend, s.z, 0, stored_channels_, s.format,
-                                    into));
+    check(s.tile_width > 0 ? in_->read_tiles(subimage_, 0, s.x, s.x + s.width, ybegin, yend, s.z,
+                                             s.z + 1, 0, stored_channels_, s.format, into)
+                           : in_->read_scanlines(subimage_, 0, ybegin, yend, s.z, 0,
+                                                 stored_channels_, s.format, into));
     if (channels_.empty()) return;
     reorder(scratch_.data(), stored_channels_, channels_, bytes, pixels, to);
 }

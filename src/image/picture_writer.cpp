@@ -891,8 +891,8 @@ void PictureWriter::check_pixels(PictureReader& written, const ImageSpec& wanted
             return written.read_all().copy(OIIO::TypeFloat);
         } catch (const FileError& e) {
             // Writers without our own file do not report a full disk.
-        fail(fmt::format("what was written cannot be read back{}: {}",
-                         has_proxy_ ? "" : " (disk full?)",
+            fail(fmt::format("what was written cannot be read back{}: {}",
+                             has_proxy_ ? "" : " (disk full?)",
                              without_name(e.what(), temporary_->path().string())));
         }
     }();

@@ -252,9 +252,10 @@ void check_mix(double share, const View& view) {
         throw Error(fmt::format("mix is {}; expected [0, 1]", shortest(share)));
     if (share == 1) return;
     if (view.op.op->is_local()) {
-        throw Error(fmt::format("mix is {}; expected 1 with {}, which looks at a pixel's "
-                                "surroundings",
-                                shortest(share), view.op.op->id));
+        throw Error(
+            fmt::format("mix is {}; expected 1 with {}, which looks at a pixel's "
+                        "surroundings",
+                        shortest(share), view.op.op->id));
     }
     if (view.display == kNativeOutput) {
         throw Error(fmt::format("mix is {}; expected 1 with display native", shortest(share)));

@@ -35,7 +35,7 @@ Choice parse_choice(std::string_view name, const std::string& value,
 
 const std::vector<std::string>& tonemap_argument_names() {
     static const std::vector<std::string> names = {
-        "op",        "look",      "exposure", "input", "display", "input_units", "reference_white",
+        "op",        "look",       "exposure", "input", "display", "input_units", "reference_white",
         "unpremult", "statistics", "mix"};
     return names;
 }

@@ -50,9 +50,9 @@ void say_how(ImageSpec& picture, const TonemapOptions& options) {
         display += fmt::format(", reference white {}", shortest(options.reference_white));
     if (options.input_units == InputUnits::luminance) display += ", input in cd/m2";
     const std::string mix = options.mix == 1 ? "" : ", mix " + shortest(options.mix);
-    picture.attribute("Software",
-                      fmt::format("Tonewright {}: {}, exposure {}{}, display {}", TONEWRIGHT_VERSION,
-                                  operator_text(op), exposure, mix, display));
+    picture.attribute(
+        "Software", fmt::format("Tonewright {}: {}, exposure {}{}, display {}", TONEWRIGHT_VERSION,
+                                operator_text(op), exposure, mix, display));
     picture.attribute("tonewright:operator", operator_text(op));
     picture.attribute("tonewright:exposure", exposure);
     picture.attribute("tonewright:display", display);
@@ -289,8 +289,8 @@ void check_overwriting(const std::string& command, const std::vector<FrameFiles>
 
 void tonemap_file(const Tonemapper& tonemapper, const std::string& in, const std::string& out,
                   const WriteOptions& write, const ReadOptions& read, int nthreads) {
-    about_picture(in,
-                  [&] { tonemap_in_batches(tonemapper, in, out, write, read, nthreads, kBatchBytes); });
+    about_picture(
+        in, [&] { tonemap_in_batches(tonemapper, in, out, write, read, nthreads, kBatchBytes); });
 }
 
 void tonemap_file(const Tonemapper& tonemapper, const std::string& in, const std::string& out,

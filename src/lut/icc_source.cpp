@@ -177,9 +177,7 @@ const std::vector<Known>& known_colors() {
             add(find_source_color(space.id));
         // Their exponents as the profiles of Adobe and Kodak have them, in u8Fixed8Number.
         const auto power = [&](const char* name, const Primaries& primaries, double exponent) {
-            add({name,
-                 primaries,
-                 {curve_stage(power_decode(Expr::input(), exponent))}});
+            add({name, primaries, {curve_stage(power_decode(Expr::input(), exponent))}});
         };
         // Adobe RGB (1998) Color Image Encoding, version 2005-05, 4.3.1 and 4.3.4.
         power("Adobe RGB (1998)", {"Adobe RGB", {0.64, 0.33}, {0.21, 0.71}, {0.15, 0.06}, kD65},

@@ -502,17 +502,15 @@ py::dict describe_file(const std::string& path, const std::string& input,
     PictureDescription said;
     {
         const py::gil_scoped_release release;
-        said = about_picture(path, [&] {
-            return describe_picture(PictureReader(path, 1, read).spec(), input);
-        });
+        said = about_picture(
+            path, [&] { return describe_picture(PictureReader(path, 1, read).spec(), input); });
     }
     said.ignored.insert(said.ignored.begin(), told.begin(), told.end());
     const Primaries& p = said.color.primaries;
     py::dict d;
     d["space"] = said.color.name;
     d["transfer"] = said.transfer;
-    d["primaries"] =
-        py::make_tuple(p.red.x, p.red.y, p.green.x, p.green.y, p.blue.x, p.blue.y);
+    d["primaries"] = py::make_tuple(p.red.x, p.red.y, p.green.x, p.green.y, p.blue.x, p.blue.y);
     d["white"] = py::make_tuple(p.whitepoint.x, p.whitepoint.y);
     d["orientation"] = said.orientation;
     d["layer"] = said.layer;

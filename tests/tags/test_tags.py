@@ -5,7 +5,7 @@
 
 The files and their light come from make_files.py: closed formulas of the standards, no picture of Tonewright. `apply` writes
 x/(x+1) of linear Rec.709, which loses nothing but negatives, and `info --json` says what the file means. --table writes
-the table of docs/conventions.md from all rows: format, tag, what happened. A commit tests a third of the rows, `./run test
+the table of docs/conventions.md from all rows: format, and its tags by what happened. A commit tests an eighth of the rows, `./run test
 --all` every one. The last line is `N passed, M failed`.
 """
 
@@ -13,6 +13,7 @@ import argparse
 import concurrent.futures
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -163,11 +164,19 @@ def trial(program, row, folder):
 
 
 def markdown(results):
-    lines = ["| format | tag | |", "|---|---|---|"]
-    last = None
-    for row, seen, fault, _why in results:
-        lines.append(f"| {row.format if row.format != last else ''} | {row.tag} | {'fails' if fault else seen} |")
-        last = row.format
+    """A row for each format: its tags by what happens to them."""
+    kinds = (("used", (USED, NO_EFFECT)), ("named", (NAMED,)), ("impossible", (IMPOSSIBLE,)))
+    lines = ["| format | " + " | ".join(kind for kind, _seen in kinds) + " |", "|---" * (len(kinds) + 1) + "|"]
+    for form in dict.fromkeys(row.format for row, *_rest in results):
+        cells = []
+        for _kind, wanted in kinds:
+            tags = [row.tag for row, seen, fault, _why in results if row.format == form and seen in wanted and not fault]
+            pairs = [tag[5:] for tag in tags if re.fullmatch(r"cICP \d+/\d+", tag)]
+            tags = [tag for tag in tags if not re.fullmatch(r"cICP \d+/\d+", tag)]
+            if pairs:
+                tags.insert(0, "cICP " + " ".join(pairs))
+            cells.append("; ".join(tags).replace("|", "\\|"))
+        lines.append(f"| {form} | " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
 
 
@@ -180,7 +189,7 @@ def main():
     options = parser.parse_args()
     rows = [row for row in ROWS if not options.names or row.name in options.names or row.format in options.names]
     if not options.names and not options.table:
-        rows = share_of(rows, 3)
+        rows = share_of(rows, 8)
     report = Report()
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(options.keep or scratch)

@@ -257,10 +257,11 @@ void print_result(const FrameFiles& file, const Tonemapper& tonemapper, const Re
     const PictureReader reader(file.in, 1, read);
     const OIIO::ImageSpec& spec = reader.spec();
     const PictureDescription said = describe_picture(spec, options.input);
-    std::string text = fmt::format(
-        "apply: {} ({} x {} {}, {} by {}) -> {}: {} ({}), exposure {:+.3g}, display {}", file.in,
-        spec.width, spec.height, spec.format.c_str(), said.color.name, said.rule, file.out, op.op->view, operator_text(op),
-        file.exposure_stops.value_or(options.exposure_stops), options.display);
+    std::string text =
+        fmt::format("apply: {} ({} x {} {}, {} by {}) -> {}: {} ({}), exposure {:+.3g}, display {}",
+                    file.in, spec.width, spec.height, spec.format.c_str(), said.color.name,
+                    said.rule, file.out, op.op->view, operator_text(op),
+                    file.exposure_stops.value_or(options.exposure_stops), options.display);
     if (message_options().is_verbose) text += fmt::format(", {} threads", thread_count(0));
     line.print(text);
 }

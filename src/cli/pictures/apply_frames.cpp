@@ -232,9 +232,9 @@ struct KeptMessages {
         return {{"writing", writing}, {"reading", reading}, {"notes", notes}};
     }
     static void repeat(const Json& kept, const WriteOptions& write, const ReadOptions& read) {
-        for (const auto& [name, call] : {std::pair("writing", &write.warn),
-                                         std::pair("reading", &read.warn),
-                                         std::pair("notes", &read.note)}) {
+        for (const auto& [name, call] :
+             {std::pair("writing", &write.warn), std::pair("reading", &read.warn),
+              std::pair("notes", &read.note)}) {
             for (const Json& text : std::get<Json::Array>(kept.at(name).value())) {
                 if (*call) (*call)(std::get<std::string>(text.value()));
             }

@@ -56,10 +56,9 @@ bool is_same_kind(const std::string& a, const std::string& b) {
 void Warnings::add(const std::string& text) {
     const std::string named = name_.empty() ? text : fmt::format("{}: {}", name_, text);
     if (message_options().is_strict) warn(named);  // throws
-    const bool is_known =
-        std::any_of(texts_.begin(), texts_.end(), [&](const std::string& known) {
-            return name_.empty() ? known == named : is_same_kind(known, named);
-        });
+    const bool is_known = std::any_of(texts_.begin(), texts_.end(), [&](const std::string& known) {
+        return name_.empty() ? known == named : is_same_kind(known, named);
+    });
     if (!is_known) texts_.push_back(named);
 }
 
@@ -124,8 +123,8 @@ OIIO::ImageBuf read_picture(const std::string& path, const PictureChoice& choice
     OIIO::ImageBuf picture = [&] {
         const QuietStderr quiet;
         OIIO::ImageBuf stored = read_image(path, options);
-        return with_memory_for(
-            path, [&] { return with_associated_alpha(upright(std::move(stored))); });
+        return with_memory_for(path,
+                               [&] { return with_associated_alpha(upright(std::move(stored))); });
     }();
     about_picture(path, [&] { report_header(picture.spec(), input, options); });
     messages.print();

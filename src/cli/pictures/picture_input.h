@@ -95,7 +95,8 @@ class ReadMessages {
     Notes notes_;
 };
 
-/// read_image() with associated alpha, upright, without messages of other libraries on the terminal.
+/// read_image() with associated alpha, upright, without messages of other libraries on the
+/// terminal.
 /// @param input  color of the picture, @see TonemapOptions::input; for warnings about its header
 [[nodiscard]] OIIO::ImageBuf read_picture(const std::string& path, const PictureChoice& choice = {},
                                           std::string_view input = kAutoInput);

@@ -110,8 +110,7 @@ void StandardStreams::read_input(ApplyOptions& options) {
         if (!is_written || total > most) {
             const int reason = errno;
             if (file) std::fclose(file);
-            if (total > most)
-                throw FileError("apply: -: it is longer than --max-pixels allows");
+            if (total > most) throw FileError("apply: -: it is longer than --max-pixels allows");
             throw FileError(fmt::format("apply: {}: cannot write: {}", in_,
                                         std::system_category().message(reason)));
         }

@@ -60,8 +60,8 @@ struct TonemapOptions {
     /// Color of the source: a name that find_source_color() knows, or `auto`: what the metadata
     /// says, in the order of the picture's format (docs/conventions.md), else the default of the
     /// format. Of a picture without a format, the first of these counts: `oiio:ColorSpace`, unless
-    /// it is linear Rec.709; `colorInteropID`; ACES2065-1 if `acesImageContainerFlag` is set; linear
-    /// light of `chromaticities`; linear Rec.709.
+    /// it is linear Rec.709; `colorInteropID`; ACES2065-1 if `acesImageContainerFlag` is set;
+    /// linear light of `chromaticities`; linear Rec.709.
     std::string input = std::string(kAutoInput);
     /// Display (id, title or alias), or `linear`, or `native`.
     std::string display = "srgb";
@@ -70,8 +70,9 @@ struct TonemapOptions {
     double reference_white = kReferenceWhite;
     /// Units of the source's decoded numbers. Those in cd/m2 are divided by `reference_white`.
     InputUnits input_units = InputUnits::relative;
-    /// Share of the operator, [0, 1]: the rest is a plain clamp (operator `clamp`) of the same view.
-    /// Both are blended in code values, as a mix node does. Not for local operators and `native`.
+    /// Share of the operator, [0, 1]: the rest is a plain clamp (operator `clamp`) of the same
+    /// view. Both are blended in code values, as a mix node does. Not for local operators and
+    /// `native`.
     double mix = 1;
     Unpremult unpremult = Unpremult::automatic;
     /// Dithers 8-bit files by half a code value: sets `oiio:dither`, which OIIO's writers follow.

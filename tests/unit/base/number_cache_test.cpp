@@ -101,8 +101,8 @@ TEST_F(NumberCache, IgnoresNumbersThatTheCallerCannotUse) {
         EXPECT_EQ(made_, 1);
         EXPECT_EQ(get("a", {1, 1}), (std::vector<double>{0, 2})) << "replaced";
     }
-    EXPECT_TRUE(numbers_in(1, 0, std::numeric_limits<double>::infinity())(
-        {std::numeric_limits<double>::infinity()}));
+    EXPECT_TRUE(numbers_in(
+        1, 0, std::numeric_limits<double>::infinity())({std::numeric_limits<double>::infinity()}));
     EXPECT_FALSE(numbers_in(1)({std::numeric_limits<double>::infinity()}));
 }
 

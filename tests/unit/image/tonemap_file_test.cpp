@@ -234,8 +234,8 @@ TEST_F(TonemapFile, FailuresLeaveTheOldFile) {
     std::ofstream(out) << "the old file";
     const auto run = [&](int threads) {
         return message_of([&] {
-            tonemap_in_batches(Tonemapper({.op = "hable"}), in, out, written_as(TypeDesc::HALF),
-                               {}, threads, kSmallBatch);
+            tonemap_in_batches(Tonemapper({.op = "hable"}), in, out, written_as(TypeDesc::HALF), {},
+                               threads, kSmallBatch);
         });
     };
     const auto expect_old = [&] {

@@ -43,9 +43,7 @@ Option add_frame_options(const Command& command, FrameOptions& options) {
 /// How the file is written.
 void add_file_options(const Command& command, ApplyOptions& options) {
     const char* const group = "Output";
-    command
-        .add("-d", options.type,
-             "uint8, uint16, half or float, for DPX also uint10 and uint12 (default: the format's)")
+    command.add("-d", options.type, "uint8, uint16, half or float; for DPX uint10, uint12")
         .value("TYPE")
         .suggest({"uint8", "uint10", "uint12", "uint16", "half", "float"})
         .group(group);

@@ -25,7 +25,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 from test_pictures import read, spec_of, write  # noqa: E402
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "parity" / "clients"))
-from pictures import Report  # noqa: E402
+from pictures import Report, share_of  # noqa: E402
 
 OK, USAGE, FILE = 0, 2, 3
 
@@ -191,7 +191,7 @@ def check_light_levels(to):
                 "black": write(to.folder / "black.exr", spec_of(rgb * 0), rgb * 0),
                 # More rows than one batch has, so that the levels are those of all batches.
                 "tall": write(to.folder / "tall.exr", spec_of(np.tile(rgb, (60, 1, 1))), np.tile(rgb, (60, 1, 1)))}
-    for display, light in (("rec2100_pq", pq_light), ("p3d65_pq", pq_light), ("rec2100_hlg", hlg_light)):
+    for display, light in share_of((("rec2100_pq", pq_light), ("p3d65_pq", pq_light), ("rec2100_hlg", hlg_light)), 3):
         for what, source in pictures.items():
             for options in ([], ["-d", "uint8"]):
                 code, _ = to.written(source, "o.png", "--display", display, "--reference-white", "203", *options)
@@ -302,7 +302,7 @@ def check_formats(to):
         code[..., channels.index("A") if "A" in channels else count:] = 1
         spec = spec_of(code.astype(np.float32), alpha="A" in channels, names=channels)
         source = write(to.folder / "in.exr", spec, code.astype(np.float32))
-        for name in FORMATS:
+        for name in share_of(FORMATS, 5):
             code_, said = to.apply(source, f"o.{name}", "--verify-output", "--display",
                                    "linear" if name in ("hdr", "exr") else "srgb")
             to.report.check(f"{''.join(channels)} as {name}", code_ == OK, f"exit {code_}: {said}")

@@ -216,11 +216,11 @@ Finding by_own_tag(const ImageSpec& spec) {
     }
     display = display.substr(0, display.find(','));
     if (display == kLinearOutput) return Found{find_source_color("lin_rec709"), rule};
-    for (const Display& known : all_displays()) {
-        if (is_same_name(known.id, display) || is_same_name(known.title, display))
-            return Found{find_source_color(known.title), rule};
+    try {
+        return Found{find_source_color(display), rule};
+    } catch (const Error&) {
+        return std::nullopt;  // `native`, or a name that was cut
     }
-    return std::nullopt;  // `native`, or a name that was cut
 }
 
 Finding by_aces_flag(const ImageSpec& spec) {
@@ -257,7 +257,9 @@ Finding by_exif(const ImageSpec& spec) {
 /// The name that OpenImageIO gives, unless it is what its reader assumes for every file.
 Finding by_oiio_name(const ImageSpec& spec) {
     const std::string name = spec.get_string_attribute("oiio:ColorSpace");
-    if (is_no_name(name)) return std::nullopt;
+    // OpenImageIO calls every PNG without a tag sRGB; other names are those of a text chunk.
+    const bool is_png = spec.get_string_attribute(file_tag::kFormat) == "png";
+    if (is_no_name(name) || (is_png && name == "sRGB")) return std::nullopt;
     SourceColor color = named_color("oiio:ColorSpace", name);
     if (color.name == "lin_rec709") return std::nullopt;
     return Found{std::move(color), "oiio:ColorSpace"};
@@ -316,13 +318,15 @@ Found default_of(const ImageSpec& spec, std::string_view format) {
         find_format_color(format, spec.get_string_attribute(file_tag::kExtension));
     const bool is_float = spec.format.is_floating_point();
     const std::string space(!row ? "lin_rec709" : is_float ? row->float_space : row->integer_space);
+    // The config's name of the same curve.
+    const bool is_srgb = space == "sRGB - Texture";
     std::string rule = "default";
     if (row) {
         rule += fmt::format(" of {}", row->title);
         if (row->integer_space != row->float_space)
             rule += is_float ? " with float pixels" : " with integer pixels";
     }
-    return {find_source_color(space), rule};
+    return {find_source_color(is_srgb ? "sRGB" : space), rule};
 }
 
 /// Names of other fields of the same header that say something else.

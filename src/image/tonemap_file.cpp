@@ -55,7 +55,9 @@ void say_how(ImageSpec& picture, const TonemapOptions& options) {
                                 operator_text(op), exposure, mix, display));
     picture.attribute("tonewright:operator", operator_text(op));
     picture.attribute("tonewright:exposure", exposure);
-    picture.attribute("tonewright:display", display);
+    // Of native output, the name of its color may be there, and says more.
+    if (options.display != kNativeOutput || !picture.find_attribute("tonewright:display"))
+        picture.attribute("tonewright:display", display);
 }
 
 /// A picture without a date gets that of SOURCE_DATE_EPOCH, or its file's: writers of EXR, TIFF and

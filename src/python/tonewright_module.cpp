@@ -497,15 +497,17 @@ void tonemap_into_file(const std::string& in, const std::string& out, const std:
 py::dict describe_file(const std::string& path, const std::string& input,
                        const std::string& subimage, const std::string& layer) {
     ReadOptions read = {.subimage = subimage, .layer = layer};
-    std::vector<std::string> told;
-    read.warn = read.note = [&](const std::string& text) { told.push_back(text); };
+    std::vector<std::string> warnings;
+    std::vector<std::string> choices;
+    read.warn = [&](const std::string& text) { warnings.push_back(text); };
+    read.note = [&](const std::string& text) { choices.push_back(text); };
     PictureDescription said;
     {
         const py::gil_scoped_release release;
         said = about_picture(
             path, [&] { return describe_picture(PictureReader(path, 1, read).spec(), input); });
     }
-    said.ignored.insert(said.ignored.begin(), told.begin(), told.end());
+    said.ignored.insert(said.ignored.begin(), warnings.begin(), warnings.end());
     const Primaries& p = said.color.primaries;
     py::dict d;
     d["space"] = said.color.name;
@@ -519,6 +521,7 @@ py::dict describe_file(const std::string& path, const std::string& input,
     d["alpha"] = said.alpha;
     d["rule"] = said.rule;
     d["ignored"] = said.ignored;
+    d["choices"] = choices;
     return d;
 }
 

@@ -291,6 +291,20 @@ def check_luts(report, tw, command, scratch):
     raises(report, "bake of a kind", ValueError, "format is", lambda: tw.bake("hable", "a.cube", format="cub"))
 
 
+def check_info(report, tw, command, path, scratch):
+    """info() says what `info --json` says; mix is the option of `apply`."""
+    said = json.loads(subprocess.run([command, "info", path, "--json"], capture_output=True, text=True, check=True).stdout)
+    told = tw.info(path)
+    report.check("info(): the fields of `info --json`", all(
+        (list(value) if isinstance(value, tuple) else value) == said[name] for name, value in told.items()), (told, said))
+    raises(report, "info() of no file", FileNotFoundError, "no.exr", lambda: tw.info(scratch / "no.exr"))
+    target = scratch / "mixed.exr"
+    tw.tonemap_file(path, target, "hable", display="linear", mix=0.25)
+    run(command, "apply", path, scratch / "said.mixed.exr", "--operator", "hable", "--display", "linear", "--mix", "0.25")
+    report.check("mix: the bytes of `apply`", target.read_bytes() == (scratch / "said.mixed.exr").read_bytes())
+    raises(report, "mix out of range", ValueError, "mix is 2; expected [0, 1]", lambda: tw.tonemap_file(path, target, "hable", mix=2))
+
+
 def check_warnings(report, tw, command, path, scratch):
     """tonemap_file() warns where `apply` does, in Python's words; as an error, no file is written."""
     blank = scratch / "blank.exr"
@@ -373,6 +387,7 @@ def check_pictures(report, tw, command, scratch):
     raises(report, "tonemap_file: a pixel type", ValueError, "expected uint8, uint16, half or float",
            lambda: tw.tonemap_file(path, scratch / "d.exr", "hable", dtype="int"))
     check_warnings(report, tw, command, path, scratch)
+    check_info(report, tw, command, path, scratch)
     metered = tw.meter(path)
     said = json.loads(run(command, "meter", path, "--json"))["pictures"][0]
     report.check("meter(): the exposure of `meter`", abs(metered["exposure"] - said["exposure"]) < 1e-12

@@ -40,8 +40,15 @@ std::string text_of_white(const Chromaticity& white) {
     return fmt::format("{:.4f} {:.4f}", white.x, white.y);
 }
 
-void print_json(const std::string& path, const OIIO::ImageSpec& spec,
-                const PictureDescription& said) {
+/// A picture's header, and the choice among its layers and subimages.
+struct Told {
+    OIIO::ImageSpec spec;
+    PictureDescription said;
+    std::vector<std::string> choices;
+};
+
+void print_json(const std::string& path, const Told& told) {
+    const auto& [spec, said, choices] = told;
     const Primaries& p = said.color.primaries;
     Json primaries = Json::array({p.red.x, p.red.y, p.green.x, p.green.y, p.blue.x, p.blue.y});
     fmt::print("{}\n", Json{{"file", path},
@@ -59,12 +66,13 @@ void print_json(const std::string& path, const OIIO::ImageSpec& spec,
                             {"units", said.units},
                             {"alpha", said.alpha},
                             {"rule", said.rule},
-                            {"ignored", said.ignored}}
+                            {"ignored", said.ignored},
+                            {"choices", choices}}
                            .dump());
 }
 
-void print_text(const std::string& path, const OIIO::ImageSpec& spec,
-                const PictureDescription& said) {
+void print_text(const std::string& path, const Told& told) {
+    const auto& [spec, said, choices] = told;
     constexpr std::array kTurned = {"upright",
                                     "mirrored",
                                     "turned by 180 degrees",
@@ -88,6 +96,8 @@ void print_text(const std::string& path, const OIIO::ImageSpec& spec,
                                     kTurned[static_cast<std::size_t>(said.orientation - 1)]));
     line("layer", said.layer.empty() ? std::string("-") : printable(said.layer));
     line("subimage", said.subimage);
+    for (const std::string& choice : choices)
+        line("choice", choice);
     for (const std::string& ignored : said.ignored)
         line("not used", ignored);
 }
@@ -96,20 +106,19 @@ void print_text(const std::string& path, const OIIO::ImageSpec& spec,
 
 void run_info(const InfoOptions& options) {
     for (const std::string& path : options.pictures) {
-        ReadMessages messages(path);
+        Told told;
         std::vector<std::string> warnings;
         ReadOptions read = read_options_of(options.choice);
-        const auto keep = [&](const std::string& text) { warnings.push_back(text); };
-        read.warn = read.note = keep;
-        const auto [spec, said] = about_picture(path, [&] {
+        read.warn = [&](const std::string& text) { warnings.push_back(text); };
+        read.note = [&](const std::string& text) { told.choices.push_back(text); };
+        about_picture(path, [&] {
             const QuietStderr quiet;
-            const PictureReader reader(path, 1, read);
-            PictureDescription description = describe_picture(reader.spec(), options.input);
-            description.ignored.insert(description.ignored.begin(), warnings.begin(),
-                                       warnings.end());
-            return std::pair(reader.spec(), std::move(description));
+            told.spec = PictureReader(path, 1, read).spec();
+            told.said = describe_picture(told.spec, options.input);
         });
-        options.json ? print_json(path, spec, said) : print_text(path, spec, said);
+        std::vector<std::string>& ignored = told.said.ignored;
+        ignored.insert(ignored.begin(), warnings.begin(), warnings.end());
+        options.json ? print_json(path, told) : print_text(path, told);
     }
 }
 

@@ -19,6 +19,7 @@
 #include "cli/pictures/meter_cache.h"
 #include "cli/pictures/metering.h"
 #include "cli/pictures/picture_input.h"
+#include "image/picture_file.h"
 
 TONEWRIGHT_NAMESPACE_BEGIN
 namespace {
@@ -261,6 +262,22 @@ std::vector<Metered> meter_all(const MeterCommandOptions& options, const MeterOp
 
 }  // namespace
 
+namespace {
+
+/// What the header of a single picture says; frames of a shot say the same, and are many.
+void tell_header(const std::string& path, const MeterCommandOptions& options) {
+    ReadMessages messages(path);
+    const ReadOptions read = messages.hearing(read_options_of(options.picture));
+    {
+        const QuietStderr quiet;
+        const PictureReader reader(path, 1, read);
+        report_header(reader.spec(), options.input, read);
+    }
+    messages.print();
+}
+
+}  // namespace
+
 int run_meter(const MeterCommandOptions& options) {
     int exit_code = kOk;
     use_threads(options.picture);
@@ -280,6 +297,8 @@ int run_meter(const MeterCommandOptions& options) {
     } else if (all.front().picture.error.empty()) {
         print_picture(all.front(), options, rule);
     }
+    if (all.size() == 1 && all.front().picture.error.empty())
+        tell_header(all.front().picture.path, options);
     for (const Metered& metered : all) {
         const MeteredPicture& picture = metered.picture;
         if (const std::string text = histogram_warning(picture); !text.empty()) warn(text);

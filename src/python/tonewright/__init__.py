@@ -190,8 +190,8 @@ def info(image: Path, *, input: str = "auto", subimage: int | str = "", layer: s
     """Return what the header of a picture file says, as `tonewright info --json` does.
 
     The dict has space, transfer, primaries (xy of red, green, blue), white (xy), orientation (Exif's, 1 is upright), layer,
-    subimage, units ("relative" or "cd/m2"), alpha ("none", "associated" or "straight"), rule (what decided the space) and
-    ignored (lines about tags that are not used).
+    subimage, units ("relative" or "cd/m2"), alpha ("none", "associated" or "straight"), rule (what decided the space),
+    ignored (lines about tags that are not used) and choices (lines about the layer and the subimage).
 
     Example: tonewright.info("photo.jpg")["space"]
     """

@@ -49,7 +49,7 @@ Expr sampled_curve(std::string_view tag, const RefuseIcc& refuse) {
     if (tag.size() < 12) refuse("a curve is longer than its tag");
     const std::size_t count = big_endian(tag, 8, 4);
     if (count > (tag.size() - 12) / 2) refuse("a curve is longer than its tag");
-    const Expr x = Expr::input();
+    Expr x = Expr::input();
     if (count == 0) return x;
     if (count == 1) {  // u8Fixed8Number
         const double exponent = big_endian(tag, 12, 2) / 256.0;

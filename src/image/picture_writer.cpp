@@ -246,7 +246,8 @@ class PictureWriter::LightLevelMeter {
             }
             to_light_.run_rgb(rgb.data(), rgb.data(), width);
             for (std::size_t i = 0; i < width; ++i) {
-                const double light = std::max({rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2]});
+                const auto light =
+                    static_cast<double>(std::max({rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2]}));
                 largest_ = std::max(largest_, light);
                 sum_ += light;
             }
@@ -927,10 +928,10 @@ void PictureWriter::check_pixels(PictureReader& written, const ImageSpec& wanted
              static_cast<std::size_t>(p.x() - wanted.x)) *
             static_cast<std::size_t>(wanted.nchannels);
         for (int c = 0; c < channels; ++c) {
-            double should = kept_[at + static_cast<std::size_t>(c)];
+            auto should = static_cast<double>(kept_[at + static_cast<std::size_t>(c)]);
             if (is_integer || !is_exact) should = std::clamp(should, 0.0, 1.0);
-            const double found =
-                is_exact ? static_cast<double>(p[c]) : std::clamp<double>(p[c], 0, 1);
+            const double found = is_exact ? static_cast<double>(p[c])
+                                          : std::clamp(static_cast<double>(p[c]), 0.0, 1.0);
             const double allowed = is_integer                     ? step
                                    : type == OIIO::TypeDesc::HALF ? std::fabs(should) / 1024 + 1e-7
                                                                   : std::fabs(should) * 1e-6;

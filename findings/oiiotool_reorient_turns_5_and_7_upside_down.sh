@@ -5,8 +5,8 @@
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-# shellcheck source=findings/debian_packages.sh
-source "$(dirname "$0")/debian_packages.sh" "$folder" openimageio-tools=2.4.7.1+dfsg-2 libvips-tools=8.14.1-3+deb12u3
+# shellcheck source=findings/lib/packages.bash
+source "$(dirname "$0")/lib/packages.bash" "$folder" openimageio-tools=2.4.7.1+dfsg-2 libvips-tools=8.14.1-3+deb12u3
 echo "oiiotool $(run oiiotool --version); $(run vips --version)"
 # Upright: 3 x 2 gray pixels, 10 20 30 over 40 50 60. Stored as the orientation says (TIFF 6.0, tag 274).
 python3 - "$folder" <<'P'

@@ -5,8 +5,8 @@
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-# shellcheck source=findings/debian_packages.sh
-source "$(dirname "$0")/debian_packages.sh" "$folder" openimageio-tools=2.4.7.1+dfsg-2 libvips-tools=8.14.1-3+deb12u3 \
+# shellcheck source=findings/lib/packages.bash
+source "$(dirname "$0")/lib/packages.bash" "$folder" openimageio-tools=2.4.7.1+dfsg-2 libvips-tools=8.14.1-3+deb12u3 \
     ffmpeg=7:5.1.9-0+deb12u1
 echo "oiiotool $(run oiiotool --version); $(run vips --version); $(run ffmpeg -version | head -1 | cut -d' ' -f1-3)"
 for scale in 1 4; do

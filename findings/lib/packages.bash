@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
 # Pinned Debian packages and all that they need, in a folder of their own; nothing is installed. For the other scripts here:
-#   source debian_packages.sh FOLDER PACKAGE=VERSION...
+#   source lib/packages.bash FOLDER PACKAGE=VERSION...
 # defines run PROGRAM ARGUMENT..., which runs a program of those packages with their own loader and libraries.
 findings_packages() {
     local apt=$1/apt root=$1/root deb folder

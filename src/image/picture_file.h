@@ -9,6 +9,7 @@
 #include <ctime>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -33,6 +34,12 @@ TONEWRIGHT_NAMESPACE_BEGIN
 
 /// No limit, for a picture of our own.
 inline constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+
+/// Hold it while OpenImageIO reads the header of a file or of a subimage. Its version 2.4 decodes ICC
+/// profiles with tables that it changes without a lock of its own, so two threads that open
+/// pictures at once would crash. OpenEXR has no profiles: its files open at the same time.
+[[nodiscard]] TONEWRIGHT_API std::unique_lock<std::recursive_mutex> lock_header(
+    const std::string& path);
 
 /// Opens a picture, or a name that one of OpenImageIO's readers accepts.
 /// @throws FileError  missing, unreadable, a folder, a pipe, of unknown format, or of a format

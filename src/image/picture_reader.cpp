@@ -156,6 +156,13 @@ void forget_errors(const OIIO::ImageInput& in) { (void)in.geterror(); }
 
 }  // namespace
 
+std::unique_lock<std::recursive_mutex> lock_header(const std::string& path) {
+    // Recursive: a picture may be one of the plugin, which opens another.
+    static std::recursive_mutex mutex;
+    return extension_of(path) == ".exr" ? std::unique_lock<std::recursive_mutex>()
+                                        : std::unique_lock(mutex);
+}
+
 std::unique_ptr<OIIO::ImageInput> open_picture(const std::string& path,
                                                const OIIO::ImageSpec* config, double max_pixels) {
     // A reader would wait forever for the end of a pipe. A name without a file may be one that a
@@ -168,6 +175,7 @@ std::unique_ptr<OIIO::ImageInput> open_picture(const std::string& path,
     OIIO::ImageSpec straight;
     straight.attribute("oiio:UnassociatedAlpha", 1);
     if (!config) config = &straight;
+    const std::unique_lock lock = lock_header(path);
     std::unique_ptr<OIIO::ImageInput> in;
     if (path.find('?') != std::string::npos && why_not_readable(path).empty()) {
         // OpenImageIO would take the text after the ? as arguments of a reader.
@@ -278,6 +286,7 @@ void PictureReader::check_size(double max_pixels) const {
 }
 
 void PictureReader::choose_subimage(const ReadOptions& options) {
+    const std::unique_lock lock = lock_header(path_);
     const std::string_view format = in_->format_name();
     const auto note = [&](const std::string& text) {
         if (options.note) options.note(text);

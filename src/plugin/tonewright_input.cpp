@@ -134,9 +134,10 @@ class TonemappedInput final : public ImageInput {
         if (!picture_) return false;
         // Not an error: applications find the last subimage in this way.
         const std::lock_guard lock(mutex_);
-        if (levels_.count({subimage, miplevel}) == 0 &&
-            !picture_->seek_subimage(subimage, miplevel))
-            return false;
+        if (levels_.count({subimage, miplevel}) == 0) {
+            const std::unique_lock header = lock_header(path_);
+            if (!picture_->seek_subimage(subimage, miplevel)) return false;
+        }
         return guarded([&] { go_to(subimage, miplevel); });
     }
 
@@ -229,6 +230,7 @@ class TonemappedInput final : public ImageInput {
     void go_to(int subimage, int miplevel) {
         auto found = levels_.find({subimage, miplevel});
         if (found == levels_.end()) {
+            const std::unique_lock header = lock_header(path_);
             ImageSpec source = picture_->spec(subimage, miplevel);
             if (source.deep)
                 throw Error(path_ + " is deep; expected flat pixels (oiiotool --flatten)");
@@ -269,6 +271,7 @@ class TonemappedInput final : public ImageInput {
         if (found != levels_.end()) return found->second;
         const int current_subimage = subimage_;
         const int current_miplevel = miplevel_;
+        const std::unique_lock header = lock_header(path_);
         if (!picture_->seek_subimage(subimage, miplevel))
             throw Error(fmt::format("{} has no subimage {}, level {}", path_, subimage, miplevel));
         go_to(subimage, miplevel);

@@ -7,11 +7,15 @@
 #include <OpenImageIO/imagebufalgo.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "image/header_tags.h"
 #include "image/layers.h"
+#include "image/picture_file.h"
+#include "unit/image/pictures.h"
 
 namespace {
 
@@ -114,6 +118,33 @@ TEST(PictureDescription, OwnTagsEndWithTheNextProgram) {
     EXPECT_EQ(source_color(spec, "auto").name, "Rec.2020");
     spec.attribute("Software", "OpenImageIO 2.4.7.1 : oiiotool a.exr --colorconvert a b -o b.exr");
     EXPECT_EQ(source_color(spec, "auto").name, "lin_rec709");
+}
+
+// OpenImageIO 2.4 changes static tables while it decodes a profile: without our lock, this crashes
+// in some runs.
+TEST(PictureReader, ThreadsOpenPicturesWithProfiles) {
+    const TemporaryFolder folder;
+    constexpr int kThreads = 8;
+    for (int i = 0; i < kThreads; ++i) {
+        ImageSpec spec = spec_of({"R", "G", "B"}, OIIO::TypeUInt8);
+        spec.attribute("oiio:ColorSpace", "sRGB");
+        ImageBuf picture(spec);
+        OIIO::ImageBufAlgo::zero(picture);
+        write_image_atomically(picture, folder.file(std::to_string(i) + ".tif"));
+        write_image_atomically(picture, folder.file(std::to_string(i) + ".jpg"));
+    }
+    std::vector<std::jthread> threads;
+    std::atomic<int> read = 0;
+    for (int i = 0; i < kThreads; ++i) {
+        threads.emplace_back([&, i] {
+            for (const char* extension : {".tif", ".jpg"}) {
+                const PictureReader reader(folder.file(std::to_string(i) + extension), 1);
+                if (source_color(reader.spec(), "auto").name == "sRGB") ++read;
+            }
+        });
+    }
+    threads.clear();
+    EXPECT_EQ(read, 2 * kThreads);
 }
 
 TEST(PictureDescription, PicturesAreTurnedWithTheirMetadata) {
